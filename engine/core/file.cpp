@@ -1,0 +1,62 @@
+#include "core/file.h"
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace afterglow {
+namespace fs = std::filesystem;
+
+Result<std::string> read_file(const fs::path& path, std::size_t limit) {
+  std::error_code ec;
+  const auto status = fs::status(path, ec);
+  if (!fs::exists(status)) return Error{ErrorKind::io, "no such file", path.string()};
+  if (fs::is_directory(status)) return Error{ErrorKind::io, "is a folder, not a file", path.string()};
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return Error{ErrorKind::io, fmt::format("cannot be read: {}", std::strerror(errno)), path.string()};
+  std::string content;
+  char buffer[65536];
+  while (in.read(buffer, sizeof buffer) || in.gcount() > 0) {
+    content.append(buffer, static_cast<std::size_t>(in.gcount()));
+    if (content.size() > limit)
+      return Error{ErrorKind::io, fmt::format("is larger than {} bytes", limit), path.string()};
+  }
+  if (in.bad()) return Error{ErrorKind::io, "read error", path.string()};
+  return content;
+}
+
+fs::path temporary_beside(const fs::path& path) {
+  static std::atomic<unsigned> counter{0};
+  const auto name = fmt::format(".{}.{}-{}.tmp{}", path.stem().string(), getpid(), counter++, path.extension().string());
+  return path.parent_path() / name;
+}
+
+Result<void> commit_file(const fs::path& from, const fs::path& to) {
+  std::error_code ec;
+  fs::rename(from, to, ec);
+  if (!ec) return {};
+  std::error_code ignored;
+  fs::remove(from, ignored);
+  return Error{ErrorKind::io, fmt::format("cannot be written: {}", ec.message()), to.string()};
+}
+
+Result<void> write_file_atomically(const fs::path& path, std::string_view content) {
+  const fs::path temporary = temporary_beside(path);
+  std::ofstream out(temporary, std::ios::binary);
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.close();
+  if (!out) {
+    const int reason = errno;
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    return Error{ErrorKind::io, fmt::format("cannot be written: {}", std::strerror(reason)), path.string()};
+  }
+  return commit_file(temporary, path);
+}
+
+}  // namespace afterglow

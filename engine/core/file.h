@@ -1,0 +1,26 @@
+// Files, whole: read, and written so that they appear whole or not at all.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace afterglow {
+
+/// The whole file. Errors: io (missing, folder, unreadable, larger than `limit` bytes).
+Result<std::string> read_file(const std::filesystem::path& path, std::size_t limit = 64u << 20);
+
+/// A name in the same folder that no other process or thread uses, hidden and ending in the same extension
+/// (image libraries choose the format by it).
+std::filesystem::path temporary_beside(const std::filesystem::path& path);
+
+/// Writes to a temporary file beside `path`, then renames. On error nothing is left behind.
+Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view content);
+
+/// Renames `from` over `to`; on failure removes `from`. Errors: io.
+Result<void> commit_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
+}  // namespace afterglow

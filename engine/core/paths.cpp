@@ -1,0 +1,86 @@
+#include "core/paths.h"
+
+#include <cstdlib>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "core/text.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code ec;
+  return fs::is_regular_file(path, ec);
+}
+
+bool is_installation(const fs::path& folder) {
+  return is_file(folder / "scripts" / "afterglow.lua");
+}
+
+}  // namespace
+
+std::vector<fs::path> SearchPath::find_effect(const std::string& name) const {
+  std::vector<fs::path> hits;
+  for (const auto& folder : effect_folders())
+    if (is_file(folder / (name + ".lua"))) hits.push_back(folder / (name + ".lua"));
+  return hits;
+}
+
+std::vector<fs::path> SearchPath::find_shader(const std::string& name) const {
+  std::vector<fs::path> hits;
+  for (const auto& root : user)
+    if (is_file(root / "shaders" / name)) hits.push_back(root / "shaders" / name);
+  if (is_file(installation / "shaders" / name)) hits.push_back(installation / "shaders" / name);
+  return hits;
+}
+
+std::vector<fs::path> SearchPath::effect_folders() const {
+  std::vector<fs::path> folders;
+  for (const auto& root : user) folders.push_back(root / "effects");
+  folders.push_back(installation / "scripts" / "effects");
+  return folders;
+}
+
+fs::path find_installation() {
+  if (const auto home = environment("AFTERGLOW_HOME"); !home.empty()) return home;
+  std::error_code ec;
+  const fs::path binary = fs::read_symlink("/proc/self/exe", ec);
+  if (!ec) {
+    const fs::path shared = binary.parent_path().parent_path() / "share" / "afterglow";
+    if (is_installation(shared)) return shared;
+  }
+#ifdef AFTERGLOW_SOURCE_FOLDER
+  if (is_installation(AFTERGLOW_SOURCE_FOLDER)) return AFTERGLOW_SOURCE_FOLDER;
+#endif
+  return {};
+}
+
+SearchPath search_path_for(const fs::path& preset, const std::vector<fs::path>& extra) {
+  SearchPath path;
+  if (!preset.empty()) path.user.push_back(preset.has_parent_path() ? preset.parent_path() : fs::path("."));
+  path.user.insert(path.user.end(), extra.begin(), extra.end());
+  if (const auto list = environment("AFTERGLOW_PATH"); !list.empty())
+    for (const auto& entry : split(list, ':'))
+      if (!entry.empty()) path.user.emplace_back(entry);
+  path.installation = find_installation();
+  return path;
+}
+
+fs::path cache_folder() {
+  if (const auto own = environment("AFTERGLOW_CACHE"); !own.empty()) return own;
+  if (const auto xdg = environment("XDG_CACHE_HOME"); !xdg.empty()) return fs::path(xdg) / "afterglow";
+  if (const auto home = environment("HOME"); !home.empty()) return fs::path(home) / ".cache" / "afterglow";
+  std::error_code ec;
+  return fs::temp_directory_path(ec) / fmt::format("afterglow-{}", getuid());
+}
+
+}  // namespace afterglow

@@ -1,0 +1,48 @@
+// Moves pictures between host and device around a program: upload, submit, read back.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "exec/program.h"
+
+namespace afterglow {
+
+struct KernelTime { std::string name; double milliseconds = 0; };
+struct FrameTimes {
+  double upload = 0, execute = 0, readback = 0;   ///< milliseconds, wall clock
+  std::vector<KernelTime> kernels;                ///< empty unless asked for and known
+  bool separate_submissions = false;              ///< kernels were timed one submission each; not part of `execute`
+};
+enum class KernelTiming { none, timestamps, submissions };
+
+/// One input of a frame in host memory: interleaved floats.
+struct HostImage { const float* pixels = nullptr; Size size; int channels = 4; };
+
+struct HostResult {
+  std::vector<float> pixels;        ///< RGBA
+  std::uint64_t clamped = 0;        ///< half storage: source or result samples held at ±65504
+};
+
+/// Images, staging memory, command buffer and fence for one frame at a time; reused while sizes stay the same. Not thread-safe.
+class FrameRunner {
+ public:
+  static Result<std::unique_ptr<FrameRunner>> create(Device& device, std::uint64_t max_memory);
+  ~FrameRunner();
+  /// Uploads "source" and auxiliary images, runs, reads the result back into `out` (RGBA float; resized by it). `capture`, when
+  /// set, is called with each named transient image's pixels (float RGBA) after the frame: for tests and for showing intermediates;
+  /// images then keep memory of their own only when the program was created with `reference`.
+  Result<FrameTimes> run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out, KernelTiming timing);
+  /// Pixels of the image that pass `name` made in the last run. Needs a program created with `reference`. Errors: other.
+  Result<HostResult> read_image(Program& program, ImageId image);
+
+ private:
+  struct State;
+  explicit FrameRunner(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,77 @@
+// A graph made runnable on a device: pipelines, memory, descriptors. Record it into any command buffer.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <vulkan/vulkan.h>
+
+#include "core/diagnostics.h"
+#include "core/result.h"
+#include "gpu/device.h"
+#include "graph/graph.h"
+#include "graph/plan.h"
+#include "shader/kernel.h"
+
+namespace afterglow {
+
+enum class Storage { fp32, fp16 };
+
+struct ProgramOptions {
+  Storage storage = Storage::fp32;
+  bool reference = false;         ///< every pass on its own, computed weights, no sharing of memory
+  bool hardware_filter = false;   ///< filtered fetches may be used
+  std::uint64_t max_memory = 6ull << 30;
+};
+
+struct ProgramMemory {
+  std::uint64_t arena = 0, sum = 0, lower_bound = 0;  ///< bytes of transient images: shared, unshared, least possible
+};
+
+/// An image of the caller's or of a Frame that a program reads or writes. Reads happen in SHADER_READ_ONLY_OPTIMAL, the result is
+/// written in COLOR_ATTACHMENT_OPTIMAL; the caller brings images into these layouts and is told so in `record`.
+struct ImageBinding {
+  VkImage image = VK_NULL_HANDLE;
+  VkImageView view = VK_NULL_HANDLE;
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  Size size;
+};
+
+/// Immutable structure; parameters may be rewritten between frames. Not thread-safe.
+class Program {
+ public:
+  /// Errors: script (shader), device (limits, memory).
+  static Result<std::unique_ptr<Program>> create(Device& device, ShaderLibrary& shaders, KernelCompiler& compiler, const Graph& graph,
+                                                 const ProgramOptions& options);
+  ~Program();
+
+  /// Rewrites parameter bytes from a graph of the same structure; no shader, pipeline or memory is touched.
+  /// Must not be called while a submission of this program is in flight.
+  void set_parameters(const Graph& graph);
+
+  /// Points the graph's inputs and its result at images. Formats of inputs are free (sampled as float); the result's must be the
+  /// storage format. Must not be called while a submission is in flight. A program whose graph's result is its source does nothing.
+  Result<void> bind(const std::map<std::string, ImageBinding>& inputs /* "source", "depth", … */, const ImageBinding& result);
+
+  /// Records all kernels with their barriers. Inputs must be in SHADER_READ_ONLY_OPTIMAL with their writes made visible to fragment
+  /// shader reads; the result must be in COLOR_ATTACHMENT_OPTIMAL and is left so.
+  /// `only` ≥ 0 records that kernel alone (for pass-by-pass timing). `timestamps`: pool with kernels().size()+1 queries, or null.
+  void record(VkCommandBuffer commands, int only = -1, VkQueryPool timestamps = VK_NULL_HANDLE) const;
+
+  const Plan& plan() const;
+  const Graph& graph() const;
+  ProgramMemory memory() const;
+  VkFormat storage_format() const;
+  struct Counters { int pipelines = 0, images = 0, allocations = 0; };
+  Counters counters() const;   ///< objects made so far; steady frames leave them alone
+
+ private:
+  struct State;
+  explicit Program(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,94 @@
+// A Vulkan 1.3 device: picked by name, or adopted from the caller. Owns nothing global.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <vulkan/vulkan.h>
+
+#include "core/diagnostics.h"
+#include "core/result.h"
+
+namespace afterglow {
+
+struct DeviceInfo {
+  std::string name, type, driver, uuid;   ///< type: "cpu", "integrated", "discrete", "virtual", "other"
+  std::uint32_t api_version = 0;
+  bool usable = false;
+  std::string why_not;                    ///< what it lacks, when not usable
+};
+
+/// Devices in the order in which `--device auto` prefers them: discrete, integrated, virtual, cpu. Errors: device (no loader, no driver).
+Result<std::vector<DeviceInfo>> list_devices();
+
+struct DeviceOptions {
+  std::string device = "auto";   ///< "auto", an index into list_devices(), or a part of a name or uuid (case-insensitive)
+  bool validate = false;         ///< Khronos validation with synchronization checks; errors when the layer is missing
+};
+
+/// A caller's objects to work on; they must outlive the Device. The instance and device are of Vulkan 1.3 with dynamicRendering and
+/// synchronization2 enabled.
+struct AdoptedDevice {
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;
+  std::uint32_t queue_family = 0;
+};
+
+/// One logical device with one graphics+compute queue. Immutable after creation; submissions must come from one thread at a time.
+class Device {
+ public:
+  static Result<std::unique_ptr<Device>> create(const DeviceOptions& options, Diagnostics& diagnostics);
+  static Result<std::unique_ptr<Device>> adopt(const AdoptedDevice& adopted, Diagnostics& diagnostics);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  VkDevice handle() const { return device_; }
+  VkPhysicalDevice physical() const { return physical_; }
+  VkQueue queue() const { return queue_; }
+  std::uint32_t queue_family() const { return queue_family_; }
+  VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
+  const VkPhysicalDeviceProperties& properties() const { return properties_; }
+  const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
+  const DeviceInfo& info() const { return info_; }
+  bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+  /// Timestamps around draws mean something (false on CPU devices, where rasterisation is deferred).
+  bool timestamps_mean_draws() const { return !is_cpu() && timestamps_; }
+
+  /// Names an object for debuggers and validation messages; nothing without validation.
+  void set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const;
+  void begin_label(VkCommandBuffer commands, const std::string& name) const;
+  void end_label(VkCommandBuffer commands) const;
+
+  /// Messages of severity error from the validation layer so far (0 without validation).
+  int validation_errors() const;
+  std::vector<std::string> validation_messages() const;
+
+  /// Loads and saves the pipeline cache below `folder` (keyed by the device's pipeline cache UUID); unreadable data is ignored.
+  void use_pipeline_cache(const std::string& folder);
+  void save_pipeline_cache() const;
+
+ private:
+  Device() = default;
+  struct Messages;
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  std::uint32_t queue_family_ = 0;
+  VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
+  VkPhysicalDeviceProperties properties_{};
+  VkPhysicalDeviceMemoryProperties memory_{};
+  DeviceInfo info_;
+  bool timestamps_ = false;
+  bool owned_ = false;
+  std::string cache_file_;
+  std::unique_ptr<Messages> messages_;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,82 @@
+// The pass graph as plain data: what a preset's `build` functions describe. No Lua, no Vulkan.
+// Images are immutable: a pass makes exactly one new image, so a graph is a list of passes in a valid order.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/filter.h"
+#include "core/geometry.h"
+#include "core/result.h"
+#include "shader/interface.h"
+
+namespace afterglow {
+
+using ImageId = int;
+inline constexpr ImageId kNoImage = -1;
+
+struct GraphImage {
+  std::string name;             ///< "source", "depth", or the name of the pass that makes it
+  Size size;
+  int producer = -1;            ///< index of the pass that makes it; -1: an input of the graph
+};
+
+/// `copy`-free kinds of pass. `filter` is data; `pixel` and `sample` name a shader.
+enum class PassKind { pixel, filter, sample };
+
+/// A value for a shader parameter: up to 4 components (bool as 0/1).
+struct ParamValue {
+  ParamType type = ParamType::float1;
+  std::array<double, 4> v{};
+  friend bool operator==(const ParamValue&, const ParamValue&) = default;
+};
+
+struct PassInput {
+  std::string name;   ///< as the shader declares it; "source" for the colour of a pixel pass or of a filter
+  ImageId image = kNoImage;
+  bool pixelwise = false;  ///< read at the target's own pixel only: the image is as large as the target
+  friend bool operator==(const PassInput&, const PassInput&) = default;
+};
+
+struct Pass {
+  std::string name;       ///< unique: "bloom.down[2]"
+  std::string effect;     ///< name of the effect's entry, "bloom"
+  PassKind kind = PassKind::pixel;
+  std::string shader;     ///< "bloom/threshold"; empty for filters
+  Filter filter;          ///< for kind filter
+  std::vector<PassInput> inputs;              ///< a pixel pass's first input is "source"
+  std::map<std::string, ParamValue> params;       ///< dynamic: values may change without a rebuild
+  std::map<std::string, double> constants;        ///< specialised: part of the structure
+  ImageId output = kNoImage;
+  std::string file;       ///< script and line that asked for it, for messages
+  int line = 0;
+};
+
+/// Something that was left out, and why: an effect, a pass.
+struct Skipped {
+  std::string name;
+  std::string reason;   ///< "intensity is 0", "no depth input", "nobody reads its image"
+};
+
+struct Graph {
+  std::vector<GraphImage> images;
+  std::vector<Pass> passes;
+  ImageId source = kNoImage;                    ///< the picture
+  std::map<std::string, ImageId> auxiliary;     ///< "depth", "normal", … that some effect asked for
+  ImageId result = kNoImage;                    ///< == source when nothing runs
+  std::vector<Skipped> skipped;
+};
+
+/// Checks what the script binding cannot break but a program might: ids in range, producers before readers, no image written
+/// twice, sizes ≥ 1, unique names, pixel-wise inputs as large as the target. Errors (script) name effect and pass.
+Result<void> validate(const Graph& graph);
+
+/// True when b differs from a in dynamic parameter values alone, so that a program made for a can run b.
+bool same_structure(const Graph& a, const Graph& b);
+
+/// JSON for `afterglow graph --format json` and for tests.
+std::string to_json(const Graph& graph);
+
+}  // namespace afterglow

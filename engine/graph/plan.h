@@ -1,0 +1,51 @@
+// From graph to plan: passes nobody reads are dropped, neighbouring passes are joined into kernels, transient images get places in
+// shared memory. Plain data; no Vulkan.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "graph/graph.h"
+
+namespace afterglow {
+
+/// One draw: a head pass and the pixel passes joined to it. Indices into Graph::passes, in order.
+struct PlanKernel {
+  std::vector<int> passes;
+  std::string name;   ///< "bloom.up[0]+bloom.combine+tone_mapping"
+  ImageId output = kNoImage;
+};
+
+struct PlanOptions {
+  bool join = true;         ///< false: every pass on its own (--reference)
+  bool alias = true;        ///< false: every image has memory of its own
+  std::uint32_t bytes_per_pixel = 16;
+};
+
+struct Plan {
+  std::vector<PlanKernel> kernels;      ///< in order of execution
+  std::vector<Skipped> skipped;         ///< passes dropped here
+  std::vector<ImageId> transient;       ///< images that need memory, in order of first use (result included when it is not an input)
+  struct Lifetime { int first = 0, last = 0; };  ///< kernel indices, inclusive
+  std::vector<Lifetime> lifetimes;      ///< parallel to `transient`; the result lives to the end
+};
+
+Plan make_plan(const Graph& graph, const PlanOptions& options);
+
+/// A block of memory wanted from kernel `first` to kernel `last` (inclusive).
+struct Block {
+  std::uint64_t size = 0, alignment = 1;
+  int first = 0, last = 0;
+};
+struct Placement {
+  std::vector<std::uint64_t> offsets;  ///< parallel to the blocks
+  std::uint64_t total = 0;             ///< bytes of the arena: the peak
+  std::uint64_t sum = 0;               ///< bytes without sharing
+  std::uint64_t lower_bound = 0;       ///< largest sum of sizes alive at once
+};
+/// Greedy by size; blocks whose lifetimes overlap never share bytes.
+Placement place(const std::vector<Block>& blocks, bool share);
+
+}  // namespace afterglow

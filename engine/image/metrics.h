@@ -1,0 +1,22 @@
+// The measure of error used everywhere in this project (math.md §13).
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace afterglow {
+
+struct ErrorMeasure {
+  double worst = 0;          ///< largest |x − ref| / (|ref| + 0.01)
+  double percentile = 0;     ///< its 99.99th percentile
+  double rms = 0;
+  std::size_t worst_index = 0;
+  std::size_t non_finite = 0;   ///< samples of x that are not finite; they count as infinite error
+};
+ErrorMeasure measure_error(std::span<const float> x, std::span<const double> reference);
+ErrorMeasure measure_error(std::span<const float> x, std::span<const float> reference);
+
+/// math.md §13: the 99.99th percentile is within the tolerance and the worst within 50 times of it.
+bool within(const ErrorMeasure& error, double tolerance);
+
+}  // namespace afterglow

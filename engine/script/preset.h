@@ -1,0 +1,121 @@
+// A preset: a sandboxed Lua script that returns a stack. Loading runs the script, finds the effects it names, and checks every
+// setting against its effect's schema; building runs the effects' `build` functions and yields a graph.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/paths.h"
+#include "core/result.h"
+#include "graph/graph.h"
+#include "shader/library.h"
+
+namespace afterglow {
+
+enum class SettingType { integer, number, boolean, enumeration, color, vec2 };
+
+/// A value of a setting; colours are scene-linear.
+struct SettingValue {
+  SettingType type = SettingType::number;
+  std::array<double, 3> number{};  ///< integer and number in [0]; boolean as 0/1 in [0]; vec2 in [0..1]; colour in [0..2]
+  std::string choice;              ///< enumeration
+  friend bool operator==(const SettingValue&, const SettingValue&) = default;
+  std::string text() const;        ///< as one would write it in Lua
+};
+
+/// What an effect declares about one setting; help, completion, `effects` and documents come from it.
+struct SettingSchema {
+  std::string name, doc;
+  SettingType type = SettingType::number;
+  SettingValue default_value;
+  std::optional<double> min, max;
+  std::vector<std::string> choices;
+  std::string unit;
+};
+
+struct EffectSchema {
+  std::string name, doc, at;
+  int order = 0;
+  std::vector<SettingSchema> settings;   ///< in order of declaration
+  std::filesystem::path file;
+  std::vector<std::filesystem::path> shadowed;   ///< files of the same name further down the search path
+};
+
+/// One effect of a stack, in its resolved place.
+struct StackEntry {
+  std::string name;                            ///< unique in the stack: "bloom"; a second one is "bloom#2"
+  std::string effect;
+  std::string at;                              ///< injection point
+  int order = 0;
+  bool enabled = true;
+  bool required = false;                       ///< a missing auxiliary input is an error
+  std::vector<std::pair<std::string, SettingValue>> settings;  ///< all of them, in the schema's order
+  std::vector<std::string> changed;            ///< names of those that the preset or an override set
+  std::string file;                            ///< where the preset names the effect
+  int line = 0;
+};
+
+/// `--set bloom.intensity=0.4`: name of the entry (or its effect), setting, text of the value.
+struct Override {
+  std::string entry, setting, value;
+};
+/// Errors: usage.
+Result<Override> parse_override(const std::string& text);
+
+struct ScriptLimits {
+  std::size_t memory = 64u << 20;               ///< bytes
+  std::uint64_t instructions = 50'000'000;      ///< per load or build
+  double seconds = 2.0;                         ///< per load or build
+};
+
+struct PresetOptions {
+  std::vector<std::filesystem::path> paths;     ///< --path
+  std::vector<Override> overrides;
+  ScriptLimits limits;
+};
+
+/// What `build` may ask about the picture.
+struct BuildContext {
+  Size size;                                     ///< of the source
+  std::map<std::string, Size> auxiliary;         ///< inputs that the picture has: "depth", "normal"
+  double frame = 1, time = 0, fps = 24;
+};
+
+/// Owns one Lua state. Not thread-safe; may move between threads. Errors of all functions: script.
+class Preset {
+ public:
+  static Result<Preset> load(const std::filesystem::path& file, const PresetOptions& options, ShaderLibrary& shaders,
+                             Diagnostics& diagnostics);
+  Preset(Preset&&) noexcept;
+  Preset& operator=(Preset&&) noexcept;
+  ~Preset();
+
+  const std::string& name() const;                   ///< of the stack
+  std::optional<double> max_error() const;           ///< `max_error` of the stack
+  const std::vector<StackEntry>& entries() const;    ///< in the order of execution
+  const EffectSchema& schema(const std::string& effect) const;   ///< of an effect that the stack uses
+  /// Names of auxiliary inputs that enabled, active effects ask for.
+  std::vector<std::string> needs() const;
+  const std::vector<std::filesystem::path>& files() const;       ///< every script read: preset, library, effects
+
+  /// Runs `active` and `build` of each enabled entry, in order.
+  Result<Graph> build(const BuildContext& context, Diagnostics& diagnostics);
+
+ private:
+  struct State;
+  explicit Preset(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Every effect on the search path, by name. Scripts that fail to load are warned about and left out.
+Result<std::vector<EffectSchema>> list_effects(const SearchPath& path, Diagnostics& diagnostics);
+/// The text of a lua-language-server completion file (`_meta`) for these effects.
+std::string completion_text(const std::vector<EffectSchema>& effects);
+
+}  // namespace afterglow

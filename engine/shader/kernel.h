@@ -1,0 +1,97 @@
+// A kernel: one full-screen fragment shader made of a head (how the first colour of a pixel is found) and pixel stages that
+// follow. Assembled from authors' GLSL and from filters described as data, then compiled to SPIR-V and reflected.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/filter.h"
+#include "core/result.h"
+#include "shader/interface.h"
+#include "shader/library.h"
+
+namespace afterglow {
+
+/// One author's shader in a kernel with the values of its specialised parameters (by name; missing: the default).
+struct KernelStage {
+  std::shared_ptr<const ShaderSource> shader;
+  std::map<std::string, double> constants;
+  std::string label;  ///< name of the pass, for messages and comments: "bloom.threshold"
+};
+
+/// How source and target sizes of a filter head relate on an axis; the executor picks it from the sizes, the
+/// assembler emits cheaper addressing for the exact cases.
+enum class AxisRatio { any, same, half, twice };  // n_dst = n_src · {?, 1, 1/2, 2}, exactly
+
+struct KernelDesc {
+  /// Head: exactly one of `filter` (source is bound at image 0) or `sample` is set; neither: the own pixel of image 0.
+  std::optional<Filter> filter;
+  AxisRatio ratio_x = AxisRatio::any, ratio_y = AxisRatio::any;
+  std::optional<KernelStage> sample;
+  std::vector<KernelStage> stages;  ///< pixel stages, in order
+  bool hardware_filter = false;     ///< let the sampler interpolate (error of 8-bit fractions) where that helps
+  bool half_storage = false;        ///< target is RGBA16F: clamp to ±65504 before the store
+};
+
+/// Where a dynamic parameter lies in the kernel's uniform block.
+struct KernelParam {
+  int stage = 0;          ///< 0-based over [sample, stages…] (the sample stage, when there is one, is 0)
+  std::string name;
+  ParamType type = ParamType::float1;
+  std::uint32_t offset = 0;  ///< bytes, from SPIR-V reflection
+};
+
+/// GLSL ready for the compiler, with what the executor must bind.
+/// Set 0: binding 0 the uniform block (absent when `block_size` is 0), bindings 1… combined image samplers in the order of `images`.
+/// Push constants: see kPushConstantBytes below.
+struct AssembledKernel {
+  std::string glsl;
+  /// Image slots: the head's source (filter or own pixel) or the sample stage's sampler2D inputs in order of declaration,
+  /// then each pixel stage's pixel-wise and sampler2D inputs in order of declaration.
+  struct ImageSlot {
+    int stage = -1;      ///< -1: the head's source; else as in KernelParam::stage
+    std::string name;    ///< input name, or "source" for the head
+  };
+  std::vector<ImageSlot> images;
+  std::vector<std::string> file_names;  ///< index used in #line directives → file path
+  Hash hash;                            ///< of glsl
+};
+
+/// Push constants of every kernel: ivec2 target size, ivec2 size of image 0.
+inline constexpr std::uint32_t kPushConstantBytes = 16;
+
+struct CompiledKernel {
+  std::vector<std::uint32_t> spirv;
+  std::vector<AssembledKernel::ImageSlot> images;
+  std::vector<KernelParam> params;
+  std::uint32_t block_size = 0;  ///< bytes of the uniform block; 0: none
+  Hash hash;
+};
+
+/// Pure text. Errors: script, only for what ShaderLibrary could not see.
+Result<AssembledKernel> assemble(const KernelDesc& kernel);
+
+/// GLSL → SPIR-V with glslang, reflected with SPIRV-Cross, cached on disk by the hash of the assembled text and the compiler
+/// version. Corrupt cache files are ignored and rebuilt. Thread-safe.
+class KernelCompiler {
+ public:
+  explicit KernelCompiler(std::filesystem::path cache_folder);  ///< empty: no disk cache
+  ~KernelCompiler();
+
+  /// Errors (script): GLSL errors, with the author's file and line, and the compiler's further lines in `trail`.
+  Result<CompiledKernel> compile(const KernelDesc& kernel);
+
+  struct Counters { int compiled = 0, from_disk = 0, from_memory = 0; };
+  Counters counters() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace afterglow

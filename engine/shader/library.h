@@ -1,0 +1,56 @@
+// Finds, reads and scans shader files by name along a search path. In-process cache; no compiler, no device.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/hash.h"
+#include "core/paths.h"
+#include "core/result.h"
+#include "shader/interface.h"
+
+namespace afterglow {
+
+/// One file of GLSL with its includes resolved.
+struct ShaderSource {
+  std::string name;                       ///< as asked for, without ".glsl": "bloom/threshold"
+  std::filesystem::path path;
+  std::string text;                       ///< as the author wrote it
+  ShaderInterface interface;
+  /// Libraries it includes, directly or through others, each once, in the order in which they must stand.
+  struct Include {
+    std::string name;  ///< as written in #include
+    std::filesystem::path path;
+    std::string text;
+  };
+  std::vector<Include> includes;
+  std::vector<std::string> global_names;  ///< identifiers and macros that the file defines at file scope (renamed when shaders are joined)
+  Hash hash;                              ///< of text and includes
+
+  std::vector<std::filesystem::path> files() const;  ///< path and those of the includes
+};
+
+/// Thread-safe. Sources are immutable and shared; `reload` drops what changed on disk.
+class ShaderLibrary {
+ public:
+  explicit ShaderLibrary(SearchPath path) : path_(std::move(path)) {}
+
+  /// Finds "NAME.glsl". Errors (script): unknown name (with the nearest), syntax of declarations, missing include, include
+  /// cycle, neither or both of apply/sample_at; file and line are those of the offending text.
+  Result<std::shared_ptr<const ShaderSource>> find(const std::string& name);
+
+  void reload();  ///< forget everything read so far
+  const SearchPath& path() const { return path_; }
+
+ private:
+  SearchPath path_;
+  std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<const ShaderSource>> sources_;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,122 @@
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "core/diagnostics.h"
+#include "core/file.h"
+#include "core/filter.h"
+#include "core/hash.h"
+#include "core/paths.h"
+#include "core/result.h"
+#include "core/text.h"
+
+namespace afterglow {
+namespace {
+namespace fs = std::filesystem;
+
+TEST(Error, PrintsOneLineWithPlaceAllowedAndNearest) {
+  const Error error{ErrorKind::script, "unknown setting 'treshold'", "a.lua", 3, "threshold, knee", "threshold", {"in bloom"}};
+  EXPECT_EQ(error.text(), "a.lua:3: error: unknown setting 'treshold'; allowed: threshold, knee; did you mean 'threshold'?\n  in bloom");
+  EXPECT_EQ((Error{ErrorKind::io, "is empty", "b.exr"}).text(), "b.exr: error: is empty");
+  EXPECT_EQ(Error{.message = "plain"}.text(), "error: plain");
+}
+
+Result<int> half(int x) {
+  if (x % 2) return Error{.message = "odd"};
+  return x / 2;
+}
+Result<int> quarter(int x) {
+  AFTERGLOW_TRY(const int h, half(x));
+  return half(h);
+}
+
+TEST(Result, TryPassesErrorsOn) {
+  EXPECT_EQ(quarter(8).value(), 2);
+  EXPECT_EQ(quarter(6).error().message, "odd");
+}
+
+TEST(Text, NearestName) {
+  const std::vector<std::string> names{"bloom", "box_bloom", "tone_mapping"};
+  EXPECT_EQ(nearest_name("blom", names), "bloom");
+  EXPECT_EQ(nearest_name("tonemapping", names), "tone_mapping");
+  EXPECT_EQ(nearest_name("zzzzzz", names), "");
+}
+
+TEST(Text, NumbersReadBackShort) {
+  EXPECT_EQ(number_text(0.2f), "0.2");
+  EXPECT_EQ(number_text(0.2), "0.2");
+  EXPECT_EQ(number_text(1e10), "10000000000");
+  EXPECT_EQ(number_text(-15), "-15");
+}
+
+TEST(Hash, BoundariesCount) {
+  EXPECT_NE(Hasher().add("ab").add("c").finish(), Hasher().add("a").add("bc").finish());
+  EXPECT_EQ(hash_text("x"), hash_text("x"));
+  EXPECT_EQ(hash_text("x").hex().size(), 32u);
+}
+
+class Folder : public testing::Test {
+ protected:
+  fs::path folder_ = fs::temp_directory_path() / ("afterglow_core_" + std::to_string(getpid()));
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+  int count() const { return static_cast<int>(std::distance(fs::directory_iterator(folder_), {})); }
+};
+
+TEST_F(Folder, WritesWholeFilesOrNothing) {
+  ASSERT_TRUE(write_file_atomically(folder_ / "a.txt", "hello"));
+  EXPECT_EQ(read_file(folder_ / "a.txt").value(), "hello");
+  EXPECT_EQ(count(), 1);
+  fs::create_directory(folder_ / "b.txt");
+  std::ofstream(folder_ / "b.txt" / "inside") << "x";
+  EXPECT_FALSE(write_file_atomically(folder_ / "b.txt", "hello"));
+  EXPECT_EQ(count(), 2);
+  EXPECT_EQ(write_file_atomically(folder_ / "none" / "a.txt", "x").error().kind, ErrorKind::io);
+}
+
+TEST_F(Folder, ReadErrorsSayWhy) {
+  EXPECT_EQ(read_file(folder_ / "missing").error().message, "no such file");
+  EXPECT_EQ(read_file(folder_).error().message, "is a folder, not a file");
+  std::ofstream(folder_ / "big") << std::string(100, 'x');
+  EXPECT_FALSE(read_file(folder_ / "big", 10));
+}
+
+TEST_F(Folder, TemporaryNamesKeepTheExtension) {
+  const auto name = temporary_beside(folder_ / "a.exr");
+  EXPECT_EQ(name.extension(), ".exr");
+  EXPECT_EQ(name.parent_path(), folder_);
+  EXPECT_NE(name, temporary_beside(folder_ / "a.exr"));
+}
+
+TEST_F(Folder, SearchPathPrefersTheUser) {
+  fs::create_directories(folder_ / "user" / "effects");
+  fs::create_directories(folder_ / "home" / "scripts" / "effects");
+  std::ofstream(folder_ / "user" / "effects" / "bloom.lua") << "";
+  std::ofstream(folder_ / "home" / "scripts" / "effects" / "bloom.lua") << "";
+  const SearchPath path{{folder_ / "user"}, folder_ / "home"};
+  const auto hits = path.find_effect("bloom");
+  ASSERT_EQ(hits.size(), 2u);
+  EXPECT_EQ(hits[0], folder_ / "user" / "effects" / "bloom.lua");
+  EXPECT_TRUE(path.find_effect("glow").empty());
+}
+
+TEST(Diagnostics, WarnsOncePerKey) {
+  int count = 0;
+  Diagnostics diagnostics([&](Severity, const std::string&) { ++count; });
+  diagnostics.warn_once("a", "x");
+  diagnostics.warn_once("a", "y");
+  diagnostics.warn_once("b", "z");
+  EXPECT_EQ(count, 2);
+}
+
+TEST(Filter, TextTellsFiltersApart) {
+  Filter a, b;
+  EXPECT_EQ(a.text(), b.text());
+  b.x = {{-1, .5}, {1, .5}};
+  EXPECT_NE(a.text(), b.text());
+}
+
+}  // namespace
+}  // namespace afterglow
