@@ -1,0 +1,80 @@
+#include "graph/graph.h"
+
+#include <set>
+
+#include <fmt/format.h>
+
+namespace afterglow {
+namespace {
+
+Error pass_error(const Pass& pass, std::string what) {
+  return Error{ErrorKind::script, fmt::format("pass '{}' of effect '{}': {}", pass.name, pass.effect, what), pass.file, pass.line};
+}
+
+bool is_image(const Graph& graph, ImageId id) { return id >= 0 && id < static_cast<ImageId>(graph.images.size()); }
+
+Result<void> validate_images(const Graph& graph) {
+  for (const auto& image : graph.images)
+    if (image.size.width < 1 || image.size.height < 1)
+      return Error{ErrorKind::script,
+                   fmt::format("image '{}' has no pixels ({}×{})", image.name, image.size.width, image.size.height)};
+  if (!is_image(graph, graph.source)) return Error{ErrorKind::script, "the graph has no source image"};
+  if (!is_image(graph, graph.result)) return Error{ErrorKind::script, "the graph has no result image"};
+  return {};
+}
+
+Result<void> validate_inputs(const Graph& graph, const Pass& pass, const std::vector<bool>& made) {
+  if (pass.kind != PassKind::sample && (pass.inputs.empty() || pass.inputs.front().name != "source"))
+    return pass_error(pass, "its first input is not 'source'");
+  const Size target = graph.images[pass.output].size;
+  for (const auto& input : pass.inputs) {
+    if (!is_image(graph, input.image)) return pass_error(pass, fmt::format("input '{}' is no image of this graph", input.name));
+    const auto& image = graph.images[input.image];
+    if (!made[input.image])
+      return pass_error(pass, fmt::format("input '{}' reads '{}' before it is made", input.name, image.name));
+    if (input.pixelwise && image.size != target)
+      return pass_error(pass, fmt::format("input '{}' is {}×{} but is read pixel by pixel into {}×{}", input.name,
+                                          image.size.width, image.size.height, target.width, target.height));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> validate(const Graph& graph) {
+  AFTERGLOW_CHECK(validate_images(graph));
+  std::vector<bool> made(graph.images.size());
+  for (std::size_t i = 0; i < graph.images.size(); ++i) made[i] = graph.images[i].producer < 0;
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < graph.passes.size(); ++i) {
+    const Pass& pass = graph.passes[i];
+    if (!names.insert(pass.name).second) return pass_error(pass, "another pass has the same name");
+    if (!is_image(graph, pass.output)) return pass_error(pass, "makes no image");
+    if (made[pass.output]) return pass_error(pass, fmt::format("writes '{}' again", graph.images[pass.output].name));
+    if (graph.images[pass.output].producer != static_cast<int>(i)) return pass_error(pass, "its image names another producer");
+    AFTERGLOW_CHECK(validate_inputs(graph, pass, made));
+    made[pass.output] = true;
+  }
+  if (!made[graph.result]) return Error{ErrorKind::script, fmt::format("no pass makes the result '{}'", graph.images[graph.result].name)};
+  if (graph.images[graph.result].size != graph.images[graph.source].size)
+    return Error{ErrorKind::script, fmt::format("the result '{}' has another size than the source", graph.images[graph.result].name)};
+  return {};
+}
+
+bool same_structure(const Graph& a, const Graph& b) {
+  if (a.images.size() != b.images.size() || a.passes.size() != b.passes.size()) return false;
+  if (a.source != b.source || a.result != b.result || a.auxiliary != b.auxiliary) return false;
+  for (std::size_t i = 0; i < a.images.size(); ++i)
+    if (a.images[i].size != b.images[i].size || a.images[i].producer != b.images[i].producer) return false;
+  for (std::size_t i = 0; i < a.passes.size(); ++i) {
+    const Pass &p = a.passes[i], &q = b.passes[i];
+    if (p.name != q.name || p.kind != q.kind || p.shader != q.shader || !(p.filter == q.filter) || p.inputs != q.inputs ||
+        p.constants != q.constants || p.output != q.output || p.params.size() != q.params.size())
+      return false;
+    for (auto x = p.params.begin(), y = q.params.begin(); x != p.params.end(); ++x, ++y)
+      if (x->first != y->first || x->second.type != y->second.type) return false;
+  }
+  return true;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,55 @@
+#include <nlohmann/json.hpp>
+
+#include "graph/graph.h"
+
+namespace afterglow {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* kind_name(PassKind kind) {
+  switch (kind) {
+    case PassKind::pixel: return "pixel";
+    case PassKind::filter: return "filter";
+    case PassKind::sample: return "sample";
+  }
+  return "";
+}
+
+Json value_json(const ParamValue& value) {
+  const int count = component_count(value.type);
+  if (count == 1) return value.type == ParamType::bool1 ? Json(value.v[0] != 0) : Json(value.v[0]);
+  Json array = Json::array();
+  for (int i = 0; i < count; ++i) array.push_back(value.v[i]);
+  return array;
+}
+
+Json pass_json(const Graph& graph, const Pass& pass) {
+  Json out{{"name", pass.name}, {"effect", pass.effect}, {"kind", kind_name(pass.kind)}};
+  if (pass.kind == PassKind::filter) out["filter"] = pass.filter.text();
+  else out["shader"] = pass.shader;
+  for (const auto& input : pass.inputs) out["inputs"][input.name] = graph.images[input.image].name;
+  for (const auto& [name, value] : pass.params) out["parameters"][name] = value_json(value);
+  for (const auto& [name, value] : pass.constants) out["constants"][name] = value;
+  const auto& image = graph.images[pass.output];
+  out["output"] = {{"image", image.name}, {"width", image.size.width}, {"height", image.size.height}};
+  out["from"] = {{"file", pass.file}, {"line", pass.line}};
+  return out;
+}
+
+}  // namespace
+
+std::string to_json(const Graph& graph) {
+  Json out;
+  out["source"] = {{"width", graph.images[graph.source].size.width}, {"height", graph.images[graph.source].size.height}};
+  out["inputs"] = Json::array();
+  for (const auto& [name, id] : graph.auxiliary) out["inputs"].push_back(name);
+  out["passes"] = Json::array();
+  for (const auto& pass : graph.passes) out["passes"].push_back(pass_json(graph, pass));
+  out["result"] = graph.images[graph.result].name;
+  out["skipped"] = Json::array();
+  for (const auto& skipped : graph.skipped) out["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
+  return out.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace afterglow
