@@ -1,35 +1,23 @@
-// Preset + pictures → pictures. What the command line, the player and embedding programs share.
+// Preset + pictures → pictures. What the command line, the player and tests share: a Stack, a device of its own, and the transfers.
 #pragma once
 
-#include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/diagnostics.h"
-#include "core/result.h"
 #include "exec/frame.h"
-#include "gpu/device.h"
 #include "image/picture.h"
-#include "script/preset.h"
+#include "session/stack.h"
 
 namespace afterglow {
 
-enum class Precision { automatic, fp32, fp16 };
-
 struct SessionOptions {
   DeviceOptions device;
-  PresetOptions preset;
-  Precision precision = Precision::automatic;
-  std::optional<double> max_error;      ///< E; default: the preset's, else 2e-3
-  bool reference = false;
-  std::uint64_t max_memory = 6ull << 30;
-  std::filesystem::path cache_folder;   ///< empty: no disk caches
+  StackOptions stack;
   KernelTiming timing = KernelTiming::none;
 };
 
-/// Milliseconds by step since the session began (start-up, script, compile) and of the last frame (upload, execute, read-back).
+/// Milliseconds: since the session began (device, script, compile) and of the last frame (upload, execute, read-back).
 struct SessionTimes {
   double device = 0, script = 0, compile = 0;
   FrameTimes frame;
@@ -40,27 +28,29 @@ struct SessionReport {
   std::string storage;            ///< "fp32" or "fp16"
   bool reference = false, hardware_filter = false;
   double max_error = 2e-3;
-  std::vector<Skipped> skipped;   ///< effects and passes that did not run, with reasons
-  std::vector<std::string> kernels;
+  std::vector<Skipped> skipped;   ///< effects and passes that did not run in the last frame, with reasons
+  std::vector<std::string> kernels;   ///< what ran, joined passes as "a+b"
   ProgramMemory memory;
+  std::uint64_t clamped = 0;      ///< half storage: samples of the last frame held at ±65504
   SessionTimes times;
 };
 
 /// Not thread-safe.
 class Session {
  public:
-  /// Loads the preset and opens the device. Errors: script, device, usage (unknown override).
+  /// Loads the preset while the device opens. Errors: script, device, usage (unknown override).
   static Result<std::unique_ptr<Session>> open(const std::filesystem::path& preset, const SessionOptions& options, Diagnostics& diagnostics);
   ~Session();
 
-  Preset& preset();
+  Stack& stack();
+  Preset& preset() { return stack().preset(); }
   Device& device();
-  /// The graph for a picture of this size with these auxiliary inputs.
-  Result<Graph> graph(const BuildContext& context);
-  /// Bytes of host and device memory that a picture of this size needs, at most.
-  Result<std::uint64_t> memory_needed(const BuildContext& context);
-  /// Runs the stack; `picture.color` is replaced by the result (alpha kept).
-  Result<void> process(Picture& picture, const BuildContext& context);
+
+  /// Makes everything that a picture of this size needs; `process` does it otherwise. May run while the picture is being read.
+  Result<void> prepare(const BuildContext& context);
+  /// Runs the stack: `picture.color` becomes the result; its alpha stays. A stack with nothing to do leaves the picture untouched.
+  /// `frame` gives frame number, time and fps; sizes are taken from the picture.
+  Result<void> process(Picture& picture, const BuildContext& frame = {});
   SessionReport report() const;
 
  private:

@@ -1,0 +1,108 @@
+#include "session/session.h"
+
+#include <chrono>
+#include <future>
+
+namespace afterglow {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct OpenedDevice {
+  Result<std::unique_ptr<Device>> device;
+  double milliseconds = 0;
+};
+
+OpenedDevice open_device(const DeviceOptions& options, Diagnostics& diagnostics) {
+  const auto start = Clock::now();
+  auto device = Device::create(options, diagnostics);
+  return {std::move(device), std::chrono::duration<double, std::milli>(Clock::now() - start).count()};
+}
+
+HostImage host_image(const Image& image) { return {image.pixels.data(), image.size(), image.channels}; }
+
+}  // namespace
+
+struct Session::State {
+  SessionOptions options;
+  std::string preset_file;
+  // Destroyed in reverse: what was made on the device goes before the device.
+  std::unique_ptr<Device> device;
+  std::unique_ptr<Stack> stack;
+  std::unique_ptr<FrameRunner> runner;
+  HostResult result;
+  SessionTimes times;
+};
+
+Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Session::~Session() = default;
+
+Stack& Session::stack() { return *state_->stack; }
+Device& Session::device() { return *state_->device; }
+
+Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& preset, const SessionOptions& options,
+                                               Diagnostics& diagnostics) {
+  auto opening = std::async(std::launch::async, [&] { return open_device(options.device, diagnostics); });
+  auto stack = Stack::load(preset, options.stack, diagnostics);
+  OpenedDevice opened = opening.get();
+  if (!stack) return std::move(stack).error();
+  if (!opened.device) return std::move(opened.device).error();
+
+  auto state = std::make_unique<State>();
+  state->options = options;
+  state->preset_file = preset.string();
+  state->device = std::move(opened.device).value();
+  state->stack = std::move(stack).value();
+  state->stack->use(*state->device);
+  state->times.device = opened.milliseconds;
+  AFTERGLOW_TRY(state->runner, FrameRunner::create(*state->device, options.stack.max_memory));
+  return std::unique_ptr<Session>(new Session(std::move(state)));
+}
+
+Result<void> Session::prepare(const BuildContext& context) { return state_->stack->prepare(context); }
+
+Result<void> Session::process(Picture& picture, const BuildContext& frame) {
+  BuildContext context = frame;
+  context.size = picture.color.size();
+  context.auxiliary.clear();
+  for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
+  AFTERGLOW_CHECK(prepare(context));
+  state_->times.frame = {};
+  state_->result.clamped = 0;
+  if (!state_->stack->runs()) return {};
+
+  std::map<std::string, HostImage> inputs{{"source", host_image(picture.color)}};
+  for (const auto& [name, id] : state_->stack->prepared_graph().auxiliary) inputs[name] = host_image(picture.auxiliary.at(name));
+  AFTERGLOW_TRY(state_->times.frame,
+                state_->runner->run(*state_->stack->program(), inputs, state_->result, state_->options.timing));
+  // Effects never change alpha: the source's own values go on, exact whatever the storage format.
+  auto& pixels = state_->result.pixels;
+  for (std::size_t i = 3; i < pixels.size(); i += 4) pixels[i] = picture.color.pixels[i];
+  picture.color.pixels.swap(pixels);
+  return {};
+}
+
+SessionReport Session::report() const {
+  const Stack& stack = *state_->stack;
+  SessionReport report;
+  report.device = state_->device->info().name;
+  report.driver = state_->device->info().driver;
+  report.preset = state_->preset_file;
+  report.storage = stack.choice().storage == Storage::fp16 ? "fp16" : "fp32";
+  report.reference = state_->options.stack.reference;
+  report.hardware_filter = stack.choice().hardware_filter;
+  report.max_error = stack.choice().max_error;
+  report.skipped = stack.prepared_graph().skipped;
+  if (const Program* program = state_->stack->program()) {
+    for (const auto& kernel : program->plan().kernels) report.kernels.push_back(kernel.name);
+    report.skipped.insert(report.skipped.end(), program->plan().skipped.begin(), program->plan().skipped.end());
+    report.memory = program->memory();
+  }
+  report.clamped = state_->result.clamped;
+  report.times = state_->times;
+  report.times.script = stack.script_milliseconds();
+  report.times.compile = stack.compile_milliseconds();
+  return report;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,147 @@
+#include "session/stack.h"
+
+#include <chrono>
+
+#include "graph/plan.h"
+#include "shader/kernel.h"
+
+namespace afterglow {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Measured worst cases of whole stacks (math.md §13): half storage 1e-3, 8-bit fractions of a sampler on top 2.7e-3.
+constexpr double kErrorOfHalf = 2e-3;
+constexpr double kErrorOfHardwareFilter = 5e-3;
+
+StackChoice choose(const Device& device, const StackOptions& options, double max_error) {
+  StackChoice choice;
+  choice.max_error = max_error;
+  if (options.reference) return choice;
+  // On CPU devices full floats and integer fetches are faster than half floats and filtered fetches, and exact.
+  const bool half_pays = !device.is_cpu() && max_error >= kErrorOfHalf;
+  const bool half = options.precision == Precision::fp16 || (options.precision == Precision::automatic && half_pays);
+  choice.storage = half ? Storage::fp16 : Storage::fp32;
+  choice.hardware_filter = !device.is_cpu() && max_error >= kErrorOfHardwareFilter;
+  return choice;
+}
+
+}  // namespace
+
+struct Stack::State {
+  StackOptions options;
+  Diagnostics* diagnostics = nullptr;
+  std::unique_ptr<ShaderLibrary> shaders;
+  std::unique_ptr<KernelCompiler> compiler;
+  std::optional<Preset> preset;
+  Device* device = nullptr;
+  StackChoice choice;
+  Graph graph;
+  bool prepared = false;
+  std::unique_ptr<Program> program;
+  double script_ms = 0, compile_ms = 0;
+};
+
+Stack::Stack(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Stack::~Stack() = default;
+
+Result<std::unique_ptr<Stack>> Stack::load(const std::filesystem::path& preset, const StackOptions& options,
+                                           Diagnostics& diagnostics) {
+  const auto start = Clock::now();
+  auto state = std::make_unique<State>();
+  state->options = options;
+  state->diagnostics = &diagnostics;
+  state->shaders = std::make_unique<ShaderLibrary>(search_path_for(preset, options.preset.paths));
+  const auto& cache = options.cache_folder;
+  state->compiler = std::make_unique<KernelCompiler>(cache.empty() ? cache : cache / "shaders");
+  AFTERGLOW_TRY(Preset loaded, Preset::load(preset, options.preset, *state->shaders, diagnostics));
+  state->preset.emplace(std::move(loaded));
+  state->choice.max_error = options.max_error.value_or(state->preset->max_error().value_or(state->choice.max_error));
+  state->script_ms = milliseconds_since(start);
+  return std::unique_ptr<Stack>(new Stack(std::move(state)));
+}
+
+Preset& Stack::preset() { return *state_->preset; }
+bool Stack::runs() const { return state_->prepared && state_->graph.result != state_->graph.source; }
+Program* Stack::program() { return state_->program.get(); }
+const Graph& Stack::prepared_graph() const { return state_->graph; }
+const StackChoice& Stack::choice() const { return state_->choice; }
+double Stack::script_milliseconds() const { return state_->script_ms; }
+double Stack::compile_milliseconds() const { return state_->compile_ms; }
+
+VkFormat Stack::result_format() const {
+  return state_->choice.storage == Storage::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+}
+
+Result<Graph> Stack::graph(const BuildContext& context) {
+  const auto start = Clock::now();
+  AFTERGLOW_TRY(Graph graph, state_->preset->build(context, *state_->diagnostics));
+  AFTERGLOW_CHECK(validate(graph));
+  state_->script_ms += milliseconds_since(start);
+  return graph;
+}
+
+Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
+  AFTERGLOW_TRY(const Graph graph, this->graph(context));
+  const bool reference = state_->options.reference;
+  const std::uint64_t bytes_per_pixel = state_->options.precision == Precision::fp16 && !reference ? 8 : 16;
+  const Plan plan = make_plan(graph, {.join = !reference});
+  std::vector<Block> blocks;
+  for (std::size_t i = 0; i < plan.transient.size(); ++i) {
+    const auto pixels = static_cast<std::uint64_t>(graph.images[plan.transient[i]].size.area());
+    blocks.push_back({pixels * bytes_per_pixel, 1, plan.lifetimes[i].first, plan.lifetimes[i].last});
+  }
+  std::uint64_t total = place(blocks, !reference).total;
+  for (const auto& image : graph.images)
+    if (image.producer < 0) total += static_cast<std::uint64_t>(image.size.area()) * bytes_per_pixel;
+  return total;
+}
+
+void Stack::use(Device& device) {
+  state_->device = &device;
+  state_->choice = choose(device, state_->options, state_->choice.max_error);
+  if (const auto& cache = state_->options.cache_folder; !cache.empty()) device.use_pipeline_cache((cache / "pipelines").string());
+}
+
+Result<void> Stack::prepare(const BuildContext& context) {
+  AFTERGLOW_TRY(Graph graph, this->graph(context));
+  const bool reusable = state_->prepared && same_structure(state_->graph, graph);
+  state_->graph = std::move(graph);
+  state_->prepared = true;
+  if (reusable) {
+    if (state_->program) state_->program->set_parameters(state_->graph);
+    return {};
+  }
+  state_->program.reset();
+  if (!runs()) return {};
+  const auto start = Clock::now();
+  ProgramOptions options;
+  options.storage = state_->choice.storage;
+  options.reference = state_->options.reference;
+  options.hardware_filter = state_->choice.hardware_filter;
+  options.max_memory = state_->options.max_memory;
+  auto program = Program::create(*state_->device, *state_->shaders, *state_->compiler, state_->graph, options);
+  if (!program) {
+    state_->prepared = false;
+    return std::move(program).error();
+  }
+  state_->program = std::move(program).value();
+  state_->device->save_pipeline_cache();
+  state_->compile_ms += milliseconds_since(start);
+  return {};
+}
+
+Result<void> Stack::bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result) {
+  if (!state_->program) return {};
+  return state_->program->bind(inputs, result);
+}
+
+void Stack::record(VkCommandBuffer commands) const {
+  if (state_->program) state_->program->record(commands);
+}
+
+}  // namespace afterglow

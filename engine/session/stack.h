@@ -1,0 +1,80 @@
+// A preset made runnable on a device, without moving any pixels: what an engine records into its own command buffer, and what Session
+// drives for whole pictures.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/result.h"
+#include "exec/program.h"
+#include "gpu/device.h"
+#include "script/preset.h"
+
+namespace afterglow {
+
+enum class Precision { automatic, fp32, fp16 };
+
+struct StackOptions {
+  PresetOptions preset;
+  Precision precision = Precision::automatic;
+  std::optional<double> max_error;      ///< E of math.md §13; default: the preset's, else 2e-3
+  bool reference = false;               ///< every pass on its own in fp32 with computed weights: the slow truth
+  std::uint64_t max_memory = 6ull << 30;   ///< bytes of device memory for images
+  std::filesystem::path cache_folder;   ///< for shaders and pipelines; empty: no disk caches
+};
+
+/// How a stack is executed; decided from the device, E and --precision.
+struct StackChoice {
+  Storage storage = Storage::fp32;
+  bool hardware_filter = false;
+  double max_error = 2e-3;
+};
+
+/// Bound to one device, which must outlive it. Not thread-safe.
+class Stack {
+ public:
+  /// Runs the preset's script; touches no device. Errors: script, usage (override).
+  static Result<std::unique_ptr<Stack>> load(const std::filesystem::path& preset, const StackOptions& options, Diagnostics& diagnostics);
+  ~Stack();
+
+  Preset& preset();
+  /// What runs for a picture of this size: passes, and what was skipped and why. Needs no device.
+  Result<Graph> graph(const BuildContext& context);
+  /// Bytes of device memory that the stack's images take for such a picture, with the source and the result. Needs no device.
+  Result<std::uint64_t> memory_needed(const BuildContext& context);
+
+  /// Decides storage and filtering for a device. Call before `prepare`.
+  void use(Device& device);
+  const StackChoice& choice() const;
+
+  /// Makes shaders, pipelines and memory for pictures of this size, or only rewrites parameters when the structure is as before.
+  /// Must not be called while a submission that uses this stack is in flight. Errors: script, device, io (memory limit).
+  Result<void> prepare(const BuildContext& context);
+  /// False when no effect has anything to do: the result *is* the source, and `record` records nothing.
+  bool runs() const;
+  /// The program of the last `prepare`; null before it, and when nothing runs.
+  Program* program();
+  /// The graph of the last `prepare`.
+  const Graph& prepared_graph() const;
+
+  /// Format that the result image must have: VK_FORMAT_R32G32B32A32_SFLOAT or VK_FORMAT_R16G16B16A16_SFLOAT.
+  VkFormat result_format() const;
+  /// See Program::bind and Program::record for layouts and barriers.
+  Result<void> bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result);
+  void record(VkCommandBuffer commands) const;
+
+  double script_milliseconds() const;    ///< loading and building so far
+  double compile_milliseconds() const;   ///< shaders and pipelines so far
+
+ private:
+  struct State;
+  explicit Stack(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace afterglow
