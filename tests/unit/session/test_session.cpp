@@ -1,0 +1,188 @@
+// Stack and Session on the real device with presets and effects written to a folder of the test's own.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "session/session.h"
+
+namespace afterglow {
+namespace {
+namespace fs = std::filesystem;
+
+class SessionTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(folder_ / "effects");
+    fs::create_directories(folder_ / "shaders" / "gain");
+    write("effects/gain.lua", R"(
+      local fx = require "afterglow"
+      return fx.effect {
+        name = "gain", doc = "Multiplies.", at = "post_process", order = 10,
+        settings = { amount = fx.float { default = 1, min = 0, max = 1e6, doc = "Factor." } },
+        active = function(s) return s.amount ~= 1, "amount is 1" end,
+        build = function(g, s, source) return g:pass { shader = "gain/gain", source = source, amount = s.amount } end,
+      })");
+    write("effects/fog.lua", R"(
+      local fx = require "afterglow"
+      return fx.effect {
+        name = "fog", doc = "Shows depth.", at = "before_post_process", order = 0, needs = { "depth" }, settings = {},
+        build = function(g, s, source)
+          return g:pass { shader = "gain/fog", source = source, depth = g:input("depth") }
+        end,
+      })");
+    write("shaders/gain/gain.glsl", "uniform float amount;\nvec4 apply(vec4 color) { return color * amount; }\n");
+    write("shaders/gain/fog.glsl",
+          "uniform sampler2D source;\nuniform sampler2D depth;\n"
+          "vec4 sample_at(ivec2 pixel) { return vec4(fetch(source, pixel).rgb, 1) + vec4(vec3(fetch(depth, pixel).r), 0); }\n");
+    preset("fx.gain { amount = 2 }");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+  void preset(const std::string& entries) {
+    write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { " + entries + " }\n");
+  }
+  Result<std::unique_ptr<Session>> open(SessionOptions options = {}) {
+    options.device.validate = true;
+    return Session::open(folder_ / "look.lua", options, diagnostics_);
+  }
+  static Picture picture(int width, int height) {
+    Picture p;
+    p.color = Image(width, height, 4);
+    for (std::size_t i = 0; i < p.color.pixels.size(); ++i) p.color.pixels[i] = static_cast<float>(i % 97) / 32.f;
+    return p;
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("afterglow_session_" + std::to_string(getpid()));
+  Diagnostics diagnostics_;
+};
+
+TEST_F(SessionTest, RunsTheStackAndKeepsAlpha) {
+  auto session = open();
+  ASSERT_TRUE(session) << session.error().text();
+  Picture p = picture(13, 7);
+  const Picture before = p;
+  ASSERT_TRUE((*session)->process(p));
+  for (std::size_t i = 0; i < p.color.pixels.size(); ++i)
+    EXPECT_FLOAT_EQ(p.color.pixels[i], before.color.pixels[i] * (i % 4 == 3 ? 1 : 2)) << i;
+  EXPECT_EQ((*session)->report().kernels, std::vector<std::string>{"gain.gain"});
+  EXPECT_EQ((*session)->device().validation_errors(), 0);
+}
+
+TEST_F(SessionTest, NothingToDoLeavesThePictureAndSaysWhy) {
+  preset("fx.gain { amount = 1 }");
+  auto session = open();
+  ASSERT_TRUE(session) << session.error().text();
+  Picture p = picture(4, 4);
+  const auto before = p.color.pixels;
+  ASSERT_TRUE((*session)->process(p));
+  EXPECT_EQ(p.color.pixels, before);
+  const auto report = (*session)->report();
+  EXPECT_TRUE(report.kernels.empty());
+  ASSERT_EQ(report.skipped.size(), 1u);
+  EXPECT_EQ(report.skipped[0].name, "gain");
+  EXPECT_EQ(report.skipped[0].reason, "amount is 1");
+}
+
+TEST_F(SessionTest, FramesOfTheSameSizeMakeNothingNew) {
+  auto session = open();
+  ASSERT_TRUE(session) << session.error().text();
+  Picture first = picture(16, 16);
+  ASSERT_TRUE((*session)->process(first));
+  const Program* program = (*session)->stack().program();
+  const auto before = program->counters();
+  for (int i = 0; i < 3; ++i) {
+    Picture next = picture(16, 16);
+    ASSERT_TRUE((*session)->process(next));
+    EXPECT_EQ(next.color.pixels, first.color.pixels);
+  }
+  EXPECT_EQ((*session)->stack().program(), program);
+  EXPECT_EQ(program->counters().pipelines, before.pipelines);
+  EXPECT_EQ(program->counters().allocations, before.allocations);
+}
+
+TEST_F(SessionTest, SizesMayChangeBetweenFrames) {
+  auto session = open();
+  ASSERT_TRUE(session) << session.error().text();
+  for (const Size size : {Size{8, 8}, Size{1, 1}, Size{31, 5}, Size{8, 8}}) {
+    Picture p = picture(size.width, size.height);
+    const float before = p.color.pixels[1];
+    ASSERT_TRUE((*session)->process(p));
+    EXPECT_FLOAT_EQ(p.color.pixels[1], 2 * before);
+  }
+  EXPECT_EQ((*session)->device().validation_errors(), 0);
+}
+
+TEST_F(SessionTest, AuxiliaryInputsReachTheShaders) {
+  preset("fx.fog {}");
+  auto session = open();
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_EQ((*session)->preset().needs(), std::vector<std::string>{"depth"});
+  Picture p = picture(5, 3);
+  const auto before = p.color.pixels;
+  p.auxiliary["depth"] = Image(5, 3, 1);
+  p.auxiliary["depth"].pixels.assign(15, 1e4f);
+  ASSERT_TRUE((*session)->process(p));
+  EXPECT_FLOAT_EQ(p.color.pixels[4], before[4] + 1e4f);
+
+  Picture without = picture(5, 3);
+  ASSERT_TRUE((*session)->process(without));
+  EXPECT_EQ(without.color.pixels, before);
+  EXPECT_EQ((*session)->report().skipped.at(0).reason, "no depth input");
+}
+
+TEST_F(SessionTest, HalfStorageStaysWithinItsTolerance) {
+  SessionOptions options;
+  options.stack.precision = Precision::fp16;
+  auto session = open(options);
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_EQ((*session)->report().storage, "fp16");
+  Picture p = picture(9, 9);
+  const auto before = p.color.pixels;
+  ASSERT_TRUE((*session)->process(p));
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_NEAR(p.color.pixels[i], before[i] * (i % 4 == 3 ? 1 : 2), 2e-3 * (2 * before[i] + 0.01));
+}
+
+TEST_F(SessionTest, SmallErrorsMeanFullFloats) {
+  SessionOptions options;
+  options.stack.max_error = 1e-4;
+  auto session = open(options);
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_EQ((*session)->report().storage, "fp32");
+  EXPECT_FALSE((*session)->report().hardware_filter);
+}
+
+TEST_F(SessionTest, MemoryIsForeseenWithoutADevice) {
+  auto stack = Stack::load(folder_ / "look.lua", {}, diagnostics_);
+  ASSERT_TRUE(stack) << stack.error().text();
+  const auto bytes = (*stack)->memory_needed({.size = {16384, 16384}, .auxiliary = {}});
+  ASSERT_TRUE(bytes) << bytes.error().text();
+  EXPECT_EQ(*bytes, 2ull * 16384 * 16384 * 16);  // source and result
+}
+
+TEST_F(SessionTest, ShaderErrorsNameTheAuthorsFileAndLine) {
+  write("shaders/gain/gain.glsl", "uniform float amount;\nvec4 apply(vec4 color) {\n  return colour * amount;\n}\n");
+  auto session = open();
+  ASSERT_TRUE(session) << session.error().text();
+  Picture p = picture(4, 4);
+  const auto result = (*session)->process(p);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().kind, ErrorKind::script);
+  EXPECT_EQ(result.error().file, (folder_ / "shaders/gain/gain.glsl").string());
+  EXPECT_EQ(result.error().line, 3);
+}
+
+TEST_F(SessionTest, AnUnknownDeviceIsADeviceError) {
+  SessionOptions options;
+  options.device.device = "no such card";
+  const auto session = Session::open(folder_ / "look.lua", options, diagnostics_);
+  ASSERT_FALSE(session);
+  EXPECT_EQ(session.error().kind, ErrorKind::device);
+}
+
+}  // namespace
+}  // namespace afterglow
