@@ -27,6 +27,8 @@ struct ShaderSource {
     std::string name;  ///< as written in #include
     std::filesystem::path path;
     std::string text;
+    std::vector<std::size_t> uses;          ///< indices into `includes` of what it sees: its own includes and theirs
+    std::vector<std::string> global_names;  ///< as below
   };
   std::vector<Include> includes;
   std::vector<std::string> global_names;  ///< identifiers and macros that the file defines at file scope (renamed when shaders are joined)
@@ -46,6 +48,9 @@ class ShaderLibrary {
 
   void reload();  ///< forget everything read so far
   const SearchPath& path() const { return path_; }
+
+  /// Names that `find` knows, sorted: every .glsl file below a shaders/ folder but those in lib/. Reads folders, not files.
+  std::vector<std::string> names() const;
 
  private:
   SearchPath path_;

@@ -1,0 +1,72 @@
+#include "shader/library.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/text.h"
+#include "shader/include.h"
+#include "shader/scan.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+
+std::vector<fs::path> ShaderSource::files() const {
+  std::vector<fs::path> list{path};
+  for (const auto& include : includes) list.push_back(include.path);
+  return list;
+}
+
+namespace {
+
+Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const std::string& name, const fs::path& path) {
+  auto source = std::make_shared<ShaderSource>();
+  source->name = name;
+  source->path = path;
+  AFTERGLOW_TRY(source->text, read_shader(path));
+  AFTERGLOW_TRY(ShaderScan scanned, scan(source->text, path.string(), ScanAs::stage));
+  AFTERGLOW_TRY(source->includes, resolve_includes(search, path, scanned));
+  for (auto& global : scanned.names) source->global_names.push_back(std::move(global.name));
+  source->interface = std::move(scanned.interface);
+  Hasher hasher;
+  hasher.add(source->text);
+  for (const auto& include : source->includes) hasher.add(include.text);
+  source->hash = hasher.finish();
+  return std::shared_ptr<const ShaderSource>(std::move(source));
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const ShaderSource>> ShaderLibrary::find(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  if (const auto known = sources_.find(name); known != sources_.end()) return known->second;
+  const auto hits = is_safe_name(name) ? path_.find_shader(name + ".glsl") : std::vector<fs::path>{};
+  if (hits.empty()) {
+    Error error = shader_error("", 0, fmt::format("unknown shader '{}'", name));
+    error.nearest = nearest_name(name, names());
+    return error;
+  }
+  AFTERGLOW_TRY(auto source, load(path_, name, hits.front()));
+  sources_[name] = source;
+  return source;
+}
+
+void ShaderLibrary::reload() {
+  const std::lock_guard lock(mutex_);
+  sources_.clear();
+}
+
+std::vector<std::string> ShaderLibrary::names() const {
+  std::vector<std::string> list;
+  const auto add = [&](const fs::path& root) {
+    for (auto& file : list_shader_files(root / "shaders"))
+      if (!file.starts_with("lib/")) list.push_back(file.substr(0, file.size() - std::string_view(".glsl").size()));
+  };
+  for (const auto& root : path_.user) add(root);
+  add(path_.installation);
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,450 @@
+#include "shader/scan.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdlib>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "core/text.h"
+#include "shader/builtins.h"
+
+namespace afterglow {
+namespace {
+
+constexpr std::size_t kMaxParams = 256;
+constexpr std::size_t kMaxInputs = 16;
+
+constexpr std::array kParamTypes = {ParamType::float1, ParamType::float2, ParamType::float3, ParamType::float4,
+                                    ParamType::int1,   ParamType::int2,   ParamType::bool1};
+
+std::optional<ParamType> param_type(std::string_view name) {
+  for (const auto type : kParamTypes)
+    if (name == glsl_name(type)) return type;
+  return std::nullopt;
+}
+
+const std::vector<std::string>& uniform_types() {
+  static const std::vector<std::string> kNames = {"float", "vec2", "vec3", "vec4", "int", "ivec2", "bool", "sampler2D"};
+  return kNames;
+}
+
+class Scanner {
+ public:
+  Scanner(const std::string& file, ScanAs as) : file_(file), as_(as) {}
+
+  Result<ShaderScan> run(std::vector<Token> tokens) {
+    out_.tokens = std::move(tokens);
+    for (const auto& token : out_.tokens) {
+      if (token.is_identifier() && token.text.starts_with("ag_"))
+        return fail(token, fmt::format("'{}': names that begin with 'ag_' belong to the engine", token.text));
+      if (token.directive < 0) code_.push_back(&token);
+    }
+    AFTERGLOW_CHECK(directives());
+    while (at_ < code_.size()) AFTERGLOW_CHECK(declaration());
+    if (as_ == ScanAs::stage) AFTERGLOW_CHECK(entry_point());
+    std::sort(out_.edits.begin(), out_.edits.end(), [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
+    return std::move(out_);
+  }
+
+ private:
+  Error fail(int line, std::string message) const { return shader_error(file_, line, std::move(message)); }
+  Error fail(const Token& token, std::string message) const { return fail(token.line, std::move(message)); }
+
+  // ---- Preprocessor lines -------------------------------------------------------------------------------------------
+
+  Result<void> directives() {
+    const auto& tokens = out_.tokens;
+    for (std::size_t i = 0; i < tokens.size();) {
+      if (tokens[i].directive < 0) {
+        ++i;
+        continue;
+      }
+      std::size_t end = i;
+      while (end < tokens.size() && tokens[end].directive == tokens[i].directive) ++end;
+      AFTERGLOW_CHECK(directive(i, end));
+      i = end;
+    }
+    return {};
+  }
+
+  /// Tokens [begin, end) are one preprocessor line, '#' first.
+  Result<void> directive(std::size_t begin, std::size_t end) {
+    const auto& tokens = out_.tokens;
+    if (end - begin < 2) return {};
+    const Token& word = tokens[begin + 1];
+    if (word.is("include")) {
+      if (end - begin != 3 || tokens[begin + 2].kind != TokenKind::quoted)
+        return fail(word, "an include is written #include \"lib/NAME.glsl\"");
+      out_.includes.push_back({std::string(tokens[begin + 2].text), word.line});
+      out_.edits.push_back({tokens[begin].offset, tokens[begin + 2].end() + 1});
+      return {};
+    }
+    if (word.is("version")) return fail(word, "#version is given by the engine (460); remove the line");
+    if (word.is("extension")) return fail(word, "#extension is not allowed in an effect's shader");
+    if (word.is("line")) return fail(word, "#line is not allowed in an effect's shader");
+    for (std::size_t i = begin + 1; i + 1 < end; ++i)
+      if (tokens[i].is("#") && tokens[i + 1].is("#")) return fail(tokens[i], "token pasting (##) is not supported");
+    if (word.is("define")) {
+      if (end - begin < 3 || !tokens[begin + 2].is_identifier()) return fail(word, "#define needs a name");
+      return add_name(tokens[begin + 2], true);
+    }
+    return {};
+  }
+
+  // ---- Declarations at file scope -------------------------------------------------------------------------------------
+
+  const Token& token(std::size_t ahead = 0) const {
+    static const Token kEnd;
+    return at_ + ahead < code_.size() ? *code_[at_ + ahead] : kEnd;
+  }
+  int line() const { return at_ < code_.size() ? code_[at_]->line : code_.empty() ? 1 : code_.back()->line; }
+
+  /// Position after the bracket that closes the one at `position`. The tokenizer has checked the balance.
+  std::size_t after_closing(std::size_t position) const {
+    int depth = 0;
+    for (; position < code_.size(); ++position) {
+      const auto& t = *code_[position];
+      if (t.is("(") || t.is("[") || t.is("{")) ++depth;
+      if ((t.is(")") || t.is("]") || t.is("}")) && --depth == 0) return position + 1;
+    }
+    return position;
+  }
+
+  Result<void> declaration() {
+    if (token().is(";")) {
+      ++at_;
+      return {};
+    }
+    begin_ = at_;
+    if (token().is("precision")) return skip_to_semicolon();
+    bool is_const = false, is_uniform = false, has_layout = false;
+    std::size_t layout = 0;
+    for (;; ++at_) {
+      const Token& t = token();
+      if (t.is("layout")) {
+        has_layout = true;
+        layout = at_;
+        if (!token(1).is("(")) return fail(t, "layout needs (…)");
+        at_ = after_closing(at_ + 1) - 1;
+      } else if (t.is("const")) {
+        is_const = true;
+      } else if (t.is("uniform")) {
+        is_uniform = true;
+      } else if (t.is("in") || t.is("out") || t.is("inout") || t.is("buffer") || t.is("shared") || t.is("attribute") ||
+                 t.is("varying")) {
+        return fail(t, fmt::format("'{}' is not allowed at file scope: images come as sampler2D or as arguments of apply, "
+                                   "parameters as uniforms",
+                                   t.text));
+      } else if (!t.is("highp") && !t.is("mediump") && !t.is("lowp") && !t.is("precise") && !t.is("invariant")) {
+        break;
+      }
+    }
+    if (has_layout && is_const) return constant(layout);
+    if (has_layout) return fail(*code_[layout], "layout is only known as layout(constant_id = N) const TYPE NAME = VALUE;");
+    if (is_uniform) return uniform();
+    if (token().is("struct")) return structure();
+    if (!token().is_identifier() || token(1).is("(")) {
+      Error error = fail(line(), "a declaration was expected here");
+      if (token().is_identifier()) error.message += " (macros that make declarations are not supported)";
+      return error;
+    }
+    ++at_;  // the type
+    while (token().is("[")) at_ = after_closing(at_);
+    if (!token().is_identifier()) return fail(line(), "a declaration was expected here");
+    if (token(1).is("(")) return function();
+    return variables();
+  }
+
+  Result<void> skip_to_semicolon() {
+    const int begin = line();
+    while (at_ < code_.size() && !token().is(";")) {
+      if (token().is("(") || token().is("[") || token().is("{")) {
+        at_ = after_closing(at_);
+      } else {
+        ++at_;
+      }
+    }
+    if (at_ >= code_.size()) return fail(begin, "';' is missing after the declaration");
+    ++at_;
+    return {};
+  }
+
+  /// `layout(constant_id = N) const TYPE NAME = VALUE;`, at the type.
+  Result<void> constant(std::size_t layout) {
+    const Token& head = *code_[layout];
+    const bool well_formed = code_.size() > layout + 5 && code_[layout + 2]->is("constant_id") &&
+                             code_[layout + 3]->is("=") && code_[layout + 4]->kind == TokenKind::number &&
+                             code_[layout + 5]->is(")");
+    if (!well_formed) return fail(head, "layout is only known as layout(constant_id = N) const TYPE NAME = VALUE;");
+    if (as_ == ScanAs::library) return fail(head, "a library declares no parameters; declare it in the shader and pass it on");
+    const std::string id(code_[layout + 4]->text);
+    if (!constant_ids_.insert(id).second) return fail(head, fmt::format("constant_id {} is used twice", id));
+    const auto type = param_type(token().text);
+    if (!type || component_count(*type) != 1) {
+      Error error = fail(line(), fmt::format("a specialised constant cannot be of type '{}'", token().text));
+      error.allowed = "bool, int, float";
+      return error;
+    }
+    ++at_;
+    const Token name = token();
+    if (!name.is_identifier()) return fail(line(), "the constant has no name");
+    ++at_;
+    if (token().is("[")) return fail(name, fmt::format("'{}': arrays of constants are not supported", name.text));
+    if (!token().is("=")) return fail(name, fmt::format("'{}' needs a default value: = VALUE", name.text));
+    ++at_;
+    bool negative = false;
+    if (token().is("-") || token().is("+")) {
+      negative = token().is("-");
+      ++at_;
+    }
+    const auto value = literal(token(), *type);
+    if (!value) return fail(line(), fmt::format("the default of '{}' must be a literal of type {}", name.text, glsl_name(*type)));
+    ++at_;
+    if (!token().is(";")) return fail(line(), fmt::format("the default of '{}' must be one literal, then ';'", name.text));
+    ++at_;
+    AFTERGLOW_CHECK(add_param({std::string(name.text), *type, true, negative ? -*value : *value, name.line}, name));
+    out_.edits.push_back({code_[begin_]->offset, code_[at_ - 1]->end(), static_cast<int>(out_.interface.params.size()) - 1});
+    return {};
+  }
+
+  static std::optional<double> literal(const Token& token, ParamType type) {
+    if (type == ParamType::bool1) {
+      if (token.is("true")) return 1.0;
+      if (token.is("false")) return 0.0;
+      return std::nullopt;
+    }
+    if (token.kind != TokenKind::number) return std::nullopt;
+    std::string text(token.text);
+    if (type == ParamType::int1) {
+      int value = 0;
+      const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+      return value;
+    }
+    while (text.size() > 1 && (text.back() == 'f' || text.back() == 'F')) text.pop_back();
+    double value = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+  }
+
+  /// `uniform TYPE NAME, NAME;`, at the type.
+  Result<void> uniform() {
+    const Token type = token();
+    if (as_ == ScanAs::library) return fail(type, "a library declares no uniforms; declare it in the shader and pass it on");
+    if (!type.is_identifier()) return fail(line(), "a type was expected after 'uniform'");
+    if (token(1).is("{")) return fail(type, fmt::format("uniform blocks are not supported ('{}'); write uniform TYPE NAME;", type.text));
+    const bool sampler = type.is("sampler2D");
+    const auto param = param_type(type.text);
+    if (!sampler && !param) {
+      Error error = fail(type, fmt::format("a uniform cannot be of type '{}'", type.text));
+      error.allowed = join(uniform_types());
+      error.nearest = nearest_name(type.text, uniform_types());
+      return error;
+    }
+    do {
+      ++at_;
+      const Token name = token();
+      if (name.is("[")) return fail(name, "arrays of uniforms are not supported; declare each by its name");
+      if (!name.is_identifier()) return fail(line(), "the uniform has no name");
+      ++at_;
+      if (token().is("[")) return fail(name, fmt::format("'{}': arrays of uniforms are not supported; declare each by its name", name.text));
+      if (token().is("=")) return fail(name, fmt::format("'{}': a uniform has no default value; the effect gives it", name.text));
+      if (sampler) {
+        AFTERGLOW_CHECK(add_input({std::string(name.text), false, name.line}, name));
+        AFTERGLOW_CHECK(add_name(name, false));
+      } else {
+        AFTERGLOW_CHECK(add_param({std::string(name.text), *param, false, 0, name.line}, name));
+      }
+    } while (token().is(","));
+    if (!token().is(";")) return fail(line(), "';' is missing after the uniform");
+    ++at_;
+    out_.edits.push_back({code_[begin_]->offset, code_[at_ - 1]->end()});
+    return {};
+  }
+
+  Result<void> structure() {
+    ++at_;
+    if (token().is_identifier()) {
+      AFTERGLOW_CHECK(add_name(token(), false));
+      ++at_;
+    }
+    if (!token().is("{")) return fail(line(), "'{' was expected after 'struct'");
+    at_ = after_closing(at_);
+    if (token().is(";")) {
+      ++at_;
+      return {};
+    }
+    return variables();
+  }
+
+  /// `NAME [..] = …, NAME …;`, at the first name.
+  Result<void> variables() {
+    bool expects_name = true;
+    while (at_ < code_.size() && !token().is(";")) {
+      if (expects_name) {
+        if (!token().is_identifier()) return fail(line(), "a name was expected in the declaration");
+        AFTERGLOW_CHECK(add_name(token(), false));
+        expects_name = false;
+        ++at_;
+      } else if (token().is("(") || token().is("[") || token().is("{")) {
+        at_ = after_closing(at_);
+      } else {
+        expects_name = token().is(",");
+        ++at_;
+      }
+    }
+    if (at_ >= code_.size()) return fail(line(), "';' is missing after the declaration");
+    ++at_;
+    return {};
+  }
+
+  /// `NAME(…) { … }` or `NAME(…);`, at the name; the type is the token before.
+  Result<void> function() {
+    const Token name = token();
+    const Token result = *code_[at_ - 1];
+    const std::size_t arguments = at_ + 1;
+    at_ = after_closing(arguments);
+    const bool body = token().is("{");
+    if (!body && !token().is(";")) return fail(name, fmt::format("'{{' or ';' was expected after {}(…)", name.text));
+    const std::size_t arguments_end = at_ - 1;
+    at_ = body ? after_closing(at_) : at_ + 1;
+    if (name.is("main")) return fail(name, "main is made by the engine; define vec4 apply(vec4 color) or vec4 sample_at(ivec2 pixel)");
+    if (is_builtin_function(name.text)) return fail(name, fmt::format("'{}' is a built-in function of GLSL; choose another name", name.text));
+    if (name.is("apply") || name.is("sample_at")) {
+      if (as_ == ScanAs::library)
+        return fail(name, fmt::format("'{}' is defined in an included file; an include is a library of functions", name.text));
+      if (body) AFTERGLOW_CHECK(entry(name, result, arguments, arguments_end));
+    }
+    return add_name(name, false);
+  }
+
+  // ---- apply and sample_at ------------------------------------------------------------------------------------------
+
+  struct Argument {
+    const Token* type = nullptr;
+    const Token* name = nullptr;
+  };
+
+  Result<std::vector<Argument>> arguments(std::size_t open, std::size_t close) const {
+    std::vector<Argument> list;
+    std::size_t i = open + 1;
+    while (i < close) {
+      Argument argument;
+      while (i < close && !code_[i]->is(",")) {
+        const Token& t = *code_[i++];
+        if (t.is("out") || t.is("inout")) return fail(t, "arguments are read only: 'out' and 'inout' are not allowed here");
+        if (t.is("in") || t.is("const") || t.is("highp") || t.is("mediump") || t.is("lowp")) continue;
+        if (!t.is_identifier() || argument.name) return fail(t, "an argument is written TYPE NAME");
+        (argument.type ? argument.name : argument.type) = &t;
+      }
+      if (argument.type && argument.type->is("void") && !argument.name && list.empty() && i >= close) return list;
+      if (!argument.type || !argument.name) return fail(*code_[i - 1], "every argument needs a type and a name");
+      list.push_back(argument);
+      ++i;  // the comma
+    }
+    return list;
+  }
+
+  Result<void> entry(const Token& name, const Token& result, std::size_t open, std::size_t close) {
+    const bool apply = name.is("apply");
+    const auto& other = apply ? sample_line_ : apply_line_;
+    auto& own = apply ? apply_line_ : sample_line_;
+    if (other) return fail(name, fmt::format("a shader defines either apply or sample_at; the other is at line {}", *other));
+    if (own) return fail(name, fmt::format("'{}' is defined a second time; the first is at line {}", name.text, *own));
+    own = name.line;
+    const char* form = apply ? "vec4 apply(vec4 color, vec4 NAME, …)" : "vec4 sample_at(ivec2 pixel)";
+    const auto wrong = [&](const Token& where, std::string what) {
+      Error error = fail(where, std::move(what));
+      error.allowed = form;
+      return error;
+    };
+    if (!result.is("vec4")) return wrong(name, fmt::format("{} must return vec4, not {}", name.text, result.text));
+    AFTERGLOW_TRY(auto list, arguments(open, close));
+    if (!apply) {
+      if (list.size() != 1 || !list[0].type->is("ivec2")) return wrong(name, "sample_at takes one argument, the target's pixel");
+      out_.interface.kind = ShaderKind::sample;
+      return {};
+    }
+    if (list.empty()) return wrong(name, "apply takes the colour as its first argument");
+    out_.interface.kind = ShaderKind::pixel;
+    for (const auto& argument : list)
+      if (!argument.type->is("vec4")) return wrong(*argument.type, fmt::format("argument '{}' of apply must be a vec4", argument.name->text));
+    for (std::size_t i = 1; i < list.size(); ++i)
+      AFTERGLOW_CHECK(add_input({std::string(list[i].name->text), true, list[i].name->line}, *list[i].name));
+    return {};
+  }
+
+  /// Once everything is read: exactly one entry point, and names that a pass can give.
+  Result<void> entry_point() {
+    if (!apply_line_ && !sample_line_) {
+      Error error = fail(0, "the shader defines neither apply nor sample_at");
+      error.allowed = "vec4 apply(vec4 color, vec4 NAME, …), vec4 sample_at(ivec2 pixel)";
+      const std::vector<std::string> entries = {"apply", "sample_at"};
+      for (const auto& name : out_.names) {
+        if (name.macro) continue;
+        error.nearest = nearest_name(name.name, entries);
+        if (error.nearest.empty()) continue;
+        error.line = name.line;
+        break;
+      }
+      return error;
+    }
+    const bool pixel = out_.interface.kind == ShaderKind::pixel;
+    for (const auto& input : out_.interface.inputs) AFTERGLOW_CHECK(pass_key(input.name, input.line, pixel));
+    for (const auto& param : out_.interface.params) AFTERGLOW_CHECK(pass_key(param.name, param.line, true));
+    return {};
+  }
+
+  /// Inputs and parameters are keys of g:pass{…}; its own keys cannot be their names.
+  Result<void> pass_key(const std::string& name, int line, bool source_is_taken) const {
+    if (name == "shader" || name == "name" || name == "size" || (name == "source" && source_is_taken))
+      return fail(line, fmt::format("'{}' is a key of g:pass itself; choose another name", name));
+    return {};
+  }
+
+  // ---- What was found -----------------------------------------------------------------------------------------------
+
+  Result<void> add_param(ShaderParam param, const Token& name) {
+    if (!input_names_.insert(param.name).second) return fail(name, fmt::format("'{}' is declared twice", name.text));
+    if (out_.interface.params.size() >= kMaxParams) return fail(name, fmt::format("a shader has at most {} parameters", kMaxParams));
+    out_.interface.params.push_back(std::move(param));
+    return add_name(name, false);
+  }
+
+  Result<void> add_input(ShaderInput input, const Token& name) {
+    if (!input_names_.insert(input.name).second) return fail(name, fmt::format("'{}' is declared twice", name.text));
+    if (out_.interface.inputs.size() >= kMaxInputs) return fail(name, fmt::format("a shader reads at most {} images", kMaxInputs));
+    out_.interface.inputs.push_back(std::move(input));
+    return {};
+  }
+
+  Result<void> add_name(const Token& name, bool macro) {
+    if (is_prelude_function(name.text))
+      return fail(name, fmt::format("'{}' is a helper that every shader has; choose another name", name.text));
+    if (seen_.insert(std::string(name.text)).second) out_.names.push_back({std::string(name.text), macro, name.line});
+    return {};
+  }
+
+  const std::string& file_;
+  const ScanAs as_;
+  ShaderScan out_;
+  std::vector<const Token*> code_;  ///< tokens that are not of the preprocessor
+  std::size_t at_ = 0;              ///< index into code_
+  std::size_t begin_ = 0;           ///< where the declaration begins
+  std::set<std::string> constant_ids_, input_names_, seen_;
+  std::optional<int> apply_line_, sample_line_;
+};
+
+}  // namespace
+
+Result<ShaderScan> scan(std::string_view text, const std::string& file, ScanAs as) {
+  AFTERGLOW_TRY(auto tokens, tokenize(text, file));
+  return Scanner(file, as).run(std::move(tokens));
+}
+
+}  // namespace afterglow
