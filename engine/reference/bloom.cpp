@@ -1,0 +1,154 @@
+#include "reference/bloom.h"
+
+#include <array>
+
+#include "reference/color.h"
+
+namespace afterglow::reference {
+
+namespace {
+
+constexpr double kScatterIntensityLimit = 0.95;  // the original always contributes (math.md §12 #2)
+constexpr std::array kHalving = {0.22702703, 0.19459459, 0.12162162, 0.05405405, 0.01621622};
+constexpr std::array kVerticalOffsets = {0.0, 1.38461538, 3.23076923};
+constexpr std::array kVerticalWeights = {0.22702703, 0.31621622, 0.07027027};
+
+Size half(Size size) { return {size.width / 2, size.height / 2}; }
+
+/// Bilinear sample of `source` at the centre of pixel (x, y) of a target of `size`, plus an offset in texels of the source.
+Rgba fetch(const DoubleImage& source, Size size, int x, int y, double dx = 0, double dy = 0) {
+  return sample_linear(source, source_position(x, source.width, size.width) + dx,
+                       source_position(y, source.height, size.height) + dy);
+}
+
+/// Pixel by pixel f(up, high) on colours; alpha of high.
+template <class F>
+DoubleImage combine(const DoubleImage& up, const DoubleImage& high, F&& f) {
+  return generate(high.size(), [&](int x, int y) {
+    const Rgba& h = high.at(x, y);
+    return Rgba(f(Rgb(up.at(x, y)), Rgb(h)), h.a);
+  });
+}
+
+}  // namespace
+
+BloomThreshold BloomThreshold::from_gamma(double threshold, double knee) { return {gamma_to_linear(threshold), knee}; }
+
+Rgb BloomThreshold::operator()(const Rgb& c) const {
+  const double b = glm::max(c.r, glm::max(c.g, c.b));
+  const double tk = t * knee;
+  const double ramp = glm::clamp(b - t + tk, 0.0, 2 * tk);
+  const double s = ramp * ramp * 0.25 / (tk + 1e-5);
+  return c * (glm::max(s, b - t) / glm::max(b, 1e-5));
+}
+
+DoubleImage bloom_prefilter(const DoubleImage& source, const BloomThreshold& threshold) {
+  const Size size = half(source.size());
+  return generate(size, [&](int x, int y) {
+    const Rgba c = fetch(source, size, x, y);
+    return Rgba(threshold(Rgb(c)), c.a);
+  });
+}
+
+DoubleImage bloom_prefilter_fireflies(const DoubleImage& source, const BloomThreshold& threshold) {
+  static constexpr int kOffsets[5][2] = {{0, 0}, {-2, -2}, {-2, 2}, {2, -2}, {2, 2}};
+  const Size size = half(source.size());
+  return generate(size, [&](int x, int y) {
+    Rgb sum(0);
+    double weights = 0;
+    for (const auto& o : kOffsets) {
+      const Rgb c = threshold(Rgb(fetch(source, size, x, y, o[0], o[1])));
+      const double w = 1 / (luminance(c) + 1);
+      sum += w * c;
+      weights += w;
+    }
+    return Rgba(sum / weights, 1);
+  });
+}
+
+DoubleImage bloom_horizontal(const DoubleImage& source) {
+  const Size size = half(source.size());
+  return generate(size, [&](int x, int y) {
+    Rgba sum(0);
+    for (int i = -4; i <= 4; ++i) sum += kHalving[glm::abs(i)] * fetch(source, size, x, y, 2.0 * i, 0);
+    return sum;
+  });
+}
+
+DoubleImage bloom_vertical(const DoubleImage& source) {
+  const Size size = source.size();
+  return generate(size, [&](int x, int y) {
+    Rgba sum = kVerticalWeights[0] * source.at(x, y);
+    for (int i = 1; i <= 2; ++i)
+      sum += kVerticalWeights[i] *
+             (fetch(source, size, x, y, 0, -kVerticalOffsets[i]) + fetch(source, size, x, y, 0, kVerticalOffsets[i]));
+    return sum;
+  });
+}
+
+DoubleImage bloom_up(const DoubleImage& low, Size size, bool bicubic) {
+  return generate(size, [&](int x, int y) {
+    const double px = source_position(x, low.width, size.width), py = source_position(y, low.height, size.height);
+    return bicubic ? sample_bspline(low, px, py) : sample_linear(low, px, py);
+  });
+}
+
+DoubleImage bloom_add(const DoubleImage& up, const DoubleImage& high, double intensity) {
+  return combine(up, high, [&](const Rgb& low, const Rgb& h) { return h + intensity * low; });
+}
+
+DoubleImage bloom_scatter(const DoubleImage& up, const DoubleImage& high, double amount) {
+  return combine(up, high, [&](const Rgb& low, const Rgb& h) { return h + amount * (low - h); });
+}
+
+DoubleImage bloom_scatter_final(const DoubleImage& up, const DoubleImage& high, double intensity,
+                                const BloomThreshold& threshold) {
+  return combine(up, high, [&](const Rgb& low, const Rgb& h) { return h + intensity * (low - threshold(h)); });
+}
+
+std::vector<Size> bloom_sizes(Size size, int max_iterations, int downscale_limit) {
+  Size s = half(size);
+  if (max_iterations <= 0 || s.width < 2 * downscale_limit || s.height < 2 * downscale_limit) return {};
+  std::vector<Size> sizes{s};
+  s = half(s);
+  for (int i = 0; i < max_iterations && s.width >= downscale_limit && s.height >= downscale_limit; ++i, s = half(s))
+    sizes.push_back(s);
+  return sizes;
+}
+
+BloomImages bloom(const DoubleImage& source, const BloomSettings& settings) {
+  BloomImages out;
+  const auto sizes = bloom_sizes(source.size(), settings.max_iterations, settings.downscale_limit);
+  if (sizes.empty() || settings.intensity <= 0) {
+    out.result = source;
+    return out;
+  }
+  out.ran = true;
+  const auto threshold = BloomThreshold::from_gamma(settings.threshold, settings.knee);
+  out.prefilter = settings.fade_fireflies ? bloom_prefilter_fireflies(source, threshold) : bloom_prefilter(source, threshold);
+
+  const std::size_t levels = sizes.size() - 1;
+  for (std::size_t i = 0; i < levels; ++i) {
+    out.horizontal.push_back(bloom_horizontal(i == 0 ? out.prefilter : out.vertical.back()));
+    out.vertical.push_back(bloom_vertical(out.horizontal.back()));
+  }
+
+  out.up.resize(levels - 1);
+  out.combine.resize(levels - 1);
+  const DoubleImage* low = &out.vertical.back();
+  for (std::size_t i = levels - 1; i-- > 0;) {
+    const DoubleImage& high = out.vertical[i];
+    out.up[i] = bloom_up(*low, high.size(), settings.bicubic_upsampling);
+    out.combine[i] = settings.mode == BloomMode::additive ? bloom_add(out.up[i], high, 1)
+                                                          : bloom_scatter(out.up[i], high, settings.scatter);
+    low = &out.combine[i];
+  }
+
+  out.final_up = bloom_up(*low, source.size(), settings.bicubic_upsampling);
+  out.result = settings.mode == BloomMode::additive
+                   ? bloom_add(out.final_up, source, settings.intensity)
+                   : bloom_scatter_final(out.final_up, source, glm::min(settings.intensity, kScatterIntensityLimit), threshold);
+  return out;
+}
+
+}  // namespace afterglow::reference

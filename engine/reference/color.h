@@ -1,0 +1,31 @@
+// Scalar colour functions (math.md §2): luminance, transfer curves, LogC, HSV.
+#pragma once
+
+#include "reference/double_image.h"
+
+namespace afterglow::reference {
+
+/// Pivot of the contrast step inside LogC: ACEScc's middle grey. Its linear value there is 0.2247698.
+inline constexpr double kAcesccMidGray = 0.4135884;
+
+/// Rec.709/D65 luminance; the weights add up to 1.0000001 and are used so.
+double luminance(const Rgb& c);
+
+/// IEC 61966-2-1 curves; nothing is clamped above 1.
+double srgb_to_linear(double c);
+double linear_to_srgb(double c);
+
+/// Three-piece curve of a gamma *value* such as a bloom threshold: sRGB below 1, v^2.2 from 1 on. v ≥ 0.
+double gamma_to_linear(double v);
+
+/// Alexa LogC (El 1000), log branch alone. Below −b/a (−0.0086393) the logarithm is −∞.
+double linear_to_logc(double x);
+double logc_to_linear(double y);
+
+/// Hue and saturation in 0…1, value as is; the ε of 1e-4 in both divisions belongs to the definition.
+Rgb rgb_to_hsv(const Rgb& c);
+Rgb hsv_to_rgb(const Rgb& hsv);
+/// Wraps h into 0…1 by at most one turn.
+double rotate_hue(double h);
+
+}  // namespace afterglow::reference

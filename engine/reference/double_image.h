@@ -1,0 +1,77 @@
+// Pictures in double precision and the ways to sample them (math.md §1). The ground that every oracle of this room stands on: plain
+// loops over plain definitions, written from the mathematics and sharing nothing with the shaders that they check.
+// All functions of this room are pure and thread-safe; they trust their arguments (sizes ≥ 1, images not empty).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "core/geometry.h"
+
+namespace afterglow::reference {
+
+using Rgb = glm::dvec3;
+using Rgba = glm::dvec4;
+
+/// RGBA samples, row by row from the top. Depth lies in .r, a normal in .rgb.
+struct DoubleImage {
+  int width = 0, height = 0;
+  std::vector<Rgba> pixels;
+
+  DoubleImage() = default;
+  DoubleImage(int w, int h, Rgba value = Rgba(0, 0, 0, 1))
+      : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), value) {}
+  explicit DoubleImage(Size size, Rgba value = Rgba(0, 0, 0, 1)) : DoubleImage(size.width, size.height, value) {}
+
+  Size size() const { return {width, height}; }
+  Rgba& at(int x, int y) { return pixels[static_cast<std::size_t>(y) * width + x]; }
+  const Rgba& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
+  /// The texel, coordinates clamped to the edge.
+  const Rgba& clamped(int x, int y) const { return at(glm::clamp(x, 0, width - 1), glm::clamp(y, 0, height - 1)); }
+};
+
+/// From interleaved floats. Channels that are missing become 0, alpha 1.
+DoubleImage from_floats(const float* pixels, Size size, int channels);
+
+/// Interleaved RGBA, for comparing with a device's result.
+std::vector<double> interleaved(const DoubleImage& image);
+
+/// Texel-space position of the centre of target pixel `target` on an axis: (target + ½)·n_src/n_dst. The product is taken in
+/// integers, so that texel centres and corners are met exactly.
+inline double source_position(int target, int n_src, int n_dst) {
+  return static_cast<double>((2LL * target + 1) * n_src) / static_cast<double>(2LL * n_dst);
+}
+
+/// The texel that covers (px, py).
+Rgba sample_nearest(const DoubleImage& image, double px, double py);
+/// Bilinear at texel-space position (px, py), clamp to edge.
+Rgba sample_linear(const DoubleImage& image, double px, double py);
+/// Cubic B-spline over the 4×4 texels around (px, py), clamp to edge. Reproduces constants and, away from edges, ramps.
+Rgba sample_bspline(const DoubleImage& image, double px, double py);
+
+/// Weights of the cubic B-spline for texels c−2 … c+1, t ∈ [0, 1) the position behind the centre of texel c−1.
+glm::dvec4 bspline_weights(double t);
+
+/// A new image of `size` whose pixel (x, y) is f(x, y).
+template <class F>
+DoubleImage generate(Size size, F&& f) {
+  DoubleImage out(size);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) out.at(x, y) = f(x, y);
+  return out;
+}
+
+/// `image` with its colour replaced by f(colour); alpha kept.
+template <class F>
+DoubleImage map_color(const DoubleImage& image, F&& f) {
+  DoubleImage out = image;
+  for (auto& p : out.pixels) p = Rgba(f(Rgb(p)), p.a);
+  return out;
+}
+
+}  // namespace afterglow::reference

@@ -1,0 +1,93 @@
+#include "reference/outline.h"
+
+#include <cmath>
+
+namespace afterglow::reference {
+
+namespace {
+
+struct Pixel {
+  int x, y;
+};
+
+/// The three pixels whose values are compared: the centre, and the one further along each axis.
+struct Samples {
+  Pixel centre, right, below;
+};
+
+double saturate(double x) { return glm::clamp(x, 0.0, 1.0); }
+
+/// The 2×2 quad of the pixel; its origin is even. All four pixels share one result.
+Samples quad(int x, int y) {
+  const int qx = x - x % 2, qy = y - y % 2;
+  return {{qx, qy}, {qx + 1, qy}, {qx, qy + 1}};
+}
+
+Samples neighbours(int x, int y, int distance) { return {{x, y}, {x + distance, y}, {x, y + distance}}; }
+
+/// What is compared at a pixel: scaled depth, raw device depth, or scaled normal.
+double depth_value(const DoubleImage& depth, Pixel p, const OutlineSettings& s) {
+  const double d = depth.clamped(p.x, p.y).r;
+  const bool linearise = s.device_depth_input && s.source != OutlineSource::device_depth;
+  return (linearise ? linear_eye_depth(d, s) : d) * s.depth_scale;
+}
+
+Rgb normal_value(const DoubleImage& normal, Pixel p, const OutlineSettings& s) {
+  return Rgb(normal.clamped(p.x, p.y)) * s.normal_scale;
+}
+
+double depth_edge(const DoubleImage& depth, const Samples& at, const OutlineSettings& s) {
+  const double z = depth_value(depth, at.centre, s);
+  return std::abs(z - depth_value(depth, at.right, s)) + std::abs(z - depth_value(depth, at.below, s));
+}
+
+double normal_edge(const DoubleImage& normal, const Samples& at, const OutlineSettings& s) {
+  const Rgb n = normal_value(normal, at.centre, s);
+  return glm::length(n - normal_value(normal, at.right, s)) + glm::length(n - normal_value(normal, at.below, s));
+}
+
+/// Whole pixels to the neighbours of (x, y): the width, faded with distance, rounded.
+int reach(const DoubleImage* depth, int x, int y, const OutlineSettings& s) {
+  double fade = 1;
+  if (depth) {
+    const double d = depth->clamped(x, y).r;
+    const double z = s.device_depth_input ? linear_eye_depth(d, s) : d;
+    fade = saturate(1 - z / s.fade_distance);
+  }
+  return static_cast<int>(std::floor(fade * s.width + 0.5));
+}
+
+}  // namespace
+
+double linear_eye_depth(double d, const OutlineSettings& settings) {
+  const double n = 1 / settings.near, f = 1 / settings.far;
+  return settings.reversed_z ? 1 / ((n - f) * d + f) : 1 / ((f - n) * d + n);
+}
+
+DoubleImage outline_mask(Size size, const DoubleImage* depth, const DoubleImage* normal, const OutlineSettings& s) {
+  const bool use_normal = s.source == OutlineSource::normals || s.source == OutlineSource::mixed;
+  const bool use_depth = s.source != OutlineSource::normals;
+  return generate(size, [&](int x, int y) {
+    const Samples at = s.difference == OutlineDifference::derivative ? quad(x, y) : neighbours(x, y, reach(depth, x, y, s));
+    const double ez = use_depth ? depth_edge(*depth, at, s) : 0;
+    const double en = use_normal ? normal_edge(*normal, at, s) : 0;
+    double e = use_depth ? ez : en;
+    if (use_depth && use_normal)
+      e = s.combine == OutlineCombine::max ? glm::max(ez, en) : s.normal_factor * en + (1 - s.normal_factor) * ez;
+    e /= s.divide_factor;
+    return Rgba(saturate((e - 0.5) * s.contrast + 0.5));
+  });
+}
+
+DoubleImage outline(const DoubleImage& source, const DoubleImage* depth, const DoubleImage* normal,
+                    const OutlineSettings& settings) {
+  const DoubleImage mask = outline_mask(source.size(), depth, normal, settings);
+  return generate(source.size(), [&](int x, int y) {
+    const double m = mask.at(x, y).r;
+    const Rgba& p = source.at(x, y);
+    const Rgb c(p);
+    return Rgba(settings.blend == OutlineBlend::lerp ? c + m * (settings.color - c) : c + m * settings.color, p.a);
+  });
+}
+
+}  // namespace afterglow::reference

@@ -1,0 +1,12 @@
+// The plain meaning of a core/filter.h Filter: what any way of executing a filter pass must give.
+#pragma once
+
+#include "core/filter.h"
+#include "reference/double_image.h"
+
+namespace afterglow::reference {
+
+/// out(X, Y) = Σ weight · I(px + dx, py + dy) over all channels, alpha included; see Filter for the terms.
+DoubleImage resample(const DoubleImage& source, Size size, const Filter& filter);
+
+}  // namespace afterglow::reference
