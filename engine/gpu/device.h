@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -39,10 +40,26 @@ struct AdoptedDevice {
   std::uint32_t queue_family = 0;
 };
 
+/// What the validation layer has said. Thread-safe; may outlive its Device, so that messages of the teardown are seen too.
+class ValidationLog {
+ public:
+  /// `error`: of severity error and about validation. Warnings (performance advice among them) are kept, not counted.
+  void add(bool error, const std::string& message);
+  int errors() const;
+  std::vector<std::string> messages() const;   ///< "error: …", "warning: …"; each text once, the first 1000
+
+ private:
+  mutable std::mutex mutex_;
+  int errors_ = 0;
+  std::vector<std::string> messages_;
+};
+
 /// One logical device with one graphics+compute queue. Immutable after creation; submissions must come from one thread at a time.
 class Device {
  public:
+  /// `diagnostics` is used during the call alone. Errors: device (none, none that matches, none usable, no validation layer).
   static Result<std::unique_ptr<Device>> create(const DeviceOptions& options, Diagnostics& diagnostics);
+  /// Destroys none of the caller's objects. Errors: device (not Vulkan 1.3, a queue family without graphics).
   static Result<std::unique_ptr<Device>> adopt(const AdoptedDevice& adopted, Diagnostics& diagnostics);
   ~Device();
   Device(const Device&) = delete;
@@ -56,6 +73,7 @@ class Device {
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   const DeviceInfo& info() const { return info_; }
+  VkDeviceSize max_allocation() const { return max_allocation_; }   ///< bytes of one VkDeviceMemory
   bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   /// Timestamps around draws mean something (false on CPU devices, where rasterisation is deferred).
   bool timestamps_mean_draws() const { return !is_cpu() && timestamps_; }
@@ -68,6 +86,8 @@ class Device {
   /// Messages of severity error from the validation layer so far (0 without validation).
   int validation_errors() const;
   std::vector<std::string> validation_messages() const;
+  /// Never null; still valid when the Device is gone.
+  std::shared_ptr<const ValidationLog> validation_log() const { return log_; }
 
   /// Loads and saves the pipeline cache below `folder` (keyed by the device's pipeline cache UUID); unreadable data is ignored.
   void use_pipeline_cache(const std::string& folder);
@@ -75,8 +95,9 @@ class Device {
 
  private:
   Device() = default;
-  struct Messages;
+  Result<void> finish();
   VkInstance instance_ = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
@@ -84,11 +105,16 @@ class Device {
   VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
   VkPhysicalDeviceProperties properties_{};
   VkPhysicalDeviceMemoryProperties memory_{};
+  VkDeviceSize max_allocation_ = 0;
   DeviceInfo info_;
   bool timestamps_ = false;
   bool owned_ = false;
   std::string cache_file_;
-  std::unique_ptr<Messages> messages_;
+  std::size_t cached_bytes_ = 0;
+  std::shared_ptr<ValidationLog> log_;
+  PFN_vkSetDebugUtilsObjectNameEXT name_object_ = nullptr;
+  PFN_vkCmdBeginDebugUtilsLabelEXT begin_label_ = nullptr;
+  PFN_vkCmdEndDebugUtilsLabelEXT end_label_ = nullptr;
 };
 
 }  // namespace afterglow

@@ -1,0 +1,140 @@
+#include "gpu/device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gpu/device_list.h"
+#include "gpu/error.h"
+#include "gpu/instance.h"
+
+namespace afterglow {
+
+Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options, Diagnostics& diagnostics) {
+  auto log = std::make_shared<ValidationLog>();
+  AFTERGLOW_TRY(Instance instance, Instance::create(options.validate ? log : nullptr));
+  AFTERGLOW_TRY(const auto devices, enumerate_devices(instance.get()));
+  std::vector<DeviceInfo> infos;
+  for (const auto& device : devices) infos.push_back(device.info);
+  AFTERGLOW_TRY(const std::size_t index, choose_device(infos, options.device));
+  const PhysicalDevice& chosen = devices[index];
+
+  const float priority = 1;
+  const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                      .queueFamilyIndex = chosen.queue_family,
+                                      .queueCount = 1,
+                                      .pQueuePriorities = &priority};
+  const VkPhysicalDeviceVulkan13Features features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+                                                  .synchronization2 = VK_TRUE,
+                                                  .dynamicRendering = VK_TRUE};
+  const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                .pNext = &features,
+                                .queueCreateInfoCount = 1,
+                                .pQueueCreateInfos = &queue};
+  VkDevice handle = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkCreateDevice(chosen.handle, &info, nullptr, &handle),
+               fmt::format("cannot open device '{}'", chosen.info.name));
+
+  std::unique_ptr<Device> device(new Device);
+  device->owned_ = true;
+  device->log_ = std::move(log);
+  device->device_ = handle;
+  device->instance_ = instance.release(device->messenger_);
+  device->physical_ = chosen.handle;
+  device->queue_family_ = chosen.queue_family;
+  device->info_ = chosen.info;
+  vkGetDeviceQueue(handle, chosen.queue_family, 0, &device->queue_);
+  AFTERGLOW_CHECK(device->finish());
+  diagnostics.note(fmt::format("device: {} ({}, {})", chosen.info.name, chosen.info.type, chosen.info.driver));
+  return device;
+}
+
+Result<std::unique_ptr<Device>> Device::adopt(const AdoptedDevice& adopted, Diagnostics& diagnostics) {
+  if (adopted.instance == VK_NULL_HANDLE || adopted.physical_device == VK_NULL_HANDLE ||
+      adopted.device == VK_NULL_HANDLE || adopted.queue == VK_NULL_HANDLE) {
+    return Error{ErrorKind::device, "an adopted device needs an instance, a physical device, a device and a queue"};
+  }
+  const PhysicalDevice described = describe_device(adopted.physical_device);
+  if (!described.info.usable) {
+    return Error{ErrorKind::device,
+                 fmt::format("adopted device '{}' is not usable: {}", described.info.name, described.info.why_not)};
+  }
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, families.data());
+  if (adopted.queue_family >= count || !(families[adopted.queue_family].queueFlags & VK_QUEUE_GRAPHICS_BIT)) {
+    return Error{ErrorKind::device, fmt::format("adopted queue family {} cannot draw", adopted.queue_family)};
+  }
+
+  std::unique_ptr<Device> device(new Device);
+  device->log_ = std::make_shared<ValidationLog>();
+  device->instance_ = adopted.instance;
+  device->physical_ = adopted.physical_device;
+  device->device_ = adopted.device;
+  device->queue_ = adopted.queue;
+  device->queue_family_ = adopted.queue_family;
+  device->info_ = described.info;
+  AFTERGLOW_CHECK(device->finish());
+  diagnostics.note(fmt::format("device: {} ({}, adopted)", described.info.name, described.info.type));
+  return device;
+}
+
+/// What created and adopted devices have in common.
+Result<void> Device::finish() {
+  VkPhysicalDeviceMaintenance3Properties limits{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &limits};
+  vkGetPhysicalDeviceProperties2(physical_, &properties);
+  properties_ = properties.properties;
+  max_allocation_ = limits.maxMemoryAllocationSize;
+  vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
+
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, families.data());
+  timestamps_ = families[queue_family_].timestampValidBits > 0 && properties_.limits.timestampPeriod > 0;
+
+  // Null unless VK_EXT_debug_utils was enabled on the instance, by us or by the caller whose instance it is.
+  if (messenger_ != VK_NULL_HANDLE || !owned_) {
+    const auto load = [this](const char* name) { return vkGetInstanceProcAddr(instance_, name); };
+    name_object_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(load("vkSetDebugUtilsObjectNameEXT"));
+    begin_label_ = reinterpret_cast<PFN_vkCmdBeginDebugUtilsLabelEXT>(load("vkCmdBeginDebugUtilsLabelEXT"));
+    end_label_ = reinterpret_cast<PFN_vkCmdEndDebugUtilsLabelEXT>(load("vkCmdEndDebugUtilsLabelEXT"));
+  }
+
+  const VkPipelineCacheCreateInfo cache{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
+  AFTERGLOW_VK(vkCreatePipelineCache(device_, &cache, nullptr, &pipeline_cache_), "cannot create a pipeline cache");
+  return {};
+}
+
+Device::~Device() {
+  if (pipeline_cache_ != VK_NULL_HANDLE) vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
+  if (!owned_) return;
+  vkDestroyDevice(device_, nullptr);
+  destroy_instance(instance_, messenger_);
+}
+
+void Device::set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const {
+  if (!name_object_) return;
+  const VkDebugUtilsObjectNameInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+                                           .objectType = type,
+                                           .objectHandle = handle,
+                                           .pObjectName = name.c_str()};
+  name_object_(device_, &info);
+}
+
+void Device::begin_label(VkCommandBuffer commands, const std::string& name) const {
+  if (!begin_label_) return;
+  const VkDebugUtilsLabelEXT label{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, .pLabelName = name.c_str()};
+  begin_label_(commands, &label);
+}
+
+void Device::end_label(VkCommandBuffer commands) const {
+  if (end_label_) end_label_(commands);
+}
+
+int Device::validation_errors() const { return log_->errors(); }
+std::vector<std::string> Device::validation_messages() const { return log_->messages(); }
+
+}  // namespace afterglow

@@ -1,0 +1,176 @@
+#include "gpu/device_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "core/text.h"
+#include "gpu/error.h"
+#include "gpu/instance.h"
+
+namespace afterglow {
+
+namespace {
+
+const char* type_name(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return "discrete";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return "integrated";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return "virtual";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return "cpu";
+    default:
+      return "other";
+  }
+}
+
+int preference(const DeviceInfo& info) {
+  static constexpr const char* kOrder[] = {"discrete", "integrated", "virtual", "cpu"};
+  const auto at = std::ranges::find(kOrder, info.type);
+  return static_cast<int>(at - std::begin(kOrder));
+}
+
+/// The first family with graphics and compute; graphics alone is good enough for what we record.
+std::optional<std::uint32_t> graphics_family(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  for (const VkQueueFlags wanted : {VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT, +VK_QUEUE_GRAPHICS_BIT}) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if ((families[i].queueFlags & wanted) == wanted) return i;
+    }
+  }
+  return std::nullopt;
+}
+
+bool can_draw_and_sample(VkPhysicalDevice device, VkFormat format) {
+  constexpr VkFormatFeatureFlags kWanted = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
+  VkFormatProperties properties{};
+  vkGetPhysicalDeviceFormatProperties(device, format, &properties);
+  return (properties.optimalTilingFeatures & kWanted) == kWanted;
+}
+
+std::string what_it_lacks(VkPhysicalDevice device, std::uint32_t api_version) {
+  if (api_version < VK_API_VERSION_1_3) {
+    return fmt::format("needs Vulkan 1.3, has {}.{}", VK_API_VERSION_MAJOR(api_version),
+                       VK_API_VERSION_MINOR(api_version));
+  }
+  std::vector<std::string> lacks;
+  VkPhysicalDeviceVulkan13Features features13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &features13};
+  vkGetPhysicalDeviceFeatures2(device, &features);
+  if (!features13.dynamicRendering) lacks.push_back("dynamicRendering");
+  if (!features13.synchronization2) lacks.push_back("synchronization2");
+  if (!graphics_family(device)) lacks.push_back("a graphics queue");
+  if (!can_draw_and_sample(device, VK_FORMAT_R32G32B32A32_SFLOAT)) lacks.push_back("drawing to RGBA32F");
+  if (!can_draw_and_sample(device, VK_FORMAT_R16G16B16A16_SFLOAT)) lacks.push_back("drawing to RGBA16F");
+  return lacks.empty() ? "" : "lacks " + join(lacks);
+}
+
+std::string names_text(std::span<const DeviceInfo> devices) {
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < devices.size(); ++i) texts.push_back(fmt::format("{} ({})", i, devices[i].name));
+  return join(texts);
+}
+
+/// Nearest device name; also by its first word, since nobody types "llvmpipe (LLVM 15.0.6, 256 bits)".
+std::string nearest_device(std::span<const DeviceInfo> devices, const std::string& choice) {
+  std::vector<std::string> names;
+  for (const auto& device : devices) {
+    names.push_back(lower(device.name));
+    for (const auto& word : split(lower(device.name), ' ')) {
+      if (word.size() > 2) names.push_back(word);
+    }
+  }
+  return nearest_name(lower(choice), names);
+}
+
+Result<std::size_t> usable_or_error(std::span<const DeviceInfo> devices, std::size_t index) {
+  if (devices[index].usable) return index;
+  return Error{ErrorKind::device,
+               fmt::format("device {} ({}) is not usable: {}", index, devices[index].name, devices[index].why_not)};
+}
+
+}  // namespace
+
+PhysicalDevice describe_device(VkPhysicalDevice device) {
+  VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+  VkPhysicalDeviceIDProperties id{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES, .pNext = &driver};
+  VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &id};
+  VkPhysicalDeviceProperties plain{};
+  vkGetPhysicalDeviceProperties(device, &plain);
+  // The driver's properties are of Vulkan 1.2; an older device may not be asked for them.
+  if (plain.apiVersion < VK_API_VERSION_1_2) id.pNext = nullptr;
+  if (plain.apiVersion >= VK_API_VERSION_1_1) vkGetPhysicalDeviceProperties2(device, &properties);
+
+  PhysicalDevice out{.handle = device, .queue_family = graphics_family(device).value_or(0), .info = {}};
+  out.info.name = plain.deviceName;
+  out.info.type = type_name(plain.deviceType);
+  out.info.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
+  for (const auto byte : id.deviceUUID) out.info.uuid += fmt::format("{:02x}", byte);
+  out.info.api_version = plain.apiVersion;
+  out.info.why_not = what_it_lacks(device, plain.apiVersion);
+  out.info.usable = out.info.why_not.empty();
+  return out;
+}
+
+Result<std::vector<PhysicalDevice>> enumerate_devices(VkInstance instance) {
+  std::uint32_t count = 0;
+  AFTERGLOW_VK(vkEnumeratePhysicalDevices(instance, &count, nullptr), "cannot list Vulkan devices");
+  std::vector<VkPhysicalDevice> handles(count);
+  AFTERGLOW_VK(vkEnumeratePhysicalDevices(instance, &count, handles.data()), "cannot list Vulkan devices");
+  if (handles.empty()) return Error{ErrorKind::device, "no Vulkan device found"};
+  std::vector<PhysicalDevice> devices;
+  for (auto* handle : handles) devices.push_back(describe_device(handle));
+  std::ranges::stable_sort(devices, {}, [](const PhysicalDevice& d) { return preference(d.info); });
+  return devices;
+}
+
+Result<std::size_t> choose_device(std::span<const DeviceInfo> devices, const std::string& choice) {
+  if (devices.empty()) return Error{ErrorKind::device, "no Vulkan device found"};
+  if (choice.empty() || choice == "auto") {
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      if (devices[i].usable) return i;
+    }
+    return usable_or_error(devices, 0);
+  }
+
+  std::size_t index = 0;
+  const auto [end, code] = std::from_chars(choice.data(), choice.data() + choice.size(), index);
+  const bool number = code == std::errc{} && end == choice.data() + choice.size();
+  if (number && index < devices.size()) return usable_or_error(devices, index);
+  // "7" must not mean a GeForce 7900 or any uuid with a 7 in it: short numbers are indices alone, parts of a uuid are
+  // not short.
+  constexpr std::size_t kLongestIndex = 2, kShortestUuidPart = 4;
+  const bool part_of_name = !number || choice.size() > kLongestIndex;
+  const bool part_of_uuid = choice.size() >= kShortestUuidPart;
+  const std::string wanted = lower(choice);
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    const bool matches = (part_of_name && lower(devices[i].name).find(wanted) != std::string::npos) ||
+                         (part_of_uuid && lower(devices[i].uuid).find(wanted) != std::string::npos);
+    if (matches && devices[i].usable) return i;  // preferred to an earlier one that cannot be used
+    if (matches && !found) found = i;
+  }
+  if (found) return usable_or_error(devices, *found);
+  Error error{ErrorKind::device, fmt::format("no device '{}'", choice)};
+  error.allowed = "auto, an index or a part of a name or uuid of " + names_text(devices);
+  error.nearest = nearest_device(devices, choice);
+  return error;
+}
+
+Result<std::vector<DeviceInfo>> list_devices() {
+  AFTERGLOW_TRY(const Instance instance, Instance::create(nullptr));
+  AFTERGLOW_TRY(const auto devices, enumerate_devices(instance.get()));
+  std::vector<DeviceInfo> out;
+  for (const auto& device : devices) out.push_back(device.info);
+  return out;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,31 @@
+// What devices there are, what they lack, and which one an option means. Used by gpu/device alone.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "gpu/device.h"
+
+namespace afterglow {
+
+struct PhysicalDevice {
+  VkPhysicalDevice handle = VK_NULL_HANDLE;
+  std::uint32_t queue_family = 0;
+  DeviceInfo info;
+};
+
+/// All devices of the instance in the order of preference. Errors: device (none).
+Result<std::vector<PhysicalDevice>> enumerate_devices(VkInstance instance);
+
+/// Name, type, driver, uuid and whether it can be used.
+PhysicalDevice describe_device(VkPhysicalDevice device);
+
+/// Index into `devices` that `choice` (DeviceOptions::device) means. Pure. Errors: device, with the names there are and
+/// the nearest.
+Result<std::size_t> choose_device(std::span<const DeviceInfo> devices, const std::string& choice);
+
+}  // namespace afterglow

@@ -1,0 +1,123 @@
+#include "gpu/image.h"
+
+#include <fmt/format.h>
+
+#include "gpu/error.h"
+
+namespace afterglow {
+
+std::uint32_t bytes_per_pixel(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+      return 16;
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+      return 8;
+    case VK_FORMAT_R32_SFLOAT:
+    case VK_FORMAT_R8G8B8A8_UNORM:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+Result<void> check_image(const Device& device, const ImageDesc& desc) {
+  const auto [width, height] = desc.size;
+  const auto fail = [&](const std::string& why) {
+    return Error{ErrorKind::device, fmt::format("image '{}' of {}×{} pixels: {}", desc.name, width, height, why)};
+  };
+  if (width < 1 || height < 1) return fail("sizes start at 1×1");
+  VkImageFormatProperties limits{};
+  const VkResult result = vkGetPhysicalDeviceImageFormatProperties(device.physical(), desc.format, VK_IMAGE_TYPE_2D,
+                                                                   desc.tiling, desc.usage, 0, &limits);
+  if (result == VK_ERROR_FORMAT_NOT_SUPPORTED) return fail("the device does not support the format for this use");
+  if (result != VK_SUCCESS) return vulkan_error(result, desc.name);
+  const auto max_width = std::min(limits.maxExtent.width, device.properties().limits.maxFramebufferWidth);
+  const auto max_height = std::min(limits.maxExtent.height, device.properties().limits.maxFramebufferHeight);
+  if (static_cast<std::uint32_t>(width) > max_width || static_cast<std::uint32_t>(height) > max_height) {
+    return fail(fmt::format("the device allows {}×{}", max_width, max_height));
+  }
+  const auto bytes = static_cast<VkDeviceSize>(desc.size.area()) * bytes_per_pixel(desc.format);
+  const auto max_bytes = std::min(limits.maxResourceSize, device.max_allocation());
+  if (bytes > max_bytes) {
+    return fail(fmt::format("needs {}, the device allows {} for one image", bytes_text(bytes), bytes_text(max_bytes)));
+  }
+  return {};
+}
+
+Result<UnboundImage> UnboundImage::create(const Device& device, const ImageDesc& desc) {
+  AFTERGLOW_CHECK(check_image(device, desc));
+  const VkImageCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+      .imageType = VK_IMAGE_TYPE_2D,
+      .format = desc.format,
+      .extent = {static_cast<std::uint32_t>(desc.size.width), static_cast<std::uint32_t>(desc.size.height), 1},
+      .mipLevels = 1,
+      .arrayLayers = 1,
+      .samples = VK_SAMPLE_COUNT_1_BIT,
+      .tiling = desc.tiling,
+      .usage = desc.usage,
+      .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
+  VkImage handle = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkCreateImage(device.handle(), &info, nullptr, &handle),
+               fmt::format("cannot create image '{}' of {}×{} pixels", desc.name, desc.size.width, desc.size.height));
+  UnboundImage out;
+  out.desc_ = desc;
+  out.image_ = ImageHandle(device.handle(), handle);
+  vkGetImageMemoryRequirements(device.handle(), handle, &out.needs_);
+  device.set_name(VK_OBJECT_TYPE_IMAGE, out.image_.number(), desc.name);
+  return out;
+}
+
+Result<void> UnboundImage::bind(const Device& device, VkDeviceMemory memory, VkDeviceSize offset) {
+  AFTERGLOW_VK(vkBindImageMemory(device.handle(), image_.get(), memory, offset), desc_.name);
+  constexpr VkImageUsageFlags kViewed = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+  if (!(desc_.usage & kViewed)) return {};
+  const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                   .image = image_.get(),
+                                   .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                                   .format = desc_.format,
+                                   .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+  VkImageView view = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkCreateImageView(device.handle(), &info, nullptr, &view), desc_.name);
+  view_ = ImageViewHandle(device.handle(), view);
+  return {};
+}
+
+Result<GpuImage> GpuImage::create(const Device& device, const ImageDesc& desc, HostAccess access) {
+  GpuImage out;
+  AFTERGLOW_TRY(out.image_, UnboundImage::create(device, desc));
+  AFTERGLOW_TRY(out.memory_, Memory::allocate(device, out.image_.needs(), access, "image '" + desc.name + "'"));
+  AFTERGLOW_CHECK(out.image_.bind(device, out.memory_.get(), 0));
+  if (access != HostAccess::none) {
+    const VkImageSubresource subresource{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0};
+    vkGetImageSubresourceLayout(device.handle(), out.get(), &subresource, &out.layout_);
+  }
+  return out;
+}
+
+VkImageMemoryBarrier2 image_barrier(VkImage image, VkPipelineStageFlags2 from_stage, VkAccessFlags2 from_access,
+                                    VkImageLayout from, VkPipelineStageFlags2 to_stage, VkAccessFlags2 to_access,
+                                    VkImageLayout to) {
+  return {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+          .pNext = nullptr,
+          .srcStageMask = from_stage,
+          .srcAccessMask = from_access,
+          .dstStageMask = to_stage,
+          .dstAccessMask = to_access,
+          .oldLayout = from,
+          .newLayout = to,
+          .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+          .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+          .image = image,
+          .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+}
+
+void record_barriers(VkCommandBuffer commands, const VkImageMemoryBarrier2* barriers, std::size_t count) {
+  if (count == 0) return;
+  const VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                              .imageMemoryBarrierCount = static_cast<std::uint32_t>(count),
+                              .pImageMemoryBarriers = barriers};
+  vkCmdPipelineBarrier2(commands, &info);
+}
+
+}  // namespace afterglow

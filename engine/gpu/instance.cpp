@@ -1,0 +1,134 @@
+#include "gpu/instance.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "gpu/error.h"
+
+namespace afterglow {
+
+namespace {
+
+constexpr const char* kLayer = "VK_LAYER_KHRONOS_validation";
+constexpr std::size_t kMaxMessages = 1000;
+
+bool has_layer() {
+  std::uint32_t count = 0;
+  if (vkEnumerateInstanceLayerProperties(&count, nullptr) != VK_SUCCESS) return false;
+  std::vector<VkLayerProperties> layers(count);
+  vkEnumerateInstanceLayerProperties(&count, layers.data());
+  return std::ranges::any_of(layers, [](const auto& l) { return std::strcmp(l.layerName, kLayer) == 0; });
+}
+
+VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                          VkDebugUtilsMessageTypeFlagsEXT types,
+                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+  const bool error = (severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT) != 0 &&
+                     (types & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT) != 0;
+  static_cast<ValidationLog*>(user)->add(error, data->pMessage ? data->pMessage : "");
+  return VK_FALSE;
+}
+
+}  // namespace
+
+void ValidationLog::add(bool error, const std::string& message) {
+  const std::lock_guard lock(mutex_);
+  if (error) ++errors_;
+  std::string text = (error ? "error: " : "warning: ") + message;
+  if (messages_.size() < kMaxMessages && std::ranges::find(messages_, text) == messages_.end()) {
+    messages_.push_back(std::move(text));
+  }
+}
+
+int ValidationLog::errors() const {
+  const std::lock_guard lock(mutex_);
+  return errors_;
+}
+
+std::vector<std::string> ValidationLog::messages() const {
+  const std::lock_guard lock(mutex_);
+  return messages_;
+}
+
+Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log) {
+  std::uint32_t version = VK_API_VERSION_1_0;
+  vkEnumerateInstanceVersion(&version);
+  if (version < VK_API_VERSION_1_3) return Error{ErrorKind::device, "the Vulkan loader is older than 1.3"};
+  if (log && !has_layer()) {
+    return Error{ErrorKind::device, std::string("validation was asked for, but the layer ") + kLayer +
+                                        " is not installed (Debian: vulkan-validationlayers)"};
+  }
+
+  const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                      .pApplicationName = "afterglow",
+                                      .pEngineName = "afterglow",
+                                      .apiVersion = VK_API_VERSION_1_3};
+  VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, .pApplicationInfo = &application};
+
+  // The messenger is chained to the creation too, so that messages about the instance itself are seen.
+  const VkDebugUtilsMessengerCreateInfoEXT messenger{
+      .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+      .messageSeverity =
+          VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+      .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
+      .pfnUserCallback = on_message,
+      .pUserData = log.get()};
+  const VkValidationFeatureEnableEXT synchronization = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+  const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                         .pNext = &messenger,
+                                         .enabledValidationFeatureCount = 1,
+                                         .pEnabledValidationFeatures = &synchronization};
+  const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+  if (log) {
+    info.pNext = &features;
+    info.enabledLayerCount = 1;
+    info.ppEnabledLayerNames = &kLayer;
+    info.enabledExtensionCount = 2;
+    info.ppEnabledExtensionNames = extensions;
+  }
+
+  Instance out;
+  out.log_ = log;
+  const VkResult created = vkCreateInstance(&info, nullptr, &out.instance_);
+  if (created == VK_ERROR_INCOMPATIBLE_DRIVER) {
+    return Error{ErrorKind::device,
+                 "no Vulkan driver found (Debian: mesa-vulkan-drivers brings one that runs on the CPU)"};
+  }
+  AFTERGLOW_VK(created, "cannot create a Vulkan instance");
+  if (log) {
+    out.debug_utils_ = true;
+    const auto create_messenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(out.instance_, "vkCreateDebugUtilsMessengerEXT"));
+    if (!create_messenger) return Error{ErrorKind::device, "the validation layer offers no VK_EXT_debug_utils"};
+    AFTERGLOW_VK(create_messenger(out.instance_, &messenger, nullptr, &out.messenger_),
+                 "cannot listen to the validation layer");
+  }
+  return out;
+}
+
+Instance& Instance::operator=(Instance&& other) noexcept {
+  std::swap(instance_, other.instance_);
+  std::swap(messenger_, other.messenger_);
+  std::swap(log_, other.log_);
+  std::swap(debug_utils_, other.debug_utils_);
+  return *this;
+}
+
+Instance::~Instance() { destroy_instance(instance_, messenger_); }
+
+VkInstance Instance::release(VkDebugUtilsMessengerEXT& messenger) {
+  messenger = std::exchange(messenger_, VK_NULL_HANDLE);
+  return std::exchange(instance_, VK_NULL_HANDLE);
+}
+
+void destroy_instance(VkInstance instance, VkDebugUtilsMessengerEXT messenger) {
+  if (instance == VK_NULL_HANDLE) return;
+  if (messenger != VK_NULL_HANDLE) {
+    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"));
+    destroy(instance, messenger, nullptr);
+  }
+  vkDestroyInstance(instance, nullptr);
+}
+
+}  // namespace afterglow

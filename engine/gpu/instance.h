@@ -1,0 +1,41 @@
+// Vulkan instances and what the validation layer says. Used by gpu/device alone.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "gpu/device.h"
+
+namespace afterglow {
+
+/// Destroys a VkInstance with its messenger.
+class Instance {
+ public:
+  /// `log`: collect validation messages there (and load the layer); null: no validation. Errors: device.
+  static Result<Instance> create(std::shared_ptr<ValidationLog> log);
+  Instance() = default;
+  Instance(Instance&& other) noexcept { *this = std::move(other); }
+  Instance& operator=(Instance&& other) noexcept;
+  ~Instance();
+
+  VkInstance get() const { return instance_; }
+  bool debug_utils() const { return debug_utils_; }
+  /// Gives up ownership of the instance and its messenger.
+  VkInstance release(VkDebugUtilsMessengerEXT& messenger);
+
+ private:
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  std::shared_ptr<ValidationLog> log_;
+  bool debug_utils_ = false;
+};
+
+void destroy_instance(VkInstance instance, VkDebugUtilsMessengerEXT messenger);
+
+}  // namespace afterglow

@@ -1,0 +1,88 @@
+#include "gpu/memory.h"
+
+#include <fmt/format.h>
+
+#include "gpu/error.h"
+
+namespace afterglow {
+
+std::optional<std::uint32_t> find_memory_type(const Device& device, std::uint32_t bits, HostAccess access) {
+  constexpr VkMemoryPropertyFlags kVisible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
+  constexpr VkMemoryPropertyFlags kCoherent = VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  constexpr VkMemoryPropertyFlags kCached = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+  constexpr VkMemoryPropertyFlags kLocal = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+  struct Wishes {
+    VkMemoryPropertyFlags flags[3];
+  };
+  // From the best to what will do.
+  const Wishes wishes = access == HostAccess::none ? Wishes{{kLocal, 0, 0}}
+                        : access == HostAccess::write
+                            ? Wishes{{kVisible | kCoherent, kVisible, kVisible}}
+                            : Wishes{{kVisible | kCached | kCoherent, kVisible | kCached, kVisible}};
+  for (const VkMemoryPropertyFlags wanted : wishes.flags) {
+    for (std::uint32_t i = 0; i < device.memory().memoryTypeCount; ++i) {
+      const VkMemoryPropertyFlags flags = device.memory().memoryTypes[i].propertyFlags;
+      if (flags & (VK_MEMORY_PROPERTY_PROTECTED_BIT | VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT)) continue;
+      if ((bits & (1u << i)) && (flags & wanted) == wanted) return i;
+    }
+  }
+  return std::nullopt;
+}
+
+Result<Memory> Memory::allocate(const Device& device, const VkMemoryRequirements& needs, HostAccess access,
+                                std::string_view what) {
+  if (needs.size > device.max_allocation()) {
+    return Error{ErrorKind::device, fmt::format("{}: needs {} in one piece, the device allows {}", what,
+                                                bytes_text(needs.size), bytes_text(device.max_allocation()))};
+  }
+  const auto type = find_memory_type(device, needs.memoryTypeBits, access);
+  if (!type) return Error{ErrorKind::device, fmt::format("{}: the device has no suitable memory", what)};
+  const VkMemoryAllocateInfo info{
+      .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size, .memoryTypeIndex = *type};
+  VkDeviceMemory handle = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkAllocateMemory(device.handle(), &info, nullptr, &handle),
+               fmt::format("cannot allocate {} for {}", bytes_text(needs.size), what));
+  Memory out;
+  out.device_ = device.handle();
+  out.memory_ = MemoryHandle(device.handle(), handle);
+  out.size_ = needs.size;
+  out.coherent_ = device.memory().memoryTypes[*type].propertyFlags & VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  if (access != HostAccess::none) {
+    void* mapped = nullptr;
+    AFTERGLOW_VK(vkMapMemory(device.handle(), handle, 0, VK_WHOLE_SIZE, 0, &mapped), what);
+    out.mapped_ = static_cast<std::byte*>(mapped);
+  }
+  return out;
+}
+
+void Memory::flush() const {
+  if (coherent_ || !mapped_) return;
+  const VkMappedMemoryRange range{
+      .sType = VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, .memory = memory_.get(), .size = VK_WHOLE_SIZE};
+  vkFlushMappedMemoryRanges(device_, 1, &range);
+}
+
+void Memory::invalidate() const {
+  if (coherent_ || !mapped_) return;
+  const VkMappedMemoryRange range{
+      .sType = VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, .memory = memory_.get(), .size = VK_WHOLE_SIZE};
+  vkInvalidateMappedMemoryRanges(device_, 1, &range);
+}
+
+Result<Buffer> Buffer::create(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage, HostAccess access,
+                              std::string_view name) {
+  const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
+  VkBuffer handle = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkCreateBuffer(device.handle(), &info, nullptr, &handle), name);
+  Buffer out;
+  out.buffer_ = BufferHandle(device.handle(), handle);
+  out.size_ = size;
+  VkMemoryRequirements needs{};
+  vkGetBufferMemoryRequirements(device.handle(), handle, &needs);
+  AFTERGLOW_TRY(out.memory_, Memory::allocate(device, needs, access, name));
+  AFTERGLOW_VK(vkBindBufferMemory(device.handle(), handle, out.memory_.get(), 0), name);
+  device.set_name(VK_OBJECT_TYPE_BUFFER, out.buffer_.number(), std::string(name));
+  return out;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,62 @@
+// Device memory and buffers.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "gpu/device.h"
+#include "gpu/handle.h"
+
+namespace afterglow {
+
+/// What the CPU does with a piece of memory.
+enum class HostAccess { none, write, read };
+
+/// The first memory type of `bits` that suits: `none` prefers device-local, `write` wants host-visible (coherent
+/// preferred), `read` wants host-visible (cached preferred).
+std::optional<std::uint32_t> find_memory_type(const Device& device, std::uint32_t bits, HostAccess access);
+
+/// One VkDeviceMemory; mapped for its whole life unless its access is `none`.
+class Memory {
+ public:
+  /// Errors: device; `what` names it in the message.
+  static Result<Memory> allocate(const Device& device, const VkMemoryRequirements& needs, HostAccess access,
+                                 std::string_view what);
+  Memory() = default;
+
+  VkDeviceMemory get() const { return memory_.get(); }
+  VkDeviceSize size() const { return size_; }
+  std::byte* data() const { return mapped_; }
+  /// Makes CPU writes visible to the device before a submission; device writes visible to the CPU after a wait.
+  /// Nothing on coherent memory.
+  void flush() const;
+  void invalidate() const;
+
+ private:
+  VkDevice device_ = VK_NULL_HANDLE;
+  MemoryHandle memory_;
+  VkDeviceSize size_ = 0;
+  std::byte* mapped_ = nullptr;
+  bool coherent_ = true;
+};
+
+/// A buffer with memory of its own.
+class Buffer {
+ public:
+  static Result<Buffer> create(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage, HostAccess access,
+                               std::string_view name);
+  Buffer() = default;
+
+  VkBuffer get() const { return buffer_.get(); }
+  VkDeviceSize size() const { return size_; }
+  const Memory& memory() const { return memory_; }
+  std::byte* data() const { return memory_.data(); }
+
+ private:
+  Memory memory_;  // before the buffer: freed after it
+  BufferHandle buffer_;
+  VkDeviceSize size_ = 0;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,139 @@
+#include "gpu/pipeline.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <vector>
+
+#include "gpu/error.h"
+
+namespace afterglow {
+
+Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface& interface) {
+  const auto& limits = device.properties().limits;
+  const auto max_images = std::min(limits.maxPerStageDescriptorSampledImages, limits.maxPerStageDescriptorSamplers);
+  if (static_cast<std::uint32_t>(interface.images) > max_images) {
+    return Error{ErrorKind::device,
+                 fmt::format("a kernel reads {} images, the device allows {}", interface.images, max_images)};
+  }
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  if (interface.block) {
+    bindings.push_back({.binding = 0,
+                        .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+                        .descriptorCount = 1,
+                        .stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT,
+                        .pImmutableSamplers = nullptr});
+  }
+  for (int i = 0; i < interface.images; ++i) {
+    bindings.push_back({.binding = static_cast<std::uint32_t>(i) + 1,
+                        .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                        .descriptorCount = 1,
+                        .stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT,
+                        .pImmutableSamplers = nullptr});
+  }
+  const VkDescriptorSetLayoutCreateInfo set_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                                 .bindingCount = static_cast<std::uint32_t>(bindings.size()),
+                                                 .pBindings = bindings.data()};
+  DrawLayout out;
+  VkDescriptorSetLayout set = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkCreateDescriptorSetLayout(device.handle(), &set_info, nullptr, &set),
+               "cannot create a descriptor layout");
+  out.set = SetLayoutHandle(device.handle(), set);
+
+  const VkPushConstantRange push{VK_SHADER_STAGE_FRAGMENT_BIT, 0, interface.push_bytes};
+  const VkPipelineLayoutCreateInfo layout_info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                               .setLayoutCount = 1,
+                                               .pSetLayouts = &set,
+                                               .pushConstantRangeCount = interface.push_bytes ? 1u : 0u,
+                                               .pPushConstantRanges = &push};
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkCreatePipelineLayout(device.handle(), &layout_info, nullptr, &layout),
+               "cannot create a pipeline layout");
+  out.pipeline = PipelineLayoutHandle(device.handle(), layout);
+  return out;
+}
+
+Result<ShaderModuleHandle> create_shader_module(const Device& device, std::span<const std::uint32_t> spirv,
+                                                const std::string& name) {
+  const VkShaderModuleCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
+  VkShaderModule module = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkCreateShaderModule(device.handle(), &info, nullptr, &module),
+               "cannot load the shader of '" + name + "'");
+  ShaderModuleHandle out(device.handle(), module);
+  device.set_name(VK_OBJECT_TYPE_SHADER_MODULE, out.number(), name);
+  return out;
+}
+
+Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayout& layout, VkShaderModule vertex,
+                                            VkShaderModule fragment, VkFormat format, const std::string& name) {
+  const auto stage = [](VkShaderStageFlagBits bit, VkShaderModule module) {
+    return VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                           .pNext = nullptr,
+                                           .flags = 0,
+                                           .stage = bit,
+                                           .module = module,
+                                           .pName = "main",
+                                           .pSpecializationInfo = nullptr};
+  };
+  const std::array stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex), stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
+  const VkPipelineVertexInputStateCreateInfo no_vertices{.sType =
+                                                             VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+  const VkPipelineInputAssemblyStateCreateInfo triangles{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+      .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+  const VkPipelineViewportStateCreateInfo viewport{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
+  const VkPipelineRasterizationStateCreateInfo raster{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+      .polygonMode = VK_POLYGON_MODE_FILL,
+      .cullMode = VK_CULL_MODE_NONE,
+      .lineWidth = 1};
+  const VkPipelineMultisampleStateCreateInfo one_sample{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO, .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+  const VkPipelineColorBlendAttachmentState overwrite{.colorWriteMask = 0xf};
+  const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+                                                  .attachmentCount = 1,
+                                                  .pAttachments = &overwrite};
+  constexpr std::array kDynamic{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+                                                 .dynamicStateCount = static_cast<std::uint32_t>(kDynamic.size()),
+                                                 .pDynamicStates = kDynamic.data()};
+  const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+                                                .colorAttachmentCount = 1,
+                                                .pColorAttachmentFormats = &format};
+  const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                          .pNext = &rendering,
+                                          .stageCount = static_cast<std::uint32_t>(stages.size()),
+                                          .pStages = stages.data(),
+                                          .pVertexInputState = &no_vertices,
+                                          .pInputAssemblyState = &triangles,
+                                          .pViewportState = &viewport,
+                                          .pRasterizationState = &raster,
+                                          .pMultisampleState = &one_sample,
+                                          .pColorBlendState = &blend,
+                                          .pDynamicState = &dynamic,
+                                          .layout = layout.pipeline.get(),
+                                          .basePipelineIndex = -1};
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkCreateGraphicsPipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr, &pipeline),
+               "cannot create the pipeline of '" + name + "'");
+  PipelineHandle out(device.handle(), pipeline);
+  device.set_name(VK_OBJECT_TYPE_PIPELINE, out.number(), name);
+  return out;
+}
+
+Result<SamplerHandle> create_sampler(const Device& device, VkFilter filter) {
+  const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                 .magFilter = filter,
+                                 .minFilter = filter,
+                                 .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
+                                 .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                 .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                 .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+  VkSampler sampler = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkCreateSampler(device.handle(), &info, nullptr, &sampler), "cannot create a sampler");
+  return SamplerHandle(device.handle(), sampler);
+}
+
+}  // namespace afterglow

@@ -1,0 +1,41 @@
+// Full-screen draws: descriptor layouts, pipeline layouts and pipelines for one colour target.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "gpu/device.h"
+#include "gpu/handle.h"
+
+namespace afterglow {
+
+/// What a full-screen fragment shader reads. Set 0: binding 0 a uniform block (when `block`), bindings 1…`images`
+/// combined image samplers; `push_bytes` of push constants.
+struct DrawInterface {
+  bool block = false;
+  int images = 0;
+  std::uint32_t push_bytes = 0;
+  friend auto operator<=>(const DrawInterface&, const DrawInterface&) = default;
+};
+
+struct DrawLayout {
+  SetLayoutHandle set;
+  PipelineLayoutHandle pipeline;
+};
+
+/// Errors: device (more images than a fragment shader may read).
+Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface& interface);
+
+Result<ShaderModuleHandle> create_shader_module(const Device& device, std::span<const std::uint32_t> spirv,
+                                                const std::string& name);
+
+/// A pipeline that runs `fragment` on every pixel of a target of `format`; viewport and scissor are dynamic. Goes
+/// through the device's pipeline cache. Thread-safe.
+Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayout& layout, VkShaderModule vertex,
+                                            VkShaderModule fragment, VkFormat format, const std::string& name);
+
+/// Texels at their centres, or interpolated; clamped to the edge, level 0.
+Result<SamplerHandle> create_sampler(const Device& device, VkFilter filter);
+
+}  // namespace afterglow

@@ -1,0 +1,68 @@
+// The part of Device that keeps driver-compiled pipelines on disk. The file is our hash of the data, then the data:
+// drivers check little more than the header, and a file cut short by a full disk must not reach them.
+#include <fmt/format.h>
+
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+#include "core/file.h"
+#include "core/hash.h"
+#include "gpu/device.h"
+
+namespace afterglow {
+
+namespace {
+
+constexpr std::size_t kHashDigits = 32;
+constexpr std::size_t kMaxCacheBytes = 256u << 20;
+
+/// The data of a cache file, or empty when it is missing, damaged or of another device.
+std::string read_cache(const std::string& file, const VkPhysicalDeviceProperties& device) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return {};
+  auto content = read_file(file, kMaxCacheBytes);
+  if (!content || content->size() < kHashDigits + sizeof(VkPipelineCacheHeaderVersionOne)) return {};
+  std::string data = content->substr(kHashDigits);
+  if (hash_text(data).hex() != content->substr(0, kHashDigits)) return {};
+  VkPipelineCacheHeaderVersionOne header{};
+  std::memcpy(&header, data.data(), sizeof header);
+  const bool ours = header.headerVersion == VK_PIPELINE_CACHE_HEADER_VERSION_ONE &&
+                    header.vendorID == device.vendorID && header.deviceID == device.deviceID &&
+                    std::memcmp(header.pipelineCacheUUID, device.pipelineCacheUUID, VK_UUID_SIZE) == 0;
+  return ours ? data : std::string{};
+}
+
+}  // namespace
+
+void Device::use_pipeline_cache(const std::string& folder) {
+  std::string uuid;
+  for (const auto byte : properties_.pipelineCacheUUID) uuid += fmt::format("{:02x}", byte);
+  cache_file_ = (std::filesystem::path(folder) / fmt::format("pipelines-{}.bin", uuid)).string();
+  const std::string data = read_cache(cache_file_, properties_);
+  if (data.empty()) return;
+  const VkPipelineCacheCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
+                                       .initialDataSize = data.size(),
+                                       .pInitialData = data.data()};
+  VkPipelineCache loaded = VK_NULL_HANDLE;
+  if (vkCreatePipelineCache(device_, &info, nullptr, &loaded) != VK_SUCCESS) return;
+  if (vkMergePipelineCaches(device_, pipeline_cache_, 1, &loaded) == VK_SUCCESS) cached_bytes_ = data.size();
+  vkDestroyPipelineCache(device_, loaded, nullptr);
+}
+
+void Device::save_pipeline_cache() const {
+  if (cache_file_.empty()) return;
+  std::size_t size = 0;
+  if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS) return;
+  // Caches only grow: the same size means that nothing was added. A bare header (lavapipe's) is not worth a file.
+  if (size == cached_bytes_ || size <= sizeof(VkPipelineCacheHeaderVersionOne)) return;
+  std::string data(size, '\0');
+  if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, data.data()) != VK_SUCCESS) return;
+  data.resize(size);
+  std::error_code ignored;
+  std::filesystem::create_directories(std::filesystem::path(cache_file_).parent_path(), ignored);
+  // A cache that cannot be written costs time only.
+  (void)write_file_atomically(cache_file_, hash_text(data).hex() + data);
+}
+
+}  // namespace afterglow
