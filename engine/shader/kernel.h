@@ -48,6 +48,8 @@ struct KernelParam {
 
 /// GLSL ready for the compiler, with what the executor must bind.
 /// Set 0: binding 0 the uniform block (absent when `block_size` is 0), bindings 1… combined image samplers in the order of `images`.
+/// The block is std140; a bool takes 4 bytes, 0 or 1. Kernels with `hardware_filter` need samplers with linear filtering and
+/// clamp-to-edge; the others only use texelFetch. The result is location 0.
 /// Push constants: see kPushConstantBytes below.
 struct AssembledKernel {
   std::string glsl;
@@ -58,11 +60,12 @@ struct AssembledKernel {
     std::string name;    ///< input name, or "source" for the head
   };
   std::vector<ImageSlot> images;
-  std::vector<std::string> file_names;  ///< index used in #line directives → file path
+  std::vector<KernelParam> params;      ///< dynamic parameters in the order of the block; offsets are not known yet (0)
+  std::vector<std::string> file_names;  ///< index used in #line directives → file path; [0] is the engine's own text
   Hash hash;                            ///< of glsl
 };
 
-/// Push constants of every kernel: ivec2 target size, ivec2 size of image 0.
+/// Push constants of every kernel (fragment stage): ivec2 target size, ivec2 size of image 0.
 inline constexpr std::uint32_t kPushConstantBytes = 16;
 
 struct CompiledKernel {

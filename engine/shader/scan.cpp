@@ -68,7 +68,22 @@ class Scanner {
       AFTERGLOW_CHECK(directive(i, end));
       i = end;
     }
+    if (!conditions_.empty()) return fail(conditions_.back(), "#if is never closed by #endif");
+    for (const auto& name : undefined_)
+      if (!std::any_of(out_.names.begin(), out_.names.end(), [&](const GlobalName& own) { return own.macro && own.name == name.text; }))
+        return fail(name, fmt::format("#undef {}: only macros of this file can be undefined", name.text));
     return {};
+  }
+
+  Error unknown_directive(const Token& word) const {
+    static const std::vector<std::string> kAllowed = {"include", "define", "undef", "if",   "ifdef",
+                                                      "ifndef",  "elif",   "else",  "endif", "error"};
+    Error error = fail(word, fmt::format("#{} is not allowed in an effect's shader", word.text));
+    if (word.is("version")) error.message = "#version is given by the engine (460); remove the line";
+    error.allowed = "#" + join(kAllowed, ", #");
+    error.nearest = nearest_name(word.text, kAllowed);
+    if (!error.nearest.empty()) error.nearest.insert(0, "#");
+    return error;
   }
 
   /// Tokens [begin, end) are one preprocessor line, '#' first.
@@ -83,14 +98,21 @@ class Scanner {
       out_.edits.push_back({tokens[begin].offset, tokens[begin + 2].end() + 1});
       return {};
     }
-    if (word.is("version")) return fail(word, "#version is given by the engine (460); remove the line");
-    if (word.is("extension")) return fail(word, "#extension is not allowed in an effect's shader");
-    if (word.is("line")) return fail(word, "#line is not allowed in an effect's shader");
     for (std::size_t i = begin + 1; i + 1 < end; ++i)
       if (tokens[i].is("#") && tokens[i + 1].is("#")) return fail(tokens[i], "token pasting (##) is not supported");
-    if (word.is("define")) {
-      if (end - begin < 3 || !tokens[begin + 2].is_identifier()) return fail(word, "#define needs a name");
-      return add_name(tokens[begin + 2], true);
+    if (word.is("define") || word.is("undef")) {
+      if (end - begin < 3 || !tokens[begin + 2].is_identifier()) return fail(word, fmt::format("#{} needs a name", word.text));
+      if (word.is("define")) return add_name(tokens[begin + 2], true);
+      undefined_.push_back(tokens[begin + 2]);
+      return {};
+    }
+    if (word.is("if") || word.is("ifdef") || word.is("ifndef")) {
+      conditions_.push_back(word.line);
+    } else if (word.is("elif") || word.is("else") || word.is("endif")) {
+      if (conditions_.empty()) return fail(word, fmt::format("#{} without #if", word.text));
+      if (word.is("endif")) conditions_.pop_back();
+    } else if (!word.is("error")) {
+      return unknown_directive(word);
     }
     return {};
   }
@@ -437,6 +459,8 @@ class Scanner {
   std::size_t at_ = 0;              ///< index into code_
   std::size_t begin_ = 0;           ///< where the declaration begins
   std::set<std::string> constant_ids_, input_names_, seen_;
+  std::vector<int> conditions_;   ///< lines of the #if that are open
+  std::vector<Token> undefined_;  ///< names in #undef
   std::optional<int> apply_line_, sample_line_;
 };
 

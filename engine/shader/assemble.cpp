@@ -1,0 +1,184 @@
+// Joins a head and pixel stages into the text of one fragment shader. The text holds no image size, no file and no pass name,
+// so that equal work has equal text, and one compiled kernel serves every level of a pyramid.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "shader/axis.h"
+#include "shader/filter_head.h"
+#include "shader/kernel.h"
+#include "shader/prelude.h"
+#include "shader/rename.h"
+
+namespace afterglow {
+namespace {
+
+constexpr std::size_t kMaxImages = 16;  ///< what every Vulkan device can bind to one stage
+
+constexpr std::string_view kHeader =
+    "#version 460\n"
+    "layout(push_constant) uniform ag_Push { ivec2 ag_target_size; ivec2 ag_source_size; };\n"
+    "layout(location = 0) out vec4 ag_result;\n";
+
+/// Rounds to half floats, to nearest even, so that the store is exact whatever rounding the device's attachments have.
+constexpr std::string_view kRoundToHalf = R"(
+vec4 ag_round_to_half(vec4 v) {
+  v = clamp(v, vec4(-65504.0), vec4(65504.0));
+  uvec4 bits = floatBitsToUint(v);
+  uvec4 normal = (bits + 0xfffu + ((bits >> 13u) & 1u)) & ~0x1fffu;   // 10 bits of mantissa stay
+  vec4 tiny = roundEven(v * 16777216.0) * 5.9604644775390625e-8;      // below 2^-14 halves are multiples of 2^-24
+  return mix(uintBitsToFloat(normal), tiny, lessThan(abs(v), vec4(6.103515625e-5)));
+}
+)";
+
+class Assembler {
+ public:
+  explicit Assembler(const KernelDesc& kernel) : kernel_(kernel) {}
+
+  Result<AssembledKernel> run() {
+    if (kernel_.filter && kernel_.sample) return Error{ErrorKind::other, "a kernel has one head: a filter or a sample stage"};
+    out_.file_names = {"", "lib/prelude.glsl"};
+    AFTERGLOW_CHECK(head());
+    for (const auto& stage : kernel_.stages) AFTERGLOW_CHECK(add_stage(stage, ShaderKind::pixel));
+    if (out_.images.size() > kMaxImages) {
+      Error error{ErrorKind::script, fmt::format("the joined passes read {} images", out_.images.size())};
+      error.allowed = fmt::format("at most {}", kMaxImages);
+      return error;
+    }
+    out_.glsl += kHeader;
+    if (!block_.empty()) out_.glsl += "layout(set = 0, binding = 0, std140) uniform ag_Block {\n" + block_ + "};\n";
+    out_.glsl += samplers_;
+    out_.glsl += "#line 1 1\n";
+    out_.glsl += prelude_text();
+    out_.glsl += library_text_ + stages_ + "#line 1 0\n";
+    if (kernel_.half_storage) out_.glsl += kRoundToHalf;
+    out_.glsl += "void main() {\n  ivec2 ag_pixel = ivec2(gl_FragCoord.xy);\n  vec4 ag_color;\n" + body_;
+    out_.glsl += kernel_.half_storage ? "  ag_result = ag_round_to_half(ag_color);\n}\n" : "  ag_result = ag_color;\n}\n";
+    out_.hash = hash_text(out_.glsl);
+    return std::move(out_);
+  }
+
+ private:
+  Result<void> head() {
+    if (kernel_.sample) return add_stage(*kernel_.sample, ShaderKind::sample);
+    add_image(-1, "source", "ag_image0");
+    if (!kernel_.filter) {
+      body_ += "  ag_color = texelFetch(ag_image0, ag_pixel, 0);\n";
+      return {};
+    }
+    AFTERGLOW_TRY(const std::string code, filter_head(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.hardware_filter));
+    body_ += code;
+    return {};
+  }
+
+  void add_image(int stage, const std::string& name, const std::string& variable) {
+    out_.images.push_back({stage, name});
+    samplers_ += fmt::format("layout(set = 0, binding = {}) uniform sampler2D {};\n", out_.images.size(), variable);
+  }
+
+  std::size_t file_index(const std::string& path) {
+    const auto known = std::find(out_.file_names.begin() + 2, out_.file_names.end(), path);
+    if (known == out_.file_names.end()) {
+      out_.file_names.push_back(path);
+      return out_.file_names.size() - 1;
+    }
+    return static_cast<std::size_t>(known - out_.file_names.begin());
+  }
+
+  Result<void> add_stage(const KernelStage& stage, ShaderKind kind) {
+    const ShaderSource& source = *stage.shader;
+    if (source.interface.kind != kind)
+      return shader_error(source.path.string(), 0, fmt::format("'{}' is a {} shader and cannot stand here", source.name,
+                                                               kind == ShaderKind::pixel ? "sample" : "pixel"));
+    AFTERGLOW_TRY(const ShaderScan scanned, scan(source.text, source.path.string(), ScanAs::stage));
+    const std::string prefix = fmt::format("ag_s{}_", stage_count_);
+    AFTERGLOW_TRY(const auto values, constants(stage, prefix));
+    NameMap names;
+    std::vector<std::size_t> seen;  // include of the source → library of the kernel
+    for (const auto& include : source.includes) {
+      AFTERGLOW_TRY(const std::size_t index, library(include, seen));
+      seen.push_back(index);
+      see(libraries_[index], names);
+    }
+    for (const auto& name : scanned.names) names.insert_or_assign(name.name, NewName{prefix + name.name, name.macro});
+
+    std::string arguments = kind == ShaderKind::pixel ? "ag_color" : "ag_pixel";
+    for (const auto& input : source.interface.inputs) {
+      const std::string variable = input.pixelwise ? fmt::format("ag_image{}", out_.images.size()) : prefix + input.name;
+      add_image(stage_count_, input.name, variable);
+      if (input.pixelwise) arguments += fmt::format(", texelFetch({}, ag_pixel, 0)", variable);
+    }
+    for (const auto& param : source.interface.params) {
+      if (param.specialised) continue;
+      block_ += fmt::format("  {} {}{};\n", glsl_name(param.type), prefix, param.name);
+      out_.params.push_back({stage_count_, param.name, param.type, 0});
+    }
+    stages_ += fmt::format("#line 1 {}\n", file_index(source.path.string())) + rewrite(source.text, scanned, names, values);
+    body_ += fmt::format("  ag_color = {}{}({});\n", prefix, kind == ShaderKind::pixel ? "apply" : "sample_at", arguments);
+    ++stage_count_;
+    return {};
+  }
+
+  /// What replaces the declaration of each specialised parameter.
+  static Result<std::vector<std::string>> constants(const KernelStage& stage, const std::string& prefix) {
+    const ShaderSource& source = *stage.shader;
+    std::vector<std::string> out;
+    for (const auto& param : source.interface.params) {
+      std::string text;
+      if (param.specialised) {
+        const auto given = stage.constants.find(param.name);
+        const double value = given == stage.constants.end() ? param.default_value : given->second;
+        const bool fits = std::isfinite(value) && (param.type != ParamType::int1 || std::abs(value) <= 2147483647.0);
+        if (!fits) return shader_error(source.path.string(), param.line, fmt::format("constant '{}' cannot be {}", param.name, value));
+        std::string number = float_literal(value);
+        if (param.type == ParamType::int1) number = fmt::format("{}", static_cast<int>(std::lround(value)));
+        if (param.type == ParamType::bool1) number = value != 0 ? "true" : "false";
+        text = fmt::format("const {} {}{} = {};", glsl_name(param.type), prefix, param.name, number);
+      }
+      out.push_back(std::move(text));
+    }
+    return out;
+  }
+
+  /// A library in this kernel.
+  struct Library {
+    std::filesystem::path path;
+    std::string text, prefix;
+    std::vector<std::size_t> uses;  ///< libraries of this kernel that it sees
+    std::vector<GlobalName> names;
+  };
+
+  static void see(const Library& library, NameMap& names) {
+    for (const auto& name : library.names) names.insert_or_assign(name.name, NewName{library.prefix + name.name, name.macro});
+  }
+
+  /// The library of this kernel for an include; its text is added when it is new. `earlier` maps the includes before it.
+  Result<std::size_t> library(const ShaderSource::Include& include, const std::vector<std::size_t>& earlier) {
+    Library added{include.path, include.text, fmt::format("ag_l{}_", libraries_.size()), {}, {}};
+    for (const auto use : include.uses) added.uses.push_back(earlier.at(use));
+    for (std::size_t i = 0; i < libraries_.size(); ++i)
+      if (libraries_[i].path == added.path && libraries_[i].text == added.text && libraries_[i].uses == added.uses) return i;
+    AFTERGLOW_TRY(const ShaderScan scanned, scan(include.text, include.path.string(), ScanAs::library));
+    NameMap names;
+    for (const auto use : added.uses) see(libraries_[use], names);
+    added.names = scanned.names;
+    see(added, names);
+    library_text_ += fmt::format("#line 1 {}\n", file_index(include.path.string())) + rewrite(include.text, scanned, names, {});
+    libraries_.push_back(std::move(added));
+    return libraries_.size() - 1;
+  }
+
+  const KernelDesc& kernel_;
+  AssembledKernel out_;
+  std::string block_, samplers_, library_text_, stages_, body_;
+  std::vector<Library> libraries_;
+  int stage_count_ = 0;
+};
+
+}  // namespace
+
+Result<AssembledKernel> assemble(const KernelDesc& kernel) { return Assembler(kernel).run(); }
+
+}  // namespace afterglow

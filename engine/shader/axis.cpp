@@ -1,0 +1,172 @@
+#include "shader/axis.h"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace afterglow {
+namespace {
+
+constexpr double kSnap = 1e-9;  ///< offsets this near a whole texel are meant to be one
+
+/// Splits into a whole part and a fraction in [0, 1).
+std::pair<int, double> split(double value) {
+  double whole = std::floor(value);
+  double fraction = value - whole;
+  if (fraction > 1 - kSnap) {
+    whole += 1;
+    fraction = 0;
+  } else if (fraction < kSnap) {
+    fraction = 0;
+  }
+  return {static_cast<int>(whole), fraction};
+}
+
+/// Weights of texels i−1 … i+2 (math.md §1).
+std::array<double, 4> bspline(double f) {
+  const double g = 1 - f;
+  return {g * g * g / 6, (4 - 6 * f * f + 3 * f * f * f) / 6, (4 - 6 * g * g + 3 * g * g * g) / 6, f * f * f / 6};
+}
+
+std::string sum(const std::string& base, int shift) {
+  if (shift == 0) return base;
+  return fmt::format("{} {} {}", base, shift < 0 ? '-' : '+', std::abs(shift));
+}
+
+}  // namespace
+
+std::string float_literal(double value) {
+  std::string text = fmt::format("{}", static_cast<float>(value));
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string product(double constant, const std::string& variable) {
+  if (variable.empty()) return float_literal(constant);
+  if (static_cast<float>(constant) == 1.0f) return variable;
+  return float_literal(constant) + " * " + variable;
+}
+
+Axis::Axis(char letter, AxisRatio ratio, Interpolation interpolation) : letter_(letter), ratio_(ratio), interpolation_(interpolation) {}
+
+std::string Axis::name(const char* what, int phase) const { return fmt::format("ag_{}{}{}", letter_, what, phase); }
+
+std::string Axis::base(int phase) const {
+  if (ratio_ == AxisRatio::same) return fmt::format("ag_pixel.{}", letter_);
+  if (ratio_ == AxisRatio::half) return fmt::format("ag_{}2", letter_);
+  return name("i", phase);
+}
+
+int Axis::phase_for(double fraction) {
+  for (std::size_t i = 0; i < fractions_.size(); ++i)
+    if (std::abs(fractions_[i] - fraction) < kSnap) return static_cast<int>(i);
+  fractions_.push_back(fraction);
+  return static_cast<int>(fractions_.size()) - 1;
+}
+
+std::vector<TapTerm> Axis::read(double offset) {
+  if (interpolation_ == Interpolation::nearest) offset += 0.5;  // ⌊p + offset⌋ = ⌊t + ½⌋
+  std::vector<TapTerm> terms;
+  const auto add = [&](int phase, int shift, double constant, std::string variable = {}) {
+    if (constant != 0) terms.push_back({{phase, shift}, constant, std::move(variable)});
+  };
+  if (fixed()) {
+    const auto [i, f] = split(offset + (ratio_ == AxisRatio::half ? 0.5 : 0.0));
+    if (interpolation_ == Interpolation::nearest) {
+      add(0, i, 1);
+    } else if (interpolation_ == Interpolation::linear) {
+      add(0, i, 1 - f);
+      add(0, i + 1, f);
+    } else {
+      const auto weights = bspline(f);
+      for (int k = 0; k < 4; ++k) add(0, i - 1 + k, weights[static_cast<std::size_t>(k)]);
+    }
+    return terms;
+  }
+  const auto [i, fraction] = split(offset);
+  const int phase = phase_for(fraction);
+  if (interpolation_ == Interpolation::nearest) {
+    add(phase, i, 1);
+  } else if (interpolation_ == Interpolation::linear) {
+    add(phase, i, 1, name("g", phase));
+    add(phase, i + 1, 1, name("f", phase));
+  } else {
+    for (int k = 0; k < 4; ++k) add(phase, i - 1 + k, 1, name("w", phase) + '.' + "xyzw"[k]);
+  }
+  return terms;
+}
+
+std::vector<FetchTerm> Axis::fetch(double offset) {
+  if (fixed()) {
+    std::map<TexelKey, double> texels;
+    for (const auto& term : read(offset)) texels[term.texel] += term.constant;
+    return fetch_pairs(texels);
+  }
+  const auto [i, fraction] = split(offset);
+  const int phase = phase_for(fraction);
+  const auto position = [&](int shift, const std::string& part) {
+    return fmt::format("float({}) + ({} + 0.5)", sum(base(phase), shift), part);
+  };
+  if (interpolation_ == Interpolation::linear) return {{position(i, name("f", phase)), 1, {}}};
+  const std::string w = name("w", phase);
+  return {{position(i - 1, fmt::format("{0}.y / ({0}.x + {0}.y)", w)), 1, fmt::format("({0}.x + {0}.y)", w)},
+          {position(i + 1, fmt::format("{0}.w / ({0}.z + {0}.w)", w)), 1, fmt::format("({0}.z + {0}.w)", w)}};
+}
+
+std::vector<FetchTerm> Axis::fetch_pairs(const std::map<TexelKey, double>& texels) const {
+  std::vector<FetchTerm> terms;
+  for (auto it = texels.begin(); it != texels.end(); ++it) {
+    double shift = it->first.shift, weight = it->second;
+    const auto next = std::next(it);
+    if (next != texels.end() && next->first.shift == it->first.shift + 1 && next->second * weight > 0) {
+      weight += next->second;
+      shift += next->second / weight;
+      ++it;
+    }
+    terms.push_back({fmt::format("float({}) + {}", base(0), float_literal(shift + 0.5)), weight, {}});
+  }
+  return terms;
+}
+
+std::string Axis::setup() const {
+  std::string out;
+  if (ratio_ == AxisRatio::half) out += fmt::format("  int ag_{0}2 = 2 * ag_pixel.{0};\n", letter_);
+  if (fixed()) return out;
+  out += fmt::format("  int ag_{0}i;\n  float ag_{0}f, ag_{0}g;\n", letter_);
+  if (ratio_ == AxisRatio::twice) {
+    out += fmt::format("  bool ag_{0}odd = (ag_pixel.{0} & 1) != 0;\n"
+                       "  ag_{0}i = ((ag_pixel.{0} + 1) >> 1) - 1;\n"
+                       "  ag_{0}f = ag_{0}odd ? 0.25 : 0.75;\n"
+                       "  ag_{0}g = ag_{0}odd ? 0.75 : 0.25;\n", letter_);
+  } else {
+    out += fmt::format("  ag_phase(ag_pixel.{0}, ag_source_size.{0}, ag_target_size.{0}, ag_{0}i, ag_{0}f, ag_{0}g);\n", letter_);
+  }
+  for (std::size_t c = 0; c < fractions_.size(); ++c) {
+    const int phase = static_cast<int>(c);
+    const std::string i = name("i", phase), f = name("f", phase), g = name("g", phase);
+    if (fractions_[c] == 0) {
+      out += fmt::format("  int {1} = ag_{0}i;\n  float {2} = ag_{0}f, {3} = ag_{0}g;\n", letter_, i, f, g);
+    } else {
+      out += fmt::format("  float {2} = ag_{0}f + {4};\n"
+                         "  int {1} = ag_{0}i + ({2} >= 1.0 ? 1 : 0);\n"
+                         "  {2} -= {2} >= 1.0 ? 1.0 : 0.0;\n"
+                         "  float {3} = 1.0 - {2};\n", letter_, i, f, g, float_literal(fractions_[c]));
+    }
+    if (interpolation_ == Interpolation::cubic_bspline)
+      out += fmt::format("  vec4 {0} = vec4({2} * {2} * {2}, 4.0 + (3.0 * {1} - 6.0) * ({1} * {1}), 4.0 + (3.0 * {2} - 6.0) * ({2} * {2}), "
+                         "{1} * {1} * {1}) * {3};\n", name("w", phase), f, g, float_literal(1.0 / 6));
+  }
+  return out;
+}
+
+std::string Axis::index(TexelKey texel) const {
+  const std::string at = sum(base(texel.phase), texel.shift);
+  const int first_beyond = ratio_ == AxisRatio::half ? 2 : 1;  // texels 0 … first_beyond−1 belong to the pixel itself
+  if (!fixed()) return fmt::format("clamp({}, 0, ag_last.{})", at, letter_);
+  if (texel.shift < 0) return fmt::format("max({}, 0)", at);
+  if (texel.shift >= first_beyond) return fmt::format("min({}, ag_last.{})", at, letter_);
+  return at;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,120 @@
+// KernelCompiler: memory cache, disk cache, compiler, in this order.
+#include <atomic>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "core/file.h"
+#include "shader/glsl.h"
+#include "shader/kernel.h"
+#include "shader/kernel_file.h"
+#include "shader/reflect.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+
+struct KernelCompiler::State {
+  /// One text; its mutex is held while it is being made, so that other threads wait for it instead of doing it again.
+  struct Entry {
+    std::mutex mutex;
+    std::shared_ptr<const KernelFile> made;
+  };
+
+  fs::path folder;
+  std::mutex mutex;
+  std::map<Hash, std::shared_ptr<Entry>> entries;
+  std::atomic<int> compiled = 0, from_disk = 0, from_memory = 0;
+
+  fs::path file_for(const Hash& text) const {
+    static const std::string version = glsl_compiler_version();
+    const Hash key = Hasher().add(text.hex()).add(version).add(kKernelFileVersion).finish();
+    return folder / (key.hex() + ".kernel");
+  }
+
+  std::shared_ptr<Entry> entry(const Hash& text) {
+    const std::lock_guard lock(mutex);
+    auto& entry = entries[text];
+    if (!entry) entry = std::make_shared<Entry>();
+    return entry;
+  }
+
+  std::shared_ptr<const KernelFile> load(const AssembledKernel& assembled) const {
+    if (folder.empty()) return nullptr;
+    auto bytes = read_file(file_for(assembled.hash));
+    if (!bytes) return nullptr;
+    auto kernel = decode(*bytes);
+    if (!kernel || kernel->text != assembled.hash || kernel->offsets.size() != assembled.params.size()) return nullptr;
+    return std::make_shared<const KernelFile>(std::move(*kernel));
+  }
+
+  /// A cache that cannot be written is no cache, and no error.
+  void save(const KernelFile& kernel) const {
+    if (folder.empty()) return;
+    std::error_code ec;
+    fs::create_directories(folder, ec);
+    if (ec) return;
+    const auto written = write_file_atomically(file_for(kernel.text), encode(kernel));
+    static_cast<void>(written.ok());
+  }
+};
+
+namespace {
+
+/// Compares what the compiler made with what the assembler promised; a difference is a fault of the engine.
+Result<KernelFile> build(const AssembledKernel& assembled) {
+  KernelFile kernel;
+  kernel.text = assembled.hash;
+  AFTERGLOW_TRY(kernel.spirv, compile_glsl(assembled.glsl, assembled.file_names));
+  AFTERGLOW_TRY(const Reflection reflection, reflect(kernel.spirv));
+  kernel.block_size = reflection.block_size;
+  for (const auto& param : assembled.params) {
+    const auto member = reflection.members.find(fmt::format("ag_s{}_{}", param.stage, param.name));
+    if (member == reflection.members.end() || member->second.components != static_cast<std::uint32_t>(component_count(param.type)))
+      return Error{ErrorKind::other, fmt::format("parameter '{}' is not in the compiled shader", param.name)};
+    kernel.offsets.push_back(member->second.offset);
+  }
+  if (reflection.members.size() != assembled.params.size()) return Error{ErrorKind::other, "the compiled shader has other parameters than declared"};
+  for (const auto binding : reflection.image_bindings)
+    if (binding < 1 || binding > assembled.images.size()) return Error{ErrorKind::other, "the compiled shader has other images than declared"};
+  return kernel;
+}
+
+}  // namespace
+
+KernelCompiler::KernelCompiler(fs::path cache_folder) : state_(std::make_unique<State>()) { state_->folder = std::move(cache_folder); }
+KernelCompiler::~KernelCompiler() = default;
+
+Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
+  AFTERGLOW_TRY(AssembledKernel assembled, assemble(desc));
+  const auto entry = state_->entry(assembled.hash);
+  std::shared_ptr<const KernelFile> made;
+  {
+    const std::lock_guard lock(entry->mutex);
+    if (entry->made) {
+      ++state_->from_memory;
+    } else if ((entry->made = state_->load(assembled))) {
+      ++state_->from_disk;
+    } else {
+      AFTERGLOW_TRY(KernelFile kernel, build(assembled));
+      ++state_->compiled;
+      state_->save(kernel);
+      entry->made = std::make_shared<const KernelFile>(std::move(kernel));
+    }
+    made = entry->made;
+  }
+  CompiledKernel out;
+  out.spirv = made->spirv;
+  out.images = std::move(assembled.images);
+  out.params = std::move(assembled.params);
+  for (std::size_t i = 0; i < out.params.size(); ++i) out.params[i].offset = made->offsets[i];
+  out.block_size = made->block_size;
+  out.hash = assembled.hash;
+  return out;
+}
+
+KernelCompiler::Counters KernelCompiler::counters() const { return {state_->compiled, state_->from_disk, state_->from_memory}; }
+
+}  // namespace afterglow

@@ -1,0 +1,256 @@
+#include "shader/filter_head.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "shader/axis.h"
+
+namespace afterglow {
+namespace {
+
+constexpr std::size_t kMaxReads = 1024;   ///< texels in straight-line code
+constexpr std::size_t kLoopReads = 96;    ///< from here on a separable filter loops over its rows
+constexpr std::size_t kMaxAxisReads = 256;
+constexpr double kMaxOffset = 65536;
+
+/// A sum of products: variable → constant. "" is the plain number.
+using Weight = std::map<std::string, double>;
+
+std::string expression(const Weight& weight) {
+  std::string out;
+  for (const auto& [variable, constant] : weight) {
+    if (!out.empty()) out += " + ";
+    out += product(constant, variable);
+  }
+  return weight.size() > 1 ? "(" + out + ")" : out;
+}
+
+/// One texel or fetch along an axis, ready to print: where, and its weight as an expression.
+struct Read {
+  std::string at, weight;
+};
+
+Error bad_filter(std::string what, std::string allowed) {
+  Error error;
+  error.kind = ErrorKind::script;
+  error.message = std::move(what);
+  error.allowed = std::move(allowed);
+  return error;
+}
+
+Result<void> check(const Filter& filter) {
+  const auto fine = [](double offset, double weight) {
+    return std::isfinite(weight) && std::abs(weight) <= 1e30 && std::abs(offset) <= kMaxOffset;
+  };
+  bool ok = true;
+  for (const auto& tap : filter.x) ok = ok && fine(tap.offset, tap.weight);
+  for (const auto& tap : filter.y) ok = ok && fine(tap.offset, tap.weight);
+  for (const auto& tap : filter.taps) ok = ok && fine(tap.dx, tap.weight) && fine(tap.dy, tap.weight);
+  if (!ok) return bad_filter("a tap of the filter is not usable", "finite weights, offsets of at most 65536 texels");
+  if (filter.separable() && (filter.x.empty() || filter.y.empty())) return bad_filter("the filter has no taps", "at least one tap on each axis");
+  return {};
+}
+
+Error too_many(std::size_t reads, std::size_t most) {
+  return bad_filter(fmt::format("the filter reads {} texels", reads), fmt::format("at most {}; split it into several filters", most));
+}
+
+/// Adds `reads`, each times its weight, to the variable `into`; equal weights are factored out.
+std::string weighted_sum(const std::string& into, const std::vector<std::pair<std::string, std::string>>& reads) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> groups;  // weight → fetches, in order of appearance
+  for (const auto& [weight, fetch] : reads) {
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == weight; });
+    if (group == groups.end()) group = groups.insert(groups.end(), {weight, {}});
+    group->second.push_back(fetch);
+  }
+  std::string out;
+  for (const auto& [weight, fetches] : groups) {
+    out += fmt::format("  {} += ", into);
+    if (weight != "1.0") out += weight + " * ";
+    if (fetches.size() > 1 && weight != "1.0") out += "(";
+    for (std::size_t i = 0; i < fetches.size(); ++i) out += (i ? "\n    + " : "") + fetches[i];
+    if (fetches.size() > 1 && weight != "1.0") out += ")";
+    out += ";\n";
+  }
+  return out;
+}
+
+/// The texels of one axis of a separable filter, merged.
+std::vector<Read> axis_reads(Axis& axis, const std::vector<Tap>& taps) {
+  std::map<TexelKey, Weight> texels;
+  for (const auto& tap : taps)
+    for (const auto& term : axis.read(tap.offset)) texels[term.texel][term.variable] += tap.weight * term.constant;
+  std::vector<Read> reads;
+  for (const auto& [texel, weight] : texels) {
+    if (weight.size() == 1 && weight.begin()->second == 0) continue;
+    reads.push_back({axis.index(texel), expression(weight)});
+  }
+  return reads;
+}
+
+/// The filtered fetches of one axis of a separable filter.
+std::vector<Read> axis_fetches(Axis& axis, const std::vector<Tap>& taps) {
+  std::vector<FetchTerm> terms;
+  if (axis.fixed()) {
+    std::map<TexelKey, double> texels;
+    for (const auto& tap : taps)
+      for (const auto& term : axis.read(tap.offset)) texels[term.texel] += tap.weight * term.constant;
+    std::erase_if(texels, [](const auto& texel) { return texel.second == 0; });
+    terms = axis.fetch_pairs(texels);
+  } else {
+    for (const auto& tap : taps)
+      for (auto& term : axis.fetch(tap.offset)) {
+        term.constant *= tap.weight;
+        terms.push_back(std::move(term));
+      }
+  }
+  std::vector<Read> reads;
+  for (const auto& term : terms) reads.push_back({term.position, product(term.constant, term.variable)});
+  return reads;
+}
+
+/// Names the coordinates and weights of an axis, so that each is computed once: declarations, then short reads.
+std::string declare(char letter, const char* type, const std::string& scale, std::vector<Read>& reads) {
+  std::string out;
+  for (std::size_t i = 0; i < reads.size(); ++i) {
+    const std::string at = fmt::format("ag_{}{}", letter == 'x' ? "col" : "row", i);
+    out += scale.empty() ? fmt::format("  {} {} = {};\n", type, at, reads[i].at)
+                         : fmt::format("  {} {} = ({}) * {};\n", type, at, reads[i].at, scale);
+    reads[i].at = at;
+    const bool number = reads[i].weight.find("ag_") == std::string::npos;
+    if (number) continue;
+    const std::string weight = fmt::format("ag_{}w{}", letter == 'x' ? "col" : "row", i);
+    out += fmt::format("  float {} = {};\n", weight, reads[i].weight);
+    reads[i].weight = weight;
+  }
+  return out;
+}
+
+using Fetch = std::string (*)(const std::string& x, const std::string& y);
+
+std::string texel(const std::string& x, const std::string& y) { return fmt::format("texelFetch(ag_image0, ivec2({}, {}), 0)", x, y); }
+std::string filtered(const std::string& x, const std::string& y) { return fmt::format("textureLod(ag_image0, vec2({}, {}), 0.0)", x, y); }
+
+/// Rows first, then their weighted sum.
+std::string straight_rows(const std::vector<Read>& x, const std::vector<Read>& y, Fetch fetch) {
+  std::string out = "  ag_color = vec4(0.0);\n";
+  if (x.empty() || y.empty()) return out;
+  out += "  vec4 ag_line;\n";
+  for (const auto& row : y) {
+    std::vector<std::pair<std::string, std::string>> reads;
+    for (const auto& column : x) reads.emplace_back(column.weight, fetch(column.at, row.at));
+    if (row.weight == "1.0") {
+      out += weighted_sum("ag_color", reads);
+      continue;
+    }
+    out += "  ag_line = vec4(0.0);\n" + weighted_sum("ag_line", reads);
+    out += fmt::format("  ag_color += {} * ag_line;\n", row.weight);
+  }
+  return out;
+}
+
+/// The same as a loop over the rows, for long filters: compilers of shaders take their time over long straight code.
+std::string looped_rows(const std::vector<Read>& x, const std::vector<Read>& y, const char* coordinate, Fetch fetch) {
+  std::string positions, weights;
+  for (const auto& row : y) {
+    positions += (positions.empty() ? "" : ", ") + row.at;
+    weights += (weights.empty() ? "" : ", ") + row.weight;
+  }
+  std::vector<std::pair<std::string, std::string>> reads;
+  for (const auto& column : x) reads.emplace_back(column.weight, fetch(column.at, "ag_rows[ag_j]"));
+  return fmt::format("  ag_color = vec4(0.0);\n"
+                     "  {0} ag_rows[{1}] = {0}[]({2});\n"
+                     "  float ag_weights[{1}] = float[]({3});\n"
+                     "  for (int ag_j = 0; ag_j < {1}; ++ag_j) {{\n"
+                     "  vec4 ag_line = vec4(0.0);\n{4}"
+                     "  ag_color += ag_weights[ag_j] * ag_line;\n"
+                     "  }}\n", coordinate, y.size(), positions, weights, weighted_sum("ag_line", reads));
+}
+
+constexpr const char* kLast = "  ivec2 ag_last = ag_source_size - 1;\n";
+constexpr const char* kTexelSize = "  vec2 ag_texel = 1.0 / vec2(ag_source_size);\n";
+
+Result<std::string> separable_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter) {
+  Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation);
+  auto columns = axis_reads(x, filter.x);
+  auto rows = axis_reads(y, filter.y);
+  bool sampler = hardware_filter && filter.interpolation != Interpolation::nearest;
+  if (sampler) {
+    auto fetched_columns = axis_fetches(x, filter.x);
+    auto fetched_rows = axis_fetches(y, filter.y);
+    sampler = fetched_columns.size() * fetched_rows.size() < columns.size() * rows.size();
+    if (sampler) {
+      columns = std::move(fetched_columns);
+      rows = std::move(fetched_rows);
+    }
+  }
+  if (columns.size() > kMaxAxisReads || rows.size() > kMaxAxisReads) return too_many(std::max(columns.size(), rows.size()), kMaxAxisReads);
+  std::string out = x.setup() + y.setup() + kLast;
+  if (sampler) out += kTexelSize;
+  const char* type = sampler ? "float" : "int";
+  out += declare('x', type, sampler ? "ag_texel.x" : "", columns);
+  out += declare('y', type, sampler ? "ag_texel.y" : "", rows);
+  const Fetch fetch = sampler ? filtered : texel;
+  if (columns.size() * rows.size() > kLoopReads && rows.size() > 1) return out + looped_rows(columns, rows, type, fetch);
+  return out + straight_rows(columns, rows, fetch);
+}
+
+/// Free taps: texels that several taps read are read once.
+Result<std::string> free_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y) {
+  Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation);
+  std::map<std::pair<TexelKey, TexelKey>, Weight> texels;  // y, then x
+  for (const auto& tap : filter.taps) {
+    const auto across = x.read(tap.dx);
+    for (const auto& down : y.read(tap.dy))
+      for (const auto& term : across) {
+        const char* times = term.variable.empty() || down.variable.empty() ? "" : " * ";
+        texels[{down.texel, term.texel}][term.variable + times + down.variable] += tap.weight * term.constant * down.constant;
+      }
+    if (texels.size() > kMaxReads) return too_many(texels.size(), kMaxReads);
+  }
+  std::string out = x.setup() + y.setup() + kLast + "  ag_color = vec4(0.0);\n";
+  std::map<TexelKey, std::string> columns, rows;
+  for (const auto& [key, weight] : texels) {
+    if (auto [column, fresh] = columns.try_emplace(key.second); fresh) {
+      column->second = fmt::format("ag_col{}", columns.size() - 1);
+      out += fmt::format("  int {} = {};\n", column->second, x.index(key.second));
+    }
+    if (auto [row, fresh] = rows.try_emplace(key.first); fresh) {
+      row->second = fmt::format("ag_row{}", rows.size() - 1);
+      out += fmt::format("  int {} = {};\n", row->second, y.index(key.first));
+    }
+  }
+  std::vector<std::pair<std::string, std::string>> reads;
+  for (const auto& [key, weight] : texels)
+    if (weight.size() > 1 || weight.begin()->second != 0)
+      reads.emplace_back(expression(weight), texel(columns[key.second], rows[key.first]));
+  return out + weighted_sum("ag_color", reads);
+}
+
+/// Free taps through the sampler: one filtered fetch a tap.
+Result<std::string> free_sampler_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y) {
+  Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation);
+  std::vector<std::pair<std::string, std::string>> reads;
+  for (const auto& tap : filter.taps)
+    for (const auto& across : x.fetch(tap.dx))
+      for (const auto& down : y.fetch(tap.dy))
+        reads.emplace_back(float_literal(tap.weight * across.constant * down.constant),
+                           filtered(fmt::format("({}) * ag_texel.x", across.position), fmt::format("({}) * ag_texel.y", down.position)));
+  if (reads.size() > kMaxReads) return too_many(reads.size(), kMaxReads);
+  return x.setup() + y.setup() + kTexelSize + "  ag_color = vec4(0.0);\n" + weighted_sum("ag_color", reads);
+}
+
+}  // namespace
+
+Result<std::string> filter_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter) {
+  AFTERGLOW_CHECK(check(filter));
+  if (filter.separable()) return separable_head(filter, ratio_x, ratio_y, hardware_filter);
+  if (hardware_filter && filter.interpolation == Interpolation::linear) return free_sampler_head(filter, ratio_x, ratio_y);
+  return free_head(filter, ratio_x, ratio_y);
+}
+
+}  // namespace afterglow

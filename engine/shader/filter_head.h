@@ -1,0 +1,15 @@
+// The head of a kernel that resamples: GLSL that sets ag_color from image 0, made from a Filter. Internal to the room.
+#pragma once
+
+#include <string>
+
+#include "core/result.h"
+#include "shader/kernel.h"
+
+namespace afterglow {
+
+/// Statements for main(); they use ag_pixel, ag_image0 and the push constants, and set ag_color. Independent of image sizes.
+/// Errors (script): no taps, weights or offsets that are not finite, more texel reads than a kernel should have.
+Result<std::string> filter_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter);
+
+}  // namespace afterglow

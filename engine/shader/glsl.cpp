@@ -1,0 +1,113 @@
+#include "shader/glsl.h"
+
+#include <charconv>
+#include <mutex>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
+
+#include "core/text.h"
+#include "shader/rename.h"
+#include "shader/token.h"
+
+namespace afterglow {
+namespace {
+
+constexpr std::size_t kMaxTrail = 8;       ///< further errors that are shown
+constexpr std::size_t kMaxMessage = 300;   ///< characters of one error
+
+std::string shortened(std::string text) {
+  if (text.size() > kMaxMessage) text.replace(kMaxMessage, std::string::npos, "…");
+  return text;
+}
+
+struct LogLine {
+  std::size_t file = 0;
+  int line = 0;
+  std::string message;
+};
+
+/// "ERROR: FILE:LINE: 'token' : message" with FILE a number.
+std::optional<LogLine> parse_line(std::string_view text) {
+  static constexpr std::string_view kPrefix = "ERROR: ";
+  if (!text.starts_with(kPrefix)) return std::nullopt;
+  text.remove_prefix(kPrefix.size());
+  LogLine out;
+  const char* end = text.data() + text.size();
+  const auto file = std::from_chars(text.data(), end, out.file);
+  if (file.ec == std::errc() && file.ptr != end && *file.ptr == ':') {
+    const auto line = std::from_chars(file.ptr + 1, end, out.line);
+    if (line.ec == std::errc() && line.ptr != end && *line.ptr == ':') text.remove_prefix(static_cast<std::size_t>(line.ptr + 1 - text.data()));
+  } else {
+    out.file = 0;
+  }
+  std::string message = trim(original_names(text));
+  if (message.starts_with("'' : ")) message.erase(0, 5);
+  if (const auto colon = message.find("' : "); colon != std::string::npos) message.replace(colon, 4, "': ");
+  out.message = shortened(std::move(message));
+  return out;
+}
+
+Error compile_error(const char* log, const std::vector<std::string>& file_names) {
+  std::vector<LogLine> lines;
+  std::size_t more = 0;
+  for (const auto& text : split(log, '\n')) {
+    auto line = parse_line(text);
+    if (!line || line->message.find("compilation errors.") != std::string::npos || line->message.find("compilation terminated") != std::string::npos)
+      continue;
+    if (lines.size() <= kMaxTrail) {
+      lines.push_back(std::move(*line));
+    } else {
+      ++more;
+    }
+  }
+  const auto file = [&](const LogLine& line) { return line.file < file_names.size() ? file_names[line.file] : std::string(); };
+  if (lines.empty()) return shader_error("", 0, "the shader does not compile: " + shortened(trim(log)));
+  Error error = shader_error(file(lines[0]), lines[0].line, lines[0].message);
+  if (error.file.empty()) error.line = 0;  // the engine's own text: the line would mean nothing to an author
+  for (std::size_t i = 1; i < lines.size(); ++i) error.trail.push_back(fmt::format("{}:{}: {}", file(lines[i]), lines[i].line, lines[i].message));
+  if (more > 0) error.trail.push_back(fmt::format("and {} more", more));
+  return error;
+}
+
+}  // namespace
+
+std::string glsl_compiler_version() {
+  const auto version = glslang::GetVersion();
+  return fmt::format("glslang {}.{}.{}{} generator {}", version.major, version.minor, version.patch, version.flavor, glslang::GetSpirvGeneratorVersion());
+}
+
+Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const std::vector<std::string>& file_names) {
+  // Never finalised: other users of glslang in the process may come and go as they like.
+  static std::once_flag once;
+  static bool initialised = false;
+  std::call_once(once, [] { initialised = glslang::InitializeProcess(); });
+  if (!initialised) return Error{ErrorKind::other, "the GLSL compiler cannot be initialised"};
+
+  glslang::TShader shader(EShLangFragment);
+  const char* text = glsl.data();
+  const int length = static_cast<int>(glsl.size());
+  shader.setStringsWithLengths(&text, &length, 1);
+  shader.setEnvInput(glslang::EShSourceGlsl, EShLangFragment, glslang::EShClientVulkan, 100);
+  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
+  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
+  const auto rules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+  if (!shader.parse(GetDefaultResources(), 460, false, rules)) return compile_error(shader.getInfoLog(), file_names);
+  glslang::TProgram program;
+  program.addShader(&shader);
+  if (!program.link(rules)) return compile_error(program.getInfoLog(), file_names);
+
+  glslang::SpvOptions options;
+  options.disableOptimizer = true;  // no gain was seen on lavapipe, and it takes longer than the compilation
+  std::vector<std::uint32_t> spirv;
+  spv::SpvBuildLogger logger;
+  glslang::GlslangToSpv(*program.getIntermediate(EShLangFragment), spirv, &logger, &options);
+  if (spirv.empty()) return shader_error("", 0, "the shader gives no SPIR-V: " + shortened(trim(logger.getAllMessages())));
+  return spirv;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,62 @@
+#include "shader/kernel_file.h"
+
+#include <cstring>
+
+namespace afterglow {
+namespace {
+
+constexpr std::uint32_t kMagic = 0x4b4c4741;  // "AGLK"
+constexpr std::uint32_t kSpirvMagic = 0x07230203;
+constexpr std::uint32_t kMaxWords = 16u << 20;
+
+/// Caches stay on the machine that wrote them: numbers are in its own byte order, and the magic tells another's apart.
+struct Header {
+  std::uint32_t magic, version;
+  std::uint64_t length;              ///< bytes behind the header
+  std::uint64_t hash_high, hash_low; ///< of them
+};
+struct Fixed {
+  std::uint64_t text_high, text_low;
+  std::uint32_t block_size, offsets, words, zero;
+};
+
+void append(std::string& out, const void* data, std::size_t size) { out.append(static_cast<const char*>(data), size); }
+
+}  // namespace
+
+std::string encode(const KernelFile& kernel) {
+  std::string content;
+  const Fixed fixed{kernel.text.high, kernel.text.low, kernel.block_size, static_cast<std::uint32_t>(kernel.offsets.size()),
+                    static_cast<std::uint32_t>(kernel.spirv.size()), 0};
+  append(content, &fixed, sizeof fixed);
+  append(content, kernel.offsets.data(), kernel.offsets.size() * sizeof(std::uint32_t));
+  append(content, kernel.spirv.data(), kernel.spirv.size() * sizeof(std::uint32_t));
+  const Hash hash = hash_text(content);
+  const Header header{kMagic, kKernelFileVersion, content.size(), hash.high, hash.low};
+  std::string out;
+  append(out, &header, sizeof header);
+  return out + content;
+}
+
+std::optional<KernelFile> decode(std::string_view bytes) {
+  Header header;
+  Fixed fixed;
+  if (bytes.size() < sizeof header + sizeof fixed) return std::nullopt;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  bytes.remove_prefix(sizeof header);
+  if (header.magic != kMagic || header.version != kKernelFileVersion || header.length != bytes.size()) return std::nullopt;
+  if (hash_text(bytes) != Hash{header.hash_high, header.hash_low}) return std::nullopt;
+  std::memcpy(&fixed, bytes.data(), sizeof fixed);
+  bytes.remove_prefix(sizeof fixed);
+  if (fixed.offsets > kMaxWords || fixed.words > kMaxWords) return std::nullopt;
+  if (bytes.size() != (std::size_t{fixed.offsets} + fixed.words) * sizeof(std::uint32_t)) return std::nullopt;
+  KernelFile kernel{{fixed.text_high, fixed.text_low}, fixed.block_size, {}, {}};
+  kernel.offsets.resize(fixed.offsets);
+  kernel.spirv.resize(fixed.words);
+  std::memcpy(kernel.offsets.data(), bytes.data(), fixed.offsets * sizeof(std::uint32_t));
+  std::memcpy(kernel.spirv.data(), bytes.data() + fixed.offsets * sizeof(std::uint32_t), fixed.words * sizeof(std::uint32_t));
+  if (kernel.spirv.empty() || kernel.spirv[0] != kSpirvMagic) return std::nullopt;
+  return kernel;
+}
+
+}  // namespace afterglow

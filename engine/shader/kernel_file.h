@@ -1,0 +1,29 @@
+// A compiled kernel as bytes of a cache file. Internal to the room.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/hash.h"
+
+namespace afterglow {
+
+/// Raise when the bytes, the meaning of offsets or the way of compiling change.
+inline constexpr std::uint32_t kKernelFileVersion = 1;
+
+struct KernelFile {
+  Hash text;                           ///< of the assembled GLSL it was made from
+  std::uint32_t block_size = 0;
+  std::vector<std::uint32_t> offsets;  ///< of the parameters, in the order of AssembledKernel::params
+  std::vector<std::uint32_t> spirv;
+};
+
+/// Magic, version, length and hash of the content, then the content.
+std::string encode(const KernelFile& kernel);
+/// Nothing when the bytes are not exactly what `encode` made.
+std::optional<KernelFile> decode(std::string_view bytes);
+
+}  // namespace afterglow

@@ -1,0 +1,26 @@
+// What a kernel's SPIR-V really declares, by SPIRV-Cross. Internal to the room.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+
+namespace afterglow {
+
+struct Reflection {
+  struct Member {
+    std::uint32_t offset = 0;
+    std::uint32_t components = 1;
+  };
+  std::map<std::string, Member> members;       ///< of the uniform block at set 0, binding 0
+  std::uint32_t block_size = 0;                ///< bytes, a multiple of 16; 0: no block
+  std::vector<std::uint32_t> image_bindings;   ///< of combined image samplers in set 0, sorted
+};
+
+/// Errors (other): SPIR-V that cannot be parsed, resources that no kernel has.
+Result<Reflection> reflect(const std::vector<std::uint32_t>& spirv);
+
+}  // namespace afterglow

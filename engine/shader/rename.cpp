@@ -1,0 +1,106 @@
+#include "shader/rename.h"
+
+#include <algorithm>
+
+namespace afterglow {
+namespace {
+
+/// Tells which identifiers name fields in the declaration of a struct: those behind the type of a member.
+class FieldFinder {
+ public:
+  /// Call for every token outside the preprocessor, in order; true when it is a field's name.
+  bool next(const Token& token) {
+    if (token.is("struct")) {
+      state_ = State::name;
+      return false;
+    }
+    switch (state_) {
+      case State::outside: return false;
+      case State::name:
+        if (token.is("{")) state_ = State::type;
+        if (token.is(";") || token.is("(")) state_ = State::outside;
+        return false;
+      case State::type:
+        if (token.is("}")) state_ = State::outside;
+        if (token.is_identifier() && !is_qualifier(token)) state_ = State::fields;
+        return false;
+      case State::fields:
+        if (token.is("[") || token.is("(")) ++depth_;
+        if (token.is("]") || token.is(")")) --depth_;
+        if (token.is(";")) state_ = State::type;
+        if (token.is("}")) state_ = State::outside;
+        return depth_ == 0 && token.is_identifier();
+    }
+    return false;
+  }
+
+ private:
+  static bool is_qualifier(const Token& token) {
+    return token.is("highp") || token.is("mediump") || token.is("lowp") || token.is("const") || token.is("precise");
+  }
+
+  enum class State { outside, name, type, fields };
+  State state_ = State::outside;
+  int depth_ = 0;
+};
+
+/// As many line ends as `text` has.
+std::string only_newlines(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (text[i] == '\n' || (text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n'))) out += '\n';
+  return out;
+}
+
+}  // namespace
+
+std::string rewrite(std::string_view text, const ShaderScan& scanned, const NameMap& names, const std::vector<std::string>& constants) {
+  std::string out;
+  out.reserve(text.size() + text.size() / 4);
+  std::size_t copied = 0;
+  auto edit = scanned.edits.begin();
+  const auto apply_edits_before = [&](std::size_t offset) {
+    for (; edit != scanned.edits.end() && edit->begin <= offset; ++edit) {
+      out += text.substr(copied, edit->begin - copied);
+      if (edit->constant >= 0) out += constants[static_cast<std::size_t>(edit->constant)];
+      out += only_newlines(text.substr(edit->begin, edit->end - edit->begin));
+      copied = edit->end;
+    }
+  };
+  FieldFinder fields;
+  const Token* previous = nullptr;
+  for (const auto& token : scanned.tokens) {
+    apply_edits_before(token.offset);
+    const bool field = (token.directive < 0 && fields.next(token)) || (previous && previous->is("."));
+    const bool directive_word = token.directive >= 0 && previous && previous->is("#") && previous->directive == token.directive;
+    previous = &token;
+    if (token.offset < copied || !token.is_identifier() || directive_word) continue;
+    const auto name = names.find(token.text);
+    if (name == names.end() || (field && !name->second.macro)) continue;
+    out += text.substr(copied, token.offset - copied);
+    out += name->second.text;
+    copied = token.end();
+  }
+  apply_edits_before(text.size());
+  out += text.substr(copied);
+  if (out.empty() || out.back() != '\n') out += '\n';
+  return out;
+}
+
+std::string original_names(std::string_view message) {
+  std::string out;
+  for (std::size_t i = 0; i < message.size();) {
+    if (message.substr(i, 3) == "ag_" && i + 4 < message.size() && (message[i + 3] == 's' || message[i + 3] == 'l')) {
+      std::size_t end = i + 4;
+      while (end < message.size() && message[end] >= '0' && message[end] <= '9') ++end;
+      if (end > i + 4 && end < message.size() && message[end] == '_') {
+        i = end + 1;
+        continue;
+      }
+    }
+    out += message[i++];
+  }
+  return out;
+}
+
+}  // namespace afterglow
