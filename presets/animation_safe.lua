@@ -1,0 +1,11 @@
+-- Path-traced sequences: noise leaves single pixels of thousands, new ones every frame, and an ordinary bloom turns each into a flickering
+-- disc. Here fireflies are faded before the pyramid, the knee is wide so that nothing pops in, and the finest levels count least.
+local fx = require "afterglow"
+
+return fx.stack {
+  name = "Animation-safe glow",
+  fx.bloom { mode = "scattering", threshold = 1.1, knee = 1.0, intensity = 0.15, scatter = 0.8, fade_fireflies = true,
+             downscale_limit = 8 },
+  fx.tone_mapping { mode = "aces" },
+  fx.color_adjustments { post_exposure = 0.4 },
+}

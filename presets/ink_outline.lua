@@ -1,0 +1,11 @@
+-- Illustration and previsualisation: dark lines around objects (depth) and along their creases (normals), colours kept flat by Reinhard's
+-- curve. Needs a picture with depth and normals, such as Blender's multilayer EXR; without them the lines are skipped with a warning.
+local fx = require "afterglow"
+
+return fx.stack {
+  name = "Ink outline",
+  fx.outline { source = "mixed", combine = "max", width = 1.6, fade_distance = 40, depth_scale = 4, normal_scale = 0.8, contrast = 4,
+               color = { 0.01, 0.008, 0.02 } },
+  fx.tone_mapping { mode = "reinhard" },
+  fx.color_adjustments { post_exposure = 0.8, contrast = 10, saturation = 20 },
+}

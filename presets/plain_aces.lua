@@ -1,0 +1,7 @@
+-- Dailies and reviews: nothing but the display transform, to see the render as it is. Try `--set tone_mapping.mode=neutral`.
+local fx = require "afterglow"
+
+return fx.stack {
+  name = "Plain ACES",
+  fx.tone_mapping { mode = "aces" },
+}

@@ -1,0 +1,10 @@
+-- Faces and beauty shots: a diffusion filter in front of the lens. Wide scattering of everything above the mid tones lifts shadows next to
+-- light skin, and soft contrast with a warm filter does the rest.
+local fx = require "afterglow"
+
+return fx.stack {
+  name = "Soft portrait haze",
+  fx.bloom { mode = "scattering", threshold = 0.5, knee = 1.0, intensity = 0.35, scatter = 0.85, fade_fireflies = true },
+  fx.tone_mapping { mode = "neutral" },
+  fx.color_adjustments { post_exposure = 0.2, contrast = -12, color_filter = "#fff4ea", saturation = -8 },
+}

@@ -1,0 +1,11 @@
+-- Posters and comics: tone-mapped, then screened into dots of ink on paper. The halftone is an effect of this preset's own: it lives
+-- beside it (effects/halftone.lua, shaders/halftone/dots.glsl) and the program knows nothing about it. A start for effects of your own.
+local fx = require "afterglow"
+
+return fx.stack {
+  name = "Print",
+  fx.bloom { mode = "scattering", intensity = 0.15, fade_fireflies = true },
+  fx.tone_mapping { mode = "neutral" },
+  fx.color_adjustments { post_exposure = 0.6, contrast = 10, saturation = 20 },
+  fx.halftone { cell = 6, angle = 30, ink = "#14101c", paper = "#f4ecd8", tint = 0.75 },
+}

@@ -1,0 +1,41 @@
+-- Box bloom: a cheaper, harder bloom with a linear threshold and four-sample blurs, good for display-referred pictures.
+-- After "Unity post-processing: bloom by box blur" tutorials; where their listings disagree or read an image while it is written, the
+-- well-defined reading is taken: the way up starts at the second coarsest level and uses the stored sizes.
+local fx = require "afterglow"
+
+return fx.effect {
+  name = "box_bloom",
+  doc = "A simple, punchy glow: hard linear threshold, four-sample blur down and up, added to the picture.",
+  at = "post_process", order = 100,
+  settings = {
+    threshold = fx.float { min = 0, max = 3, default = 0.8, doc = "Brightness from which light glows; linear, without a knee." },
+    blur_iterations = fx.int { min = 0, max = 7, default = 5, doc = "Levels of blur; each doubles the reach. 0 and 1 add the thresholded light unblurred." },
+    pattern = fx.enum { "plus", "box", default = "plus", doc = "Where the four samples lie: beside, above and below, or at the corners." },
+    brightness = fx.enum { "max", "luma", default = "max", doc = "What the threshold compares: the largest channel, or 0.3 R + 0.59 G + 0.11 B." },
+  },
+
+  build = function(g, s, source)
+    local blur = s.pattern == "plus" and fx.filters.plus(1) or fx.filters.box(1)
+    local image = g:pass { shader = "box_bloom/threshold", source = source, threshold = s.threshold, luma = s.brightness == "luma", name = "threshold" }
+
+    -- Down: levels[1] has the size of the picture; stop before a size of 0.
+    local levels = { image }
+    while #levels < s.blur_iterations do
+      local width, height = image.width // 2, image.height // 2
+      if width == 0 or height == 0 then break end
+      image = g:filter { source = image, size = { width, height }, filter = blur, name = ("down[%d]"):format(#levels) }
+      levels[#levels + 1] = image
+    end
+
+    -- Up: each level adds the blurred coarser one, down to half the size of the picture.
+    for i = #levels - 1, 2, -1 do
+      local up = g:filter { source = image, size = levels[i], filter = blur, name = ("up[%d]"):format(i - 1) }
+      image = g:pass { shader = "bloom/add", source = up, high = levels[i], intensity = 1, name = ("combine[%d]"):format(i - 1) }
+    end
+
+    if #levels > 1 then
+      image = g:filter { source = image, size = source, filter = fx.filters.bilinear(), name = "up" }
+    end
+    return g:pass { shader = "bloom/add", source = image, high = source, intensity = 1, name = "final" }
+  end,
+}

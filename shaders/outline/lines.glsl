@@ -1,0 +1,76 @@
+// How strongly a line is drawn at each pixel, 0…1, from differences of depth, of normals, or of both.
+// One-sided differences to the right and below: a line sits on the left or upper pixel of an edge. Differences are taken before they
+// are scaled, so that far surfaces keep their digits.
+
+layout(constant_id = 0) const bool use_depth = false;    // compare depth
+layout(constant_id = 1) const bool use_normal = false;   // compare normals
+layout(constant_id = 2) const bool derivative = false;   // one value for each even 2×2 quad; else the neighbours at `width`
+layout(constant_id = 3) const bool fade = false;         // width shrinks with distance (needs depth)
+layout(constant_id = 4) const bool device_input = false; // `depth` holds device depth
+layout(constant_id = 5) const bool reversed_z = true;    // device depth 1 is the near plane
+layout(constant_id = 6) const bool raw_depth = false;    // compare device depth as it is, not made linear
+layout(constant_id = 7) const bool combine_max = false;  // the stronger of the two; else weighted
+
+uniform sampler2D depth;   // what is not used may be any image: it is never read
+uniform sampler2D normal;
+uniform vec2 inverse_clip;    // 1/near, 1/far
+uniform float width;          // pixels
+uniform float fade_distance;
+uniform float depth_scale, normal_scale;  // ≥ 0
+uniform float normal_factor;
+uniform float divide_factor;
+uniform float contrast;
+
+const float kMaxEdge = 1e30;  // whatever the scales are, sums and weights stay finite
+
+float depth_at(ivec2 pixel) { return fetch(depth, pixel).r; }
+
+// Distance along the viewing axis. 1/near and 1/far are mixed by d and 1 − d, both exact, instead of (1/far − 1/near)·d + 1/near, which
+// cancels at the far plane.
+float view_distance(float device_depth) {
+  float d = clamp(reversed_z ? device_depth : 1.0 - device_depth, 0.0, 1.0);
+  return 1.0 / (d * inverse_clip.x + (1.0 - d) * inverse_clip.y);
+}
+
+// |z(a) − z(b)|; between device depths by 1/u − 1/v = (v − u)/(uv).
+float depth_change(float a, float b) {
+  float change = abs(a - b);
+  if (device_input && !raw_depth)
+    change = change * abs(inverse_clip.x - inverse_clip.y) * view_distance(a) * view_distance(b);
+  return min(change * depth_scale, kMaxEdge);
+}
+
+// The bound keeps the squares finite; unit normals differ by at most 2.
+float normal_change(vec3 a, vec3 b) { return min(length(clamp(a - b, -1e15, 1e15)) * normal_scale, kMaxEdge); }
+
+int reach(ivec2 pixel) {
+  float w = width;
+  if (fade) {
+    float z = depth_at(pixel);
+    if (device_input) z = view_distance(z);
+    w *= clamp(1.0 - z / fade_distance, 0.0, 1.0);
+  }
+  return int(floor(w + 0.5));
+}
+
+vec4 sample_at(ivec2 pixel) {
+  ivec2 centre = derivative ? (pixel / 2) * 2 : pixel;
+  int apart = derivative ? 1 : reach(pixel);
+  ivec2 right = centre + ivec2(apart, 0), below = centre + ivec2(0, apart);
+
+  float depth_edge = 0.0, normal_edge = 0.0;
+  if (use_depth) {
+    float z = depth_at(centre);
+    depth_edge = depth_change(z, depth_at(right)) + depth_change(z, depth_at(below));
+  }
+  if (use_normal) {
+    vec3 n = fetch(normal, centre).xyz;
+    normal_edge = normal_change(n, fetch(normal, right).xyz) + normal_change(n, fetch(normal, below).xyz);
+  }
+
+  float edge = use_depth ? depth_edge : normal_edge;
+  if (use_depth && use_normal)
+    edge = combine_max ? max(depth_edge, normal_edge) : normal_factor * normal_edge + (1.0 - normal_factor) * depth_edge;
+  edge = min(edge / divide_factor, kMaxEdge);
+  return vec4(clamp((edge - 0.5) * contrast + 0.5, 0.0, 1.0));
+}
