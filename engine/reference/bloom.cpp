@@ -15,7 +15,8 @@ constexpr std::array kVerticalWeights = {0.22702703, 0.31621622, 0.07027027};
 
 Size half(Size size) { return {size.width / 2, size.height / 2}; }
 
-/// Bilinear sample of `source` at the centre of pixel (x, y) of a target of `size`, plus an offset in texels of the source.
+/// Bilinear sample of `source` at the centre of pixel (x, y) of a target of `size`, plus an offset in texels of the
+/// source.
 Rgba fetch(const DoubleImage& source, Size size, int x, int y, double dx = 0, double dy = 0) {
   return sample_linear(source, source_position(x, source.width, size.width) + dx,
                        source_position(y, source.height, size.height) + dy);
@@ -125,7 +126,8 @@ BloomImages bloom(const DoubleImage& source, const BloomSettings& settings) {
   }
   out.ran = true;
   const auto threshold = BloomThreshold::from_gamma(settings.threshold, settings.knee);
-  out.prefilter = settings.fade_fireflies ? bloom_prefilter_fireflies(source, threshold) : bloom_prefilter(source, threshold);
+  out.prefilter =
+      settings.fade_fireflies ? bloom_prefilter_fireflies(source, threshold) : bloom_prefilter(source, threshold);
 
   const std::size_t levels = sizes.size() - 1;
   for (std::size_t i = 0; i < levels; ++i) {
@@ -145,9 +147,10 @@ BloomImages bloom(const DoubleImage& source, const BloomSettings& settings) {
   }
 
   out.final_up = bloom_up(*low, source.size(), settings.bicubic_upsampling);
-  out.result = settings.mode == BloomMode::additive
-                   ? bloom_add(out.final_up, source, settings.intensity)
-                   : bloom_scatter_final(out.final_up, source, glm::min(settings.intensity, kScatterIntensityLimit), threshold);
+  out.result =
+      settings.mode == BloomMode::additive
+          ? bloom_add(out.final_up, source, settings.intensity)
+          : bloom_scatter_final(out.final_up, source, glm::min(settings.intensity, kScatterIntensityLimit), threshold);
   return out;
 }
 

@@ -22,7 +22,8 @@ struct BloomSettings {
   bool fade_fireflies = false;
 };
 
-/// The soft-knee threshold T(c) = c · max(s, b − t)/max(b, 1e-5), b the largest channel, s the quadratic knee between t(1−k) and t(1+k).
+/// The soft-knee threshold T(c) = c · max(s, b − t)/max(b, 1e-5), b the largest channel, s the quadratic knee between
+/// t(1−k) and t(1+k).
 struct BloomThreshold {
   double t = 1;  ///< linear
   double knee = 0.5;
@@ -46,13 +47,14 @@ DoubleImage bloom_add(const DoubleImage& up, const DoubleImage& high, double int
 /// lerp(high, up, amount)
 DoubleImage bloom_scatter(const DoubleImage& up, const DoubleImage& high, double amount);
 /// lerp(high, up + high − T(high), I): gives back the light that the threshold took.
-DoubleImage bloom_scatter_final(const DoubleImage& up, const DoubleImage& high, double intensity, const BloomThreshold& threshold);
+DoubleImage bloom_scatter_final(const DoubleImage& up, const DoubleImage& high, double intensity,
+                                const BloomThreshold& threshold);
 
 struct BloomImages {
-  bool ran = false;                      ///< false: skipped (math.md §5 step 1); `result` is the source, the rest empty
+  bool ran = false;  ///< false: skipped (math.md §5 step 1); `result` is the source, the rest empty
   DoubleImage prefilter;
   std::vector<DoubleImage> horizontal, vertical;  ///< by level, 0 the finest (a quarter of the picture)
-  std::vector<DoubleImage> up, combine;  ///< by level of the target: 0 … levels−2
+  std::vector<DoubleImage> up, combine;           ///< by level of the target: 0 … levels−2
   DoubleImage final_up, result;
 };
 BloomImages bloom(const DoubleImage& source, const BloomSettings& settings);

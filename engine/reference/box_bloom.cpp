@@ -3,8 +3,8 @@
 namespace afterglow::reference {
 
 Rgb box_bloom_threshold(const Rgb& c, double threshold, BoxBrightness brightness) {
-  const double b = brightness == BoxBrightness::max ? glm::max(c.r, glm::max(c.g, c.b))
-                                                    : 0.3 * c.r + 0.59 * c.g + 0.11 * c.b;
+  const double b =
+      brightness == BoxBrightness::max ? glm::max(c.r, glm::max(c.g, c.b)) : 0.3 * c.r + 0.59 * c.g + 0.11 * c.b;
   return c * (glm::max(0.0, b - threshold) / glm::max(b, 1e-5));
 }
 
@@ -34,8 +34,8 @@ DoubleImage add(const DoubleImage& low, const DoubleImage& high) {
 
 BoxBloomImages box_bloom(const DoubleImage& source, const BoxBloomSettings& settings) {
   BoxBloomImages out;
-  out.down.push_back(map_color(
-      source, [&](const Rgb& c) { return box_bloom_threshold(c, settings.threshold, settings.brightness); }));
+  out.down.push_back(
+      map_color(source, [&](const Rgb& c) { return box_bloom_threshold(c, settings.threshold, settings.brightness); }));
   for (int i = 1; i < settings.blur_iterations; ++i) {
     const Size size{out.down.back().width / 2, out.down.back().height / 2};
     if (size.width == 0 || size.height == 0) break;
@@ -52,7 +52,8 @@ BoxBloomImages box_bloom(const DoubleImage& source, const BoxBloomSettings& sett
     low = &out.up[i];
   }
   out.final_up = generate(source.size(), [&](int x, int y) {
-    return sample_linear(*low, source_position(x, low->width, source.width), source_position(y, low->height, source.height));
+    return sample_linear(*low, source_position(x, low->width, source.width),
+                         source_position(y, low->height, source.height));
   });
   out.result = add(out.final_up, source);
   return out;

@@ -11,7 +11,7 @@ enum class BoxPattern { plus, box };
 enum class BoxBrightness { max, luma };
 
 struct BoxBloomSettings {
-  double threshold = 0.8;   ///< linear
+  double threshold = 0.8;  ///< linear
   int blur_iterations = 5;
   BoxPattern pattern = BoxPattern::plus;
   BoxBrightness brightness = BoxBrightness::max;
@@ -23,8 +23,9 @@ Rgb box_bloom_threshold(const Rgb& c, double threshold, BoxBrightness brightness
 DoubleImage box_bloom_blur(const DoubleImage& source, Size size, BoxPattern pattern);
 
 struct BoxBloomImages {
-  std::vector<DoubleImage> down;     ///< E_0 (full size, thresholded), E_1, …
-  std::vector<DoubleImage> blur_up, up;  ///< by level i = 1 … n−2 of the target (index 0 is unused and empty): blur(U), E_i + blur(U)
+  std::vector<DoubleImage> down;  ///< E_0 (full size, thresholded), E_1, …
+  std::vector<DoubleImage> blur_up,
+      up;  ///< by level i = 1 … n−2 of the target (index 0 is unused and empty): blur(U), E_i + blur(U)
   DoubleImage final_up, result;
 };
 BoxBloomImages box_bloom(const DoubleImage& source, const BoxBloomSettings& settings);

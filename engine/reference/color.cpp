@@ -18,9 +18,7 @@ double luminance(const Rgb& c) { return 0.2126729 * c.r + 0.7151522 * c.g + 0.07
 
 double srgb_to_linear(double c) { return c <= 0.04045 ? c / 12.92 : std::pow(std::abs((c + 0.055) / 1.055), 2.4); }
 
-double linear_to_srgb(double c) {
-  return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(std::abs(c), 1 / 2.4) - 0.055;
-}
+double linear_to_srgb(double c) { return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(std::abs(c), 1 / 2.4) - 0.055; }
 
 double gamma_to_linear(double v) {
   if (v <= 0.04045) return v / 12.92;

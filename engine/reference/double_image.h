@@ -1,15 +1,15 @@
-// Pictures in double precision and the ways to sample them (math.md §1). The ground that every oracle of this room stands on: plain
-// loops over plain definitions, written from the mathematics and sharing nothing with the shaders that they check.
-// All functions of this room are pure and thread-safe; they trust their arguments (sizes ≥ 1, images not empty).
+// Pictures in double precision and the ways to sample them (math.md §1). The ground that every oracle of this room
+// stands on: plain loops over plain definitions, written from the mathematics and sharing nothing with the shaders that
+// they check. All functions of this room are pure and thread-safe; they trust their arguments (sizes ≥ 1, images not
+// empty).
 #pragma once
 
 #include <cstddef>
-#include <vector>
-
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <vector>
 
 #include "core/geometry.h"
 
@@ -41,8 +41,8 @@ DoubleImage from_floats(const float* pixels, Size size, int channels);
 /// Interleaved RGBA, for comparing with a device's result.
 std::vector<double> interleaved(const DoubleImage& image);
 
-/// Texel-space position of the centre of target pixel `target` on an axis: (target + ½)·n_src/n_dst. The product is taken in
-/// integers, so that texel centres and corners are met exactly.
+/// Texel-space position of the centre of target pixel `target` on an axis: (target + ½)·n_src/n_dst. The product is
+/// taken in integers, so that texel centres and corners are met exactly.
 inline double source_position(int target, int n_src, int n_dst) {
   return static_cast<double>((2LL * target + 1) * n_src) / static_cast<double>(2LL * n_dst);
 }

@@ -68,7 +68,8 @@ DoubleImage outline_mask(Size size, const DoubleImage* depth, const DoubleImage*
   const bool use_normal = s.source == OutlineSource::normals || s.source == OutlineSource::mixed;
   const bool use_depth = s.source != OutlineSource::normals;
   return generate(size, [&](int x, int y) {
-    const Samples at = s.difference == OutlineDifference::derivative ? quad(x, y) : neighbours(x, y, reach(depth, x, y, s));
+    const Samples at =
+        s.difference == OutlineDifference::derivative ? quad(x, y) : neighbours(x, y, reach(depth, x, y, s));
     const double ez = use_depth ? depth_edge(*depth, at, s) : 0;
     const double en = use_normal ? normal_edge(*normal, at, s) : 0;
     double e = use_depth ? ez : en;

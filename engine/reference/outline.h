@@ -13,7 +13,8 @@ enum class OutlineBlend { lerp, add };
 struct OutlineSettings {
   OutlineSource source = OutlineSource::mixed;
   OutlineDifference difference = OutlineDifference::offset;
-  bool device_depth_input = false;  ///< depth_space = "device": `depth` holds device depth, made linear with the next three
+  bool device_depth_input =
+      false;  ///< depth_space = "device": `depth` holds device depth, made linear with the next three
   double near = 0.3, far = 1000;
   bool reversed_z = true;
   OutlineCombine combine = OutlineCombine::weighted;
@@ -30,8 +31,10 @@ struct OutlineSettings {
 /// View-space distance of device depth d.
 double linear_eye_depth(double d, const OutlineSettings& settings);
 
-/// The line's strength m ∈ [0, 1] at each pixel, in all channels. `depth` and `normal` may be null where the settings don't read them.
-DoubleImage outline_mask(Size size, const DoubleImage* depth, const DoubleImage* normal, const OutlineSettings& settings);
+/// The line's strength m ∈ [0, 1] at each pixel, in all channels. `depth` and `normal` may be null where the settings
+/// don't read them.
+DoubleImage outline_mask(Size size, const DoubleImage* depth, const DoubleImage* normal,
+                         const OutlineSettings& settings);
 /// lerp(source, color, m) or source + m·color; alpha kept.
 DoubleImage outline(const DoubleImage& source, const DoubleImage* depth, const DoubleImage* normal,
                     const OutlineSettings& settings);

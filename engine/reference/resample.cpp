@@ -6,9 +6,12 @@ namespace {
 
 Rgba sample(const DoubleImage& image, Interpolation interpolation, double px, double py) {
   switch (interpolation) {
-    case Interpolation::nearest: return sample_nearest(image, px, py);
-    case Interpolation::linear: return sample_linear(image, px, py);
-    case Interpolation::cubic_bspline: return sample_bspline(image, px, py);
+    case Interpolation::nearest:
+      return sample_nearest(image, px, py);
+    case Interpolation::linear:
+      return sample_linear(image, px, py);
+    case Interpolation::cubic_bspline:
+      return sample_bspline(image, px, py);
   }
   return Rgba(0);
 }

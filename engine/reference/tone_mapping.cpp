@@ -15,14 +15,17 @@ struct Matrix {
 
 constexpr Rgb row(double a, double b, double c) { return Rgb(a, b, c); }
 
-const Matrix kSrgbToAp0{{row(0.4397010, 0.3829780, 0.1773350), row(0.0897923, 0.8134230, 0.0967616), row(0.0175440, 0.1115440, 0.8707040)}};
-const Matrix kAp0ToAp1{{row(1.4514393161, -0.2365107469, -0.2149285693), row(-0.0765537734, 1.1762296998, -0.0996759264),
+const Matrix kSrgbToAp0{
+    {row(0.4397010, 0.3829780, 0.1773350), row(0.0897923, 0.8134230, 0.0967616), row(0.0175440, 0.1115440, 0.8707040)}};
+const Matrix kAp0ToAp1{{row(1.4514393161, -0.2365107469, -0.2149285693),
+                        row(-0.0765537734, 1.1762296998, -0.0996759264),
                         row(0.0083161484, -0.0060324498, 0.9977163014)}};
 const Matrix kAp1ToXyz{{row(0.6624541811, 0.1340042065, 0.1561876870), row(0.2722287168, 0.6740817658, 0.0536895174),
                         row(-0.0055746495, 0.0040607335, 1.0103391003)}};
 const Matrix kXyzToAp1{{row(1.6410233797, -0.3248032942, -0.2364246952), row(-0.6636628587, 1.6153315917, 0.0167563477),
                         row(0.0117218943, -0.0082844420, 0.9883948585)}};
-const Matrix kXyzToRec709{{row(3.2409699419, -1.5373831776, -0.4986107603), row(-0.9692436363, 1.8759675015, 0.0415550574),
+const Matrix kXyzToRec709{{row(3.2409699419, -1.5373831776, -0.4986107603),
+                           row(-0.9692436363, 1.8759675015, 0.0415550574),
                            row(0.0556300797, -0.2039769589, 1.0569715142)}};
 const Matrix kD60ToD65{{row(0.98722400, -0.00611327, 0.0159533), row(-0.00759836, 1.00186000, 0.0053302),
                         row(0.00307257, -0.00509595, 1.0816800)}};
@@ -96,10 +99,14 @@ Rgb tone_aces(const Rgb& x) {
 Rgb tone_map(const Rgb& c, ToneMode mode) {
   const Rgb x = glm::min(c, Rgb(60));
   switch (mode) {
-    case ToneMode::none: return c;
-    case ToneMode::aces: return tone_aces(x);
-    case ToneMode::neutral: return tone_neutral(x);
-    case ToneMode::reinhard: return tone_reinhard(x);
+    case ToneMode::none:
+      return c;
+    case ToneMode::aces:
+      return tone_aces(x);
+    case ToneMode::neutral:
+      return tone_neutral(x);
+    case ToneMode::reinhard:
+      return tone_reinhard(x);
   }
   return c;
 }

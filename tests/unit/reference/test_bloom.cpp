@@ -1,8 +1,8 @@
 // Properties that math.md §3–§5 and §9 list.
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <gmock/gmock.h>
 
 #include "images.h"
 #include "reference/bloom.h"
@@ -44,7 +44,8 @@ TEST(Threshold, ZeroKeepsColoursAndHardKneeCuts) {
 }
 
 TEST(Sizes, OfThePyramid) {
-  const std::vector<Size> expected{{960, 540}, {480, 270}, {240, 135}, {120, 67}, {60, 33}, {30, 16}, {15, 8}, {7, 4}, {3, 2}};
+  const std::vector<Size> expected{{960, 540}, {480, 270}, {240, 135}, {120, 67}, {60, 33},
+                                   {30, 16},   {15, 8},    {7, 4},     {3, 2}};
   EXPECT_EQ(bloom_sizes({1920, 1080}, 16, 2), expected);
   EXPECT_EQ(bloom_sizes({1920, 1080}, 3, 2).size(), 4u);
   EXPECT_TRUE(bloom_sizes({1920, 1080}, 0, 2).empty());
@@ -58,7 +59,8 @@ TEST(Bloom, AdditiveOnAConstant) {
   for (const Size size : kSizes)
     for (const bool bicubic : {false, true})
       for (const bool fireflies : {false, true}) {
-        const BloomSettings settings{.threshold = 0.7, .intensity = 0.6, .bicubic_upsampling = bicubic, .fade_fireflies = fireflies};
+        const BloomSettings settings{
+            .threshold = 0.7, .intensity = 0.6, .bicubic_upsampling = bicubic, .fade_fireflies = fireflies};
         const Rgba c(3, 2, 0.5, 0.25);
         const auto out = bloom(DoubleImage(size, c), settings);
         const double levels = static_cast<double>(out.vertical.size());
@@ -78,7 +80,9 @@ TEST(Bloom, ScatterKeepsAConstant) {
 
 TEST(Bloom, ScatterIntensityIsCapped) {
   const auto image = random_light({32, 32}, 3);
-  const auto with = [&](double intensity) { return bloom(image, {.mode = BloomMode::scattering, .intensity = intensity}).result; };
+  const auto with = [&](double intensity) {
+    return bloom(image, {.mode = BloomMode::scattering, .intensity = intensity}).result;
+  };
   EXPECT_EQ(largest_difference(with(0.95), with(50)), 0);
   EXPECT_GT(largest_difference(with(0.95), with(0.9)), 1e-3);
 }
@@ -97,7 +101,8 @@ TEST(Bloom, WeightsOfTheLevels) {
 TEST(Bloom, IsLinearWithoutThreshold) {
   const auto a = random_light({50, 41}, 4), b = random_light({50, 41}, 5);
   auto sum = a;
-  for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] = Rgba(Rgb(a.pixels[i]) + 2.0 * Rgb(b.pixels[i]), 1);
+  for (std::size_t i = 0; i < sum.pixels.size(); ++i)
+    sum.pixels[i] = Rgba(Rgb(a.pixels[i]) + 2.0 * Rgb(b.pixels[i]), 1);
   const BloomSettings settings{.threshold = 0, .knee = 0};
   const auto ra = bloom(a, settings).result, rb = bloom(b, settings).result, rs = bloom(sum, settings).result;
   for (std::size_t i = 0; i < sum.pixels.size(); ++i)
@@ -139,7 +144,8 @@ TEST(Bloom, FirefliesFade) {
 
 TEST(Bloom, SkipsLeaveTheSource) {
   const auto image = random_light({32, 32}, 8);
-  for (const auto& settings : {BloomSettings{.max_iterations = 0}, BloomSettings{.intensity = 0}, BloomSettings{.downscale_limit = 9}}) {
+  for (const auto& settings :
+       {BloomSettings{.max_iterations = 0}, BloomSettings{.intensity = 0}, BloomSettings{.downscale_limit = 9}}) {
     const auto out = bloom(image, settings);
     EXPECT_FALSE(out.ran);
     EXPECT_EQ(largest_difference(out.result, image), 0);

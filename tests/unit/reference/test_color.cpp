@@ -1,6 +1,9 @@
-#include <cmath>
-
 #include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
 
 #include "images.h"
 #include "reference/color.h"
@@ -20,7 +23,8 @@ TEST(Gamma, ThreePieces) {
 }
 
 TEST(Srgb, RoundTripAlsoAboveOne) {
-  for (double c : {0.0, 0.002, 0.0031308, 0.01, 0.5, 1.0, 7.5}) EXPECT_NEAR(srgb_to_linear(linear_to_srgb(c)), c, 1e-7 * c + 1e-12);
+  for (double c : {0.0, 0.002, 0.0031308, 0.01, 0.5, 1.0, 7.5})
+    EXPECT_NEAR(srgb_to_linear(linear_to_srgb(c)), c, 1e-7 * c + 1e-12);
 }
 
 TEST(Logc, RoundTripAndLimits) {
@@ -58,6 +62,49 @@ TEST(ToneMapping, CurvesRiseAndStayInTheirRange) {
   }
 }
 
+/// ACES once more, by another way: hue from the half angle instead of atan2, glow as one clamp, surround as a factor of
+/// all of XYZ.
+Rgb aces_by_another_way(const Rgb& x) {
+  Rgb a(glm::dot(x, Rgb(0.4397010, 0.3829780, 0.1773350)), glm::dot(x, Rgb(0.0897923, 0.8134230, 0.0967616)),
+        glm::dot(x, Rgb(0.0175440, 0.1115440, 0.8707040)));
+  const double low = std::min({a.r, a.g, a.b}), high = std::max({a.r, a.g, a.b});
+  const double saturation = (std::max(high, 1e-4) - std::max(low, 1e-4)) / std::max(high, 1e-2);
+  const double chroma =
+      std::sqrt(((a.r - a.g) * (a.r - a.g) + (a.g - a.b) * (a.g - a.b) + (a.b - a.r) * (a.b - a.r)) / 2);
+  const double h = std::min(2.5 * saturation - 1, 1.0);
+  const double glow = (0.025 + 0.025 * h * (2 - std::abs(h))) *
+                      std::clamp(0.24 / (a.r + a.g + a.b + 1.75 * chroma + 1e-300) - 0.5, 0.0, 1.0);
+  const double half_angle = std::atan2(std::sqrt(3.0) * std::abs(a.g - a.b), 2 * chroma + 2 * a.r - a.g - a.b);
+  const double ramp = std::max(0.0, 1 - half_angle * 2 / (67.5 * std::numbers::pi / 180));
+  const double weight = std::pow(ramp * ramp * (3 - 2 * ramp), 2);
+  a *= 1 + glow;
+  a.r += weight * saturation * 0.18 * (0.03 - a.r);
+  Rgb c = glm::max(Rgb(glm::dot(a, Rgb(1.4514393161, -0.2365107469, -0.2149285693)),
+                       glm::dot(a, Rgb(-0.0765537734, 1.1762296998, -0.0996759264)),
+                       glm::dot(a, Rgb(0.0083161484, -0.0060324498, 0.9977163014))),
+                   Rgb(0));
+  c = 0.96 * c + 0.04 * glm::dot(c, Rgb(0.272229, 0.674082, 0.0536895));
+  c = (2.785085 * c + 0.107772) * c / ((2.936045 * c + 0.887122) * c + 0.806889);
+  const double luma = glm::dot(c, Rgb(0.2722287168, 0.6740817658, 0.0536895174));
+  const double missing = std::max(1e-4 - glm::dot(c, Rgb(0.9291082484, 0.8121467058, 1.2202163047)), 0.0);
+  const double surround = std::pow(std::max(luma, 1e-300), -0.0189) * std::min(luma * 1e8, 1.0);
+  return surround * (Rgb(glm::dot(c, Rgb(1.60475401, -0.5310794904, -0.07367229607)),
+                         glm::dot(c, Rgb(-0.1020831623, 1.108132314, -0.00605155829)),
+                         glm::dot(c, Rgb(-0.003267022729, -0.07275523321, 1.076021917))) +
+                     missing * Rgb(-0.4611197491, 0.0367219018, 1.063087824));
+}
+
+TEST(ToneMapping, AcesAgreesWithAnotherDerivation) {
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<double> exponent(-7, 1.78);
+  for (int i = 0; i < 20000; ++i) {
+    const Rgb c(std::pow(10, exponent(generator)), std::pow(10, exponent(generator)),
+                std::pow(10, exponent(generator)));
+    for (const auto& x : {c, Rgb(c.r), Rgb(c.r, c.g, c.g), Rgb(c.r, c.r, c.b)})
+      EXPECT_LT(glm::length(tone_aces(x) - aces_by_another_way(x)), 3e-8) << x.r << " " << x.g << " " << x.b;
+  }
+}
+
 TEST(ToneMapping, NeutralReachesWhereTheDocumentSays) {
   EXPECT_NEAR(tone_neutral(Rgb(4.0353708)).r, 1, 1e-8);
   EXPECT_NEAR(tone_neutral(Rgb(1e12)).r, 1.2258271, 1e-7);
@@ -74,7 +121,9 @@ TEST(ColorAdjustments, NeutralIsTheSourceItself) {
   EXPECT_EQ(largest_difference(color_adjustments(image, {}), image), 0) << "no clamp to 60 either";
 }
 
-TEST(ColorAdjustments, ClampPrecedesExposure) { EXPECT_EQ(adjust_color(Rgb(100, 1, 0), {.post_exposure = 1}), Rgb(120, 2, 0)); }
+TEST(ColorAdjustments, ClampPrecedesExposure) {
+  EXPECT_EQ(adjust_color(Rgb(100, 1, 0), {.post_exposure = 1}), Rgb(120, 2, 0));
+}
 
 TEST(ColorAdjustments, ContrastMinus100IsThePivotsGrey) {
   for (const auto& c : {Rgb(0), Rgb(-1, 0.5, 60), Rgb(3)}) {
@@ -92,6 +141,15 @@ TEST(ColorAdjustments, FullDesaturationLeavesLuminance) {
   const Rgb c(3, 0.5, 0.25);
   const auto out = adjust_color(c, {.saturation = -100});
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(out[i], luminance(c), 1e-15);
+}
+
+TEST(ColorAdjustments, StepsRunInTheirOrder) {
+  const Rgb c(3, 0.5, 0.25), filter(0.5, 1, 2);
+  Rgb expected = adjust_contrast(c * 2.0, 1.2) * filter;
+  expected = adjust_saturation(shift_hue(glm::max(expected, Rgb(0)), 0.1), 1.3);
+  const auto got =
+      adjust_color(c, {.post_exposure = 1, .contrast = 20, .color_filter = filter, .hue_shift = 36, .saturation = 30});
+  EXPECT_LT(glm::length(got - glm::max(expected, Rgb(0))), 1e-12);
 }
 
 TEST(ColorAdjustments, HueTurnsAndReturns) {

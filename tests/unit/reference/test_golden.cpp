@@ -1,11 +1,11 @@
 // Every line of tests/golden_values.txt: values of an independent implementation (math.md §14).
+#include <gmock/gmock.h>
+
 #include <fstream>
 #include <functional>
 #include <map>
 #include <sstream>
 #include <string>
-
-#include <gmock/gmock.h>
 
 #include "reference/bloom.h"
 #include "reference/color.h"
@@ -27,7 +27,10 @@ const std::map<std::string, std::function<Rgb(const Rgb&)>> kFunctions = {
     {"contrast+50", [](const Rgb& c) { return adjust_contrast(c, 1.5); }},
     {"hue+60", [](const Rgb& c) { return shift_hue(c, 60.0 / 360); }},
     {"sat+50", [](const Rgb& c) { return adjust_saturation(c, 1.5); }},
-    {"thresh 1/.5", [](const Rgb& c) { return BloomThreshold{1, 0.5}(c); }},
+    {"thresh 1/.5",
+     [](const Rgb& c) {
+       return BloomThreshold{1, 0.5}(c);
+     }},
 };
 
 TEST(Golden, EveryLineIsReproduced) {
@@ -39,7 +42,8 @@ TEST(Golden, EveryLineIsReproduced) {
     char comma;
     Rgb in, expected;
     std::string arrow;
-    std::istringstream(line.substr(15)) >> in.r >> comma >> in.g >> comma >> in.b >> arrow >> expected.r >> expected.g >> expected.b;
+    std::istringstream(line.substr(15)) >> in.r >> comma >> in.g >> comma >> in.b >> arrow >> expected.r >>
+        expected.g >> expected.b;
     ASSERT_EQ(arrow, "->") << line;
     const auto function = kFunctions.find(name);
     ASSERT_NE(function, kFunctions.end()) << "'" << name << "'";

@@ -58,11 +58,17 @@ TEST(Outline, BorderIsClampedSoThereIsNoRim) {
 TEST(Outline, NormalsAndCombination) {
   const DoubleImage depth = step(3);
   const auto normal = generate(kSize, [](int x, int) { return x < 3 ? Rgba(1, 0, 0, 1) : Rgba(0, 1, 0, 1); });
-  OutlineSettings s{.source = OutlineSource::mixed, .normal_factor = 0.25, .fade_distance = 1e9, .depth_scale = 0.4, .divide_factor = 2};
+  OutlineSettings s{.source = OutlineSource::mixed,
+                    .normal_factor = 0.25,
+                    .fade_distance = 1e9,
+                    .depth_scale = 0.4,
+                    .divide_factor = 2};
   const double en = std::sqrt(2.0), ez = 0.4;
   EXPECT_NEAR(outline_mask(kSize, &depth, &normal, s).at(2, 0).r, (0.25 * en + 0.75 * ez) / 2, 1e-12);
   s.combine = OutlineCombine::max;
   EXPECT_NEAR(outline_mask(kSize, &depth, &normal, s).at(2, 0).r, en / 2, 1e-12);
+  s.depth_scale = 1.9;
+  EXPECT_NEAR(outline_mask(kSize, &depth, &normal, s).at(2, 0).r, 1.9 / 2, 1e-12);
   s.source = OutlineSource::normals;
   s.normal_scale = 0.5;
   EXPECT_NEAR(outline_mask(kSize, nullptr, &normal, s).at(2, 0).r, en / 4, 1e-12) << "no depth: no fade";

@@ -60,7 +60,9 @@ TEST(Bspline, EqualsFourGroupedBilinearFetches) {  // the form in which the sour
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i) {
         const double gx = wx[2 * i] + wx[2 * i + 1], gy = wy[2 * j] + wy[2 * j + 1];
-        sum += gx * gy * sample_linear(image, cx + (i ? 0.5 : -1.5) + wx[2 * i + 1] / gx, cy + (j ? 0.5 : -1.5) + wy[2 * j + 1] / gy);
+        sum += gx * gy *
+               sample_linear(image, cx + (i ? 0.5 : -1.5) + wx[2 * i + 1] / gx,
+                             cy + (j ? 0.5 : -1.5) + wy[2 * j + 1] / gy);
       }
     EXPECT_LT(glm::length(sum - sample_bspline(image, px, py)), 1e-12);
   }
