@@ -1,0 +1,25 @@
+// One command of the program: its options, declared on a CLI11 subcommand, and what it does.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <vector>
+
+#include "apps/console.h"
+#include "core/result.h"
+
+namespace afterglow {
+
+struct Command {
+  CLI::App* options = nullptr;  ///< owned by the program's CLI::App
+  std::function<Result<void>(Console&)> run;
+};
+
+// Each adds itself to the program; one file a command.
+Command add_run_command(CLI::App& program);
+Command add_check_command(CLI::App& program);
+Command add_graph_command(CLI::App& program);
+Command add_effects_command(CLI::App& program);
+Command add_devices_command(CLI::App& program);
+
+}  // namespace afterglow

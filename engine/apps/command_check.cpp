@@ -1,0 +1,114 @@
+// `afterglow check`: is the preset right, and what would run in which order with which settings? No device needed.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "apps/command.h"
+#include "apps/look.h"
+#include "apps/setting_text.h"
+#include "apps/table.h"
+
+namespace afterglow {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  PresetArguments preset;
+  AssumedPicture picture;
+  bool json = false;
+};
+
+bool is_changed(const StackEntry& entry, const std::string& setting) {
+  return std::find(entry.changed.begin(), entry.changed.end(), setting) != entry.changed.end();
+}
+
+const std::string* skip_reason(const Look& look, const StackEntry& entry) {
+  for (const auto& skipped : look.graph.skipped)
+    if (skipped.name == entry.name) return &skipped.reason;
+  return nullptr;
+}
+
+std::string entry_text(const Look& look, const StackEntry& entry, std::size_t place) {
+  std::string out = fmt::format("{}. {}  at {}, order {}{}{}\n", place, entry.name, entry.at, entry.order,
+                                entry.required ? ", required" : "", entry.enabled ? "" : ", not enabled");
+  if (const auto* reason = skip_reason(look, entry)) out += fmt::format("   skipped: {}\n", *reason);
+  Table table({});
+  for (const auto& [name, value] : entry.settings)
+    table.add({name, value.text(), is_changed(entry, name) ? "" : "(default)"});
+  return out + table.text("   ");
+}
+
+std::vector<std::string> shadow_notes(const Look& look) {
+  std::vector<std::string> notes;
+  std::set<std::string> seen;
+  for (const auto& entry : look.preset->entries()) {
+    if (!seen.insert(entry.effect).second) continue;
+    const auto& schema = look.preset->schema(entry.effect);
+    for (const auto& file : schema.shadowed)
+      notes.push_back(fmt::format("{} shadows {}", schema.file.string(), file.string()));
+  }
+  for (const auto& pass : look.graph.passes) {
+    if (pass.shader.empty() || !seen.insert("shader " + pass.shader).second) continue;
+    const auto files = look.shaders->path().find_shader(pass.shader + ".glsl");
+    for (std::size_t i = 1; i < files.size(); ++i)
+      notes.push_back(fmt::format("{} shadows {}", files[0].string(), files[i].string()));
+  }
+  return notes;
+}
+
+std::string as_text(const Look& look, const std::string& file, const std::vector<std::string>& shadows) {
+  const auto& entries = look.preset->entries();
+  std::string out = fmt::format("{}: {}\n", file, look.preset->name());
+  for (std::size_t i = 0; i < entries.size(); ++i) out += entry_text(look, entries[i], i + 1);
+  for (const auto& note : shadows) out += note + "\n";
+  return out + fmt::format("{} effects, {} passes in {} kernels: no errors\n", entries.size(), look.graph.passes.size(),
+                           look.plan.kernels.size());
+}
+
+std::string as_json(const Look& look, const std::string& file, const std::vector<std::string>& shadows) {
+  Json out{{"file", file}, {"name", look.preset->name()}, {"entries", Json::array()}};
+  for (const auto& entry : look.preset->entries()) {
+    Json item{{"name", entry.name},   {"effect", entry.effect},   {"at", entry.at},
+              {"order", entry.order}, {"enabled", entry.enabled}, {"required", entry.required}};
+    for (const auto& [name, value] : entry.settings) item["settings"][name] = Json(value_json(value));
+    item["changed"] = entry.changed;
+    if (const auto* reason = skip_reason(look, entry)) item["skipped"] = *reason;
+    out["entries"].push_back(std::move(item));
+  }
+  out["passes"] = look.graph.passes.size();
+  out["kernels"] = look.plan.kernels.size();
+  out["shadows"] = shadows;
+  return out.dump(2) + "\n";
+}
+
+Result<void> run(const Arguments& arguments, Console& console) {
+  AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
+  auto errors = shader_errors(look);
+  if (!errors.empty()) {
+    for (std::size_t i = 0; i + 1 < errors.size(); ++i) console.error(errors[i]);
+    return std::move(errors.back());
+  }
+  const auto shadows = shadow_notes(look);
+  const auto& file = arguments.preset.file;
+  fmt::print("{}", arguments.json ? as_json(look, file, shadows) : as_text(look, file, shadows));
+  return {};
+}
+
+}  // namespace
+
+Command add_check_command(CLI::App& program) {
+  auto* app = program.add_subcommand("check", "Check a preset and its shaders; print the resolved order and settings");
+  auto arguments = std::make_shared<Arguments>();
+  arguments->preset.add(*app);
+  arguments->picture.add(*app);
+  app->add_flag("--json", arguments->json, "Print JSON");
+  app->footer("Needs no Vulkan device. The picture is assumed to have every auxiliary input that the stack asks for.");
+  return {app, [arguments](Console& console) { return run(*arguments, console); }};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,91 @@
+// `afterglow effects [NAME]`: what effects there are and what they can be set to, from their own declarations.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/command.h"
+#include "apps/options.h"
+#include "apps/setting_text.h"
+#include "apps/table.h"
+#include "core/text.h"
+#include "script/preset.h"
+
+namespace afterglow {
+namespace {
+
+struct Arguments {
+  std::string name;
+  PresetArguments preset;  // --path alone
+  bool json = false, completion = false;
+};
+
+nlohmann::json as_json(const EffectSchema& effect) {
+  auto settings = nlohmann::json::array();
+  for (const auto& setting : effect.settings) settings.push_back(setting_json(setting));
+  nlohmann::json out{{"name", effect.name},
+                     {"doc", effect.doc},
+                     {"at", effect.at},
+                     {"order", effect.order},
+                     {"file", effect.file.string()},
+                     {"settings", std::move(settings)}};
+  for (const auto& file : effect.shadowed) out["shadowed"].push_back(file.string());
+  return out;
+}
+
+std::string list_text(const std::vector<EffectSchema>& effects) {
+  Table table({"effect", "at", "order", "what it does"});
+  for (const auto& effect : effects) table.add({effect.name, effect.at, std::to_string(effect.order), effect.doc});
+  return table.text() + "\n`afterglow effects NAME` lists an effect's settings.\n";
+}
+
+std::string effect_text(const EffectSchema& effect) {
+  Table table({"setting", "type", "allowed", "default", "what it does"});
+  for (const auto& setting : effect.settings)
+    table.add(
+        {setting.name, type_text(setting.type), allowed_text(setting), setting.default_value.text(), setting.doc});
+  std::string out = fmt::format("{}: {}\nat {}, order {}; {}\n\n{}", effect.name, effect.doc, effect.at, effect.order,
+                                effect.file.string(), table.text("  "));
+  for (const auto& file : effect.shadowed) out += fmt::format("\nshadows {}\n", file.string());
+  return out;
+}
+
+Result<void> run(const Arguments& arguments, Console& console) {
+  const std::vector<std::filesystem::path> extra(arguments.preset.paths.begin(), arguments.preset.paths.end());
+  AFTERGLOW_TRY(auto effects, list_effects(search_path_for({}, extra), console.diagnostics()));
+  if (!arguments.name.empty()) {
+    std::vector<std::string> names;
+    for (const auto& effect : effects) names.push_back(effect.name);
+    std::erase_if(effects, [&](const auto& effect) { return effect.name != arguments.name; });
+    if (effects.empty())
+      return Error{ErrorKind::usage,    fmt::format("unknown effect '{}'", arguments.name),
+                   "afterglow effects", 0,
+                   join(names),         nearest_name(arguments.name, names)};
+  }
+  if (arguments.completion) {
+    fmt::print("{}", completion_text(effects));
+  } else if (arguments.json) {
+    auto list = nlohmann::json::array();
+    for (const auto& effect : effects) list.push_back(as_json(effect));
+    fmt::print("{}\n", list.dump(2));
+  } else {
+    fmt::print("{}", arguments.name.empty() ? list_text(effects) : effect_text(effects.front()));
+  }
+  return {};
+}
+
+}  // namespace
+
+Command add_effects_command(CLI::App& program) {
+  auto* app = program.add_subcommand("effects", "List the effects, or the settings of one");
+  auto arguments = std::make_shared<Arguments>();
+  app->add_option("NAME", arguments->name, "Effect whose settings to show");
+  app->add_flag("--json", arguments->json, "Print JSON");
+  app->add_flag("--completion", arguments->completion, "Print completion data for lua-language-server (scripts/_meta)");
+  arguments->preset.add_paths(*app);
+  return {app, [arguments](Console& console) { return run(*arguments, console); }};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,147 @@
+#include "apps/command_line.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/command.h"
+#include "apps/interrupt.h"
+#include "apps/options.h"
+#include "core/text.h"
+
+namespace afterglow {
+namespace {
+
+constexpr const char* kFooter =
+    "Exit codes: 0 done, 2 usage, 3 preset or script, 4 input or output, 5 device, 130 interrupted, 1 anything else.\n"
+    "Environment: AFTERGLOW_HOME installation to use, AFTERGLOW_PATH further folders with effects/ and shaders/ (':' "
+    "between),\n"
+    "             AFTERGLOW_CACHE folder for caches, AFTERGLOW_VALIDATE=1 Vulkan validation, NO_COLOR no colours.\n"
+    "`afterglow COMMAND --help` tells the rest.";
+
+/// Error texts of the parser, in one line.
+std::string one_line(std::string text) {
+  for (auto& c : text)
+    if (c == '\n') c = ' ';
+  return trim(text);
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const auto* option : command.get_options()) {
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+    for (const auto& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+/// An option or word that the command does not know, with the nearest that it does.
+Error unknown_argument(const CLI::App& command, const std::string& argument) {
+  const std::string where = "afterglow " + command.get_name();
+  if (argument.empty() || argument[0] != '-')
+    return {ErrorKind::usage, fmt::format("unexpected argument '{}'", argument), where};
+  const std::string name = argument.substr(0, argument.find('='));
+  Error error{ErrorKind::usage, fmt::format("unknown option '{}'", name), where};
+  error.nearest = nearest_name(name, option_names(command));
+  if (error.nearest.empty()) error.allowed = fmt::format("see `{} --help`", where);
+  return error;
+}
+
+Error unknown_command(const std::string& word, const std::vector<Command>& commands) {
+  std::vector<std::string> names;
+  for (const auto& command : commands) names.push_back(command.options->get_name());
+  return {ErrorKind::usage,         fmt::format("unknown command '{}'", word), "afterglow", 0, join(names),
+          nearest_name(word, names)};
+}
+
+/// The command that was parsed, or null.
+const Command* parsed_command(const std::vector<Command>& commands) {
+  for (const auto& command : commands)
+    if (command.options->parsed()) return &command;
+  return nullptr;
+}
+
+int fail(Console& console, const Error& error) {
+  console.end_progress();
+  console.error(error);
+  return static_cast<int>(error.kind);
+}
+
+/// Parses into the commands' options. Returns an exit code when there is nothing more to do.
+std::optional<int> parse(CLI::App& program, const std::vector<Command>& commands, int argc, char** argv,
+                         Console& console) {
+  const auto is_named = [&](const Command& command) { return command.options->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && std::ranges::none_of(commands, is_named))
+    return fail(console, unknown_command(argv[1], commands));
+  try {
+    program.parse(argc, argv);
+    return std::nullopt;
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return program.exit(wanted);
+  } catch (const CLI::ExtrasError&) {
+    const Command* command = parsed_command(commands);
+    const CLI::App& app = command ? *command->options : program;
+    const auto extras = program.remaining(true);
+    return fail(console, unknown_argument(app, extras.empty() ? "" : extras.front()));
+  } catch (const CLI::ParseError& error) {
+    const Command* command = parsed_command(commands);
+    if (command == nullptr && argc <= 1) {
+      fmt::print(stderr, "{}", program.help());
+      return static_cast<int>(ErrorKind::usage);
+    }
+    // A misspelt option swallows the words behind it, so that others seem to be missing: name the misspelt one.
+    if (command != nullptr) {
+      const auto known = option_names(*command->options);
+      for (int i = 2; i < argc; ++i) {
+        const std::string word = argv[i];
+        const std::string name = word.substr(0, word.find('='));
+        if (word == "--") break;
+        if (word.starts_with("--") && std::find(known.begin(), known.end(), name) == known.end())
+          return fail(console, unknown_argument(*command->options, word));
+      }
+    }
+    const std::string where = command ? "afterglow " + command->options->get_name() : "afterglow";
+    return fail(console, {ErrorKind::usage, one_line(error.what()), where});
+  }
+}
+
+Result<void> run(const Command& command, Console& console) {
+  try {
+    return command.run(console);
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorKind::io, "out of memory"};
+  } catch (const std::exception& exception) {
+    return Error{ErrorKind::other, fmt::format("internal error: {}", one_line(exception.what()))};
+  }
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  Console console;
+  install_interrupt_handler();
+
+  CLI::App program("Finishes rendered pictures: Lua looks on Vulkan.", "afterglow");
+  program.set_version_flag("--version", "afterglow " AFTERGLOW_VERSION);
+  program.require_subcommand(1);
+  program.footer(kFooter);
+  program.get_formatter()->column_width(34);
+
+  const std::vector<Command> commands{add_run_command(program), add_check_command(program), add_graph_command(program),
+                                      add_effects_command(program), add_devices_command(program)};
+  MessageArguments messages;
+  for (const auto& command : commands) messages.add(*command.options);
+
+  if (const auto exit_code = parse(program, commands, argc, argv, console)) return *exit_code;
+  messages.apply(console);
+  const auto done = run(*parsed_command(commands), console);
+  return done ? 0 : fail(console, done.error());
+}
+
+}  // namespace afterglow

@@ -1,0 +1,10 @@
+// The program: finds the command, parses its options, turns every failure into one line and an exit code.
+#pragma once
+
+namespace afterglow {
+
+/// What `main` returns: 0 done, 2 usage, 3 preset or script, 4 input or output, 5 device, 130 interrupted, 1 anything
+/// else.
+int run_command_line(int argc, char** argv);
+
+}  // namespace afterglow

@@ -1,0 +1,252 @@
+// `afterglow run`: pictures in, finished pictures out.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <future>
+#include <memory>
+
+#include "apps/command.h"
+#include "apps/frame_list.h"
+#include "apps/frame_loop.h"
+#include "apps/options.h"
+#include "apps/pictures.h"
+#include "apps/resume.h"
+#include "apps/run_report.h"
+#include "core/file.h"
+#include "core/text.h"
+
+namespace afterglow {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Arguments {
+  PresetArguments preset;
+  DeviceArguments device;
+  ExecutionArguments execution;
+  FrameListRequest files;
+  std::string layer, depth, normal, size;
+  std::string type = "auto", compression;
+  int png_level = 1, jpeg_quality = 95;
+  bool dither = false, keep_layers = false, resume = false, fail_fast = false;
+  double fps = 24;
+  std::string stats, report;
+};
+
+void add_files(CLI::App& app, Arguments& a) {
+  app.add_option("INPUT", a.files.inputs, "Pictures: files, or sequences like shot.####.exr and shot.%04d.exr")
+      ->required();
+  app.add_option("-o,--output", a.files.output, "File, pattern (out.####.png) or folder; the extension says the format")
+      ->type_name("OUTPUT")
+      ->required();
+  const std::string input = "Input", sequence = "Sequences", output = "Output";
+  app.add_option("--layer", a.layer, "Colour layer or part (default: the usual names, Combined and plain R,G,B first)")
+      ->type_name("NAME")
+      ->group(input);
+  app.add_option("--depth", a.depth, "Depth from another file or channel; FILE may be a pattern")
+      ->type_name("FILE[:CHANNEL]")
+      ->group(input);
+  app.add_option("--normal", a.normal, "Normals from another file or layer; FILE may be a pattern")
+      ->type_name("FILE[:LAYER]")
+      ->group(input);
+  app.add_option("--size", a.size, "Scale the picture first, for a quick look")->type_name("WxH")->group(input);
+
+  app.add_option("--frames", a.files.frames, "Frames to run: 1-24, 1-24x2, 1,5,10-12 (default: all there are)")
+      ->type_name("LIST")
+      ->group(sequence);
+  app.add_option("--fps", a.fps, "Frames a second, for animated presets (default 24)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N")
+      ->group(sequence);
+  app.add_flag("--resume", a.resume, "Skip outputs that are newer than their inputs and made by the same look")
+      ->group(sequence);
+  app.add_flag("--fail-fast", a.fail_fast, "Stop at the first frame that fails")->group(sequence);
+
+  app.add_option("--format", a.files.extension, "For outputs in a folder: png, exr, … (default: that of the input)")
+      ->type_name("EXTENSION")
+      ->group(output);
+  app.add_option("--type", a.type,
+                 "auto, half, float, uint8 or uint16 (auto: EXR half unless the input was float; else 8 bits, or 16 if "
+                 "the input had more)")
+      ->check(CLI::IsMember({"auto", "half", "float", "uint8", "uint16"}))
+      ->type_name("TYPE")
+      ->group(output);
+  app.add_option("--compression", a.compression,
+                 "EXR: none, rle, zip (default), zips, piz, pxr24, b44, b44a, dwaa, dwab; TIFF: its own")
+      ->type_name("NAME[:LEVEL]")
+      ->group(output);
+  app.add_option("--png-level", a.png_level,
+                 "PNG effort, 0 to 9 (default 1: six times faster than 6, files a little larger)")
+      ->check(CLI::Range(0, 9))
+      ->type_name("N")
+      ->group(output);
+  app.add_option("--jpeg-quality", a.jpeg_quality, "JPEG quality, 1 to 100 (default 95)")
+      ->check(CLI::Range(1, 100))
+      ->type_name("N")
+      ->group(output);
+  app.add_flag("--dither", a.dither, "Ordered noise before rounding to integers; the same every time")->group(output);
+  app.add_flag("--keep-layers", a.keep_layers, "EXR to EXR: copy all other channels and parts unchanged")
+      ->group(output);
+}
+
+void add_reports(CLI::App& app, Arguments& a) {
+  app.add_flag("--stats{total}", a.stats, "Print where the time went; --stats=passes adds each pass")
+      ->check(CLI::IsMember({"total", "passes"}))
+      ->type_name("[=passes]")
+      ->group("Messages");
+  app.add_option("--report", a.report, "Write times, skipped passes with reasons, and memory as JSON")
+      ->type_name("FILE.json")
+      ->group("Messages");
+}
+
+SampleType sample_type(const std::string& text) {
+  if (text == "half") return SampleType::half;
+  if (text == "float") return SampleType::float32;
+  if (text == "uint8") return SampleType::uint8;
+  if (text == "uint16") return SampleType::uint16;
+  return SampleType::automatic;
+}
+
+/// Every option that changes pixels, for the hash that --resume compares.
+std::string pixel_options(const Arguments& a) {
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", join(a.preset.overrides, "|"),
+                     a.execution.precision, a.execution.max_error.value_or(0), a.execution.reference, a.layer, a.depth,
+                     a.normal, a.size, a.fps, a.type, a.compression, a.png_level, a.jpeg_quality, a.dither,
+                     a.keep_layers);
+}
+
+/// Everything about one run that outlives a step.
+struct Run {
+  const Arguments& arguments;
+  Console& console;
+  Clock::time_point start = Clock::now();
+  const PictureFunctions* pictures = nullptr;
+  std::unique_ptr<Session> session;
+  FrameLoopOptions loop;
+  RunReport report;
+
+  double milliseconds() const { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+};
+
+Result<SessionOptions> session_options(const Arguments& a) {
+  SessionOptions options;
+  options.device = a.device.options();
+  AFTERGLOW_TRY(options.stack, a.execution.options());
+  AFTERGLOW_TRY(options.stack.preset, a.preset.options());
+  if (a.stats == "passes") options.timing = KernelTiming::timestamps;
+  return options;
+}
+
+WriteOptions write_options(const Arguments& a) {
+  WriteOptions options;
+  options.type = sample_type(a.type);
+  options.compression = a.compression;
+  options.png_level = a.png_level;
+  options.jpeg_quality = a.jpeg_quality;
+  options.dither = a.dither;
+  options.keep_layers = a.keep_layers;
+  return options;
+}
+
+Result<std::vector<FrameJob>> jobs_of(const Arguments& a) {
+  FrameListRequest request = a.files;
+  if (!a.depth.empty() || !a.normal.empty()) {
+    AFTERGLOW_TRY(const auto* pictures, load_pictures());
+    if (!a.depth.empty()) request.depth = pictures->parse_layer_choice(a.depth);
+    if (!a.normal.empty()) request.normal = pictures->parse_layer_choice(a.normal);
+  }
+  return list_frames(request);
+}
+
+/// Loads the picture module beside the device and the preset, and refuses outputs that cannot be written before any
+/// work.
+Result<void> open(Run& run, const SessionOptions& options) {
+  const auto& frames = run.report.frames;
+  auto loading = std::async(std::launch::async, [&]() -> Result<void> {
+    AFTERGLOW_TRY(run.pictures, load_pictures());
+    return run.pictures->check_output(frames.front().job.output, run.loop.write);
+  });
+  auto session = Session::open(run.arguments.preset.file, options, run.console.diagnostics());
+  auto loaded = loading.get();
+  if (!session) return std::move(session).error();
+  run.session = std::move(session).value();
+  return loaded;
+}
+
+/// Hash of the look for --resume, and the frames that need not be made.
+Result<void> prepare_resume(Run& run) {
+  const Arguments& a = run.arguments;
+  if (!a.resume && run.report.frames.size() < 2) return {};
+  AssumedPicture assumed;
+  Preset& preset = run.session->preset();
+  AFTERGLOW_TRY(const BuildContext context, assumed.context(preset));
+  AFTERGLOW_TRY(const Graph graph, run.session->stack().graph(context));
+  AFTERGLOW_TRY(const PresetOptions options, a.preset.options());
+  AFTERGLOW_TRY(const Hash look,
+                look_hash(preset, graph, search_path_for(a.preset.file, options.paths), pixel_options(a)));
+  run.loop.record_look = look;
+  if (!a.resume) return {};
+  for (auto& frame : run.report.frames)
+    if (is_up_to_date(frame.job, look)) frame.state = FrameRecord::State::up_to_date;
+  return {};
+}
+
+Result<void> run_frames(Run& run, const SessionOptions& options) {
+  const Arguments& a = run.arguments;
+  run.loop.write = write_options(a);
+  run.loop.fail_fast = a.fail_fast;
+  run.loop.fps = a.fps;
+  run.loop.max_memory = options.stack.max_memory;
+  run.loop.read.layer = a.layer;
+  run.loop.read.max_bytes = options.stack.max_memory;
+  if (!a.size.empty()) {
+    AFTERGLOW_TRY(run.loop.size, parse_size(a.size));
+  }
+  AFTERGLOW_CHECK(open(run, options));
+  run.loop.read.auxiliary = run.session->preset().needs();
+  AFTERGLOW_CHECK(prepare_resume(run));
+  run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
+  FrameLoop loop(*run.session, *run.pictures, run.loop, run.console);
+  auto done = loop.run(run.report.frames);
+  run.report.memory_needed = loop.largest_need();
+  return done;
+}
+
+Result<void> run_command(const Arguments& a, Console& console) {
+  Run run{a, console};
+  AFTERGLOW_TRY(const SessionOptions options, session_options(a));
+  AFTERGLOW_TRY(const auto jobs, jobs_of(a));
+  for (const auto& job : jobs) run.report.frames.push_back({.job = job});
+  auto done = run_frames(run, options);
+  if (run.session) run.report.session = run.session->report();
+  run.report.wall = run.milliseconds();
+  if (!a.stats.empty() && run.session) fmt::print("{}", report_text(run.report, a.stats == "passes"));
+  if (!a.report.empty()) {
+    auto written = write_file_atomically(a.report, report_json(run.report));
+    if (done && !written) return written;
+  }
+  return done;
+}
+
+}  // namespace
+
+Command add_run_command(CLI::App& program) {
+  auto* app = program.add_subcommand("run", "Apply a preset to pictures");
+  auto arguments = std::make_shared<Arguments>();
+  arguments->preset.add(*app);
+  add_files(*app, *arguments);
+  arguments->device.add(*app);
+  arguments->execution.add(*app);
+  add_reports(*app, *arguments);
+  app->footer(
+      "Examples:\n"
+      "  afterglow run presets/neon_night.lua render.exr -o render.png\n"
+      "  afterglow run look.lua shot.####.exr -o graded/shot.####.exr --frames 1-240 --resume\n"
+      "  afterglow run look.lua *.exr -o graded/ --format png --set bloom.intensity=0.4 --stats\n"
+      "Outputs appear whole or not at all. Notes for --resume lie in the output's folder, in .afterglow/.");
+  return {app, [arguments](Console& console) { return run_command(*arguments, console); }};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,101 @@
+#include "apps/console.h"
+
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+namespace afterglow {
+namespace {
+
+constexpr std::string_view kRed = "\x1b[1;31m", kBold = "\x1b[1m", kPlain = "\x1b[0m";
+constexpr std::string_view kEraseLine = "\r\x1b[K";
+
+bool terminal_has_colors() {
+  const char* term = std::getenv("TERM");
+  return std::getenv("NO_COLOR") == nullptr && term != nullptr && std::string_view(term) != "dumb";
+}
+
+std::string clock_text(double seconds) {
+  const int whole = static_cast<int>(seconds + 0.5);
+  return fmt::format("{:02}:{:02}", whole / 60, whole % 60);
+}
+
+}  // namespace
+
+Console::Console()
+    : diagnostics_([this](Severity severity, const std::string& text) {
+        severity == Severity::warning ? warning(text) : note(text);
+      }) {
+  configure(Verbosity::normal, true);
+}
+
+Console::~Console() { end_progress(); }
+
+void Console::configure(Verbosity verbosity, bool color) {
+  std::lock_guard lock(mutex_);
+  verbosity_ = verbosity;
+  terminal_ = isatty(STDERR_FILENO) != 0;
+  color_ = color && terminal_ && terminal_has_colors();
+  auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_st>(color_ ? spdlog::color_mode::always
+                                                                           : spdlog::color_mode::never);
+  log_ = std::make_shared<spdlog::logger>("afterglow", std::move(sink));
+  log_->set_pattern("%^%l%$: %v");
+  log_->set_level(verbosity == Verbosity::quiet     ? spdlog::level::off
+                  : verbosity == Verbosity::verbose ? spdlog::level::info
+                                                    : spdlog::level::warn);
+}
+
+void Console::error(const Error& error) {
+  std::lock_guard lock(mutex_);
+  erase_progress();
+  std::string text = error.text();
+  if (color_) {
+    if (const auto at = text.find("error: "); at != std::string::npos) {
+      text = fmt::format("{}{}{}{}error:{}{}", kBold, text.substr(0, at), kPlain, kRed, kPlain, text.substr(at + 6));
+    }
+  }
+  fmt::print(stderr, "{}\n", text);
+}
+
+void Console::warning(const std::string& text) {
+  std::lock_guard lock(mutex_);
+  erase_progress();
+  log_->warn("{}", text);
+}
+
+void Console::note(const std::string& text) {
+  std::lock_guard lock(mutex_);
+  erase_progress();
+  log_->info("{}", text);
+}
+
+void Console::progress(std::size_t done, std::size_t total, const std::string& label, double seconds) {
+  std::lock_guard lock(mutex_);
+  if (!terminal_ || verbosity_ == Verbosity::quiet || total == 0) return;
+  constexpr std::size_t kWidth = 24;
+  const std::size_t filled = done * kWidth / total;
+  const double left = done > 0 ? seconds / static_cast<double>(done) * static_cast<double>(total - done) : 0;
+  fmt::print(stderr, "{}[{}{}] {}/{}  {}{}", kEraseLine, std::string(filled, '='), std::string(kWidth - filled, ' '),
+             done, total, label, done > 0 ? fmt::format("  {} left", clock_text(left)) : "");
+  std::fflush(stderr);
+  progress_shown_ = true;
+}
+
+void Console::end_progress() {
+  std::lock_guard lock(mutex_);
+  erase_progress();
+}
+
+void Console::erase_progress() {
+  if (!progress_shown_) return;
+  fmt::print(stderr, "{}", kEraseLine);
+  std::fflush(stderr);
+  progress_shown_ = false;
+}
+
+}  // namespace afterglow

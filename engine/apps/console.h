@@ -1,0 +1,48 @@
+// What the user sees on stderr: errors, warnings, progress. One per process; thread-safe.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "core/diagnostics.h"
+#include "core/result.h"
+
+namespace spdlog {
+class logger;
+}
+
+namespace afterglow {
+
+enum class Verbosity { quiet, normal, verbose };
+
+class Console {
+ public:
+  Console();
+  ~Console();
+
+  /// `color` may only forbid colours; they also need a terminal that has them, and NO_COLOR unset.
+  void configure(Verbosity verbosity, bool color);
+  Verbosity verbosity() const { return verbosity_; }
+
+  /// `FILE:LINE: error: …` and its trail.
+  void error(const Error& error);
+  void warning(const std::string& text);
+  void note(const std::string& text);  ///< shown with -v
+  /// Warnings and notes of the engine end here.
+  Diagnostics& diagnostics() { return diagnostics_; }
+
+  /// Shows `done` of `total` with a label on one line that overwrites itself; nothing unless stderr is a terminal.
+  void progress(std::size_t done, std::size_t total, const std::string& label, double seconds);
+  void end_progress();
+
+ private:
+  void erase_progress();  // with mutex_ held
+  std::mutex mutex_;
+  std::shared_ptr<spdlog::logger> log_;
+  Diagnostics diagnostics_;
+  Verbosity verbosity_ = Verbosity::normal;
+  bool terminal_ = false, color_ = false, progress_shown_ = false;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,201 @@
+#include "apps/frame_loop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "apps/interrupt.h"
+#include "apps/options.h"
+#include "apps/resume.h"
+#include "apps/scale.h"
+
+namespace afterglow {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// A file that fails spoils its frame; a script, a device or an option that fails would spoil them all.
+bool ends_run(const Error& error) { return error.kind != ErrorKind::io && error.kind != ErrorKind::other; }
+
+Error named(Error error, const FrameJob& job) {
+  if (error.file.empty()) error.file = job.input.string();
+  return error;
+}
+
+}  // namespace
+
+struct FrameLoop::Reading {
+  FrameRecord* frame = nullptr;
+  std::optional<Error> refused;  ///< by the header; nothing was read
+  BuildContext context;
+  std::future<Result<Picture>> picture;
+};
+
+struct FrameLoop::Writing {
+  FrameRecord* frame = nullptr;
+  std::future<Result<void>> written;
+};
+
+FrameLoop::FrameLoop(Session& session, const PictureFunctions& pictures, FrameLoopOptions options, Console& console)
+    : session_(session), pictures_(pictures), options_(std::move(options)), console_(console) {}
+
+FrameLoop::~FrameLoop() = default;
+
+Result<void> FrameLoop::run(std::vector<FrameRecord>& frames) {
+  std::vector<FrameRecord*> waiting;
+  for (auto& frame : frames)
+    if (frame.state == FrameRecord::State::waiting) waiting.push_back(&frame);
+  total_ = waiting.size();
+  const auto start = Clock::now();
+  std::unique_ptr<Reading> next;
+  for (std::size_t i = 0; i < waiting.size(); ++i) {
+    if (interrupted()) return close(interrupt_error());
+    if (total_ > 1)
+      console_.progress(i, total_, waiting[i]->job.output.filename().string(), milliseconds_since(start) / 1000);
+    auto reading = next ? std::move(next) : begin_reading(*waiting[i]);
+    // Shaders, pipelines and memory are made while the first picture is read.
+    if (i == 0 && !reading->refused) {
+      if (auto prepared = session_.prepare(reading->context); !prepared && ends_run(prepared.error()))
+        return close(fail(*reading->frame, std::move(prepared).error()));
+    }
+    if (reading->picture.valid()) reading->picture.wait();
+    if (overlap_ && i + 1 < waiting.size()) next = begin_reading(*waiting[i + 1]);
+    if (auto done = process(*reading); !done) return close(done.error());
+    if (!overlap_)
+      if (auto done = finish_writing(); !done) return close(done.error());
+  }
+  return close({});
+}
+
+/// Waits for the last output and sums up.
+Result<void> FrameLoop::close(Result<void> result) {
+  auto last = finish_writing();
+  console_.end_progress();
+  if (!result) {
+    if (result.error().kind == ErrorKind::interrupted && total_ > 1) {
+      Error error = result.error();
+      error.message = fmt::format("interrupted after {} of {} frames; --resume goes on from there", done_, total_);
+      return error;
+    }
+    return result;
+  }
+  if (!last) return last;
+  if (failed_ > 0) return Error{ErrorKind::io, fmt::format("{} of {} frames failed", failed_, total_)};
+  return {};
+}
+
+Result<FrameLoop::Need> FrameLoop::need_of(const PictureHeader& header, const BuildContext& context,
+                                           const FrameJob& job) {
+  Need need;
+  need.reading = header.host_bytes;
+  need.result = static_cast<std::uint64_t>(context.size.area()) * 4 * sizeof(float);
+  AFTERGLOW_TRY(need.device, session_.stack().memory_needed(context));
+  largest_need_ = std::max(largest_need_, need.one_frame());
+  if (need.one_frame() > options_.max_memory)
+    return Error{ErrorKind::io,
+                 fmt::format("{}x{} pixels need about {} with this preset, above --max-memory {}", context.size.width,
+                             context.size.height, memory_text(need.one_frame()), memory_text(options_.max_memory)),
+                 job.input.string()};
+  return need;
+}
+
+std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(FrameRecord& frame) {
+  auto reading = std::make_unique<Reading>();
+  reading->frame = &frame;
+  ReadOptions options = options_.read;
+  options.depth = frame.job.depth;
+  options.normal = frame.job.normal;
+  const auto header = pictures_.read_header(frame.job.input, options);
+  if (!header) {
+    reading->refused = named(header.error(), frame.job);
+    return reading;
+  }
+  const Size display = header->display_window.size();
+  BuildContext& context = reading->context;
+  context.size =
+      options_.size ? scaled_size(header->data_window.size(), display, *options_.size) : header->data_window.size();
+  for (const auto& name : header->auxiliary)
+    if (std::find(options.auxiliary.begin(), options.auxiliary.end(), name) != options.auxiliary.end())
+      context.auxiliary[name] = context.size;
+  context.frame = frame.job.frame;
+  context.fps = options_.fps;
+  context.time = frame.job.frame / options_.fps;
+  const auto need = need_of(*header, context, frame.job);
+  if (!need) {
+    reading->refused = need.error();
+    return reading;
+  }
+  overlap_ = total_ > 1 && need->three_frames() <= options_.max_memory;
+  reading->picture = std::async(std::launch::async, [this, &frame, options]() -> Result<Picture> {
+    const auto start = Clock::now();
+    auto picture = pictures_.read_picture(frame.job.input, options, console_.diagnostics());
+    if (picture && options_.size) scale_picture(*picture, *options_.size);
+    frame.read = milliseconds_since(start);
+    return picture;
+  });
+  return reading;
+}
+
+/// From the picture that has been read to one that is being written.
+Result<void> FrameLoop::process(Reading& reading) {
+  FrameRecord& frame = *reading.frame;
+  if (reading.refused) return fail(frame, *reading.refused);
+  auto picture = reading.picture.get();
+  if (!picture) return fail(frame, named(std::move(picture).error(), frame.job));
+  if (interrupted()) return interrupt_error();
+  frame.size = picture->color.size();
+  const auto processed = session_.process(*picture, reading.context);
+  // Validation goes first: it says what a failure comes from.
+  if (session_.device().validation_errors() > 0)
+    return fail(frame, {ErrorKind::device, "Vulkan validation: " + session_.device().validation_messages().front()});
+  if (!processed) return fail(frame, named(processed.error(), frame.job));
+  const SessionReport report = session_.report();
+  frame.times = report.times.frame;
+  if (report.clamped > 0)
+    console_.diagnostics().warn_once(
+        "clamped", fmt::format("{}: {} samples were held at ±65504, the largest half float", frame.job.input.string(),
+                               report.clamped));
+  if (interrupted()) return interrupt_error();
+  AFTERGLOW_CHECK(finish_writing());
+  begin_writing(frame, std::move(*picture));
+  return {};
+}
+
+void FrameLoop::begin_writing(FrameRecord& frame, Picture picture) {
+  writing_ = std::make_unique<Writing>();
+  writing_->frame = &frame;
+  writing_->written = std::async(std::launch::async, [this, &frame, picture = std::move(picture)]() -> Result<void> {
+    const auto start = Clock::now();
+    auto written = pictures_.write_picture(picture, frame.job.output, options_.write, console_.diagnostics());
+    frame.write = milliseconds_since(start);
+    if (written && options_.record_look) return record_made(frame.job, *options_.record_look);
+    return written;
+  });
+}
+
+Result<void> FrameLoop::finish_writing() {
+  if (!writing_) return {};
+  const auto writing = std::move(writing_);
+  auto written = writing->written.get();
+  if (!written) return fail(*writing->frame, std::move(written).error());
+  writing->frame->state = FrameRecord::State::done;
+  ++done_;
+  return {};
+}
+
+/// Notes the failure; returns it when the run ends with it.
+Result<void> FrameLoop::fail(FrameRecord& frame, Error error) {
+  frame.state = FrameRecord::State::failed;
+  frame.error = error;
+  if (total_ == 1 || options_.fail_fast || ends_run(error)) return error;
+  ++failed_;
+  console_.error(error);
+  return {};
+}
+
+}  // namespace afterglow

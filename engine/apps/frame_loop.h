@@ -1,0 +1,69 @@
+// The frames of a run, one after the other; the next is read and the last is written while one is processed, if memory
+// allows.
+#pragma once
+
+#include <future>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "apps/console.h"
+#include "apps/pictures.h"
+#include "apps/run_report.h"
+#include "core/hash.h"
+#include "session/session.h"
+
+namespace afterglow {
+
+struct FrameLoopOptions {
+  ReadOptions read;  ///< depth and normal are those of each frame
+  WriteOptions write;
+  std::optional<Size> size;  ///< display window to scale pictures to before the stack
+  double fps = 24;
+  std::uint64_t max_memory = 6ull << 30;
+  std::optional<Hash> record_look;  ///< leave notes for --resume
+  bool fail_fast = false;
+};
+
+class FrameLoop {
+ public:
+  FrameLoop(Session& session, const PictureFunctions& pictures, FrameLoopOptions options, Console& console);
+  ~FrameLoop();
+
+  /// Runs the frames that are `waiting` and notes in each what became of it. A frame whose files fail is reported and
+  /// the rest go on; errors of the script or the device end the run. Errors: that of the only frame, or one that counts
+  /// the failed ones.
+  Result<void> run(std::vector<FrameRecord>& frames);
+
+  std::uint64_t largest_need() const { return largest_need_; }
+
+ private:
+  struct Reading;
+  struct Writing;
+  struct Need {
+    std::uint64_t device = 0, reading = 0, result = 0;  ///< bytes
+    std::uint64_t one_frame() const { return device + reading + result; }
+    std::uint64_t three_frames() const {
+      return device + 2 * (reading + result);
+    }  ///< one is read, one processed, one written
+  };
+
+  Result<Need> need_of(const PictureHeader& header, const BuildContext& context, const FrameJob& job);
+  std::unique_ptr<Reading> begin_reading(FrameRecord& frame);
+  Result<void> process(Reading& reading);
+  void begin_writing(FrameRecord& frame, Picture picture);
+  Result<void> finish_writing();
+  Result<void> fail(FrameRecord& frame, Error error);
+  Result<void> close(Result<void> result);
+
+  Session& session_;
+  const PictureFunctions& pictures_;
+  FrameLoopOptions options_;
+  Console& console_;
+  std::unique_ptr<Writing> writing_;
+  std::size_t total_ = 0, done_ = 0, failed_ = 0;
+  std::uint64_t largest_need_ = 0;
+  bool overlap_ = false;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "apps/graph_view.h"
+
+namespace afterglow {
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c == '\n' ? ' ' : c;
+  }
+  return out + "\"";
+}
+
+/// Node that makes an image.
+std::string node(const Graph& graph, ImageId image) {
+  const auto& made = graph.images[static_cast<std::size_t>(image)];
+  return made.producer < 0 ? fmt::format("image{}", image) : fmt::format("pass{}", made.producer);
+}
+
+std::string pass_line(const Graph& graph, int index) {
+  const Pass& pass = graph.passes[static_cast<std::size_t>(index)];
+  std::string label = fmt::format("{}\n{} {}", pass.name, kind_text(pass.kind), size_text(graph, pass));
+  std::string escaped;
+  for (const char c : label)
+    escaped += c == '\n' ? std::string("\\n") : c == '"' ? std::string("\\\"") : std::string(1, c);
+  return fmt::format("pass{} [label=\"{}\"];\n", index, escaped);
+}
+
+}  // namespace
+
+std::vector<Skipped> all_skipped(const Graph& graph, const Plan& plan) {
+  std::vector<Skipped> all = graph.skipped;
+  all.insert(all.end(), plan.skipped.begin(), plan.skipped.end());
+  return all;
+}
+
+int kernel_of(const Plan& plan, int pass) {
+  for (std::size_t i = 0; i < plan.kernels.size(); ++i)
+    if (std::ranges::find(plan.kernels[i].passes, pass) != plan.kernels[i].passes.end()) return static_cast<int>(i);
+  return -1;
+}
+
+std::string size_text(const Graph& graph, const Pass& pass) {
+  const Size size = graph.images[static_cast<std::size_t>(pass.output)].size;
+  return fmt::format("{}×{}", size.width, size.height);
+}
+
+const char* kind_text(PassKind kind) {
+  return kind == PassKind::pixel ? "pixel" : kind == PassKind::filter ? "filter" : "sample";
+}
+
+std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& title) {
+  std::string out = fmt::format(
+      "digraph {} {{\n  rankdir=TB;\n  node [shape=box, style=rounded, fontname=\"sans-serif\"];\n", quoted(title));
+  for (std::size_t i = 0; i < graph.images.size(); ++i)
+    if (graph.images[i].producer < 0)
+      out += fmt::format("  image{} [label={}, shape=ellipse];\n", i, quoted(graph.images[i].name));
+  for (std::size_t k = 0; k < plan.kernels.size(); ++k) {
+    const auto& kernel = plan.kernels[k];
+    const bool joined = kernel.passes.size() > 1;
+    if (joined)
+      out += fmt::format("  subgraph cluster{} {{\n    label={};\n    tooltip={};\n", k,
+                         quoted(fmt::format("kernel {}", k)), quoted(kJoinReason));
+    for (const int pass : kernel.passes) out += (joined ? "    " : "  ") + pass_line(graph, pass);
+    if (joined) out += "  }\n";
+  }
+  for (std::size_t p = 0; p < graph.passes.size(); ++p) {
+    if (kernel_of(plan, static_cast<int>(p)) < 0) continue;
+    for (const auto& input : graph.passes[p].inputs)
+      out += fmt::format("  {} -> pass{} [label={}];\n", node(graph, input.image), p,
+                         quoted(input.name == "source" ? "" : input.name));
+  }
+  out += fmt::format("  result [shape=ellipse];\n  {} -> result;\n", node(graph, graph.result));
+  const auto skipped = all_skipped(graph, plan);
+  for (std::size_t i = 0; i < skipped.size(); ++i)
+    out += fmt::format("  skipped{} [label={}, style=\"rounded,dashed\", fontcolor=gray40, color=gray60];\n", i,
+                       quoted(fmt::format("{}: {}", skipped[i].name, skipped[i].reason)));
+  return out + "}\n";
+}
+
+std::string graph_json(const Graph& graph, const Plan& plan, const std::string& title) {
+  using Json = nlohmann::ordered_json;
+  Json out{{"preset", title},
+           {"graph", Json::parse(to_json(graph))},
+           {"kernels", Json::array()},
+           {"skipped", Json::array()}};
+  for (const auto& kernel : plan.kernels) {
+    Json item{{"name", kernel.name}, {"passes", Json::array()}};
+    for (const int pass : kernel.passes) item["passes"].push_back(graph.passes[static_cast<std::size_t>(pass)].name);
+    if (kernel.passes.size() > 1) item["joined_because"] = std::string("the later passes ") + kJoinReason;
+    out["kernels"].push_back(std::move(item));
+  }
+  for (const auto& skipped : all_skipped(graph, plan))
+    out["skipped"].push_back(Json{{"name", skipped.name}, {"reason", skipped.reason}});
+  return out.dump(2) + "\n";
+}
+
+}  // namespace afterglow

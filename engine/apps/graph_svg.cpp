@@ -1,0 +1,162 @@
+// A layered drawing made here, so that `--format svg` needs no graphviz: a row is as deep as the longest way from an
+// input, and the passes of a row are ordered by where their inputs stand.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "apps/graph_view.h"
+
+namespace afterglow {
+namespace {
+
+constexpr double kBoxWidth = 250, kBoxHeight = 44, kGapX = 30, kGapY = 46, kMargin = 24, kTitle = 40, kLine = 18;
+
+struct Node {
+  std::string label, detail, color;
+  std::vector<std::size_t> inputs;
+  std::size_t row = 0;
+  double x = 0, y = 0;
+  bool rounded = false;
+};
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '&')
+      out += "&amp;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+/// Kernels of several passes share a tint; the others are white.
+std::string tint(const Plan& plan, int kernel) {
+  static constexpr const char* kTints[] = {"#e3f0ff", "#fdebd7", "#e5f6e3", "#f6e3f3", "#fff6cf", "#e2f4f4"};
+  return plan.kernels[static_cast<std::size_t>(kernel)].passes.size() > 1 ? kTints[static_cast<std::size_t>(kernel) % 6]
+                                                                          : "#ffffff";
+}
+
+/// Inputs, then the passes that run, then the result, in an order in which inputs come first.
+std::vector<Node> nodes_of(const Graph& graph, const Plan& plan) {
+  std::vector<Node> nodes;
+  std::vector<std::size_t> of_image(graph.images.size(), 0);
+  for (std::size_t i = 0; i < graph.images.size(); ++i) {
+    if (graph.images[i].producer >= 0) continue;
+    of_image[i] = nodes.size();
+    const Size size = graph.images[i].size;
+    nodes.push_back(
+        {graph.images[i].name, fmt::format("input {}×{}", size.width, size.height), "#eeeeee", {}, 0, 0, 0, true});
+  }
+  for (std::size_t p = 0; p < graph.passes.size(); ++p) {
+    const Pass& pass = graph.passes[p];
+    const int kernel = kernel_of(plan, static_cast<int>(p));
+    if (kernel < 0) continue;
+    Node node{pass.name, fmt::format("{} {}, kernel {}", kind_text(pass.kind), size_text(graph, pass), kernel),
+              tint(plan, kernel)};
+    for (const auto& input : pass.inputs) node.inputs.push_back(of_image[static_cast<std::size_t>(input.image)]);
+    of_image[static_cast<std::size_t>(pass.output)] = nodes.size();
+    nodes.push_back(std::move(node));
+  }
+  nodes.push_back({"result", "", "#eeeeee", {of_image[static_cast<std::size_t>(graph.result)]}, 0, 0, 0, true});
+  return nodes;
+}
+
+/// Returns the width of the widest row.
+double lay_out(std::vector<Node>& nodes) {
+  std::size_t rows = 0;
+  for (auto& node : nodes) {
+    for (const auto input : node.inputs) node.row = std::max(node.row, nodes[input].row + 1);
+    rows = std::max(rows, node.row + 1);
+  }
+  double width = 0;
+  std::vector<std::vector<std::size_t>> by_row(rows);
+  for (std::size_t i = 0; i < nodes.size(); ++i) by_row[nodes[i].row].push_back(i);
+  for (const auto& row : by_row) width = std::max(width, static_cast<double>(row.size()) * (kBoxWidth + kGapX) - kGapX);
+  for (std::size_t r = 0; r < rows; ++r) {
+    auto& row = by_row[r];
+    const auto mean_x = [&](std::size_t i) {
+      if (nodes[i].inputs.empty()) return 0.0;
+      double sum = 0;
+      for (const auto input : nodes[i].inputs) sum += nodes[input].x;
+      return sum / static_cast<double>(nodes[i].inputs.size());
+    };
+    std::stable_sort(row.begin(), row.end(), [&](auto a, auto b) { return mean_x(a) < mean_x(b); });
+    const double used = static_cast<double>(row.size()) * (kBoxWidth + kGapX) - kGapX;
+    double x = kMargin + (width - used) / 2;
+    for (const auto i : row) {
+      nodes[i].x = x;
+      nodes[i].y = kTitle + kMargin + static_cast<double>(r) * (kBoxHeight + kGapY);
+      x += kBoxWidth + kGapX;
+    }
+  }
+  return width;
+}
+
+std::string edge(const Node& from, const Node& to) {
+  const double x0 = from.x + kBoxWidth / 2, y0 = from.y + kBoxHeight, x1 = to.x + kBoxWidth / 2, y1 = to.y;
+  const double bend = std::max(20.0, (y1 - y0) / 2);
+  return fmt::format(
+      "<path d=\"M{:.0f} {:.0f} C{:.0f} {:.0f} {:.0f} {:.0f} {:.0f} {:.0f}\" marker-end=\"url(#arrow)\"/>\n", x0, y0,
+      x0, y0 + bend, x1, y1 - bend, x1, y1);
+}
+
+std::string box(const Node& node) {
+  std::string out =
+      fmt::format("<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\" rx=\"{}\" fill=\"{}\"/>\n",
+                  node.x, node.y, kBoxWidth, kBoxHeight, node.rounded ? 22 : 6, node.color);
+  const double middle = node.x + kBoxWidth / 2;
+  out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\">{}</text>\n", middle, node.y + (node.detail.empty() ? 27 : 19),
+                     escaped(node.label));
+  if (!node.detail.empty())
+    out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" class=\"detail\">{}</text>\n", middle, node.y + 35,
+                       escaped(node.detail));
+  return out;
+}
+
+}  // namespace
+
+std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& title) {
+  auto nodes = nodes_of(graph, plan);
+  double width = lay_out(nodes) + 2 * kMargin;
+  const auto skipped = all_skipped(graph, plan);
+  std::vector<std::string> lines;
+  if (std::ranges::any_of(plan.kernels, [](const auto& k) { return k.passes.size() > 1; }))
+    lines.push_back(std::string("Passes of one tint are joined into one kernel: the later ones ") + kJoinReason + ".");
+  for (const auto& entry : skipped) lines.push_back(fmt::format("Skipped {}: {}", entry.name, entry.reason));
+  for (const auto& line : lines) width = std::max(width, 2 * kMargin + 7.5 * static_cast<double>(line.size()));
+  double bottom = 0;
+  for (const auto& node : nodes) bottom = std::max(bottom, node.y + kBoxHeight);
+  const double height = bottom + kMargin + kLine * static_cast<double>(lines.size()) + kMargin;
+
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
+      "{1:.0f}\">\n"
+      "<style>text{{font:13px sans-serif;text-anchor:middle}}.detail{{font-size:11px;fill:#555}}"
+      ".note{{text-anchor:start}}rect{{stroke:#444}}path{{stroke:#666;fill:none}}</style>\n"
+      "<defs><marker id=\"arrow\" viewBox=\"0 0 8 8\" refX=\"8\" refY=\"4\" markerWidth=\"8\" markerHeight=\"8\" "
+      "orient=\"auto\">"
+      "<path d=\"M0 0 L8 4 L0 8 z\" style=\"fill:#666;stroke:none\"/></marker></defs>\n"
+      "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" style=\"fill:#fff;stroke:none\"/>\n",
+      width, height);
+  out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" class=\"note\" style=\"font-size:17px\">{}</text>\n", kMargin,
+                     kTitle, escaped(title));
+  for (const auto& node : nodes)
+    for (const auto input : node.inputs) out += edge(nodes[input], node);
+  for (const auto& node : nodes) out += box(node);
+  double y = bottom + kMargin + kLine;
+  for (const auto& line : lines) {
+    out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" class=\"note\">{}</text>\n", kMargin, y, escaped(line));
+    y += kLine;
+  }
+  return out + "</svg>\n";
+}
+
+}  // namespace afterglow

@@ -1,0 +1,28 @@
+// A graph and its plan as pictures and data.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "graph/graph.h"
+#include "graph/plan.h"
+
+namespace afterglow {
+
+/// Why the passes of a kernel behind its first were joined to it.
+inline constexpr const char* kJoinReason = "read only their own pixel of an image that nobody else reads";
+
+std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& title);
+std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& title);
+std::string graph_json(const Graph& graph, const Plan& plan, const std::string& title);
+
+/// What was skipped, by the script and by the plan.
+std::vector<Skipped> all_skipped(const Graph& graph, const Plan& plan);
+/// Index of the kernel that runs a pass, or -1 when it was dropped.
+int kernel_of(const Plan& plan, int pass);
+/// "1920×1080" of the image a pass makes.
+std::string size_text(const Graph& graph, const Pass& pass);
+/// "pixel", "filter" or "sample".
+const char* kind_text(PassKind kind);
+
+}  // namespace afterglow

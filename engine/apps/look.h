@@ -1,0 +1,27 @@
+// A preset loaded and built for an assumed picture, without a device: what `check` and `graph` look at.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "apps/options.h"
+#include "graph/plan.h"
+#include "script/preset.h"
+#include "shader/library.h"
+
+namespace afterglow {
+
+struct Look {
+  std::unique_ptr<ShaderLibrary> shaders;
+  std::unique_ptr<Preset> preset;
+  Graph graph;
+  Plan plan;  ///< as `run` would make it
+};
+
+/// Errors: script, usage.
+Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& assumed, Console& console);
+
+/// Compiles every kernel of the plan, from the disk cache where possible; all GLSL errors, each once.
+std::vector<Error> shader_errors(const Look& look);
+
+}  // namespace afterglow

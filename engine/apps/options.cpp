@@ -1,0 +1,168 @@
+#include "apps/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+
+#include "core/paths.h"
+#include "core/text.h"
+
+namespace afterglow {
+
+void MessageArguments::add(CLI::App& command) {
+  command.add_flag("-v,--verbose", verbose, "Show notes too, not only warnings")->group("Messages");
+  command.add_flag("-q,--quiet", quiet, "Show errors alone; no progress bar")->group("Messages");
+  command.add_flag("--no-color", no_color, "No colours, even on a terminal")->group("Messages");
+}
+
+void MessageArguments::apply(Console& console) const {
+  console.configure(quiet ? Verbosity::quiet : verbose ? Verbosity::verbose : Verbosity::normal, !no_color);
+}
+
+void PresetArguments::add(CLI::App& command) {
+  command.add_option("PRESET", file, "Look to apply: a Lua file that returns a stack")->required();
+  command
+      .add_option("--set", overrides,
+                  "Overrides one setting, as if the preset said so: bloom.intensity=0.4 (repeatable)")
+      ->type_name("EFFECT.SETTING=VALUE")
+      ->expected(1)
+      ->take_all()
+      ->group("Preset");
+  add_paths(command);
+}
+
+void PresetArguments::add_paths(CLI::App& command) {
+  command
+      .add_option("--path", paths,
+                  "Folder with effects/ and shaders/ of yours, before AFTERGLOW_PATH and the installation (repeatable)")
+      ->type_name("FOLDER")
+      ->expected(1)
+      ->take_all()
+      ->group("Preset");
+}
+
+Result<PresetOptions> PresetArguments::options() const {
+  PresetOptions options;
+  options.paths.assign(paths.begin(), paths.end());
+  for (const auto& text : overrides) {
+    AFTERGLOW_TRY(Override parsed, parse_override(text));
+    options.overrides.push_back(std::move(parsed));
+  }
+  return options;
+}
+
+void DeviceArguments::add(CLI::App& command) {
+  command.add_option("--device", device, "auto, a number from `afterglow devices`, or part of a device's name")
+      ->type_name("DEVICE")
+      ->group("Device");
+  command
+      .add_flag("--validate", validate,
+                "Vulkan validation with synchronization checks; any error ends with exit code 5")
+      ->group("Device");
+}
+
+DeviceOptions DeviceArguments::options() const {
+  const char* environment = std::getenv("AFTERGLOW_VALIDATE");
+  const bool asked =
+      environment != nullptr && std::string_view(environment) != "" && std::string_view(environment) != "0";
+  return {device, validate || asked};
+}
+
+void ExecutionArguments::add(CLI::App& command) {
+  command
+      .add_option("--precision", precision,
+                  "Storage between passes: auto, fp32 or fp16 (auto: what is fastest within --max-error)")
+      ->check(CLI::IsMember({"auto", "fp32", "fp16"}))
+      ->type_name("P")
+      ->group("Device");
+  command
+      .add_option(
+          "--max-error", max_error,
+          "Allowed relative error; 1e-4 and less: full floats, exact sampling (default: the preset's, else 2e-3)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("E")
+      ->group("Device");
+  command.add_flag("--reference", reference, "The slow truth: every pass on its own, full floats, computed weights")
+      ->group("Device");
+  command.add_option("--max-memory", max_memory, "Refuse pictures that need more: 512M, 6G (default 6G)")
+      ->type_name("SIZE")
+      ->group("Device");
+}
+
+Result<StackOptions> ExecutionArguments::options() const {
+  StackOptions options;
+  options.precision = precision == "fp32"   ? Precision::fp32
+                      : precision == "fp16" ? Precision::fp16
+                                            : Precision::automatic;
+  options.max_error = max_error;
+  options.reference = reference;
+  AFTERGLOW_TRY(options.max_memory, parse_memory(max_memory));
+  options.cache_folder = cache_folder();
+  return options;
+}
+
+Result<Size> parse_size(const std::string& text) {
+  const auto parts = split(lower(text), 'x');
+  Size size;
+  const auto number = [](const std::string& part, int& out) {
+    const auto [end, ec] = std::from_chars(part.data(), part.data() + part.size(), out);
+    return ec == std::errc() && end == part.data() + part.size() && out >= 1 && out <= 16384;
+  };
+  if (parts.size() != 2 || !number(parts[0], size.width) || !number(parts[1], size.height))
+    return Error{ErrorKind::usage, fmt::format("'{}' is no size", text), "--size", 0, "WIDTHxHEIGHT, each 1 to 16384"};
+  return size;
+}
+
+Result<std::uint64_t> parse_memory(const std::string& text) {
+  const Error wrong{ErrorKind::usage, fmt::format("'{}' is no amount of memory", text), "--max-memory", 0,
+                    "a number above 0 with K, M, G or T, as in 512M or 6G"};
+  const char* begin = text.c_str();
+  char* end = nullptr;
+  const double number = std::strtod(begin, &end);
+  std::string unit = lower(trim(std::string_view(end)));
+  if (end == begin || !std::isfinite(number) || number <= 0) return wrong;
+  for (const std::string_view ending : {"ib", "b"})
+    if (unit.ends_with(ending)) {
+      unit.resize(unit.size() - ending.size());
+      break;
+    }
+  const std::string_view units = "kmgt";
+  const auto at = unit.empty() ? 0 : units.find(unit) + 1;
+  if (unit.size() > 1 || (!unit.empty() && at == 0)) return wrong;
+  const double bytes = number * std::pow(1024.0, static_cast<double>(at));
+  if (bytes < 1 || bytes >= 9e18) return wrong;
+  return static_cast<std::uint64_t>(bytes);
+}
+
+std::string memory_text(std::uint64_t bytes) {
+  const auto value = static_cast<double>(bytes);
+  if (value >= 1024.0 * 1024 * 1024) return fmt::format("{:.1f} GiB", value / (1024.0 * 1024 * 1024));
+  if (value >= 1024.0 * 1024) return fmt::format("{:.0f} MiB", value / (1024.0 * 1024));
+  return fmt::format("{:.0f} KiB", value / 1024.0);
+}
+
+void AssumedPicture::add(CLI::App& command) {
+  command.add_option("--size", size, "Size of the assumed picture (default 1920x1080)")
+      ->type_name("WxH")
+      ->group("Picture");
+  command
+      .add_option("--without", without, "Auxiliary input that the assumed picture lacks: depth, normal (repeatable)")
+      ->type_name("INPUT")
+      ->expected(1)
+      ->take_all()
+      ->group("Picture");
+}
+
+Result<BuildContext> AssumedPicture::context(const Preset& preset) const {
+  BuildContext context;
+  AFTERGLOW_TRY(context.size, parse_size(size));
+  for (const auto& name : preset.needs())
+    if (std::find(without.begin(), without.end(), name) == without.end()) context.auxiliary[name] = context.size;
+  return context;
+}
+
+}  // namespace afterglow

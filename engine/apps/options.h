@@ -1,0 +1,69 @@
+// Options that several commands share: declared once, with one text of help.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/console.h"
+#include "core/geometry.h"
+#include "core/result.h"
+#include "session/session.h"
+
+namespace afterglow {
+
+/// -v, -q, --no-color: every command has them.
+struct MessageArguments {
+  bool verbose = false, quiet = false, no_color = false;
+  void add(CLI::App& command);
+  void apply(Console& console) const;
+};
+
+/// PRESET, --set, --path.
+struct PresetArguments {
+  std::string file;
+  std::vector<std::string> overrides;
+  std::vector<std::string> paths;
+  void add(CLI::App& command);
+  void add_paths(CLI::App& command);  ///< --path alone
+  Result<PresetOptions> options() const;
+};
+
+/// --device, --validate (or AFTERGLOW_VALIDATE=1).
+struct DeviceArguments {
+  std::string device = "auto";
+  bool validate = false;
+  void add(CLI::App& command);
+  DeviceOptions options() const;
+};
+
+/// --precision, --max-error, --reference, --max-memory.
+struct ExecutionArguments {
+  std::string precision = "auto";
+  std::optional<double> max_error;
+  bool reference = false;
+  std::string max_memory = "6G";
+  void add(CLI::App& command);
+  /// Everything of StackOptions but the preset. Errors: usage.
+  Result<StackOptions> options() const;
+};
+
+/// "1920x1080". Errors: usage.
+Result<Size> parse_size(const std::string& text);
+/// "6G", "512M", "1.5GiB", "1000000": bytes, units of 1024. Errors: usage.
+Result<std::uint64_t> parse_memory(const std::string& text);
+/// "6.0 GiB", "512 MiB".
+std::string memory_text(std::uint64_t bytes);
+
+/// The picture that `check` and `graph` assume: --size, with every auxiliary input that the stack asks for.
+struct AssumedPicture {
+  std::string size = "1920x1080";
+  std::vector<std::string> without;  ///< --without depth
+  void add(CLI::App& command);
+  Result<BuildContext> context(const Preset& preset) const;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,57 @@
+#include "apps/resume.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "shader/library.h"
+
+namespace afterglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path record_file(const fs::path& output) {
+  return output.parent_path() / ".afterglow" / (output.filename().string() + ".made");
+}
+
+}  // namespace
+
+Result<Hash> look_hash(const Preset& preset, const Graph& graph, const SearchPath& path, const std::string& options) {
+  Hasher hasher;
+  hasher.add(AFTERGLOW_VERSION).add(options);
+  for (const auto& file : preset.files()) {
+    AFTERGLOW_TRY(const std::string text, read_file(file));
+    hasher.add(text);
+  }
+  ShaderLibrary shaders(path);
+  for (const auto& pass : graph.passes) {
+    if (pass.shader.empty()) continue;
+    AFTERGLOW_TRY(const auto shader, shaders.find(pass.shader));
+    hasher.add(shader->hash.hex());
+  }
+  return hasher.finish();
+}
+
+bool is_up_to_date(const FrameJob& job, const Hash& look) {
+  std::error_code ec;
+  const auto made = fs::last_write_time(job.output, ec);
+  if (ec) return false;
+  for (const auto& source : job.sources()) {
+    const auto changed = fs::last_write_time(source, ec);
+    if (ec || changed >= made) return false;
+  }
+  const auto record = read_file(record_file(job.output), 1024);
+  return record && trim(*record) == look.hex();
+}
+
+Result<void> record_made(const FrameJob& job, const Hash& look) {
+  const fs::path file = record_file(job.output);
+  std::error_code ec;
+  fs::create_directory(file.parent_path(), ec);
+  return write_file_atomically(file, look.hex() + "\n");
+}
+
+}  // namespace afterglow

@@ -1,0 +1,156 @@
+#include "apps/run_report.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "apps/options.h"
+#include "apps/table.h"
+
+namespace afterglow {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::size_t count(const RunReport& report, FrameRecord::State state) {
+  return static_cast<std::size_t>(
+      std::count_if(report.frames.begin(), report.frames.end(), [&](const auto& f) { return f.state == state; }));
+}
+
+/// Mean over the frames that were made.
+template <class Value>
+double mean(const RunReport& report, Value value) {
+  double sum = 0;
+  for (const auto& frame : report.frames)
+    if (frame.state == FrameRecord::State::done) sum += value(frame);
+  return sum / static_cast<double>(std::max<std::size_t>(1, count(report, FrameRecord::State::done)));
+}
+
+struct Step {
+  const char* name;
+  double milliseconds;
+  const char* note;
+};
+
+/// The steps in the order of work.
+std::vector<Step> steps(const RunReport& report) {
+  const SessionTimes times = report.session ? report.session->times : SessionTimes{};
+  return {
+      {"start-up", report.startup, "libraries and device; scripts not counted"},
+      {"script", times.script, ""},
+      {"compile", times.compile, "shaders and pipelines"},
+      {"read", mean(report, [](const auto& f) { return f.read; }), "a frame"},
+      {"upload", mean(report, [](const auto& f) { return f.times.upload; }), "a frame"},
+      {"execute", mean(report, [](const auto& f) { return f.times.execute; }), "a frame"},
+      {"read-back", mean(report, [](const auto& f) { return f.times.readback; }), "a frame"},
+      {"write", mean(report, [](const auto& f) { return f.write; }), "a frame"},
+  };
+}
+
+const FrameRecord* last_done(const RunReport& report) {
+  for (auto frame = report.frames.rbegin(); frame != report.frames.rend(); ++frame)
+    if (frame->state == FrameRecord::State::done) return &*frame;
+  return nullptr;
+}
+
+std::string passes_text(const FrameRecord& frame) {
+  if (frame.times.kernels.empty()) return {};
+  Table table({"pass", "ms"});
+  for (const auto& kernel : frame.times.kernels) table.add({kernel.name, fmt::format("{:.3f}", kernel.milliseconds)});
+  const char* how = frame.times.separate_submissions
+                        ? "\npasses of the last frame, each submitted alone (not part of the figures above)\n"
+                        : "\npasses of the last frame, by the device's timestamps\n";
+  return how + table.text("  ");
+}
+
+Json frame_json(const FrameRecord& frame) {
+  static constexpr const char* kStates[] = {"not run", "done", "up to date", "failed"};
+  Json out{{"frame", frame.job.frame},
+           {"input", frame.job.input.string()},
+           {"output", frame.job.output.string()},
+           {"state", kStates[static_cast<int>(frame.state)]}};
+  if (frame.error) out["error"] = frame.error->text();
+  if (frame.state != FrameRecord::State::done) return out;
+  out["width"] = frame.size.width;
+  out["height"] = frame.size.height;
+  out["milliseconds"] = Json{{"read", frame.read},
+                             {"upload", frame.times.upload},
+                             {"execute", frame.times.execute},
+                             {"read_back", frame.times.readback},
+                             {"write", frame.write}};
+  for (const auto& kernel : frame.times.kernels)
+    out["passes"].push_back(Json{{"name", kernel.name}, {"milliseconds", kernel.milliseconds}});
+  if (!frame.times.kernels.empty()) out["passes_submitted_alone"] = frame.times.separate_submissions;
+  return out;
+}
+
+Json session_json(const SessionReport& session) {
+  Json out{
+      {"preset", session.preset},
+      {"device", session.device},
+      {"driver", session.driver},
+      {"storage", session.storage},
+      {"reference", session.reference},
+      {"hardware_filter", session.hardware_filter},
+      {"max_error", session.max_error},
+      {"kernels", session.kernels},
+      {"skipped", Json::array()},
+      {"image_memory",
+       Json{{"shared", session.memory.arena}, {"unshared", session.memory.sum}, {"least", session.memory.lower_bound}}},
+      {"clamped_samples", session.clamped}};
+  for (const auto& skipped : session.skipped)
+    out["skipped"].push_back(Json{{"name", skipped.name}, {"reason", skipped.reason}});
+  return out;
+}
+
+}  // namespace
+
+std::uint64_t peak_memory() {
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string report_text(const RunReport& report, bool passes) {
+  std::string out;
+  if (report.session)
+    out += fmt::format("{} on {} ({}{})\n", report.session->preset, report.session->device, report.session->storage,
+                       report.session->reference ? ", reference" : "");
+  const std::size_t done = count(report, FrameRecord::State::done);
+  out += fmt::format("frames: {} done, {} up to date, {} failed\n", done, count(report, FrameRecord::State::up_to_date),
+                     count(report, FrameRecord::State::failed));
+  Table table({"step", "ms", ""});
+  for (const auto& step : steps(report))
+    table.add({step.name, fmt::format("{:.1f}", step.milliseconds), done > 1 || *step.note != 'a' ? step.note : ""});
+  table.add({"wall", fmt::format("{:.1f}", report.wall), "from start to end; steps overlap"});
+  out += table.text("  ");
+  out += fmt::format("memory: {} at the peak, {} estimated beforehand", memory_text(peak_memory()),
+                     memory_text(report.memory_needed));
+  if (report.session && report.session->memory.sum > 0)
+    out += fmt::format("; passes share {} ({} if they did not)", memory_text(report.session->memory.arena),
+                       memory_text(report.session->memory.sum));
+  out += "\n";
+  if (report.session) {
+    for (const auto& skipped : report.session->skipped)
+      out += fmt::format("skipped {}: {}\n", skipped.name, skipped.reason);
+    if (report.session->clamped > 0)
+      out += fmt::format("{} samples of the last frame were held at ±65504 (half floats)\n", report.session->clamped);
+  }
+  if (const FrameRecord* frame = passes ? last_done(report) : nullptr) out += passes_text(*frame);
+  return out;
+}
+
+std::string report_json(const RunReport& report) {
+  Json out{{"afterglow", AFTERGLOW_VERSION}};
+  out["session"] = report.session ? session_json(*report.session) : Json(nullptr);
+  for (const auto& step : steps(report)) out["milliseconds"][step.name] = step.milliseconds;
+  out["milliseconds"]["wall"] = report.wall;
+  out["memory"] = Json{{"peak", peak_memory()}, {"estimated", report.memory_needed}};
+  out["frames"] = Json::array();
+  for (const auto& frame : report.frames) out["frames"].push_back(frame_json(frame));
+  return out.dump(2) + "\n";
+}
+
+}  // namespace afterglow

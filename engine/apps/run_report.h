@@ -1,0 +1,38 @@
+// What a run has to say for itself: --stats as text, --report as JSON.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/frame_list.h"
+#include "session/session.h"
+
+namespace afterglow {
+
+/// What became of one frame. Milliseconds; reading and writing overlap other frames' work.
+struct FrameRecord {
+  FrameJob job;
+  enum class State { waiting, done, up_to_date, failed } state = State::waiting;
+  std::optional<Error> error;
+  Size size;
+  double read = 0, write = 0;
+  FrameTimes times;
+};
+
+struct RunReport {
+  std::optional<SessionReport> session;  ///< empty when it could not be opened
+  std::vector<FrameRecord> frames;
+  double startup = 0;  ///< from the start of the program until the first frame can begin; script not included
+  double wall = 0;     ///< from the start of the program to now
+  std::uint64_t memory_needed = 0;  ///< estimate that was held against --max-memory, of the largest frame
+};
+
+/// Largest resident size of this process so far, in bytes.
+std::uint64_t peak_memory();
+
+/// Table of steps; with `passes` also one line a pass.
+std::string report_text(const RunReport& report, bool passes);
+std::string report_json(const RunReport& report);
+
+}  // namespace afterglow

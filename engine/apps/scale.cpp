@@ -1,0 +1,104 @@
+#include "apps/scale.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace afterglow {
+namespace {
+
+int scaled(int value, int from, int to) {
+  return static_cast<int>(std::lround(static_cast<double>(value) * to / from));
+}
+
+/// Source texels and weights of one target coordinate.
+struct Taps {
+  int first = 0;
+  std::vector<float> weights;
+};
+
+std::vector<Taps> triangle_taps(int source, int target) {
+  std::vector<Taps> all(static_cast<std::size_t>(target));
+  const double ratio = static_cast<double>(source) / target;
+  const double radius = std::max(1.0, ratio);
+  for (int i = 0; i < target; ++i) {
+    const double center = (i + 0.5) * ratio - 0.5;
+    const int first = std::max(0, static_cast<int>(std::ceil(center - radius)));
+    const int last = std::min(source - 1, static_cast<int>(std::floor(center + radius)));
+    Taps& taps = all[static_cast<std::size_t>(i)];
+    taps.first = first;
+    double sum = 0;
+    for (int texel = first; texel <= last; ++texel) {
+      const double weight = std::max(0.0, 1 - std::abs(texel - center) / radius);
+      taps.weights.push_back(static_cast<float>(weight));
+      sum += weight;
+    }
+    for (auto& weight : taps.weights) weight = static_cast<float>(weight / sum);
+  }
+  return all;
+}
+
+Image resample_rows(const Image& source, int width) {
+  const auto taps = triangle_taps(source.width, width);
+  Image out(width, source.height, source.channels);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const Taps& t = taps[static_cast<std::size_t>(x)];
+      for (int c = 0; c < out.channels; ++c) {
+        float sum = 0;
+        for (std::size_t k = 0; k < t.weights.size(); ++k)
+          sum += t.weights[k] * source.at(t.first + static_cast<int>(k), y)[c];
+        out.at(x, y)[c] = sum;
+      }
+    }
+  return out;
+}
+
+Image resample_columns(const Image& source, int height) {
+  const auto taps = triangle_taps(source.height, height);
+  Image out(source.width, height, source.channels);
+  const int values = source.width * source.channels;
+  for (int y = 0; y < height; ++y) {
+    const Taps& t = taps[static_cast<std::size_t>(y)];
+    float* row = out.at(0, y);
+    for (std::size_t k = 0; k < t.weights.size(); ++k) {
+      const float* from = source.at(0, t.first + static_cast<int>(k));
+      for (int i = 0; i < values; ++i) row[i] += t.weights[k] * from[i];
+    }
+  }
+  return out;
+}
+
+Image nearest(const Image& source, Size size) {
+  Image out(size.width, size.height, source.channels);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const int sx = static_cast<int>((x + 0.5) * source.width / size.width);
+      const int sy = static_cast<int>((y + 0.5) * source.height / size.height);
+      std::copy_n(source.at(std::min(sx, source.width - 1), std::min(sy, source.height - 1)), source.channels,
+                  out.at(x, y));
+    }
+  return out;
+}
+
+}  // namespace
+
+Size scaled_size(Size data, Size display, Size target) {
+  return {std::max(1, scaled(data.width, display.width, target.width)),
+          std::max(1, scaled(data.height, display.height, target.height))};
+}
+
+void scale_picture(Picture& picture, Size target) {
+  const Size display = picture.display_window.size();
+  const Size size = scaled_size(picture.data_window.size(), display, target);
+  picture.color = resample_columns(resample_rows(picture.color, size.width), size.height);
+  for (auto& [name, image] : picture.auxiliary) image = nearest(image, size);
+  // The display window keeps its corner, the data window its place in it.
+  const Rect old = picture.display_window;
+  picture.data_window = {old.x + scaled(picture.data_window.x - old.x, display.width, target.width),
+                         old.y + scaled(picture.data_window.y - old.y, display.height, target.height), size.width,
+                         size.height};
+  picture.display_window = {old.x, old.y, target.width, target.height};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,16 @@
+// --size: pictures made smaller (or larger) before the stack, for a quick look.
+#pragma once
+
+#include "core/geometry.h"
+#include "image/picture.h"
+
+namespace afterglow {
+
+/// Size of a data window when its display window is scaled to `target`; at least 1×1.
+Size scaled_size(Size data, Size display, Size target);
+
+/// Scales so that the display window becomes `target`. Colour with a triangle filter as wide as a target pixel
+/// (bilinear when enlarging); depth and normals take the nearest texel, since values between two surfaces mean nothing.
+void scale_picture(Picture& picture, Size target);
+
+}  // namespace afterglow

@@ -1,0 +1,21 @@
+// Columns of text, as wide as they need to be.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace afterglow {
+
+/// Left-aligned columns two spaces apart; the last column is not padded. Widths count code points (UTF-8).
+class Table {
+ public:
+  explicit Table(std::vector<std::string> header) { add(std::move(header)); }
+  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  /// Lines that start with `indent`, each ended by a newline.
+  std::string text(const std::string& indent = "") const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace afterglow
