@@ -1,5 +1,5 @@
-// A preset: a sandboxed Lua script that returns a stack. Loading runs the script, finds the effects it names, and checks every
-// setting against its effect's schema; building runs the effects' `build` functions and yields a graph.
+// A preset: a sandboxed Lua script that returns a stack. Loading runs the script, finds the effects it names, and
+// checks every setting against its effect's schema; building runs the effects' `build` functions and yields a graph.
 #pragma once
 
 #include <array>
@@ -23,10 +23,11 @@ enum class SettingType { integer, number, boolean, enumeration, color, vec2 };
 /// A value of a setting; colours are scene-linear.
 struct SettingValue {
   SettingType type = SettingType::number;
-  std::array<double, 3> number{};  ///< integer and number in [0]; boolean as 0/1 in [0]; vec2 in [0..1]; colour in [0..2]
-  std::string choice;              ///< enumeration
+  std::array<double, 3>
+      number{};        ///< integer and number in [0]; boolean as 0/1 in [0]; vec2 in [0..1]; colour in [0..2]
+  std::string choice;  ///< enumeration
   friend bool operator==(const SettingValue&, const SettingValue&) = default;
-  std::string text() const;        ///< as one would write it in Lua
+  std::string text() const;  ///< as one would write it in Lua
 };
 
 /// What an effect declares about one setting; help, completion, `effects` and documents come from it.
@@ -42,22 +43,22 @@ struct SettingSchema {
 struct EffectSchema {
   std::string name, doc, at;
   int order = 0;
-  std::vector<SettingSchema> settings;   ///< in order of declaration
+  std::vector<SettingSchema> settings;  ///< in order of declaration
   std::filesystem::path file;
-  std::vector<std::filesystem::path> shadowed;   ///< files of the same name further down the search path
+  std::vector<std::filesystem::path> shadowed;  ///< files of the same name further down the search path
 };
 
 /// One effect of a stack, in its resolved place.
 struct StackEntry {
-  std::string name;                            ///< unique in the stack: "bloom"; a second one is "bloom#2"
+  std::string name;  ///< unique in the stack: "bloom"; a second one is "bloom#2"
   std::string effect;
-  std::string at;                              ///< injection point
+  std::string at;  ///< injection point
   int order = 0;
   bool enabled = true;
-  bool required = false;                       ///< a missing auxiliary input is an error
+  bool required = false;                                       ///< a missing auxiliary input is an error
   std::vector<std::pair<std::string, SettingValue>> settings;  ///< all of them, in the schema's order
-  std::vector<std::string> changed;            ///< names of those that the preset or an override set
-  std::string file;                            ///< where the preset names the effect
+  std::vector<std::string> changed;                            ///< names of those that the preset or an override set
+  std::string file;                                            ///< where the preset names the effect
   int line = 0;
 };
 
@@ -69,21 +70,21 @@ struct Override {
 Result<Override> parse_override(const std::string& text);
 
 struct ScriptLimits {
-  std::size_t memory = 64u << 20;               ///< bytes
-  std::uint64_t instructions = 50'000'000;      ///< per load or build
-  double seconds = 2.0;                         ///< per load or build
+  std::size_t memory = 64u << 20;           ///< bytes
+  std::uint64_t instructions = 50'000'000;  ///< per load or build
+  double seconds = 2.0;                     ///< per load or build
 };
 
 struct PresetOptions {
-  std::vector<std::filesystem::path> paths;     ///< --path
+  std::vector<std::filesystem::path> paths;  ///< --path
   std::vector<Override> overrides;
   ScriptLimits limits;
 };
 
 /// What `build` may ask about the picture.
 struct BuildContext {
-  Size size;                                     ///< of the source
-  std::map<std::string, Size> auxiliary;         ///< inputs that the picture has: "depth", "normal"
+  Size size;                              ///< of the source
+  std::map<std::string, Size> auxiliary;  ///< inputs that the picture has: "depth", "normal"
   double frame = 1, time = 0, fps = 24;
 };
 
@@ -96,13 +97,16 @@ class Preset {
   Preset& operator=(Preset&&) noexcept;
   ~Preset();
 
-  const std::string& name() const;                   ///< of the stack
-  std::optional<double> max_error() const;           ///< `max_error` of the stack
-  const std::vector<StackEntry>& entries() const;    ///< in the order of execution
-  const EffectSchema& schema(const std::string& effect) const;   ///< of an effect that the stack uses
+  const std::string& name() const;                              ///< of the stack
+  std::optional<double> max_error() const;                      ///< `max_error` of the stack
+  const std::vector<StackEntry>& entries() const;               ///< in the order of execution
+  const EffectSchema& schema(const std::string& effect) const;  ///< of an effect that the stack uses
   /// Names of auxiliary inputs that enabled, active effects ask for.
   std::vector<std::string> needs() const;
-  const std::vector<std::filesystem::path>& files() const;       ///< every script read: preset, library, effects
+  const std::vector<std::filesystem::path>& files() const;  ///< every script read: preset, library, effects
+
+  /// Bytes that the script's state holds, after a collection.
+  std::size_t memory_used() const;
 
   /// Runs `active` and `build` of each enabled entry, in order.
   Result<Graph> build(const BuildContext& context, Diagnostics& diagnostics);

@@ -1,0 +1,74 @@
+// The completion file of lua-language-server for effects: one class of settings each, and `fx.NAME` as a function.
+#include <fmt/format.h>
+
+#include "core/text.h"
+#include "script/preset.h"
+#include "script/setting.h"
+
+namespace afterglow {
+namespace {
+
+std::string lua_type(const SettingSchema& setting) {
+  switch (setting.type) {
+    case SettingType::integer:
+      return "integer";
+    case SettingType::number:
+      return "number";
+    case SettingType::boolean:
+      return "boolean";
+    case SettingType::color:
+      return "number[]|string";
+    case SettingType::vec2:
+      return "number[]";
+    case SettingType::enumeration:
+      break;
+  }
+  std::string out;
+  for (const auto& choice : setting.choices) out += (out.empty() ? "\"" : "|\"") + choice + '"';
+  return out;
+}
+
+// "How much is added. 0…1 EV, default 0.2"
+std::string setting_doc(const SettingSchema& setting) {
+  std::string out = setting.doc;
+  if (!out.empty()) out += ' ';
+  if (setting.type != SettingType::boolean && setting.type != SettingType::enumeration && (setting.min || setting.max))
+    out += script::allowed_text(setting) + (setting.unit.empty() ? "" : " " + setting.unit) + ", ";
+  else if (!setting.unit.empty())
+    out += setting.unit + ", ";
+  return out + "default " + setting.default_value.text();
+}
+
+std::string settings_class(const EffectSchema& effect) {
+  std::string out;
+  if (!effect.doc.empty()) out += fmt::format("---{}\n", effect.doc);
+  out += fmt::format("---@class afterglow.settings.{} : afterglow.EntryKeys\n", effect.name);
+  for (const auto& setting : effect.settings)
+    out += fmt::format("---@field {}? {}  {}\n", setting.name, lua_type(setting), setting_doc(setting));
+  return out;
+}
+
+}  // namespace
+
+std::string completion_text(const std::vector<EffectSchema>& effects) {
+  std::string out =
+      "---@meta\n"
+      "-- Generated from the effects; do not edit. How: tests/unit/script/test_completion.cpp.\n"
+      "\n"
+      "---Keys that every effect of a stack takes besides its settings.\n"
+      "---@class afterglow.EntryKeys\n"
+      "---@field at? \"after_opaque_and_sky\"|\"before_post_process\"|\"post_process\"|\"after_post_process\"  "
+      "injection point\n"
+      "---@field order? integer     place among the effects of the injection point, smaller first\n"
+      "---@field enabled? boolean   false: left out, default true\n"
+      "---@field required? boolean  true: a missing input (depth, normal) is an error, default false\n"
+      "---@field name? string       how messages and --set call it, default: the effect's name\n";
+  for (const auto& effect : effects) out += "\n" + settings_class(effect);
+  out += "\n---@class afterglow\n";
+  for (const auto& effect : effects)
+    out += fmt::format("---@field {0} fun(settings: afterglow.settings.{0}): afterglow.Entry  {1}\n", effect.name,
+                       effect.doc);
+  return out;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,215 @@
+#include "script/declare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/text.h"
+#include "script/injection.h"
+#include "script/object.h"
+#include "script/setting.h"
+#include "script/table_reader.h"
+
+namespace afterglow::script {
+namespace {
+
+constexpr std::size_t kMaxDeclared = 4096;  // settings, effects, entries of one state
+
+constexpr const char* kMakers[] = {"int", "float", "bool", "enum", "color", "vec2"};
+
+std::vector<std::string> known_keys(SettingType type) {
+  switch (type) {
+    case SettingType::integer:
+    case SettingType::number:
+    case SettingType::vec2:
+      return {"default", "doc", "max", "min", "unit"};
+    default:
+      return {"default", "doc"};
+  }
+}
+
+void read_choices(lua_State* lua, TableReader& table, SettingSchema& schema) {
+  for (const auto& key : table.keys()) {
+    if (key.position == 0) continue;
+    table.push(key);
+    const Value given = read_value(lua, -1);
+    lua_pop(lua, 1);
+    if (given.kind != Value::Kind::text || !is_identifier(given.text))
+      table.fail(failure(fmt::format("{}: choice {} is {}", table.what(), key.position, given.shown()), {key.name},
+                         "texts of letters, digits and '_'"));
+    else if (std::find(schema.choices.begin(), schema.choices.end(), given.text) != schema.choices.end())
+      table.fail(failure(fmt::format("{}: '{}' is there twice", table.what(), given.text), {key.name}));
+    else
+      schema.choices.push_back(given.text);
+  }
+  if (schema.choices.empty() && !table.failed()) table.fail(failure(fmt::format("{} has no choices", table.what())));
+}
+
+void read_default(TableReader& table, SettingSchema& schema) {
+  const Value given = table.value("default");
+  if (given.kind == Value::Kind::nothing) {
+    table.fail(failure(fmt::format("{} has no default", table.what()), {}, allowed_text(schema)));
+    return;
+  }
+  auto checked = check_setting(fmt::format("{}: default", table.what()), schema, given);
+  if (checked)
+    schema.default_value = *checked;
+  else
+    table.fail({checked.error(), {"default"}, {}});
+}
+
+int make_setting(lua_State* lua, SettingType type) {
+  Runtime& runtime = Runtime::of(lua);
+  const char* maker = kMakers[static_cast<int>(type)];
+  const std::string what = fmt::format("fx.{}", maker);
+  if (!runtime.declaring) throw failure(what + " can only be used while a script loads");
+  if (runtime.settings.size() >= kMaxDeclared) throw failure(fmt::format("more than {} settings", kMaxDeclared));
+  TableReader table(lua, 1, what);
+  table.allow(known_keys(type), type == SettingType::enumeration);
+  SettingSchema schema;
+  schema.type = type;
+  schema.doc = table.text("doc").value_or("");
+  schema.unit = table.text("unit", 20).value_or("");
+  schema.min = table.number("min");
+  schema.max = table.number("max");
+  if (schema.min && schema.max && *schema.min > *schema.max)
+    table.fail(failure(
+        fmt::format("{}: min {} is above max {}", what, number_text(*schema.min), number_text(*schema.max)), {"min"}));
+  if (type == SettingType::color) schema.min = 0;
+  if (type == SettingType::enumeration) read_choices(lua, table, schema);
+  if (!table.failed()) read_default(table, schema);
+  table.finish(maker);
+  runtime.settings.push_back({std::move(schema)});
+  push_object(lua, kSettingKind, Handle{static_cast<int>(runtime.settings.size()) - 1});
+  return 1;
+}
+
+void read_settings(lua_State* lua, TableReader& table, EffectSchema& schema) {
+  Runtime& runtime = Runtime::of(lua);
+  table.push("settings");
+  if (lua_isnil(lua, -1)) {
+    lua_pop(lua, 1);
+    return;
+  }
+  if (!lua_istable(lua, -1)) {
+    table.fail(failure(fmt::format("{}: settings = {} is not a table", table.what(), read_value(lua, -1).shown()),
+                       {"settings"}));
+    lua_pop(lua, 1);
+    return;
+  }
+  const TableReader settings(lua, -1, "settings");
+  std::vector<std::pair<int, SettingSchema>> found;
+  for (const auto& key : settings.keys()) {
+    const KeyPath place{"settings", key.name};
+    settings.push(key);
+    const Handle* handle = to_object<Handle>(lua, -1, kSettingKind);
+    const std::string shown = read_value(lua, -1).shown();
+    lua_pop(lua, 1);
+    if (key.position > 0 || !is_identifier(key.name))
+      table.fail(failure(fmt::format("{}: a setting needs a name", table.what()), place, "letters, digits and '_'"));
+    else if (std::find(entry_keys().begin(), entry_keys().end(), key.name) != entry_keys().end())
+      table.fail(failure(fmt::format("{}: no setting may be named '{}', which every entry has", table.what(), key.name),
+                         place));
+    else if (!handle)
+      table.fail(failure(fmt::format("{}: setting '{}' = {} is not a setting type", table.what(), key.name, shown),
+                         place, "fx.int, fx.float, fx.bool, fx.enum, fx.color, fx.vec2"));
+    else
+      found.emplace_back(handle->index, runtime.settings[static_cast<std::size_t>(handle->index)].schema).second.name =
+          key.name;
+  }
+  // A table keeps no order; the types were made one after the other, in the order in which they are written.
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto& [order, setting] : found) schema.settings.push_back(std::move(setting));
+  lua_pop(lua, 1);
+}
+
+FunctionRef read_function(lua_State* lua, TableReader& table, const char* name, bool needed) {
+  table.push(name);
+  if (lua_isfunction(lua, -1)) return {luaL_ref(lua, LUA_REGISTRYINDEX)};
+  if (needed || !lua_isnil(lua, -1))
+    table.fail(
+        failure(fmt::format("{}: {} = {} is not a function", table.what(), name, read_value(lua, -1).shown()), {name}));
+  lua_pop(lua, 1);
+  return {};
+}
+
+InputList read_inputs(lua_State* lua, TableReader& table, const char* name) {
+  table.push(name);
+  if (lua_isnil(lua, -1)) {
+    lua_pop(lua, 1);
+    return {};
+  }
+  if (lua_isfunction(lua, -1)) return {{}, {luaL_ref(lua, LUA_REGISTRYINDEX)}};
+  try {
+    return {pop_input_names(lua, fmt::format("{}: {}", table.what(), name)), {}};
+  } catch (ScriptError& error) {
+    error.key.insert(error.key.begin(), name);
+    table.fail(std::move(error));
+    return {};
+  }
+}
+
+}  // namespace
+
+template <SettingType type>
+int declare_setting(lua_State* lua) {
+  return make_setting(lua, type);
+}
+template int declare_setting<SettingType::integer>(lua_State*);
+template int declare_setting<SettingType::number>(lua_State*);
+template int declare_setting<SettingType::boolean>(lua_State*);
+template int declare_setting<SettingType::enumeration>(lua_State*);
+template int declare_setting<SettingType::color>(lua_State*);
+template int declare_setting<SettingType::vec2>(lua_State*);
+
+std::vector<std::string> pop_input_names(lua_State* lua, const std::string& what) {
+  if (!lua_istable(lua, -1))
+    throw failure(fmt::format("{} = {} is not a list of inputs", what, read_value(lua, -1).shown()), {},
+                  "{ \"depth\" }");
+  const TableReader table(lua, -1, what);
+  std::vector<std::string> names;
+  for (const auto& key : table.keys()) {
+    table.push(key);
+    const Value given = read_value(lua, -1);
+    lua_pop(lua, 1);
+    if (key.position == 0 || given.kind != Value::Kind::text)
+      throw failure(fmt::format("{} holds {}, not the name of an input", what, given.shown()), {key.name},
+                    join(auxiliary_inputs()));
+    if (std::find(auxiliary_inputs().begin(), auxiliary_inputs().end(), given.text) == auxiliary_inputs().end())
+      throw failure(fmt::format("{}: unknown input '{}'", what, tidy_message(given.text, 60)), {key.name},
+                    join(auxiliary_inputs()), nearest_name(given.text, auxiliary_inputs()));
+    names.push_back(given.text);
+  }
+  lua_pop(lua, 1);
+  return names;
+}
+
+int declare_effect(lua_State* lua) {
+  Runtime& runtime = Runtime::of(lua);
+  if (!runtime.declaring) throw failure("fx.effect can only be used while a script loads");
+  if (runtime.effects.size() >= kMaxDeclared) throw failure(fmt::format("more than {} effects", kMaxDeclared));
+  TableReader table(lua, 1, "fx.effect");
+  table.allow({"active", "at", "build", "doc", "name", "needs", "optional", "order", "settings"}, false);
+  Effect effect;
+  EffectSchema& schema = effect.schema;
+  schema.name = table.text("name", 65).value_or("");
+  if (!is_identifier(schema.name) && !table.failed())
+    table.fail(failure("fx.effect needs a name", {"name"}, "letters, digits and '_'"));
+  schema.doc = table.text("doc").value_or("");
+  schema.at = table.text("at").value_or("post_process");
+  if (std::find(injection_points().begin(), injection_points().end(), schema.at) == injection_points().end())
+    table.fail(failure(fmt::format("fx.effect: unknown injection point '{}'", tidy_message(schema.at, 60)), {"at"},
+                       join(injection_points()), nearest_name(schema.at, injection_points())));
+  schema.order = table.integer("order").value_or(0);
+  read_settings(lua, table, schema);
+  effect.active = read_function(lua, table, "active", false);
+  effect.build = read_function(lua, table, "build", true);
+  effect.needs = read_inputs(lua, table, "needs");
+  effect.optional = read_inputs(lua, table, "optional");
+  table.finish("effect");
+  runtime.effects.push_back(std::move(effect));
+  push_object(lua, kEffectKind, Handle{static_cast<int>(runtime.effects.size()) - 1});
+  return 1;
+}
+
+}  // namespace afterglow::script

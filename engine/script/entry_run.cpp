@@ -1,0 +1,123 @@
+#include "script/entry_run.h"
+
+#include <fmt/format.h>
+
+#include "core/text.h"
+#include "script/declare.h"
+#include "script/graph_binding.h"
+#include "script/native.h"
+#include "script/read_only.h"
+#include "script/setting.h"
+
+namespace afterglow::script {
+namespace {
+
+const Effect& effect_of(lua_State* lua, const EntryRun& run) {
+  return Runtime::of(lua).effects[static_cast<std::size_t>(run.effect)];
+}
+
+int unknown_setting(lua_State* lua) {
+  const auto index = static_cast<std::size_t>(lua_tointeger(lua, lua_upvalueindex(1)));
+  const EffectSchema& schema = Runtime::of(lua).effects[index].schema;
+  const Value key = read_value(lua, 2);
+  std::vector<std::string> names;
+  for (const auto& setting : schema.settings) names.push_back(setting.name);
+  throw failure(fmt::format("effect '{}' has no setting {}", schema.name, key.shown()), {}, join(names),
+                nearest_name(key.text, names));
+}
+
+// A failure of a whole function: at the line where the function begins.
+[[noreturn]] void fail_in(lua_State* lua, const FunctionRef& function, const std::string& message,
+                          const ScriptError* from = nullptr) {
+  ScriptError error = from ? *from : failure(message);
+  lua_rawgeti(lua, LUA_REGISTRYINDEX, function.ref);
+  lua_Debug info{};
+  lua_getinfo(lua, ">S", &info);
+  const Sandbox& box = Sandbox::of(lua);
+  box.locate(error.error, box.location(info.source, info.linedefined));
+  throw error;
+}
+
+void call_with_settings(lua_State* lua, const FunctionRef& function, const EntryRun& run, int results) {
+  lua_rawgeti(lua, LUA_REGISTRYINDEX, function.ref);
+  lua_rawgeti(lua, LUA_REGISTRYINDEX, run.settings_ref);
+  call(lua, 1, results);
+}
+
+std::vector<std::string> input_names(lua_State* lua, const EntryRun& run, const InputList& list, const char* what) {
+  if (!list.function.set()) return list.names;
+  call_with_settings(lua, list.function, run, 1);
+  const std::string name = fmt::format("{} of effect '{}'", what, run.entry.effect);
+  if (lua_isnil(lua, -1)) {
+    lua_pop(lua, 1);
+    return {};
+  }
+  try {
+    return pop_input_names(lua, name);
+  } catch (ScriptError& error) {
+    fail_in(lua, list.function, "", &error);
+  }
+}
+
+}  // namespace
+
+int make_settings(lua_State* lua, const StackEntry& entry, int effect) {
+  lua_createtable(lua, 0, static_cast<int>(entry.settings.size()));
+  for (const auto& [name, value] : entry.settings) {
+    push_setting(lua, value);
+    lua_setfield(lua, -2, name.c_str());
+  }
+  lua_createtable(lua, 0, 1);
+  lua_pushinteger(lua, effect);
+  lua_pushcclosure(lua, (&native<unknown_setting, "">), 1);
+  lua_setfield(lua, -2, "__index");
+  lua_setmetatable(lua, -2);
+  make_read_only(lua);
+  return luaL_ref(lua, LUA_REGISTRYINDEX);
+}
+
+std::optional<std::string> inactive_reason(lua_State* lua, const EntryRun& run) {
+  const Effect& effect = effect_of(lua, run);
+  if (!effect.active.set()) return {};
+  call_with_settings(lua, effect.active, run, 2);
+  const Value active = read_value(lua, -2), reason = read_value(lua, -1);
+  lua_pop(lua, 2);
+  if (active.kind != Value::Kind::boolean)
+    fail_in(lua, effect.active,
+            fmt::format("active of effect '{}' returned {}, not true or false", effect.schema.name, active.shown()));
+  if (active.number != 0) return {};
+  return reason.kind == Value::Kind::text ? tidy_message(reason.text, 200) : "its settings leave the picture as it is";
+}
+
+std::vector<std::string> needed_inputs(lua_State* lua, const EntryRun& run) {
+  return input_names(lua, run, effect_of(lua, run).needs, "needs");
+}
+
+std::vector<std::string> optional_inputs(lua_State* lua, const EntryRun& run) {
+  return input_names(lua, run, effect_of(lua, run).optional, "optional");
+}
+
+ImageRef run_build(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source) {
+  const Effect& effect = effect_of(lua, run);
+  lua_rawgeti(lua, LUA_REGISTRYINDEX, effect.build.ref);
+  push_graph(lua, graph);
+  lua_rawgeti(lua, LUA_REGISTRYINDEX, run.settings_ref);
+  push_image(lua, source);
+  call(lua, 3, 1);
+  const ImageRef* result = to_image(lua, -1);
+  if (!result)
+    fail_in(
+        lua, effect.build,
+        fmt::format("build of effect '{}' returned {}, not an image", effect.schema.name, read_value(lua, -1).shown()));
+  if (result->build != graph.build())
+    fail_in(lua, effect.build,
+            fmt::format("build of effect '{}' returned an image of another run", effect.schema.name));
+  const ImageRef image = *result;
+  lua_pop(lua, 1);
+  if (graph.skip_reason() && image.id != source.id)
+    fail_in(lua, effect.build,
+            fmt::format("build of effect '{}' called g:skip, but did not return its source", effect.schema.name));
+  return image;
+}
+
+}  // namespace afterglow::script

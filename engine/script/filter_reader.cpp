@@ -1,0 +1,91 @@
+#include "script/filter_reader.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/text.h"
+
+namespace afterglow::script {
+namespace {
+
+constexpr std::size_t kMaxTaps = 256;
+constexpr double kMaxOffset = 16384;  // texels
+
+// The taps of one key, each with `parts` numbers: offsets, then the weight.
+std::vector<std::array<double, 4>> read_taps(lua_State* lua, const TableReader& filter, const char* name, int parts,
+                                             TableReader& call) {
+  std::vector<std::array<double, 4>> taps;
+  const char* shape = parts == 2 ? "{{offset, weight}, …}" : "{{dx, dy, weight}, …}";
+  const auto wrong = [&](const std::string& message) { call.fail(failure(message, {"filter", name}, shape)); };
+  filter.push(name);
+  if (!lua_istable(lua, -1)) {
+    wrong(fmt::format("{}: {} = {} is not a list of taps", filter.what(), name, read_value(lua, -1).shown()));
+  } else {
+    const auto size = lua_rawlen(lua, -1);
+    if (size == 0 || size > kMaxTaps)
+      wrong(fmt::format("{}: {} has {} taps, not 1…{}", filter.what(), name, size, kMaxTaps));
+    for (std::size_t i = 1; i <= size && size <= kMaxTaps; ++i) {
+      lua_rawgeti(lua, -1, static_cast<lua_Integer>(i));
+      const Value tap = read_value(lua, -1);
+      lua_pop(lua, 1);
+      bool fine = tap.kind == Value::Kind::list && tap.count == parts;
+      for (int k = 0; fine && k < parts; ++k) {
+        const double v = tap.list[static_cast<std::size_t>(k)];
+        fine = std::isfinite(static_cast<float>(v)) && (k == parts - 1 || std::abs(v) <= kMaxOffset);
+      }
+      if (!fine) {
+        wrong(fmt::format("{}: tap {} of {} is {}", filter.what(), i, name, tap.shown()));
+        break;
+      }
+      taps.push_back(tap.list);
+    }
+  }
+  lua_pop(lua, 1);
+  return taps;
+}
+
+Interpolation read_interpolation(TableReader& filter, TableReader& call) {
+  static const std::vector<std::string> names{"nearest", "linear", "cubic_bspline"};
+  const Value given = filter.value("interpolation");
+  if (given.kind == Value::Kind::nothing) return Interpolation::linear;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (given.kind == Value::Kind::text && given.text == names[i]) return static_cast<Interpolation>(i);
+  call.fail(failure(fmt::format("{}: unknown interpolation {}", filter.what(), given.shown()),
+                    {"filter", "interpolation"}, join(names), nearest_name(given.text, names)));
+  return Interpolation::linear;
+}
+
+}  // namespace
+
+Filter read_filter(lua_State* lua, TableReader& call) {
+  Filter result;
+  if (!lua_istable(lua, -1)) {
+    call.fail(failure(fmt::format("{}: filter = {} is not a filter", call.what(), read_value(lua, -1).shown()),
+                      {"filter"}, "{ interpolation, x, y, taps }, fx.filters.…"));
+    return result;
+  }
+  TableReader filter(lua, -1, call.what() + ": the filter");
+  const std::vector<std::string> known{"interpolation", "taps", "x", "y"};
+  for (const auto& key : filter.keys())
+    if (std::find(known.begin(), known.end(), key.name) == known.end())
+      call.fail(failure(fmt::format("{} has no '{}'", filter.what(), tidy_message(key.name, 60)), {"filter", key.name},
+                        join(known), nearest_name(key.name, known)));
+  result.interpolation = read_interpolation(filter, call);
+  const auto has = [&](const char* name) { return filter.value(name).kind != Value::Kind::nothing; };
+  if (has("taps") && (has("x") || has("y")))
+    call.fail(
+        failure(fmt::format("{} has taps and x or y; only one way at a time", filter.what()), {"filter", "taps"}));
+  for (const char axis : {'x', 'y'}) {
+    const char name[] = {axis, '\0'};
+    if (!has(name)) continue;
+    auto& taps = axis == 'x' ? result.x : result.y;
+    taps.clear();
+    for (const auto& tap : read_taps(lua, filter, name, 2, call)) taps.push_back({tap[0], tap[1]});
+  }
+  if (has("taps"))
+    for (const auto& tap : read_taps(lua, filter, "taps", 3, call)) result.taps.push_back({tap[0], tap[1], tap[2]});
+  return result;
+}
+
+}  // namespace afterglow::script

@@ -1,0 +1,257 @@
+#include "script/graph_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.h"
+
+namespace afterglow::script {
+namespace {
+
+constexpr std::size_t kMaxPasses = 4096;
+constexpr int kMaxSide = 16384;
+
+bool is_pass_name(const std::string& name) {
+  if (name.empty() || name.size() > 64) return false;
+  return std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '[' || c == ']'; });
+}
+
+std::string size_text(const Size& size) { return fmt::format("{}×{}", size.width, size.height); }
+
+const char* value_text(ParamType type) {
+  switch (type) {
+    case ParamType::float1:
+      return "a number";
+    case ParamType::float2:
+      return "{ 2 numbers }";
+    case ParamType::float3:
+      return "{ 3 numbers }";
+    case ParamType::float4:
+      return "{ 4 numbers }";
+    case ParamType::int1:
+      return "an integer";
+    case ParamType::int2:
+      return "{ 2 integers }";
+    case ParamType::bool1:
+      return "true, false";
+  }
+  return "";
+}
+
+}  // namespace
+
+GraphBuilder::GraphBuilder(const BuildContext& context, ShaderLibrary& shaders, std::uint64_t build)
+    : context_(context), shaders_(shaders), build_(build) {
+  graph_.source = add_image("source", context.size, -1);
+}
+
+ImageId GraphBuilder::add_image(std::string name, Size size, int producer) {
+  graph_.images.push_back({std::move(name), size, producer});
+  return static_cast<ImageId>(graph_.images.size()) - 1;
+}
+
+void GraphBuilder::begin(const StackEntry& entry, std::vector<std::string> inputs) {
+  entry_ = &entry;
+  inputs_ = std::move(inputs);
+  skip_reason_.reset();
+}
+
+Graph GraphBuilder::finish(ImageId result) {
+  graph_.result = result;
+  return std::move(graph_);
+}
+
+void GraphBuilder::fail(const Pass& pass, const std::string& message, KeyPath key, std::string allowed,
+                        std::string nearest) const {
+  throw failure(fmt::format("pass '{}' of effect '{}': {}", pass.name, entry_->effect, message), std::move(key),
+                std::move(allowed), std::move(nearest));
+}
+
+Pass GraphBuilder::start(std::string name, const std::optional<std::string>& given, const CallPlace& place) {
+  Pass pass;
+  pass.effect = entry_->name;
+  pass.file = place.file;
+  pass.line = place.line;
+  pass.name = entry_->name + "." + name;
+  if (given && !is_pass_name(*given))
+    fail(pass, fmt::format("'{}' cannot be the name of a pass", tidy_message(*given, 60)), {"name"},
+         "1 to 64 letters, digits, '_', '-', '[' and ']'");
+  if (given) pass.name = entry_->name + "." + *given;
+  const std::string wanted = pass.name;
+  for (int n = 2; names_.contains(pass.name); ++n) pass.name = fmt::format("{}#{}", wanted, n);
+  if (graph_.passes.size() >= kMaxPasses) fail(pass, fmt::format("more than {} passes", kMaxPasses));
+  return pass;
+}
+
+ImageRef GraphBuilder::add(Pass pass, Size size) {
+  names_.insert(pass.name);
+  pass.output = add_image(pass.name, size, static_cast<int>(graph_.passes.size()));
+  graph_.passes.push_back(std::move(pass));
+  return ref(graph_.passes.back().output);
+}
+
+void GraphBuilder::check_image(const Pass& pass, const std::string& key, const ImageRef& image) const {
+  if (image.build != build_) fail(pass, fmt::format("'{}' is an image of another run of build", key), {key});
+}
+
+void GraphBuilder::check_size(const Pass& pass, const Size& size) const {
+  const auto fits = [](int side) { return side >= 1 && side <= kMaxSide; };
+  if (!fits(size.width) || !fits(size.height))
+    fail(pass, fmt::format("size {} is out of range", size_text(size)), {"size"},
+         fmt::format("1…{} each way", kMaxSide));
+}
+
+std::optional<ImageRef> GraphBuilder::input(const std::string& name) {
+  if (std::find(inputs_.begin(), inputs_.end(), name) == inputs_.end())
+    throw failure(fmt::format("effect '{}' asks for the input '{}', which its needs and optional do not name",
+                              entry_->effect, tidy_message(name, 60)),
+                  {}, join(inputs_), nearest_name(name, inputs_));
+  const auto size = context_.auxiliary.find(name);
+  if (size == context_.auxiliary.end()) return {};
+  const auto [known, added] = graph_.auxiliary.try_emplace(name, kNoImage);
+  if (added) known->second = add_image(name, size->second, -1);
+  return ref(known->second);
+}
+
+// ---- passes with a shader
+
+ImageRef GraphBuilder::pass(const PassRequest& request, const CallPlace& place) {
+  const std::string last = request.shader.substr(request.shader.rfind('/') + 1);
+  Pass pass = start(last, request.name, place);
+  auto shader = shaders_.find(request.shader);
+  if (!shader) {
+    // An unknown name is the script's fault; errors inside the file have a place of their own.
+    Error error = shader.error();
+    if (error.line > 0) throw ScriptError{std::move(error)};
+    fail(pass, error.message, {"shader"}, error.allowed, error.nearest);
+  }
+  const ShaderInterface& interface = (*shader)->interface;
+  pass.kind = interface.kind == ShaderKind::pixel ? PassKind::pixel : PassKind::sample;
+  pass.shader = request.shader;
+  bind(pass, request, interface);
+  const Size size = target_size(pass, request);
+  for (const auto& input : pass.inputs) {
+    const Size& given = graph_.images[static_cast<std::size_t>(input.image)].size;
+    if (input.pixelwise && given != size)
+      fail(pass,
+           fmt::format("'{}' is {}, but is read pixel by pixel with a target of {}", input.name, size_text(given),
+                       size_text(size)),
+           {input.name}, size_text(size));
+  }
+  return add(std::move(pass), size);
+}
+
+void GraphBuilder::bind(Pass& pass, const PassRequest& request, const ShaderInterface& interface) const {
+  const bool pixel = interface.kind == ShaderKind::pixel;
+  // Inputs in the shader's order, the colour of a pixel shader first, whatever order the script's table has.
+  std::vector<std::string> names;
+  if (pixel) names.push_back("source");
+  for (const auto& input : interface.inputs) names.push_back(input.name);
+  for (const auto& param : interface.params) names.push_back(param.name);
+  for (const auto& argument : request.arguments)
+    if (std::find(names.begin(), names.end(), argument.name) == names.end())
+      fail(pass,
+           fmt::format("shader '{}' has no input or parameter '{}'", request.shader, tidy_message(argument.name, 60)),
+           {argument.name}, join(names), nearest_name(argument.name, names));
+  const auto given = [&](const std::string& name) -> const Argument* {
+    for (const auto& argument : request.arguments)
+      if (argument.name == name) return &argument;
+    return nullptr;
+  };
+  if (pixel)
+    if (const Argument* argument = given("source")) bind_image(pass, *argument, true);
+  for (const auto& input : interface.inputs)
+    if (const Argument* argument = given(input.name)) bind_image(pass, *argument, input.pixelwise);
+  for (const auto& param : interface.params)
+    if (const Argument* argument = given(param.name))
+      bind_param(pass, *argument, param);
+    else if (param.specialised)
+      pass.constants[param.name] = param.default_value;
+  check_complete(pass, interface, pixel);
+}
+
+void GraphBuilder::check_complete(const Pass& pass, const ShaderInterface& interface, bool needs_source) const {
+  const auto has_input = [&](const std::string& name) {
+    return std::any_of(pass.inputs.begin(), pass.inputs.end(), [&](const auto& input) { return input.name == name; });
+  };
+  if (needs_source && !has_input("source"))
+    fail(pass, fmt::format("shader '{}' needs 'source', an image", pass.shader));
+  for (const auto& input : interface.inputs)
+    if (!has_input(input.name)) fail(pass, fmt::format("shader '{}' needs '{}', an image", pass.shader, input.name));
+  for (const auto& param : interface.params)
+    if (!param.specialised && !pass.params.contains(param.name))
+      fail(pass, fmt::format("shader '{}' needs the parameter '{}'", pass.shader, param.name), {},
+           value_text(param.type));
+}
+
+void GraphBuilder::bind_image(Pass& pass, const Argument& argument, bool pixelwise) const {
+  if (!argument.image)
+    fail(pass, fmt::format("{} = {} is not an image", argument.name, argument.value.shown()), {argument.name});
+  check_image(pass, argument.name, *argument.image);
+  pass.inputs.push_back({argument.name, argument.image->id, pixelwise});
+}
+
+void GraphBuilder::bind_param(Pass& pass, const Argument& argument, const ShaderParam& param) const {
+  using Kind = Value::Kind;
+  const Value& value = argument.value;
+  const auto wrong = [&](const char* what) {
+    fail(pass, fmt::format("{} = {} is {}", param.name, argument.image ? "an image" : value.shown(), what),
+         {param.name}, value_text(param.type));
+  };
+  const auto components = static_cast<std::size_t>(component_count(param.type));
+  std::array<double, 4> v{};
+  if (param.type == ParamType::bool1) {
+    if (argument.image || value.kind != Kind::boolean) wrong("not a boolean");
+    v[0] = value.number;
+  } else if (components == 1) {
+    if (argument.image || value.kind != Kind::number) wrong("not a number");
+    v[0] = value.number;
+  } else {
+    if (argument.image || value.kind != Kind::list) wrong("not an array of numbers");
+    if (static_cast<std::size_t>(value.count) != components) wrong("of another length");
+    v = value.list;
+  }
+  const bool integer = param.type == ParamType::int1 || param.type == ParamType::int2;
+  for (std::size_t i = 0; i < components; ++i) {
+    if (!std::isfinite(static_cast<float>(v[i]))) wrong("not finite");
+    if (integer && (v[i] != std::floor(v[i]) || std::abs(v[i]) > 2147483647.0)) wrong("not an integer");
+  }
+  if (param.specialised)
+    pass.constants[param.name] = v[0];
+  else
+    pass.params[param.name] = {param.type, v};
+}
+
+Size GraphBuilder::target_size(const Pass& pass, const PassRequest& request) const {
+  const auto source =
+      std::find_if(pass.inputs.begin(), pass.inputs.end(), [](const auto& input) { return input.name == "source"; });
+  if (pass.kind == PassKind::pixel) {
+    if (request.size) fail(pass, "a pixel shader's target has the size of its source; leave out size", {"size"});
+    return graph_.images[static_cast<std::size_t>(source->image)].size;
+  }
+  if (request.size) {
+    check_size(pass, *request.size);
+    return *request.size;
+  }
+  if (source == pass.inputs.end())
+    fail(pass, "no input is called 'source', so size must be given", {}, "an image, {width, height}");
+  return graph_.images[static_cast<std::size_t>(source->image)].size;
+}
+
+// ---- filters
+
+ImageRef GraphBuilder::filter(FilterRequest request, const CallPlace& place) {
+  Pass pass = start("filter", request.name, place);
+  pass.kind = PassKind::filter;
+  if (!request.source) fail(pass, "needs 'source', an image");
+  check_image(pass, "source", *request.source);
+  if (request.size) check_size(pass, *request.size);
+  pass.inputs.push_back({"source", request.source->id, false});
+  pass.filter = std::move(request.filter);
+  return add(std::move(pass), request.size.value_or(request.source->size));
+}
+
+}  // namespace afterglow::script

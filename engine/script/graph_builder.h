@@ -1,0 +1,105 @@
+// Builds a Graph pass by pass and checks each pass against what its shader declares. No Lua: the binding turns a table
+// into a PassRequest. Failures carry the key of the request they are about, so that the binding can point at its line.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "graph/graph.h"
+#include "script/preset.h"
+#include "script/script_error.h"
+#include "script/value.h"
+#include "shader/library.h"
+
+namespace afterglow::script {
+
+/// An image as scripts hold it. `build` tells the images of one run of Preset::build from those of another.
+struct ImageRef {
+  std::uint64_t build = 0;
+  ImageId id = kNoImage;
+  Size size;
+};
+
+/// An input or parameter of a pass, as the script named it.
+struct Argument {
+  std::string name;
+  std::optional<ImageRef> image;  ///< else `value`
+  Value value;
+};
+
+struct PassRequest {
+  std::optional<std::string> name;
+  std::string shader;
+  std::optional<Size> size;
+  std::vector<Argument> arguments;  ///< "source" among them
+};
+
+struct FilterRequest {
+  std::optional<std::string> name;
+  std::optional<ImageRef> source;
+  std::optional<Size> size;
+  Filter filter;
+};
+
+/// Where a script asks for a pass.
+struct CallPlace {
+  std::string file;
+  int line = 0;
+};
+
+/// All functions throw ScriptError; messages name pass and effect.
+class GraphBuilder {
+ public:
+  GraphBuilder(const BuildContext& context, ShaderLibrary& shaders, std::uint64_t build);
+
+  ImageRef source() const { return ref(graph_.source); }
+  std::uint64_t build() const { return build_; }
+  const BuildContext& context() const { return context_; }
+
+  /// Passes that follow belong to this entry. `inputs`: auxiliary images that it may ask for.
+  void begin(const StackEntry& entry, std::vector<std::string> inputs);
+  const StackEntry& entry() const { return *entry_; }
+
+  ImageRef pass(const PassRequest& request, const CallPlace& place);
+  ImageRef filter(FilterRequest request, const CallPlace& place);
+  /// Empty when the picture has no such image.
+  std::optional<ImageRef> input(const std::string& name);
+  void skip(std::string reason) { skip_reason_ = std::move(reason); }
+  const std::optional<std::string>& skip_reason() const { return skip_reason_; }
+  std::size_t pass_count() const { return graph_.passes.size(); }
+
+  void add_skipped(std::string name, std::string reason) {
+    graph_.skipped.push_back({std::move(name), std::move(reason)});
+  }
+  Graph finish(ImageId result);
+
+ private:
+  ImageRef ref(ImageId id) const { return {build_, id, graph_.images[static_cast<std::size_t>(id)].size}; }
+  ImageId add_image(std::string name, Size size, int producer);
+  Pass start(std::string name, const std::optional<std::string>& given, const CallPlace& place);
+  ImageRef add(Pass pass, Size size);
+  void check_image(const Pass& pass, const std::string& key, const ImageRef& image) const;
+  void check_size(const Pass& pass, const Size& size) const;
+  [[noreturn]] void fail(const Pass& pass, const std::string& message, KeyPath key = {}, std::string allowed = {},
+                         std::string nearest = {}) const;
+  void bind(Pass& pass, const PassRequest& request, const ShaderInterface& interface) const;
+  void bind_image(Pass& pass, const Argument& argument, bool pixelwise) const;
+  void bind_param(Pass& pass, const Argument& argument, const ShaderParam& param) const;
+  void check_complete(const Pass& pass, const ShaderInterface& interface, bool needs_source) const;
+  Size target_size(const Pass& pass, const PassRequest& request) const;
+
+  BuildContext context_;
+  ShaderLibrary& shaders_;
+  std::uint64_t build_;
+  Graph graph_;
+  const StackEntry* entry_ = nullptr;
+  std::vector<std::string> inputs_;
+  std::set<std::string> names_;
+  std::optional<std::string> skip_reason_;
+};
+
+}  // namespace afterglow::script

@@ -1,0 +1,28 @@
+// Injection points and auxiliary inputs: the words that presets and effects may use.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace afterglow::script {
+
+/// In the order of execution.
+inline const std::vector<std::string>& injection_points() {
+  static const std::vector<std::string> points{"after_opaque_and_sky", "before_post_process", "post_process",
+                                               "after_post_process"};
+  return points;
+}
+
+/// Images besides the picture that an effect may ask for.
+inline const std::vector<std::string>& auxiliary_inputs() {
+  static const std::vector<std::string> inputs{"depth", "normal", "motion"};
+  return inputs;
+}
+
+/// Keys of an entry besides settings; no setting may have such a name.
+inline const std::vector<std::string>& entry_keys() {
+  static const std::vector<std::string> keys{"at", "enabled", "name", "order", "required"};
+  return keys;
+}
+
+}  // namespace afterglow::script

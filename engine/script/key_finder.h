@@ -1,0 +1,17 @@
+// Finds the line of a key in the source text of a call, so that an error can point at `treshold = 1` and not at the
+// `fx.bloom{` above it. Works on tokens; knows comments, strings, long brackets and nested functions. Pure text.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "script/script_error.h"
+
+namespace afterglow::script {
+
+/// Line of `key` in the table constructor of the call `function{…}` or `function({…})` whose bracket opens on
+/// `call_line` (any constructor that opens there when the function goes by another name). Falls back to the deepest
+/// part of the path that was found, then to `call_line`.
+int line_of_key(std::string_view text, int call_line, std::string_view function, const KeyPath& key);
+
+}  // namespace afterglow::script

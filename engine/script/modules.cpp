@@ -1,0 +1,206 @@
+// Reading scripts: chunks, `require`, and the effects on the search path.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <system_error>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "script/globals.h"
+#include "script/native.h"
+#include "script/object.h"
+#include "script/runtime.h"
+#include "script/value.h"
+
+namespace afterglow::script {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kMaxScript = 1u << 20;  // bytes; presets are a page long
+const char kModules = 0;                      // registry key of the cache of modules
+
+bool is_file(const fs::path& path) {
+  std::error_code ec;
+  return fs::is_regular_file(path, ec);
+}
+
+// Marks a name as being loaded, for the life of the object.
+class Loading {
+ public:
+  Loading(Runtime& runtime, std::string name) : runtime_(runtime), name_(std::move(name)) {
+    if (!runtime_.loading.insert(name_).second) throw failure(fmt::format("'{}' needs itself while it loads", name_));
+  }
+  ~Loading() { runtime_.loading.erase(name_); }
+  Loading(const Loading&) = delete;
+  Loading& operator=(const Loading&) = delete;
+
+ private:
+  Runtime& runtime_;
+  std::string name_;
+};
+
+// "lib.taps" → "lib/taps.lua"; empty when the name could lead anywhere else.
+std::string module_file(const std::string& name) {
+  for (const auto& part : split(name, '.'))
+    if (!is_identifier(part)) return {};
+  std::string file = name;
+  std::replace(file.begin(), file.end(), '.', '/');
+  return file + ".lua";
+}
+
+fs::path find_module(const Runtime& runtime, const std::string& name) {
+  const std::string file = module_file(name);
+  if (file.empty())
+    throw failure(fmt::format("require: '{}' is not the name of a module", tidy_message(name, 60)), {},
+                  "names joined by '.', like \"lib.taps\"");
+  std::vector<fs::path> roots = runtime.path.user;
+  roots.push_back(runtime.path.installation / "scripts");
+  for (const auto& root : roots) {
+    const fs::path path = root / file;
+    if (!is_file(path)) continue;
+    if (!lies_in(path, root))
+      throw failure(fmt::format("require: '{}' is a link that leads out of {}", name, root.string()));
+    return path;
+  }
+  throw failure(fmt::format("require: there is no module '{}'", name), {},
+                "\"afterglow\", and scripts beside the preset or on the search path");
+}
+
+int do_require(lua_State* lua) {
+  Runtime& runtime = Runtime::of(lua);
+  if (lua_type(lua, 1) != LUA_TSTRING) throw failure("require: the name of a module must be a text");
+  const std::string name = lua_tostring(lua, 1);
+  lua_settop(lua, 0);
+  lua_rawgetp(lua, LUA_REGISTRYINDEX, &kModules);
+  if (lua_getfield(lua, 1, name.c_str()) != LUA_TNIL) return 1;
+  if (!runtime.declaring) throw failure("require: can only be used while a script loads");
+  const fs::path file = find_module(runtime, name);
+  const Loading loading(runtime, name);
+  load_chunk(lua, file);
+  call(lua, 0, 1);
+  if (lua_isnil(lua, -1)) {
+    lua_pop(lua, 1);
+    lua_pushboolean(lua, 1);
+  }
+  lua_pushvalue(lua, -1);
+  lua_setfield(lua, 1, name.c_str());
+  return 1;
+}
+
+}  // namespace
+
+bool is_identifier(const std::string& name) {
+  if (name.empty() || name.size() > 64 || std::isdigit(static_cast<unsigned char>(name[0]))) return false;
+  return std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+}
+
+bool lies_in(const fs::path& file, const fs::path& folder) {
+  std::error_code ec;
+  const fs::path real_file = fs::canonical(file, ec);
+  if (ec) return false;
+  const fs::path real_folder = fs::canonical(folder.empty() ? fs::path(".") : folder, ec);
+  if (ec) return false;
+  const auto [end, ignored] = std::mismatch(real_folder.begin(), real_folder.end(), real_file.begin(), real_file.end());
+  return end == real_folder.end();
+}
+
+void load_chunk(lua_State* lua, const fs::path& file, bool library) {
+  Runtime& runtime = Runtime::of(lua);
+  Sandbox& box = *runtime.box;
+  runtime.files.push_back(file);
+  int index = 0;
+  {
+    const Sandbox::Pause pause(box);
+    auto text = read_file(file, kMaxScript);
+    if (!text) throw ScriptError{{ErrorKind::script, text.error().message, file.string()}};
+    index = box.add_source({file.string(), std::move(*text), library});
+  }
+  std::string_view text = box.sources()[static_cast<std::size_t>(index)].text;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  if (text.starts_with('\x1B'))
+    throw ScriptError{{ErrorKind::script, "is precompiled Lua; only text is allowed", file.string()}};
+  const std::string chunk = fmt::format("=@{}", index);
+  const int status = luaL_loadbufferx(lua, text.data(), text.size(), chunk.c_str(), "t");
+  if (status == LUA_ERRMEM) {
+    box.memory_failed();
+    box.charge(0);
+  }
+  if (status != LUA_OK) {
+    Error error{ErrorKind::script, lua_tostring(lua, -1), file.string()};
+    box.locate(error, box.take_prefix(error.message));
+    throw ScriptError{std::move(error)};
+  }
+  push_environment(lua);
+  lua_setupvalue(lua, -2, 1);
+}
+
+void push_require(lua_State* lua) {
+  lua_createtable(lua, 0, 4);
+  push_library(lua);
+  lua_setfield(lua, -2, "afterglow");
+  lua_rawsetp(lua, LUA_REGISTRYINDEX, &kModules);
+  lua_pushcfunction(lua, (&native<do_require, "require">));
+}
+
+std::vector<std::string> effect_names(const SearchPath& path) {
+  std::set<std::string> names;
+  for (const auto& folder : path.effect_folders()) {
+    std::error_code ec;
+    for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec))
+      if (it->path().extension() == ".lua" && is_identifier(it->path().stem().string()))
+        names.insert(it->path().stem().string());
+  }
+  return {names.begin(), names.end()};
+}
+
+int find_effect(lua_State* lua, const std::string& name) {
+  Runtime& runtime = Runtime::of(lua);
+  if (const auto it = runtime.effect_by_name.find(name); it != runtime.effect_by_name.end()) return it->second;
+  std::vector<fs::path> hits;
+  if (is_identifier(name)) {
+    const Sandbox::Pause pause(*runtime.box);
+    for (const auto& hit : runtime.path.find_effect(name)) {
+      std::error_code ec;
+      const bool twice =
+          std::any_of(hits.begin(), hits.end(), [&](const auto& other) { return fs::equivalent(hit, other, ec); });
+      if (!twice) hits.push_back(hit);
+    }
+  }
+  if (hits.empty()) {
+    const auto names = effect_names(runtime.path);
+    throw failure(fmt::format("unknown effect '{}'", tidy_message(name, 60)), {}, join(names),
+                  nearest_name(name, names));
+  }
+  // An installation may be made of links; what comes with a preset may not reach out of its folder.
+  for (const auto& root : runtime.path.user)
+    if (hits[0].parent_path() == root / "effects" && !lies_in(hits[0], root))
+      throw failure(fmt::format("effect '{}' is a link that leads out of {}", name, root.string()));
+
+  const Loading loading(runtime, "effects." + name);
+  load_chunk(lua, hits[0]);
+  call(lua, 0, 1);
+  const Handle* made = to_object<Handle>(lua, -1, kEffectKind);
+  const std::string file = hits[0].string();
+  if (!made)
+    throw ScriptError{
+        {ErrorKind::script,
+         fmt::format("an effect's file must return fx.effect {{ … }}, not {}", read_value(lua, -1).shown()), file}};
+  Effect& effect = runtime.effects[static_cast<std::size_t>(made->index)];
+  if (effect.schema.name != name)
+    throw ScriptError{
+        {ErrorKind::script,
+         fmt::format("declares the effect '{}', but its file is named '{}.lua'", effect.schema.name, name), file}};
+  effect.schema.file = hits[0];
+  effect.schema.shadowed.assign(hits.begin() + 1, hits.end());
+  if (hits.size() > 1 && hits.back().parent_path() == runtime.path.installation / "scripts" / "effects" &&
+      runtime.box->diagnostics)
+    runtime.box->diagnostics->note(
+        fmt::format("effect '{}' of {} shadows the built-in {}", name, file, hits.back().string()));
+  runtime.effect_by_name[name] = made->index;
+  const int index = made->index;
+  lua_pop(lua, 1);
+  return index;
+}
+
+}  // namespace afterglow::script

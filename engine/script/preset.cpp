@@ -1,0 +1,204 @@
+#include "script/preset.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/text.h"
+#include "script/entry_run.h"
+#include "script/graph_binding.h"
+#include "script/injection.h"
+#include "script/native.h"
+#include "script/object.h"
+#include "script/overrides.h"
+
+namespace afterglow {
+
+using namespace script;
+
+struct Preset::State {
+  std::unique_ptr<Runtime> runtime;
+  ShaderLibrary* shaders = nullptr;
+  std::string file, name;
+  std::optional<double> max_error;
+  std::vector<EntryRun> runs;       // in the order of execution
+  std::vector<StackEntry> entries;  // the same
+  std::vector<std::string> needs;
+  std::uint64_t builds = 0;
+
+  void load(lua_State* lua, const std::vector<Override>& overrides);
+  DeclaredStack run_script(lua_State* lua);
+  void note_needs(lua_State* lua);
+  ImageRef build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
+                       Diagnostics& diagnostics);
+};
+
+namespace {
+
+std::ptrdiff_t point_index(const std::string& at) {
+  const auto& points = injection_points();
+  return std::find(points.begin(), points.end(), at) - points.begin();
+}
+
+void sort_entries(std::vector<DeclaredEntry>& entries) {
+  std::stable_sort(entries.begin(), entries.end(), [](const DeclaredEntry& a, const DeclaredEntry& b) {
+    const auto point_a = point_index(a.entry.at), point_b = point_index(b.entry.at);
+    return point_a != point_b ? point_a < point_b : a.entry.order < b.entry.order;
+  });
+}
+
+// Errors in an effect's own file say which entry ran it.
+Error with_entry(Error error, const StackEntry* entry) {
+  if (entry && error.file != entry->file && error.kind == ErrorKind::script)
+    error.trail.push_back(fmt::format("in effect '{}' of {}:{}", entry->name, entry->file, entry->line));
+  return error;
+}
+
+}  // namespace
+
+DeclaredStack Preset::State::run_script(lua_State* lua) {
+  load_chunk(lua, file);
+  call(lua, 0, 1);
+  const Handle* handle = to_object<Handle>(lua, -1, kStackKind);
+  if (!handle)
+    throw ScriptError{{ErrorKind::script,
+                       fmt::format("a preset must return fx.stack {{ … }}, not {}", read_value(lua, -1).shown()),
+                       file}};
+  DeclaredStack stack = runtime->stacks[static_cast<std::size_t>(handle->index)];
+  lua_pop(lua, 1);
+  return stack;
+}
+
+void Preset::State::load(lua_State* lua, const std::vector<Override>& overrides) {
+  open_graph_binding(lua);
+  DeclaredStack stack = run_script(lua);
+  runtime->declaring = false;
+  if (auto applied = apply_overrides(stack.entries, overrides, runtime->effects); !applied)
+    throw ScriptError{applied.error()};
+  sort_entries(stack.entries);
+  name = stack.name.empty() ? std::filesystem::path(file).stem().string() : stack.name;
+  max_error = stack.max_error;
+  for (auto& declared : stack.entries) {
+    const int settings = make_settings(lua, declared.entry, declared.effect);
+    entries.push_back(declared.entry);
+    runs.push_back({std::move(declared.entry), declared.effect, settings});
+  }
+}
+
+void Preset::State::note_needs(lua_State* lua) {
+  for (const auto& run : runs) {
+    if (!run.entry.enabled || inactive_reason(lua, run)) continue;
+    for (const auto& names : {needed_inputs(lua, run), optional_inputs(lua, run)})
+      for (const auto& input : names)
+        if (std::find(needs.begin(), needs.end(), input) == needs.end()) needs.push_back(input);
+  }
+}
+
+Preset::Preset(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Preset::Preset(Preset&&) noexcept = default;
+Preset& Preset::operator=(Preset&&) noexcept = default;
+Preset::~Preset() = default;
+
+Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptions& options, ShaderLibrary& shaders,
+                            Diagnostics& diagnostics) {
+  auto state = std::make_unique<State>();
+  state->file = file.string();
+  state->shaders = &shaders;
+  AFTERGLOW_TRY(state->runtime, Runtime::create(search_path_for(file, options.paths), options.limits, diagnostics));
+  Sandbox& box = *state->runtime->box;
+  auto error = box.run(state->file, [&](lua_State* lua) {
+    state->load(lua, options.overrides);
+    state->note_needs(lua);
+  });
+  box.diagnostics = nullptr;
+  if (error) return std::move(*error);
+  return Preset(std::move(state));
+}
+
+const std::string& Preset::name() const { return state_->name; }
+std::optional<double> Preset::max_error() const { return state_->max_error; }
+const std::vector<StackEntry>& Preset::entries() const { return state_->entries; }
+std::vector<std::string> Preset::needs() const { return state_->needs; }
+const std::vector<std::filesystem::path>& Preset::files() const { return state_->runtime->files; }
+
+const EffectSchema& Preset::schema(const std::string& effect) const {
+  static const EffectSchema none;
+  const auto found = state_->runtime->effect_by_name.find(effect);
+  return found == state_->runtime->effect_by_name.end()
+             ? none
+             : state_->runtime->effects[static_cast<std::size_t>(found->second)].schema;
+}
+
+std::size_t Preset::memory_used() const {
+  lua_State* lua = state_->runtime->box->lua();
+  lua_gc(lua, LUA_GCCOLLECT);
+  return state_->runtime->box->memory_used();
+}
+
+ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
+                                    Diagnostics& diagnostics) {
+  const StackEntry& entry = run.entry;
+  if (!entry.enabled) {
+    graph.add_skipped(entry.name, "disabled");
+    return source;
+  }
+  if (auto reason = inactive_reason(lua, run)) {
+    graph.add_skipped(entry.name, std::move(*reason));
+    return source;
+  }
+  std::vector<std::string> inputs = needed_inputs(lua, run), missing;
+  for (const auto& input : inputs)
+    if (!graph.context().auxiliary.contains(input)) missing.push_back(input);
+  if (!missing.empty()) {
+    const std::string reason = fmt::format("no {} input", join(missing, " and "));
+    if (entry.required)
+      throw ScriptError{{ErrorKind::script, fmt::format("effect '{}' is required, but there is {}", entry.name, reason),
+                         entry.file, entry.line}};
+    graph.add_skipped(entry.name, reason);
+    diagnostics.warn_once(fmt::format("{}:{}: {}", entry.file, entry.name, reason),
+                          fmt::format("effect '{}' is skipped: {}", entry.name, reason));
+    return source;
+  }
+  for (auto& input : optional_inputs(lua, run)) inputs.push_back(std::move(input));
+  graph.begin(entry, std::move(inputs));
+  const ImageRef image = run_build(lua, run, graph, source);
+  if (image.id == source.id) graph.add_skipped(entry.name, graph.skip_reason().value_or("returned its source"));
+  return image;
+}
+
+Result<Graph> Preset::build(const BuildContext& context, Diagnostics& diagnostics) {
+  State& state = *state_;
+  Sandbox& box = *state.runtime->box;
+  GraphBuilder graph(context, *state.shaders, ++state.builds);
+  const StackEntry* current = nullptr;
+  ImageRef image = graph.source();
+  state.runtime->graph = &graph;
+  box.diagnostics = &diagnostics;
+  auto error = box.run(state.file, [&](lua_State* lua) {
+    for (const auto& run : state.runs) {
+      current = &run.entry;
+      image = state.build_entry(lua, run, graph, image, diagnostics);
+    }
+  });
+  state.runtime->graph = nullptr;
+  box.diagnostics = nullptr;
+  if (error) return with_entry(std::move(*error), current);
+  return graph.finish(image.id);
+}
+
+Result<std::vector<EffectSchema>> list_effects(const SearchPath& path, Diagnostics& diagnostics) {
+  std::vector<EffectSchema> schemas;
+  for (const auto& name : effect_names(path)) {
+    // A state each: an effect that spends its budget or memory takes nothing from the others.
+    AFTERGLOW_TRY(const std::unique_ptr<Runtime> runtime, Runtime::create(path, ScriptLimits{}, diagnostics));
+    int index = -1;
+    const auto error = runtime->box->run(name + ".lua", [&](lua_State* lua) { index = find_effect(lua, name); });
+    if (error)
+      diagnostics.warn(fmt::format("effect '{}' is left out: {}", name, error->text()));
+    else
+      schemas.push_back(runtime->effects[static_cast<std::size_t>(index)].schema);
+  }
+  return schemas;
+}
+
+}  // namespace afterglow

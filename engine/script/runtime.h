@@ -1,0 +1,98 @@
+// What one Lua state knows of Afterglow: the scripts it read, the effects and settings they declared, the stack they
+// made. The files library.cpp, declare.cpp, stack.cpp and graph_binding.cpp give Lua the functions that fill it.
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/paths.h"
+#include "script/preset.h"
+#include "script/sandbox.h"
+
+namespace afterglow::script {
+
+class GraphBuilder;
+
+/// A function of an effect in Lua's registry, or none.
+struct FunctionRef {
+  int ref = LUA_NOREF;
+  bool set() const { return ref != LUA_NOREF; }
+};
+
+/// Auxiliary inputs that an effect names: a fixed list, or a function of its settings.
+struct InputList {
+  std::vector<std::string> names;
+  FunctionRef function;
+};
+
+struct Effect {
+  EffectSchema schema;
+  FunctionRef active, build;
+  InputList needs, optional;
+};
+
+/// An entry as `fx.NAME{…}` made it; what it leaves open is decided when the stack is complete.
+struct DeclaredEntry {
+  int effect = 0;  ///< index in Runtime::effects
+  std::optional<std::string> name;
+  StackEntry entry;
+};
+
+struct DeclaredStack {
+  std::string name;
+  std::optional<double> max_error;
+  std::vector<DeclaredEntry> entries;  ///< in the preset's order
+};
+
+/// A setting as `fx.float{…}` made it, before it has a name; its index is the order of declaration.
+struct DeclaredSetting {
+  SettingSchema schema;
+};
+
+struct Runtime {
+  /// Opens a state with `require` and the library. Errors: script.
+  static Result<std::unique_ptr<Runtime>> create(SearchPath path, const ScriptLimits& limits, Diagnostics& diagnostics);
+  static Runtime& of(lua_State* lua) { return *static_cast<Runtime*>(Sandbox::of(lua).owner); }
+
+  std::unique_ptr<Sandbox> box;
+  SearchPath path;
+  std::vector<std::filesystem::path> files;  ///< every script read
+  std::deque<Effect> effects;
+  std::map<std::string, int> effect_by_name;
+  std::set<std::string> loading;  ///< effects and modules that are being loaded: cycles
+  std::vector<DeclaredSetting> settings;
+  std::vector<DeclaredEntry> entries;
+  std::vector<DeclaredStack> stacks;
+  bool declaring = true;          ///< false once the preset is loaded
+  GraphBuilder* graph = nullptr;  ///< while `build` runs
+};
+
+/// Names a file of an effect that declares `name`; finds, loads and remembers it. Errors: throws ScriptError.
+int find_effect(lua_State* lua, const std::string& name);
+
+/// Reads the file as a text chunk with an environment of its own and pushes it as a function. Errors: throws
+/// ScriptError.
+void load_chunk(lua_State* lua, const std::filesystem::path& file, bool library = false);
+
+/// Pushes `require`.
+void push_require(lua_State* lua);
+
+/// Pushes the library table `fx`.
+void push_library(lua_State* lua);
+
+/// Names that effects and modules may have: letters, digits and '_', not starting with a digit.
+bool is_identifier(const std::string& name);
+
+/// Every effect name on the search path, sorted, each once.
+std::vector<std::string> effect_names(const SearchPath& path);
+
+/// Does `file`, links followed, lie in `folder`, links followed?
+bool lies_in(const std::filesystem::path& file, const std::filesystem::path& folder);
+
+}  // namespace afterglow::script

@@ -1,0 +1,171 @@
+#include "script/setting.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/text.h"
+#include "script/read_only.h"
+
+namespace afterglow {
+namespace {
+
+std::string list_text(const SettingValue& value, int count) {
+  std::string out = "{";
+  for (int i = 0; i < count; ++i) out += (i ? ", " : "") + number_text(value.number[static_cast<std::size_t>(i)]);
+  return out + "}";
+}
+
+}  // namespace
+
+std::string SettingValue::text() const {
+  switch (type) {
+    case SettingType::integer:
+      return fmt::format("{}", static_cast<long long>(number[0]));
+    case SettingType::number:
+      return number_text(number[0]);
+    case SettingType::boolean:
+      return number[0] != 0 ? "true" : "false";
+    case SettingType::enumeration:
+      return '"' + choice + '"';
+    case SettingType::color:
+      return list_text(*this, 3);
+    case SettingType::vec2:
+      return list_text(*this, 2);
+  }
+  return {};
+}
+
+namespace script {
+namespace {
+
+constexpr double kMaxInteger = 2147483647;
+
+std::string range_text(const SettingSchema& schema) {
+  if (schema.min && schema.max) return number_text(*schema.min) + "…" + number_text(*schema.max);
+  if (schema.min) return "≥ " + number_text(*schema.min);
+  if (schema.max) return "≤ " + number_text(*schema.max);
+  return {};
+}
+
+bool in_range(const SettingSchema& schema, double value) {
+  return (!schema.min || value >= *schema.min) && (!schema.max || value <= *schema.max);
+}
+
+// sRGB-encoded 0…1 to scene-linear (IEC 61966-2-1).
+double srgb_to_linear(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
+
+bool parse_hex_color(const std::string& text, SettingValue& value) {
+  if (text.size() != 7 || text[0] != '#') return false;
+  if (text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos) return false;
+  for (std::size_t i = 0; i < 3; ++i)
+    value.number[i] = srgb_to_linear(std::stoi(text.substr(1 + 2 * i, 2), nullptr, 16) / 255.0);
+  return true;
+}
+
+}  // namespace
+
+const char* type_name(SettingType type) {
+  static constexpr const char* kNames[] = {"integer", "number", "boolean", "choice", "colour", "vec2"};
+  return kNames[static_cast<int>(type)];
+}
+
+std::string allowed_text(const SettingSchema& schema) {
+  const std::string range = range_text(schema);
+  switch (schema.type) {
+    case SettingType::integer:
+      return range.empty() ? "an integer" : "integer " + range;
+    case SettingType::number:
+      return range.empty() ? "a number" : range;
+    case SettingType::boolean:
+      return "true, false";
+    case SettingType::enumeration:
+      return join(schema.choices);
+    case SettingType::color:
+      return "{r, g, b} with numbers ≥ 0, \"#rrggbb\"";
+    case SettingType::vec2:
+      return range.empty() ? "{x, y}" : "{x, y}, each " + range;
+  }
+  return {};
+}
+
+Result<SettingValue> check_setting(const std::string& full_name, const SettingSchema& schema, const Value& given) {
+  using Kind = Value::Kind;
+  const auto fail = [&](const char* what, std::string nearest = {}) {
+    return Error{
+        ErrorKind::script, fmt::format("{} = {} is {}", full_name, given.shown(), what), "", 0, allowed_text(schema),
+        std::move(nearest)};
+  };
+  SettingValue value;
+  value.type = schema.type;
+  switch (schema.type) {
+    case SettingType::integer:
+    case SettingType::number: {
+      const bool integer = schema.type == SettingType::integer;
+      if (given.kind != Kind::number) return fail(integer ? "not an integer" : "not a number");
+      if (!std::isfinite(given.number)) return fail("not finite");
+      if (integer && given.number != std::floor(given.number)) return fail("not an integer");
+      if (!in_range(schema, given.number) || (integer && std::abs(given.number) > kMaxInteger))
+        return fail("out of range");
+      value.number[0] = given.number + 0.0;  // −0 becomes 0
+      return value;
+    }
+    case SettingType::boolean:
+      if (given.kind != Kind::boolean) return fail("not a boolean");
+      value.number[0] = given.number;
+      return value;
+    case SettingType::enumeration:
+      if (given.kind != Kind::text) return fail("not a choice");
+      for (const auto& choice : schema.choices)
+        if (choice == given.text) {
+          value.choice = choice;
+          return value;
+        }
+      return fail("not a choice", nearest_name(given.text, schema.choices));
+    case SettingType::color:
+    case SettingType::vec2: {
+      const bool color = schema.type == SettingType::color;
+      if (color && given.kind == Kind::text && parse_hex_color(given.text, value)) return value;
+      if (given.kind != Kind::list || given.count != (color ? 3 : 2))
+        return fail(color ? "not a colour" : "not a vec2");
+      for (int i = 0; i < given.count; ++i) {
+        const double c = given.list[static_cast<std::size_t>(i)];
+        if (!std::isfinite(c)) return fail("not finite");
+        if (!in_range(schema, c) || (color && c < 0)) return fail("out of range");
+        value.number[static_cast<std::size_t>(i)] = c + 0.0;
+      }
+      return value;
+    }
+  }
+  return fail("of no known type");
+}
+
+void push_setting(lua_State* lua, const SettingValue& value) {
+  switch (value.type) {
+    case SettingType::integer:
+      lua_pushinteger(lua, static_cast<lua_Integer>(value.number[0]));
+      return;
+    case SettingType::number:
+      lua_pushnumber(lua, value.number[0]);
+      return;
+    case SettingType::boolean:
+      lua_pushboolean(lua, value.number[0] != 0);
+      return;
+    case SettingType::enumeration:
+      lua_pushlstring(lua, value.choice.data(), value.choice.size());
+      return;
+    case SettingType::color:
+    case SettingType::vec2:
+      break;
+  }
+  const int count = value.type == SettingType::color ? 3 : 2;
+  lua_createtable(lua, count, 0);
+  for (int i = 0; i < count; ++i) {
+    lua_pushnumber(lua, value.number[static_cast<std::size_t>(i)]);
+    lua_rawseti(lua, -2, i + 1);
+  }
+  make_read_only(lua);
+}
+
+}  // namespace script
+}  // namespace afterglow

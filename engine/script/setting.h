@@ -1,0 +1,25 @@
+// Checks values against what an effect declares. The one place that knows what each setting type allows.
+#pragma once
+
+#include <string>
+
+#include "core/result.h"
+#include "script/preset.h"
+#include "script/value.h"
+
+namespace afterglow::script {
+
+/// What a setting allows, for messages and tables: "0…1", "integer ≥ 1", "additive, scattering", "true, false".
+std::string allowed_text(const SettingSchema& schema);
+
+/// Errors (script, without file and line): wrong type, out of range, not finite, unknown choice (with the nearest).
+/// `full_name` is what the message calls it: "bloom.knee".
+Result<SettingValue> check_setting(const std::string& full_name, const SettingSchema& schema, const Value& value);
+
+/// "integer", "number", "boolean", "choice", "colour", "vec2".
+const char* type_name(SettingType type);
+
+/// Pushes the value as scripts read it (`s.NAME`); colours and vec2 are read-only tables.
+void push_setting(lua_State* lua, const SettingValue& value);
+
+}  // namespace afterglow::script

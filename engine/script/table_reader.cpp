@@ -1,0 +1,121 @@
+#include "script/table_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.h"
+
+namespace afterglow::script {
+namespace {
+
+constexpr std::size_t kMaxKeys = 4096;  // in one table
+
+}  // namespace
+
+TableReader::TableReader(lua_State* lua, int index, std::string what)
+    : lua_(lua), index_(lua_absindex(lua, index)), what_(std::move(what)) {
+  luaL_checkstack(lua, 10, nullptr);
+  if (!lua_istable(lua, index_))
+    throw failure(fmt::format("{} takes a table, not {}", what_, read_value(lua, index_).shown()), {},
+                  what_ + " { … }");
+  lua_pushnil(lua);
+  while (lua_next(lua, index_)) {
+    lua_pop(lua, 1);
+    if (keys_.size() == kMaxKeys) throw failure(fmt::format("{} has more than {} keys", what_, kMaxKeys));
+    if (lua_type(lua, -1) == LUA_TSTRING) {
+      std::size_t size = 0;
+      const char* name = lua_tolstring(lua, -1, &size);
+      keys_.push_back({std::string(name, size), 0});
+    } else if (lua_isinteger(lua, -1) && lua_tointeger(lua, -1) >= 1) {
+      keys_.push_back({fmt::format("#{}", lua_tointeger(lua, -1)), lua_tointeger(lua, -1)});
+    } else {
+      fail(failure(fmt::format("{} has a key that is {}", what_, read_value(lua, -1).shown())));
+    }
+  }
+  std::sort(keys_.begin(), keys_.end(), [](const Key& a, const Key& b) {
+    if ((a.position == 0) != (b.position == 0)) return a.position != 0;
+    return a.position != b.position ? a.position < b.position : a.name < b.name;
+  });
+}
+
+void TableReader::push(const Key& key) const {
+  if (key.position > 0) {
+    lua_rawgeti(lua_, index_, key.position);
+  } else {
+    lua_pushlstring(lua_, key.name.data(), key.name.size());
+    lua_rawget(lua_, index_);
+  }
+}
+
+void TableReader::push(const char* name) const {
+  lua_pushstring(lua_, name);
+  lua_rawget(lua_, index_);
+}
+
+Value TableReader::value(const char* name) const {
+  push(name);
+  Value value = read_value(lua_, -1);
+  lua_pop(lua_, 1);
+  return value;
+}
+
+std::optional<std::string> TableReader::text(const char* name, std::size_t limit) {
+  Value given = value(name);
+  if (given.kind == Value::Kind::nothing) return {};
+  if (given.kind != Value::Kind::text) {
+    fail(failure(fmt::format("{}: {} = {} is not a text", what_, name, given.shown()), {name}));
+    return {};
+  }
+  if (given.text.size() > limit) given.text.resize(limit);
+  return std::move(given.text);
+}
+
+std::optional<double> TableReader::number(const char* name) {
+  const Value given = value(name);
+  if (given.kind == Value::Kind::nothing) return {};
+  if (given.kind == Value::Kind::number && std::isfinite(given.number)) return given.number;
+  fail(failure(fmt::format("{}: {} = {} is not a finite number", what_, name, given.shown()), {name}));
+  return {};
+}
+
+std::optional<int> TableReader::integer(const char* name) {
+  constexpr int kLimit = 1'000'000;
+  const Value given = value(name);
+  if (given.kind == Value::Kind::nothing) return {};
+  if (given.kind == Value::Kind::number && std::abs(given.number) <= kLimit && given.number == std::floor(given.number))
+    return static_cast<int>(given.number);
+  fail(failure(fmt::format("{}: {} = {} is not an integer", what_, name, given.shown()), {name},
+               "integer −1000000…1000000"));
+  return {};
+}
+
+std::optional<bool> TableReader::boolean(const char* name) {
+  const Value given = value(name);
+  if (given.kind == Value::Kind::nothing) return {};
+  if (given.kind == Value::Kind::boolean) return given.number != 0;
+  fail(failure(fmt::format("{}: {} = {} is not a boolean", what_, name, given.shown()), {name}, "true, false"));
+  return {};
+}
+
+void TableReader::allow(const std::vector<std::string>& known, bool positions) {
+  for (const Key& key : keys_) {
+    if (key.position > 0 ? positions : std::find(known.begin(), known.end(), key.name) != known.end()) continue;
+    if (key.position > 0)
+      fail(failure(fmt::format("{} has a value without a name at position {}", what_, key.position), {key.name},
+                   join(known)));
+    else
+      fail(failure(fmt::format("{} has no '{}'", what_, tidy_message(key.name, 60)), {key.name}, join(known),
+                   nearest_name(key.name, known)));
+  }
+}
+
+void TableReader::finish(const char* function) {
+  if (failures_.empty()) return;
+  for (auto& error : failures_) locate_failure(lua_, error, function);
+  throw *std::min_element(failures_.begin(), failures_.end(),
+                          [](const ScriptError& a, const ScriptError& b) { return a.error.line < b.error.line; });
+}
+
+}  // namespace afterglow::script

@@ -1,0 +1,166 @@
+-- The library that presets and effects get by `require "afterglow"`.
+--
+-- Everything here is called while a script loads, but for `fx.filters`, which `build` functions may use too. What is wrong
+-- is reported as one error at the line of the offending key: FILE:LINE: error: WHAT; allowed: …; did you mean 'X'?
+-- The comments are read by lua-language-server; _meta/afterglow.lua adds the effects (`fx.bloom`, …) to the class below.
+
+local core = ... -- native functions: engine/script/library.cpp
+
+---@class afterglow.Stack        what a preset returns
+---@class afterglow.Entry        one effect of a stack, with its settings
+---@class afterglow.Effect       what the file of an effect returns
+---@class afterglow.SettingType  what a setting may be
+
+---An image of the pass graph. Images are never changed: a pass makes a new one.
+---@class afterglow.Image
+---@field width integer   pixels
+---@field height integer  pixels
+
+---The pass graph under construction; the first argument of `build`.
+---@class afterglow.Graph
+---@field frame number  number of the picture in its sequence, from 1
+---@field time number   seconds
+---@field fps number    pictures per second
+---@field pass fun(self: afterglow.Graph, pass: afterglow.Pass): afterglow.Image          runs a shader
+---@field filter fun(self: afterglow.Graph, pass: afterglow.FilterPass): afterglow.Image  resamples an image
+---@field input fun(self: afterglow.Graph, name: string): afterglow.Image?                an auxiliary image that `needs` or `optional` names; nil when the picture lacks it
+---@field skip fun(self: afterglow.Graph, reason: string)                                 records why the effect does nothing; then `return source`
+
+---A pass with a shader. Further keys are the inputs and parameters that the shader declares, by name: images, numbers,
+---booleans, arrays of numbers. Every input and every `uniform` must be given; a `layout(constant_id = …)` constant may be.
+---@class afterglow.Pass
+---@field shader string               shaders/NAME.glsl
+---@field source? afterglow.Image     the colour of a pixel shader (`apply`); the sampler of that name of a `sample_at` shader
+---@field size? afterglow.Image|integer[]  of the new image, for `sample_at` shaders; default: that of `source`
+---@field name? string                default: the last part of the shader's name
+---@field [string] any
+
+---@class afterglow.FilterPass
+---@field source afterglow.Image
+---@field filter afterglow.Filter
+---@field size? afterglow.Image|integer[]  of the new image; default: that of `source`
+---@field name? string                     default: "filter"
+
+---A linear resampling as data: out(X, Y) = Σ weight · I(p + offset), p = (X + ½) · n_source / n_target in texels. Reads outside
+---are clamped to the edge; weights are used as given.
+---@class afterglow.Filter
+---@field interpolation? "nearest"|"linear"|"cubic_bspline"  how I is read between texel centres; default "linear"
+---@field x? number[][]     {{offset, weight}, …} along x, offsets in texels of the source; default {{0, 1}}
+---@field y? number[][]     the same along y
+---@field taps? number[][]  {{dx, dy, weight}, …} for filters that are no product of x and y; excludes both
+
+---@class afterglow
+local fx = {}
+
+---Makes the stack that a preset returns. Effects run by injection point, then `order`, then position in the list.
+---`max_error` is the error that the executor may make for the sake of speed, by |x − exact| / (|exact| + 0.01).
+---Errors: keys other than `name` and `max_error`, positions that hold no effect, two entries of one name.
+---@type fun(stack: { name?: string, max_error?: number, [integer]: afterglow.Entry }): afterglow.Stack
+fx.stack = core.stack
+
+---Declares an effect; its file effects/NAME.lua returns it.
+--- - `at` injection point: "after_opaque_and_sky", "before_post_process", "post_process" (default), "after_post_process"
+--- - `order` integer, default 0: place among the effects of that point, smaller first
+--- - `settings` names and their types, in the order in which people see them
+--- - `active(s)` false when the settings make the effect an identity, with the reason as second value
+--- - `needs`, `optional` auxiliary inputs ("depth", "normal"), or a function of the settings that returns them. Without a
+---   needed one the effect is skipped with a warning.
+--- - `build(g, s, source)` describes the passes with `g` and returns the image that replaces `source`
+---Errors: unknown or missing keys, wrong types, unknown injection point or input.
+---@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, settings?: table<string, afterglow.SettingType>, active?: (fun(s: table): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
+fx.effect = core.effect
+
+---An integer from `min` to `max` (both included, both optional). 4.0 is one, 4.5 is not. `unit` is for people: "px", "EV".
+---@type fun(setting: { default: integer, min?: integer, max?: integer, doc?: string, unit?: string }): afterglow.SettingType
+fx.int = core.int
+
+---A finite number from `min` to `max` (both included, both optional).
+---@type fun(setting: { default: number, min?: number, max?: number, doc?: string, unit?: string }): afterglow.SettingType
+fx.float = core.float
+
+---true or false.
+---@type fun(setting: { default: boolean, doc?: string }): afterglow.SettingType
+fx.bool = core.bool
+
+---One of the given texts: `fx.enum { "additive", "scattering", default = "additive" }`.
+---@type fun(setting: { default: string, doc?: string, [integer]: string }): afterglow.SettingType
+fx.enum = core.enum
+
+---A colour: {r, g, b} is scene-linear, ≥ 0, and may exceed 1; "#rrggbb" is sRGB-encoded and is converted. `build` always gets
+---{r, g, b}.
+---@type fun(setting: { default: number[]|string, doc?: string }): afterglow.SettingType
+fx.color = core.color
+
+---Two finite numbers {x, y}, each from `min` to `max`.
+---@type fun(setting: { default: number[], min?: number, max?: number, doc?: string, unit?: string }): afterglow.SettingType
+fx.vec2 = core.vec2
+
+---Makers of filters for `g:filter`. Each returns a new table, which may be changed.
+---@class afterglow.Filters
+local filters = {}
+
+---Reads the source bilinearly at the target's pixel centres.
+---@return afterglow.Filter
+function filters.bilinear()
+  return { interpolation = "linear" }
+end
+
+---Reads the source with the cubic B-spline at the target's pixel centres: smooth, and it blurs a little.
+---@return afterglow.Filter
+function filters.bspline()
+  return { interpolation = "cubic_bspline" }
+end
+
+-- Row 12 of Pascal's triangle without its two outer terms on each side, over their sum.
+local binomial = { 66, 220, 495, 792, 924, 792, 495, 220, 66 }
+
+---The first half of a Gaussian halving: 9 bilinear reads along x, two texels of the source apart. The y axis is halved by the
+---bilinear reads alone; `gaussian_vertical` on the result blurs along y. The weights are the sources' own, with 8 digits.
+---@return afterglow.Filter
+function filters.gaussian_halving()
+  local weights = { 0.01621622, 0.05405405, 0.12162162, 0.19459459, 0.22702703, 0.19459459, 0.12162162, 0.05405405, 0.01621622 }
+  local x = {}
+  for i = 1, 9 do x[i] = { 2 * (i - 5), weights[i] } end
+  return { interpolation = "linear", x = x }
+end
+
+---The second half of a Gaussian halving: 9 taps along y, one texel apart, at the size of the source.
+---@return afterglow.Filter
+function filters.gaussian_vertical()
+  local y = {}
+  for i = 1, 9 do y[i] = { i - 5, binomial[i] / 4070 } end
+  return { interpolation = "linear", y = y }
+end
+
+local function check_delta(name, delta)
+  if type(delta) ~= "number" or delta ~= delta or delta <= 0 or delta > 64 then
+    core.fail("fx.filters." .. name .. ": delta = " .. core.show(delta) .. " is not a distance", "0 < delta ≤ 64 texels")
+  end
+end
+
+---The mean of four reads `delta` texels of the source left, right, above and below.
+---@param delta number  0 < delta ≤ 64
+---@return afterglow.Filter
+function filters.plus(delta)
+  check_delta("plus", delta)
+  return { interpolation = "linear", taps = { { delta, 0, 0.25 }, { 0, delta, 0.25 }, { -delta, 0, 0.25 }, { 0, -delta, 0.25 } } }
+end
+
+---The mean of four reads `delta` texels of the source off at the corners.
+---@param delta number  0 < delta ≤ 64
+---@return afterglow.Filter
+function filters.box(delta)
+  check_delta("box", delta)
+  return { interpolation = "linear", x = { { -delta, 0.5 }, { delta, 0.5 } }, y = { { -delta, 0.5 }, { delta, 0.5 } } }
+end
+
+---Three reads per axis, one texel of the source apart, weighted 1 : 2 : 1.
+---@return afterglow.Filter
+function filters.tent()
+  return { interpolation = "linear", x = { { -1, 0.25 }, { 0, 0.5 }, { 1, 0.25 } }, y = { { -1, 0.25 }, { 0, 0.5 }, { 1, 0.25 } } }
+end
+
+---@type afterglow.Filters
+fx.filters = core.read_only(filters, "filter")
+
+return fx
