@@ -48,7 +48,7 @@ std::optional<LogLine> parse_line(std::string_view text) {
   std::string message = trim(original_names(text));
   if (message.starts_with("'' : ")) message.erase(0, 5);
   if (const auto colon = message.find("' : "); colon != std::string::npos) message.replace(colon, 4, "': ");
-  out.message = shortened(std::move(message));
+  out.message = shortened(trim(message));
   return out;
 }
 

@@ -82,13 +82,18 @@ class Resolver {
       error.allowed = "the name of a .glsl file below a shaders folder, without '..'";
       return error;
     }
-    if (const fs::path beside = (from.parent_path() / line.name).lexically_normal(); is_file(beside)) return beside;
+    // A bare name is first of all a file beside this one; a name with a folder is looked up like that of a shader.
+    const fs::path beside = (from.parent_path() / line.name).lexically_normal();
+    const bool bare = line.name.find('/') == std::string::npos;
+    if (bare && is_file(beside)) return beside;
     if (const auto hits = search_.find_shader(line.name); !hits.empty()) return hits.front().lexically_normal();
+    if (is_file(beside)) return beside;
     Error error = shader_error(at, line.line, fmt::format("cannot find the include '{}'", line.name));
     std::vector<std::string> names = list_shader_files(from.parent_path());
     for (const auto& folder : search_.user)
       for (auto& name : list_shader_files(folder / "shaders")) names.push_back(std::move(name));
-    for (auto& name : list_shader_files(search_.installation / "shaders")) names.push_back(std::move(name));
+    if (!search_.installation.empty())
+      for (auto& name : list_shader_files(search_.installation / "shaders")) names.push_back(std::move(name));
     error.nearest = nearest_name(line.name, names);
     return error;
   }

@@ -63,7 +63,7 @@ std::vector<std::string> ShaderLibrary::names() const {
       if (!file.starts_with("lib/")) list.push_back(file.substr(0, file.size() - std::string_view(".glsl").size()));
   };
   for (const auto& root : path_.user) add(root);
-  add(path_.installation);
+  if (!path_.installation.empty()) add(path_.installation);
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
   return list;

@@ -307,7 +307,7 @@ class Scanner {
   /// `NAME [..] = …, NAME …;`, at the first name.
   Result<void> variables() {
     bool expects_name = true;
-    while (at_ < code_.size() && !token().is(";")) {
+    while (at_ < code_.size() && (expects_name || !token().is(";"))) {
       if (expects_name) {
         if (!token().is_identifier()) return fail(line(), "a name was expected in the declaration");
         AFTERGLOW_CHECK(add_name(token(), false));

@@ -1,0 +1,170 @@
+// Finding shaders and their includes on disk.
+#include <gmock/gmock.h>
+
+#include "shader_files.h"
+
+namespace afterglow {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* kApply = "vec4 apply(vec4 color) { return color; }\n";
+
+std::vector<std::string> include_names(const ShaderSource& source) {
+  std::vector<std::string> out;
+  for (const auto& include : source.includes) out.push_back(include.name);
+  return out;
+}
+
+TEST(ShaderLibrary, FindsOnceAndForgetsOnReload) {
+  ShaderFiles files;
+  files.write("fx/a.glsl", kApply);
+  ShaderLibrary library(files.search());
+  const auto first = library.find("fx/a");
+  ASSERT_TRUE(first.ok()) << first.error().text();
+  EXPECT_EQ((*first)->name, "fx/a");
+  EXPECT_EQ((*first)->path, files.path("fx/a.glsl"));
+  EXPECT_EQ((*first)->text, kApply);
+  files.write("fx/a.glsl", std::string("uniform float t;\n") + kApply);
+  EXPECT_EQ(*library.find("fx/a"), *first);
+  library.reload();
+  const auto second = library.find("fx/a");
+  ASSERT_TRUE(second.ok());
+  EXPECT_EQ((*second)->interface.params.size(), 1u);
+  EXPECT_NE((*second)->hash, (*first)->hash);
+}
+
+TEST(ShaderLibrary, AnErrorIsNotRemembered) {
+  ShaderFiles files;
+  files.write("a.glsl", "oops");
+  ShaderLibrary library(files.search());
+  EXPECT_FALSE(library.find("a").ok());
+  files.write("a.glsl", kApply);
+  EXPECT_TRUE(library.find("a").ok());
+}
+
+TEST(ShaderLibrary, UnknownNamesGetTheNearest) {
+  ShaderFiles files;
+  files.write("bloom/threshold.glsl", kApply);
+  files.write("lib/treshold.glsl", "");
+  ShaderLibrary library(files.search());
+  const auto result = library.find("bloom/treshold");
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().text(), "error: unknown shader 'bloom/treshold'; did you mean 'bloom/threshold'?");
+  EXPECT_EQ(result.error().kind, ErrorKind::script);
+  EXPECT_THAT(library.names(), ElementsAre("bloom/threshold"));
+}
+
+TEST(ShaderLibrary, NamesStayBelowTheShaderFolders) {
+  ShaderFiles files;
+  files.write("a.glsl", kApply);
+  files.write("../secret.glsl", kApply);
+  ShaderLibrary library(files.search());
+  for (const std::string name : {"../secret", "./a", "x/../a", "/etc/passwd", "", "a/", "a\\b"})
+    EXPECT_FALSE(library.find(name).ok()) << name;
+  EXPECT_TRUE(library.find("a").ok());
+}
+
+TEST(ShaderLibrary, EarlierFoldersShadowLaterOnes) {
+  ShaderFiles first, second;
+  second.write("a.glsl", kApply);
+  second.write("lib/x.glsl", "float x() { return 2.0; }\n");
+  second.write("b.glsl", std::string("#include \"lib/x.glsl\"\n") + kApply);
+  SearchPath search;
+  search.user = {first.root()};
+  search.installation = second.root();
+  EXPECT_EQ((*ShaderLibrary(search).find("a"))->path, second.path("a.glsl"));
+  first.write("a.glsl", kApply);
+  first.write("lib/x.glsl", "float x() { return 1.0; }\n");
+  EXPECT_EQ((*ShaderLibrary(search).find("a"))->path, first.path("a.glsl"));
+  EXPECT_EQ((*ShaderLibrary(search).find("b"))->includes.at(0).path, first.path("lib/x.glsl")) << "a user's library replaces the built-in one";
+}
+
+TEST(ShaderLibrary, AByteOrderMarkIsDropped) {
+  ShaderFiles files;
+  EXPECT_EQ((*files.find("a", std::string("\xEF\xBB\xBF") + kApply))->text, kApply);
+}
+
+TEST(ShaderLibrary, IncludesStandOnceAndInOrder) {
+  ShaderFiles files;
+  files.write("lib/base.glsl", "float base() { return 1.0; }\n");
+  files.write("lib/left.glsl", "#include \"lib/base.glsl\"\nfloat left() { return base(); }\n");
+  files.write("lib/right.glsl", "#include \"lib/base.glsl\"\nfloat right() { return base(); }\n");
+  const auto source = files.find("fx/a", std::string("#include \"lib/left.glsl\"\n#include \"lib/right.glsl\"\n#include \"lib/left.glsl\"\n") + kApply);
+  ASSERT_TRUE(source.ok()) << source.error().text();
+  EXPECT_THAT(include_names(**source), ElementsAre("lib/base.glsl", "lib/left.glsl", "lib/right.glsl"));
+  EXPECT_THAT((*source)->includes[0].uses, ElementsAre());
+  EXPECT_THAT((*source)->includes[2].uses, ElementsAre(0u));
+  EXPECT_THAT((*source)->includes[2].global_names, ElementsAre("right"));
+  EXPECT_THAT((*source)->files(), ElementsAre(files.path("fx/a.glsl"), files.path("lib/base.glsl"), files.path("lib/left.glsl"), files.path("lib/right.glsl")));
+}
+
+TEST(ShaderLibrary, AFileBesideTheShaderComesFirst) {
+  ShaderFiles files;
+  files.write("helper.glsl", "float far() { return 1.0; }\n");
+  files.write("fx/helper.glsl", "float near() { return 1.0; }\n");
+  const auto source = files.find("fx/a", std::string("#include \"helper.glsl\"\n") + kApply);
+  ASSERT_TRUE(source.ok());
+  EXPECT_EQ((*source)->includes.at(0).path, files.path("fx/helper.glsl"));
+}
+
+TEST(ShaderLibrary, OneFileUnderTwoNamesIsOneFile) {
+  ShaderFiles files;
+  files.write("fx/helper.glsl", "float near() { return 1.0; }\n");
+  const auto source = files.find("fx/a", std::string("#include \"helper.glsl\"\n#include \"fx/helper.glsl\"\n") + kApply);
+  ASSERT_TRUE(source.ok()) << source.error().text();
+  EXPECT_EQ((*source)->includes.size(), 1u);
+}
+
+TEST(ShaderLibrary, TheHashCoversIncludes) {
+  ShaderFiles files;
+  files.write("lib/x.glsl", "float x() { return 1.0; }\n");
+  const std::string text = std::string("#include \"lib/x.glsl\"\n") + kApply;
+  const Hash before = (*files.find("a", text))->hash;
+  EXPECT_EQ((*files.find("a", text))->hash, before);
+  files.write("lib/x.glsl", "float x() { return 2.0; }\n");
+  EXPECT_NE((*files.find("a", text))->hash, before);
+}
+
+TEST(ShaderLibrary, IncludeErrorsAreAtTheirOwnFileAndLine) {
+  ShaderFiles files;
+  files.write("lib/color.glsl", "float luminance(vec3 c) { return c.g; }\n");
+  const auto message = [&](const std::string& text) {
+    const auto result = files.find("fx/a", text + kApply);
+    return result.ok() ? std::string("ok") : result.error().text();
+  };
+  const std::string a = files.path("fx/a.glsl").string();
+  EXPECT_EQ(message("\n#include \"lib/colour.glsl\"\n"), a + ":2: error: cannot find the include 'lib/colour.glsl'; did you mean 'lib/color.glsl'?");
+  EXPECT_THAT(message("#include \"../lib/color.glsl\"\n"), HasSubstr(a + ":1: error: '../lib/color.glsl' cannot be included; allowed: "));
+  EXPECT_THAT(message("#include \"/etc/passwd\"\n"), HasSubstr("cannot be included"));
+  EXPECT_THAT(message("#include \"lib/color\"\n"), HasSubstr("cannot be included"));
+  EXPECT_THAT(message("#include \"lib/color.glsl\"\nfloat luminance(vec3 c) { return c.r; }\n"),
+              HasSubstr(a + ":2: error: 'luminance' is already defined by lib/color.glsl"));
+  files.write("lib/again.glsl", "float luminance(vec2 c) { return c.r; }\n");
+  EXPECT_THAT(message("#include \"lib/color.glsl\"\n#include \"lib/again.glsl\"\n"), HasSubstr("'luminance' is defined by both lib/color.glsl and lib/again.glsl"));
+  files.write("lib/bad.glsl", "\n\nuniform float t;\n");
+  EXPECT_THAT(message("#include \"lib/bad.glsl\"\n"), HasSubstr(files.path("lib/bad.glsl").string() + ":3: error: a library declares no uniforms"));
+}
+
+TEST(ShaderLibrary, IncludeCyclesAreRefused) {
+  ShaderFiles files;
+  files.write("lib/a.glsl", "#include \"lib/b.glsl\"\n");
+  files.write("lib/b.glsl", "\n#include \"lib/a.glsl\"\n");
+  const auto cycle = files.find("fx/x", std::string("#include \"lib/a.glsl\"\n") + kApply);
+  ASSERT_FALSE(cycle.ok());
+  EXPECT_EQ(cycle.error().text(), files.path("lib/b.glsl").string() + ":2: error: 'lib/a.glsl' includes itself, directly or through others");
+  const auto self = files.find("fx/y", std::string("#include \"y.glsl\"\n") + kApply);
+  ASSERT_FALSE(self.ok());
+  EXPECT_THAT(self.error().message, HasSubstr("includes itself"));
+}
+
+TEST(ShaderLibrary, MacrosMayBeDefinedAgain) {
+  ShaderFiles files;
+  files.write("lib/a.glsl", "#ifndef PI\n#define PI 3.0\n#endif\n");
+  files.write("lib/b.glsl", "#ifndef PI\n#define PI 3.5\n#endif\n");
+  EXPECT_TRUE(files.find("x", std::string("#include \"lib/a.glsl\"\n#include \"lib/b.glsl\"\n#define PI 4.0\n") + kApply).ok());
+}
+
+}  // namespace
+}  // namespace afterglow
