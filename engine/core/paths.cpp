@@ -39,14 +39,14 @@ std::vector<fs::path> SearchPath::find_shader(const std::string& name) const {
   std::vector<fs::path> hits;
   for (const auto& root : user)
     if (is_file(root / "shaders" / name)) hits.push_back(root / "shaders" / name);
-  if (is_file(installation / "shaders" / name)) hits.push_back(installation / "shaders" / name);
+  if (!installation.empty() && is_file(installation / "shaders" / name)) hits.push_back(installation / "shaders" / name);
   return hits;
 }
 
 std::vector<fs::path> SearchPath::effect_folders() const {
   std::vector<fs::path> folders;
   for (const auto& root : user) folders.push_back(root / "effects");
-  folders.push_back(installation / "scripts" / "effects");
+  if (!installation.empty()) folders.push_back(installation / "scripts" / "effects");
   return folders;
 }
 
