@@ -30,14 +30,18 @@ struct HostResult {
 /// Images, staging memory, command buffer and fence for one frame at a time; reused while sizes stay the same. Not thread-safe.
 class FrameRunner {
  public:
-  static Result<std::unique_ptr<FrameRunner>> create(Device& device, std::uint64_t max_memory);
+  /// `direct`: on devices whose memory is the CPU's, pixels are written into and read from the images themselves; false takes the
+  /// way over staging buffers that every GPU can go. Errors: device.
+  static Result<std::unique_ptr<FrameRunner>> create(Device& device, std::uint64_t max_memory, bool direct = true);
   ~FrameRunner();
-  /// Uploads "source" and auxiliary images, runs, reads the result back into `out` (RGBA float; resized by it). `capture`, when
-  /// set, is called with each named transient image's pixels (float RGBA) after the frame: for tests and for showing intermediates;
-  /// images then keep memory of their own only when the program was created with `reference`.
+  /// Uploads "source" and the auxiliary images that the graph asks for, runs, reads the result back into `out` (RGBA float; resized by
+  /// it). Errors: other (an input is missing or of another size), io (over `max_memory`), device.
   Result<FrameTimes> run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out, KernelTiming timing);
-  /// Pixels of the image that pass `name` made in the last run. Needs a program created with `reference`. Errors: other.
+  /// Pixels of a transient image as the last run left them. Needs a program created with `reference`. Errors: other.
   Result<HostResult> read_image(Program& program, ImageId image);
+
+  struct Counters { int images = 0, buffers = 0; };
+  Counters counters() const;   ///< objects made so far; steady frames leave them alone
 
  private:
   struct State;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,7 +44,7 @@ struct ImageBinding {
 /// Immutable structure; parameters may be rewritten between frames. Not thread-safe.
 class Program {
  public:
-  /// Errors: script (shader), device (limits, memory).
+  /// Errors: script (shader, a parameter or input that is not given), device (limits, memory), io (over `max_memory`).
   static Result<std::unique_ptr<Program>> create(Device& device, ShaderLibrary& shaders, KernelCompiler& compiler, const Graph& graph,
                                                  const ProgramOptions& options);
   ~Program();
@@ -65,6 +66,11 @@ class Program {
   const Graph& graph() const;
   ProgramMemory memory() const;
   VkFormat storage_format() const;
+  /// A transient image and the layout it is in after a whole run; null for images without memory of their own (inputs, the result, what
+  /// joined passes hand on). Its pixels are `kept` after the run by a program created with `reference` alone.
+  struct Transient { ImageBinding binding; VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; bool kept = false; };
+  std::optional<Transient> transient(ImageId image) const;
+
   struct Counters { int pipelines = 0, images = 0, allocations = 0; };
   Counters counters() const;   ///< objects made so far; steady frames leave them alone
 

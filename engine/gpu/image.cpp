@@ -44,6 +44,10 @@ Result<void> check_image(const Device& device, const ImageDesc& desc) {
   return {};
 }
 
+VkImageLayout initial_layout(const ImageDesc& desc) {
+  return desc.tiling == VK_IMAGE_TILING_LINEAR ? VK_IMAGE_LAYOUT_PREINITIALIZED : VK_IMAGE_LAYOUT_UNDEFINED;
+}
+
 Result<UnboundImage> UnboundImage::create(const Device& device, const ImageDesc& desc) {
   AFTERGLOW_CHECK(check_image(device, desc));
   const VkImageCreateInfo info{
@@ -56,7 +60,7 @@ Result<UnboundImage> UnboundImage::create(const Device& device, const ImageDesc&
       .samples = VK_SAMPLE_COUNT_1_BIT,
       .tiling = desc.tiling,
       .usage = desc.usage,
-      .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
+      .initialLayout = initial_layout(desc)};
   VkImage handle = VK_NULL_HANDLE;
   AFTERGLOW_VK(vkCreateImage(device.handle(), &info, nullptr, &handle),
                fmt::format("cannot create image '{}' of {}×{} pixels", desc.name, desc.size.width, desc.size.height));

@@ -19,6 +19,9 @@ struct ImageDesc {
 /// Bytes of one pixel of the formats used here (R32F, RGBA32F, RGBA16F, RGBA8).
 std::uint32_t bytes_per_pixel(VkFormat format);
 
+/// The layout of a new image: PREINITIALIZED for linear tiling, so that pixels written by the CPU stay; else UNDEFINED.
+VkImageLayout initial_layout(const ImageDesc& desc);
+
 /// Whether the device can make such an image at all. Errors: device, naming the limit that is exceeded. Allocates
 /// nothing.
 Result<void> check_image(const Device& device, const ImageDesc& desc);

@@ -1,0 +1,88 @@
+#include "exec/arena.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "gpu/error.h"
+
+namespace afterglow {
+
+namespace {
+
+Placement place_some(const std::vector<Block>& blocks, const std::vector<int>& chosen, bool share) {
+  std::vector<Block> some;
+  for (const int i : chosen) some.push_back(blocks[i]);
+  return place(some, share);
+}
+
+}  // namespace
+
+std::vector<ArenaGroup> group_blocks(const std::vector<Block>& blocks, bool share, std::uint64_t max_allocation) {
+  std::vector<int> rest(blocks.size());
+  std::iota(rest.begin(), rest.end(), 0);
+  std::vector<ArenaGroup> groups;
+  while (!rest.empty()) {
+    Placement placement = place_some(blocks, rest, share);
+    if (placement.total <= max_allocation || rest.size() == 1) {
+      groups.push_back({std::move(rest), std::move(placement)});
+      break;
+    }
+    const auto largest = std::ranges::max_element(rest, {}, [&](int i) { return blocks[i].size; });
+    groups.push_back({{*largest}, place_some(blocks, {*largest}, share)});
+    rest.erase(largest);
+  }
+  return groups;
+}
+
+Result<Arena> Arena::create(const Device& device, const Graph& graph, const Plan& plan, const ArenaOptions& options) {
+  Arena out;
+  std::vector<ImageId> ids;
+  std::vector<Block> blocks;
+  std::uint32_t memory_types = ~0u;
+  for (std::size_t i = 0; i < plan.transient.size(); ++i) {
+    const ImageId id = plan.transient[i];
+    if (id == graph.result) continue;
+    const VkImageUsageFlags readable = options.readable ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0;
+    AFTERGLOW_TRY(UnboundImage image,
+                  UnboundImage::create(
+                      device, {.name = graph.images[id].name,
+                               .size = graph.images[id].size,
+                               .format = options.format,
+                               .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | readable}));
+    const auto& needs = image.needs();
+    blocks.push_back({needs.size, needs.alignment, plan.lifetimes[i].first, plan.lifetimes[i].last});
+    memory_types &= needs.memoryTypeBits;
+    ids.push_back(id);
+    out.images_.emplace(id, std::move(image));
+  }
+
+  const auto groups = group_blocks(blocks, options.share, device.max_allocation());
+  for (const auto& group : groups) out.memory_.arena += group.placement.total;
+  const Placement all = place(blocks, options.share);
+  out.memory_.sum = all.sum;
+  out.memory_.lower_bound = all.lower_bound;
+  if (out.memory_.arena > options.max_memory) {
+    return Error{ErrorKind::io,
+                 fmt::format("the stack needs {} for its images, more than the {} allowed (--max-memory)",
+                             bytes_text(out.memory_.arena), bytes_text(options.max_memory))};
+  }
+  for (const auto& group : groups) {
+    const VkMemoryRequirements needs{group.placement.total, 0, memory_types};
+    AFTERGLOW_TRY(Memory memory, Memory::allocate(device, needs, HostAccess::none, "the images of the stack"));
+    for (std::size_t i = 0; i < group.blocks.size(); ++i) {
+      UnboundImage& image = out.images_.at(ids[group.blocks[i]]);
+      AFTERGLOW_CHECK(image.bind(device, memory.get(), group.placement.offsets[i]));
+    }
+    out.allocations_.push_back(std::move(memory));
+  }
+  return out;
+}
+
+const UnboundImage* Arena::image(ImageId id) const {
+  const auto found = images_.find(id);
+  return found == images_.end() ? nullptr : &found->second;
+}
+
+}  // namespace afterglow

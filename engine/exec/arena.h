@@ -1,0 +1,47 @@
+// Memory of the images between kernels: as few allocations as the device allows, shared where lifetimes do not overlap.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "exec/program.h"
+#include "gpu/image.h"
+
+namespace afterglow {
+
+struct ArenaOptions {
+  VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
+  bool share = true;
+  bool readable = false;  ///< images may be copied from
+  std::uint64_t max_memory = 0;
+};
+
+class Arena {
+ public:
+  /// Makes every image of `plan.transient` but the result, which is the caller's. Errors: device (limits, out of
+  /// memory), io (over `max_memory`, before anything is allocated).
+  static Result<Arena> create(const Device& device, const Graph& graph, const Plan& plan, const ArenaOptions& options);
+  Arena() = default;
+
+  /// Null for images that are not in the arena.
+  const UnboundImage* image(ImageId id) const;
+  const ProgramMemory& memory() const { return memory_; }
+  int images() const { return static_cast<int>(images_.size()); }
+  int allocations() const { return static_cast<int>(allocations_.size()); }
+
+ private:
+  std::vector<Memory> allocations_;  // before the images: freed after them
+  std::map<ImageId, UnboundImage> images_;
+  ProgramMemory memory_;
+};
+
+/// Blocks (by index) that go into one allocation, and where.
+struct ArenaGroup {
+  std::vector<int> blocks;
+  Placement placement;
+};
+/// All blocks in one group when that is at most `max_allocation` large; else the largest blocks get allocations of
+/// their own. Pure.
+std::vector<ArenaGroup> group_blocks(const std::vector<Block>& blocks, bool share, std::uint64_t max_allocation);
+
+}  // namespace afterglow

@@ -1,0 +1,104 @@
+#include "exec/describe.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "exec/parallel.h"
+
+namespace afterglow {
+
+namespace {
+
+AxisRatio axis_ratio(int source, int target) {
+  if (source == target) return AxisRatio::same;
+  if (source == 2 * target) return AxisRatio::half;
+  if (2 * source == target) return AxisRatio::twice;
+  return AxisRatio::any;
+}
+
+Result<KernelStage> stage_of(ShaderLibrary& shaders, const Pass& pass) {
+  auto shader = shaders.find(pass.shader);
+  if (!shader) {
+    Error error = std::move(shader).error();
+    if (error.file.empty()) error.file = pass.file, error.line = pass.line;
+    return error;
+  }
+  return KernelStage{.shader = std::move(shader).value(), .constants = pass.constants, .label = pass.name};
+}
+
+const PassInput* find_input(const Pass& pass, const std::string& name) {
+  const auto found = std::ranges::find(pass.inputs, name, &PassInput::name);
+  return found == pass.inputs.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, const PlanKernel& kernel,
+                                   const DescribeOptions& options) {
+  KernelDesc desc;
+  desc.hardware_filter = options.hardware_filter;
+  desc.half_storage = options.half_storage;
+  const Pass& head = graph.passes[kernel.passes.front()];
+  std::size_t first_stage = 1;
+  if (head.kind == PassKind::filter) {
+    const Size source = graph.images[head.inputs.front().image].size, target = graph.images[head.output].size;
+    desc.filter = head.filter;
+    desc.ratio_x = axis_ratio(source.width, target.width);
+    desc.ratio_y = axis_ratio(source.height, target.height);
+  } else if (head.kind == PassKind::sample) {
+    AFTERGLOW_TRY(desc.sample, stage_of(shaders, head));
+  } else {
+    first_stage = 0;
+  }
+  for (std::size_t i = first_stage; i < kernel.passes.size(); ++i) {
+    AFTERGLOW_TRY(KernelStage stage, stage_of(shaders, graph.passes[kernel.passes[i]]));
+    desc.stages.push_back(std::move(stage));
+  }
+  return desc;
+}
+
+const Pass& pass_of_stage(const Graph& graph, const PlanKernel& kernel, int stage) {
+  // A filter head is no stage: stage 0 is then the second pass. The head's source (stage -1) is the first pass's.
+  const bool filter = graph.passes[kernel.passes.front()].kind == PassKind::filter;
+  const int index = stage < 0 ? 0 : stage + (filter ? 1 : 0);
+  return graph.passes[kernel.passes[static_cast<std::size_t>(index)]];
+}
+
+Result<std::vector<ImageId>> images_of_slots(const Graph& graph, const PlanKernel& kernel,
+                                             const CompiledKernel& compiled) {
+  std::vector<ImageId> images;
+  for (const auto& slot : compiled.images) {
+    const Pass& pass = pass_of_stage(graph, kernel, slot.stage);
+    const PassInput* input = find_input(pass, slot.name);
+    if (!input) {
+      return Error{ErrorKind::script, fmt::format("pass '{}' lacks the input '{}' of its shader", pass.name, slot.name),
+                   pass.file, pass.line};
+    }
+    images.push_back(input->image);
+  }
+  return images;
+}
+
+Result<CompiledKernels> compile_kernels(KernelCompiler& compiler, const std::vector<KernelDesc>& kernels) {
+  CompiledKernels out;
+  std::map<Hash, int> seen;
+  std::vector<const KernelDesc*> unique;
+  for (const auto& kernel : kernels) {
+    AFTERGLOW_TRY(const AssembledKernel assembled, assemble(kernel));
+    const auto [at, is_new] = seen.emplace(assembled.hash, static_cast<int>(unique.size()));
+    if (is_new) unique.push_back(&kernel);
+    out.index.push_back(at->second);
+  }
+  std::vector<std::optional<Result<CompiledKernel>>> results(unique.size());
+  parallel_for(unique.size(), [&](std::size_t i) { results[i].emplace(compiler.compile(*unique[i])); });
+  for (auto& result : results) {
+    if (!*result) return std::move(*result).error();
+    out.unique.push_back(std::move(*result).value());
+  }
+  return out;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,81 @@
+#include "exec/parameters.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+namespace afterglow {
+
+namespace {
+
+Result<void> check_parameters(const Graph& graph, const KernelBlock& block) {
+  for (const auto& param : block.compiled->params) {
+    const Pass& pass = pass_of_stage(graph, block.kernel, param.stage);
+    if (!pass.params.contains(param.name)) {
+      return Error{ErrorKind::script,
+                   fmt::format("pass '{}' lacks the parameter '{}' of its shader", pass.name, param.name), pass.file,
+                   pass.line};
+    }
+  }
+  return {};
+}
+
+bool is_integer(ParamType type) {
+  return type == ParamType::int1 || type == ParamType::int2 || type == ParamType::bool1;
+}
+
+/// std140: components of a vector follow each other, 4 bytes each; a bool is a 32-bit 0 or 1.
+void write_value(const ParamValue& value, ParamType type, std::byte* to) {
+  for (int i = 0; i < component_count(type); ++i) {
+    if (is_integer(type)) {
+      const auto number =
+          type == ParamType::bool1 ? std::int32_t{value.v[i] != 0} : static_cast<std::int32_t>(value.v[i]);
+      std::memcpy(to + 4 * i, &number, 4);
+    } else {
+      const auto number = static_cast<float>(value.v[i]);
+      std::memcpy(to + 4 * i, &number, 4);
+    }
+  }
+}
+
+}  // namespace
+
+Result<ParameterBuffer> ParameterBuffer::create(const Device& device, const Graph& graph, const Plan& plan,
+                                                const std::vector<const CompiledKernel*>& compiled) {
+  const auto& limits = device.properties().limits;
+  const VkDeviceSize alignment = std::max<VkDeviceSize>(limits.minUniformBufferOffsetAlignment, 16);
+  ParameterBuffer out;
+  VkDeviceSize size = 0;
+  for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
+    KernelBlock block{.kernel = plan.kernels[i], .compiled = compiled[i], .offset = size};
+    AFTERGLOW_CHECK(check_parameters(graph, block));
+    if (block.compiled->block_size > limits.maxUniformBufferRange) {
+      return Error{ErrorKind::device,
+                   fmt::format("kernel '{}' has {} bytes of parameters, the device allows {}", plan.kernels[i].name,
+                               block.compiled->block_size, limits.maxUniformBufferRange)};
+    }
+    size += (block.compiled->block_size + alignment - 1) / alignment * alignment;
+    out.blocks_.push_back(std::move(block));
+  }
+  if (size > 0) {
+    AFTERGLOW_TRY(out.buffer_,
+                  Buffer::create(device, size, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, HostAccess::write, "parameters"));
+    std::memset(out.buffer_.data(), 0, size);
+    out.write(graph);
+  }
+  return out;
+}
+
+void ParameterBuffer::write(const Graph& graph) {
+  for (const auto& block : blocks_) {
+    for (const auto& param : block.compiled->params) {
+      const Pass& pass = pass_of_stage(graph, block.kernel, param.stage);
+      const auto value = pass.params.find(param.name);
+      if (value == pass.params.end()) continue;
+      write_value(value->second, param.type, buffer_.data() + block.offset + param.offset);
+    }
+  }
+  buffer_.memory().flush();
+}
+
+}  // namespace afterglow

@@ -1,0 +1,140 @@
+#include "exec/staging.h"
+
+#include <algorithm>
+
+#include "exec/convert.h"
+
+namespace afterglow {
+
+namespace {
+
+/// Large enough that a submission costs little beside its copy, small beside a 4K picture (127 MiB).
+constexpr VkDeviceSize kBandBytes = 8u << 20;
+
+VkDeviceSize row_bytes(const StagedImage& image) {
+  return static_cast<VkDeviceSize>(image.size.width) * bytes_per_pixel(image.format);
+}
+
+int rows_per_band(const StagedImage& image) {
+  return static_cast<int>(
+      std::clamp<VkDeviceSize>(kBandBytes / row_bytes(image), 1, static_cast<VkDeviceSize>(image.size.height)));
+}
+
+VkBufferImageCopy copy_of(const StagedImage& image, int first_row, int rows) {
+  return {.bufferOffset = 0,
+          .bufferRowLength = 0,
+          .bufferImageHeight = 0,
+          .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+          .imageOffset = {0, first_row, 0},
+          .imageExtent = {static_cast<std::uint32_t>(image.size.width), static_cast<std::uint32_t>(rows), 1}};
+}
+
+constexpr auto kTransfer = VK_PIPELINE_STAGE_2_COPY_BIT;
+constexpr auto kShader = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+
+}  // namespace
+
+VkDeviceSize Staging::bytes(const StagedImage& image) {
+  return 2 * row_bytes(image) * static_cast<VkDeviceSize>(rows_per_band(image));
+}
+
+Result<void> Staging::prepare(Bands& bands, const StagedImage& image, HostAccess access) {
+  const VkDeviceSize size = row_bytes(image) * static_cast<VkDeviceSize>(rows_per_band(image));
+  for (auto& band : bands) {
+    if (band.buffer.size() >= size) continue;
+    if (band.buffer.size() == 0) {
+      AFTERGLOW_TRY(band.submitter, Submitter::create(*device_));
+    }
+    const VkBufferUsageFlags usage =
+        access == HostAccess::write ? VK_BUFFER_USAGE_TRANSFER_SRC_BIT : VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    AFTERGLOW_TRY(band.buffer, Buffer::create(*device_, size, usage, access, "staging"));
+    ++buffers_;
+  }
+  return {};
+}
+
+Result<std::uint64_t> Staging::upload(const StagedImage& image, const PackRow& pack) {
+  AFTERGLOW_CHECK(prepare(uploads_, image, HostAccess::write));
+  const int step = rows_per_band(image);
+  std::uint64_t held = 0;
+  for (int first = 0, turn = 0; first < image.size.height; first += step, turn ^= 1) {
+    Band& band = uploads_[turn];
+    const int rows = std::min(step, image.size.height - first);
+    AFTERGLOW_CHECK(band.submitter.wait());
+    held += over_rows(rows, row_bytes(image),
+                      [&](int y) { return pack(first + y, band.buffer.data() + y * row_bytes(image)); });
+    band.buffer.memory().flush();
+    const bool is_first = first == 0, is_last = first + rows == image.size.height;
+    AFTERGLOW_CHECK(band.submitter.submit([&](VkCommandBuffer commands) {
+      if (is_first) {
+        const auto begin = image_barrier(image.image, kShader, 0, VK_IMAGE_LAYOUT_UNDEFINED, kTransfer,
+                                         VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        record_barriers(commands, &begin, 1);
+      }
+      const VkBufferImageCopy region = copy_of(image, first, rows);
+      vkCmdCopyBufferToImage(commands, band.buffer.get(), image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                             &region);
+      if (is_last) {
+        const auto end =
+            image_barrier(image.image, kTransfer, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                          kShader, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        record_barriers(commands, &end, 1);
+      }
+    }));
+  }
+  for (auto& band : uploads_) AFTERGLOW_CHECK(band.submitter.wait());
+  return held;
+}
+
+Result<std::uint64_t> Staging::download(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack) {
+  AFTERGLOW_CHECK(prepare(downloads_, image, HostAccess::read));
+  const int step = rows_per_band(image);
+  std::uint64_t held = 0;
+  const auto take = [&](Band& band) -> Result<void> {
+    if (band.rows == 0) return {};
+    AFTERGLOW_CHECK(band.submitter.wait());
+    band.buffer.memory().invalidate();
+    held += over_rows(band.rows, row_bytes(image),
+                      [&](int y) { return unpack(band.first_row + y, band.buffer.data() + y * row_bytes(image)); });
+    band.rows = 0;
+    return {};
+  };
+  int turn = 0;
+  for (int first = 0; first < image.size.height; first += step, turn ^= 1) {
+    Band& band = downloads_[turn];
+    AFTERGLOW_CHECK(take(band));
+    const int rows = std::min(step, image.size.height - first);
+    const bool is_first = first == 0, is_last = first + rows == image.size.height;
+    AFTERGLOW_CHECK(band.submitter.submit([&](VkCommandBuffer commands) {
+      if (is_first) {
+        const auto begin = image_barrier(image.image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | kShader,
+                                         VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, layout, kTransfer,
+                                         VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+        record_barriers(commands, &begin, 1);
+      }
+      const VkBufferImageCopy region = copy_of(image, first, rows);
+      vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, band.buffer.get(), 1,
+                             &region);
+      const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                     .srcStageMask = kTransfer,
+                                     .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                     .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
+                                     .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
+      const auto end = image_barrier(image.image, kTransfer, 0, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | kShader, 0, layout);
+      const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                        .memoryBarrierCount = 1,
+                                        .pMemoryBarriers = &to_host,
+                                        .imageMemoryBarrierCount = is_last ? 1u : 0u,
+                                        .pImageMemoryBarriers = &end};
+      vkCmdPipelineBarrier2(commands, &dependency);
+    }));
+    band.first_row = first;
+    band.rows = rows;
+  }
+  AFTERGLOW_CHECK(take(downloads_[turn]));
+  AFTERGLOW_CHECK(take(downloads_[turn ^ 1]));
+  return held;
+}
+
+}  // namespace afterglow

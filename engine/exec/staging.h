@@ -1,0 +1,56 @@
+// Pixels between host memory and images of any device, over buffers of a few rows: a large picture never exists a third
+// time.
+#pragma once
+
+#include <array>
+#include <functional>
+
+#include "core/geometry.h"
+#include "exec/submit.h"
+#include "gpu/image.h"
+
+namespace afterglow {
+
+/// Writes row y of a picture as it lies in an image, or reads it from there; returns how many values were held at
+/// ±65504.
+using PackRow = std::function<std::uint64_t(int y, std::byte* to)>;
+using UnpackRow = std::function<std::uint64_t(int y, const std::byte* from)>;
+
+/// What is moved.
+struct StagedImage {
+  VkImage image = VK_NULL_HANDLE;
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  Size size;
+};
+
+/// Two bands take turns: while the device copies one, the CPU converts the other. Bands are kept and reused.
+class Staging {
+ public:
+  explicit Staging(const Device& device) : device_(&device) {}
+
+  /// Leaves the image in SHADER_READ_ONLY_OPTIMAL, visible to fragment shaders; what it held is lost. Returns the sum
+  /// of `pack`.
+  Result<std::uint64_t> upload(const StagedImage& image, const PackRow& pack);
+
+  /// Takes the image in `layout`, written by draws, and leaves it so. Returns the sum of `unpack`.
+  Result<std::uint64_t> download(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack);
+
+  /// Bytes of the buffers that moving an image of this size takes.
+  static VkDeviceSize bytes(const StagedImage& image);
+  int buffers() const { return buffers_; }
+
+ private:
+  struct Band {
+    Buffer buffer;
+    Submitter submitter;          // after the buffer: it waits when it goes
+    int first_row = 0, rows = 0;  ///< on their way; 0: none
+  };
+  using Bands = std::array<Band, 2>;
+  Result<void> prepare(Bands& bands, const StagedImage& image, HostAccess access);
+
+  const Device* device_;
+  Bands uploads_, downloads_;
+  int buffers_ = 0;
+};
+
+}  // namespace afterglow

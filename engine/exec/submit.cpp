@@ -1,0 +1,68 @@
+#include "exec/submit.h"
+
+#include <limits>
+
+#include "gpu/error.h"
+
+namespace afterglow {
+
+Result<Submitter> Submitter::create(const Device& device) {
+  Submitter out;
+  out.device_ = &device;
+  const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                          .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                          .queueFamilyIndex = device.queue_family()};
+  VkCommandPool pool = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkCreateCommandPool(device.handle(), &pool_info, nullptr, &pool), "cannot create a command pool");
+  out.pool_ = CommandPoolHandle(device.handle(), pool);
+  const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                             .commandPool = pool,
+                                             .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                             .commandBufferCount = 1};
+  AFTERGLOW_VK(vkAllocateCommandBuffers(device.handle(), &allocate, &out.commands_),
+               "cannot allocate a command buffer");
+  const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+  VkFence fence = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkCreateFence(device.handle(), &fence_info, nullptr, &fence), "cannot create a fence");
+  out.fence_ = FenceHandle(device.handle(), fence);
+  return out;
+}
+
+Submitter& Submitter::operator=(Submitter&& other) noexcept {
+  std::swap(device_, other.device_);
+  std::swap(pool_, other.pool_);
+  std::swap(fence_, other.fence_);
+  std::swap(commands_, other.commands_);
+  std::swap(pending_, other.pending_);
+  return *this;
+}
+
+Result<void> Submitter::submit(const std::function<void(VkCommandBuffer)>& record) {
+  AFTERGLOW_CHECK(wait());
+  const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+  AFTERGLOW_VK(vkBeginCommandBuffer(commands_, &begin), "cannot record commands");
+  record(commands_);
+  AFTERGLOW_VK(vkEndCommandBuffer(commands_), "cannot record commands");
+  const VkCommandBufferSubmitInfo buffer{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                         .commandBuffer = commands_};
+  const VkSubmitInfo2 info{
+      .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &buffer};
+  AFTERGLOW_VK(vkQueueSubmit2(device_->queue(), 1, &info, fence_.get()), "cannot submit");
+  pending_ = true;
+  return {};
+}
+
+Result<void> Submitter::wait() {
+  if (!pending_) return {};
+  const VkFence fence = fence_.get();
+  // Drivers end a submission that hangs, as "device lost"; there is nothing useful to do after a shorter time.
+  const VkResult result =
+      vkWaitForFences(device_->handle(), 1, &fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
+  pending_ = false;
+  AFTERGLOW_VK(result, "the device did not finish");
+  AFTERGLOW_VK(vkResetFences(device_->handle(), 1, &fence), "cannot reset a fence");
+  return {};
+}
+
+}  // namespace afterglow

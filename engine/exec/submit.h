@@ -1,0 +1,34 @@
+// One command buffer that is recorded, submitted and waited for, again and again.
+#pragma once
+
+#include <functional>
+#include <utility>
+
+#include "gpu/device.h"
+#include "gpu/handle.h"
+
+namespace afterglow {
+
+class Submitter {
+ public:
+  static Result<Submitter> create(const Device& device);
+  Submitter() = default;
+  Submitter(Submitter&& other) noexcept { *this = std::move(other); }
+  Submitter& operator=(Submitter&& other) noexcept;
+  ~Submitter() { (void)wait(); }
+
+  /// Records anew with `record` and submits. Waits for the submission before, if it is still on its way. Errors:
+  /// device.
+  Result<void> submit(const std::function<void(VkCommandBuffer)>& record);
+  /// Until the last submission is done; at once when there is none. Errors: device (lost).
+  Result<void> wait();
+
+ private:
+  const Device* device_ = nullptr;
+  CommandPoolHandle pool_;
+  FenceHandle fence_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  bool pending_ = false;
+};
+
+}  // namespace afterglow
