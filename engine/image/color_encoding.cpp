@@ -1,0 +1,196 @@
+#include "image/color_encoding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "image/parallel.h"
+#include "image/srgb.h"
+
+namespace afterglow {
+namespace {
+
+constexpr float kLargest = 1e30f;
+constexpr float kFarDepth = 1e10f;
+
+SanitizeCounts& operator+=(SanitizeCounts& a, const SanitizeCounts& b) {
+  a.nan += b.nan;
+  a.negative += b.negative;
+  a.too_large += b.too_large;
+  a.alpha += b.alpha;
+  a.depth += b.depth;
+  a.normal += b.normal;
+  return a;
+}
+
+/// A decoder of single samples, by table where there are few codes.
+class CurveDecoder {
+ public:
+  explicit CurveDecoder(const ColorEncoding& encoding) : encoding_(encoding) {
+    if (encoding.curve == TransferCurve::linear || encoding.transform) return;
+    if (encoding.curve == TransferCurve::tables) {
+      for (int c = 0; c < 3; ++c) tables_[c] = &encoding.tables[c];
+    } else if (encoding.max_code > 0) {
+      shared_.resize(static_cast<std::size_t>(encoding.max_code) + 1);
+      for (std::size_t i = 0; i < shared_.size(); ++i)
+        shared_[i] = formula(static_cast<float>(static_cast<double>(i) / encoding.max_code));
+      for (auto& table : tables_) table = &shared_;
+    }
+  }
+
+  bool identity() const { return encoding_.curve == TransferCurve::linear || encoding_.transform; }
+
+  float operator()(int channel, float stored) const {
+    const std::vector<float>* table = tables_[channel];
+    if (!table) return formula(stored);
+    const auto last = static_cast<float>(table->size() - 1);
+    const float position = std::clamp(stored, 0.0f, 1.0f) * last;
+    // Stored codes hit the table exactly; values between them (after un-premultiplying) are interpolated.
+    const float nearest = std::nearbyint(position);
+    if (std::abs(position - nearest) < 1e-3f) return (*table)[static_cast<std::size_t>(nearest)];
+    const auto index = static_cast<std::size_t>(position);
+    const float t = position - static_cast<float>(index);
+    return (*table)[index] * (1 - t) + (*table)[index + 1] * t;
+  }
+
+ private:
+  float formula(float stored) const {
+    switch (encoding_.curve) {
+      case TransferCurve::srgb: return static_cast<float>(srgb_to_linear(stored));
+      case TransferCurve::rec709:
+        return stored < 0.081f ? stored / 4.5f : static_cast<float>(std::pow((stored + 0.099) / 1.099, 1 / 0.45));
+      case TransferCurve::power: return static_cast<float>(std::copysign(std::pow(std::abs(stored), encoding_.exponent), stored));
+      default: return stored;
+    }
+  }
+
+  const ColorEncoding& encoding_;
+  std::vector<float> shared_;
+  std::array<const std::vector<float>*, 3> tables_{};
+};
+
+void make_finite(float& value, SanitizeCounts& counts) {
+  if (std::isnan(value)) {
+    value = 0;
+    ++counts.nan;
+  } else if (value > kLargest) {
+    value = kLargest;
+    ++counts.too_large;
+  } else if (value < -kLargest) {  // −infinity would become NaN in a matrix
+    value = 0;
+    ++counts.negative;
+  }
+}
+
+void make_alpha_finite(float& alpha, SanitizeCounts& counts) {
+  if (std::isfinite(alpha)) return;
+  alpha = 1;
+  ++counts.alpha;
+}
+
+/// The common case, linear Rec.709 with associated alpha: one pass without branches, so that it vectorises.
+void sanitize_linear(float* rgba, std::size_t pixels, SanitizeCounts& counts) {
+  std::uint64_t nan = 0, negative = 0, large = 0, alpha = 0;
+  constexpr std::size_t kBlock = 1024;  // 32-bit counters inside a block keep all lanes equally wide
+  for (std::size_t begin = 0; begin < pixels; begin += kBlock) {
+    const std::size_t end = std::min(begin + kBlock, pixels);
+    std::uint32_t block_nan = 0, block_negative = 0, block_large = 0, block_alpha = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      float* pixel = rgba + i * 4;
+      for (int c = 0; c < 3; ++c) {
+        const float v = pixel[c];
+        block_nan += v != v;
+        block_negative += v < 0;
+        block_large += v > kLargest;
+        const float positive = v > 0 ? v : 0.0f;  // NaN fails the test
+        pixel[c] = positive < kLargest ? positive : kLargest;
+      }
+      const bool finite = std::abs(pixel[3]) <= std::numeric_limits<float>::max();
+      block_alpha += !finite;
+      pixel[3] = finite ? pixel[3] : 1.0f;
+    }
+    nan += block_nan;
+    negative += block_negative;
+    large += block_large;
+    alpha += block_alpha;
+  }
+  counts.nan += nan;
+  counts.negative += negative;
+  counts.too_large += large;
+  counts.alpha += alpha;
+}
+
+void decode_rows(const ColorEncoding& encoding, const CurveDecoder& curve, float* rgba, std::size_t pixels, SanitizeCounts& counts) {
+  if (encoding.grey)
+    for (std::size_t i = 0; i < pixels; ++i) rgba[i * 4 + 1] = rgba[i * 4 + 2] = rgba[i * 4];
+  if (encoding.alpha == AlphaKind::none)
+    for (std::size_t i = 0; i < pixels; ++i) rgba[i * 4 + 3] = 1;
+  const bool straight = encoding.alpha == AlphaKind::straight;
+  // Associated integers were multiplied after they had been encoded: divide first, multiply again in linear light.
+  const bool divide = encoding.alpha == AlphaKind::associated && (!curve.identity() || encoding.transform);
+  if (curve.identity() && !encoding.matrix && !encoding.transform && !straight) return sanitize_linear(rgba, pixels, counts);
+
+  for (std::size_t i = 0; i < pixels; ++i) {
+    float* pixel = rgba + i * 4;
+    for (int c = 0; c < 3; ++c) make_finite(pixel[c], counts);
+    make_alpha_finite(pixel[3], counts);
+    if (divide && pixel[3] > 0)
+      for (int c = 0; c < 3; ++c) pixel[c] /= pixel[3];
+    if (!curve.identity())
+      for (int c = 0; c < 3; ++c) pixel[c] = curve(c, pixel[c]);
+  }
+  if (encoding.transform) {
+    std::vector<float> rgb(pixels * 3);
+    for (std::size_t i = 0; i < pixels; ++i) std::copy_n(rgba + i * 4, 3, &rgb[i * 3]);
+    encoding.transform->apply(rgb.data(), pixels);
+    for (std::size_t i = 0; i < pixels; ++i) std::copy_n(&rgb[i * 3], 3, rgba + i * 4);
+  }
+  for (std::size_t i = 0; i < pixels; ++i) {
+    float* pixel = rgba + i * 4;
+    if (encoding.matrix) {
+      const Matrix3& m = *encoding.matrix;
+      const double r = pixel[0], g = pixel[1], b = pixel[2];
+      for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(m[c][0] * r + m[c][1] * g + m[c][2] * b);
+    }
+    if (straight || (divide && pixel[3] > 0))
+      for (int c = 0; c < 3; ++c) pixel[c] *= pixel[3];
+  }
+  sanitize_linear(rgba, pixels, counts);
+}
+
+}  // namespace
+
+void decode_color(const ColorEncoding& encoding, float* rgba, std::size_t pixels, SanitizeCounts& counts) {
+  decode_rows(encoding, CurveDecoder(encoding), rgba, pixels, counts);
+}
+
+void decode_color(const ColorEncoding& encoding, Image& rgba, SanitizeCounts& counts) {
+  const CurveDecoder curve(encoding);
+  std::mutex mutex;
+  parallel_rows(rgba.height, static_cast<long long>(rgba.pixels.size()), [&](int begin, int end) {
+    SanitizeCounts own;
+    for (int y = begin; y < end; ++y) decode_rows(encoding, curve, rgba.at(0, y), static_cast<std::size_t>(rgba.width), own);
+    const std::lock_guard lock(mutex);
+    counts += own;
+  });
+}
+
+void sanitize_depth(Image& depth, SanitizeCounts& counts) {
+  for (float& value : depth.pixels) {
+    if (std::isfinite(value)) continue;
+    value = kFarDepth;
+    ++counts.depth;
+  }
+}
+
+void sanitize_normal(Image& normal, SanitizeCounts& counts) {
+  for (std::size_t i = 0; i + 3 <= normal.pixels.size(); i += 3) {
+    float* n = &normal.pixels[i];
+    if (std::isfinite(n[0]) && std::isfinite(n[1]) && std::isfinite(n[2])) continue;
+    n[0] = n[1] = n[2] = 0;
+    ++counts.normal;
+  }
+}
+
+}  // namespace afterglow

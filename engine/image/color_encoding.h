@@ -1,0 +1,48 @@
+// How the colour samples of a file are encoded, and how they become scene-linear Rec.709.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "image/color_matrix.h"
+#include "image/picture.h"
+
+namespace afterglow {
+
+/// A profile that is no matrix and curves; wraps a transform of Little CMS. Thread-safe.
+class ProfileTransform {
+ public:
+  virtual ~ProfileTransform() = default;
+  /// RGB triples, in place.
+  virtual void apply(float* rgb, std::size_t pixels) const = 0;
+};
+
+enum class TransferCurve { linear, srgb, rec709, power, tables };
+enum class AlphaKind { none, associated, straight };
+
+struct ColorEncoding {
+  TransferCurve curve = TransferCurve::linear;
+  double exponent = 1;                          ///< of `power`
+  std::array<std::vector<float>, 3> tables{};   ///< of `tables`: linear values for equally spaced stored values 0…1
+  std::optional<Matrix3> matrix;                ///< to Rec.709, when the primaries are others
+  std::shared_ptr<const ProfileTransform> transform;  ///< replaces curve and matrix
+  AlphaKind alpha = AlphaKind::none;
+  int max_code = 0;                             ///< 255 or 65535 for integers of that many codes; 0: any value
+  bool grey = false;                            ///< only the first sample of a pixel was read; it stands for all three
+};
+
+/// Brings rows of RGBA that hold stored values (integers scaled to 0…1) into the form that Picture::color has. `pixels` are
+/// contiguous. Counts what had to be made finite.
+void decode_color(const ColorEncoding& encoding, float* rgba, std::size_t pixels, SanitizeCounts& counts);
+/// The same for a whole image, on several threads.
+void decode_color(const ColorEncoding& encoding, Image& rgba, SanitizeCounts& counts);
+
+void sanitize_depth(Image& depth, SanitizeCounts& counts);
+void sanitize_normal(Image& normal, SanitizeCounts& counts);
+
+}  // namespace afterglow

@@ -1,0 +1,134 @@
+#include "image/container_check.h"
+
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "image/exr_header.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::array<unsigned char, 8> kPngMagic{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+
+std::uint32_t big_endian(const unsigned char* p, int bytes) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < bytes; ++i) value = value << 8 | p[i];
+  return value;
+}
+
+Error malformed(const fs::path& file, const char* why) { return Error{ErrorKind::io, why, file.string()}; }
+
+bool fill(std::ifstream& in, unsigned char* into, std::size_t size) {
+  return static_cast<bool>(in.read(reinterpret_cast<char*>(into), static_cast<std::streamsize>(size)));
+}
+
+/// Walks the chunks up to IEND, without reading pixels.
+Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::uint64_t size) {
+  ContainerFacts facts;
+  facts.kind = ContainerFacts::Kind::png;
+  std::uint64_t at = kPngMagic.size();
+  while (true) {
+    std::array<unsigned char, 8> head{};
+    in.seekg(static_cast<std::streamoff>(at));
+    if (!fill(in, head.data(), head.size())) return malformed(file, "is truncated");
+    const std::uint64_t length = big_endian(head.data(), 4);
+    const std::string type(reinterpret_cast<const char*>(&head[4]), 4);
+    if (at + 12 + length > size) return malformed(file, "is truncated");
+    std::array<unsigned char, 32> data{};
+    if (length >= 4 && length <= data.size() && !fill(in, data.data(), length)) return malformed(file, "is truncated");
+    const auto number = [&](int index) { return big_endian(&data[static_cast<std::size_t>(index) * 4], 4); };
+    if (at == kPngMagic.size()) {
+      if (type != "IHDR" || length != 13) return malformed(file, "is a malformed PNG");
+      if (number(0) < 1 || number(1) < 1) return malformed(file, "has no pixels");
+      if (number(0) > 0x7fffffff || number(1) > 0x7fffffff) return malformed(file, "is a malformed PNG");
+      facts.size = {static_cast<int>(number(0)), static_cast<int>(number(1))};
+    } else if (type == "sRGB") {
+      facts.srgb = true;
+    } else if (type == "iCCP") {
+      facts.icc = true;
+    } else if (type == "gAMA" && length == 4 && number(0) > 0) {
+      facts.gamma = number(0) / 1e5;
+    } else if (type == "cHRM" && length == 32) {
+      const auto xy = [&](int i) { return std::array<double, 2>{number(2 * i) / 1e5, number(2 * i + 1) / 1e5}; };
+      facts.primaries = Chromaticities{xy(1), xy(2), xy(3), xy(0)};
+    } else if (type == "IEND") {
+      return facts;
+    }
+    at += 12 + length;
+  }
+}
+
+bool is_frame_header(unsigned char marker) {
+  return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+}
+
+/// Walks the segments, and the entropy-coded data for its end marker.
+Result<ContainerFacts> check_jpeg(const fs::path& file, std::ifstream& in, std::uint64_t size) {
+  constexpr std::uint64_t kLargestFile = 1u << 30;
+  if (size > kLargestFile) return malformed(file, "is larger than any JPEG should be");
+  std::vector<unsigned char> bytes(size);
+  in.seekg(0);
+  if (!fill(in, bytes.data(), bytes.size())) return malformed(file, "cannot be read");
+  ContainerFacts facts;
+  facts.kind = ContainerFacts::Kind::jpeg;
+  std::size_t at = 2;
+  while (at + 1 < bytes.size()) {
+    // Between segments and inside coded data alike: the next 0xff that is followed by a marker.
+    if (bytes[at] != 0xff || bytes[at + 1] == 0xff || bytes[at + 1] == 0 || (bytes[at + 1] >= 0xd0 && bytes[at + 1] <= 0xd7)) {
+      const auto* next = static_cast<const unsigned char*>(std::memchr(&bytes[at + 1], 0xff, bytes.size() - at - 1));
+      if (!next) break;
+      at = static_cast<std::size_t>(next - bytes.data());
+      continue;
+    }
+    const unsigned char marker = bytes[at + 1];
+    if (marker == 0xd9) {
+      if (facts.size.width == 0) return malformed(file, "is a malformed JPEG");
+      return facts;
+    }
+    if (at + 4 > bytes.size()) break;
+    const std::size_t length = big_endian(&bytes[at + 2], 2);
+    if (length < 2 || at + 2 + length > bytes.size()) break;
+    if (is_frame_header(marker)) {
+      if (length < 8) return malformed(file, "is a malformed JPEG");
+      facts.size = {static_cast<int>(big_endian(&bytes[at + 7], 2)), static_cast<int>(big_endian(&bytes[at + 5], 2))};
+      if (facts.size.width < 1 || facts.size.height < 1) return malformed(file, "has no pixels");
+    }
+    at += 2 + length;
+  }
+  return malformed(file, "is truncated");
+}
+
+}  // namespace
+
+Result<ContainerFacts> check_container(const fs::path& file) {
+  std::error_code ec;
+  const fs::file_status status = fs::status(file, ec);
+  if (!fs::exists(status)) {
+    const bool missing = !ec || ec == std::errc::no_such_file_or_directory;
+    return Error{ErrorKind::io, missing ? "no such file" : "cannot be read: " + ec.message(), file.string()};
+  }
+  if (fs::is_directory(status)) return malformed(file, "is a folder, not a picture");
+  if (!fs::is_regular_file(status)) return malformed(file, "is not a regular file");
+  const std::uint64_t size = fs::file_size(file, ec);
+  if (ec) return Error{ErrorKind::io, "cannot be read: " + ec.message(), file.string()};
+  if (size == 0) return malformed(file, "is empty");
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return Error{ErrorKind::io, fmt::format("cannot be read: {}", std::strerror(errno)), file.string()};
+  std::array<unsigned char, 8> head{};
+  in.read(reinterpret_cast<char*>(head.data()), head.size());
+  in.clear();
+  if (head == kPngMagic) return check_png(file, in, size);
+  if (head[0] == 0xff && head[1] == 0xd8 && head[2] == 0xff) return check_jpeg(file, in, size);
+  ContainerFacts facts;
+  if (is_exr(file)) facts.kind = ContainerFacts::Kind::exr;
+  return facts;
+}
+
+}  // namespace afterglow

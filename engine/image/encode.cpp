@@ -1,0 +1,124 @@
+#include "image/encode.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include <half.h>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#include "image/srgb.h"
+
+namespace afterglow {
+namespace {
+
+constexpr float kLargestHalf = 65504.0f;
+
+float held(float value) { return value > kLargestHalf ? kLargestHalf : value < -kLargestHalf ? -kLargestHalf : value; }
+
+#if defined(__x86_64__)
+/// Eight at a time, where the processor can. Leaves the rest to the caller.
+__attribute__((target("avx,f16c"))) std::size_t to_half_f16c(const float* values, std::uint16_t* halves, std::size_t count,
+                                                             std::uint64_t& overflows) {
+  const __m256 largest = _mm256_set1_ps(kLargestHalf), smallest = _mm256_set1_ps(-kLargestHalf);
+  std::size_t i = 0;
+  for (; i + 8 <= count; i += 8) {
+    const __m256 v = _mm256_loadu_ps(values + i);
+    const __m256 outside = _mm256_or_ps(_mm256_cmp_ps(v, largest, _CMP_GT_OQ), _mm256_cmp_ps(v, smallest, _CMP_LT_OQ));
+    if (const int mask = _mm256_movemask_ps(outside)) overflows += static_cast<unsigned>(__builtin_popcount(static_cast<unsigned>(mask)));
+    // min and max give their second operand for NaN: NaN stays NaN.
+    const __m256 inside = _mm256_max_ps(smallest, _mm256_min_ps(largest, v));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(halves + i), _mm256_cvtps_ph(inside, _MM_FROUND_TO_NEAREST_INT));
+  }
+  return i;
+}
+#endif
+
+/// 8×8 ordered noise (Bayer), centred: multiples of 1/64 in (−½, ½).
+constexpr std::array<std::array<float, 8>, 8> bayer() {
+  std::array<std::array<float, 8>, 8> out{};
+  for (unsigned y = 0; y < 8; ++y) {
+    for (unsigned x = 0; x < 8; ++x) {
+      unsigned rank = 0;
+      for (unsigned bit = 0; bit < 3; ++bit) {
+        const unsigned bx = x >> bit & 1, by = y >> bit & 1;
+        rank |= (bx ^ by) << (2 * (2 - bit) + 1) | by << (2 * (2 - bit));
+      }
+      out[y][x] = (static_cast<float>(rank) + 0.5f) / 64.0f - 0.5f;
+    }
+  }
+  return out;
+}
+constexpr auto kBayer = bayer();
+
+std::uint32_t dithered(float linear, float noise, int max_code) {
+  const double clamped = linear > 0 ? std::min(static_cast<double>(linear), 1.0) : 0.0;
+  // Black and white stay what they are: the noise is below half a step.
+  return static_cast<std::uint32_t>(std::clamp(linear_to_srgb(clamped) * max_code + static_cast<double>(noise) + 0.5, 0.0, max_code + 0.5));
+}
+
+/// The nearest code of a linear quantity; exact, since the product of a float and 65535 fits a double.
+std::uint32_t linear_code(float value, int max_code) {
+  if (!(value > 0)) return 0;
+  return static_cast<std::uint32_t>(std::min(static_cast<double>(value), 1.0) * max_code + 0.5);
+}
+
+template <class Code>
+void encode(const CodeRules& rules, const float* rgba, int width, int x0, int y, Code* codes) {
+  const CodeEncoder& encoder = CodeEncoder::srgb(rules.max_code);
+  const auto& noise = kBayer[static_cast<unsigned>(y) % 8];
+  for (int x = 0; x < width; ++x, rgba += 4) {
+    const float alpha = rgba[3];
+    const bool divide = rules.alpha && alpha > 0 && alpha != 1;
+    for (int c = 0; c < 3; ++c) {
+      const float linear = divide ? rgba[c] / alpha : rgba[c];
+      *codes++ = static_cast<Code>(rules.dither ? dithered(linear, noise[static_cast<unsigned>(x0 + x) % 8], rules.max_code) : encoder(linear));
+    }
+    if (rules.alpha) *codes++ = static_cast<Code>(linear_code(alpha, rules.max_code));
+  }
+}
+
+}  // namespace
+
+std::uint64_t to_half(const float* values, std::uint16_t* halves, std::size_t count) {
+  std::uint64_t overflows = 0;
+  std::size_t i = 0;
+#if defined(__x86_64__)
+  static const bool has_f16c = __builtin_cpu_supports("avx") && __builtin_cpu_supports("f16c");
+  if (has_f16c) i = to_half_f16c(values, halves, count, overflows);
+#endif
+  for (; i < count; ++i) {
+    overflows += std::abs(values[i]) > kLargestHalf;
+    halves[i] = Imath::half(held(values[i])).bits();
+  }
+  return overflows;
+}
+
+void display_row(const Picture& picture, int y, float padding_alpha, float* rgba) {
+  const Rect &data = picture.data_window, &display = picture.display_window;
+  const auto fill = [&](int begin, int end) {
+    for (int x = begin; x < end; ++x) {
+      rgba[x * 4] = rgba[x * 4 + 1] = rgba[x * 4 + 2] = 0;
+      rgba[x * 4 + 3] = padding_alpha;
+    }
+  };
+  const int row = display.y + y - data.y;
+  const int begin = std::clamp(data.x - display.x, 0, display.width);
+  const int end = std::clamp(data.x + data.width - display.x, begin, display.width);
+  if (row < 0 || row >= data.height || begin == end) return fill(0, display.width);
+  fill(0, begin);
+  std::memcpy(rgba + begin * 4, picture.color.at(display.x + begin - data.x, row), static_cast<std::size_t>(end - begin) * 4 * sizeof(float));
+  fill(end, display.width);
+}
+
+void encode_row(const CodeRules& rules, const float* rgba, int width, int x, int y, std::uint8_t* codes) {
+  encode(rules, rgba, width, x, y, codes);
+}
+void encode_row(const CodeRules& rules, const float* rgba, int width, int x, int y, std::uint16_t* codes) {
+  encode(rules, rgba, width, x, y, codes);
+}
+
+}  // namespace afterglow

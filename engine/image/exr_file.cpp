@@ -1,0 +1,249 @@
+#include "image/exr_file.h"
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include <ImathBox.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfRgbaFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfThreading.h>
+#include <fmt/format.h>
+
+#include "image/exr_metadata.h"
+
+namespace afterglow {
+namespace {
+
+constexpr int kMaxThreads = 16;
+
+/// A channel as layers see it. Luminance-chroma channels Y, RY, BY appear as the R, G, B that OpenEXR makes of them.
+struct ChannelSlot {
+  std::string stored;   ///< name in the file
+  int chroma = -1;      ///< 0, 1, 2: R, G, B made from luminance and chroma
+  ExrChannelType type = ExrChannelType::half;
+};
+
+struct PartSlots {
+  std::vector<ChannelSlot> channels;
+  std::optional<std::string> chroma_layer;  ///< prefix of the luminance-chroma layer
+};
+
+bool has_channel(const ExrPart& part, const std::string& name) {
+  return std::any_of(part.channels.begin(), part.channels.end(), [&](const ExrChannel& c) { return c.name == name; });
+}
+
+/// Renderers list R, G, B, A or X, Y, Z; EXR sorts by name. People read lists of channels in the first order.
+int channel_order(const std::string& name) {
+  static constexpr std::string_view kOrder = "RGBAXYZ";
+  const std::size_t dot = name.rfind('.');
+  const std::string last = dot == std::string::npos ? name : name.substr(dot + 1);
+  const std::size_t index = last.size() == 1 ? kOrder.find(last[0]) : std::string_view::npos;
+  return index == std::string_view::npos ? static_cast<int>(kOrder.size()) : static_cast<int>(index);
+}
+
+class ExrFile : public PictureFile {
+ public:
+  ExrFile(const std::filesystem::path& file, std::vector<ExrPart> header) : header_(std::move(header)) {
+    path_ = file;
+    format_ = "openexr";
+    for (const ExrPart& part : header_) add_part(part);
+  }
+
+  std::uint64_t buffer_bytes(int part) const override { return header_[static_cast<std::size_t>(part)].buffer_bytes(Imf::globalThreadCount()); }
+
+  Result<void> read(int part, std::span<const ReadTarget> targets) override {
+    try {
+      AFTERGLOW_CHECK(open());
+      read_plain(part, targets);
+      read_chroma(part, targets);
+      return {};
+    } catch (const std::exception& error) {
+      return failed("cannot be read: " + exr_message(error));
+    }
+  }
+
+  ColorEncoding color_encoding(const ChannelChoice& color, Diagnostics& diagnostics) const override {
+    ColorEncoding encoding;
+    encoding.grey = color.channels[0] == color.channels[1];
+    encoding.alpha = color.channels[3] >= 0 ? AlphaKind::associated : AlphaKind::none;
+    const Imf::Header& header = file_->header(color.part);
+    if (!Imf::hasChromaticities(header) || encoding.grey) return encoding;
+    const Imf::Chromaticities& stored = Imf::chromaticities(header);
+    const auto xy = [](const Imath::V2f& v) { return std::array<double, 2>{v.x, v.y}; };
+    const Matrix3 matrix = to_rec709({xy(stored.red), xy(stored.green), xy(stored.blue), xy(stored.white)});
+    if (matrix == Matrix3{}) {
+      diagnostics.warn(fmt::format("{}: its chromaticities make no sense; Rec.709 is assumed", path_.string()));
+    } else if (!nearly_equal(matrix, kIdentity, 2e-3)) {  // rounded Rec.709 stays untouched, bit for bit
+      encoding.matrix = matrix;
+    }
+    return encoding;
+  }
+
+  FileFacts facts(const ChannelChoice& color) const override {
+    FileFacts facts;
+    facts.file = path_;
+    facts.format = format_;
+    facts.part = color.part;
+    facts.floating = true;
+    facts.bits = 16;
+    facts.orientation = parts_[static_cast<std::size_t>(color.part)].orientation;
+    const PartSlots& slots = slots_[static_cast<std::size_t>(color.part)];
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (color.channels[i] < 0) continue;
+      const ChannelSlot& slot = slots.channels[static_cast<std::size_t>(color.channels[i])];
+      facts.color_channels[i] = slot.stored;
+      if (slot.type != ExrChannelType::half) facts.bits = 32;
+    }
+    facts.exr_header = std::make_shared<Imf::Header>(file_->header(color.part));
+    facts.had_chromaticities = Imf::hasChromaticities(*facts.exr_header);
+    facts.metadata = metadata_of(*facts.exr_header);
+    return facts;
+  }
+
+  /// Errors: io. Headers are parsed by OpenEXR here, after our own look at them.
+  Result<void> open() {
+    if (file_) return {};
+    use_exr_threads();
+    try {
+      file_ = std::make_unique<Imf::MultiPartInputFile>(path_.c_str());
+      if (file_->parts() != static_cast<int>(header_.size())) return failed("changed while it was read");
+    } catch (const std::exception& error) {
+      return failed("cannot be read: " + exr_message(error));
+    }
+    return {};
+  }
+
+ private:
+  void add_part(const ExrPart& part) {
+    FilePart shown;
+    shown.name = part.name;
+    shown.data_window = part.data_window;
+    shown.display_window = part.display_window;
+    shown.orientation = part.orientation;
+    PartSlots slots;
+    for (const ExrChannel& channel : part.channels) {
+      const std::size_t dot = channel.name.rfind('.');
+      const std::string prefix = dot == std::string::npos ? "" : channel.name.substr(0, dot + 1);
+      // OpenEXR's converter looks at the first part only, and prefers R, G, B when they are there.
+      if (parts_.empty() && has_channel(part, prefix + "Y") && has_channel(part, prefix + "RY") &&
+          has_channel(part, prefix + "BY") && !has_channel(part, prefix + "R")) {
+        const std::string last = channel.name.substr(prefix.size());
+        if (last == "Y") add_chroma(prefix, channel, shown, slots);
+        if (last == "Y" || last == "RY" || last == "BY") continue;
+      }
+      if (channel.x_sampling != 1 || channel.y_sampling != 1) continue;
+      shown.channels.push_back(channel.name);
+      slots.channels.push_back({channel.name, -1, channel.type});
+    }
+    if (part.deep) {
+      shown.unreadable = "is a deep EXR, which is not supported; flatten it first";
+    } else if (shown.channels.empty()) {
+      shown.unreadable = "has only sub-sampled channels, which are not supported";
+    }
+    sort_channels(shown, slots);
+    parts_.push_back(std::move(shown));
+    slots_.push_back(std::move(slots));
+  }
+
+  static void add_chroma(const std::string& prefix, const ExrChannel& luminance, FilePart& shown, PartSlots& slots) {
+    slots.chroma_layer = prefix.empty() ? "" : prefix.substr(0, prefix.size() - 1);
+    for (int i = 0; i < 3; ++i) {
+      shown.channels.push_back(prefix + "RGB"[i]);
+      slots.channels.push_back({prefix + "Y", i, luminance.type});
+    }
+  }
+
+  static void sort_channels(FilePart& shown, PartSlots& slots) {
+    std::vector<std::size_t> order(shown.channels.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto prefix = [&](std::size_t i) { return shown.channels[i].substr(0, shown.channels[i].rfind('.') + 1); };
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      if (prefix(a) != prefix(b)) return prefix(a) < prefix(b);
+      return channel_order(shown.channels[a]) < channel_order(shown.channels[b]);
+    });
+    FilePart sorted = shown;
+    PartSlots sorted_slots = slots;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      sorted.channels[i] = shown.channels[order[i]];
+      sorted_slots.channels[i] = slots.channels[order[i]];
+    }
+    shown = std::move(sorted);
+    slots = std::move(sorted_slots);
+  }
+
+  void read_plain(int part, std::span<const ReadTarget> targets) {
+    Imf::InputPart input(*file_, part);
+    const Imath::Box2i window = input.header().dataWindow();
+    Imf::FrameBuffer buffer;
+    const PartSlots& slots = slots_[static_cast<std::size_t>(part)];
+    for (const ReadTarget& target : targets) {
+      const ChannelSlot& slot = slots.channels[static_cast<std::size_t>(target.channel)];
+      if (slot.chroma >= 0) continue;
+      buffer.insert(slot.stored, Imf::Slice::Make(Imf::FLOAT, target.base, window, target.pixel_stride * sizeof(float),
+                                                  target.row_stride * sizeof(float)));
+    }
+    if (buffer.begin() == buffer.end()) return;
+    input.setFrameBuffer(buffer);
+    input.readPixels(window.min.y, window.max.y);
+  }
+
+  void read_chroma(int part, std::span<const ReadTarget> targets) {
+    const PartSlots& slots = slots_[static_cast<std::size_t>(part)];
+    std::vector<ReadTarget> wanted;
+    for (const ReadTarget& target : targets)
+      if (slots.channels[static_cast<std::size_t>(target.channel)].chroma >= 0) wanted.push_back(target);
+    if (wanted.empty()) return;
+    Imf::RgbaInputFile input(path_.c_str(), *slots.chroma_layer);
+    const Imath::Box2i window = input.dataWindow();
+    const int width = window.max.x - window.min.x + 1;
+    std::vector<Imf::Rgba> row(static_cast<std::size_t>(width));
+    for (int y = window.min.y; y <= window.max.y; ++y) {
+      input.setFrameBuffer(row.data() - window.min.x, 1, 0);
+      input.readPixels(y);
+      for (const ReadTarget& target : wanted) {
+        const int component = slots.channels[static_cast<std::size_t>(target.channel)].chroma;
+        float* out = target.base + static_cast<std::size_t>(y - window.min.y) * target.row_stride;
+        for (const Imf::Rgba& pixel : row) {
+          *out = component == 0 ? pixel.r : component == 1 ? pixel.g : pixel.b;
+          out += target.pixel_stride;
+        }
+      }
+    }
+  }
+
+  std::vector<ExrPart> header_;
+  std::vector<PartSlots> slots_;
+  std::unique_ptr<Imf::MultiPartInputFile> file_;
+};
+
+}  // namespace
+
+void use_exr_threads() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    if (Imf::globalThreadCount() == 0)
+      Imf::setGlobalThreadCount(std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads));
+  });
+}
+
+std::string exr_message(const std::exception& error) {
+  std::string text = error.what();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
+  return text;
+}
+
+Result<std::unique_ptr<PictureFile>> open_exr(const std::filesystem::path& file, std::vector<ExrPart> header) {
+  auto opened = std::make_unique<ExrFile>(file, std::move(header));
+  AFTERGLOW_CHECK(opened->open());
+  return std::unique_ptr<PictureFile>(std::move(opened));
+}
+
+}  // namespace afterglow

@@ -1,0 +1,224 @@
+#include "image/exr_header.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "EXR is little-endian and is read as it is");
+
+constexpr std::uint32_t kMagic = 20000630;
+constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 0x1000;
+constexpr std::size_t kMaxName = 255;
+constexpr std::size_t kMaxParts = 4096, kMaxAttributes = 65536, kMaxChannels = 4096;
+constexpr std::int64_t kMaxCoordinate = 1 << 30;  // OpenEXR's own limit; keeps sums of two within an int
+constexpr std::uint64_t kMaxChannelList = 4u << 20;
+
+struct Malformed {
+  std::string why;
+};
+
+/// A reader of the header that never goes beyond the end of the file. Throws Malformed, within this file only.
+class Bytes {
+ public:
+  Bytes(const fs::path& file, std::uint64_t size) : in_(file, std::ios::binary), left_(size) {}
+
+  template <class T>
+  T number() {
+    T value{};
+    read(&value, sizeof value);
+    return value;
+  }
+  void read(void* into, std::uint64_t size) {
+    if (size > left_ || !in_.read(static_cast<char*>(into), static_cast<std::streamsize>(size)))
+      throw Malformed{"the header is truncated"};
+    left_ -= size;
+  }
+  void skip(std::uint64_t size) {
+    if (size > left_) throw Malformed{"the header is truncated"};
+    in_.seekg(static_cast<std::streamoff>(size), std::ios::cur);
+    left_ -= size;
+  }
+  std::string text() {
+    std::string result;
+    while (const char c = number<char>()) {
+      if (result.size() >= kMaxName) throw Malformed{"a name in the header is too long"};
+      result += c;
+    }
+    return result;
+  }
+  std::uint64_t left() const { return left_; }
+
+ private:
+  std::ifstream in_;
+  std::uint64_t left_;
+};
+
+std::vector<ExrChannel> channel_list(const std::vector<char>& value) {
+  std::vector<ExrChannel> channels;
+  std::size_t at = 0;
+  while (at < value.size() && value[at] != 0) {
+    const auto* end = static_cast<const char*>(std::memchr(&value[at], 0, value.size() - at));
+    if (!end || channels.size() >= kMaxChannels) throw Malformed{"the channel list is malformed"};
+    ExrChannel channel;
+    channel.name.assign(&value[at], end);
+    at += channel.name.size() + 1;
+    std::array<std::int32_t, 4> numbers{};  // type, pLinear and reserved bytes, x and y sampling
+    if (value.size() - at < sizeof numbers) throw Malformed{"the channel list is malformed"};
+    std::memcpy(numbers.data(), &value[at], sizeof numbers);
+    at += sizeof numbers;
+    if (numbers[0] < 0 || numbers[0] > 2 || numbers[2] < 1 || numbers[3] < 1)
+      throw Malformed{"the channel list is malformed"};
+    channel.type = static_cast<ExrChannelType>(numbers[0]);
+    channel.x_sampling = numbers[2];
+    channel.y_sampling = numbers[3];
+    channels.push_back(std::move(channel));
+  }
+  if (channels.empty()) throw Malformed{"has no channels"};
+  return channels;
+}
+
+Rect window(const std::array<std::int32_t, 4>& box, const char* what) {
+  for (const std::int64_t c : box)
+    if (c < -kMaxCoordinate || c > kMaxCoordinate) throw Malformed{fmt::format("the {} window is out of range", what)};
+  const std::int64_t width = std::int64_t{box[2]} - box[0] + 1, height = std::int64_t{box[3]} - box[1] + 1;
+  if (width < 1 || height < 1) throw Malformed{fmt::format("the {} window is empty", what)};
+  return {box[0], box[1], static_cast<int>(width), static_cast<int>(height)};
+}
+
+/// One part's attributes; nothing when the list is empty, which ends a multi-part header.
+std::optional<ExrPart> read_part(Bytes& bytes, std::uint32_t flags) {
+  ExrPart part;
+  part.tiled = (flags & kTiledFlag) != 0;
+  part.deep = (flags & kDeepFlag) != 0;
+  bool has_channels = false, has_data = false, has_display = false;
+  for (std::size_t count = 0;; ++count) {
+    if (count > kMaxAttributes) throw Malformed{"the header has too many attributes"};
+    const std::string name = bytes.text();
+    if (name.empty()) {
+      if (count == 0) return std::nullopt;
+      break;
+    }
+    const std::string type = bytes.text();
+    const auto size = bytes.number<std::int32_t>();
+    if (size < 0 || static_cast<std::uint64_t>(size) > bytes.left())
+      throw Malformed{fmt::format("attribute '{}' claims more bytes than the file has", name)};
+    const auto expect = [&](const char* wanted, std::int32_t bytes_wanted) {
+      if (type != wanted || (bytes_wanted >= 0 && size != bytes_wanted))
+        throw Malformed{fmt::format("attribute '{}' is malformed", name)};
+    };
+    if (name == "channels") {
+      expect("chlist", -1);
+      if (static_cast<std::uint64_t>(size) > kMaxChannelList) throw Malformed{"the channel list is malformed"};
+      std::vector<char> value(static_cast<std::size_t>(size));
+      bytes.read(value.data(), value.size());
+      part.channels = channel_list(value);
+      has_channels = true;
+    } else if (name == "dataWindow" || name == "displayWindow") {
+      expect("box2i", 16);
+      const bool data = name == "dataWindow";
+      (data ? part.data_window : part.display_window) =
+          window(bytes.number<std::array<std::int32_t, 4>>(), data ? "data" : "display");
+      (data ? has_data : has_display) = true;
+    } else if (name == "compression") {
+      expect("compression", 1);
+      part.compression = bytes.number<unsigned char>();
+    } else if (name == "tiles") {
+      expect("tiledesc", 9);
+      const auto sides = bytes.number<std::array<std::uint32_t, 2>>();
+      if (sides[0] < 1 || sides[1] < 1 || sides[0] > kMaxCoordinate || sides[1] > kMaxCoordinate)
+        throw Malformed{"the tile size is out of range"};
+      part.tile = {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
+      bytes.skip(1);
+    } else if (name == "Orientation" && type == "int" && size == 4) {
+      part.orientation = std::clamp(bytes.number<std::int32_t>(), 1, 8);
+    } else if ((name == "name" || name == "type") && type == "string") {
+      if (size > 4096) throw Malformed{fmt::format("attribute '{}' is malformed", name)};
+      std::string value(static_cast<std::size_t>(size), '\0');
+      bytes.read(value.data(), value.size());
+      if (name == "name") {
+        part.name = value;
+      } else {
+        part.tiled = value == "tiledimage" || value == "deeptile";
+        part.deep = value == "deepscanline" || value == "deeptile";
+      }
+    } else {
+      bytes.skip(static_cast<std::uint64_t>(size));
+    }
+  }
+  if (!has_channels || !has_data || !has_display) throw Malformed{"the header lacks its channels or windows"};
+  if (part.tiled && part.tile.width == 0) throw Malformed{"the header lacks its tile size"};
+  return part;
+}
+
+/// Scan lines that one chunk holds, by the number of the compression method.
+int lines_per_chunk(int compression) {
+  switch (compression) {
+    case 3: case 5: return 16;           // zip, pxr24
+    case 4: case 6: case 7: case 8: return 32;  // piz, b44, b44a, dwaa
+    case 9: return 256;                  // dwab
+    default: return 1;
+  }
+}
+
+}  // namespace
+
+std::uint64_t ExrPart::pixel_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const ExrChannel& channel : channels) bytes += channel.type == ExrChannelType::half ? 2 : 4;
+  return bytes;
+}
+
+std::uint64_t ExrPart::buffer_bytes(int threads) const {
+  const std::uint64_t buffers = 2 * static_cast<std::uint64_t>(std::max(threads, 1));
+  const auto width = static_cast<std::uint64_t>(data_window.width);
+  if (!tiled) {
+    const int lines = std::min(lines_per_chunk(compression), data_window.height);
+    return width * static_cast<std::uint64_t>(lines) * pixel_bytes() * buffers * 2;  // packed and unpacked
+  }
+  const std::uint64_t tile_pixels = static_cast<std::uint64_t>(tile.width) * static_cast<std::uint64_t>(tile.height);
+  return tile_pixels * pixel_bytes() * buffers * 2 + (width + static_cast<std::uint64_t>(tile.width)) * static_cast<std::uint64_t>(tile.height) * pixel_bytes();
+}
+
+bool is_exr(const fs::path& file) {
+  std::uint32_t magic = 0;
+  std::ifstream in(file, std::ios::binary);
+  return in.read(reinterpret_cast<char*>(&magic), sizeof magic) && magic == kMagic;
+}
+
+Result<std::vector<ExrPart>> read_exr_header(const fs::path& file) {
+  std::error_code ec;
+  const std::uint64_t size = fs::file_size(file, ec);
+  if (ec) return Error{ErrorKind::io, fmt::format("cannot be read: {}", ec.message()), file.string()};
+  try {
+    Bytes bytes(file, size);
+    if (bytes.number<std::uint32_t>() != kMagic) throw Malformed{"is not an OpenEXR file"};
+    const auto version = bytes.number<std::uint32_t>();
+    if ((version & 0xff) != 2) throw Malformed{fmt::format("is of OpenEXR file version {}, which is not known", version & 0xff)};
+    std::vector<ExrPart> parts;
+    if (!(version & kMultiPartFlag)) {
+      auto part = read_part(bytes, version);
+      if (!part) throw Malformed{"the header is empty"};
+      parts.push_back(std::move(*part));
+      return parts;
+    }
+    while (auto part = read_part(bytes, 0)) {
+      parts.push_back(std::move(*part));
+      if (parts.size() > kMaxParts) throw Malformed{"has too many parts"};
+    }
+    if (parts.empty()) throw Malformed{"the header is empty"};
+    return parts;
+  } catch (const Malformed& error) {
+    return Error{ErrorKind::io, error.why, file.string()};
+  }
+}
+
+}  // namespace afterglow

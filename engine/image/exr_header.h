@@ -1,0 +1,43 @@
+// Reads what an EXR header says, on its own and before any library does: headers lie, and the size of what a library would allocate
+// must be known first. No allocation here is larger than the part of the file that covers it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+#include "core/result.h"
+
+namespace afterglow {
+
+enum class ExrChannelType { uint32, half, float32 };
+
+struct ExrChannel {
+  std::string name;
+  ExrChannelType type = ExrChannelType::half;
+  int x_sampling = 1, y_sampling = 1;
+};
+
+struct ExrPart {
+  std::string name;
+  bool deep = false, tiled = false;
+  std::vector<ExrChannel> channels;  ///< in the file's order, which is alphabetical
+  Rect data_window, display_window;
+  Size tile;
+  int compression = 0;               ///< the number stored in the file
+  int orientation = 1;
+
+  std::uint64_t pixel_bytes() const;
+  /// Bytes that OpenEXR needs for its line or tile buffers while it reads with `threads` threads.
+  std::uint64_t buffer_bytes(int threads) const;
+};
+
+/// Whether the file begins with EXR's magic number.
+bool is_exr(const std::filesystem::path& file);
+
+/// Errors: io (not an EXR, truncated header, attribute larger than the file, empty or absurd window, …).
+Result<std::vector<ExrPart>> read_exr_header(const std::filesystem::path& file);
+
+}  // namespace afterglow

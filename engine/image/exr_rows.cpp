@@ -1,0 +1,61 @@
+#include "image/exr_rows.h"
+
+#include <atomic>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <fmt/format.h>
+
+#include "image/encode.h"
+#include "image/parallel.h"
+
+namespace afterglow {
+
+ExrColorRows::ExrColorRows(const Picture& picture, std::array<std::string, 4> names, SampleType type)
+    : picture_(picture), names_(std::move(names)), type_(type) {}
+
+void ExrColorRows::add_channels(Imf::Header& header) const {
+  for (const std::string& name : names_)
+    if (!name.empty()) header.channels().insert(name, Imf::Channel(type_ == SampleType::half ? Imf::HALF : Imf::FLOAT));
+}
+
+void ExrColorRows::add_slices(int first, int rows, Imf::FrameBuffer& buffer) {
+  const Image& color = picture_.color;
+  const Imath::V2i origin(picture_.data_window.x, picture_.data_window.y + first);
+  const bool half = type_ == SampleType::half;
+  const std::size_t row_samples = static_cast<std::size_t>(color.width) * 4;
+  if (half) {
+    halves_.resize(row_samples * static_cast<std::size_t>(rows));
+    std::atomic<std::uint64_t> overflows{0};
+    parallel_rows(rows, static_cast<long long>(halves_.size()), [&](int begin, int end) {
+      overflows += to_half(color.at(0, first + begin), halves_.data() + row_samples * static_cast<std::size_t>(begin),
+                           row_samples * static_cast<std::size_t>(end - begin));
+    });
+    overflows_ += overflows;
+  }
+  const std::size_t sample = half ? sizeof(std::uint16_t) : sizeof(float);
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (names_[c].empty()) continue;
+    const void* base = half ? static_cast<const void*>(halves_.data() + c) : static_cast<const void*>(color.at(0, first) + c);
+    buffer.insert(names_[c], Imf::Slice::Make(half ? Imf::HALF : Imf::FLOAT, base, origin, color.width, rows, 4 * sample, row_samples * sample));
+  }
+}
+
+void ExrColorRows::warn_of_overflow(const std::string& file, Diagnostics& diagnostics) const {
+  if (overflows_) diagnostics.warn(fmt::format("{}: {} samples beyond the range of half floats are held at ±65504", file, overflows_));
+}
+
+Result<void> set_compression(Imf::Header& header, const std::string& text) {
+  AFTERGLOW_TRY(const Compression wanted, parse_compression(text.empty() ? "zip" : text));
+  constexpr std::array kNames{"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"};  // in OpenEXR's numbering
+  for (std::size_t i = 0; i < kNames.size(); ++i)
+    if (wanted.name == kNames[i]) header.compression() = static_cast<Imf::Compression>(i);
+  if (wanted.level < 0) return {};
+  if (wanted.name == "dwaa" || wanted.name == "dwab") {
+    header.dwaCompressionLevel() = wanted.level;
+  } else {
+    header.zipCompressionLevel() = static_cast<int>(std::min(wanted.level, 9.0f));
+  }
+  return {};
+}
+
+}  // namespace afterglow

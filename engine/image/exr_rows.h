@@ -1,0 +1,42 @@
+// Rows of a picture's colour in the form that OpenEXR writes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+
+#include "core/diagnostics.h"
+#include "image/output_format.h"
+#include "image/picture.h"
+
+namespace afterglow {
+
+/// Strips of rows as slices of a frame buffer: floats are lent straight from the picture, halves are made strip by strip.
+class ExrColorRows {
+ public:
+  /// `names`: channels for R, G, B, A; empty ones are not written.
+  ExrColorRows(const Picture& picture, std::array<std::string, 4> names, SampleType type);
+
+  static constexpr int kRows = 256;  ///< a multiple of every method's chunk height
+  void add_channels(Imf::Header& header) const;
+  /// Slices for rows [first, first + rows) of the data window, counted from its top.
+  void add_slices(int first, int rows, Imf::FrameBuffer& buffer);
+  /// Says how many samples were held at ±65504, if any were.
+  void warn_of_overflow(const std::string& file, Diagnostics& diagnostics) const;
+
+ private:
+  const Picture& picture_;
+  std::array<std::string, 4> names_;
+  SampleType type_;
+  std::vector<std::uint16_t> halves_;
+  std::uint64_t overflows_ = 0;
+};
+
+/// Sets compression (and its level) from the options; ZIP by default.
+Result<void> set_compression(Imf::Header& header, const std::string& text);
+
+}  // namespace afterglow

@@ -1,0 +1,214 @@
+#include "image/oiio_file.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include "core/text.h"
+#include "image/icc_profile.h"
+
+namespace afterglow {
+namespace {
+
+constexpr std::size_t kMaxParts = 64;  // pages of a TIFF; other formats' further images are animation frames or thumbnails
+
+std::string message_of(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  text = trim(text);
+  while (!text.empty() && text.back() == '.') text.pop_back();
+  return text.empty() ? "cannot be read" : "cannot be read: " + text;
+}
+
+class OiioFile : public PictureFile {
+ public:
+  OiioFile(const std::filesystem::path& file, const ContainerFacts& container) : container_(container) { path_ = file; }
+
+  Result<void> open(const SizeLimits& limits) {
+    OIIO::ImageSpec wanted;
+    wanted.attribute("oiio:UnassociatedAlpha", 1);  // straight alpha stays straight: it is multiplied after decoding
+    try {
+      input_ = OIIO::ImageInput::open(path_.string(), &wanted);
+      if (!input_) return failed(unknown_format(OIIO::geterror()));
+      format_ = input_->format_name();
+      AFTERGLOW_CHECK(add_parts(limits));
+    } catch (const std::exception& error) {
+      return failed(message_of(error.what()));
+    }
+    return {};
+  }
+
+  std::uint64_t buffer_bytes(int part) const override {
+    const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
+    constexpr std::uint64_t kLines = 64;
+    return spec.scanline_bytes(true) * kLines + (container_.kind == ContainerFacts::Kind::png ? 0 : spec.tile_bytes(true) * 16);
+  }
+
+  Result<void> read(int part, std::span<const ReadTarget> targets) override {
+    std::vector<ReadTarget> sorted(targets.begin(), targets.end());
+    std::sort(sorted.begin(), sorted.end(), [](const ReadTarget& a, const ReadTarget& b) { return a.channel < b.channel; });
+    try {
+      // Runs of neighbouring channels that go to neighbouring floats are read in one pass over the file.
+      for (std::size_t i = 0; i < sorted.size();) {
+        std::size_t end = i + 1;
+        while (end < sorted.size() && sorted[end].channel == sorted[end - 1].channel + 1 &&
+               sorted[end].base == sorted[end - 1].base + 1 && sorted[end].pixel_stride == sorted[i].pixel_stride)
+          ++end;
+        AFTERGLOW_CHECK(read_run(part, sorted[i], static_cast<int>(end - i)));
+        i = end;
+      }
+    } catch (const std::exception& error) {
+      return failed(message_of(error.what()));
+    }
+    return {};
+  }
+
+  ColorEncoding color_encoding(const ChannelChoice& color, Diagnostics& diagnostics) const override {
+    const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(color.part)];
+    ColorEncoding encoding;
+    encoding.grey = color.channels[0] == color.channels[1];
+    if (color.channels[3] >= 0)
+      encoding.alpha = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) ? AlphaKind::straight : AlphaKind::associated;
+    const OIIO::TypeDesc type = sample_type(color);
+    const bool integer = !type.is_floating_point();
+    if (integer && type.size() <= 2) encoding.max_code = type.size() == 1 ? 255 : 65535;
+    encoding.curve = integer ? TransferCurve::srgb : TransferCurve::linear;
+    if (use_profile(spec, encoding, diagnostics)) return encoding;
+    if (container_.kind == ContainerFacts::Kind::png) {
+      use_png_chunks(encoding, diagnostics);
+    } else if (integer) {
+      use_color_space(spec.get_string_attribute("oiio:ColorSpace"), encoding, diagnostics);
+    }
+    return encoding;
+  }
+
+  FileFacts facts(const ChannelChoice& color) const override {
+    const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(color.part)];
+    FileFacts facts;
+    facts.file = path_;
+    facts.format = format_;
+    facts.part = color.part;
+    facts.orientation = parts_[static_cast<std::size_t>(color.part)].orientation;
+    const OIIO::TypeDesc type = sample_type(color);
+    facts.floating = type.is_floating_point();
+    facts.bits = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(type.size()) * 8);
+    facts.had_profile = spec.find_attribute("ICCProfile") != nullptr;
+    for (std::size_t i = 0; i < 4; ++i)
+      if (color.channels[i] >= 0)
+        facts.color_channels[i] = parts_[static_cast<std::size_t>(color.part)].channels[static_cast<std::size_t>(color.channels[i])];
+    facts.metadata = spec.extra_attribs;
+    return facts;
+  }
+
+ private:
+  static std::string unknown_format(const std::string& why) {
+    // Among OpenImageIO's reasons this one means that no reader knew the bytes.
+    if (why.empty() || why.find("could not find a format reader") != std::string::npos) return "is not a picture in a format that is known";
+    return message_of(why);
+  }
+
+  Result<void> add_parts(const SizeLimits& limits) {
+    const bool pages = format_ == "tiff" || format_ == "psd";
+    for (std::size_t i = 0; i < (pages ? kMaxParts : 1) && input_->seek_subimage(static_cast<int>(i), 0); ++i) {
+      const OIIO::ImageSpec spec = input_->spec();
+      FilePart part;
+      part.data_window = {spec.x, spec.y, spec.width, spec.height};
+      part.display_window = {spec.full_x, spec.full_y, spec.full_width, spec.full_height};
+      if (part.display_window.width < 1 || part.display_window.height < 1) part.display_window = part.data_window;
+      part.orientation = std::clamp(spec.get_int_attribute("Orientation", 1), 1, 8);
+      part.channels = spec.channelnames;
+      if (i > 0) part.name = spec.get_string_attribute("oiio:subimagename", fmt::format("page{}", i + 1));
+      if (spec.depth > 1) part.unreadable = "is a volume, not a picture";
+      if (spec.deep) part.unreadable = "is a deep picture, which is not supported";
+      if (i == 0 || part.unreadable.empty()) {
+        if (const auto fits = check_sides(part.data_window, "data window", limits, path_); !fits) {
+          if (i == 0) return fits;
+          continue;
+        }
+      }
+      parts_.push_back(std::move(part));
+      specs_.push_back(spec);
+    }
+    if (parts_.empty()) return failed("holds no picture");
+    return {};
+  }
+
+  OIIO::TypeDesc sample_type(const ChannelChoice& color) const {
+    return specs_[static_cast<std::size_t>(color.part)].channelformat(color.channels[0]);
+  }
+
+  Result<void> read_run(int part, const ReadTarget& first, int channels) {
+    const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
+    const auto x_stride = static_cast<OIIO::stride_t>(first.pixel_stride * sizeof(float));
+    const auto y_stride = static_cast<OIIO::stride_t>(first.row_stride * sizeof(float));
+    if (!input_->read_image(part, 0, first.channel, first.channel + channels, OIIO::TypeFloat, first.base, x_stride, y_stride,
+                            y_stride * spec.height))
+      return failed(message_of(input_->geterror()));
+    if (input_->has_error()) return failed(message_of(input_->geterror()));
+    return {};
+  }
+
+  bool use_profile(const OIIO::ImageSpec& spec, ColorEncoding& encoding, Diagnostics& diagnostics) const {
+    const OIIO::ParamValue* profile = spec.find_attribute("ICCProfile");
+    if (!profile) return false;
+    const auto* bytes = static_cast<const std::uint8_t*>(profile->data());
+    const auto used = use_icc_profile({bytes, static_cast<std::size_t>(profile->type().size())}, encoding.grey ? 1 : 3, encoding);
+    if (!used) diagnostics.warn(fmt::format("{}: {}; the profile is ignored", path_.string(), used.error().message));
+    return used.ok();
+  }
+
+  /// PNG's own rules: iCCP before sRGB before gAMA and cHRM.
+  void use_png_chunks(ColorEncoding& encoding, Diagnostics& diagnostics) const {
+    if (container_.srgb) return;
+    if (container_.gamma) {
+      // 1/2.2 is what programs write that mean sRGB but do not know the sRGB chunk.
+      const double exponent = 1 / *container_.gamma;
+      if (std::abs(exponent - 1) < 0.01) {
+        encoding.curve = TransferCurve::linear;
+      } else if (std::abs(exponent - 2.2) > 0.03 && exponent > 0.1 && exponent < 10) {
+        encoding.curve = TransferCurve::power;
+        encoding.exponent = exponent;
+      }
+    }
+    if (!container_.primaries || encoding.grey) return;
+    const Matrix3 matrix = to_rec709(*container_.primaries);
+    if (matrix == Matrix3{}) {
+      diagnostics.warn(fmt::format("{}: its chromaticities make no sense; Rec.709 is assumed", path_.string()));
+    } else if (!nearly_equal(matrix, kIdentity, 3e-3)) {
+      encoding.matrix = matrix;
+    }
+  }
+
+  void use_color_space(const std::string& name, ColorEncoding& encoding, Diagnostics& diagnostics) const {
+    const std::string space = lower(name);
+    if (space.empty() || space == "srgb") return;
+    if (space == "linear" || space == "lin_srgb" || space == "lin_rec709" || space == "scene_linear") {
+      encoding.curve = TransferCurve::linear;
+    } else if (space == "rec709") {
+      encoding.curve = TransferCurve::rec709;
+    } else if (space.starts_with("gamma")) {
+      const double exponent = std::atof(space.c_str() + 5);
+      if (!(exponent > 0.1 && exponent < 10)) return;
+      encoding.curve = TransferCurve::power;
+      encoding.exponent = exponent;
+    } else {
+      diagnostics.warn(fmt::format("{}: its colour space '{}' is not known; sRGB is assumed", path_.string(), name));
+    }
+  }
+
+  ContainerFacts container_;
+  OIIO::ImageInput::unique_ptr input_;
+  std::vector<OIIO::ImageSpec> specs_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<PictureFile>> open_with_oiio(const std::filesystem::path& file, const ContainerFacts& container,
+                                                    const SizeLimits& limits) {
+  auto opened = std::make_unique<OiioFile>(file, container);
+  AFTERGLOW_CHECK(opened->open(limits));
+  return std::unique_ptr<PictureFile>(std::move(opened));
+}
+
+}  // namespace afterglow

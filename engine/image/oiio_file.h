@@ -1,0 +1,14 @@
+// Every format but OpenEXR, through OpenImageIO.
+#pragma once
+
+#include <memory>
+
+#include "image/container_check.h"
+#include "image/picture_file.h"
+
+namespace afterglow {
+
+Result<std::unique_ptr<PictureFile>> open_with_oiio(const std::filesystem::path& file, const ContainerFacts& container,
+                                                    const SizeLimits& limits);
+
+}  // namespace afterglow

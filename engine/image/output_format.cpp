@@ -1,0 +1,100 @@
+#include "image/output_format.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "core/text.h"
+#include "image/facts.h"
+
+namespace afterglow {
+namespace {
+
+const std::vector<OutputFormat>& formats() {
+  using enum SampleType;
+  static const std::vector<OutputFormat> all{
+      {OutputKind::exr, "openexr", {".exr"}, {half, float32}, {"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}, true},
+      {OutputKind::hdr, "hdr", {".hdr"}, {float32}, {}, false},
+      {OutputKind::png, "png", {".png"}, {uint8, uint16}, {}, true},
+      {OutputKind::jpeg, "jpeg", {".jpg", ".jpeg"}, {uint8}, {}, false},
+      {OutputKind::tiff, "tiff", {".tif", ".tiff"}, {uint8, uint16, half, float32}, {"none", "lzw", "zip", "packbits"}, true},
+  };
+  return all;
+}
+
+const char* type_name(SampleType type) {
+  switch (type) {
+    case SampleType::half: return "half";
+    case SampleType::float32: return "float";
+    case SampleType::uint8: return "uint8";
+    case SampleType::uint16: return "uint16";
+    default: return "auto";
+  }
+}
+
+std::vector<std::string> all_extensions() {
+  std::vector<std::string> names;
+  for (const OutputFormat& format : formats()) names.insert(names.end(), format.extensions.begin(), format.extensions.end());
+  return names;
+}
+
+/// EXR methods that take a level: a zlib level, or the error that DWA allows.
+bool takes_level(const OutputFormat& format, const std::string& name) {
+  return format.kind == OutputKind::exr && (name == "zip" || name == "zips" || name == "dwaa" || name == "dwab");
+}
+
+}  // namespace
+
+Result<Compression> parse_compression(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  Compression result{lower(text.substr(0, colon)), -1};
+  if (colon == std::string::npos) return result;
+  const std::string level = text.substr(colon + 1);
+  const auto [end, error] = std::from_chars(level.data(), level.data() + level.size(), result.level);
+  if (error != std::errc() || end != level.data() + level.size() || !(result.level >= 0) || !(result.level <= 1e5f))
+    return Error{ErrorKind::usage, fmt::format("the compression level '{}' is not a number of at least 0", level)};
+  return result;
+}
+
+Result<const OutputFormat*> output_format(const std::filesystem::path& file, const WriteOptions& options) {
+  const std::string extension = lower(file.extension().string());
+  const OutputFormat* found = nullptr;
+  for (const OutputFormat& format : formats())
+    if (std::find(format.extensions.begin(), format.extensions.end(), extension) != format.extensions.end()) found = &format;
+  if (!found) {
+    const std::vector<std::string> known = all_extensions();
+    return Error{ErrorKind::usage, extension.empty() ? "has no extension that tells its format" : fmt::format("'{}' is not a format that is written", extension),
+                 file.string(), 0, join(known), nearest_name(extension, known)};
+  }
+  if (options.type != SampleType::automatic && std::find(found->types.begin(), found->types.end(), options.type) == found->types.end()) {
+    std::vector<std::string> names;
+    for (const SampleType type : found->types) names.emplace_back(type_name(type));
+    return Error{ErrorKind::usage, fmt::format("{} files cannot hold samples of type {}", found->extensions[0].substr(1), type_name(options.type)),
+                 file.string(), 0, join(names)};
+  }
+  if (options.keep_layers && found->kind != OutputKind::exr)
+    return Error{ErrorKind::usage, "only EXR files can keep layers", file.string(), 0, ".exr"};
+  if (options.compression.empty()) return found;
+  AFTERGLOW_TRY(const Compression compression, parse_compression(options.compression));
+  if (found->compressions.empty())
+    return Error{ErrorKind::usage, fmt::format("{} files have no choice of compression", found->extensions[0].substr(1)), file.string()};
+  if (std::find(found->compressions.begin(), found->compressions.end(), compression.name) == found->compressions.end())
+    return Error{ErrorKind::usage, fmt::format("unknown compression '{}'", compression.name), file.string(), 0, join(found->compressions),
+                 nearest_name(compression.name, found->compressions)};
+  if (compression.level >= 0 && !takes_level(*found, compression.name))
+    return Error{ErrorKind::usage, fmt::format("compression '{}' takes no level", compression.name), file.string()};
+  return found;
+}
+
+SampleType sample_type(const OutputFormat& format, const WriteOptions& options, const FileFacts* facts) {
+  if (options.type != SampleType::automatic) return options.type;
+  switch (format.kind) {
+    case OutputKind::exr: return facts && facts->floating && facts->bits > 16 ? SampleType::float32 : SampleType::half;
+    case OutputKind::hdr: return SampleType::float32;
+    case OutputKind::jpeg: return SampleType::uint8;
+    default: return facts && !facts->floating && facts->bits > 8 ? SampleType::uint16 : SampleType::uint8;
+  }
+}
+
+}  // namespace afterglow

@@ -1,0 +1,65 @@
+#include "image/output_metadata.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+
+#include "core/text.h"
+#include "image/exr_metadata.h"
+#include "image/orientation.h"
+
+namespace afterglow {
+namespace {
+
+/// Lower case. Names alone, and whole families.
+constexpr std::array<std::string_view, 35> kDropped{
+    "compression", "compressionquality", "dwacompressionlevel", "orientation", "chromaticities", "gamma", "colorspace", "exif:colorspace",
+    "exif:pixelxdimension", "exif:pixelydimension", "exif:gamma", "colorinteropid", "acesimagecontainerflag", "blendermultichannel", "multiview",
+    "channels", "datawindow", "displaywindow", "lineorder", "tiles", "name", "type", "version", "chunkcount", "maxsamplesperpixel",
+    "deepimagestate", "preview", "textureformat", "planarconfig", "bitspersample", "hash", "sha-1", "photometricinterpretation",
+    "rowsperstrip", "iccprofile"};
+constexpr std::array<std::string_view, 9> kDroppedFamilies{"oiio:", "openexr:", "png:", "jpeg:", "tiff:", "iccprofile:", "thumbnail", "gif:", "webp:"};
+
+/// PNG's limit for a keyword, and a size above which a text is no description any more.
+constexpr std::size_t kLongestName = 79, kLongestText = 64 << 10;
+
+}  // namespace
+
+bool keeps_metadata(std::string_view name) {
+  const std::string plain = lower(name);
+  return std::find(kDropped.begin(), kDropped.end(), plain) == kDropped.end() && !starts_with_any(plain, kDroppedFamilies);
+}
+
+OIIO::ParamValueList kept_metadata(const FileFacts& facts) {
+  OIIO::ParamValueList kept;
+  for (const OIIO::ParamValue& value : facts.metadata) {
+    const std::string name = value.name().string();
+    if (!keeps_metadata(name) || name.size() > kLongestName) continue;
+    if (value.type() == OIIO::TypeString && value.get_string().size() > kLongestText) continue;
+    if (name == "PixelAspectRatio" && swaps_axes(facts.orientation)) {
+      const float ratio = value.get_float();
+      kept.attribute(name, ratio > 0 ? 1 / ratio : 1.0f);
+    } else {
+      kept.push_back(value);
+    }
+  }
+  return kept;
+}
+
+void add_kept_attributes(Imf::Header& header, const FileFacts& facts) {
+  if (facts.exr_header) {
+    for (auto it = facts.exr_header->begin(); it != facts.exr_header->end(); ++it)
+      if (keeps_metadata(it.name())) header.insert(it.name(), it.attribute());
+  } else {
+    add_metadata(header, kept_metadata(facts));
+  }
+  if (swaps_axes(facts.orientation) && header.pixelAspectRatio() > 0 && facts.exr_header)
+    header.pixelAspectRatio() = 1 / header.pixelAspectRatio();
+  // The pixels are Rec.709 now; a file that said what its primaries were goes on saying so.
+  if (facts.had_chromaticities) Imf::addChromaticities(header, Imf::Chromaticities());
+}
+
+}  // namespace afterglow

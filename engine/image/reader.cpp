@@ -1,0 +1,271 @@
+#include "image/reader.h"
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/text.h"
+#include "image/color_encoding.h"
+#include "image/orientation.h"
+#include "image/picture_file.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+struct AuxiliaryKind {
+  const char* name;
+  int channels;
+  float background;  ///< where the layer has no pixels but the colour has
+};
+constexpr AuxiliaryKind kDepth{"depth", 1, 1e10f};
+constexpr AuxiliaryKind kNormal{"normal", 3, 0.0f};
+
+/// One auxiliary image: where it will come from.
+struct AuxiliaryPlan {
+  const AuxiliaryKind* kind = nullptr;
+  std::unique_ptr<PictureFile> other;  ///< null: the picture's own file
+  ChannelChoice choice;
+};
+
+struct Plan {
+  std::unique_ptr<PictureFile> file;
+  ChannelChoice color;
+  std::vector<AuxiliaryPlan> auxiliary;
+
+  PictureFile& file_of(const AuxiliaryPlan& plan) const { return plan.other ? *plan.other : *file; }
+  const FilePart& color_part() const { return file->parts()[static_cast<std::size_t>(color.part)]; }
+  const FilePart& part_of(const AuxiliaryPlan& plan) const {
+    return file_of(plan).parts()[static_cast<std::size_t>(plan.choice.part)];
+  }
+};
+
+SizeLimits limits_of(const ReadOptions& options) { return {options.max_side, options.max_bytes}; }
+
+Error in_file(Error error, const fs::path& file) {
+  if (error.file.empty()) error.file = file.string();
+  return error;
+}
+
+Rect upright_data(const FilePart& part) { return upright(part.data_window, part.display_window, part.orientation); }
+Rect upright_display(const FilePart& part) { return upright(part.display_window, part.display_window, part.orientation); }
+
+std::uint64_t area(const Rect& rect) { return static_cast<std::uint64_t>(rect.size().area()); }
+
+/// A name that nothing answers to and that looks like a file was probably meant as one.
+bool looks_like_file(const std::string& name) {
+  const std::string extension = lower(fs::path(name).extension().string());
+  const std::vector<std::string> known{".exr", ".png", ".tif", ".tiff", ".hdr", ".jpg", ".jpeg", ".pfm"};
+  return name.find('/') != std::string::npos || std::find(known.begin(), known.end(), extension) != known.end();
+}
+
+/// A file given for this purpose alone may hold just one grey layer, under whatever name.
+std::optional<ChannelChoice> sole_layer(const PictureFile& file, const AuxiliaryKind& kind) {
+  const auto color = find_color(file.parts(), "");
+  if (!color) return std::nullopt;
+  ChannelChoice choice = color.value();
+  choice.channels.resize(static_cast<std::size_t>(kind.channels));
+  const bool grey = choice.channels.size() > 1 && choice.channels[0] == choice.channels[1];
+  return grey ? std::nullopt : std::optional(choice);
+}
+
+Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, const LayerChoice& wanted, const Plan& plan,
+                                                    const ReadOptions& options) {
+  AuxiliaryPlan made;
+  made.kind = &kind;
+  if (!wanted.file.empty()) {
+    AFTERGLOW_TRY(made.other, open_picture(wanted.file, limits_of(options)));
+  }
+  const PictureFile& file = plan.file_of(made);
+  const ChannelChoice* color = made.other ? nullptr : &plan.color;
+  auto found = kind.channels == 1 ? find_depth(file.parts(), wanted.name, color) : find_normal(file.parts(), wanted.name, color);
+  if (!found) {
+    if (!made.other && looks_like_file(wanted.name)) return Error{ErrorKind::io, "no such file", wanted.name};
+    return in_file(std::move(found).error(), file.path());
+  }
+  if (!found.value() && made.other) {
+    found = sole_layer(file, kind);
+    if (!found.value()) return Error{ErrorKind::io, fmt::format("has no {} layer", kind.name), file.path().string()};
+  }
+  if (!found.value()) return std::optional<AuxiliaryPlan>();
+  made.choice = *found.value();
+  const Rect color_window = upright_data(plan.color_part()), window = upright_data(plan.part_of(made));
+  if (made.other && window.size() != color_window.size())
+    return Error{ErrorKind::io, fmt::format("its {} is {}×{} pixels, but the picture '{}' has {}×{}", kind.name, window.width, window.height,
+                                            plan.file->path().string(), color_window.width, color_window.height),
+                 file.path().string()};
+  return std::optional<AuxiliaryPlan>(std::move(made));
+}
+
+Result<Plan> make_plan(const fs::path& file, const ReadOptions& options, const std::vector<std::string>& auxiliary) {
+  Plan plan;
+  AFTERGLOW_TRY(plan.file, open_picture(file, limits_of(options)));
+  auto color = find_color(plan.file->parts(), options.layer);
+  if (!color) return in_file(std::move(color).error(), file);
+  plan.color = std::move(color).value();
+  AFTERGLOW_CHECK(check_sides(plan.color_part().data_window, "data window", limits_of(options), file));
+  AFTERGLOW_CHECK(check_sides(plan.color_part().display_window, "display window", limits_of(options), file));
+  for (const std::string& name : auxiliary) {
+    const bool depth = name == kDepth.name;
+    if (!depth && name != kNormal.name) continue;  // kinds that no file holds yet
+    AFTERGLOW_TRY(auto made, plan_auxiliary(depth ? kDepth : kNormal, depth ? options.depth : options.normal, plan, options));
+    if (made) plan.auxiliary.push_back(std::move(*made));
+  }
+  return plan;
+}
+
+/// Host memory at the peak of reading: the images, a second copy of the largest while it is turned, and the decoders' buffers.
+std::uint64_t host_bytes(const Plan& plan, const std::vector<std::string>& wanted) {
+  std::uint64_t images = area(plan.color_part().data_window) * 4 * sizeof(float);
+  std::uint64_t second = plan.color_part().orientation > 1 ? images : 0;
+  std::uint64_t buffers = plan.file->buffer_bytes(plan.color.part);
+  for (const AuxiliaryPlan& auxiliary : plan.auxiliary) {
+    if (std::find(wanted.begin(), wanted.end(), auxiliary.kind->name) == wanted.end()) continue;
+    const FilePart& part = plan.part_of(auxiliary);
+    const std::uint64_t pixel = static_cast<std::uint64_t>(auxiliary.kind->channels) * sizeof(float);
+    images += area(plan.color_part().data_window) * pixel;
+    second = std::max(second, area(part.data_window) * pixel);
+    buffers = std::max(buffers, plan.file_of(auxiliary).buffer_bytes(auxiliary.choice.part));
+  }
+  return images + second + buffers;
+}
+
+/// Targets that spread the given channels over the channels of `image`; a channel that occurs twice is read once, into its first place.
+void add_targets(const std::vector<int>& channels, Image& image, std::vector<ReadTarget>& targets) {
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (channels[i] < 0 || std::find(channels.begin(), channels.begin() + static_cast<std::ptrdiff_t>(i), channels[i]) != channels.begin() + static_cast<std::ptrdiff_t>(i))
+      continue;
+    targets.push_back({channels[i], image.pixels.data() + i, static_cast<std::size_t>(image.channels),
+                       static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels)});
+  }
+}
+
+/// `image`, which covers `window`, cut or padded to cover `wanted`.
+Image placed(Image image, const Rect& window, const Rect& wanted, float background) {
+  if (window == wanted) return image;
+  Image out(wanted.width, wanted.height, image.channels);
+  std::fill(out.pixels.begin(), out.pixels.end(), background);
+  const int x0 = std::max(window.x, wanted.x), x1 = std::min(window.x + window.width, wanted.x + wanted.width);
+  const int y0 = std::max(window.y, wanted.y), y1 = std::min(window.y + window.height, wanted.y + wanted.height);
+  for (int y = y0; y < y1 && x0 < x1; ++y)
+    std::copy_n(image.at(x0 - window.x, y - window.y), static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(image.channels),
+                out.at(x0 - wanted.x, y - wanted.y));
+  return out;
+}
+
+void report(const SanitizeCounts& counts, const fs::path& file, Diagnostics& diagnostics) {
+  std::vector<std::string> parts;
+  const auto add = [&](std::uint64_t count, const char* what) {
+    if (count) parts.push_back(fmt::format("{} {}", count, what));
+  };
+  add(counts.nan, "NaN");
+  add(counts.too_large, "infinite or above 1e30");
+  add(counts.alpha, "alpha");
+  add(counts.depth, "depth");
+  add(counts.normal, "normal");
+  const bool harmless = parts.empty();  // negatives alone: ringing of filters and lossy compression
+  add(counts.negative, "negative");
+  if (parts.empty()) return;
+  const std::string text = fmt::format("{}: samples made finite and not negative: {}", file.string(), join(parts));
+  harmless ? diagnostics.note(text) : diagnostics.warn(text);
+}
+
+/// Allocates, reads and decodes everything of the plan. May throw std::bad_alloc.
+Result<Picture> read_planned(Plan& plan, Diagnostics& diagnostics) {
+  const FilePart& part = plan.color_part();
+  Picture picture;
+  picture.data_window = upright_data(part);
+  picture.display_window = upright_display(part);
+  picture.has_alpha = plan.color.channels[3] >= 0;
+  picture.facts = std::make_shared<FileFacts>(plan.file->facts(plan.color));
+  const ColorEncoding encoding = plan.file->color_encoding(plan.color, diagnostics);
+
+  // Everything from the colour's own part is read in one go: the file is decompressed once.
+  picture.color = Image(part.data_window.width, part.data_window.height, 4);
+  std::vector<ReadTarget> targets;
+  add_targets(plan.color.channels, picture.color, targets);
+  std::vector<Image> auxiliary;
+  for (const AuxiliaryPlan& extra : plan.auxiliary) {
+    const Rect window = plan.part_of(extra).data_window;
+    auxiliary.emplace_back(window.width, window.height, extra.kind->channels);
+  }
+  for (std::size_t i = 0; i < auxiliary.size(); ++i) {
+    const AuxiliaryPlan& extra = plan.auxiliary[i];
+    const auto taken = [&](int channel) {
+      return std::any_of(targets.begin(), targets.end(), [&](const ReadTarget& t) { return t.channel == channel; });
+    };
+    const bool together = !extra.other && extra.choice.part == plan.color.part &&
+                          std::none_of(extra.choice.channels.begin(), extra.choice.channels.end(), taken);
+    if (together) {
+      add_targets(extra.choice.channels, auxiliary[i], targets);
+    } else {
+      std::vector<ReadTarget> own;
+      add_targets(extra.choice.channels, auxiliary[i], own);
+      AFTERGLOW_CHECK(plan.file_of(extra).read(extra.choice.part, own));
+    }
+  }
+  AFTERGLOW_CHECK(plan.file->read(plan.color.part, targets));
+
+  decode_color(encoding, picture.color, picture.sanitized);
+  picture.color = upright(std::move(picture.color), part.orientation);
+  for (std::size_t i = 0; i < auxiliary.size(); ++i) {
+    const AuxiliaryPlan& extra = plan.auxiliary[i];
+    const FilePart& from = plan.part_of(extra);
+    Image image = upright(std::move(auxiliary[i]), from.orientation);
+    const Rect window = extra.other ? picture.data_window : upright_data(from);
+    image = placed(std::move(image), window, picture.data_window, extra.kind->background);
+    extra.kind == &kDepth ? sanitize_depth(image, picture.sanitized) : sanitize_normal(image, picture.sanitized);
+    picture.auxiliary.emplace(extra.kind->name, std::move(image));
+  }
+  report(picture.sanitized, plan.file->path(), diagnostics);
+  return picture;
+}
+
+}  // namespace
+
+LayerChoice parse_layer_choice(const std::string& text) {
+  const auto is_file = [](const std::string& name) {
+    std::error_code ignored;
+    return !name.empty() && (fs::exists(name, ignored) || name.find('#') != std::string::npos || name.find('%') != std::string::npos);
+  };
+  if (is_file(text) && text.find(':') == std::string::npos) return {text, ""};
+  std::error_code ignored;
+  if (fs::exists(text, ignored)) return {text, ""};
+  for (std::size_t colon = text.rfind(':'); colon != std::string::npos && colon > 0; colon = text.rfind(':', colon - 1))
+    if (is_file(text.substr(0, colon))) return {text.substr(0, colon), text.substr(colon + 1)};
+  return {"", text};
+}
+
+Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& options) {
+  try {
+    AFTERGLOW_TRY(const Plan plan, make_plan(file, options, {kDepth.name, kNormal.name}));
+    PictureHeader header;
+    header.data_window = upright_data(plan.color_part());
+    header.display_window = upright_display(plan.color_part());
+    header.channels = static_cast<int>(plan.color_part().channels.size());
+    for (const AuxiliaryPlan& extra : plan.auxiliary) header.auxiliary.push_back(extra.kind->name);
+    header.format = plan.file->format();
+    header.host_bytes = host_bytes(plan, options.auxiliary);
+    return header;
+  } catch (const std::exception& error) {
+    return Error{ErrorKind::io, fmt::format("cannot be read: {}", error.what()), file.string()};
+  }
+}
+
+Result<Picture> read_picture(const fs::path& file, const ReadOptions& options, Diagnostics& diagnostics) {
+  try {
+    AFTERGLOW_TRY(Plan plan, make_plan(file, options, options.auxiliary));
+    if (const std::uint64_t bytes = host_bytes(plan, options.auxiliary); bytes > options.max_bytes)
+      return Error{ErrorKind::io, fmt::format("needs {} MiB of memory, more than the {} MiB allowed (--max-memory)", bytes >> 20,
+                                              options.max_bytes >> 20), file.string()};
+    return read_planned(plan, diagnostics);
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorKind::io, "there is not enough memory to read it", file.string()};
+  } catch (const std::exception& error) {
+    return Error{ErrorKind::io, fmt::format("cannot be read: {}", error.what()), file.string()};
+  }
+}
+
+}  // namespace afterglow

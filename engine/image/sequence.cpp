@@ -1,0 +1,176 @@
+#include "image/sequence.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdio>
+#include <system_error>
+#include <unordered_set>
+
+#include <fmt/format.h>
+
+#include "core/text.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kMaxFrames = 1'000'000;
+constexpr int kMaxDigits = 9;  // what always fits an int
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+Error bad_frames(const std::string& text, const std::string& why) {
+  return Error{ErrorKind::usage, fmt::format("bad frame list '{}': {}", text, why), "", 0, "N, N-M, N-MxSTEP, joined by commas"};
+}
+
+/// Reads a number (with a sign) from the front of `text` and removes it.
+std::optional<int> take_number(std::string_view& text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+struct Range {
+  int first = 0, last = 0, step = 1;
+};
+
+Result<Range> parse_range(const std::string& text, std::string_view part) {
+  Range range;
+  const auto first = take_number(part);
+  if (!first) return bad_frames(text, "a number is missing");
+  range.first = range.last = *first;
+  if (!part.empty() && part.front() == '-') {
+    part.remove_prefix(1);
+    const auto last = take_number(part);
+    if (!last) return bad_frames(text, "the end of a range is missing");
+    range.last = *last;
+    if (!part.empty() && part.front() == 'x') {
+      part.remove_prefix(1);
+      const auto step = take_number(part);
+      if (!step || *step < 1) return bad_frames(text, "the step must be a number of at least 1");
+      range.step = *step;
+    }
+  }
+  if (!part.empty()) return bad_frames(text, fmt::format("'{}' is not understood", part));
+  if (range.last < range.first) return bad_frames(text, "a range must go upwards");
+  return range;
+}
+
+/// A file's own number: the digits at the end of its name's stem; 1 without them.
+int own_number(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  std::size_t begin = stem.size();
+  while (begin > 0 && is_digit(stem[begin - 1])) --begin;
+  const std::string_view digits = std::string_view(stem).substr(begin);
+  if (digits.empty() || digits.size() > kMaxDigits) return 1;
+  return std::stoi(std::string(digits));
+}
+
+/// One place for a number in a name: where, how long its text is, and how many digits it asks for.
+struct Place {
+  std::size_t begin = 0, length = 0;
+  int digits = 0;
+};
+
+Error bad_pattern(const std::string& text, const std::string& why) {
+  return Error{ErrorKind::usage, fmt::format("'{}' {}", text, why), "", 0, "one run of #, or one %d or %04d, in the file name"};
+}
+
+}  // namespace
+
+Result<std::vector<int>> parse_frames(const std::string& text) {
+  std::vector<int> frames;
+  std::unordered_set<int> seen;
+  for (const std::string& raw : split(text, ',')) {
+    AFTERGLOW_TRY(const Range range, parse_range(text, trim(raw)));
+    const long long count = (static_cast<long long>(range.last) - range.first) / range.step + 1;
+    if (count > static_cast<long long>(kMaxFrames))
+      return bad_frames(text, fmt::format("more than {} frames", kMaxFrames));
+    for (long long i = 0; i < count; ++i) {
+      const int frame = static_cast<int>(range.first + i * range.step);
+      if (seen.insert(frame).second) frames.push_back(frame);
+    }
+    if (frames.size() > kMaxFrames) return bad_frames(text, fmt::format("more than {} frames", kMaxFrames));
+  }
+  return frames;
+}
+
+fs::path Pattern::file(int frame) const {
+  if (!numbered) return prefix + suffix;
+  return fmt::format("{}{:0{}d}{}", prefix, frame, digits, suffix);
+}
+
+Result<Pattern> parse_pattern(const std::string& text) {
+  if (text.empty()) return Error{ErrorKind::usage, "an empty file name"};
+  std::error_code ignored;
+  if (fs::exists(text, ignored)) return Pattern{text, "", 0, false};  // a name that merely looks like a pattern
+  std::vector<Place> places;
+  std::string plain;  // `text` with %% made %
+  for (std::size_t i = 0; i < text.size();) {
+    if (text[i] == '#') {
+      const std::size_t end = std::min(text.find_first_not_of('#', i), text.size());
+      places.push_back({plain.size(), 0, static_cast<int>(end - i)});
+      i = end;
+    } else if (text[i] == '%' && i + 1 < text.size() && text[i + 1] == '%') {
+      plain += '%';
+      i += 2;
+    } else if (text[i] == '%') {
+      std::size_t end = i + 1;
+      while (end < text.size() && is_digit(text[end])) ++end;
+      if (end >= text.size() || text[end] != 'd' || end - i > 3 || (end > i + 1 && text[i + 1] != '0'))
+        return bad_pattern(text, "has a % code that is not understood");
+      places.push_back({plain.size(), 0, end > i + 1 ? std::stoi(text.substr(i + 1, end - i - 1)) : 1});
+      i = end + 1;
+    } else {
+      plain += text[i++];
+    }
+  }
+  if (places.empty()) return Pattern{plain, "", 0, false};
+  if (places.size() > 1) return bad_pattern(text, "has more than one place for the frame number");
+  const Place place = places.front();
+  if (place.digits > kMaxDigits) return bad_pattern(text, fmt::format("asks for more than {} digits", kMaxDigits));
+  const Pattern pattern{plain.substr(0, place.begin), plain.substr(place.begin), std::max(place.digits, 1), true};
+  if (pattern.suffix.find('/') != std::string::npos)
+    return bad_pattern(text, "has the place for the frame number in a folder's name");
+  return pattern;
+}
+
+Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::optional<std::vector<int>>& frames) {
+  if (!pattern.numbered) {
+    const fs::path file = pattern.file(0);
+    return std::vector<FrameFile>{{own_number(file), file}};
+  }
+  std::vector<FrameFile> found;
+  if (frames) {
+    for (const int frame : *frames) found.push_back({frame, pattern.file(frame)});
+    return found;
+  }
+  const std::string shown = pattern.prefix + std::string(static_cast<std::size_t>(pattern.digits), '#') + pattern.suffix;
+  const fs::path prefix(pattern.prefix);
+  const fs::path folder = prefix.has_parent_path() ? prefix.parent_path() : fs::path(".");
+  const std::string stem = prefix.filename().string();
+  std::error_code ec;
+  fs::directory_iterator entry(folder, ec);
+  if (ec) return Error{ErrorKind::io, fmt::format("folder '{}' cannot be read: {}", folder.string(), ec.message()), shown};
+  for (; !ec && entry != fs::directory_iterator(); entry.increment(ec)) {
+    const std::string name = entry->path().filename().string();
+    if (name.size() <= stem.size() + pattern.suffix.size() || !name.starts_with(stem) || !name.ends_with(pattern.suffix))
+      continue;
+    const std::string middle = name.substr(stem.size(), name.size() - stem.size() - pattern.suffix.size());
+    if (middle.size() > kMaxDigits + 1) continue;
+    std::string_view rest = middle;
+    const auto frame = take_number(rest);
+    // Only the spelling that the pattern itself makes: "shot.007" is no frame of shot.#.
+    if (!frame || !rest.empty() || pattern.file(*frame).filename() != name) continue;
+    found.push_back({*frame, pattern.file(*frame)});
+  }
+  if (ec) return Error{ErrorKind::io, fmt::format("folder '{}' cannot be read: {}", folder.string(), ec.message()), shown};
+  if (found.empty()) return Error{ErrorKind::io, "no file matches this pattern", shown};
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
+  return found;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,43 @@
+#include "image/write_exr.h"
+
+#include <algorithm>
+
+#include <ImathBox.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfOutputFile.h>
+
+#include "image/exr_rows.h"
+#include "image/facts.h"
+#include "image/output_metadata.h"
+
+namespace afterglow {
+namespace {
+
+Imath::Box2i box(const Rect& rect) { return {{rect.x, rect.y}, {rect.x + rect.width - 1, rect.y + rect.height - 1}}; }
+
+}  // namespace
+
+Result<void> write_exr(const Picture& picture, OutputFile& out, const std::string& name, const WriteOptions& options, Diagnostics& diagnostics) {
+  AFTERGLOW_TRY(const OutputFormat* format, output_format("x.exr", options));
+  Imf::Header header(box(picture.display_window), box(picture.data_window));
+  header.channels() = Imf::ChannelList();
+  if (picture.facts) add_kept_attributes(header, *picture.facts);
+  AFTERGLOW_CHECK(set_compression(header, options.compression));
+  ExrColorRows rows(picture, {"R", "G", "B", picture.has_alpha ? "A" : ""}, sample_type(*format, options, picture.facts.get()));
+  rows.add_channels(header);
+  {
+    ExrOutput stream(out, name.c_str());
+    Imf::OutputFile file(stream, header);
+    for (int y = 0; y < picture.color.height; y += ExrColorRows::kRows) {
+      const int count = std::min(ExrColorRows::kRows, picture.color.height - y);
+      Imf::FrameBuffer buffer;
+      rows.add_slices(y, count, buffer);
+      file.setFrameBuffer(buffer);
+      file.writePixels(count);
+    }
+  }  // the destructor writes the offset table; a failure of that is found in `out`
+  rows.warn_of_overflow(name, diagnostics);
+  return {};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDeepScanLineInputPart.h>
+#include <OpenEXR/ImfDeepScanLineOutputPart.h>
+#include <OpenEXR/ImfDeepTiledInputPart.h>
+#include <OpenEXR/ImfDeepTiledOutputPart.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfTiledInputPart.h>
+#include <OpenEXR/ImfTiledOutputPart.h>
+#include <fmt/format.h>
+
+#include "image/exr_rows.h"
+#include "image/facts.h"
+#include "image/write_exr.h"
+
+namespace afterglow {
+namespace {
+
+/// Channels of the colour's part that are not the colour: read and written in their own types, strip by strip.
+class OtherChannels {
+ public:
+  OtherChannels(const Imf::Header& header, const std::vector<std::string>& replaced) {
+    for (auto it = header.channels().begin(); it != header.channels().end(); ++it)
+      if (std::find(replaced.begin(), replaced.end(), it.name()) == replaced.end()) channels_.push_back({it.name(), it.channel(), {}});
+  }
+
+  /// Channels at less than full resolution are not copied here. Errors: io.
+  Result<void> check() const {
+    for (const Other& other : channels_)
+      if (other.channel.xSampling != 1 || other.channel.ySampling != 1)
+        return Error{ErrorKind::io, fmt::format("cannot keep the sub-sampled channel '{}'", other.name)};
+    return {};
+  }
+  void add_channels(Imf::Header& header) const {
+    for (const Other& other : channels_) header.channels().insert(other.name, other.channel);
+  }
+  /// Slices for `rows` rows from row `y` (in the file's coordinates) of a window.
+  void add_slices(const Imath::Box2i& window, int y, int rows, Imf::FrameBuffer& buffer) {
+    const std::size_t width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
+    for (Other& other : channels_) {
+      const std::size_t sample = other.channel.type == Imf::HALF ? 2 : 4;
+      other.samples.resize(width * static_cast<std::size_t>(rows) * sample);
+      buffer.insert(other.name, Imf::Slice::Make(other.channel.type, other.samples.data(), Imath::V2i(window.min.x, y),
+                                                 static_cast<int64_t>(width), rows, sample, sample * width));
+    }
+  }
+  bool empty() const { return channels_.empty(); }
+
+ private:
+  struct Other {
+    std::string name;
+    Imf::Channel channel;
+    std::vector<char> samples;
+  };
+  std::vector<Other> channels_;
+};
+
+/// What the colour's layer looks like in the new file.
+struct Replacement {
+  std::array<std::string, 4> names;     ///< of R, G, B, A; A may be empty
+  std::vector<std::string> replaced;    ///< names in the old file that they stand for
+};
+
+Replacement replacement_for(const FileFacts& facts, const Picture& picture) {
+  Replacement result;
+  result.names = facts.color_channels;
+  for (const std::string& name : facts.color_channels)
+    if (!name.empty()) result.replaced.push_back(name);
+  const std::string first = facts.color_channels[0];
+  const std::string prefix = first.substr(0, first.rfind('.') + 1);  // npos + 1 is 0
+  if (facts.color_channels[0] == facts.color_channels[1]) {
+    // Grey, or luminance and chroma: the result has colour.
+    for (const char* chroma : {"RY", "BY"}) result.replaced.push_back(prefix + chroma);
+    result.names = {prefix + "R", prefix + "G", prefix + "B", facts.color_channels[3]};
+    for (const std::string& name : result.names)
+      if (!name.empty()) result.replaced.push_back(name);
+  }
+  if (!picture.has_alpha) result.names[3].clear();
+  return result;
+}
+
+Result<void> check_unchanged(const Imf::MultiPartInputFile& input, const FileFacts& facts) {
+  const Error changed{ErrorKind::io, fmt::format("cannot keep layers: '{}' has changed since it was read", facts.file.string())};
+  if (facts.part >= input.parts()) return changed;
+  const Imf::Header& now = input.header(facts.part);
+  if (now.dataWindow() != facts.exr_header->dataWindow() || !(now.channels() == facts.exr_header->channels())) return changed;
+  return {};
+}
+
+Imf::Header color_header(const Imf::Header& old, const FileFacts& facts, const ExrColorRows& color, const OtherChannels& others) {
+  Imf::Header header(old);
+  header.channels() = Imf::ChannelList();
+  color.add_channels(header);
+  others.add_channels(header);
+  for (const char* name : {"tiles", "preview", "chunkCount", "dwaCompressionLevel", "textureformat"}) header.erase(name);
+  header.setType(Imf::SCANLINEIMAGE);
+  header.lineOrder() = Imf::INCREASING_Y;
+  if (facts.had_chromaticities) Imf::addChromaticities(header, Imf::Chromaticities());
+  return header;
+}
+
+void write_color_part(Imf::MultiPartInputFile& input, Imf::MultiPartOutputFile& output, int part, ExrColorRows& color, OtherChannels& others) {
+  Imf::InputPart source(input, part);
+  Imf::OutputPart target(output, part);
+  const Imath::Box2i window = source.header().dataWindow();
+  const int height = window.max.y - window.min.y + 1;
+  for (int row = 0; row < height; row += ExrColorRows::kRows) {
+    const int rows = std::min(ExrColorRows::kRows, height - row), y = window.min.y + row;
+    Imf::FrameBuffer buffer;
+    others.add_slices(window, y, rows, buffer);
+    if (!others.empty()) {
+      source.setFrameBuffer(buffer);
+      source.readPixels(y, y + rows - 1);
+    }
+    color.add_slices(row, rows, buffer);
+    target.setFrameBuffer(buffer);
+    target.writePixels(rows);
+  }
+}
+
+/// Copies a part's compressed chunks as they are.
+void copy_part(Imf::MultiPartInputFile& input, Imf::MultiPartOutputFile& output, int part) {
+  const std::string type = output.header(part).type();
+  if (type == Imf::TILEDIMAGE) {
+    Imf::TiledInputPart source(input, part);
+    Imf::TiledOutputPart(output, part).copyPixels(source);
+  } else if (type == Imf::DEEPSCANLINE) {
+    Imf::DeepScanLineInputPart source(input, part);
+    Imf::DeepScanLineOutputPart(output, part).copyPixels(source);
+  } else if (type == Imf::DEEPTILE) {
+    Imf::DeepTiledInputPart source(input, part);
+    Imf::DeepTiledOutputPart(output, part).copyPixels(source);
+  } else {
+    Imf::InputPart source(input, part);
+    Imf::OutputPart(output, part).copyPixels(source);
+  }
+}
+
+}  // namespace
+
+Result<void> write_exr_with_layers(const Picture& picture, OutputFile& out, const std::string& name, const WriteOptions& options,
+                                   Diagnostics& diagnostics) {
+  const FileFacts* facts = picture.facts.get();
+  if (!facts || !facts->exr_header) {
+    diagnostics.warn(fmt::format("{}: the input is no EXR file and has no layers to keep", name));
+    return write_exr(picture, out, name, options, diagnostics);
+  }
+  if (facts->orientation > 1)
+    return Error{ErrorKind::io, fmt::format("cannot keep layers of a picture that is stored turned (orientation {})", facts->orientation)};
+  Imf::MultiPartInputFile input(facts->file.c_str());
+  AFTERGLOW_CHECK(check_unchanged(input, *facts));
+  AFTERGLOW_TRY(const OutputFormat* format, output_format("x.exr", options));
+  const Replacement replacement = replacement_for(*facts, picture);
+  ExrColorRows color(picture, replacement.names, sample_type(*format, options, facts));
+  OtherChannels others(input.header(facts->part), replacement.replaced);
+  AFTERGLOW_CHECK(others.check());
+
+  std::vector<Imf::Header> headers;
+  for (int part = 0; part < input.parts(); ++part) headers.push_back(input.header(part));
+  headers[static_cast<std::size_t>(facts->part)] = color_header(input.header(facts->part), *facts, color, others);
+  AFTERGLOW_CHECK(set_compression(headers[static_cast<std::size_t>(facts->part)], options.compression));
+  {
+    ExrOutput stream(out, name.c_str());
+    Imf::MultiPartOutputFile output(stream, headers.data(), static_cast<int>(headers.size()));
+    for (int part = 0; part < input.parts(); ++part) {
+      if (part == facts->part) {
+        write_color_part(input, output, part, color, others);
+      } else {
+        copy_part(input, output, part);
+      }
+    }
+  }
+  color.warn_of_overflow(name, diagnostics);
+  return {};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,130 @@
+#include "image/writer.h"
+
+#include <cerrno>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "core/file.h"
+#include "image/exr_file.h"
+#include "image/output_file.h"
+#include "image/output_format.h"
+#include "image/reader.h"
+#include "image/write_exr.h"
+#include "image/write_flat.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+/// Where the bytes go: a link is followed, so that the file it points to is replaced and not the link.
+fs::path resolved(const fs::path& file) {
+  std::error_code ec;
+  if (!fs::is_symlink(file, ec)) return file;
+  const fs::path target = fs::weakly_canonical(file, ec);
+  return ec ? file : target;
+}
+
+/// Removes the temporary file unless it was committed.
+class Temporary {
+ public:
+  explicit Temporary(fs::path path) : path_(std::move(path)) {}
+  ~Temporary() {
+    std::error_code ignored;
+    if (!committed_) fs::remove(path_, ignored);
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+  const fs::path& path() const { return path_; }
+  Result<void> commit(const fs::path& to) {
+    committed_ = true;  // commit_file removes it when it fails
+    return commit_file(path_, to);
+  }
+
+ private:
+  fs::path path_;
+  bool committed_ = false;
+};
+
+Result<void> write_format(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
+                          const WriteOptions& options, Diagnostics& diagnostics) {
+  if (format.kind != OutputKind::exr) return write_flat(picture, format, out, name, options, diagnostics);
+  use_exr_threads();
+  if (options.keep_layers) return write_exr_with_layers(picture, out, name, options, diagnostics);
+  return write_exr(picture, out, name, options, diagnostics);
+}
+
+/// Writes to `temporary` and makes sure that it is all there.
+Result<void> write_checked(const Picture& picture, const OutputFormat& format, const fs::path& temporary, const fs::path& file,
+                           const WriteOptions& options, Diagnostics& diagnostics) {
+  OutputFile out(temporary);
+  Result<void> written;
+  try {
+    if (!out.failure()) written = write_format(picture, format, out, file.string(), options, diagnostics);
+  } catch (const std::exception& error) {
+    written = Error{ErrorKind::io, "cannot be written: " + exr_message(error)};
+  }
+  // The file's own failure ("No space left on device") says more than what a library makes of it.
+  const Result<void> closed = out.close();
+  AFTERGLOW_CHECK(closed);
+  AFTERGLOW_CHECK(written);
+  std::error_code ec;
+  if (fs::file_size(temporary, ec) != out.size() || ec) return Error{ErrorKind::io, "cannot be written: the file has lost bytes"};
+  ReadOptions anything;
+  anything.max_side = 1 << 30;
+  anything.max_bytes = ~0ull;
+  if (!options.keep_layers)
+    if (const auto header = read_header(temporary, anything); !header)
+      return Error{ErrorKind::io, "cannot be written: reading it back failed: " + header.error().message};
+  return {};
+}
+
+Result<void> check_picture(const Picture& picture) {
+  const Image& color = picture.color;
+  if (color.width < 1 || color.height < 1 || color.channels != 4 || color.size() != picture.data_window.size() ||
+      color.pixels.size() != static_cast<std::size_t>(color.width) * static_cast<std::size_t>(color.height) * 4)
+    return Error{ErrorKind::other, "the picture's pixels do not cover its data window"};
+  if (picture.display_window.width < 1 || picture.display_window.height < 1)
+    return Error{ErrorKind::other, "the picture's display window is empty"};
+  return {};
+}
+
+}  // namespace
+
+Result<void> check_output(const fs::path& file, const WriteOptions& options) {
+  const auto refuse = [&](const std::string& why) { return Error{ErrorKind::io, why, file.string()}; };
+  AFTERGLOW_TRY([[maybe_unused]] const OutputFormat* format, output_format(file, options));
+  const fs::path target = resolved(file);
+  std::error_code ec;
+  const fs::file_status status = fs::status(target, ec);
+  if (fs::is_directory(status)) return refuse("is a folder");
+  if (fs::exists(status) && !fs::is_regular_file(status)) return refuse("is not a regular file");
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const fs::file_status folder_status = fs::status(folder, ec);
+  if (!fs::exists(folder_status)) return refuse(fmt::format("its folder '{}' does not exist", folder.string()));
+  if (!fs::is_directory(folder_status)) return refuse(fmt::format("'{}' is not a folder", folder.string()));
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    return refuse(fmt::format("its folder '{}' cannot be written to: {}", folder.string(), std::strerror(errno)));
+  return {};
+}
+
+Result<void> write_picture(const Picture& picture, const fs::path& file, const WriteOptions& options, Diagnostics& diagnostics) {
+  AFTERGLOW_CHECK(check_output(file, options));
+  AFTERGLOW_TRY(const OutputFormat* format, output_format(file, options));
+  const fs::path target = resolved(file);
+  try {
+    AFTERGLOW_CHECK(check_picture(picture));
+    Temporary temporary(temporary_beside(target));
+    if (auto written = write_checked(picture, *format, temporary.path(), file, options, diagnostics); !written) {
+      Error error = std::move(written).error();
+      if (error.file.empty()) error.file = file.string();
+      return error;
+    }
+    return temporary.commit(target);
+  } catch (const std::exception& error) {
+    return Error{ErrorKind::io, fmt::format("cannot be written: {}", error.what()), file.string()};
+  }
+}
+
+}  // namespace afterglow
