@@ -215,12 +215,12 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   const bool half = options.storage == Storage::fp16;
   state->format = half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
   state->plan =
-      make_plan(graph, {.join = !options.reference, .alias = !options.reference, .bytes_per_pixel = half ? 8u : 16u});
+      make_plan(graph, {.join = !options.reference, .alias = options.share_memory && !options.reference, .bytes_per_pixel = half ? 8u : 16u});
   AFTERGLOW_CHECK(state->check());
   if (!state->plan.kernels.empty()) {
     AFTERGLOW_TRY(state->arena, Arena::create(device, graph, state->plan,
                                               {.format = state->format,
-                                               .share = !options.reference,
+                                               .share = options.share_memory && !options.reference,
                                                .readable = options.reference,
                                                .max_memory = options.max_memory}));
     AFTERGLOW_CHECK(state->compile(shaders, compiler));

@@ -25,6 +25,7 @@ struct ProgramOptions {
   Storage storage = Storage::fp32;
   bool reference = false;         ///< every pass on its own, computed weights, no sharing of memory
   bool hardware_filter = false;   ///< filtered fetches may be used
+  bool share_memory = true;       ///< images whose lifetimes do not overlap share bytes (never with `reference`)
   std::uint64_t max_memory = 6ull << 30;
 };
 
