@@ -133,25 +133,32 @@ std::string Axis::setup() const {
   std::string out;
   if (ratio_ == AxisRatio::half) out += fmt::format("  int ag_{0}2 = 2 * ag_pixel.{0};\n", letter_);
   if (fixed()) return out;
-  out += fmt::format("  int ag_{0}i;\n  float ag_{0}f, ag_{0}g;\n", letter_);
   if (ratio_ == AxisRatio::twice) {
-    out += fmt::format("  bool ag_{0}odd = (ag_pixel.{0} & 1) != 0;\n"
-                       "  ag_{0}i = ((ag_pixel.{0} + 1) >> 1) - 1;\n"
-                       "  ag_{0}f = ag_{0}odd ? 0.25 : 0.75;\n"
-                       "  ag_{0}g = ag_{0}odd ? 0.75 : 0.25;\n", letter_);
+    out += fmt::format("  bool ag_{0}odd = (ag_pixel.{0} & 1) != 0;\n  int ag_{0}i = ((ag_pixel.{0} + 1) >> 1) - 1;\n", letter_);
   } else {
-    out += fmt::format("  ag_phase(ag_pixel.{0}, ag_source_size.{0}, ag_target_size.{0}, ag_{0}i, ag_{0}f, ag_{0}g);\n", letter_);
+    out += fmt::format("  int ag_{0}i, ag_{0}rest;\n"
+                       "  ag_phase(ag_pixel.{0}, ag_source_size.{0}, ag_target_size.{0}, ag_{0}i, ag_{0}rest);\n", letter_);
   }
   for (std::size_t c = 0; c < fractions_.size(); ++c) {
     const int phase = static_cast<int>(c);
+    const double fraction = fractions_[c];
     const std::string i = name("i", phase), f = name("f", phase), g = name("g", phase);
-    if (fractions_[c] == 0) {
-      out += fmt::format("  int {1} = ag_{0}i;\n  float {2} = ag_{0}f, {3} = ag_{0}g;\n", letter_, i, f, g);
+    if (ratio_ == AxisRatio::twice) {
+      const auto [even_carry, even] = split(0.75 + fraction);
+      const auto [odd_carry, odd] = split(0.25 + fraction);
+      const auto choose = [&](const std::string& if_odd, const std::string& if_even) {
+        return if_odd == if_even ? if_even : fmt::format("ag_{}odd ? {} : {}", letter_, if_odd, if_even);
+      };
+      out += fmt::format("  int {1} = ag_{0}i + ({2});\n", letter_, i, choose(std::to_string(odd_carry), std::to_string(even_carry)));
+      out += fmt::format("  float {} = {}, {} = {};\n", f, choose(float_literal(odd), float_literal(even)), g,
+                         choose(float_literal(1 - odd), float_literal(1 - even)));
+    } else if (fraction == 0) {
+      out += fmt::format("  int {1} = ag_{0}i;\n  float {2}, {3};\n  ag_fraction(ag_{0}rest, ag_target_size.{0}, {2}, {3});\n", letter_, i, f, g);
     } else {
-      out += fmt::format("  float {2} = ag_{0}f + {4};\n"
-                         "  int {1} = ag_{0}i + ({2} >= 1.0 ? 1 : 0);\n"
-                         "  {2} -= {2} >= 1.0 ? 1.0 : 0.0;\n"
-                         "  float {3} = 1.0 - {2};\n", letter_, i, f, g, float_literal(fractions_[c]));
+      const double high = std::floor(fraction * 256) / 256;
+      out += fmt::format("  int {1} = ag_{0}i;\n  float {2}, {3};\n"
+                         "  ag_fraction_beyond({1}, ag_{0}rest, ag_target_size.{0}, {4}, {5}, {2}, {3});\n",
+                         letter_, i, f, g, float_literal(high), float_literal(fraction - high));
     }
     if (interpolation_ == Interpolation::cubic_bspline)
       out += fmt::format("  vec4 {0} = vec4({2} * {2} * {2}, 4.0 + (3.0 * {1} - 6.0) * ({1} * {1}), 4.0 + (3.0 * {2} - 6.0) * ({2} * {2}), "

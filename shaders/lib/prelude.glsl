@@ -33,15 +33,15 @@ vec4 fetch_linear(sampler2D image, vec2 position) {
   return ag_bilinear(image, ivec2(base), f, 1.0 - f);
 }
 
-// Where the centre of target pixel x lies between source texels: the texel `base` at or before it, and the fractions f of the
-// way to the next texel and g = 1 - f. (x + 1/2) n_source / n_target - 1/2 is a fraction of integers; only whole numbers take part
-// until the last division, so f and g are correctly rounded for sides up to 16384. (The quotient is guessed in floats, as
-// integer division is slow on many devices, and the guess is off by one at most.)
-void ag_phase(int x, int n_source, int n_target, out int base, out float f, out float g) {
+// Where the centre of target pixel x lies between source texels: the texel `base` at or before it, and the way to the next
+// texel as the fraction rest/(2 n_target). (x + 1/2) n_source/n_target - 1/2 is a fraction of whole numbers and stays one, so that
+// nothing is rounded for sides up to 16384. (The quotient is guessed in floats, as integer division is slow on many devices; the
+// guess is off by one at most.)
+void ag_phase(int x, int n_source, int n_target, out int base, out int rest) {
   int divisor = 2 * n_target;
   int dividend = (2 * x + 1) * n_source + n_target;  // one divisor too much: never negative
   int quotient = int(float(dividend) / float(divisor));
-  int rest = dividend - quotient * divisor;
+  rest = dividend - quotient * divisor;
   bool below = rest < 0;
   quotient -= below ? 1 : 0;
   rest += below ? divisor : 0;
@@ -49,17 +49,37 @@ void ag_phase(int x, int n_source, int n_target, out int base, out float f, out 
   quotient += above ? 1 : 0;
   rest -= above ? divisor : 0;
   base = quotient - 1;
+}
+
+// That fraction as f, and g = 1 - f, both correctly rounded: the one near 0 keeps its digits.
+void ag_fraction(int rest, int n_target, out float f, out float g) {
+  int divisor = 2 * n_target;
   f = float(rest) / float(divisor);
   g = float(divisor - rest) / float(divisor);
+}
+
+// The same for a point that lies high + low texels further (high a multiple of 1/256, low below 1/256), which may be beyond the next
+// texel: then base grows.
+void ag_fraction_beyond(inout int base, int rest, int n_target, float high, float low, out float f, out float g) {
+  float divisor = float(2 * n_target);
+  float whole = float(rest) + high * divisor;  // exact: 16 bits before the point, 8 behind
+  float part = low * divisor;
+  bool beyond = (whole - divisor) + part >= 0.0;
+  base += beyond ? 1 : 0;
+  whole -= beyond ? divisor : 0.0;
+  f = (whole + part) / divisor;
+  g = ((divisor - whole) - part) / divisor;
 }
 
 // Linear interpolation at the point of `image` that lies where the centre of target pixel `pixel` does when both images cover
 // the same area, moved by a whole number of texels.
 vec4 sample_scaled(sampler2D image, ivec2 pixel, ivec2 texel_offset) {
   ivec2 size = textureSize(image, 0);
-  ivec2 base;
+  ivec2 base, rest;
   vec2 f, g;
-  ag_phase(pixel.x, size.x, ag_target_size.x, base.x, f.x, g.x);
-  ag_phase(pixel.y, size.y, ag_target_size.y, base.y, f.y, g.y);
+  ag_phase(pixel.x, size.x, ag_target_size.x, base.x, rest.x);
+  ag_phase(pixel.y, size.y, ag_target_size.y, base.y, rest.y);
+  ag_fraction(rest.x, ag_target_size.x, f.x, g.x);
+  ag_fraction(rest.y, ag_target_size.y, f.y, g.y);
   return ag_bilinear(image, base + texel_offset, f, g);
 }
