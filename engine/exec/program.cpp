@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <mutex>
-#include <set>
 
 #include "exec/arena.h"
+#include "exec/barriers.h"
 #include "exec/describe.h"
 #include "exec/parallel.h"
 #include "exec/parameters.h"
@@ -188,20 +187,17 @@ void Program::State::write_image(VkDescriptorSet set, std::size_t slot, VkImageV
 
 /// Targets, sizes and barriers: fixed for the life of the program.
 void Program::State::make_commands() {
-  std::set<ImageId> readable;
+  auto barriers = kernel_barriers(plan, images, [this](ImageId id) {
+    const UnboundImage* image = arena.image(id);
+    return image ? image->get() : VkImage{VK_NULL_HANDLE};
+  });
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     KernelCommands& kernel = kernels[i];
     kernel.pipeline = pipelines[compiled.index[i]].get();
     kernel.target_size = graph.images[plan.kernels[i].output].size;
     kernel.first_image_size = images[i].empty() ? Size{} : graph.images[images[i].front()].size;
-    for (const ImageId id : images[i]) {
-      const UnboundImage* image = arena.image(id);
-      if (image && readable.insert(id).second) kernel.barriers.push_back(before_reading(image->get()));
-    }
-    if (const UnboundImage* target = arena.image(plan.kernels[i].output)) {
-      kernel.target = target->view();
-      kernel.barriers.push_back(before_drawing(target->get()));
-    }
+    kernel.barriers = std::move(barriers[i]);
+    if (const UnboundImage* target = arena.image(plan.kernels[i].output)) kernel.target = target->view();
   }
 }
 
@@ -214,8 +210,9 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   auto state = std::make_unique<State>(device, graph, options);
   const bool half = options.storage == Storage::fp16;
   state->format = half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
-  state->plan =
-      make_plan(graph, {.join = !options.reference, .alias = options.share_memory && !options.reference, .bytes_per_pixel = half ? 8u : 16u});
+  state->plan = make_plan(graph, {.join = !options.reference,
+                                  .alias = options.share_memory && !options.reference,
+                                  .bytes_per_pixel = half ? 8u : 16u});
   AFTERGLOW_CHECK(state->check());
   if (!state->plan.kernels.empty()) {
     AFTERGLOW_TRY(state->arena, Arena::create(device, graph, state->plan,

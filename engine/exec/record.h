@@ -23,12 +23,4 @@ struct KernelCommands {
 
 void record_kernel(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel, VkImageView result);
 
-/// A target that is about to be drawn over. What it held is lost. Its memory may be that of images which earlier
-/// kernels, or an earlier run, have read or written; those writes are available already (each image is read after it is
-/// written, behind `before_reading`), so that waiting for the readers is enough.
-VkImageMemoryBarrier2 before_drawing(VkImage image);
-
-/// A target that was drawn and is read from here on.
-VkImageMemoryBarrier2 before_reading(VkImage image);
-
 }  // namespace afterglow
