@@ -88,6 +88,7 @@ class Assembler {
   }
 
   Result<void> add_stage(const KernelStage& stage, ShaderKind kind) {
+    if (!stage.shader) return Error{ErrorKind::other, fmt::format("stage '{}' of a kernel has no shader", stage.label)};
     const ShaderSource& source = *stage.shader;
     if (source.interface.kind != kind)
       return shader_error(source.path.string(), 0, fmt::format("'{}' is a {} shader and cannot stand here", source.name,

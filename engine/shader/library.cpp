@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "shader/include.h"
+#include "shader/macros.h"
 #include "shader/scan.h"
 
 namespace afterglow {
@@ -19,6 +20,22 @@ std::vector<fs::path> ShaderSource::files() const {
 
 namespace {
 
+Result<void> check_expansion(const ShaderSource& source, const ShaderScan& scanned) {
+  std::vector<ShaderScan> libraries;
+  for (const auto& include : source.includes) {
+    AFTERGLOW_TRY(ShaderScan library, scan(include.text, include.path.string(), ScanAs::library));
+    libraries.push_back(std::move(library));
+  }
+  std::vector<MacroFile> files;
+  MacroFile own{source.path.string(), &scanned, {}};
+  for (std::size_t i = 0; i < libraries.size(); ++i) {
+    files.push_back({source.includes[i].path.string(), &libraries[i], source.includes[i].uses});
+    own.uses.push_back(i);
+  }
+  files.push_back(std::move(own));
+  return check_macros(files);
+}
+
 Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const std::string& name, const fs::path& path) {
   auto source = std::make_shared<ShaderSource>();
   source->name = name;
@@ -26,6 +43,7 @@ Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const
   AFTERGLOW_TRY(source->text, read_shader(path));
   AFTERGLOW_TRY(ShaderScan scanned, scan(source->text, path.string(), ScanAs::stage));
   AFTERGLOW_TRY(source->includes, resolve_includes(search, path, scanned));
+  AFTERGLOW_CHECK(check_expansion(*source, scanned));
   for (auto& global : scanned.names) source->global_names.push_back(std::move(global.name));
   source->interface = std::move(scanned.interface);
   Hasher hasher;

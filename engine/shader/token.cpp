@@ -179,9 +179,11 @@ class Tokenizer {
     const bool in_parentheses = !open_.empty() && open_.back().character == '(';
     const bool ends = token.is("{") || token.is("}") || (token.is(";") && !in_parentheses);
     const bool continues = token.is("else");
-    if (after_end_ && !continues) else_chain_ = 0;
-    if (continues && ++else_chain_ > kMaxChain)
+    if (after_end_ && !continues) else_chains_.back() = 0;
+    if (continues && ++else_chains_.back() > kMaxChain)
       return shader_error(file_, line_, fmt::format("more than {} 'else' in a row", kMaxChain));
+    if (token.is("{")) else_chains_.push_back(0);
+    if (token.is("}")) else_chains_.pop_back();
     after_end_ = ends;
     if (ends) {
       statement_tokens_ = 0;
@@ -212,7 +214,7 @@ class Tokenizer {
   int directive_depth_ = 0;
   int statement_tokens_ = 0;
   int control_words_ = 0;
-  int else_chain_ = 0;
+  std::vector<int> else_chains_{0};  ///< `else` in a row, for each level of braces
   bool after_end_ = false;
 };
 

@@ -126,7 +126,7 @@ TEST_F(Join, ALibrarySeesNoMacrosOfTheShader) {
 }
 
 TEST_F(Join, AMacroOfOneShaderDoesNotReachTheNext) {
-  const auto hostile = files_.stage("a", "#define c (1.0\n#define clamp broken\n#define return 0 +\nvec4 apply(vec4 color) { return_ = 1.0; }\n");
+  const auto hostile = files_.stage("a", "#define c 1.0 +\n#define clamp broken\n#define return 0 +\nvec4 apply(vec4 color) { return_ = 1.0; }\n");
   const auto innocent = files_.stage("b", "vec4 apply(vec4 c) { return c; }\n");
   EXPECT_THAT(outcome(join({hostile, innocent})), HasSubstr("a.glsl:4: error: 'return_': undeclared identifier"));
   EXPECT_EQ(outcome(join({files_.stage("d", "#define c 1.0\n#define min max\nvec4 apply(vec4 x) { return x * min(c, 2.0); }\n"), innocent})), "ok");
