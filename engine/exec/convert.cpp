@@ -60,6 +60,19 @@ std::uint64_t unpack_row(const std::byte* from, VkFormat format, int width, floa
   return 0;
 }
 
+std::uint64_t unpack_row_rgb(const std::byte* from, VkFormat format, int width, float* rgba) {
+  const std::size_t pixel_bytes = format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 16;
+  std::array<float, kChunk * 4> chunk;
+  std::uint64_t held = 0;
+  for (int x = 0; x < width; x += kChunk) {
+    const int count = std::min(kChunk, width - x);
+    held += unpack_row(from + static_cast<std::size_t>(x) * pixel_bytes, format, count, chunk.data());
+    float* to = rgba + static_cast<std::ptrdiff_t>(x) * 4;
+    for (int i = 0; i < count; ++i) std::copy_n(&chunk[4 * i], 3, to + 4 * i);
+  }
+  return held;
+}
+
 std::uint64_t over_rows(int rows, std::size_t bytes_per_row, const std::function<std::uint64_t(int)>& row) {
   // Below a few MiB threads cost more than they bring.
   constexpr std::size_t kBandBytes = 2u << 20;

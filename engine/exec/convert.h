@@ -16,6 +16,9 @@ std::uint64_t pack_row(const float* from, int channels, int width, VkFormat form
 /// Reads `width` pixels of RGBA32F or RGBA16F into RGBA. Returns how many half values are ±65504.
 std::uint64_t unpack_row(const std::byte* from, VkFormat format, int width, float* rgba);
 
+/// The same, but leaves the alphas in `rgba` as they are.
+std::uint64_t unpack_row_rgb(const std::byte* from, VkFormat format, int width, float* rgba);
+
 /// Calls `row(y)` for every row, over threads when the rows together are large; returns the sum of what it returned.
 std::uint64_t over_rows(int rows, std::size_t bytes_per_row, const std::function<std::uint64_t(int y)>& row);
 

@@ -53,6 +53,18 @@ VkFormat input_format(const std::string& name, const HostImage& image, VkFormat 
   return image.channels == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
+void copy_source(const HostImage& source, std::vector<float>& pixels) {
+  if (source.pixels == pixels.data() && source.channels == 4) return;
+  const auto [width, height] = source.size;
+  std::vector<float> copy(static_cast<std::size_t>(source.size.area()) * 4);
+  for (int y = 0; y < height; ++y) {
+    const auto first = static_cast<std::ptrdiff_t>(y) * width;
+    pack_row(source.pixels + first * source.channels, source.channels, width, VK_FORMAT_R32G32B32A32_SFLOAT,
+             reinterpret_cast<std::byte*>(copy.data() + first * 4));
+  }
+  pixels = std::move(copy);
+}
+
 StagedImage staged(const FrameImage& image) {
   return {image.image.get(), image.image.desc().format, image.image.desc().size};
 }
@@ -76,7 +88,7 @@ struct FrameRunner::State {
   Result<void> prepare(const Program& program, const std::map<std::string, HostImage>& host);
   Result<void> make_image(FrameImage& image, const ImageDesc& desc, HostAccess access);
   Result<std::uint64_t> upload(FrameImage& image, const HostImage& host);
-  Result<std::uint64_t> download(std::vector<float>& pixels);
+  Result<std::uint64_t> download(HostResult& out);
   Result<void> bind(Program& program);
   void before(VkCommandBuffer commands) const;
   void after(VkCommandBuffer commands);
@@ -151,17 +163,19 @@ Result<std::uint64_t> FrameRunner::State::upload(FrameImage& image, const HostIm
   return held;
 }
 
-Result<std::uint64_t> FrameRunner::State::download(std::vector<float>& pixels) {
+Result<std::uint64_t> FrameRunner::State::download(HostResult& out) {
   const auto [width, height] = result.image.desc().size;
   const VkFormat format = result.image.desc().format;
   const auto row_values = static_cast<std::size_t>(width) * 4;
   const auto values = row_values * static_cast<std::size_t>(height);
-  if (pixels.size() != values) {
-    std::vector<float>().swap(pixels);  // growing would keep the old ones while it copies them
-    pixels.resize(values);
+  const bool keep_alpha = out.keep_alpha && out.pixels.size() == values;
+  if (out.pixels.size() != values) {
+    std::vector<float>().swap(out.pixels);  // growing would keep the old ones while it copies them
+    out.pixels.resize(values);
   }
   const auto unpack = [&](int y, const std::byte* from) {
-    return unpack_row(from, format, width, pixels.data() + row_values * static_cast<std::size_t>(y));
+    float* to = out.pixels.data() + row_values * static_cast<std::size_t>(y);
+    return keep_alpha ? unpack_row_rgb(from, format, width, to) : unpack_row(from, format, width, to);
   };
   if (!result.direct) return staging.download(staged(result), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, unpack);
   result.image.memory().invalidate();
@@ -256,14 +270,7 @@ Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string
   out.clamped = 0;
   if (graph.result == graph.source) {
     AFTERGLOW_CHECK(check_input(graph, "source", graph.source, inputs));
-    const HostImage& source = inputs.at("source");
-    const auto width = source.size.width;
-    out.pixels.resize(static_cast<std::size_t>(source.size.area()) * 4);
-    for (int y = 0; y < source.size.height; ++y) {
-      const auto first = static_cast<std::ptrdiff_t>(y) * width;
-      pack_row(source.pixels + first * source.channels, source.channels, width, VK_FORMAT_R32G32B32A32_SFLOAT,
-               reinterpret_cast<std::byte*>(out.pixels.data() + first * 4));
-    }
+    copy_source(inputs.at("source"), out.pixels);
     return times;
   }
   AFTERGLOW_CHECK(s.prepare(program, inputs));
@@ -279,7 +286,7 @@ Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string
   AFTERGLOW_CHECK(s.execute(program, timing, times));
 
   start = Clock::now();
-  AFTERGLOW_TRY(const std::uint64_t held, s.download(out.pixels));
+  AFTERGLOW_TRY(const std::uint64_t held, s.download(out));
   out.clamped += held;
   times.readback = milliseconds_since(start);
   return times;

@@ -172,6 +172,30 @@ TEST_F(FrameTest, HalfStorageCountsHeldValuesAndStaysFinite) {
   }
 }
 
+TEST_F(FrameTest, TheResultMayTakeThePlaceOfTheSource) {
+  const Size size{101, 57};
+  const auto pixels = noise(size, 30);
+  for (const bool direct : {true, false}) {
+    for (const Storage storage : {Storage::fp32, Storage::fp16}) {
+      const auto made = program(graph(size, 2), {.storage = storage});
+      HostResult apart, in_place{.pixels = pixels, .keep_alpha = true};
+      const auto frames = runner(direct);
+      ASSERT_TRUE(frames->run(*made, {{"source", {pixels.data(), size, 4}}}, apart, KernelTiming::none));
+      const float* memory = in_place.pixels.data();
+      ASSERT_TRUE(frames->run(*made, {{"source", {memory, size, 4}}}, in_place, KernelTiming::none));
+      EXPECT_EQ(in_place.pixels.data(), memory);
+      for (std::size_t i = 0; i < pixels.size(); ++i) {
+        ASSERT_EQ(in_place.pixels[i], i % 4 == 3 ? pixels[i] : apart.pixels[i]) << i;
+      }
+    }
+  }
+  GraphBuilder b(size);
+  const auto nothing = program(b.finish(b.source()));
+  HostResult same{.pixels = pixels};
+  ASSERT_TRUE(runner()->run(*nothing, {{"source", {same.pixels.data(), size, 4}}}, same, KernelTiming::none));
+  EXPECT_EQ(same.pixels, pixels);
+}
+
 TEST_F(FrameTest, ReferenceProgramsKeepTheirImages) {
   const Size size{101, 57};
   const auto pixels = noise(size, 27);

@@ -151,6 +151,35 @@ TEST_F(KernelTest, FiltersDownAndUp) {
   }
 }
 
+TEST_F(KernelTest, ExtremeAspectRatios) {
+  Filter spline;
+  spline.interpolation = Interpolation::cubic_bspline;
+  for (const Size size : {Size{16384, 1}, Size{1, 16384}, Size{16383, 3}}) {
+    const auto pixels = noise(size, 9);
+    GraphBuilder b(size);
+    const Graph graph = b.finish(b.filter("up", b.filter("down", b.source(), halved(size), gaussian()), size, spline));
+    const Picture64 expected = filter64(filter64(Picture64::of(size, pixels), gaussian(), halved(size)), spline, size);
+    for (const bool direct : {true, false}) {
+      const auto out = run(graph, {{"source", {pixels.data(), size, 4}}}, {}, direct);
+      expect_near(out.pixels, expected, 1e-5, fmt::format("{}×{}", size.width, size.height));
+    }
+  }
+}
+
+TEST_F(KernelTest, FilteredFetchesStayWithinTheirOwnTolerance) {
+  const Size size{101, 57};
+  const auto pixels = noise(size, 10);
+  GraphBuilder b(size);
+  const Graph graph = b.finish(b.filter("up", b.filter("down", b.source(), halved(size), gaussian()), size, {}));
+  const Picture64 expected = filter64(filter64(Picture64::of(size, pixels), gaussian(), halved(size)), {}, size);
+  const std::map<std::string, HostImage> inputs{{"source", {pixels.data(), size, 4}}};
+  const auto filtered = run(graph, inputs, {.hardware_filter = true});
+  expect_near(filtered.pixels, expected, 5e-3, "filtered fetches");
+  // The reference never uses them, whatever it is asked.
+  const auto reference = run(graph, inputs, {.reference = true, .hardware_filter = true});
+  expect_near(reference.pixels, expected, 1e-5, "reference");
+}
+
 TEST_F(KernelTest, PixelStagesJoinTheFilterBeforeThem) {
   shader("add", "uniform float amount;\nvec4 apply(vec4 color, vec4 high) { return high + amount * color; }\n");
   shader("curve", "vec4 apply(vec4 color) { return vec4(color.rgb / (1.0 + color.rgb), color.a); }\n");
