@@ -20,7 +20,17 @@ struct Fixed {
   std::uint32_t block_size, offsets, words, zero;
 };
 
-void append(std::string& out, const void* data, std::size_t size) { out.append(static_cast<const char*>(data), size); }
+/// Takes `count` words off the front, which are known to be there.
+std::vector<std::uint32_t> take_words(std::string_view& bytes, std::size_t count) {
+  std::vector<std::uint32_t> words(count);
+  if (count > 0) std::memcpy(words.data(), bytes.data(), count * sizeof(std::uint32_t));
+  bytes.remove_prefix(count * sizeof(std::uint32_t));
+  return words;
+}
+
+void append(std::string& out, const void* data, std::size_t size) {
+  if (size > 0) out.append(static_cast<const char*>(data), size);
+}
 
 }  // namespace
 
@@ -51,10 +61,8 @@ std::optional<KernelFile> decode(std::string_view bytes) {
   if (fixed.offsets > kMaxWords || fixed.words > kMaxWords) return std::nullopt;
   if (bytes.size() != (std::size_t{fixed.offsets} + fixed.words) * sizeof(std::uint32_t)) return std::nullopt;
   KernelFile kernel{{fixed.text_high, fixed.text_low}, fixed.block_size, {}, {}};
-  kernel.offsets.resize(fixed.offsets);
-  kernel.spirv.resize(fixed.words);
-  std::memcpy(kernel.offsets.data(), bytes.data(), fixed.offsets * sizeof(std::uint32_t));
-  std::memcpy(kernel.spirv.data(), bytes.data() + fixed.offsets * sizeof(std::uint32_t), fixed.words * sizeof(std::uint32_t));
+  kernel.offsets = take_words(bytes, fixed.offsets);
+  kernel.spirv = take_words(bytes, fixed.words);
   if (kernel.spirv.empty() || kernel.spirv[0] != kSpirvMagic) return std::nullopt;
   return kernel;
 }
