@@ -37,7 +37,7 @@ std::string entry_text(const Look& look, const StackEntry& entry, std::size_t pl
   std::string out = fmt::format("{}. {}  at {}, order {}{}{}\n", place, entry.name, entry.at, entry.order,
                                 entry.required ? ", required" : "", entry.enabled ? "" : ", not enabled");
   if (const auto* reason = skip_reason(look, entry)) out += fmt::format("   skipped: {}\n", *reason);
-  Table table({});
+  Table table;
   for (const auto& [name, value] : entry.settings)
     table.add({name, value.text(), is_changed(entry, name) ? "" : "(default)"});
   return out + table.text("   ");
