@@ -13,7 +13,7 @@ return fx.effect {
     tint = fx.float { min = 0, max = 1, default = 0, doc = "How much of the picture's own colour the paper takes on, as with a flat colour print below the ink." },
   },
   build = function(g, s, source)
-    local radians = math.rad(s.angle)
+    local radians = s.angle * math.pi / 180
     return g:pass {
       shader = "halftone/dots", source = source,
       cell = s.cell, rotation = { math.cos(radians), math.sin(radians) },

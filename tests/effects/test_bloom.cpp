@@ -1,0 +1,153 @@
+// Bloom, pass by pass: each image against the oracle's pass on the device's own previous image, and against the
+// oracle's whole pyramid.
+#include <fmt/format.h>
+
+#include "lab.h"
+#include "reference/bloom.h"
+
+namespace afterglow {
+namespace {
+
+using namespace reference;
+
+std::string lua(const BloomSettings& s) {
+  return fmt::format(
+      "fx.bloom {{ mode = \"{}\", max_iterations = {}, downscale_limit = {}, threshold = {}, knee = {}, intensity = "
+      "{}, scatter = {}, "
+      "bicubic_upsampling = {}, fade_fireflies = {} }}",
+      s.mode == BloomMode::additive ? "additive" : "scattering", s.max_iterations, s.downscale_limit, s.threshold,
+      s.knee, s.intensity, s.scatter, s.bicubic_upsampling, s.fade_fireflies);
+}
+
+std::string level(const char* name, std::size_t i) { return fmt::format("bloom.{}[{}]", name, i); }
+
+/// Each pass on what the device itself gave to it.
+void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& s) {
+  const auto threshold = BloomThreshold::from_gamma(s.threshold, s.knee);
+  EXPECT_TRUE(agrees(
+      made.pixels("bloom.prefilter"),
+      s.fade_fireflies ? bloom_prefilter_fireflies(scene.source, threshold) : bloom_prefilter(scene.source, threshold),
+      kFullFloat, kRgb))
+      << "prefilter";
+  std::size_t levels = 0;
+  for (std::string before = "bloom.prefilter"; made.has(level("vertical", levels));
+       before = level("vertical", levels++)) {
+    EXPECT_TRUE(
+        agrees(made.pixels(level("horizontal", levels)), bloom_horizontal(made.image(before)), kFullFloat, kRgb))
+        << "horizontal " << levels;
+    EXPECT_TRUE(agrees(made.pixels(level("vertical", levels)), bloom_vertical(made.image(level("horizontal", levels))),
+                       kFullFloat, kRgb))
+        << "vertical " << levels;
+  }
+  std::string low = level("vertical", levels - 1);
+  for (std::size_t i = levels - 1; i-- > 0; low = level("combine", i)) {
+    const auto high = made.image(level("vertical", i)), up = made.image(level("up", i));
+    EXPECT_TRUE(agrees(made.pixels(level("up", i)), bloom_up(made.image(low), high.size(), s.bicubic_upsampling),
+                       kFullFloat, kRgb))
+        << "up " << i;
+    const auto combined = s.mode == BloomMode::additive ? bloom_add(up, high, 1) : bloom_scatter(up, high, s.scatter);
+    EXPECT_TRUE(agrees(made.pixels(level("combine", i)), combined, kFullFloat, kRgb)) << "combine " << i;
+  }
+  EXPECT_TRUE(
+      agrees(made.pixels("bloom.up"), bloom_up(made.image(low), made.size, s.bicubic_upsampling), kFullFloat, kRgb))
+      << "last up";
+  const auto up = made.image("bloom.up");
+  EXPECT_TRUE(agrees(made.result,
+                     s.mode == BloomMode::additive
+                         ? bloom_add(up, scene.source, s.intensity)
+                         : bloom_scatter_final(up, scene.source, std::min(s.intensity, 0.95), threshold),
+                     kFullFloat, kRgba))
+      << "final";
+}
+
+/// Every image of the device against that of the oracle's own pyramid.
+void check_end_to_end(const Made& made, const BloomImages& expected) {
+  EXPECT_TRUE(agrees(made.pixels("bloom.prefilter"), expected.prefilter, kFullFloat, kRgb));
+  for (std::size_t i = 0; i < expected.vertical.size(); ++i) {
+    EXPECT_TRUE(agrees(made.pixels(level("horizontal", i)), expected.horizontal[i], kFullFloat, kRgb))
+        << "horizontal " << i;
+    EXPECT_TRUE(agrees(made.pixels(level("vertical", i)), expected.vertical[i], kFullFloat, kRgb)) << "vertical " << i;
+  }
+  EXPECT_FALSE(made.has(level("vertical", expected.vertical.size()))) << "too many levels";
+  for (std::size_t i = 0; i < expected.combine.size(); ++i) {
+    EXPECT_TRUE(agrees(made.pixels(level("up", i)), expected.up[i], kFullFloat, kRgb)) << "up " << i;
+    EXPECT_TRUE(agrees(made.pixels(level("combine", i)), expected.combine[i], kFullFloat, kRgb)) << "combine " << i;
+  }
+  EXPECT_TRUE(agrees(made.result, expected.result, kFullFloat, kRgba));
+}
+
+void check(const Scene& scene, const BloomSettings& settings) {
+  SCOPED_TRACE(scene.name + ": " + lua(settings));
+  const auto expected = bloom(scene.source, settings);
+  const Made made = run_stack(lua(settings), scene, Way::plain);
+  ASSERT_EQ(made.ran(), expected.ran);
+  EXPECT_TRUE(alpha_is_kept(made, scene));
+  if (!expected.ran) {
+    ASSERT_EQ(made.graph.skipped.size(), 1u);
+    EXPECT_THAT(made.graph.skipped[0].reason, testing::HasSubstr("too small"));
+    return;
+  }
+  check_each_pass(made, scene, settings);
+  check_end_to_end(made, expected);
+  const Made joined = run_stack(lua(settings), scene, Way::joined);
+  EXPECT_TRUE(agrees(joined.result, from_floats(made.result.data(), made.size, 4), kJoined, kRgba)) << "joined";
+}
+
+class Bloom : public Effects, public testing::WithParamInterface<Size> {};
+
+TEST_P(Bloom, EveryPassAgrees) {
+  // Settings that go with each combination of the three switches; limits and iteration counts take turns.
+  static constexpr struct {
+    int iterations, limit;
+    double threshold, knee, intensity, scatter;
+  } kTurns[] = {{16, 1, 1.0, 0.5, 0.2, 0.7},
+                {3, 1, 0.5, 1.0, 1.5, 0.3},
+                {16, 2, 0.0, 0.0, 0.6, 0.95},
+                {1, 1, 1.5, 0.2, 0.9, 0.05}};
+  int turn = 0;
+  for (const auto mode : {BloomMode::additive, BloomMode::scattering})
+    for (const bool bicubic : {true, false})
+      for (const bool fireflies : {false, true}) {
+        const auto& t = kTurns[turn++ % 4];
+        check(random_scene(GetParam(), 1 + static_cast<unsigned>(turn), turn % 2 == 0),
+              {mode, t.iterations, t.limit, t.threshold, t.knee, t.intensity, t.scatter, bicubic, fireflies});
+      }
+}
+INSTANTIATE_TEST_SUITE_P(Sizes, Bloom, testing::ValuesIn(kSizes),
+                         [](const auto& info) { return fmt::format("{}x{}", info.param.width, info.param.height); });
+
+TEST_F(Effects, BloomOfARealFrameAgrees) {
+  for (const auto mode : {BloomMode::additive, BloomMode::scattering}) {
+    check(neon_scene({320, 180}, 200, 120), {.mode = mode, .fade_fireflies = true});
+    check(neon_scene({201, 113}, 901, 333), {.mode = mode, .threshold = 0.8, .knee = 0.7, .intensity = 0.5});
+  }
+}
+
+TEST_F(Effects, BloomOfAnExtremelyLongPictureAgrees) {
+  check(random_scene({1021, 9}, 5), {.downscale_limit = 1});
+  check(random_scene({4, 700}, 6), {.mode = BloomMode::scattering, .downscale_limit = 1});
+}
+
+TEST_F(Effects, BloomSkipsAndSaysWhy) {
+  const auto scene = random_scene({64, 64}, 3);
+  const auto reason = [&](const char* entries) {
+    const Made made = run_stack(entries, scene, Way::plain);
+    EXPECT_FALSE(made.ran()) << entries;
+    return made.graph.skipped.empty() ? "" : made.graph.skipped[0].reason;
+  };
+  EXPECT_EQ(reason("fx.bloom { intensity = 0 }"), "intensity is 0");
+  EXPECT_EQ(reason("fx.bloom { max_iterations = 0 }"), "max_iterations is 0");
+  EXPECT_EQ(reason("fx.bloom { downscale_limit = 17 }"),
+            "the picture is too small: 64x64, downscale_limit 17 needs 68 on each side");
+  EXPECT_TRUE(run_stack("fx.bloom { downscale_limit = 16 }", scene, Way::plain).ran());
+}
+
+TEST_F(Effects, ScatteringKeepsAPictureOfOneColour) {
+  Scene scene{"constant", DoubleImage(50, 31, Rgba(4, 2, 0.5, 0.25)), {}, {}};
+  const Made made =
+      run_stack("fx.bloom { mode = \"scattering\", intensity = 0.95, scatter = 0.7 }", scene, Way::joined);
+  EXPECT_TRUE(agrees(made.result, scene.source, kFullFloat, kRgba));
+}
+
+}  // namespace
+}  // namespace afterglow

@@ -1,0 +1,119 @@
+// Tone mapping, colour adjustments and colour blit.
+#include <fmt/format.h>
+
+#include "lab.h"
+#include "reference/color_adjustments.h"
+#include "reference/color_blit.h"
+#include "reference/tone_mapping.h"
+
+namespace afterglow {
+namespace {
+
+using namespace reference;
+
+void check(const Scene& scene, const std::string& entries, const DoubleImage& expected) {
+  SCOPED_TRACE(scene.name + ": " + entries);
+  const Made made = run_stack(entries, scene, Way::plain);
+  EXPECT_TRUE(made.ran());
+  EXPECT_TRUE(agrees(made.result, expected, kFullFloat, kRgba));
+  EXPECT_TRUE(alpha_is_kept(made, scene));
+}
+
+std::vector<Scene> scenes() {
+  std::vector<Scene> all;
+  for (const Size size : kSizes) all.push_back(random_scene(size, 21, size.width % 2 == 1));
+  all.push_back(neon_scene({320, 180}, 480, 300));
+  return all;
+}
+
+TEST_F(Effects, ToneCurvesAgree) {
+  for (const auto& scene : scenes()) {
+    check(scene, "fx.tone_mapping { mode = \"aces\" }", tone_mapping(scene.source, ToneMode::aces));
+    check(scene, "fx.tone_mapping { mode = \"neutral\" }", tone_mapping(scene.source, ToneMode::neutral));
+    check(scene, "fx.tone_mapping { mode = \"reinhard\" }", tone_mapping(scene.source, ToneMode::reinhard));
+  }
+}
+
+TEST_F(Effects, ToneCurvesAgreeOnDarkAndSaturatedColours) {
+  // Every branch of ACES: glow, red modifier, the guards of the dim surround; greys and ties of two channels.
+  Scene scene{"grid", DoubleImage(64, 64), {}, {}};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const double r = std::exp2(x / 2 - 26), g = std::exp2(y / 2 - 26);
+      const double b = x % 2 == 0 ? (y % 2 == 0 ? r : g) : (y % 2 == 0 ? 0.0 : std::exp2((x + y) / 4 - 26));
+      scene.source.at(x, y) = Rgba(r, g, b, 1);  // powers of two: exact floats
+    }
+  for (const auto& [name, mode] :
+       {std::pair{"aces", ToneMode::aces}, {"neutral", ToneMode::neutral}, {"reinhard", ToneMode::reinhard}})
+    check(scene, fmt::format("fx.tone_mapping {{ mode = \"{}\" }}", name), tone_mapping(scene.source, mode));
+}
+
+TEST_F(Effects, ToneMappingNoneIsTheSource) {
+  const auto scene = random_scene({8, 8}, 22);
+  const Made made = run_stack("fx.tone_mapping { mode = \"none\" }", scene, Way::plain);
+  EXPECT_FALSE(made.ran());
+  ASSERT_EQ(made.graph.skipped.size(), 1u);
+  EXPECT_EQ(made.graph.skipped[0].reason, "mode is none");
+}
+
+std::string lua(const ColorAdjustments& s) {
+  return fmt::format(
+      "fx.color_adjustments {{ post_exposure = {}, contrast = {}, color_filter = {{ {}, {}, {} }}, hue_shift = {}, "
+      "saturation = {} }}",
+      s.post_exposure, s.contrast, s.color_filter.r, s.color_filter.g, s.color_filter.b, s.hue_shift, s.saturation);
+}
+
+TEST_F(Effects, ColorAdjustmentsAgreeStepByStep) {
+  const ColorAdjustments settings[] = {
+      {.post_exposure = 1.3}, {.post_exposure = -4}, {.contrast = 15},
+      {.contrast = 100},      {.contrast = -60},     {.contrast = -100},
+      {.hue_shift = 60},      {.hue_shift = -37.5},  {.hue_shift = 180},
+      {.hue_shift = -180},    {.hue_shift = 121},    {.saturation = 25},
+      {.saturation = -100},   {.saturation = -40},   {.color_filter = {1.5, 0.9, 0.25}},
+  };
+  for (const auto& scene : scenes())
+    for (const auto& s : settings) check(scene, lua(s), color_adjustments(scene.source, s));
+}
+
+TEST_F(Effects, ColorAdjustmentsAgreeInChains) {
+  const ColorAdjustments settings[] = {{0.3, 15, {1, 1, 1}, 0, 10},
+                                       {0.5, -20, {1.05, 1, 0.9}, 0, -30},
+                                       {-0.7, 10, {0.9, 1, 1.1}, 20, -20},
+                                       {1, 0, {1, 1, 1}, -75, 0}};
+  for (const auto& scene : scenes())
+    for (const auto& s : settings) check(scene, lua(s), color_adjustments(scene.source, s));
+}
+
+TEST_F(Effects, ColorAdjustmentsAllNeutralDoNotRun) {
+  const Made made = run_stack("fx.color_adjustments {}", random_scene({8, 8}, 23), Way::plain);
+  EXPECT_FALSE(made.ran());
+  ASSERT_EQ(made.graph.skipped.size(), 1u);
+  EXPECT_EQ(made.graph.skipped[0].reason, "all settings are neutral");
+}
+
+TEST_F(Effects, HueTurnsAtTies) {
+  // Two equal channels are where the definition has its branches; math.md §13 grants 5e-5 there.
+  Scene scene{"ties", DoubleImage(36, 6), {}, {}};
+  for (int x = 0; x < 36; ++x) {
+    const double a = 0.05 * (1 + x), b = 0.02 * (36 - x);
+    const Rgb colours[] = {{a, a, b}, {a, b, a}, {b, a, a}, {a, a, a}, {a, 0, 0}, {0, a, 0}};
+    for (int y = 0; y < 6; ++y) scene.source.at(x, y) = Rgba(colours[y], 1);
+  }
+  scene.source = in_floats(scene.source);
+  for (const double shift : {-180.0, -90.0, -1.0, 30.0, 60.0, 120.0, 180.0}) {
+    const Made made = run_stack(lua({.hue_shift = shift}), scene, Way::plain);
+    EXPECT_TRUE(agrees(made.result, color_adjustments(scene.source, {.hue_shift = shift}), 6e-5, kRgba)) << shift;
+  }
+}
+
+TEST_F(Effects, ColorBlitAgrees) {
+  for (const auto& scene : scenes())
+    for (const double intensity : {0.25, 2.0})
+      check(scene, fmt::format("fx.color_blit {{ intensity = {} }}", intensity), color_blit(scene.source, intensity));
+  const Made made = run_stack("fx.color_blit {}", random_scene({8, 8}, 24), Way::plain);
+  EXPECT_FALSE(made.ran());
+  EXPECT_EQ(made.graph.skipped.at(0).reason, "intensity is 0");
+}
+
+}  // namespace
+}  // namespace afterglow

@@ -1,0 +1,69 @@
+// Whole stacks as users run them: passes joined, in full and half floats.
+#include "lab.h"
+#include "reference/bloom.h"
+#include "reference/box_bloom.h"
+#include "reference/color_adjustments.h"
+#include "reference/outline.h"
+#include "reference/tone_mapping.h"
+
+namespace afterglow {
+namespace {
+
+using namespace reference;
+
+struct Look {
+  const char* entries;
+  DoubleImage (*oracle)(const Scene&);
+};
+
+const Look kLooks[] = {
+    {"fx.bloom { mode = \"scattering\", fade_fireflies = true }, fx.tone_mapping {}, "
+     "fx.color_adjustments { post_exposure = 0.3, contrast = 15, saturation = 10 }",
+     [](const Scene& s) {
+       const auto bloomed = bloom(s.source, {.mode = BloomMode::scattering, .fade_fireflies = true}).result;
+       return color_adjustments(tone_mapping(bloomed, ToneMode::aces),
+                                {.post_exposure = 0.3, .contrast = 15, .saturation = 10});
+     }},
+    {"fx.color_adjustments { contrast = -10 }, fx.tone_mapping { mode = \"neutral\" }, fx.bloom { bicubic_upsampling = "
+     "false }",
+     [](const Scene& s) {  // listed in another order than they run
+       return color_adjustments(tone_mapping(bloom(s.source, {.bicubic_upsampling = false}).result, ToneMode::neutral),
+                                {.contrast = -10});
+     }},
+    {"fx.box_bloom {}, fx.tone_mapping { mode = \"reinhard\" }",
+     [](const Scene& s) { return tone_mapping(box_bloom(s.source, {}).result, ToneMode::reinhard); }},
+    {"fx.outline { normal_scale = 0.5, depth_scale = 0.1, fade_distance = 1e12, color = { 0.5, 0.25, 0.125 } }, "
+     "fx.tone_mapping { mode = \"neutral\" }",
+     [](const Scene& s) {
+       return tone_mapping(
+           outline(s.source, &*s.depth, &*s.normal,
+                   {.fade_distance = 1e12, .depth_scale = 0.1, .normal_scale = 0.5, .color = {0.5, 0.25, 0.125}}),
+           ToneMode::neutral);
+     }},
+};
+
+void check(const Scene& scene) {
+  for (const auto& look : kLooks) {
+    SCOPED_TRACE(scene.name + ": " + look.entries);
+    const auto expected = look.oracle(scene);
+    const Made plain = run_stack(look.entries, scene, Way::plain);
+    EXPECT_TRUE(agrees(plain.result, expected, kFullFloat, kRgba)) << "plain";
+    const Made joined = run_stack(look.entries, scene, Way::joined);
+    EXPECT_TRUE(agrees(joined.result, expected, kFullFloat, kRgba)) << "joined";
+    EXPECT_TRUE(agrees(joined.result, from_floats(plain.result.data(), plain.size, 4), kJoined, kRgba))
+        << "joined and plain";
+    const Made half = run_stack(look.entries, scene, Way::joined_half);
+    EXPECT_TRUE(agrees(half.result, expected, kHalfFloat, kRgba)) << "half";
+  }
+}
+
+TEST_F(Effects, LooksAgreeInFullAndHalfFloatsAtEverySize) {
+  for (const Size size : kSizes) check(random_scene(size, 41));
+}
+
+TEST_F(Effects, LooksAgreeInFullAndHalfFloatsWithSpikes) { check(random_scene({240, 135}, 42, true)); }
+
+TEST_F(Effects, LooksAgreeInFullAndHalfFloatsOnARealFrame) { check(neon_scene({320, 180}, 300, 380)); }
+
+}  // namespace
+}  // namespace afterglow

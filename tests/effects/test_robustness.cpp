@@ -1,0 +1,87 @@
+// Whatever finite light comes in and however extreme the settings are, what comes out is finite.
+#include <cmath>
+#include <random>
+
+#include "lab.h"
+
+namespace afterglow {
+namespace {
+
+using namespace reference;
+
+Scene stress_scene(Size size) {
+  static constexpr double kValues[] = {0, 1e30, 65504, 1e4, 1e-38, 1e-10, 0.18, 1, 60, 3e29, 1e20, 65536};
+  std::mt19937 generator(51);
+  std::uniform_int_distribution<std::size_t> pick(0, std::size(kValues) - 1);
+  const auto any = [&] { return kValues[pick(generator)]; };
+  Scene scene{"stress", DoubleImage(size), DoubleImage(size), DoubleImage(size)};
+  for (std::size_t i = 0; i < scene.source.pixels.size(); ++i) {
+    scene.source.pixels[i] = Rgba(any(), any(), any(), i % 3 * 0.5);
+    scene.depth->pixels[i] = Rgba(any(), 0, 0, 1);
+    scene.normal->pixels[i] = Rgba(any(), -any(), any(), 1);
+  }
+  scene.source = in_floats(scene.source);
+  return scene;
+}
+
+const char* const kExtremes[] = {
+    "fx.bloom { threshold = 0, knee = 0, intensity = 1e12 }",
+    "fx.bloom { threshold = 1e300, knee = 1, intensity = 1e300, bicubic_upsampling = false }",
+    "fx.bloom { mode = \"scattering\", threshold = 0, knee = 1, intensity = 1, scatter = 0.95, fade_fireflies = true }",
+    "fx.bloom { mode = \"scattering\", threshold = 100, knee = 1, downscale_limit = 1, scatter = 0.05, fade_fireflies "
+    "= true }",
+    "fx.box_bloom { threshold = 0, blur_iterations = 7 }",
+    "fx.box_bloom { threshold = 3, blur_iterations = 1, brightness = \"luma\" }",
+    "fx.tone_mapping { mode = \"aces\" }",
+    "fx.tone_mapping { mode = \"neutral\" }",
+    "fx.tone_mapping { mode = \"reinhard\" }",
+    "fx.color_blit { intensity = 2 }",
+    "fx.color_adjustments { post_exposure = 200 }",
+    "fx.color_adjustments { post_exposure = -300, contrast = 100 }",
+    "fx.color_adjustments { post_exposure = 100, contrast = 100, color_filter = { 1e30, 1e-30, 0 }, hue_shift = 180, "
+    "saturation = 100 }",
+    "fx.color_adjustments { contrast = -100, color_filter = { 1e300, 1e-300, 1 }, hue_shift = -180, saturation = -100 "
+    "}",
+    "fx.color_adjustments { contrast = -99.9, hue_shift = 0.001 }",
+    "fx.outline {}",
+    "fx.outline { depth_scale = 1e300, normal_scale = -1e300, normal_factor = 0, divide_factor = 1e-6, contrast = "
+    "1e300, width = 1e300 }",
+    "fx.outline { difference = \"derivative\", combine = \"max\", contrast = 0, color = { 1e30, 1e30, 1e30 }, blend = "
+    "\"add\" }",
+    "fx.outline { source = \"depth\", depth_space = \"device\", near = 1e-6, far = 1e30, fade_distance = 1e-6 }",
+    "fx.outline { source = \"mixed\", depth_space = \"device\", near = 5, far = 5, reversed_z = false, fade_distance = "
+    "1e30 }",
+    "fx.bloom { threshold = 0, intensity = 1e12 }, fx.tone_mapping {}, fx.color_adjustments { post_exposure = 20, "
+    "contrast = 90, hue_shift = 77, saturation = 100 }",
+};
+
+TEST_F(Effects, NothingTurnsNonFinite) {
+  for (const Size size : {Size{37, 23}, Size{4, 4}})
+    for (const char* entries : kExtremes) {
+      const auto scene = stress_scene(size);
+      const Made made = run_stack(entries, scene, Way::plain);
+      for (const auto& [name, pixels] : made.images) EXPECT_TRUE(all_finite(pixels)) << entries << " " << name;
+      EXPECT_TRUE(all_finite(made.result)) << entries;
+      EXPECT_TRUE(alpha_is_kept(made, scene)) << entries;
+      EXPECT_TRUE(all_finite(run_stack(entries, scene, Way::joined).result)) << entries;
+    }
+}
+
+TEST_F(Effects, NothingTurnsNonFiniteInHalfFloats) {
+  for (const char* entries : kExtremes) {
+    const Made made = run_stack(entries, stress_scene({37, 23}), Way::joined_half);
+    EXPECT_TRUE(all_finite(made.result)) << entries;
+    for (const float v : made.result) ASSERT_LE(std::abs(v), 65504.0F) << entries;
+  }
+}
+
+TEST_F(Effects, BlackStaysBlack) {
+  const Scene scene{"black", DoubleImage(32, 18, Rgba(0, 0, 0, 0)), {}, {}};
+  for (const char* entries : {"fx.bloom {}", "fx.bloom { mode = \"scattering\", threshold = 0 }", "fx.box_bloom {}",
+                              "fx.tone_mapping {}", "fx.tone_mapping { mode = \"neutral\" }",
+                              "fx.color_adjustments { contrast = 50, hue_shift = 20, saturation = 50 }"})
+    for (const float v : run_stack(entries, scene, Way::joined).result) ASSERT_EQ(v, 0.0F) << entries;
+}
+
+}  // namespace
+}  // namespace afterglow
