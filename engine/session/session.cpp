@@ -54,6 +54,9 @@ Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& pres
   state->device = std::move(opened.device).value();
   state->stack = std::move(stack).value();
   state->stack->use(*state->device);
+  // Timestamps around deferred draws mean nothing: there, each kernel is timed in a submission of its own.
+  if (options.timing == KernelTiming::timestamps && !state->device->timestamps_mean_draws())
+    state->options.timing = KernelTiming::submissions;
   state->times.device = opened.milliseconds;
   AFTERGLOW_TRY(state->runner, FrameRunner::create(*state->device, options.stack.max_memory));
   return std::unique_ptr<Session>(new Session(std::move(state)));
