@@ -1,10 +1,10 @@
-// Joins a head and pixel stages into the text of one fragment shader. The text holds no image size, no file and no pass name,
-// so that equal work has equal text, and one compiled kernel serves every level of a pyramid.
+// Joins a head and pixel stages into the text of one fragment shader. The text holds no image size, no file and no pass
+// name, so that equal work has equal text, and one compiled kernel serves every level of a pyramid.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-
-#include <fmt/format.h>
 
 #include "shader/axis.h"
 #include "shader/filter_head.h"
@@ -38,7 +38,8 @@ class Assembler {
   explicit Assembler(const KernelDesc& kernel) : kernel_(kernel) {}
 
   Result<AssembledKernel> run() {
-    if (kernel_.filter && kernel_.sample) return Error{ErrorKind::other, "a kernel has one head: a filter or a sample stage"};
+    if (kernel_.filter && kernel_.sample)
+      return Error{ErrorKind::other, "a kernel has one head: a filter or a sample stage"};
     out_.file_names = {"", "lib/prelude.glsl"};
     AFTERGLOW_CHECK(head());
     for (const auto& stage : kernel_.stages) AFTERGLOW_CHECK(add_stage(stage, ShaderKind::pixel));
@@ -55,7 +56,8 @@ class Assembler {
     out_.glsl += library_text_ + stages_ + "#line 1 0\n";
     if (kernel_.half_storage) out_.glsl += kRoundToHalf;
     out_.glsl += "void main() {\n  ivec2 ag_pixel = ivec2(gl_FragCoord.xy);\n  vec4 ag_color;\n" + body_;
-    out_.glsl += kernel_.half_storage ? "  ag_result = ag_round_to_half(ag_color);\n}\n" : "  ag_result = ag_color;\n}\n";
+    out_.glsl +=
+        kernel_.half_storage ? "  ag_result = ag_round_to_half(ag_color);\n}\n" : "  ag_result = ag_color;\n}\n";
     out_.hash = hash_text(out_.glsl);
     return std::move(out_);
   }
@@ -68,7 +70,8 @@ class Assembler {
       body_ += "  ag_color = texelFetch(ag_image0, ag_pixel, 0);\n";
       return {};
     }
-    AFTERGLOW_TRY(const std::string code, filter_head(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.hardware_filter));
+    AFTERGLOW_TRY(const std::string code,
+                  filter_head(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.hardware_filter));
     body_ += code;
     return {};
   }
@@ -91,8 +94,9 @@ class Assembler {
     if (!stage.shader) return Error{ErrorKind::other, fmt::format("stage '{}' of a kernel has no shader", stage.label)};
     const ShaderSource& source = *stage.shader;
     if (source.interface.kind != kind)
-      return shader_error(source.path.string(), 0, fmt::format("'{}' is a {} shader and cannot stand here", source.name,
-                                                               kind == ShaderKind::pixel ? "sample" : "pixel"));
+      return shader_error(source.path.string(), 0,
+                          fmt::format("'{}' is a {} shader and cannot stand here", source.name,
+                                      kind == ShaderKind::pixel ? "sample" : "pixel"));
     AFTERGLOW_TRY(const ShaderScan scanned, scan(source.text, source.path.string(), ScanAs::stage));
     const std::string prefix = fmt::format("ag_s{}_", stage_count_);
     AFTERGLOW_TRY(const auto values, constants(stage, prefix));
@@ -107,7 +111,8 @@ class Assembler {
 
     std::string arguments = kind == ShaderKind::pixel ? "ag_color" : "ag_pixel";
     for (const auto& input : source.interface.inputs) {
-      const std::string variable = input.pixelwise ? fmt::format("ag_image{}", out_.images.size()) : prefix + input.name;
+      const std::string variable =
+          input.pixelwise ? fmt::format("ag_image{}", out_.images.size()) : prefix + input.name;
       add_image(stage_count_, input.name, variable);
       if (input.pixelwise) arguments += fmt::format(", texelFetch({}, ag_pixel, 0)", variable);
     }
@@ -116,8 +121,10 @@ class Assembler {
       block_ += fmt::format("  {} {}{};\n", glsl_name(param.type), prefix, param.name);
       out_.params.push_back({stage_count_, param.name, param.type, 0});
     }
-    stages_ += fmt::format("#line 1 {}\n", file_index(source.path.string())) + rewrite(source.text, scanned, names, values);
-    body_ += fmt::format("  ag_color = {}{}({});\n", prefix, kind == ShaderKind::pixel ? "apply" : "sample_at", arguments);
+    stages_ +=
+        fmt::format("#line 1 {}\n", file_index(source.path.string())) + rewrite(source.text, scanned, names, values);
+    body_ +=
+        fmt::format("  ag_color = {}{}({});\n", prefix, kind == ShaderKind::pixel ? "apply" : "sample_at", arguments);
     ++stage_count_;
     return {};
   }
@@ -132,7 +139,9 @@ class Assembler {
         const auto given = stage.constants.find(param.name);
         const double value = given == stage.constants.end() ? param.default_value : given->second;
         const bool fits = std::isfinite(value) && (param.type != ParamType::int1 || std::abs(value) <= 2147483647.0);
-        if (!fits) return shader_error(source.path.string(), param.line, fmt::format("constant '{}' cannot be {}", param.name, value));
+        if (!fits)
+          return shader_error(source.path.string(), param.line,
+                              fmt::format("constant '{}' cannot be {}", param.name, value));
         std::string number = float_literal(value);
         if (param.type == ParamType::int1) number = fmt::format("{}", static_cast<int>(std::lround(value)));
         if (param.type == ParamType::bool1) number = value != 0 ? "true" : "false";
@@ -152,21 +161,25 @@ class Assembler {
   };
 
   static void see(const Library& library, NameMap& names) {
-    for (const auto& name : library.names) names.insert_or_assign(name.name, NewName{library.prefix + name.name, name.macro});
+    for (const auto& name : library.names)
+      names.insert_or_assign(name.name, NewName{library.prefix + name.name, name.macro});
   }
 
-  /// The library of this kernel for an include; its text is added when it is new. `earlier` maps the includes before it.
+  /// The library of this kernel for an include; its text is added when it is new. `earlier` maps the includes before
+  /// it.
   Result<std::size_t> library(const ShaderSource::Include& include, const std::vector<std::size_t>& earlier) {
     Library added{include.path, include.text, fmt::format("ag_l{}_", libraries_.size()), {}, {}};
     for (const auto use : include.uses) added.uses.push_back(earlier.at(use));
     for (std::size_t i = 0; i < libraries_.size(); ++i)
-      if (libraries_[i].path == added.path && libraries_[i].text == added.text && libraries_[i].uses == added.uses) return i;
+      if (libraries_[i].path == added.path && libraries_[i].text == added.text && libraries_[i].uses == added.uses)
+        return i;
     AFTERGLOW_TRY(const ShaderScan scanned, scan(include.text, include.path.string(), ScanAs::library));
     NameMap names;
     for (const auto use : added.uses) see(libraries_[use], names);
     added.names = scanned.names;
     see(added, names);
-    library_text_ += fmt::format("#line 1 {}\n", file_index(include.path.string())) + rewrite(include.text, scanned, names, {});
+    library_text_ +=
+        fmt::format("#line 1 {}\n", file_index(include.path.string())) + rewrite(include.text, scanned, names, {});
     libraries_.push_back(std::move(added));
     return libraries_.size() - 1;
   }

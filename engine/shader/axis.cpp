@@ -1,9 +1,9 @@
 #include "shader/axis.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace afterglow {
 namespace {
@@ -48,7 +48,8 @@ std::string product(double constant, const std::string& variable) {
   return float_literal(constant) + " * " + variable;
 }
 
-Axis::Axis(char letter, AxisRatio ratio, Interpolation interpolation) : letter_(letter), ratio_(ratio), interpolation_(interpolation) {}
+Axis::Axis(char letter, AxisRatio ratio, Interpolation interpolation)
+    : letter_(letter), ratio_(ratio), interpolation_(interpolation) {}
 
 std::string Axis::name(const char* what, int phase) const { return fmt::format("ag_{}{}{}", letter_, what, phase); }
 
@@ -134,10 +135,13 @@ std::string Axis::setup() const {
   if (ratio_ == AxisRatio::half) out += fmt::format("  int ag_{0}2 = 2 * ag_pixel.{0};\n", letter_);
   if (fixed()) return out;
   if (ratio_ == AxisRatio::twice) {
-    out += fmt::format("  bool ag_{0}odd = (ag_pixel.{0} & 1) != 0;\n  int ag_{0}i = ((ag_pixel.{0} + 1) >> 1) - 1;\n", letter_);
+    out += fmt::format("  bool ag_{0}odd = (ag_pixel.{0} & 1) != 0;\n  int ag_{0}i = ((ag_pixel.{0} + 1) >> 1) - 1;\n",
+                       letter_);
   } else {
-    out += fmt::format("  int ag_{0}i, ag_{0}rest;\n"
-                       "  ag_phase(ag_pixel.{0}, ag_source_size.{0}, ag_target_size.{0}, ag_{0}i, ag_{0}rest);\n", letter_);
+    out += fmt::format(
+        "  int ag_{0}i, ag_{0}rest;\n"
+        "  ag_phase(ag_pixel.{0}, ag_source_size.{0}, ag_target_size.{0}, ag_{0}i, ag_{0}rest);\n",
+        letter_);
   }
   for (std::size_t c = 0; c < fractions_.size(); ++c) {
     const int phase = static_cast<int>(c);
@@ -149,20 +153,27 @@ std::string Axis::setup() const {
       const auto choose = [&](const std::string& if_odd, const std::string& if_even) {
         return if_odd == if_even ? if_even : fmt::format("ag_{}odd ? {} : {}", letter_, if_odd, if_even);
       };
-      out += fmt::format("  int {1} = ag_{0}i + ({2});\n", letter_, i, choose(std::to_string(odd_carry), std::to_string(even_carry)));
+      out += fmt::format("  int {1} = ag_{0}i + ({2});\n", letter_, i,
+                         choose(std::to_string(odd_carry), std::to_string(even_carry)));
       out += fmt::format("  float {} = {}, {} = {};\n", f, choose(float_literal(odd), float_literal(even)), g,
                          choose(float_literal(1 - odd), float_literal(1 - even)));
     } else if (fraction == 0) {
-      out += fmt::format("  int {1} = ag_{0}i;\n  float {2}, {3};\n  ag_fraction(ag_{0}rest, ag_target_size.{0}, {2}, {3});\n", letter_, i, f, g);
+      out += fmt::format(
+          "  int {1} = ag_{0}i;\n  float {2}, {3};\n  ag_fraction(ag_{0}rest, ag_target_size.{0}, {2}, {3});\n",
+          letter_, i, f, g);
     } else {
       const double high = std::floor(fraction * 256) / 256;
-      out += fmt::format("  int {1} = ag_{0}i;\n  float {2}, {3};\n"
-                         "  ag_fraction_beyond({1}, ag_{0}rest, ag_target_size.{0}, {4}, {5}, {2}, {3});\n",
-                         letter_, i, f, g, float_literal(high), float_literal(fraction - high));
+      out += fmt::format(
+          "  int {1} = ag_{0}i;\n  float {2}, {3};\n"
+          "  ag_fraction_beyond({1}, ag_{0}rest, ag_target_size.{0}, {4}, {5}, {2}, {3});\n",
+          letter_, i, f, g, float_literal(high), float_literal(fraction - high));
     }
     if (interpolation_ == Interpolation::cubic_bspline)
-      out += fmt::format("  vec4 {0} = vec4({2} * {2} * {2}, 4.0 + (3.0 * {1} - 6.0) * ({1} * {1}), 4.0 + (3.0 * {2} - 6.0) * ({2} * {2}), "
-                         "{1} * {1} * {1}) * {3};\n", name("w", phase), f, g, float_literal(1.0 / 6));
+      out += fmt::format(
+          "  vec4 {0} = vec4({2} * {2} * {2}, 4.0 + (3.0 * {1} - 6.0) * ({1} * {1}), 4.0 + (3.0 * {2} - 6.0) * ({2} * "
+          "{2}), "
+          "{1} * {1} * {1}) * {3};\n",
+          name("w", phase), f, g, float_literal(1.0 / 6));
   }
   return out;
 }

@@ -1,8 +1,9 @@
 // How a filter reads along one axis: which texels, with which weights, as GLSL. Internal to the room.
 //
-// The point of a tap lies at p + offset, p = (x + ½)·n_src/n_dst; t = p − ½ + offset, texel i = ⌊t⌋, fraction f = t − i, g = 1 − f.
-// Where the ratio fixes f (same, half) weights are numbers; else they are made of f and g, found exactly from integers (twice: by
-// parity; any: ag_phase of the prelude). Taps whose offsets differ by whole texels share f ("a class").
+// The point of a tap lies at p + offset, p = (x + ½)·n_src/n_dst; t = p − ½ + offset, texel i = ⌊t⌋, fraction f = t −
+// i, g = 1 − f. Where the ratio fixes f (same, half) weights are numbers; else they are made of f and g, found exactly
+// from integers (twice: by parity; any: ag_phase of the prelude). Taps whose offsets differ by whole texels share f ("a
+// class").
 #pragma once
 
 #include <map>

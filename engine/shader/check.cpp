@@ -2,7 +2,8 @@
 
 namespace afterglow {
 
-Result<void> check_shader(KernelCompiler& compiler, std::shared_ptr<const ShaderSource> shader, const std::map<std::string, double>& constants) {
+Result<void> check_shader(KernelCompiler& compiler, std::shared_ptr<const ShaderSource> shader,
+                          const std::map<std::string, double>& constants) {
   KernelDesc kernel;
   KernelStage stage{std::move(shader), constants, {}};
   if (stage.shader->interface.kind == ShaderKind::sample) {

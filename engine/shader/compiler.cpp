@@ -1,11 +1,11 @@
 // KernelCompiler: memory cache, disk cache, compiler, in this order.
+#include <fmt/format.h>
+
 #include <atomic>
 #include <filesystem>
 #include <map>
 #include <mutex>
 #include <system_error>
-
-#include <fmt/format.h>
 
 #include "core/file.h"
 #include "shader/glsl.h"
@@ -72,19 +72,24 @@ Result<KernelFile> build(const AssembledKernel& assembled) {
   kernel.block_size = reflection.block_size;
   for (const auto& param : assembled.params) {
     const auto member = reflection.members.find(fmt::format("ag_s{}_{}", param.stage, param.name));
-    if (member == reflection.members.end() || member->second.components != static_cast<std::uint32_t>(component_count(param.type)))
+    if (member == reflection.members.end() ||
+        member->second.components != static_cast<std::uint32_t>(component_count(param.type)))
       return Error{ErrorKind::other, fmt::format("parameter '{}' is not in the compiled shader", param.name)};
     kernel.offsets.push_back(member->second.offset);
   }
-  if (reflection.members.size() != assembled.params.size()) return Error{ErrorKind::other, "the compiled shader has other parameters than declared"};
+  if (reflection.members.size() != assembled.params.size())
+    return Error{ErrorKind::other, "the compiled shader has other parameters than declared"};
   for (const auto binding : reflection.image_bindings)
-    if (binding < 1 || binding > assembled.images.size()) return Error{ErrorKind::other, "the compiled shader has other images than declared"};
+    if (binding < 1 || binding > assembled.images.size())
+      return Error{ErrorKind::other, "the compiled shader has other images than declared"};
   return kernel;
 }
 
 }  // namespace
 
-KernelCompiler::KernelCompiler(fs::path cache_folder) : state_(std::make_unique<State>()) { state_->folder = std::move(cache_folder); }
+KernelCompiler::KernelCompiler(fs::path cache_folder) : state_(std::make_unique<State>()) {
+  state_->folder = std::move(cache_folder);
+}
 KernelCompiler::~KernelCompiler() = default;
 
 Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
@@ -115,6 +120,8 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   return out;
 }
 
-KernelCompiler::Counters KernelCompiler::counters() const { return {state_->compiled, state_->from_disk, state_->from_memory}; }
+KernelCompiler::Counters KernelCompiler::counters() const {
+  return {state_->compiled, state_->from_disk, state_->from_memory};
+}
 
 }  // namespace afterglow

@@ -1,19 +1,19 @@
 #include "shader/filter_head.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "shader/axis.h"
 
 namespace afterglow {
 namespace {
 
-constexpr std::size_t kMaxReads = 1024;   ///< texels in straight-line code
-constexpr std::size_t kLoopReads = 96;    ///< from here on a separable filter loops over its rows
+constexpr std::size_t kMaxReads = 1024;  ///< texels in straight-line code
+constexpr std::size_t kLoopReads = 96;   ///< from here on a separable filter loops over its rows
 constexpr std::size_t kMaxAxisReads = 256;
 constexpr double kMaxOffset = 65536;
 
@@ -51,12 +51,14 @@ Result<void> check(const Filter& filter) {
   for (const auto& tap : filter.y) ok = ok && fine(tap.offset, tap.weight);
   for (const auto& tap : filter.taps) ok = ok && fine(tap.dx, tap.weight) && fine(tap.dy, tap.weight);
   if (!ok) return bad_filter("a tap of the filter is not usable", "finite weights, offsets of at most 65536 texels");
-  if (filter.separable() && (filter.x.empty() || filter.y.empty())) return bad_filter("the filter has no taps", "at least one tap on each axis");
+  if (filter.separable() && (filter.x.empty() || filter.y.empty()))
+    return bad_filter("the filter has no taps", "at least one tap on each axis");
   return {};
 }
 
 Error too_many(std::size_t reads, std::size_t most) {
-  return bad_filter(fmt::format("the filter reads {} texels", reads), fmt::format("at most {}; split it into several filters", most));
+  return bad_filter(fmt::format("the filter reads {} texels", reads),
+                    fmt::format("at most {}; split it into several filters", most));
 }
 
 /// Adds `reads`, each times its weight, to the variable `into`; equal weights are factored out.
@@ -132,8 +134,12 @@ std::string declare(char letter, const char* type, const std::string& scale, std
 
 using Fetch = std::string (*)(const std::string& x, const std::string& y);
 
-std::string texel(const std::string& x, const std::string& y) { return fmt::format("texelFetch(ag_image0, ivec2({}, {}), 0)", x, y); }
-std::string filtered(const std::string& x, const std::string& y) { return fmt::format("textureLod(ag_image0, vec2({}, {}), 0.0)", x, y); }
+std::string texel(const std::string& x, const std::string& y) {
+  return fmt::format("texelFetch(ag_image0, ivec2({}, {}), 0)", x, y);
+}
+std::string filtered(const std::string& x, const std::string& y) {
+  return fmt::format("textureLod(ag_image0, vec2({}, {}), 0.0)", x, y);
+}
 
 /// Rows first, then their weighted sum.
 std::string straight_rows(const std::vector<Read>& x, const std::vector<Read>& y, Fetch fetch) {
@@ -162,13 +168,15 @@ std::string looped_rows(const std::vector<Read>& x, const std::vector<Read>& y, 
   }
   std::vector<std::pair<std::string, std::string>> reads;
   for (const auto& column : x) reads.emplace_back(column.weight, fetch(column.at, "ag_rows[ag_j]"));
-  return fmt::format("  ag_color = vec4(0.0);\n"
-                     "  {0} ag_rows[{1}] = {0}[]({2});\n"
-                     "  float ag_weights[{1}] = float[]({3});\n"
-                     "  for (int ag_j = 0; ag_j < {1}; ++ag_j) {{\n"
-                     "  vec4 ag_line = vec4(0.0);\n{4}"
-                     "  ag_color += ag_weights[ag_j] * ag_line;\n"
-                     "  }}\n", coordinate, y.size(), positions, weights, weighted_sum("ag_line", reads));
+  return fmt::format(
+      "  ag_color = vec4(0.0);\n"
+      "  {0} ag_rows[{1}] = {0}[]({2});\n"
+      "  float ag_weights[{1}] = float[]({3});\n"
+      "  for (int ag_j = 0; ag_j < {1}; ++ag_j) {{\n"
+      "  vec4 ag_line = vec4(0.0);\n{4}"
+      "  ag_color += ag_weights[ag_j] * ag_line;\n"
+      "  }}\n",
+      coordinate, y.size(), positions, weights, weighted_sum("ag_line", reads));
 }
 
 constexpr const char* kLast = "  ivec2 ag_last = ag_source_size - 1;\n";
@@ -188,14 +196,16 @@ Result<std::string> separable_head(const Filter& filter, AxisRatio ratio_x, Axis
       rows = std::move(fetched_rows);
     }
   }
-  if (columns.size() > kMaxAxisReads || rows.size() > kMaxAxisReads) return too_many(std::max(columns.size(), rows.size()), kMaxAxisReads);
+  if (columns.size() > kMaxAxisReads || rows.size() > kMaxAxisReads)
+    return too_many(std::max(columns.size(), rows.size()), kMaxAxisReads);
   std::string out = x.setup() + y.setup() + kLast;
   if (sampler) out += kTexelSize;
   const char* type = sampler ? "float" : "int";
   out += declare('x', type, sampler ? "ag_texel.x" : "", columns);
   out += declare('y', type, sampler ? "ag_texel.y" : "", rows);
   const Fetch fetch = sampler ? filtered : texel;
-  if (columns.size() * rows.size() > kLoopReads && rows.size() > 1) return out + looped_rows(columns, rows, type, fetch);
+  if (columns.size() * rows.size() > kLoopReads && rows.size() > 1)
+    return out + looped_rows(columns, rows, type, fetch);
   return out + straight_rows(columns, rows, fetch);
 }
 
@@ -208,7 +218,8 @@ Result<std::string> free_head(const Filter& filter, AxisRatio ratio_x, AxisRatio
     for (const auto& down : y.read(tap.dy))
       for (const auto& term : across) {
         const char* times = term.variable.empty() || down.variable.empty() ? "" : " * ";
-        texels[{down.texel, term.texel}][term.variable + times + down.variable] += tap.weight * term.constant * down.constant;
+        texels[{down.texel, term.texel}][term.variable + times + down.variable] +=
+            tap.weight * term.constant * down.constant;
       }
     if (texels.size() > kMaxReads) return too_many(texels.size(), kMaxReads);
   }
@@ -239,7 +250,8 @@ Result<std::string> free_sampler_head(const Filter& filter, AxisRatio ratio_x, A
     for (const auto& across : x.fetch(tap.dx))
       for (const auto& down : y.fetch(tap.dy))
         reads.emplace_back(float_literal(tap.weight * across.constant * down.constant),
-                           filtered(fmt::format("({}) * ag_texel.x", across.position), fmt::format("({}) * ag_texel.y", down.position)));
+                           filtered(fmt::format("({}) * ag_texel.x", across.position),
+                                    fmt::format("({}) * ag_texel.y", down.position)));
   if (reads.size() > kMaxReads) return too_many(reads.size(), kMaxReads);
   return x.setup() + y.setup() + kTexelSize + "  ag_color = vec4(0.0);\n" + weighted_sum("ag_color", reads);
 }
@@ -249,7 +261,8 @@ Result<std::string> free_sampler_head(const Filter& filter, AxisRatio ratio_x, A
 Result<std::string> filter_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter) {
   AFTERGLOW_CHECK(check(filter));
   if (filter.separable()) return separable_head(filter, ratio_x, ratio_y, hardware_filter);
-  if (hardware_filter && filter.interpolation == Interpolation::linear) return free_sampler_head(filter, ratio_x, ratio_y);
+  if (hardware_filter && filter.interpolation == Interpolation::linear)
+    return free_sampler_head(filter, ratio_x, ratio_y);
   return free_head(filter, ratio_x, ratio_y);
 }
 

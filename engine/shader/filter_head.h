@@ -8,8 +8,8 @@
 
 namespace afterglow {
 
-/// Statements for main(); they use ag_pixel, ag_image0 and the push constants, and set ag_color. Independent of image sizes.
-/// Errors (script): no taps, weights or offsets that are not finite, more texel reads than a kernel should have.
+/// Statements for main(); they use ag_pixel, ag_image0 and the push constants, and set ag_color. Independent of image
+/// sizes. Errors (script): no taps, weights or offsets that are not finite, more texel reads than a kernel should have.
 Result<std::string> filter_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter);
 
 }  // namespace afterglow

@@ -1,14 +1,14 @@
 #include "shader/glsl.h"
 
-#include <charconv>
-#include <mutex>
-#include <optional>
-#include <string_view>
-
 #include <fmt/format.h>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
+
+#include <charconv>
+#include <mutex>
+#include <optional>
+#include <string_view>
 
 #include "core/text.h"
 #include "shader/rename.h"
@@ -17,8 +17,8 @@
 namespace afterglow {
 namespace {
 
-constexpr std::size_t kMaxTrail = 8;       ///< further errors that are shown
-constexpr std::size_t kMaxMessage = 300;   ///< characters of one error
+constexpr std::size_t kMaxTrail = 8;      ///< further errors that are shown
+constexpr std::size_t kMaxMessage = 300;  ///< characters of one error
 
 std::string shortened(std::string text) {
   if (text.size() > kMaxMessage) text.replace(kMaxMessage, std::string::npos, "…");
@@ -41,7 +41,8 @@ std::optional<LogLine> parse_line(std::string_view text) {
   const auto file = std::from_chars(text.data(), end, out.file);
   if (file.ec == std::errc() && file.ptr != end && *file.ptr == ':') {
     const auto line = std::from_chars(file.ptr + 1, end, out.line);
-    if (line.ec == std::errc() && line.ptr != end && *line.ptr == ':') text.remove_prefix(static_cast<std::size_t>(line.ptr + 1 - text.data()));
+    if (line.ec == std::errc() && line.ptr != end && *line.ptr == ':')
+      text.remove_prefix(static_cast<std::size_t>(line.ptr + 1 - text.data()));
   } else {
     out.file = 0;
   }
@@ -57,7 +58,8 @@ Error compile_error(const char* log, const std::vector<std::string>& file_names)
   std::size_t more = 0;
   for (const auto& text : split(log, '\n')) {
     auto line = parse_line(text);
-    if (!line || line->message.find("compilation errors.") != std::string::npos || line->message.find("compilation terminated") != std::string::npos)
+    if (!line || line->message.find("compilation errors.") != std::string::npos ||
+        line->message.find("compilation terminated") != std::string::npos)
       continue;
     if (lines.size() <= kMaxTrail) {
       lines.push_back(std::move(*line));
@@ -65,11 +67,14 @@ Error compile_error(const char* log, const std::vector<std::string>& file_names)
       ++more;
     }
   }
-  const auto file = [&](const LogLine& line) { return line.file < file_names.size() ? file_names[line.file] : std::string(); };
+  const auto file = [&](const LogLine& line) {
+    return line.file < file_names.size() ? file_names[line.file] : std::string();
+  };
   if (lines.empty()) return shader_error("", 0, "the shader does not compile: " + shortened(trim(log)));
   Error error = shader_error(file(lines[0]), lines[0].line, lines[0].message);
   if (error.file.empty()) error.line = 0;  // the engine's own text: the line would mean nothing to an author
-  for (std::size_t i = 1; i < lines.size(); ++i) error.trail.push_back(fmt::format("{}:{}: {}", file(lines[i]), lines[i].line, lines[i].message));
+  for (std::size_t i = 1; i < lines.size(); ++i)
+    error.trail.push_back(fmt::format("{}:{}: {}", file(lines[i]), lines[i].line, lines[i].message));
   if (more > 0) error.trail.push_back(fmt::format("and {} more", more));
   return error;
 }
@@ -78,7 +83,8 @@ Error compile_error(const char* log, const std::vector<std::string>& file_names)
 
 std::string glsl_compiler_version() {
   const auto version = glslang::GetVersion();
-  return fmt::format("glslang {}.{}.{}{} generator {}", version.major, version.minor, version.patch, version.flavor, glslang::GetSpirvGeneratorVersion());
+  return fmt::format("glslang {}.{}.{}{} generator {}", version.major, version.minor, version.patch, version.flavor,
+                     glslang::GetSpirvGeneratorVersion());
 }
 
 Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const std::vector<std::string>& file_names) {
@@ -106,7 +112,8 @@ Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const s
   std::vector<std::uint32_t> spirv;
   spv::SpvBuildLogger logger;
   glslang::GlslangToSpv(*program.getIntermediate(EShLangFragment), spirv, &logger, &options);
-  if (spirv.empty()) return shader_error("", 0, "the shader gives no SPIR-V: " + shortened(trim(logger.getAllMessages())));
+  if (spirv.empty())
+    return shader_error("", 0, "the shader gives no SPIR-V: " + shortened(trim(logger.getAllMessages())));
   return spirv;
 }
 

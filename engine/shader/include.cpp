@@ -1,11 +1,11 @@
 #include "shader/include.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
 #include <system_error>
-
-#include <fmt/format.h>
 
 #include "core/file.h"
 #include "core/text.h"
@@ -57,7 +57,9 @@ class Resolver {
     ShaderSource::Include include{line.name, path, {}, {}, {}};
     AFTERGLOW_TRY(include.text, read_shader(path));
     bytes_ += include.text.size();
-    if (bytes_ > kMaxIncludeBytes) return shader_error(path.string(), 0, fmt::format("the includes have more than {} bytes together", kMaxIncludeBytes));
+    if (bytes_ > kMaxIncludeBytes)
+      return shader_error(path.string(), 0,
+                          fmt::format("the includes have more than {} bytes together", kMaxIncludeBytes));
     AFTERGLOW_TRY(const ShaderScan scanned, scan(include.text, path.string(), ScanAs::library));
     for (const auto& name : scanned.names) {
       include.global_names.push_back(name.name);
@@ -69,7 +71,8 @@ class Resolver {
     open_.erase(path);
     include.uses.assign(seen.begin(), seen.end());
     AFTERGLOW_CHECK(check_names(path.string(), scanned.names, include.uses));
-    if (includes_.size() >= kMaxIncludes) return shader_error(path.string(), 0, fmt::format("a shader includes at most {} files", kMaxIncludes));
+    if (includes_.size() >= kMaxIncludes)
+      return shader_error(path.string(), 0, fmt::format("a shader includes at most {} files", kMaxIncludes));
     includes_.push_back(std::move(include));
     index_[path] = includes_.size() - 1;
     return includes_.size() - 1;
@@ -98,9 +101,10 @@ class Resolver {
     return error;
   }
 
-  /// Names are made unique per file when shaders are joined, so one name must mean one thing in a file. (Macros may be defined
-  /// again: the file's own hides the other.)
-  Result<void> check_names(const std::string& file, const std::vector<GlobalName>& own, const std::vector<std::size_t>& seen) const {
+  /// Names are made unique per file when shaders are joined, so one name must mean one thing in a file. (Macros may be
+  /// defined again: the file's own hides the other.)
+  Result<void> check_names(const std::string& file, const std::vector<GlobalName>& own,
+                           const std::vector<std::size_t>& seen) const {
     std::map<std::string, std::size_t> from;
     for (const auto index : seen) {
       const auto& include = includes_[index];
@@ -108,12 +112,15 @@ class Resolver {
         if (is_macro(include, name)) continue;
         const auto [other, fresh] = from.emplace(name, index);
         if (!fresh)
-          return shader_error(file, 0, fmt::format("'{}' is defined by both {} and {}", name, includes_[other->second].name, include.name));
+          return shader_error(
+              file, 0,
+              fmt::format("'{}' is defined by both {} and {}", name, includes_[other->second].name, include.name));
       }
     }
     for (const auto& name : own)
       if (const auto other = from.find(name.name); other != from.end() && !name.macro)
-        return shader_error(file, name.line, fmt::format("'{}' is already defined by {}", name.name, includes_[other->second].name));
+        return shader_error(file, name.line,
+                            fmt::format("'{}' is already defined by {}", name.name, includes_[other->second].name));
     return {};
   }
 
@@ -154,7 +161,8 @@ Result<std::string> read_shader(const fs::path& path) {
   return content;
 }
 
-Result<std::vector<ShaderSource::Include>> resolve_includes(const SearchPath& search, const fs::path& file, const ShaderScan& scanned) {
+Result<std::vector<ShaderSource::Include>> resolve_includes(const SearchPath& search, const fs::path& file,
+                                                            const ShaderScan& scanned) {
   return Resolver(search, file).run(scanned);
 }
 
@@ -164,7 +172,8 @@ std::vector<std::string> list_shader_files(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code ec;
   fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, ec);
-  for (std::size_t seen = 0; !ec && it != fs::recursive_directory_iterator() && seen < kMaxFiles; it.increment(ec), ++seen) {
+  for (std::size_t seen = 0; !ec && it != fs::recursive_directory_iterator() && seen < kMaxFiles;
+       it.increment(ec), ++seen) {
     if (it.depth() >= kMaxDepth) it.disable_recursion_pending();
     std::error_code ignored;
     if (it->path().extension() == ".glsl" && it->is_regular_file(ignored))

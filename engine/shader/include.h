@@ -12,7 +12,7 @@
 
 namespace afterglow {
 
-inline constexpr std::size_t kMaxIncludes = 64;      ///< files of one shader
+inline constexpr std::size_t kMaxIncludes = 64;  ///< files of one shader
 inline constexpr int kMaxIncludeDepth = 16;
 inline constexpr std::size_t kMaxIncludeBytes = 2u << 20;  ///< of all files together
 
@@ -22,8 +22,9 @@ bool is_safe_name(const std::string& name);
 /// Reads one file of GLSL, without a byte order mark. Errors: script.
 Result<std::string> read_shader(const std::filesystem::path& path);
 
-/// Everything that a file with these includes sees, each file once, those that others need first. Errors (script): missing file
-/// (with the nearest name), cycle, limits, a name that two files define; file and line are those of the offending text.
+/// Everything that a file with these includes sees, each file once, those that others need first. Errors (script):
+/// missing file (with the nearest name), cycle, limits, a name that two files define; file and line are those of the
+/// offending text.
 Result<std::vector<ShaderSource::Include>> resolve_includes(const SearchPath& search, const std::filesystem::path& file,
                                                             const ShaderScan& scanned);
 

@@ -1,9 +1,10 @@
-// What a shader of an effect declares: its kind, inputs and parameters, found by scanning its text (no compiler needed).
+// What a shader of an effect declares: its kind, inputs and parameters, found by scanning its text (no compiler
+// needed).
 //
 // An author's shader file, e.g. shaders/bloom/threshold.glsl:
 //
-//   #include "lib/color.glsl"                 // an include is a library: hoisted, included once, sees no macros of the shader
-//   uniform float threshold;                  // dynamic parameter: bytes that may change per frame
+//   #include "lib/color.glsl"                 // an include is a library: hoisted, included once, sees no macros of the
+//   shader uniform float threshold;                  // dynamic parameter: bytes that may change per frame
 //   layout(constant_id = 0) const bool fade = false;   // specialised parameter: compiled in
 //   vec4 apply(vec4 color) { … }              // kind `pixel`
 //
@@ -31,8 +32,8 @@ const char* glsl_name(ParamType type);
 struct ShaderParam {
   std::string name;
   ParamType type = ParamType::float1;
-  bool specialised = false;    ///< a `layout(constant_id = …) const`; else a dynamic `uniform`
-  double default_value = 0;    ///< of specialised parameters; dynamic ones must be given
+  bool specialised = false;  ///< a `layout(constant_id = …) const`; else a dynamic `uniform`
+  double default_value = 0;  ///< of specialised parameters; dynamic ones must be given
   int line = 0;
 };
 
@@ -44,8 +45,9 @@ struct ShaderInput {
 
 struct ShaderInterface {
   ShaderKind kind = ShaderKind::pixel;
-  std::vector<ShaderInput> inputs;   ///< in order of declaration; for `apply` without its first argument (the colour that flows through)
-  std::vector<ShaderParam> params;   ///< in order of declaration
+  std::vector<ShaderInput>
+      inputs;  ///< in order of declaration; for `apply` without its first argument (the colour that flows through)
+  std::vector<ShaderParam> params;  ///< in order of declaration
 };
 
 }  // namespace afterglow

@@ -1,5 +1,5 @@
-// A kernel: one full-screen fragment shader made of a head (how the first colour of a pixel is found) and pixel stages that
-// follow. Assembled from authors' GLSL and from filters described as data, then compiled to SPIR-V and reflected.
+// A kernel: one full-screen fragment shader made of a head (how the first colour of a pixel is found) and pixel stages
+// that follow. Assembled from authors' GLSL and from filters described as data, then compiled to SPIR-V and reflected.
 #pragma once
 
 #include <cstddef>
@@ -40,24 +40,24 @@ struct KernelDesc {
 
 /// Where a dynamic parameter lies in the kernel's uniform block.
 struct KernelParam {
-  int stage = 0;          ///< 0-based over [sample, stages…] (the sample stage, when there is one, is 0)
+  int stage = 0;  ///< 0-based over [sample, stages…] (the sample stage, when there is one, is 0)
   std::string name;
   ParamType type = ParamType::float1;
   std::uint32_t offset = 0;  ///< bytes, from SPIR-V reflection
 };
 
 /// GLSL ready for the compiler, with what the executor must bind.
-/// Set 0: binding 0 the uniform block (absent when `block_size` is 0), bindings 1… combined image samplers in the order of `images`.
-/// The block is std140; a bool takes 4 bytes, 0 or 1. Kernels with `hardware_filter` need samplers with linear filtering and
-/// clamp-to-edge; the others only use texelFetch. The result is location 0.
-/// Push constants: see kPushConstantBytes below.
+/// Set 0: binding 0 the uniform block (absent when `block_size` is 0), bindings 1… combined image samplers in the order
+/// of `images`. The block is std140; a bool takes 4 bytes, 0 or 1. Kernels with `hardware_filter` need samplers with
+/// linear filtering and clamp-to-edge; the others only use texelFetch. The result is location 0. Push constants: see
+/// kPushConstantBytes below.
 struct AssembledKernel {
   std::string glsl;
-  /// Image slots: the head's source (filter or own pixel) or the sample stage's sampler2D inputs in order of declaration,
-  /// then each pixel stage's pixel-wise and sampler2D inputs in order of declaration.
+  /// Image slots: the head's source (filter or own pixel) or the sample stage's sampler2D inputs in order of
+  /// declaration, then each pixel stage's pixel-wise and sampler2D inputs in order of declaration.
   struct ImageSlot {
-    int stage = -1;      ///< -1: the head's source; else as in KernelParam::stage
-    std::string name;    ///< input name, or "source" for the head
+    int stage = -1;    ///< -1: the head's source; else as in KernelParam::stage
+    std::string name;  ///< input name, or "source" for the head
   };
   std::vector<ImageSlot> images;
   std::vector<KernelParam> params;      ///< dynamic parameters in the order of the block; offsets are not known yet (0)
@@ -79,8 +79,8 @@ struct CompiledKernel {
 /// Pure text. Errors: script, only for what ShaderLibrary could not see.
 Result<AssembledKernel> assemble(const KernelDesc& kernel);
 
-/// GLSL → SPIR-V with glslang, reflected with SPIRV-Cross, cached on disk by the hash of the assembled text and the compiler
-/// version. Corrupt cache files are ignored and rebuilt. Thread-safe.
+/// GLSL → SPIR-V with glslang, reflected with SPIRV-Cross, cached on disk by the hash of the assembled text and the
+/// compiler version. Corrupt cache files are ignored and rebuilt. Thread-safe.
 class KernelCompiler {
  public:
   explicit KernelCompiler(std::filesystem::path cache_folder);  ///< empty: no disk cache
@@ -89,7 +89,9 @@ class KernelCompiler {
   /// Errors (script): GLSL errors, with the author's file and line, and the compiler's further lines in `trail`.
   Result<CompiledKernel> compile(const KernelDesc& kernel);
 
-  struct Counters { int compiled = 0, from_disk = 0, from_memory = 0; };
+  struct Counters {
+    int compiled = 0, from_disk = 0, from_memory = 0;
+  };
   Counters counters() const;
 
  private:

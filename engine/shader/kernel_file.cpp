@@ -12,8 +12,8 @@ constexpr std::uint32_t kMaxWords = 16u << 20;
 /// Caches stay on the machine that wrote them: numbers are in its own byte order, and the magic tells another's apart.
 struct Header {
   std::uint32_t magic, version;
-  std::uint64_t length;              ///< bytes behind the header
-  std::uint64_t hash_high, hash_low; ///< of them
+  std::uint64_t length;               ///< bytes behind the header
+  std::uint64_t hash_high, hash_low;  ///< of them
 };
 struct Fixed {
   std::uint64_t text_high, text_low;
@@ -36,8 +36,12 @@ void append(std::string& out, const void* data, std::size_t size) {
 
 std::string encode(const KernelFile& kernel) {
   std::string content;
-  const Fixed fixed{kernel.text.high, kernel.text.low, kernel.block_size, static_cast<std::uint32_t>(kernel.offsets.size()),
-                    static_cast<std::uint32_t>(kernel.spirv.size()), 0};
+  const Fixed fixed{kernel.text.high,
+                    kernel.text.low,
+                    kernel.block_size,
+                    static_cast<std::uint32_t>(kernel.offsets.size()),
+                    static_cast<std::uint32_t>(kernel.spirv.size()),
+                    0};
   append(content, &fixed, sizeof fixed);
   append(content, kernel.offsets.data(), kernel.offsets.size() * sizeof(std::uint32_t));
   append(content, kernel.spirv.data(), kernel.spirv.size() * sizeof(std::uint32_t));
@@ -54,7 +58,8 @@ std::optional<KernelFile> decode(std::string_view bytes) {
   if (bytes.size() < sizeof header + sizeof fixed) return std::nullopt;
   std::memcpy(&header, bytes.data(), sizeof header);
   bytes.remove_prefix(sizeof header);
-  if (header.magic != kMagic || header.version != kKernelFileVersion || header.length != bytes.size()) return std::nullopt;
+  if (header.magic != kMagic || header.version != kKernelFileVersion || header.length != bytes.size())
+    return std::nullopt;
   if (hash_text(bytes) != Hash{header.hash_high, header.hash_low}) return std::nullopt;
   std::memcpy(&fixed, bytes.data(), sizeof fixed);
   bytes.remove_prefix(sizeof fixed);

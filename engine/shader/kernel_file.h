@@ -15,7 +15,7 @@ namespace afterglow {
 inline constexpr std::uint32_t kKernelFileVersion = 1;
 
 struct KernelFile {
-  Hash text;                           ///< of the assembled GLSL it was made from
+  Hash text;  ///< of the assembled GLSL it was made from
   std::uint32_t block_size = 0;
   std::vector<std::uint32_t> offsets;  ///< of the parameters, in the order of AssembledKernel::params
   std::vector<std::uint32_t> spirv;

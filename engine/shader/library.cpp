@@ -1,8 +1,8 @@
 #include "shader/library.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "core/text.h"
 #include "shader/include.h"
@@ -36,7 +36,8 @@ Result<void> check_expansion(const ShaderSource& source, const ShaderScan& scann
   return check_macros(files);
 }
 
-Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const std::string& name, const fs::path& path) {
+Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const std::string& name,
+                                                 const fs::path& path) {
   auto source = std::make_shared<ShaderSource>();
   source->name = name;
   source->path = path;

@@ -18,9 +18,9 @@ namespace afterglow {
 
 /// One file of GLSL with its includes resolved.
 struct ShaderSource {
-  std::string name;                       ///< as asked for, without ".glsl": "bloom/threshold"
+  std::string name;  ///< as asked for, without ".glsl": "bloom/threshold"
   std::filesystem::path path;
-  std::string text;                       ///< as the author wrote it
+  std::string text;  ///< as the author wrote it
   ShaderInterface interface;
   /// Libraries it includes, directly or through others, each once, in the order in which they must stand.
   struct Include {
@@ -31,8 +31,9 @@ struct ShaderSource {
     std::vector<std::string> global_names;  ///< as below
   };
   std::vector<Include> includes;
-  std::vector<std::string> global_names;  ///< identifiers and macros that the file defines at file scope (renamed when shaders are joined)
-  Hash hash;                              ///< of text and includes
+  std::vector<std::string>
+      global_names;  ///< identifiers and macros that the file defines at file scope (renamed when shaders are joined)
+  Hash hash;         ///< of text and includes
 
   std::vector<std::filesystem::path> files() const;  ///< path and those of the includes
 };
@@ -42,14 +43,15 @@ class ShaderLibrary {
  public:
   explicit ShaderLibrary(SearchPath path) : path_(std::move(path)) {}
 
-  /// Finds "NAME.glsl". Errors (script): unknown name (with the nearest), syntax of declarations, missing include, include
-  /// cycle, neither or both of apply/sample_at; file and line are those of the offending text.
+  /// Finds "NAME.glsl". Errors (script): unknown name (with the nearest), syntax of declarations, missing include,
+  /// include cycle, neither or both of apply/sample_at; file and line are those of the offending text.
   Result<std::shared_ptr<const ShaderSource>> find(const std::string& name);
 
   void reload();  ///< forget everything read so far
   const SearchPath& path() const { return path_; }
 
-  /// Names that `find` knows, sorted: every .glsl file below a shaders/ folder but those in lib/. Reads folders, not files.
+  /// Names that `find` knows, sorted: every .glsl file below a shaders/ folder but those in lib/. Reads folders, not
+  /// files.
   std::vector<std::string> names() const;
 
  private:

@@ -1,10 +1,10 @@
 #include "shader/macros.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <span>
-
-#include <fmt/format.h>
 
 namespace afterglow {
 namespace {
@@ -35,7 +35,9 @@ class MacroCheck {
   }
 
  private:
-  Error fail(std::size_t file, int line, std::string message) const { return shader_error(files_[file].file, line, std::move(message)); }
+  Error fail(std::size_t file, int line, std::string message) const {
+    return shader_error(files_[file].file, line, std::move(message));
+  }
 
   /// Preprocessor lines of a file as token lists, '#' first.
   std::vector<std::vector<const Token*>> directives(std::size_t file) const {
@@ -67,7 +69,8 @@ class MacroCheck {
         if (depth < 0) break;
         macro.body.push_back(&token);
       }
-      if (depth != 0) return fail(file, macro.line, fmt::format("the brackets in macro '{}' are not balanced", line[2]->text));
+      if (depth != 0)
+        return fail(file, macro.line, fmt::format("the brackets in macro '{}' are not balanced", line[2]->text));
       macros_[file][line[2]->text].push_back(std::move(macro));
     }
     return {};
@@ -86,7 +89,8 @@ class MacroCheck {
     const auto check_statement = [&]() -> Result<void> {
       AFTERGLOW_TRY(const Form form, grow(file, statement, {}, 0));
       if (form[0] > kMaxExpandedTokens)
-        return fail(file, statement.front()->line, fmt::format("macros expand to more than {} tokens here", kMaxExpandedTokens));
+        return fail(file, statement.front()->line,
+                    fmt::format("macros expand to more than {} tokens here", kMaxExpandedTokens));
       statement.clear();
       return {};
     };
@@ -110,7 +114,9 @@ class MacroCheck {
   /// How `tokens` of `file` grow; `params` are those of the macro whose body they are.
   Result<Form> grow(std::size_t file, Tokens tokens, std::span<const std::string_view> params, int depth) {
     Form total(1 + params.size(), 0.0);
-    if (depth > kMaxMacroDepth) return fail(file, tokens.empty() ? 0 : tokens[0]->line, fmt::format("macros use macros more than {} deep", kMaxMacroDepth));
+    if (depth > kMaxMacroDepth)
+      return fail(file, tokens.empty() ? 0 : tokens[0]->line,
+                  fmt::format("macros use macros more than {} deep", kMaxMacroDepth));
     for (std::size_t i = 0; i < tokens.size(); ++i) {
       const Token& token = *tokens[i];
       if (!token.is_identifier() || (i > 0 && tokens[i - 1]->is("defined"))) {
@@ -134,8 +140,9 @@ class MacroCheck {
   }
 
   /// Adds the arguments of the call at tokens[name], each as often as `form` says; gives the index of its ')'.
-  Result<std::size_t> add_arguments(std::size_t file, Tokens tokens, std::size_t name, std::span<const std::string_view> params, int depth,
-                                    const Form& form, Form& total) {
+  Result<std::size_t> add_arguments(std::size_t file, Tokens tokens, std::size_t name,
+                                    std::span<const std::string_view> params, int depth, const Form& form,
+                                    Form& total) {
     const Token& token = *tokens[name];
     if (name + 1 >= tokens.size() || !tokens[name + 1]->is("("))
       return fail(file, token.line, fmt::format("macro '{}' needs its arguments behind it", token.text));

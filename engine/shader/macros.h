@@ -1,5 +1,5 @@
-// Bounds what the preprocessor makes of a shader before the compiler sees it: forty short #define lines can double forty times.
-// Internal to the room.
+// Bounds what the preprocessor makes of a shader before the compiler sees it: forty short #define lines can double
+// forty times. Internal to the room.
 #pragma once
 
 #include <string>
@@ -20,8 +20,8 @@ struct MacroFile {
   std::vector<std::size_t> uses;  ///< indices of the files whose macros it sees
 };
 
-/// Errors (script): a statement that grows beyond the limits; macros used in ways that keep their growth from being known
-/// (unbalanced brackets in a macro, the name of a macro with arguments without its arguments).
+/// Errors (script): a statement that grows beyond the limits; macros used in ways that keep their growth from being
+/// known (unbalanced brackets in a macro, the name of a macro with arguments without its arguments).
 Result<void> check_macros(const std::vector<MacroFile>& files);
 
 }  // namespace afterglow

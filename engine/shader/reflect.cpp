@@ -1,10 +1,10 @@
 #include "shader/reflect.h"
 
-#include <algorithm>
-#include <memory>
-
 #include <fmt/format.h>
 #include <spirv_cross_c.h>
+
+#include <algorithm>
+#include <memory>
 
 namespace afterglow {
 namespace {
@@ -16,7 +16,8 @@ using Context = std::unique_ptr<spvc_context_s, DestroyContext>;
 
 Error reflection_error(const Context& context) {
   const char* reason = context ? spvc_context_get_last_error_string(context.get()) : nullptr;
-  return Error{ErrorKind::other, fmt::format("the compiled shader cannot be read back: {}", reason ? reason : "out of memory")};
+  return Error{ErrorKind::other,
+               fmt::format("the compiled shader cannot be read back: {}", reason ? reason : "out of memory")};
 }
 
 }  // namespace
@@ -29,14 +30,16 @@ Result<Reflection> reflect(const std::vector<std::uint32_t>& spirv) {
   spvc_compiler compiler = nullptr;
   spvc_resources resources = nullptr;
   if (spvc_context_parse_spirv(context.get(), spirv.data(), spirv.size(), &ir) != SPVC_SUCCESS ||
-      spvc_context_create_compiler(context.get(), SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler) != SPVC_SUCCESS ||
+      spvc_context_create_compiler(context.get(), SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler) !=
+          SPVC_SUCCESS ||
       spvc_compiler_create_shader_resources(compiler, &resources) != SPVC_SUCCESS)
     return reflection_error(context);
 
   Reflection out;
   const spvc_reflected_resource* list = nullptr;
   std::size_t count = 0;
-  if (spvc_resources_get_resource_list_for_type(resources, SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, &list, &count) != SPVC_SUCCESS)
+  if (spvc_resources_get_resource_list_for_type(resources, SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, &list, &count) !=
+      SPVC_SUCCESS)
     return reflection_error(context);
   if (count > 1) return Error{ErrorKind::other, "the compiled shader has more than one uniform block"};
   for (std::size_t i = 0; i < count; ++i) {
@@ -46,12 +49,15 @@ Result<Reflection> reflect(const std::vector<std::uint32_t>& spirv) {
     out.block_size = static_cast<std::uint32_t>((size + 15) / 16 * 16);
     for (unsigned m = 0; m < spvc_type_get_num_member_types(type); ++m) {
       Reflection::Member member;
-      if (spvc_compiler_type_struct_member_offset(compiler, type, m, &member.offset) != SPVC_SUCCESS) return reflection_error(context);
-      member.components = spvc_type_get_vector_size(spvc_compiler_get_type_handle(compiler, spvc_type_get_member_type(type, m)));
+      if (spvc_compiler_type_struct_member_offset(compiler, type, m, &member.offset) != SPVC_SUCCESS)
+        return reflection_error(context);
+      member.components =
+          spvc_type_get_vector_size(spvc_compiler_get_type_handle(compiler, spvc_type_get_member_type(type, m)));
       out.members[spvc_compiler_get_member_name(compiler, list[i].base_type_id, m)] = member;
     }
   }
-  if (spvc_resources_get_resource_list_for_type(resources, SPVC_RESOURCE_TYPE_SAMPLED_IMAGE, &list, &count) != SPVC_SUCCESS)
+  if (spvc_resources_get_resource_list_for_type(resources, SPVC_RESOURCE_TYPE_SAMPLED_IMAGE, &list, &count) !=
+      SPVC_SUCCESS)
     return reflection_error(context);
   for (std::size_t i = 0; i < count; ++i)
     out.image_bindings.push_back(spvc_compiler_get_decoration(compiler, list[i].id, SpvDecorationBinding));

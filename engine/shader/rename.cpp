@@ -15,7 +15,8 @@ class FieldFinder {
       return false;
     }
     switch (state_) {
-      case State::outside: return false;
+      case State::outside:
+        return false;
       case State::name:
         if (token.is("{")) state_ = State::type;
         if (token.is(";") || token.is("(")) state_ = State::outside;
@@ -54,7 +55,8 @@ std::string only_newlines(std::string_view text) {
 
 }  // namespace
 
-std::string rewrite(std::string_view text, const ShaderScan& scanned, const NameMap& names, const std::vector<std::string>& constants) {
+std::string rewrite(std::string_view text, const ShaderScan& scanned, const NameMap& names,
+                    const std::vector<std::string>& constants) {
   std::string out;
   out.reserve(text.size() + text.size() / 4);
   std::size_t copied = 0;
@@ -72,7 +74,8 @@ std::string rewrite(std::string_view text, const ShaderScan& scanned, const Name
   for (const auto& token : scanned.tokens) {
     apply_edits_before(token.offset);
     const bool field = (token.directive < 0 && fields.next(token)) || (previous && previous->is("."));
-    const bool directive_word = token.directive >= 0 && previous && previous->is("#") && previous->directive == token.directive;
+    const bool directive_word =
+        token.directive >= 0 && previous && previous->is("#") && previous->directive == token.directive;
     previous = &token;
     if (token.offset < copied || !token.is_identifier() || directive_word) continue;
     const auto name = names.find(token.text);

@@ -1,5 +1,6 @@
-// Rewrites a file's text so that any files can stand in one kernel: every name it defines at file scope gets a prefix of its
-// own, uniforms and includes vanish, constants get their values; lines stay where they are. Internal to the room.
+// Rewrites a file's text so that any files can stand in one kernel: every name it defines at file scope gets a prefix
+// of its own, uniforms and includes vanish, constants get their values; lines stay where they are. Internal to the
+// room.
 #pragma once
 
 #include <map>
@@ -13,14 +14,16 @@ namespace afterglow {
 
 struct NewName {
   std::string text;
-  bool macro = false;  ///< macros are replaced wherever the word stands; other names not behind '.' nor as fields of a struct
+  bool macro =
+      false;  ///< macros are replaced wherever the word stands; other names not behind '.' nor as fields of a struct
 };
 
 /// What a word of the file becomes.
 using NameMap = std::map<std::string, NewName, std::less<>>;
 
 /// `constants[i]` replaces the declaration of parameter i. Ends with a newline.
-std::string rewrite(std::string_view text, const ShaderScan& scanned, const NameMap& names, const std::vector<std::string>& constants);
+std::string rewrite(std::string_view text, const ShaderScan& scanned, const NameMap& names,
+                    const std::vector<std::string>& constants);
 
 /// Removes the prefixes from a compiler's message: "ag_s0_threshold" → "threshold".
 std::string original_names(std::string_view message);

@@ -1,16 +1,19 @@
 #include "shader/scan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdlib>
 #include <optional>
 #include <set>
-
-#include <fmt/format.h>
+#include <span>
 
 #include "core/text.h"
 #include "shader/builtins.h"
+#include "shader/directives.h"
+#include "shader/entry_point.h"
 
 namespace afterglow {
 namespace {
@@ -43,7 +46,10 @@ class Scanner {
         return fail(token, fmt::format("'{}': names that begin with 'ag_' belong to the engine", token.text));
       if (token.directive < 0) code_.push_back(&token);
     }
-    AFTERGLOW_CHECK(directives());
+    AFTERGLOW_TRY(Directives directives, scan_directives(out_.tokens, file_));
+    for (const auto& macro : directives.macros) AFTERGLOW_CHECK(add_name(macro, true));
+    out_.includes = std::move(directives.includes);
+    out_.edits = std::move(directives.edits);
     while (at_ < code_.size()) AFTERGLOW_CHECK(declaration());
     if (as_ == ScanAs::stage) AFTERGLOW_CHECK(entry_point());
     std::sort(out_.edits.begin(), out_.edits.end(), [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
@@ -54,70 +60,8 @@ class Scanner {
   Error fail(int line, std::string message) const { return shader_error(file_, line, std::move(message)); }
   Error fail(const Token& token, std::string message) const { return fail(token.line, std::move(message)); }
 
-  // ---- Preprocessor lines -------------------------------------------------------------------------------------------
-
-  Result<void> directives() {
-    const auto& tokens = out_.tokens;
-    for (std::size_t i = 0; i < tokens.size();) {
-      if (tokens[i].directive < 0) {
-        ++i;
-        continue;
-      }
-      std::size_t end = i;
-      while (end < tokens.size() && tokens[end].directive == tokens[i].directive) ++end;
-      AFTERGLOW_CHECK(directive(i, end));
-      i = end;
-    }
-    if (!conditions_.empty()) return fail(conditions_.back(), "#if is never closed by #endif");
-    for (const auto& name : undefined_)
-      if (!std::any_of(out_.names.begin(), out_.names.end(), [&](const GlobalName& own) { return own.macro && own.name == name.text; }))
-        return fail(name, fmt::format("#undef {}: only macros of this file can be undefined", name.text));
-    return {};
-  }
-
-  Error unknown_directive(const Token& word) const {
-    static const std::vector<std::string> kAllowed = {"include", "define", "undef", "if",   "ifdef",
-                                                      "ifndef",  "elif",   "else",  "endif", "error"};
-    Error error = fail(word, fmt::format("#{} is not allowed in an effect's shader", word.text));
-    if (word.is("version")) error.message = "#version is given by the engine (460); remove the line";
-    error.allowed = "#" + join(kAllowed, ", #");
-    error.nearest = nearest_name(word.text, kAllowed);
-    if (!error.nearest.empty()) error.nearest.insert(0, "#");
-    return error;
-  }
-
-  /// Tokens [begin, end) are one preprocessor line, '#' first.
-  Result<void> directive(std::size_t begin, std::size_t end) {
-    const auto& tokens = out_.tokens;
-    if (end - begin < 2) return {};
-    const Token& word = tokens[begin + 1];
-    if (word.is("include")) {
-      if (end - begin != 3 || tokens[begin + 2].kind != TokenKind::quoted)
-        return fail(word, "an include is written #include \"lib/NAME.glsl\"");
-      out_.includes.push_back({std::string(tokens[begin + 2].text), word.line});
-      out_.edits.push_back({tokens[begin].offset, tokens[begin + 2].end() + 1});
-      return {};
-    }
-    for (std::size_t i = begin + 1; i + 1 < end; ++i)
-      if (tokens[i].is("#") && tokens[i + 1].is("#")) return fail(tokens[i], "token pasting (##) is not supported");
-    if (word.is("define") || word.is("undef")) {
-      if (end - begin < 3 || !tokens[begin + 2].is_identifier()) return fail(word, fmt::format("#{} needs a name", word.text));
-      if (word.is("define")) return add_name(tokens[begin + 2], true);
-      undefined_.push_back(tokens[begin + 2]);
-      return {};
-    }
-    if (word.is("if") || word.is("ifdef") || word.is("ifndef")) {
-      conditions_.push_back(word.line);
-    } else if (word.is("elif") || word.is("else") || word.is("endif")) {
-      if (conditions_.empty()) return fail(word, fmt::format("#{} without #if", word.text));
-      if (word.is("endif")) conditions_.pop_back();
-    } else if (!word.is("error")) {
-      return unknown_directive(word);
-    }
-    return {};
-  }
-
-  // ---- Declarations at file scope -------------------------------------------------------------------------------------
+  // ---- Declarations at file scope
+  // -------------------------------------------------------------------------------------
 
   const Token& token(std::size_t ahead = 0) const {
     static const Token kEnd;
@@ -158,15 +102,17 @@ class Scanner {
         is_uniform = true;
       } else if (t.is("in") || t.is("out") || t.is("inout") || t.is("buffer") || t.is("shared") || t.is("attribute") ||
                  t.is("varying")) {
-        return fail(t, fmt::format("'{}' is not allowed at file scope: images come as sampler2D or as arguments of apply, "
-                                   "parameters as uniforms",
-                                   t.text));
+        return fail(t,
+                    fmt::format("'{}' is not allowed at file scope: images come as sampler2D or as arguments of apply, "
+                                "parameters as uniforms",
+                                t.text));
       } else if (!t.is("highp") && !t.is("mediump") && !t.is("lowp") && !t.is("precise") && !t.is("invariant")) {
         break;
       }
     }
     if (has_layout && is_const) return constant(layout);
-    if (has_layout) return fail(*code_[layout], "layout is only known as layout(constant_id = N) const TYPE NAME = VALUE;");
+    if (has_layout)
+      return fail(*code_[layout], "layout is only known as layout(constant_id = N) const TYPE NAME = VALUE;");
     if (is_uniform) return uniform();
     if (token().is("struct")) return structure();
     if (!token().is_identifier() || token(1).is("(")) {
@@ -202,7 +148,8 @@ class Scanner {
                              code_[layout + 3]->is("=") && code_[layout + 4]->kind == TokenKind::number &&
                              code_[layout + 5]->is(")");
     if (!well_formed) return fail(head, "layout is only known as layout(constant_id = N) const TYPE NAME = VALUE;");
-    if (as_ == ScanAs::library) return fail(head, "a library declares no parameters; declare it in the shader and pass it on");
+    if (as_ == ScanAs::library)
+      return fail(head, "a library declares no parameters; declare it in the shader and pass it on");
     const std::string id(code_[layout + 4]->text);
     if (!constant_ids_.insert(id).second) return fail(head, fmt::format("constant_id {} is used twice", id));
     const auto type = param_type(token().text);
@@ -224,12 +171,15 @@ class Scanner {
       ++at_;
     }
     const auto value = literal(token(), *type);
-    if (!value) return fail(line(), fmt::format("the default of '{}' must be a literal of type {}", name.text, glsl_name(*type)));
+    if (!value)
+      return fail(line(), fmt::format("the default of '{}' must be a literal of type {}", name.text, glsl_name(*type)));
     ++at_;
-    if (!token().is(";")) return fail(line(), fmt::format("the default of '{}' must be one literal, then ';'", name.text));
+    if (!token().is(";"))
+      return fail(line(), fmt::format("the default of '{}' must be one literal, then ';'", name.text));
     ++at_;
     AFTERGLOW_CHECK(add_param({std::string(name.text), *type, true, negative ? -*value : *value, name.line}, name));
-    out_.edits.push_back({code_[begin_]->offset, code_[at_ - 1]->end(), static_cast<int>(out_.interface.params.size()) - 1});
+    out_.edits.push_back(
+        {code_[begin_]->offset, code_[at_ - 1]->end(), static_cast<int>(out_.interface.params.size()) - 1});
     return {};
   }
 
@@ -257,9 +207,11 @@ class Scanner {
   /// `uniform TYPE NAME, NAME;`, at the type.
   Result<void> uniform() {
     const Token type = token();
-    if (as_ == ScanAs::library) return fail(type, "a library declares no uniforms; declare it in the shader and pass it on");
+    if (as_ == ScanAs::library)
+      return fail(type, "a library declares no uniforms; declare it in the shader and pass it on");
     if (!type.is_identifier()) return fail(line(), "a type was expected after 'uniform'");
-    if (token(1).is("{")) return fail(type, fmt::format("uniform blocks are not supported ('{}'); write uniform TYPE NAME;", type.text));
+    if (token(1).is("{"))
+      return fail(type, fmt::format("uniform blocks are not supported ('{}'); write uniform TYPE NAME;", type.text));
     const bool sampler = type.is("sampler2D");
     const auto param = param_type(type.text);
     if (!sampler && !param) {
@@ -274,8 +226,11 @@ class Scanner {
       if (name.is("[")) return fail(name, "arrays of uniforms are not supported; declare each by its name");
       if (!name.is_identifier()) return fail(line(), "the uniform has no name");
       ++at_;
-      if (token().is("[")) return fail(name, fmt::format("'{}': arrays of uniforms are not supported; declare each by its name", name.text));
-      if (token().is("=")) return fail(name, fmt::format("'{}': a uniform has no default value; the effect gives it", name.text));
+      if (token().is("["))
+        return fail(name,
+                    fmt::format("'{}': arrays of uniforms are not supported; declare each by its name", name.text));
+      if (token().is("="))
+        return fail(name, fmt::format("'{}': a uniform has no default value; the effect gives it", name.text));
       if (sampler) {
         AFTERGLOW_CHECK(add_input({std::string(name.text), false, name.line}, name));
         AFTERGLOW_CHECK(add_name(name, false));
@@ -335,11 +290,14 @@ class Scanner {
     if (!body && !token().is(";")) return fail(name, fmt::format("'{{' or ';' was expected after {}(…)", name.text));
     const std::size_t arguments_end = at_ - 1;
     at_ = body ? after_closing(at_) : at_ + 1;
-    if (name.is("main")) return fail(name, "main is made by the engine; define vec4 apply(vec4 color) or vec4 sample_at(ivec2 pixel)");
-    if (is_builtin_function(name.text)) return fail(name, fmt::format("'{}' is a built-in function of GLSL; choose another name", name.text));
+    if (name.is("main"))
+      return fail(name, "main is made by the engine; define vec4 apply(vec4 color) or vec4 sample_at(ivec2 pixel)");
+    if (is_builtin_function(name.text))
+      return fail(name, fmt::format("'{}' is a built-in function of GLSL; choose another name", name.text));
     if (name.is("apply") || name.is("sample_at")) {
       if (as_ == ScanAs::library)
-        return fail(name, fmt::format("'{}' is defined in an included file; an include is a library of functions", name.text));
+        return fail(
+            name, fmt::format("'{}' is defined in an included file; an include is a library of functions", name.text));
       if (body) AFTERGLOW_CHECK(entry(name, result, arguments, arguments_end));
     }
     return add_name(name, false);
@@ -347,57 +305,19 @@ class Scanner {
 
   // ---- apply and sample_at ------------------------------------------------------------------------------------------
 
-  struct Argument {
-    const Token* type = nullptr;
-    const Token* name = nullptr;
-  };
-
-  Result<std::vector<Argument>> arguments(std::size_t open, std::size_t close) const {
-    std::vector<Argument> list;
-    std::size_t i = open + 1;
-    while (i < close) {
-      Argument argument;
-      while (i < close && !code_[i]->is(",")) {
-        const Token& t = *code_[i++];
-        if (t.is("out") || t.is("inout")) return fail(t, "arguments are read only: 'out' and 'inout' are not allowed here");
-        if (t.is("in") || t.is("const") || t.is("highp") || t.is("mediump") || t.is("lowp")) continue;
-        if (!t.is_identifier() || argument.name) return fail(t, "an argument is written TYPE NAME");
-        (argument.type ? argument.name : argument.type) = &t;
-      }
-      if (argument.type && argument.type->is("void") && !argument.name && list.empty() && i >= close) return list;
-      if (!argument.type || !argument.name) return fail(*code_[i - 1], "every argument needs a type and a name");
-      list.push_back(argument);
-      ++i;  // the comma
-    }
-    return list;
-  }
-
   Result<void> entry(const Token& name, const Token& result, std::size_t open, std::size_t close) {
     const bool apply = name.is("apply");
     const auto& other = apply ? sample_line_ : apply_line_;
     auto& own = apply ? apply_line_ : sample_line_;
-    if (other) return fail(name, fmt::format("a shader defines either apply or sample_at; the other is at line {}", *other));
+    if (other)
+      return fail(name, fmt::format("a shader defines either apply or sample_at; the other is at line {}", *other));
     if (own) return fail(name, fmt::format("'{}' is defined a second time; the first is at line {}", name.text, *own));
     own = name.line;
-    const char* form = apply ? "vec4 apply(vec4 color, vec4 NAME, …)" : "vec4 sample_at(ivec2 pixel)";
-    const auto wrong = [&](const Token& where, std::string what) {
-      Error error = fail(where, std::move(what));
-      error.allowed = form;
-      return error;
-    };
-    if (!result.is("vec4")) return wrong(name, fmt::format("{} must return vec4, not {}", name.text, result.text));
-    AFTERGLOW_TRY(auto list, arguments(open, close));
-    if (!apply) {
-      if (list.size() != 1 || !list[0].type->is("ivec2")) return wrong(name, "sample_at takes one argument, the target's pixel");
-      out_.interface.kind = ShaderKind::sample;
-      return {};
-    }
-    if (list.empty()) return wrong(name, "apply takes the colour as its first argument");
-    out_.interface.kind = ShaderKind::pixel;
-    for (const auto& argument : list)
-      if (!argument.type->is("vec4")) return wrong(*argument.type, fmt::format("argument '{}' of apply must be a vec4", argument.name->text));
-    for (std::size_t i = 1; i < list.size(); ++i)
-      AFTERGLOW_CHECK(add_input({std::string(list[i].name->text), true, list[i].name->line}, *list[i].name));
+    AFTERGLOW_TRY(const EntryPoint parsed,
+                  parse_entry_point(result, name, std::span(code_).subspan(open + 1, close - open - 1), file_));
+    out_.interface.kind = parsed.kind;
+    for (const auto& input : parsed.inputs)
+      AFTERGLOW_CHECK(add_input({std::string(input.text), true, input.line}, input));
     return {};
   }
 
@@ -433,14 +353,16 @@ class Scanner {
 
   Result<void> add_param(ShaderParam param, const Token& name) {
     if (!input_names_.insert(param.name).second) return fail(name, fmt::format("'{}' is declared twice", name.text));
-    if (out_.interface.params.size() >= kMaxParams) return fail(name, fmt::format("a shader has at most {} parameters", kMaxParams));
+    if (out_.interface.params.size() >= kMaxParams)
+      return fail(name, fmt::format("a shader has at most {} parameters", kMaxParams));
     out_.interface.params.push_back(std::move(param));
     return add_name(name, false);
   }
 
   Result<void> add_input(ShaderInput input, const Token& name) {
     if (!input_names_.insert(input.name).second) return fail(name, fmt::format("'{}' is declared twice", name.text));
-    if (out_.interface.inputs.size() >= kMaxInputs) return fail(name, fmt::format("a shader reads at most {} images", kMaxInputs));
+    if (out_.interface.inputs.size() >= kMaxInputs)
+      return fail(name, fmt::format("a shader reads at most {} images", kMaxInputs));
     out_.interface.inputs.push_back(std::move(input));
     return {};
   }
@@ -459,8 +381,6 @@ class Scanner {
   std::size_t at_ = 0;              ///< index into code_
   std::size_t begin_ = 0;           ///< where the declaration begins
   std::set<std::string> constant_ids_, input_names_, seen_;
-  std::vector<int> conditions_;   ///< lines of the #if that are open
-  std::vector<Token> undefined_;  ///< names in #undef
   std::optional<int> apply_line_, sample_line_;
 };
 

@@ -1,12 +1,12 @@
 // Finds what one file of GLSL declares at file scope, by its tokens. Internal to the room.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/result.h"
+#include "shader/directives.h"
 #include "shader/interface.h"
 #include "shader/token.h"
 
@@ -19,24 +19,12 @@ struct GlobalName {
   int line = 0;
 };
 
-/// `#include "name"`.
-struct IncludeLine {
-  std::string name;
-  int line = 0;
-};
-
-/// A range of the text that the assembler replaces: uniforms and includes vanish, constants get their value.
-struct Edit {
-  std::size_t begin = 0, end = 0;  ///< byte offsets
-  int constant = -1;               ///< index into ShaderInterface::params of the constant declared here; -1: vanishes
-};
-
 struct ShaderScan {
-  std::vector<Token> tokens;   ///< views of the scanned text
-  ShaderInterface interface;   ///< `kind` means nothing for a library
+  std::vector<Token> tokens;  ///< views of the scanned text
+  ShaderInterface interface;  ///< `kind` means nothing for a library
   std::vector<GlobalName> names;
   std::vector<IncludeLine> includes;
-  std::vector<Edit> edits;     ///< in order of the text
+  std::vector<Edit> edits;  ///< in order of the text
 };
 
 enum class ScanAs {

@@ -14,7 +14,8 @@ class Tokenizer {
 
   Result<std::vector<Token>> run() {
     if (text_.size() > kMaxShaderBytes)
-      return shader_error(file_, 0, fmt::format("the shader has {} bytes; at most {} are read", text_.size(), kMaxShaderBytes));
+      return shader_error(file_, 0,
+                          fmt::format("the shader has {} bytes; at most {} are read", text_.size(), kMaxShaderBytes));
     while (at_ < text_.size()) {
       AFTERGLOW_CHECK(step());
       if (tokens_.size() > kMaxTokens)
@@ -152,7 +153,9 @@ class Tokenizer {
       const char opening = c == ')' ? '(' : c == ']' ? '[' : '{';
       if (open_.empty()) return shader_error(file_, line_, fmt::format("'{}' closes nothing", c));
       if (open_.back().character != opening)
-        return shader_error(file_, line_, fmt::format("'{}' does not close the '{}' of line {}", c, open_.back().character, open_.back().line));
+        return shader_error(
+            file_, line_,
+            fmt::format("'{}' does not close the '{}' of line {}", c, open_.back().character, open_.back().line));
       open_.pop_back();
     }
     return {};
@@ -171,7 +174,8 @@ class Tokenizer {
     return {};
   }
 
-  /// Limits of what the compiler handles by recursion without brackets: long statements, `else if` chains, `if(a) if(b) …`.
+  /// Limits of what the compiler handles by recursion without brackets: long statements, `else if` chains, `if(a) if(b)
+  /// …`.
   Result<void> count(const Token& token) {
     if (in_directive_) return {};
     if (++statement_tokens_ > kMaxStatementTokens)
@@ -192,7 +196,8 @@ class Tokenizer {
     }
     const bool control = token.is("if") || token.is("for") || token.is("while") || token.is("do") || token.is("switch");
     if (control && ++control_words_ > kMaxChain)
-      return shader_error(file_, line_, fmt::format("more than {} control statements in one another without braces", kMaxChain));
+      return shader_error(file_, line_,
+                          fmt::format("more than {} control statements in one another without braces", kMaxChain));
     return {};
   }
 
@@ -229,6 +234,8 @@ Error shader_error(const std::string& file, int line, std::string message) {
   return error;
 }
 
-Result<std::vector<Token>> tokenize(std::string_view text, const std::string& file) { return Tokenizer(text, file).run(); }
+Result<std::vector<Token>> tokenize(std::string_view text, const std::string& file) {
+  return Tokenizer(text, file).run();
+}
 
 }  // namespace afterglow

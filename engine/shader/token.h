@@ -1,4 +1,5 @@
-// GLSL text cut into tokens: enough to find declarations and to rename identifiers, without a compiler. Internal to the room.
+// GLSL text cut into tokens: enough to find declarations and to rename identifiers, without a compiler. Internal to the
+// room.
 #pragma once
 
 #include <cstddef>
@@ -29,10 +30,11 @@ inline constexpr std::size_t kMaxShaderBytes = 256u << 10;  ///< one file
 inline constexpr std::size_t kMaxTokens = 64u << 10;        ///< one file
 inline constexpr int kMaxNesting = 64;                      ///< of (), [] and {} together
 inline constexpr int kMaxStatementTokens = 8192;            ///< between semicolons and braces
-inline constexpr int kMaxChain = 64;                        ///< `else if` in a row; control words without braces in a row
+inline constexpr int kMaxChain = 64;  ///< `else if` in a row; control words without braces in a row
 
 /// Cuts `text` into tokens; comments and white space are dropped, line continuations joined. `file` is for messages.
-/// Errors (script): unbalanced or too deeply nested brackets, unfinished comments, characters that GLSL does not have, limits.
+/// Errors (script): unbalanced or too deeply nested brackets, unfinished comments, characters that GLSL does not have,
+/// limits.
 Result<std::vector<Token>> tokenize(std::string_view text, const std::string& file);
 
 /// An error of kind script at a line of a file.

@@ -1,9 +1,8 @@
 #include "kernel_runner.h"
 
 #include <cstring>
-#include <stdexcept>
-
 #include <glm/gtc/packing.hpp>
+#include <stdexcept>
 
 #include "gpu/fullscreen_vertex.h"
 #include "gpu/image.h"
@@ -27,9 +26,12 @@ constexpr auto kDraw = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 constexpr auto kCopy = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
 
 GpuImage upload(const Device& device, const TestImage& image) {
-  auto gpu = need(GpuImage::create(device, {.name = "input", .size = image.size, .usage = VK_IMAGE_USAGE_SAMPLED_BIT, .tiling = VK_IMAGE_TILING_LINEAR},
-                                   HostAccess::write));
-  for (int y = 0; y < image.size.height; ++y) std::memcpy(gpu.row(y), image.at(0, y), static_cast<std::size_t>(image.size.width) * 16);
+  auto gpu = need(GpuImage::create(
+      device,
+      {.name = "input", .size = image.size, .usage = VK_IMAGE_USAGE_SAMPLED_BIT, .tiling = VK_IMAGE_TILING_LINEAR},
+      HostAccess::write));
+  for (int y = 0; y < image.size.height; ++y)
+    std::memcpy(gpu.row(y), image.at(0, y), static_cast<std::size_t>(image.size.width) * 16);
   gpu.memory().flush();
   return gpu;
 }
@@ -46,10 +48,12 @@ const KernelRunner::Pipeline& KernelRunner::pipeline(const CompiledKernel& kerne
   auto& made = pipelines_[{kernel.hash, format}];
   if (made) return *made;
   made = std::make_unique<Pipeline>();
-  made->layout = need(create_draw_layout(*device_, {kernel.block_size > 0, static_cast<int>(kernel.images.size()), kPushConstantBytes}));
+  made->layout = need(create_draw_layout(
+      *device_, {kernel.block_size > 0, static_cast<int>(kernel.images.size()), kPushConstantBytes}));
   made->vertex = need(create_shader_module(*device_, kFullscreenVertex, "vertex"));
   made->fragment = need(create_shader_module(*device_, kernel.spirv, "kernel"));
-  made->pipeline = need(create_draw_pipeline(*device_, made->layout, made->vertex.get(), made->fragment.get(), format, "kernel"));
+  made->pipeline =
+      need(create_draw_pipeline(*device_, made->layout, made->vertex.get(), made->fragment.get(), format, "kernel"));
   return *made;
 }
 
@@ -57,40 +61,50 @@ KernelRunner::KernelRunner() {
   setenv("XDG_RUNTIME_DIR", "/tmp", 0);
   Diagnostics diagnostics;
   device_ = need(Device::create({.device = "auto", .validate = true}, diagnostics));
-  const VkCommandPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, .queueFamilyIndex = device_->queue_family()};
+  const VkCommandPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                     .queueFamilyIndex = device_->queue_family()};
   need(vkCreateCommandPool(device_->handle(), &info, nullptr, &pool_));
 }
 
 KernelRunner::~KernelRunner() { vkDestroyCommandPool(device_->handle(), pool_, nullptr); }
 
-TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<TestImage>& images, Size target, const std::vector<std::byte>& block,
-                            bool half_target) {
+TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<TestImage>& images, Size target,
+                            const std::vector<std::byte>& block, bool half_target) {
   const VkDevice device = device_->handle();
   const VkFormat format = half_target ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
   const std::size_t pixel_bytes = half_target ? 8 : 16;
-  if (images.size() != kernel.images.size() || block.size() < kernel.block_size) throw std::runtime_error("wrong inputs");
+  if (images.size() != kernel.images.size() || block.size() < kernel.block_size)
+    throw std::runtime_error("wrong inputs");
 
   std::vector<GpuImage> inputs;
   for (const auto& image : images) inputs.push_back(upload(*device_, image));
-  const auto output = need(GpuImage::create(*device_, {.name = "target", .size = target, .format = format,
-                                                       .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
-  const auto staging = need(Buffer::create(*device_, static_cast<VkDeviceSize>(target.area()) * pixel_bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                           HostAccess::read, "staging"));
-  const auto uniforms = need(Buffer::create(*device_, std::max<std::size_t>(block.size(), 16), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, HostAccess::write, "block"));
+  const auto output = need(
+      GpuImage::create(*device_, {.name = "target",
+                                  .size = target,
+                                  .format = format,
+                                  .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
+  const auto staging = need(Buffer::create(*device_, static_cast<VkDeviceSize>(target.area()) * pixel_bytes,
+                                           VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::read, "staging"));
+  const auto uniforms = need(Buffer::create(*device_, std::max<std::size_t>(block.size(), 16),
+                                            VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, HostAccess::write, "block"));
   std::memcpy(uniforms.data(), block.data(), block.size());
   uniforms.memory().flush();
 
   const auto& [layout, vertex, fragment, pipeline] = this->pipeline(kernel, format);
   const auto sampler = need(create_sampler(*device_, VK_FILTER_LINEAR));
 
-  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1}, {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 16}};
-  const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1, .poolSizeCount = 2, .pPoolSizes = sizes};
+  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 16}};
+  const VkDescriptorPoolCreateInfo pool_info{
+      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1, .poolSizeCount = 2, .pPoolSizes = sizes};
   VkDescriptorPool raw_pool = VK_NULL_HANDLE;
   need(vkCreateDescriptorPool(device, &pool_info, nullptr, &raw_pool));
   const DescriptorPoolHandle descriptors(device, raw_pool);
   const VkDescriptorSetLayout set_layout = layout.set.get();
-  const VkDescriptorSetAllocateInfo set_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, .descriptorPool = raw_pool,
-                                             .descriptorSetCount = 1, .pSetLayouts = &set_layout};
+  const VkDescriptorSetAllocateInfo set_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                             .descriptorPool = raw_pool,
+                                             .descriptorSetCount = 1,
+                                             .pSetLayouts = &set_layout};
   VkDescriptorSet set = VK_NULL_HANDLE;
   need(vkAllocateDescriptorSets(device, &set_info, &set));
   const VkDescriptorBufferInfo buffer{uniforms.get(), 0, VK_WHOLE_SIZE};
@@ -98,47 +112,67 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
   for (const auto& input : inputs) views.push_back({sampler.get(), input.view(), kRead});
   std::vector<VkWriteDescriptorSet> writes;
   const auto write = [&](std::uint32_t binding, VkDescriptorType type) -> VkWriteDescriptorSet& {
-    writes.push_back({.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, .dstSet = set, .dstBinding = binding, .descriptorCount = 1, .descriptorType = type});
+    writes.push_back({.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                      .dstSet = set,
+                      .dstBinding = binding,
+                      .descriptorCount = 1,
+                      .descriptorType = type});
     return writes.back();
   };
   if (kernel.block_size > 0) write(0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER).pBufferInfo = &buffer;
-  for (std::size_t i = 0; i < views.size(); ++i) write(static_cast<std::uint32_t>(i) + 1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER).pImageInfo = &views[i];
+  for (std::size_t i = 0; i < views.size(); ++i)
+    write(static_cast<std::uint32_t>(i) + 1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER).pImageInfo = &views[i];
   vkUpdateDescriptorSets(device, static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
 
-  const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, .commandPool = pool_,
-                                             .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY, .commandBufferCount = 1};
+  const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                             .commandPool = pool_,
+                                             .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                             .commandBufferCount = 1};
   VkCommandBuffer commands = VK_NULL_HANDLE;
   need(vkAllocateCommandBuffers(device, &allocate, &commands));
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   need(vkBeginCommandBuffer(commands, &begin));
   std::vector<VkImageMemoryBarrier2> barriers;
   for (const auto& input : inputs)
-    barriers.push_back(image_barrier(input.get(), VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT, VK_IMAGE_LAYOUT_PREINITIALIZED,
-                                     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, kRead));
+    barriers.push_back(image_barrier(input.get(), VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT,
+                                     VK_IMAGE_LAYOUT_PREINITIALIZED, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, kRead));
   barriers.push_back(image_barrier(output.get(), VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_UNDEFINED,
-                                   VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, kDraw));
+                                   VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                   VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, kDraw));
   record_barriers(commands, barriers.data(), barriers.size());
   const VkRect2D area{{0, 0}, {static_cast<std::uint32_t>(target.width), static_cast<std::uint32_t>(target.height)}};
-  const VkRenderingAttachmentInfo attachment{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO, .imageView = output.view(), .imageLayout = kDraw,
-                                             .loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE, .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
-  const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO, .renderArea = area, .layerCount = 1, .colorAttachmentCount = 1, .pColorAttachments = &attachment};
+  const VkRenderingAttachmentInfo attachment{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                             .imageView = output.view(),
+                                             .imageLayout = kDraw,
+                                             .loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                                             .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
+  const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                  .renderArea = area,
+                                  .layerCount = 1,
+                                  .colorAttachmentCount = 1,
+                                  .pColorAttachments = &attachment};
   vkCmdBeginRendering(commands, &rendering);
   const VkViewport viewport{0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0, 1};
   vkCmdSetViewport(commands, 0, 1, &viewport);
   vkCmdSetScissor(commands, 0, 1, &area);
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.get());
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout.pipeline.get(), 0, 1, &set, 0, nullptr);
-  const int push[4] = {target.width, target.height, images.empty() ? 0 : images[0].size.width, images.empty() ? 0 : images[0].size.height};
+  const int push[4] = {target.width, target.height, images.empty() ? 0 : images[0].size.width,
+                       images.empty() ? 0 : images[0].size.height};
   vkCmdPushConstants(commands, layout.pipeline.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push, push);
   vkCmdDraw(commands, 3, 1, 0, 0);
   vkCmdEndRendering(commands);
-  const auto to_copy = image_barrier(output.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, kDraw,
-                                     VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, kCopy);
+  const auto to_copy = image_barrier(output.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, kDraw, VK_PIPELINE_STAGE_2_COPY_BIT,
+                                     VK_ACCESS_2_TRANSFER_READ_BIT, kCopy);
   record_barriers(commands, &to_copy, 1);
-  const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, .imageExtent = {area.extent.width, area.extent.height, 1}};
+  const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                 .imageExtent = {area.extent.width, area.extent.height, 1}};
   vkCmdCopyImageToBuffer(commands, output.get(), kCopy, staging.get(), 1, &region);
   need(vkEndCommandBuffer(commands));
-  const VkSubmitInfo submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands};
+  const VkSubmitInfo submit{
+      .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands};
   need(vkQueueSubmit(device_->queue(), 1, &submit, VK_NULL_HANDLE));
   need(vkQueueWaitIdle(device_->queue()));
   vkFreeCommandBuffers(device, pool_, 1, &commands);

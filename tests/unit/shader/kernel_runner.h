@@ -25,9 +25,10 @@ class KernelRunner {
   KernelRunner();
   ~KernelRunner();
 
-  /// `images` in the order of the kernel's slots; `block` is the uniform block. The target is RGBA32F, or RGBA16F for half storage.
-  TestImage run(const CompiledKernel& kernel, const std::vector<TestImage>& images, Size target, const std::vector<std::byte>& block = {},
-                bool half_target = false);
+  /// `images` in the order of the kernel's slots; `block` is the uniform block. The target is RGBA32F, or RGBA16F for
+  /// half storage.
+  TestImage run(const CompiledKernel& kernel, const std::vector<TestImage>& images, Size target,
+                const std::vector<std::byte>& block = {}, bool half_target = false);
   int validation_errors() const { return device_->validation_errors(); }
 
  private:

@@ -1,13 +1,13 @@
 // A folder of shader files that lives as long as a test, and short ways to use it.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
-
-#include <gtest/gtest.h>
 
 #include "shader/kernel.h"
 #include "shader/library.h"
@@ -49,7 +49,8 @@ class ShaderFiles {
   }
 
   /// The same for a shader that must be right.
-  KernelStage stage(const std::string& name, const std::string& text, std::map<std::string, double> constants = {}) const {
+  KernelStage stage(const std::string& name, const std::string& text,
+                    std::map<std::string, double> constants = {}) const {
     auto source = find(name, text);
     if (!source) {
       ADD_FAILURE() << source.error().text();

@@ -1,10 +1,10 @@
 // KernelCompiler: reflection, errors, caches in memory and on disk, threads.
-#include <fstream>
-#include <thread>
-
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include <fstream>
+#include <thread>
 
 #include "core/file.h"
 #include "shader/check.h"
@@ -104,7 +104,9 @@ class KernelCache : public testing::Test {
     const auto kernel = compile(counters);
     if (!kernel.ok()) return kernel.error().text();
     if (spirv_.empty()) spirv_ = kernel->spirv;
-    if (kernel->spirv != spirv_ || kernel->params.size() != 4 || kernel->params[3].offset != 32 || kernel->block_size != 48) return "wrong kernel";
+    if (kernel->spirv != spirv_ || kernel->params.size() != 4 || kernel->params[3].offset != 32 ||
+        kernel->block_size != 48)
+      return "wrong kernel";
     return counters.compiled ? "compiled" : counters.from_disk ? "disk" : "memory";
   }
   fs::path only_file() {
@@ -130,7 +132,8 @@ TEST_F(KernelCache, EveryTruncationIsRebuilt) {
   EXPECT_EQ(origin(), "compiled");
   const auto file = only_file();
   const auto whole = read_file(file).value();
-  for (const std::size_t length : {std::size_t{0}, std::size_t{3}, std::size_t{40}, std::size_t{100}, whole.size() / 2, whole.size() - 1}) {
+  for (const std::size_t length :
+       {std::size_t{0}, std::size_t{3}, std::size_t{40}, std::size_t{100}, whole.size() / 2, whole.size() - 1}) {
     std::ofstream(file, std::ios::binary) << whole.substr(0, length);
     EXPECT_EQ(origin(), "compiled") << length;
     EXPECT_EQ(read_file(file).value(), whole) << "the file is mended";
@@ -198,7 +201,9 @@ TEST(KernelCompiler, EightThreadsShareOneCompiler) {
   constexpr int kThreads = 8, kShaders = 6;
   std::vector<KernelStage> stages;
   for (int i = 0; i < kShaders; ++i)
-    stages.push_back(files.stage("t/s" + std::to_string(i), "uniform float a" + std::to_string(i) + ";\nvec4 apply(vec4 c) { return c * a" + std::to_string(i) + "; }\n"));
+    stages.push_back(files.stage(
+        "t/s" + std::to_string(i),
+        "uniform float a" + std::to_string(i) + ";\nvec4 apply(vec4 c) { return c * a" + std::to_string(i) + "; }\n"));
   const auto bad = files.stage("t/bad", "\nvec4 apply(vec4 c) { return d; }\n");
   KernelCompiler compiler(files.root() / "cache");
   std::vector<std::vector<std::uint32_t>> spirv(kThreads * kShaders);
@@ -240,7 +245,10 @@ TEST(CheckShader, PixelAndSampleShadersAlone) {
   ShaderFiles files;
   KernelCompiler compiler{fs::path()};
   EXPECT_TRUE(check_shader(compiler, files.stage("a", kThreshold).shader, {{"count", 4}}).ok());
-  EXPECT_TRUE(check_shader(compiler, files.stage("b", "uniform sampler2D d;\nvec4 sample_at(ivec2 p) { return fetch(d, p); }\n").shader).ok());
+  EXPECT_TRUE(
+      check_shader(compiler,
+                   files.stage("b", "uniform sampler2D d;\nvec4 sample_at(ivec2 p) { return fetch(d, p); }\n").shader)
+          .ok());
   const auto bad = check_shader(compiler, files.stage("c", "vec4 sample_at(ivec2 p) {\n return p;\n}\n").shader);
   ASSERT_FALSE(bad.ok());
   EXPECT_EQ(bad.error().kind, ErrorKind::script);

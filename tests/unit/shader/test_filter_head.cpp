@@ -1,7 +1,7 @@
 // The GLSL made for filters: how many texels it reads, that it is valid SPIR-V for every combination, what is refused.
-#include <cmath>
-
 #include <gmock/gmock.h>
+
+#include <cmath>
 #include <spirv-tools/libspirv.hpp>
 
 #include "shader_files.h"
@@ -88,7 +88,8 @@ TEST(FilterHead, TheSamplerIsUsedOnlyWhereItSavesReads) {
   EXPECT_EQ(fetches(kernel({kCubic}, any, any, true)), 4);
   EXPECT_EQ(fetches(kernel({kNearest}, any, any, true)), 0);
   EXPECT_EQ(fetches(kernel({kLinear, gaussian_halving(), {{0, 1}}}, half, half, true)), 9);
-  const Filter nine{kLinear, {{0, 1}}, {{-4, 66}, {-3, 220}, {-2, 495}, {-1, 792}, {0, 924}, {1, 792}, {2, 495}, {3, 220}, {4, 66}}};
+  const Filter nine{
+      kLinear, {{0, 1}}, {{-4, 66}, {-3, 220}, {-2, 495}, {-1, 792}, {0, 924}, {1, 792}, {2, 495}, {3, 220}, {4, 66}}};
   EXPECT_EQ(fetches(kernel(nine, same, same, true)), 5) << "neighbours in pairs";
   EXPECT_EQ(fetches(kernel(nine, same, same, false)), 0);
   EXPECT_EQ(fetches(kernel(kPlus, half, half, true)), 4);
@@ -119,7 +120,8 @@ TEST(FilterHead, UnusableFiltersAreRefused) {
   EXPECT_THAT(message({kLinear, {{0, INFINITY}}, {{0, 1}}}), HasSubstr("finite weights"));
   EXPECT_THAT(message({kLinear, {{NAN, 1}}, {{0, 1}}}), HasSubstr("offsets of at most 65536"));
   EXPECT_THAT(message({kLinear, {{0, 1}}, {{1e9, 1}}}), HasSubstr("offsets of at most 65536"));
-  EXPECT_THAT(message({kLinear, {{0, 1}}, {{0, 1}}, {{0, 0, 1}, {0, -INFINITY, 1}}}), HasSubstr("offsets of at most 65536"));
+  EXPECT_THAT(message({kLinear, {{0, 1}}, {{0, 1}}, {{0, 0, 1}, {0, -INFINITY, 1}}}),
+              HasSubstr("offsets of at most 65536"));
   Filter many{kLinear, {}, {{0, 1}}};
   for (int i = 0; i < 300; ++i) many.x.push_back({i * 1.0, 1});
   EXPECT_THAT(message(many), HasSubstr("the filter reads 301 texels; allowed: at most 256"));
@@ -141,9 +143,14 @@ TEST(FilterHead, AFilterAndASampleStageAreTwoHeads) {
 /// Every kind of kernel is valid SPIR-V for Vulkan 1.3.
 TEST(Spirv, EveryHeadWithAndWithoutStagesIsValid) {
   ShaderFiles files;
-  const auto first = files.stage("a", "uniform float t;\nuniform bool b;\nvec4 apply(vec4 c, vec4 high) { return b ? c * t : high; }\n");
-  const auto second = files.stage("b", "uniform sampler2D lut;\nlayout(constant_id = 0) const int n = 3;\nvec4 apply(vec4 c) { for (int i = 0; i < n; ++i) c += fetch(lut, ivec2(i)); return c; }\n");
-  const auto sample = files.stage("s", "uniform sampler2D d;\nvec4 sample_at(ivec2 p) { return sample_scaled(d, p, ivec2(1)) + fetch_linear(d, vec2(p)); }\n");
+  const auto first = files.stage(
+      "a", "uniform float t;\nuniform bool b;\nvec4 apply(vec4 c, vec4 high) { return b ? c * t : high; }\n");
+  const auto second = files.stage("b",
+                                  "uniform sampler2D lut;\nlayout(constant_id = 0) const int n = 3;\nvec4 apply(vec4 "
+                                  "c) { for (int i = 0; i < n; ++i) c += fetch(lut, ivec2(i)); return c; }\n");
+  const auto sample = files.stage("s",
+                                  "uniform sampler2D d;\nvec4 sample_at(ivec2 p) { return sample_scaled(d, p, "
+                                  "ivec2(1)) + fetch_linear(d, vec2(p)); }\n");
   std::vector<KernelDesc> heads(1);
   heads.emplace_back().sample = sample;
   for (const auto interpolation : {kNearest, kLinear, kCubic})
@@ -151,12 +158,18 @@ TEST(Spirv, EveryHeadWithAndWithoutStagesIsValid) {
       for (const auto ratio_y : {any, same, half, twice})
         for (const bool hardware : {false, true}) {
           heads.push_back(kernel({interpolation, {{-1.25, 0.5}, {0, 0.5}}, {{0, 1}}}, ratio_x, ratio_y, hardware));
-          if (ratio_x == ratio_y) heads.push_back(kernel({interpolation, {{0, 1}}, {{0, 1}}, {{0.5, -1, 0.5}, {1, 0, 0.5}}}, ratio_x, ratio_y, hardware));
-          if (ratio_x == ratio_y) heads.push_back(kernel({interpolation, gaussian_halving(), gaussian_halving()}, ratio_x, ratio_y, hardware));
+          if (ratio_x == ratio_y)
+            heads.push_back(
+                kernel({interpolation, {{0, 1}}, {{0, 1}}, {{0.5, -1, 0.5}, {1, 0, 0.5}}}, ratio_x, ratio_y, hardware));
+          if (ratio_x == ratio_y)
+            heads.push_back(
+                kernel({interpolation, gaussian_halving(), gaussian_halving()}, ratio_x, ratio_y, hardware));
         }
   spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
   std::string problems;
-  tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* message) { problems += std::string(message) + "\n"; });
+  tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* message) {
+    problems += std::string(message) + "\n";
+  });
   KernelCompiler compiler{std::filesystem::path()};
   int valid = 0;
   for (std::size_t i = 0; i < heads.size(); ++i) {

@@ -1,7 +1,7 @@
 // Text that is meant to hurt: it ends in one error, quickly, or compiles; never in a crash.
-#include <random>
-
 #include <gmock/gmock.h>
+
+#include <random>
 
 #include "core/file.h"
 #include "shader/check.h"
@@ -34,7 +34,8 @@ std::string in_apply(const std::string& text) { return "vec4 apply(vec4 c) {\n" 
 
 TEST(Hostile, NestingIsLimited) {
   EXPECT_THAT(outcome(in_apply(repeat("{", 5000) + repeat("}", 5000))), HasSubstr("nested more than 64 deep"));
-  EXPECT_THAT(outcome(in_apply("c *= " + repeat("(", 5000) + "1.0" + repeat(")", 5000) + ";")), HasSubstr("nested more than 64 deep"));
+  EXPECT_THAT(outcome(in_apply("c *= " + repeat("(", 5000) + "1.0" + repeat(")", 5000) + ";")),
+              HasSubstr("nested more than 64 deep"));
   EXPECT_THAT(outcome("#define D " + repeat("(", 5000) + "\n" + kApply), HasSubstr("nested more than 64 deep"));
   EXPECT_EQ(outcome(in_apply("c *= " + repeat("(", 60) + "1.0" + repeat(")", 60) + ";")), "ok");
 }
@@ -44,24 +45,39 @@ TEST(Hostile, LongChainsAreLimited) {
   EXPECT_THAT(outcome(in_apply("c *= " + repeat("-", 20000) + "1.0;")), HasSubstr("statement has more than"));
   EXPECT_THAT(outcome(in_apply(repeat("if (c.r > 0.0) ", 500) + "c.r = 1.0;")), HasSubstr("without braces"));
   EXPECT_THAT(outcome(in_apply(repeat("for (;;) ", 500) + "c.r = 1.0;")), HasSubstr("without braces"));
-  EXPECT_THAT(outcome(in_apply("if (c.r > 0.0) c.r = 1.0;" + repeat(" else if (c.r > 0.0) c.r = 1.0;", 500))), HasSubstr("'else' in a row"));
-  EXPECT_THAT(outcome(in_apply("if (c.r > 0.0) { c.r = 1.0; }" + repeat(" else if (c.r > 0.0) { c.r = 1.0; }", 500))), HasSubstr("'else' in a row"));
-  EXPECT_EQ(outcome(in_apply(repeat("if (c.r > 0.0) c.r = 1.0; else c.g = 2.0;\n", 200))), "ok") << "one after the other is no chain";
+  EXPECT_THAT(outcome(in_apply("if (c.r > 0.0) c.r = 1.0;" + repeat(" else if (c.r > 0.0) c.r = 1.0;", 500))),
+              HasSubstr("'else' in a row"));
+  EXPECT_THAT(outcome(in_apply("if (c.r > 0.0) { c.r = 1.0; }" + repeat(" else if (c.r > 0.0) { c.r = 1.0; }", 500))),
+              HasSubstr("'else' in a row"));
+  EXPECT_EQ(outcome(in_apply(repeat("if (c.r > 0.0) c.r = 1.0; else c.g = 2.0;\n", 200))), "ok")
+      << "one after the other is no chain";
 }
 
 TEST(Hostile, ExpressionsAtTheLimitCompile) {
   EXPECT_EQ(outcome(in_apply("float x = 1.0" + repeat(" + c.r", kMaxStatementTokens / 4 - 4) + "; c *= x;")), "ok");
   EXPECT_EQ(outcome(in_apply("float x = " + repeat("- ", kMaxStatementTokens - 64) + "c.r; c *= x;")), "ok");
-  EXPECT_EQ(outcome(in_apply("float x = " + repeat("c.r > 0.0 ? 1.0 : ", kMaxStatementTokens / 8 - 8) + "2.0; c *= x;")), "ok");
+  EXPECT_EQ(
+      outcome(in_apply("float x = " + repeat("c.r > 0.0 ? 1.0 : ", kMaxStatementTokens / 8 - 8) + "2.0; c *= x;")),
+      "ok");
 }
 
 TEST(Hostile, SizesAreLimited) {
   EXPECT_THAT(outcome(repeat("// some text\n", 30000) + kApply), HasSubstr("larger than 262144 bytes"));
   EXPECT_THAT(outcome(repeat("int a;", 30000) + kApply), HasSubstr("more than 65536 tokens"));
   EXPECT_THAT(outcome("float " + std::string(2000, 'x') + ";\n" + kApply), HasSubstr("longer than 128 characters"));
-  EXPECT_THAT(outcome("uniform float a0" + [] { std::string s; for (int i = 1; i < 300; ++i) s += ", a" + std::to_string(i); return s; }() + ";\n" + kApply),
+  EXPECT_THAT(outcome("uniform float a0" +
+                      [] {
+                        std::string s;
+                        for (int i = 1; i < 300; ++i) s += ", a" + std::to_string(i);
+                        return s;
+                      }() +
+                      ";\n" + kApply),
               HasSubstr("at most 256 parameters"));
-  EXPECT_THAT(outcome([] { std::string s; for (int i = 0; i < 17; ++i) s += "uniform sampler2D t" + std::to_string(i) + ";\n"; return s; }() + kApply),
+  EXPECT_THAT(outcome([] {
+                std::string s;
+                for (int i = 0; i < 17; ++i) s += "uniform sampler2D t" + std::to_string(i) + ";\n";
+                return s;
+              }() + kApply),
               HasSubstr("reads at most 16 images"));
 }
 
@@ -69,24 +85,35 @@ TEST(Hostile, MacrosThatExplodeAreRefused) {
   std::string object = "#define M0 1.0 + 1.0\n", function = "#define F0(x) x + x\n";
   for (int i = 1; i < 40; ++i) {
     object += "#define M" + std::to_string(i) + " M" + std::to_string(i - 1) + " + M" + std::to_string(i - 1) + "\n";
-    function += "#define F" + std::to_string(i) + "(x) F" + std::to_string(i - 1) + "(x) + F" + std::to_string(i - 1) + "(x)\n";
+    function +=
+        "#define F" + std::to_string(i) + "(x) F" + std::to_string(i - 1) + "(x) + F" + std::to_string(i - 1) + "(x)\n";
   }
   EXPECT_THAT(outcome(object + in_apply("c *= M39;")), HasSubstr("macros expand to more than"));
   EXPECT_THAT(outcome(function + in_apply("c *= F39(1.0);")), HasSubstr("macros expand to more than"));
-  EXPECT_THAT(outcome("#define D(x) ((x) + (x))\n" + in_apply("c *= " + repeat("D(", 40) + "1.0" + repeat(")", 40) + ";")), HasSubstr("macros expand to more than"));
-  EXPECT_EQ(outcome("#define D(x) ((x) + (x))\n#define E D(2.0) * D(3.0)\n" + in_apply("c *= D(D(D(1.0))) * E;")), "ok");
-  EXPECT_EQ(outcome("#define A B\n#define B A\nconst float A = 1.0;\n" + in_apply("c *= A;")), "ok") << "a macro is not expanded within itself";
+  EXPECT_THAT(
+      outcome("#define D(x) ((x) + (x))\n" + in_apply("c *= " + repeat("D(", 40) + "1.0" + repeat(")", 40) + ";")),
+      HasSubstr("macros expand to more than"));
+  EXPECT_EQ(outcome("#define D(x) ((x) + (x))\n#define E D(2.0) * D(3.0)\n" + in_apply("c *= D(D(D(1.0))) * E;")),
+            "ok");
+  EXPECT_EQ(outcome("#define A B\n#define B A\nconst float A = 1.0;\n" + in_apply("c *= A;")), "ok")
+      << "a macro is not expanded within itself";
 }
 
 TEST(Hostile, MacrosWhoseGrowthIsHiddenAreRefused) {
-  EXPECT_THAT(outcome("#define OPEN (\n" + std::string(kApply)), HasSubstr(":1: error: the brackets in macro 'OPEN' are not balanced"));
-  EXPECT_THAT(outcome("#define CLOSE )(\n" + std::string(kApply)), HasSubstr("the brackets in macro 'CLOSE' are not balanced"));
-  EXPECT_THAT(outcome("#define F(x) x x\n#define G F\n" + in_apply("c *= G(1.0);")), HasSubstr(":2: error: macro 'F' needs its arguments behind it"));
-  EXPECT_THAT(outcome("#define F(x) x x\n#define NONE\n" + in_apply("c *= F NONE (1.0);")), HasSubstr(":4: error: macro 'F' needs its arguments behind it"));
-  EXPECT_THAT(outcome("#define F(x) x\n#define F 1\n" + in_apply("c *= F(1.0);")), HasSubstr("both with and without arguments"));
+  EXPECT_THAT(outcome("#define OPEN (\n" + std::string(kApply)),
+              HasSubstr(":1: error: the brackets in macro 'OPEN' are not balanced"));
+  EXPECT_THAT(outcome("#define CLOSE )(\n" + std::string(kApply)),
+              HasSubstr("the brackets in macro 'CLOSE' are not balanced"));
+  EXPECT_THAT(outcome("#define F(x) x x\n#define G F\n" + in_apply("c *= G(1.0);")),
+              HasSubstr(":2: error: macro 'F' needs its arguments behind it"));
+  EXPECT_THAT(outcome("#define F(x) x x\n#define NONE\n" + in_apply("c *= F NONE (1.0);")),
+              HasSubstr(":4: error: macro 'F' needs its arguments behind it"));
+  EXPECT_THAT(outcome("#define F(x) x\n#define F 1\n" + in_apply("c *= F(1.0);")),
+              HasSubstr("both with and without arguments"));
   ShaderFiles files;
   files.write("lib/grow.glsl", "#define GROW(x) x + x\n");
-  const auto source = files.find("a", "#include \"lib/grow.glsl\"\n" + in_apply("c *= " + repeat("GROW(", 30) + "1.0" + repeat(")", 30) + ";"));
+  const auto source = files.find(
+      "a", "#include \"lib/grow.glsl\"\n" + in_apply("c *= " + repeat("GROW(", 30) + "1.0" + repeat(")", 30) + ";"));
   ASSERT_FALSE(source.ok());
   EXPECT_THAT(source.error().message, HasSubstr("macros expand to more than"));
 }
@@ -95,7 +122,8 @@ TEST(Hostile, IncludesAreLimited) {
   ShaderFiles files;
   for (int i = 0; i < 100; ++i)
     files.write("lib/deep" + std::to_string(i) + ".glsl", "#include \"lib/deep" + std::to_string(i + 1) + ".glsl\"\n");
-  EXPECT_THAT(files.find("a", std::string("#include \"lib/deep0.glsl\"\n") + kApply).error().text(), HasSubstr("nested more than 16 deep"));
+  EXPECT_THAT(files.find("a", std::string("#include \"lib/deep0.glsl\"\n") + kApply).error().text(),
+              HasSubstr("nested more than 16 deep"));
   std::string many;
   for (int i = 0; i < 100; ++i) {
     files.write("lib/wide" + std::to_string(i) + ".glsl", "");
@@ -115,12 +143,48 @@ TEST(Hostile, RandomEditsOfRealShaders) {
   SearchPath search;
   search.installation = AFTERGLOW_PROJECT_FOLDER;
   ShaderLibrary library(search);
-  std::vector<std::string> texts = {"#define A(x) x\n#if 1\nuniform float t;\n#endif\nlayout(constant_id = 0) const int n = 1;\nstruct S { float a[2]; };\n"
-                                    "vec4 apply(vec4 c, vec4 h) { S s; return A(c) * t + h * s.a[n]; }\n"};
+  std::vector<std::string> texts = {
+      "#define A(x) x\n#if 1\nuniform float t;\n#endif\nlayout(constant_id = 0) const int n = 1;\nstruct S { float "
+      "a[2]; };\n"
+      "vec4 apply(vec4 c, vec4 h) { S s; return A(c) * t + h * s.a[n]; }\n"};
   for (const auto& name : library.names())
     if (const auto source = library.find(name); source.ok()) texts.push_back((*source)->text);
-  const std::string tokens[] = {"(", ")", "{", "}", "[", ";", ",", "#", "\n#if ", "\n#endif\n", "\"", "/*", "*/", "//", "\\\n", "uniform ", "struct ", "layout(", "const ", "apply", "vec4 ",
-                                "ag_", "\n#define X ", "X", "0x", "1e", ".", "\r", "\xff", std::string(1, '\0'), "sampler2D ", "constant_id=", "\n#include \"lib/color.glsl\"\n", "-", "?", ":"};
+  const std::string tokens[] = {"(",
+                                ")",
+                                "{",
+                                "}",
+                                "[",
+                                ";",
+                                ",",
+                                "#",
+                                "\n#if ",
+                                "\n#endif\n",
+                                "\"",
+                                "/*",
+                                "*/",
+                                "//",
+                                "\\\n",
+                                "uniform ",
+                                "struct ",
+                                "layout(",
+                                "const ",
+                                "apply",
+                                "vec4 ",
+                                "ag_",
+                                "\n#define X ",
+                                "X",
+                                "0x",
+                                "1e",
+                                ".",
+                                "\r",
+                                "\xff",
+                                std::string(1, '\0'),
+                                "sampler2D ",
+                                "constant_id=",
+                                "\n#include \"lib/color.glsl\"\n",
+                                "-",
+                                "?",
+                                ":"};
   std::mt19937 random(2024);
   ShaderFiles files;
   files.write("lib/color.glsl", read_file(search.installation / "shaders/lib/color.glsl").value());
@@ -131,10 +195,18 @@ TEST(Hostile, RandomEditsOfRealShaders) {
     for (unsigned edits = 1 + random() % 4; edits > 0; --edits) {
       const std::size_t at = random() % (text.size() + 1);
       switch (random() % 4) {
-        case 0: text.insert(at, tokens[random() % std::size(tokens)]); break;
-        case 1: text.erase(at, random() % 12); break;
-        case 2: text.insert(at, text.substr(random() % text.size(), random() % 60)); break;
-        default: text.resize(std::max<std::size_t>(at, 1)); break;
+        case 0:
+          text.insert(at, tokens[random() % std::size(tokens)]);
+          break;
+        case 1:
+          text.erase(at, random() % 12);
+          break;
+        case 2:
+          text.insert(at, text.substr(random() % text.size(), random() % 60));
+          break;
+        default:
+          text.resize(std::max<std::size_t>(at, 1));
+          break;
       }
     }
     const auto source = files.find("fuzz", text);

@@ -62,7 +62,9 @@ class Join : public testing::Test {
  protected:
   void SetUp() override {
     files_.write("lib/shared.glsl", "#define PI 3.14159\nfloat shared_curve(float x) { return x * PI; }\n");
-    files_.write("lib/other.glsl", "const float PI = 3.0;\nfloat shared_helper() { return PI; }\nfloat shared_curve_2() { return 1.0; }\n");
+    files_.write(
+        "lib/other.glsl",
+        "const float PI = 3.0;\nfloat shared_helper() { return PI; }\nfloat shared_curve_2() { return 1.0; }\n");
   }
   ShaderFiles files_;
 };
@@ -99,7 +101,8 @@ TEST_F(Join, TheSameShaderTwiceHasTwoSetsOfParameters) {
 
 TEST_F(Join, ALibraryStandsOnceInAKernel) {
   const auto a = files_.stage("a/x", kFirst);
-  const auto b = files_.stage("c/z", "#include \"lib/shared.glsl\"\nvec4 apply(vec4 c) { return c * shared_curve(1.0); }\n");
+  const auto b =
+      files_.stage("c/z", "#include \"lib/shared.glsl\"\nvec4 apply(vec4 c) { return c * shared_curve(1.0); }\n");
   const auto text = assembled(join({a, b, a}));
   const auto first = text.find("float ag_l0_shared_curve(float x)");
   ASSERT_NE(first, std::string::npos);
@@ -122,14 +125,21 @@ TEST_F(Join, LibrariesOfOneNameFromTwoFoldersStandApart) {
 
 TEST_F(Join, ALibrarySeesNoMacrosOfTheShader) {
   files_.write("lib/plain.glsl", "float plain(float gain) { return gain; }\n");
-  EXPECT_EQ(outcome(join({files_.stage("a", "#define gain 3.0 +\n#define float vec4\n#include \"lib/plain.glsl\"\nvec4 apply(vec4 c) { return c * plain(1.0); }\n")})), "ok");
+  EXPECT_EQ(outcome(join({files_.stage("a",
+                                       "#define gain 3.0 +\n#define float vec4\n#include \"lib/plain.glsl\"\nvec4 "
+                                       "apply(vec4 c) { return c * plain(1.0); }\n")})),
+            "ok");
 }
 
 TEST_F(Join, AMacroOfOneShaderDoesNotReachTheNext) {
-  const auto hostile = files_.stage("a", "#define c 1.0 +\n#define clamp broken\n#define return 0 +\nvec4 apply(vec4 color) { return_ = 1.0; }\n");
+  const auto hostile = files_.stage(
+      "a", "#define c 1.0 +\n#define clamp broken\n#define return 0 +\nvec4 apply(vec4 color) { return_ = 1.0; }\n");
   const auto innocent = files_.stage("b", "vec4 apply(vec4 c) { return c; }\n");
   EXPECT_THAT(outcome(join({hostile, innocent})), HasSubstr("a.glsl:4: error: 'return_': undeclared identifier"));
-  EXPECT_EQ(outcome(join({files_.stage("d", "#define c 1.0\n#define min max\nvec4 apply(vec4 x) { return x * min(c, 2.0); }\n"), innocent})), "ok");
+  EXPECT_EQ(outcome(join(
+                {files_.stage("d", "#define c 1.0\n#define min max\nvec4 apply(vec4 x) { return x * min(c, 2.0); }\n"),
+                 innocent})),
+            "ok");
 }
 
 TEST_F(Join, FieldsAndSwizzlesKeepTheirNames) {
@@ -148,7 +158,9 @@ vec4 apply(vec4 color) {
 }
 
 TEST_F(Join, UniformsMayBeShadowedByLocals) {
-  EXPECT_EQ(outcome(join({files_.stage("a", "uniform float t;\nvec4 apply(vec4 c) { float t = t * 2.0; return c * t; }\n")})), "ok");
+  EXPECT_EQ(
+      outcome(join({files_.stage("a", "uniform float t;\nvec4 apply(vec4 c) { float t = t * 2.0; return c * t; }\n")})),
+      "ok");
 }
 
 TEST_F(Join, ConditionalTextIsKept) {
@@ -168,13 +180,18 @@ vec4 apply(vec4 c) { return c * f(); }
 
 TEST_F(Join, LinesOfErrorsInEachPart) {
   const std::string good = "uniform\n  float\n  t;\nvec4 apply(vec4 c) { return c * t; }\n";
-  const std::string bad = "uniform\n  float\n  t;\n/* two\nlines */\nvec4 apply(vec4 c) {\n  return c * undefined_name;\n}\n";
+  const std::string bad =
+      "uniform\n  float\n  t;\n/* two\nlines */\nvec4 apply(vec4 c) {\n  return c * undefined_name;\n}\n";
   const std::string at_a = files_.path("a.glsl").string() + ":", at_b = files_.path("b.glsl").string() + ":";
-  EXPECT_THAT(outcome(join({files_.stage("a", bad), files_.stage("b", good)})), HasSubstr(at_a + "7: error: 'undefined_name': undeclared identifier"));
-  EXPECT_THAT(outcome(join({files_.stage("a", good), files_.stage("b", bad)})), HasSubstr(at_b + "7: error: 'undefined_name': undeclared identifier"));
+  EXPECT_THAT(outcome(join({files_.stage("a", bad), files_.stage("b", good)})),
+              HasSubstr(at_a + "7: error: 'undefined_name': undeclared identifier"));
+  EXPECT_THAT(outcome(join({files_.stage("a", good), files_.stage("b", bad)})),
+              HasSubstr(at_b + "7: error: 'undefined_name': undeclared identifier"));
   files_.write("lib/broken.glsl", "// one\n\nfloat broken() {\n  return vec3(1.0);\n}\n");
-  const auto including = files_.stage("c", "\n#include \"lib/broken.glsl\"\nvec4 apply(vec4 c) { return c * broken(); }\n");
-  EXPECT_THAT(outcome(join({files_.stage("a", good), including})), HasSubstr(files_.path("lib/broken.glsl").string() + ":4: error: "));
+  const auto including =
+      files_.stage("c", "\n#include \"lib/broken.glsl\"\nvec4 apply(vec4 c) { return c * broken(); }\n");
+  EXPECT_THAT(outcome(join({files_.stage("a", good), including})),
+              HasSubstr(files_.path("lib/broken.glsl").string() + ":4: error: "));
   const auto sample = files_.stage("d", "\nvec4 sample_at(ivec2 p) {\n  return vec3(p, 0);\n}\n");
   KernelDesc kernel;
   kernel.sample = sample;
@@ -183,7 +200,8 @@ TEST_F(Join, LinesOfErrorsInEachPart) {
 }
 
 TEST_F(Join, MessagesUseTheAuthorsNames) {
-  const auto text = outcome(join({files_.stage("a", "uniform float threshold;\nvec4 apply(vec4 c) { return threshold; }\nint f() { threshold = 1.0; }\n")}));
+  const auto text = outcome(join({files_.stage(
+      "a", "uniform float threshold;\nvec4 apply(vec4 c) { return threshold; }\nint f() { threshold = 1.0; }\n")}));
   EXPECT_THAT(text, Not(HasSubstr("ag_s0_")));
   EXPECT_EQ(original_names("'ag_s12_x' ag_l3_y ag_pixel ag_s_z ag_s1"), "'x' y ag_pixel ag_s_z ag_s1");
 }
@@ -191,7 +209,8 @@ TEST_F(Join, MessagesUseTheAuthorsNames) {
 TEST_F(Join, LongMessagesAreCut) {
   std::string text = "struct S {";
   for (int i = 0; i < 200; ++i) text += " float field_" + std::to_string(i) + ";";
-  const auto result = KernelCompiler{std::filesystem::path()}.compile(join({files_.stage("a", text + "};\nS s;\nvec4 apply(vec4 c) {\n  c = s; return c;\n}\n")}));
+  const auto result = KernelCompiler{std::filesystem::path()}.compile(
+      join({files_.stage("a", text + "};\nS s;\nvec4 apply(vec4 c) {\n  c = s; return c;\n}\n")}));
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().line, 4);
   EXPECT_THAT(result.error().message, HasSubstr("structure{"));
@@ -209,10 +228,15 @@ TEST_F(Join, TextIsIndependentOfPassNamesAndPlaces) {
 
 TEST_F(Join, SampleHeadsBindTheirSamplers) {
   KernelDesc kernel;
-  kernel.sample = files_.stage("edge", "uniform sampler2D depth;\nuniform float w;\nuniform sampler2D normal;\n"
-                                       "vec4 sample_at(ivec2 pixel) { return fetch(depth, pixel + 1) * w + fetch(normal, pixel) + sample_scaled(depth, pixel, ivec2(1, 0)) +\n"
-                                       "  fetch_linear(normal, vec2(pixel)) + vec4(vec2(image_size(depth)), vec2(target_size())); }\n");
-  kernel.stages = {files_.stage("mix", "uniform sampler2D lut;\nvec4 apply(vec4 c, vec4 high) { return mix(c, high, fetch(lut, ivec2(0)).r); }\n")};
+  kernel.sample =
+      files_.stage("edge",
+                   "uniform sampler2D depth;\nuniform float w;\nuniform sampler2D normal;\n"
+                   "vec4 sample_at(ivec2 pixel) { return fetch(depth, pixel + 1) * w + fetch(normal, pixel) + "
+                   "sample_scaled(depth, pixel, ivec2(1, 0)) +\n"
+                   "  fetch_linear(normal, vec2(pixel)) + vec4(vec2(image_size(depth)), vec2(target_size())); }\n");
+  kernel.stages = {files_.stage(
+      "mix",
+      "uniform sampler2D lut;\nvec4 apply(vec4 c, vec4 high) { return mix(c, high, fetch(lut, ivec2(0)).r); }\n")};
   const auto result = KernelCompiler{std::filesystem::path()}.compile(kernel);
   ASSERT_TRUE(result.ok()) << result.error().text();
   std::vector<std::pair<int, std::string>> slots;
@@ -229,11 +253,13 @@ TEST_F(Join, WrongKindsAndTooManyImagesAreRefused) {
   EXPECT_THAT(outcome(kernel), HasSubstr("'p' is a pixel shader and cannot stand here"));
   const auto many = files_.stage("m", "vec4 apply(vec4 c, vec4 a, vec4 b, vec4 d, vec4 e) { return a + b + d + e; }\n");
   EXPECT_EQ(outcome(join({many, many, many})), "ok");
-  EXPECT_THAT(outcome(join({many, many, many, many})), HasSubstr("the joined passes read 17 images; allowed: at most 16"));
+  EXPECT_THAT(outcome(join({many, many, many, many})),
+              HasSubstr("the joined passes read 17 images; allowed: at most 16"));
 }
 
 TEST_F(Join, ConstantsThatDoNotFitAreRefused) {
-  auto stage = files_.stage("a", "\nlayout(constant_id = 0) const int n = 1;\nvec4 apply(vec4 c) { return c * float(n); }\n");
+  auto stage =
+      files_.stage("a", "\nlayout(constant_id = 0) const int n = 1;\nvec4 apply(vec4 c) { return c * float(n); }\n");
   stage.constants["n"] = 1e12;
   EXPECT_THAT(outcome(join({stage})), HasSubstr("a.glsl:2: error: constant 'n' cannot be"));
 }

@@ -78,7 +78,8 @@ TEST(ShaderLibrary, EarlierFoldersShadowLaterOnes) {
   first.write("a.glsl", kApply);
   first.write("lib/x.glsl", "float x() { return 1.0; }\n");
   EXPECT_EQ((*ShaderLibrary(search).find("a"))->path, first.path("a.glsl"));
-  EXPECT_EQ((*ShaderLibrary(search).find("b"))->includes.at(0).path, first.path("lib/x.glsl")) << "a user's library replaces the built-in one";
+  EXPECT_EQ((*ShaderLibrary(search).find("b"))->includes.at(0).path, first.path("lib/x.glsl"))
+      << "a user's library replaces the built-in one";
 }
 
 TEST(ShaderLibrary, AByteOrderMarkIsDropped) {
@@ -91,13 +92,16 @@ TEST(ShaderLibrary, IncludesStandOnceAndInOrder) {
   files.write("lib/base.glsl", "float base() { return 1.0; }\n");
   files.write("lib/left.glsl", "#include \"lib/base.glsl\"\nfloat left() { return base(); }\n");
   files.write("lib/right.glsl", "#include \"lib/base.glsl\"\nfloat right() { return base(); }\n");
-  const auto source = files.find("fx/a", std::string("#include \"lib/left.glsl\"\n#include \"lib/right.glsl\"\n#include \"lib/left.glsl\"\n") + kApply);
+  const auto source = files.find(
+      "fx/a",
+      std::string("#include \"lib/left.glsl\"\n#include \"lib/right.glsl\"\n#include \"lib/left.glsl\"\n") + kApply);
   ASSERT_TRUE(source.ok()) << source.error().text();
   EXPECT_THAT(include_names(**source), ElementsAre("lib/base.glsl", "lib/left.glsl", "lib/right.glsl"));
   EXPECT_THAT((*source)->includes[0].uses, ElementsAre());
   EXPECT_THAT((*source)->includes[2].uses, ElementsAre(0u));
   EXPECT_THAT((*source)->includes[2].global_names, ElementsAre("right"));
-  EXPECT_THAT((*source)->files(), ElementsAre(files.path("fx/a.glsl"), files.path("lib/base.glsl"), files.path("lib/left.glsl"), files.path("lib/right.glsl")));
+  EXPECT_THAT((*source)->files(), ElementsAre(files.path("fx/a.glsl"), files.path("lib/base.glsl"),
+                                              files.path("lib/left.glsl"), files.path("lib/right.glsl")));
 }
 
 TEST(ShaderLibrary, AFileBesideTheShaderComesFirst) {
@@ -112,7 +116,8 @@ TEST(ShaderLibrary, AFileBesideTheShaderComesFirst) {
 TEST(ShaderLibrary, OneFileUnderTwoNamesIsOneFile) {
   ShaderFiles files;
   files.write("fx/helper.glsl", "float near() { return 1.0; }\n");
-  const auto source = files.find("fx/a", std::string("#include \"helper.glsl\"\n#include \"fx/helper.glsl\"\n") + kApply);
+  const auto source =
+      files.find("fx/a", std::string("#include \"helper.glsl\"\n#include \"fx/helper.glsl\"\n") + kApply);
   ASSERT_TRUE(source.ok()) << source.error().text();
   EXPECT_EQ((*source)->includes.size(), 1u);
 }
@@ -135,16 +140,20 @@ TEST(ShaderLibrary, IncludeErrorsAreAtTheirOwnFileAndLine) {
     return result.ok() ? std::string("ok") : result.error().text();
   };
   const std::string a = files.path("fx/a.glsl").string();
-  EXPECT_EQ(message("\n#include \"lib/colour.glsl\"\n"), a + ":2: error: cannot find the include 'lib/colour.glsl'; did you mean 'lib/color.glsl'?");
-  EXPECT_THAT(message("#include \"../lib/color.glsl\"\n"), HasSubstr(a + ":1: error: '../lib/color.glsl' cannot be included; allowed: "));
+  EXPECT_EQ(message("\n#include \"lib/colour.glsl\"\n"),
+            a + ":2: error: cannot find the include 'lib/colour.glsl'; did you mean 'lib/color.glsl'?");
+  EXPECT_THAT(message("#include \"../lib/color.glsl\"\n"),
+              HasSubstr(a + ":1: error: '../lib/color.glsl' cannot be included; allowed: "));
   EXPECT_THAT(message("#include \"/etc/passwd\"\n"), HasSubstr("cannot be included"));
   EXPECT_THAT(message("#include \"lib/color\"\n"), HasSubstr("cannot be included"));
   EXPECT_THAT(message("#include \"lib/color.glsl\"\nfloat luminance(vec3 c) { return c.r; }\n"),
               HasSubstr(a + ":2: error: 'luminance' is already defined by lib/color.glsl"));
   files.write("lib/again.glsl", "float luminance(vec2 c) { return c.r; }\n");
-  EXPECT_THAT(message("#include \"lib/color.glsl\"\n#include \"lib/again.glsl\"\n"), HasSubstr("'luminance' is defined by both lib/color.glsl and lib/again.glsl"));
+  EXPECT_THAT(message("#include \"lib/color.glsl\"\n#include \"lib/again.glsl\"\n"),
+              HasSubstr("'luminance' is defined by both lib/color.glsl and lib/again.glsl"));
   files.write("lib/bad.glsl", "\n\nuniform float t;\n");
-  EXPECT_THAT(message("#include \"lib/bad.glsl\"\n"), HasSubstr(files.path("lib/bad.glsl").string() + ":3: error: a library declares no uniforms"));
+  EXPECT_THAT(message("#include \"lib/bad.glsl\"\n"),
+              HasSubstr(files.path("lib/bad.glsl").string() + ":3: error: a library declares no uniforms"));
 }
 
 TEST(ShaderLibrary, IncludeCyclesAreRefused) {
@@ -153,7 +162,8 @@ TEST(ShaderLibrary, IncludeCyclesAreRefused) {
   files.write("lib/b.glsl", "\n#include \"lib/a.glsl\"\n");
   const auto cycle = files.find("fx/x", std::string("#include \"lib/a.glsl\"\n") + kApply);
   ASSERT_FALSE(cycle.ok());
-  EXPECT_EQ(cycle.error().text(), files.path("lib/b.glsl").string() + ":2: error: 'lib/a.glsl' includes itself, directly or through others");
+  EXPECT_EQ(cycle.error().text(),
+            files.path("lib/b.glsl").string() + ":2: error: 'lib/a.glsl' includes itself, directly or through others");
   const auto self = files.find("fx/y", std::string("#include \"y.glsl\"\n") + kApply);
   ASSERT_FALSE(self.ok());
   EXPECT_THAT(self.error().message, HasSubstr("includes itself"));
@@ -163,7 +173,8 @@ TEST(ShaderLibrary, MacrosMayBeDefinedAgain) {
   ShaderFiles files;
   files.write("lib/a.glsl", "#ifndef PI\n#define PI 3.0\n#endif\n");
   files.write("lib/b.glsl", "#ifndef PI\n#define PI 3.5\n#endif\n");
-  EXPECT_TRUE(files.find("x", std::string("#include \"lib/a.glsl\"\n#include \"lib/b.glsl\"\n#define PI 4.0\n") + kApply).ok());
+  EXPECT_TRUE(
+      files.find("x", std::string("#include \"lib/a.glsl\"\n#include \"lib/b.glsl\"\n#define PI 4.0\n") + kApply).ok());
 }
 
 }  // namespace

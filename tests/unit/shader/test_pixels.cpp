@@ -1,11 +1,12 @@
-// What kernels compute, on a device: filters against their formula in double precision, the prelude, rounding to half floats.
+// What kernels compute, on a device: filters against their formula in double precision, the prelude, rounding to half
+// floats.
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <random>
-
 #include <glm/gtc/packing.hpp>
-#include <gmock/gmock.h>
+#include <random>
 
 #include "kernel_runner.h"
 #include "shader_files.h"
@@ -27,17 +28,22 @@ TestImage random_light(Size size, unsigned seed) {
   return image;
 }
 
-/// Values near 1 that change by 0.05 a texel or less: 8-bit fractions of a texture unit matter little, a wrong texel does.
+/// Values near 1 that change by 0.05 a texel or less: 8-bit fractions of a texture unit matter little, a wrong texel
+/// does.
 TestImage smooth_light(Size size) {
   TestImage image{size, std::vector<float>(static_cast<std::size_t>(size.area()) * 4)};
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x)
-      for (int c = 0; c < 4; ++c) image.at(x, y)[c] = 2.0f + 0.1f * std::sin(0.4f * static_cast<float>(x + c)) + 0.1f * std::cos(0.5f * static_cast<float>(y));
+      for (int c = 0; c < 4; ++c)
+        image.at(x, y)[c] =
+            2.0f + 0.1f * std::sin(0.4f * static_cast<float>(x + c)) + 0.1f * std::cos(0.5f * static_cast<float>(y));
   return image;
 }
 
-/// The texels and weights of one read at (2x + 1)·n_src/(2·n_dst) + offset along an axis: filter.h and math.md §1, in doubles.
-std::vector<std::pair<int, double>> axis_reads(Interpolation interpolation, int x, int n_src, int n_dst, double offset) {
+/// The texels and weights of one read at (2x + 1)·n_src/(2·n_dst) + offset along an axis: filter.h and math.md §1, in
+/// doubles.
+std::vector<std::pair<int, double>> axis_reads(Interpolation interpolation, int x, int n_src, int n_dst,
+                                               double offset) {
   const long long dividend = (2ll * x + 1) * n_src, divisor = 2ll * n_dst;
   std::vector<std::pair<int, double>> reads;
   const auto clamped = [&](double i) { return static_cast<int>(std::clamp(i, 0.0, n_src - 1.0)); };
@@ -52,7 +58,8 @@ std::vector<std::pair<int, double>> axis_reads(Interpolation interpolation, int 
     return {{clamped(i), 1 - f}, {clamped(i + 1), f}};
   }
   const double s = p + 0.5, c = std::floor(s), t = s - c;
-  const double w[4] = {std::pow(1 - t, 3) / 6, 2.0 / 3 - t * t + t * t * t / 2, 1.0 / 6 + t / 2 + t * t / 2 - t * t * t / 2, t * t * t / 6};
+  const double w[4] = {std::pow(1 - t, 3) / 6, 2.0 / 3 - t * t + t * t * t / 2,
+                       1.0 / 6 + t / 2 + t * t / 2 - t * t * t / 2, t * t * t / 6};
   for (int k = 0; k < 4; ++k) reads.emplace_back(clamped(c - 2 + k), w[k]);
   return reads;
 }
@@ -69,7 +76,8 @@ Expected expected(const Filter& filter, const TestImage& source, Size target, in
   Expected out;
   for (const auto& tap : taps)
     for (const auto& [row, row_weight] : axis_reads(filter.interpolation, y, source.size.height, target.height, tap.dy))
-      for (const auto& [column, column_weight] : axis_reads(filter.interpolation, x, source.size.width, target.width, tap.dx)) {
+      for (const auto& [column, column_weight] :
+           axis_reads(filter.interpolation, x, source.size.width, target.width, tap.dx)) {
         const double part = tap.weight * row_weight * column_weight * source.at(column, row)[channel];
         out.value += part;
         out.magnitude += std::abs(part);
@@ -111,11 +119,20 @@ const std::vector<NamedFilter>& filters() {
       {"bilinear", {kLinear}},
       {"bspline", {kCubic}},
       {"gaussian_halving", {kLinear, gaussian_halving(), {{0, 1}}}},
-      {"gaussian_merged", {kLinear, {{0, 1}}, {{-3.23076923, 0.07027027}, {-1.38461538, 0.31621622}, {0, 0.22702703}, {1.38461538, 0.31621622}, {3.23076923, 0.07027027}}}},
-      {"binomial", {kLinear, {{0, 1}}, {{-2, 66. / 4070}, {-1, 220. / 4070}, {0, 792. / 4070}, {1, 220. / 4070}, {2, 66. / 4070}}}},
+      {"gaussian_merged",
+       {kLinear,
+        {{0, 1}},
+        {{-3.23076923, 0.07027027},
+         {-1.38461538, 0.31621622},
+         {0, 0.22702703},
+         {1.38461538, 0.31621622},
+         {3.23076923, 0.07027027}}}},
+      {"binomial",
+       {kLinear, {{0, 1}}, {{-2, 66. / 4070}, {-1, 220. / 4070}, {0, 792. / 4070}, {1, 220. / 4070}, {2, 66. / 4070}}}},
       {"bspline_taps", {kCubic, {{-1, 0.25}, {0.25, 0.5}, {1, 0.25}}, {{0, 0.5}, {1, 0.5}}}},
       {"plus", {kLinear, {{0, 1}}, {{0, 1}}, {{1, 0, 0.25}, {0, 1, 0.25}, {-1, 0, 0.25}, {0, -1, 0.25}}}},
-      {"free_taps", {kLinear, {{0, 1}}, {{0, 1}}, {{0.3, -1.7, 0.5}, {-2.5, 0.5, 0.25}, {0.3, 2, 1.25}, {0.3, -1.7, 0.5}}}},
+      {"free_taps",
+       {kLinear, {{0, 1}}, {{0, 1}}, {{0.3, -1.7, 0.5}, {-2.5, 0.5, 0.25}, {0.3, 2, 1.25}, {0.3, -1.7, 0.5}}}},
       {"free_nearest", {kNearest, {{0, 1}}, {{0, 1}}, {{1, 0, 0.5}, {-0.5, 2.5, 0.5}}}},
       {"free_bspline", {kCubic, {{0, 1}}, {{0, 1}}, {{1, 0, 0.5}, {-0.5, 0.75, 0.5}}}},
       {"sharpen", {kLinear, {{-1, -0.5}, {0, 2}, {1, -0.5}}, {{-1, -0.5}, {0, 2}, {1, -0.5}}}},
@@ -132,7 +149,17 @@ const std::vector<Case>& cases() {
       {"twice", twice, twice, {{{7, 5}, {14, 10}}, {{1, 1}, {2, 2}}}},
       {"same_half", same, half, {{{9, 8}, {9, 4}}}},
       {"half_twice", half, twice, {{{10, 3}, {5, 6}}}},
-      {"any", any, any, {{{17, 11}, {8, 5}}, {{5, 5}, {2, 2}}, {{8, 5}, {17, 11}}, {{1, 1}, {3, 4}}, {{11, 7}, {1, 1}}, {{12, 8}, {6, 4}}, {{6, 4}, {12, 8}}, {{6, 4}, {6, 4}}}},
+      {"any",
+       any,
+       any,
+       {{{17, 11}, {8, 5}},
+        {{5, 5}, {2, 2}},
+        {{8, 5}, {17, 11}},
+        {{1, 1}, {3, 4}},
+        {{11, 7}, {1, 1}},
+        {{12, 8}, {6, 4}},
+        {{6, 4}, {12, 8}},
+        {{6, 4}, {6, 4}}}},
       {"any_half", any, half, {{{7, 8}, {3, 4}}, {{16383, 2}, {8191, 1}}}},
       {"any_twice", any, twice, {{{8191, 1}, {16384, 2}}}},
       {"any_same", any, same, {{{3, 1}, {16384, 1}}, {{16384, 1}, {16383, 1}}}},
@@ -141,8 +168,8 @@ const std::vector<Case>& cases() {
   return kCases;
 }
 
-/// Errors of all samples, sorted: |x − ref|/(Σ|w·I| + 0.01). Σ|w·I| is |ref| but for negative weights, where the formula itself
-/// loses digits.
+/// Errors of all samples, sorted: |x − ref|/(Σ|w·I| + 0.01). Σ|w·I| is |ref| but for negative weights, where the
+/// formula itself loses digits.
 std::vector<double> errors_of(const TestImage& out, const Filter& filter, const TestImage& source) {
   std::vector<double> errors;
   for (int y = 0; y < out.size.height; ++y)
@@ -171,7 +198,8 @@ class FilterPixels : public testing::TestWithParam<std::size_t> {
       const auto kernel = compiler.compile(desc);
       ASSERT_TRUE(kernel.ok()) << kernel.error().text();
       for (const auto& sizes : test.sizes) {
-        SCOPED_TRACE(testing::Message() << name << " " << sizes.source.width << "x" << sizes.source.height << " to " << sizes.target.width << "x" << sizes.target.height);
+        SCOPED_TRACE(testing::Message() << name << " " << sizes.source.width << "x" << sizes.source.height << " to "
+                                        << sizes.target.width << "x" << sizes.target.height);
         const TestImage source = light(sizes.source);
         check(errors_of(runner().run(*kernel, {source}, sizes.target), filter, source));
       }
@@ -180,17 +208,20 @@ class FilterPixels : public testing::TestWithParam<std::size_t> {
 };
 
 TEST_P(FilterPixels, EqualTheFormula) {
-  run(false, [](Size size) { return random_light(size, 7); }, [](const std::vector<double>& errors) {
-    EXPECT_LE(errors[errors.size() * 9999 / 10000], 1e-5);
-    EXPECT_LE(errors.back(), 5e-4);
-  });
+  run(
+      false, [](Size size) { return random_light(size, 7); },
+      [](const std::vector<double>& errors) {
+        EXPECT_LE(errors[errors.size() * 9999 / 10000], 1e-5);
+        EXPECT_LE(errors.back(), 5e-4);
+      });
 }
 
 TEST_P(FilterPixels, EqualTheFormulaThroughTheSampler) {
   run(true, smooth_light, [](const std::vector<double>& errors) { EXPECT_LE(errors.back(), 5e-4); });
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FilterPixels, testing::Range<std::size_t>(0, cases().size()), [](const auto& info) { return std::string(cases()[info.param].name); });
+INSTANTIATE_TEST_SUITE_P(All, FilterPixels, testing::Range<std::size_t>(0, cases().size()),
+                         [](const auto& info) { return std::string(cases()[info.param].name); });
 
 TEST(KernelPixels, LongFiltersLoop) {
   KernelDesc desc;
@@ -231,11 +262,14 @@ vec4 sample_at(ivec2 pixel) {
 })");
   const Size from{11, 7}, to{9, 10};
   const auto source = random_light(from, 5);
-  const auto texel = [&](int x, int y) { return source.at(std::clamp(x, 0, from.width - 1), std::clamp(y, 0, from.height - 1)); };
+  const auto texel = [&](int x, int y) {
+    return source.at(std::clamp(x, 0, from.width - 1), std::clamp(y, 0, from.height - 1));
+  };
   const auto linear = [&](double px, double py, int c) {
     const double x = std::floor(px - 0.5), y = std::floor(py - 0.5), fx = px - 0.5 - x, fy = py - 0.5 - y;
     const int i = static_cast<int>(x), j = static_cast<int>(y);
-    return (texel(i, j)[c] * (1 - fx) + texel(i + 1, j)[c] * fx) * (1 - fy) + (texel(i, j + 1)[c] * (1 - fx) + texel(i + 1, j + 1)[c] * fx) * fy;
+    return (texel(i, j)[c] * (1 - fx) + texel(i + 1, j)[c] * fx) * (1 - fy) +
+           (texel(i, j + 1)[c] * (1 - fx) + texel(i + 1, j + 1)[c] * fx) * fy;
   };
   KernelCompiler compiler{std::filesystem::path()};
   for (int what = 0; what < 4; ++what) {
@@ -249,7 +283,8 @@ vec4 sample_at(ivec2 pixel) {
           double want = 0;
           if (what == 0) want = texel(2 * x - 3, 2 * y - 3)[c];
           if (what == 1) want = linear(std::clamp(x * 1.25 - 1.5, 0.0, 11.0), std::clamp(y * 1.25 - 1.5, 0.0, 7.0), c);
-          if (what == 2) want = linear((x + 0.5) * from.width / to.width + 2, (y + 0.5) * from.height / to.height - 1, c);
+          if (what == 2)
+            want = linear((x + 0.5) * from.width / to.width + 2, (y + 0.5) * from.height / to.height - 1, c);
           if (what == 3) want = c == 0 ? from.width : c == 1 ? from.height : c == 2 ? to.width : to.height;
           EXPECT_NEAR(out.at(x, y)[c], want, 1e-5 * (want + 0.01)) << what << " at " << x << "," << y;
         }
@@ -258,8 +293,11 @@ vec4 sample_at(ivec2 pixel) {
 
 TEST(KernelPixels, ParametersAndInputsReachTheirStages) {
   ShaderFiles files;
-  const std::string text = "uniform bool flag;\nuniform vec3 tint;\nuniform int count;\nuniform ivec2 cell;\nlayout(constant_id = 0) const float gain = 1.0;\n"
-                           "vec4 apply(vec4 color, vec4 high) {\n  return (flag ? color * vec4(tint, 1.0) * float(count) : color) * gain + high * float(cell.y);\n}\n";
+  const std::string text =
+      "uniform bool flag;\nuniform vec3 tint;\nuniform int count;\nuniform ivec2 cell;\nlayout(constant_id = 0) const "
+      "float gain = 1.0;\n"
+      "vec4 apply(vec4 color, vec4 high) {\n  return (flag ? color * vec4(tint, 1.0) * float(count) : color) * gain + "
+      "high * float(cell.y);\n}\n";
   KernelDesc desc;
   desc.stages = {files.stage("a", text, {{"gain", 0.5}}), files.stage("b", text)};
   KernelCompiler compiler{std::filesystem::path()};
@@ -294,9 +332,12 @@ TEST(KernelPixels, HalfStorageRoundsToNearestEvenAndClamps) {
   TestImage source{{1024, 16}, std::vector<float>(1024 * 16 * 4)};
   std::mt19937 random(11);
   std::uniform_real_distribution<float> exponent(-28.0f, 18.0f), mantissa(1.0f, 2.0f);
-  for (auto& value : source.rgba) value = std::ldexp(mantissa(random), static_cast<int>(exponent(random))) * (random() % 2 ? 1.0f : -1.0f);
-  const float special[] = {0.0f, -0.0f, 65504.0f, 65519.9f, 65520.0f, 1e30f, -1e30f, INFINITY, -INFINITY, 6.1e-5f, 6.103515625e-5f, 5.9604645e-8f, 2.9802322e-8f, 2.9802326e-8f,
-                           2049.0f, 2051.0f, 1.00048828125f, 1.00146484375f, 6.0996e-5f, 1e-20f};
+  for (auto& value : source.rgba)
+    value = std::ldexp(mantissa(random), static_cast<int>(exponent(random))) * (random() % 2 ? 1.0f : -1.0f);
+  const float special[] = {0.0f,          -0.0f,         65504.0f,  65519.9f, 65520.0f,        1e30f,
+                           -1e30f,        INFINITY,      -INFINITY, 6.1e-5f,  6.103515625e-5f, 5.9604645e-8f,
+                           2.9802322e-8f, 2.9802326e-8f, 2049.0f,   2051.0f,  1.00048828125f,  1.00146484375f,
+                           6.0996e-5f,    1e-20f};
   std::copy(std::begin(special), std::end(special), source.rgba.begin());
   KernelDesc desc;
   desc.half_storage = true;
@@ -312,7 +353,9 @@ TEST(KernelPixels, HalfStorageRoundsToNearestEvenAndClamps) {
       std::frexp(value, &e);
       const double quantum = std::ldexp(1.0, std::max(e - 11, -24));
       const float want = static_cast<float>(std::nearbyint(value / quantum) * quantum);
-      if (out.rgba[i] != want && ++wrong < 10) ADD_FAILURE() << source.rgba[i] << " became " << out.rgba[i] << ", not " << want << (half_target ? " in half floats" : "");
+      if (out.rgba[i] != want && ++wrong < 10)
+        ADD_FAILURE() << source.rgba[i] << " became " << out.rgba[i] << ", not " << want
+                      << (half_target ? " in half floats" : "");
     }
     EXPECT_EQ(wrong, 0);
   }

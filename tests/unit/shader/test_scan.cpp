@@ -76,7 +76,8 @@ vec4 apply(const in vec4 color, vec4 high,
 }
 
 TEST(Scan, SampleShader) {
-  const auto scan = scanned("uniform sampler2D source;\r\nvec4 sample_at(ivec2 pixel)\r\n{ return fetch(source, pixel); }");
+  const auto scan =
+      scanned("uniform sampler2D source;\r\nvec4 sample_at(ivec2 pixel)\r\n{ return fetch(source, pixel); }");
   EXPECT_EQ(scan.interface.kind, ShaderKind::sample);
   ASSERT_EQ(scan.interface.inputs.size(), 1u);
   EXPECT_EQ(scan.interface.inputs[0].name, "source");
@@ -95,7 +96,8 @@ float helper(float inner);
 float helper(float inner) { float local = inner; return local; }
 vec4 apply(vec4 color) { return color * helper(HALF); }
 )");
-  EXPECT_THAT(names(scan), ElementsAre("HALF", "SQUARE", "Ray", "anonymous", "kTable", "kOther", "state", "helper", "apply"));
+  EXPECT_THAT(names(scan),
+              ElementsAre("HALF", "SQUARE", "Ray", "anonymous", "kTable", "kOther", "state", "helper", "apply"));
   EXPECT_TRUE(scan.names[0].macro);
   EXPECT_TRUE(scan.names[1].macro);
   EXPECT_FALSE(scan.names[2].macro);
@@ -105,7 +107,8 @@ vec4 apply(vec4 color) { return color * helper(HALF); }
 }
 
 TEST(Scan, LineContinuationsCountAsLines) {
-  const auto scan = scanned("#define A(x) \\\n  (x) \\\r\n  + 1.0\nuniform float \\\n t;\nvec4 apply(vec4 c) { return c; }\n");
+  const auto scan =
+      scanned("#define A(x) \\\n  (x) \\\r\n  + 1.0\nuniform float \\\n t;\nvec4 apply(vec4 c) { return c; }\n");
   ASSERT_EQ(scan.interface.params.size(), 1u);
   EXPECT_EQ(scan.interface.params[0].line, 5);
   EXPECT_THAT(names(scan), ElementsAre("A", "t", "apply"));
@@ -143,7 +146,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Bad{"\nuniform float a[4];\n" + kEnd, 2, "'a': arrays of uniforms"},
         Bad{"uniform float[2] a;\n" + kEnd, 1, "arrays of uniforms"},
-        Bad{"uniform mat4 m;\n" + kEnd, 1, "cannot be of type 'mat4'", "float, vec2, vec3, vec4, int, ivec2, bool, sampler2D"},
+        Bad{"uniform mat4 m;\n" + kEnd, 1, "cannot be of type 'mat4'",
+            "float, vec2, vec3, vec4, int, ivec2, bool, sampler2D"},
         Bad{"uniform flaot m;\n" + kEnd, 1, "cannot be of type 'flaot'", "float", "float"},
         Bad{"uniform sampler3D m;\n" + kEnd, 1, "cannot be of type 'sampler3D'", "sampler2D", "sampler2D"},
         Bad{"uniform float a = 1.0;\n" + kEnd, 1, "no default value"},
@@ -155,14 +159,15 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"layout(location = 0) out vec4 o;\n" + kEnd, 1, "'out' is not allowed at file scope"},
         Bad{"\n\nin vec2 uv;\n" + kEnd, 3, "'in' is not allowed at file scope"},
         Bad{"buffer B { float x[]; } b;\n" + kEnd, 1, "'buffer' is not allowed"},
-        Bad{"layout(constant_id = 0) const vec2 v = vec2(1);\n" + kEnd, 1, "cannot be of type 'vec2'", "bool, int, float"},
+        Bad{"layout(constant_id = 0) const vec2 v = vec2(1);\n" + kEnd, 1, "cannot be of type 'vec2'",
+            "bool, int, float"},
         Bad{"layout(constant_id = 0) const int v = 1.5;\n" + kEnd, 1, "must be a literal of type int"},
         Bad{"layout(constant_id = 0) const bool v = 1;\n" + kEnd, 1, "must be a literal of type bool"},
         Bad{"layout(constant_id = 0) const int v = 1 + 1;\n" + kEnd, 1, "must be one literal"},
         Bad{"layout(constant_id = 0) const int v;\n" + kEnd, 1, "needs a default value"},
-        Bad{"layout(constant_id = 0) const int a = 1;\nlayout(constant_id = 0) const int b = 1;\n" + kEnd, 2, "constant_id 0 is used twice"},
-        Bad{"layout() const", 1, "layout is only known as"},
-        Bad{"layout", 1, "layout needs"},
+        Bad{"layout(constant_id = 0) const int a = 1;\nlayout(constant_id = 0) const int b = 1;\n" + kEnd, 2,
+            "constant_id 0 is used twice"},
+        Bad{"layout() const", 1, "layout is only known as"}, Bad{"layout", 1, "layout needs"},
         Bad{"float helper(float x)\n" + kEnd, 1, "'{' or ';' was expected after helper"},
         Bad{"\nDECLARE(foo)\n" + kEnd, 2, "macros that make declarations"},
         Bad{"int max(int a) { return a; }\n" + kEnd, 1, "'max' is a built-in function"},
@@ -172,58 +177,55 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"void main() {}\n", 1, "main is made by the engine"},
         Bad{"uniform float size;\n" + kEnd, 1, "'size' is a key of g:pass"},
         Bad{"vec4 apply(vec4 c, vec4 source) { return c; }\n", 1, "'source' is a key of g:pass"},
-        Bad{"int 5;\n" + kEnd, 1, "a declaration was expected"},
-        Bad{"float a, ;\n" + kEnd, 1, "a name was expected"},
+        Bad{"int 5;\n" + kEnd, 1, "a declaration was expected"}, Bad{"float a, ;\n" + kEnd, 1, "a name was expected"},
         Bad{"struct S\n" + kEnd, 2, "'{' was expected after 'struct'"}));
 
 INSTANTIATE_TEST_SUITE_P(
     EntryPoints, ScanErrors,
-    testing::Values(
-        Bad{"", 0, "defines neither apply nor sample_at", "vec4 sample_at(ivec2 pixel)"},
-        Bad{"\nvec4 aply(vec4 c) { return c; }", 2, "defines neither", "", "apply"},
-        Bad{"vec4 sampel_at(ivec2 p) { return vec4(0); }", 1, "defines neither", "", "sample_at"},
-        Bad{kEnd + "vec4 sample_at(ivec2 p) { return vec4(0); }", 2, "either apply or sample_at; the other is at line 1"},
-        Bad{kEnd + kEnd, 2, "'apply' is defined a second time; the first is at line 1"},
-        Bad{"vec3 apply(vec4 c) { return c.rgb; }", 1, "apply must return vec4, not vec3", "vec4 apply(vec4 color"},
-        Bad{"vec4 apply() { return vec4(0); }", 1, "takes the colour as its first argument"},
-        Bad{"vec4 apply(void) { return vec4(0); }", 1, "takes the colour as its first argument"},
-        Bad{"vec4 apply(vec3 c) { return vec4(0); }", 1, "argument 'c' of apply must be a vec4"},
-        Bad{"vec4 apply(vec4 c,\n float h) { return vec4(0); }", 2, "argument 'h' of apply must be a vec4"},
-        Bad{"vec4 apply(vec4) { return vec4(0); }", 1, "needs a type and a name"},
-        Bad{"vec4 apply(vec4 c[2]) { return vec4(0); }", 1, "an argument is written TYPE NAME"},
-        Bad{"vec4 apply(inout vec4 c) { return c; }", 1, "'out' and 'inout' are not allowed"},
-        Bad{"vec4 sample_at(vec2 p) { return vec4(0); }", 1, "sample_at takes one argument", "ivec2 pixel"},
-        Bad{"vec4 sample_at(ivec2 p, int q) { return vec4(0); }", 1, "sample_at takes one argument"}));
+    testing::Values(Bad{"", 0, "defines neither apply nor sample_at", "vec4 sample_at(ivec2 pixel)"},
+                    Bad{"\nvec4 aply(vec4 c) { return c; }", 2, "defines neither", "", "apply"},
+                    Bad{"vec4 sampel_at(ivec2 p) { return vec4(0); }", 1, "defines neither", "", "sample_at"},
+                    Bad{kEnd + "vec4 sample_at(ivec2 p) { return vec4(0); }", 2,
+                        "either apply or sample_at; the other is at line 1"},
+                    Bad{kEnd + kEnd, 2, "'apply' is defined a second time; the first is at line 1"},
+                    Bad{"vec3 apply(vec4 c) { return c.rgb; }", 1, "apply must return vec4, not vec3",
+                        "vec4 apply(vec4 color"},
+                    Bad{"vec4 apply() { return vec4(0); }", 1, "takes the colour as its first argument"},
+                    Bad{"vec4 apply(void) { return vec4(0); }", 1, "takes the colour as its first argument"},
+                    Bad{"vec4 apply(vec3 c) { return vec4(0); }", 1, "argument 'c' of apply must be a vec4"},
+                    Bad{"vec4 apply(vec4 c,\n float h) { return vec4(0); }", 2, "argument 'h' of apply must be a vec4"},
+                    Bad{"vec4 apply(vec4) { return vec4(0); }", 1, "needs a type and a name"},
+                    Bad{"vec4 apply(vec4 c[2]) { return vec4(0); }", 1, "an argument is written TYPE NAME"},
+                    Bad{"vec4 apply(inout vec4 c) { return c; }", 1, "'out' and 'inout' are not allowed"},
+                    Bad{"vec4 sample_at(vec2 p) { return vec4(0); }", 1, "sample_at takes one argument", "ivec2 pixel"},
+                    Bad{"vec4 sample_at(ivec2 p, int q) { return vec4(0); }", 1, "sample_at takes one argument"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Preprocessor, ScanErrors,
-    testing::Values(
-        Bad{"#version 450\n" + kEnd, 1, "#version is given by the engine", "#include"},
-        Bad{"\n#extension GL_foo : enable\n" + kEnd, 2, "#extension is not allowed"},
-        Bad{"#line 7\n" + kEnd, 1, "#line is not allowed"},
-        Bad{"#pragma optimize(off)\n" + kEnd, 1, "#pragma is not allowed"},
-        Bad{"#inclde \"x.glsl\"\n" + kEnd, 1, "#inclde is not allowed", "", "#include"},
-        Bad{"#include <x.glsl>\n" + kEnd, 1, "an include is written #include \"lib/NAME.glsl\""},
-        Bad{"#include \"x.glsl\" 1\n" + kEnd, 1, "an include is written"},
-        Bad{"#include \"x.glsl\n" + kEnd, 1, "never closed"},
-        Bad{"#if 1\n" + kEnd, 1, "#if is never closed"},
-        Bad{"#endif\n" + kEnd, 1, "#endif without #if"},
-        Bad{"#undef VULKAN\n" + kEnd, 1, "only macros of this file can be undefined"},
-        Bad{"#define\n" + kEnd, 1, "#define needs a name"},
-        Bad{"#define J(a, b) a ## b\n" + kEnd, 1, "token pasting"}));
+    testing::Values(Bad{"#version 450\n" + kEnd, 1, "#version is given by the engine", "#include"},
+                    Bad{"\n#extension GL_foo : enable\n" + kEnd, 2, "#extension is not allowed"},
+                    Bad{"#line 7\n" + kEnd, 1, "#line is not allowed"},
+                    Bad{"#pragma optimize(off)\n" + kEnd, 1, "#pragma is not allowed"},
+                    Bad{"#inclde \"x.glsl\"\n" + kEnd, 1, "#inclde is not allowed", "", "#include"},
+                    Bad{"#include <x.glsl>\n" + kEnd, 1, "an include is written #include \"lib/NAME.glsl\""},
+                    Bad{"#include \"x.glsl\" 1\n" + kEnd, 1, "an include is written"},
+                    Bad{"#include \"x.glsl\n" + kEnd, 1, "never closed"},
+                    Bad{"#if 1\n" + kEnd, 1, "#if is never closed"}, Bad{"#endif\n" + kEnd, 1, "#endif without #if"},
+                    Bad{"#undef VULKAN\n" + kEnd, 1, "only macros of this file can be undefined"},
+                    Bad{"#define\n" + kEnd, 1, "#define needs a name"},
+                    Bad{"#define J(a, b) a ## b\n" + kEnd, 1, "token pasting"}));
 
-INSTANTIATE_TEST_SUITE_P(
-    Characters, ScanErrors,
-    testing::Values(
-        Bad{"/* a\n b\n" + kEnd, 1, "the comment is never closed"},
-        Bad{"float a = (1.0};\n" + kEnd, 1, "does not close the '('"},
-        Bad{"\nvec4 apply(vec4 c) { return c;\n", 2, "'{' is never closed"},
-        Bad{"}\n" + kEnd, 1, "'}' closes nothing"},
-        Bad{"float a = \"text\";\n" + kEnd, 1, "no text in quotes"},
-        Bad{"float a = 1 @ 2;\n" + kEnd, 1, "unexpected character '@'"},
-        Bad{"float caf\xc3\xa9;\n" + kEnd, 1, "unexpected character (byte 0xc3)"},
-        Bad{std::string("float a\0;\n", 10) + kEnd, 1, "unexpected character (byte 0x00)"},
-        Bad{"float a; # define B\n" + kEnd, 1, "'#' must be the first character"}));
+INSTANTIATE_TEST_SUITE_P(Characters, ScanErrors,
+                         testing::Values(Bad{"/* a\n b\n" + kEnd, 1, "the comment is never closed"},
+                                         Bad{"float a = (1.0};\n" + kEnd, 1, "does not close the '('"},
+                                         Bad{"\nvec4 apply(vec4 c) { return c;\n", 2, "'{' is never closed"},
+                                         Bad{"}\n" + kEnd, 1, "'}' closes nothing"},
+                                         Bad{"float a = \"text\";\n" + kEnd, 1, "no text in quotes"},
+                                         Bad{"float a = 1 @ 2;\n" + kEnd, 1, "unexpected character '@'"},
+                                         Bad{"float caf\xc3\xa9;\n" + kEnd, 1, "unexpected character (byte 0xc3)"},
+                                         Bad{std::string("float a\0;\n", 10) + kEnd, 1,
+                                             "unexpected character (byte 0x00)"},
+                                         Bad{"float a; # define B\n" + kEnd, 1, "'#' must be the first character"}));
 
 TEST(Scan, LibrariesDeclareNoParametersAndNoEntryPoints) {
   const auto message = [](const std::string& text) {
@@ -233,7 +235,8 @@ TEST(Scan, LibrariesDeclareNoParametersAndNoEntryPoints) {
   EXPECT_EQ(message("float twice(float x) { return 2.0 * x; }\n"), "ok");
   EXPECT_EQ(message(""), "ok");
   EXPECT_THAT(message("uniform float a;"), HasSubstr("lib.glsl:1: error: a library declares no uniforms"));
-  EXPECT_THAT(message("\nlayout(constant_id = 0) const int a = 1;"), HasSubstr("lib.glsl:2: error: a library declares no parameters"));
+  EXPECT_THAT(message("\nlayout(constant_id = 0) const int a = 1;"),
+              HasSubstr("lib.glsl:2: error: a library declares no parameters"));
   EXPECT_THAT(message("vec4 apply(vec4 c) { return c; }"), HasSubstr("'apply' is defined in an included file"));
 }
 

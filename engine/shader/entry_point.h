@@ -1,0 +1,23 @@
+// The signature of `apply` or `sample_at`. Internal to the room.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "shader/interface.h"
+#include "shader/token.h"
+
+namespace afterglow {
+
+struct EntryPoint {
+  ShaderKind kind = ShaderKind::pixel;
+  std::vector<Token> inputs;  ///< names of the pixel-wise inputs: the arguments of `apply` behind the colour
+};
+
+/// `name` is "apply" or "sample_at"; `arguments` are the tokens between its parentheses. Errors (script).
+Result<EntryPoint> parse_entry_point(const Token& result, const Token& name, std::span<const Token* const> arguments,
+                                     const std::string& file);
+
+}  // namespace afterglow
