@@ -3,6 +3,7 @@
 
 #include "core/text.h"
 #include "script/preset.h"
+#include "script/script_error.h"
 #include "script/setting.h"
 
 namespace afterglow {
@@ -28,9 +29,12 @@ std::string lua_type(const SettingSchema& setting) {
   return out;
 }
 
+// Docs are one line each in the file.
+std::string one_line(const std::string& doc) { return script::tidy_message(doc, 1000); }
+
 // "How much is added. 0…1 EV, default 0.2"
 std::string setting_doc(const SettingSchema& setting) {
-  std::string out = setting.doc;
+  std::string out = one_line(setting.doc);
   if (!out.empty()) out += ' ';
   if (setting.type != SettingType::boolean && setting.type != SettingType::enumeration && (setting.min || setting.max))
     out += script::allowed_text(setting) + (setting.unit.empty() ? "" : " " + setting.unit) + ", ";
@@ -41,7 +45,7 @@ std::string setting_doc(const SettingSchema& setting) {
 
 std::string settings_class(const EffectSchema& effect) {
   std::string out;
-  if (!effect.doc.empty()) out += fmt::format("---{}\n", effect.doc);
+  if (!effect.doc.empty()) out += fmt::format("---{}\n", one_line(effect.doc));
   out += fmt::format("---@class afterglow.settings.{} : afterglow.EntryKeys\n", effect.name);
   for (const auto& setting : effect.settings)
     out += fmt::format("---@field {}? {}  {}\n", setting.name, lua_type(setting), setting_doc(setting));
@@ -53,7 +57,7 @@ std::string settings_class(const EffectSchema& effect) {
 std::string completion_text(const std::vector<EffectSchema>& effects) {
   std::string out =
       "---@meta\n"
-      "-- Generated from the effects; do not edit. How: tests/unit/script/test_completion.cpp.\n"
+      "-- Generated from the effects, not to be edited: AFTERGLOW_UPDATE=1 ctest -R Completion.FileIsUpToDate\n"
       "\n"
       "---Keys that every effect of a stack takes besides its settings.\n"
       "---@class afterglow.EntryKeys\n"
@@ -67,7 +71,7 @@ std::string completion_text(const std::vector<EffectSchema>& effects) {
   out += "\n---@class afterglow\n";
   for (const auto& effect : effects)
     out += fmt::format("---@field {0} fun(settings: afterglow.settings.{0}): afterglow.Entry  {1}\n", effect.name,
-                       effect.doc);
+                       one_line(effect.doc));
   return out;
 }
 

@@ -134,6 +134,7 @@ FunctionRef read_function(lua_State* lua, TableReader& table, const char* name, 
 }
 
 InputList read_inputs(lua_State* lua, TableReader& table, const char* name) {
+  const int top = lua_gettop(lua);
   table.push(name);
   if (lua_isnil(lua, -1)) {
     lua_pop(lua, 1);
@@ -143,6 +144,7 @@ InputList read_inputs(lua_State* lua, TableReader& table, const char* name) {
   try {
     return {pop_input_names(lua, fmt::format("{}: {}", table.what(), name)), {}};
   } catch (ScriptError& error) {
+    lua_settop(lua, top);
     error.key.insert(error.key.begin(), name);
     table.fail(std::move(error));
     return {};

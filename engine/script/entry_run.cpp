@@ -38,7 +38,24 @@ int unknown_setting(lua_State* lua) {
   throw error;
 }
 
+// While it lives, errors of level 0 point at the entry.
+class Blaming {
+ public:
+  Blaming(lua_State* lua, const StackEntry& entry)
+      : box_(Sandbox::of(lua)), blame_{entry.file, entry.line, entry.effect} {
+    box_.blame = &blame_;
+  }
+  ~Blaming() { box_.blame = nullptr; }
+  Blaming(const Blaming&) = delete;
+  Blaming& operator=(const Blaming&) = delete;
+
+ private:
+  Sandbox& box_;
+  Blame blame_;
+};
+
 void call_with_settings(lua_State* lua, const FunctionRef& function, const EntryRun& run, int results) {
+  const Blaming blaming(lua, run.entry);
   lua_rawgeti(lua, LUA_REGISTRYINDEX, function.ref);
   lua_rawgeti(lua, LUA_REGISTRYINDEX, run.settings_ref);
   call(lua, 1, results);
@@ -99,6 +116,7 @@ std::vector<std::string> optional_inputs(lua_State* lua, const EntryRun& run) {
 
 ImageRef run_build(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source) {
   const Effect& effect = effect_of(lua, run);
+  const Blaming blaming(lua, run.entry);
   lua_rawgeti(lua, LUA_REGISTRYINDEX, effect.build.ref);
   push_graph(lua, graph);
   lua_rawgeti(lua, LUA_REGISTRYINDEX, run.settings_ref);

@@ -35,6 +35,7 @@ int do_error(lua_State* lua) {
       box.locate(error, {static_cast<int>(i), static_cast<int>(line)});
       error.message.erase(0, static_cast<std::size_t>(end + 2 - error.message.c_str()));
     }
+  if (level <= 0 && error.line == 0 && box.blame) locate_blame(box, *box.blame, error);
   if (error.line == 0) box.locate(error, box.caller(lua, static_cast<int>(std::clamp<lua_Integer>(level, 1, 1000))));
   throw ScriptError{std::move(error)};
 }

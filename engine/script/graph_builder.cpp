@@ -81,13 +81,15 @@ Pass GraphBuilder::start(std::string name, const std::optional<std::string>& giv
          "1 to 64 letters, digits, '_', '-', '[' and ']'");
   if (given) pass.name = entry_->name + "." + *given;
   const std::string wanted = pass.name;
-  for (int n = 2; names_.contains(pass.name); ++n) pass.name = fmt::format("{}#{}", wanted, n);
+  int n = names_[wanted];
+  while (n > 0 && names_.contains(pass.name = fmt::format("{}#{}", wanted, n + 1))) ++n;
+  names_[wanted] = n + 1;
   if (graph_.passes.size() >= kMaxPasses) fail(pass, fmt::format("more than {} passes", kMaxPasses));
   return pass;
 }
 
 ImageRef GraphBuilder::add(Pass pass, Size size) {
-  names_.insert(pass.name);
+  names_.try_emplace(pass.name, 1);
   pass.output = add_image(pass.name, size, static_cast<int>(graph_.passes.size()));
   graph_.passes.push_back(std::move(pass));
   return ref(graph_.passes.back().output);

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -98,7 +98,7 @@ class GraphBuilder {
   Graph graph_;
   const StackEntry* entry_ = nullptr;
   std::vector<std::string> inputs_;
-  std::set<std::string> names_;
+  std::map<std::string, int> names_;  // taken names; how often each was wanted
   std::optional<std::string> skip_reason_;
 };
 

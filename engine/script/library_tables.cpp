@@ -170,9 +170,9 @@ void push_table_library(lua_State* lua) {
 
 void push_math_library(lua_State* lua) {
   luaopen_math(lua);
-  pick(lua,
-       {"abs",        "acos", "asin",       "atan", "ceil", "cos", "exp",  "floor", "fmod",      "huge", "log", "max",
-        "maxinteger", "min",  "mininteger", "modf", "pi",   "sin", "sqrt", "tan",   "tointeger", "type", "ult"});
+  pick(lua, {"deg",   "rad",  "abs",  "acos", "asin",      "atan",       "ceil", "cos",        "exp",
+             "floor", "fmod", "huge", "log",  "max",       "maxinteger", "min",  "mininteger", "modf",
+             "pi",    "sin",  "sqrt", "tan",  "tointeger", "type",       "ult"});
   make_read_only(lua);
 }
 

@@ -17,6 +17,7 @@ namespace afterglow::script {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr std::uint64_t kFileCost = 100'000;  // instructions that a look at the file system counts as
 constexpr std::size_t kMaxScript = 1u << 20;  // bytes; presets are a page long
 const char kModules = 0;                      // registry key of the cache of modules
 
@@ -50,6 +51,9 @@ std::string module_file(const std::string& name) {
 }
 
 fs::path find_module(const Runtime& runtime, const std::string& name) {
+  Sandbox& box = *runtime.box;
+  box.charge(kFileCost);
+  const Sandbox::Pause pause(box);
   const std::string file = module_file(name);
   if (file.empty())
     throw failure(fmt::format("require: '{}' is not the name of a module", tidy_message(name, 60)), {},
@@ -126,6 +130,8 @@ void load_chunk(lua_State* lua, const fs::path& file, bool library) {
     box.memory_failed();
     box.charge(0);
   }
+  if (const Error* raised = status != LUA_OK ? box.raised(lua, -1) : nullptr)  // the parser's own recursion
+    throw ScriptError{{ErrorKind::script, raised->message, file.string()}};
   if (status != LUA_OK) {
     Error error{ErrorKind::script, lua_tostring(lua, -1), file.string()};
     box.locate(error, box.take_prefix(error.message));
@@ -158,6 +164,7 @@ int find_effect(lua_State* lua, const std::string& name) {
   Runtime& runtime = Runtime::of(lua);
   if (const auto it = runtime.effect_by_name.find(name); it != runtime.effect_by_name.end()) return it->second;
   std::vector<fs::path> hits;
+  runtime.box->charge(kFileCost);
   if (is_identifier(name)) {
     const Sandbox::Pause pause(*runtime.box);
     for (const auto& hit : runtime.path.find_effect(name)) {

@@ -1,18 +1,34 @@
 #include "script/native.h"
 
+#include <cctype>
+
 #include "script/key_finder.h"
 
 namespace afterglow::script {
 
 void locate_failure(lua_State* lua, ScriptError& failure, const char* function) {
   if (!failure.error.file.empty()) return;
-  const Sandbox& box = Sandbox::of(lua);
+  Sandbox& box = Sandbox::of(lua);
   Location where = box.caller(lua);
   if (where.source < 0) return;
   const Source& source = box.sources()[static_cast<std::size_t>(where.source)];
+  box.charge(source.text.size() / 4);  // scripts may fail in a loop
   where.line =
       line_of_key(source.text, where.line, failure.function.empty() ? function : failure.function, failure.key);
   box.locate(failure.error, where);
+}
+
+void locate_blame(const Sandbox& box, const Blame& blame, Error& error) {
+  error.file = blame.file;
+  error.line = blame.line;
+  std::size_t end = 0;
+  while (end < error.message.size() &&
+         (std::isalnum(static_cast<unsigned char>(error.message[end])) || error.message[end] == '_'))
+    ++end;
+  if (end == 0) return;
+  for (const Source& source : box.sources())
+    if (source.path == blame.file)
+      error.line = line_of_key(source.text, blame.line, blame.function, {error.message.substr(0, end)});
 }
 
 }  // namespace afterglow::script

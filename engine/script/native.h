@@ -18,6 +18,9 @@ struct Literal {
 /// Fills in file and line of a failure: those of its key in the call's table, else of the call.
 void locate_failure(lua_State* lua, ScriptError& failure, const char* function);
 
+/// Points `error` at the blamed call, or at the key of it with which the message begins.
+void locate_blame(const Sandbox& box, const Blame& blame, Error& error);
+
 /// `Function` as Lua calls it; `Name` is the last identifier of the call in scripts.
 template <int (*Function)(lua_State*), Literal Name>
 int native(lua_State* lua) {

@@ -28,7 +28,7 @@ struct Preset::State {
 
   void load(lua_State* lua, const std::vector<Override>& overrides);
   DeclaredStack run_script(lua_State* lua);
-  void note_needs(lua_State* lua);
+  void note_needs(lua_State* lua, const StackEntry*& current);
   ImageRef build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
                        Diagnostics& diagnostics);
 };
@@ -85,8 +85,9 @@ void Preset::State::load(lua_State* lua, const std::vector<Override>& overrides)
   }
 }
 
-void Preset::State::note_needs(lua_State* lua) {
+void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
   for (const auto& run : runs) {
+    current = &run.entry;
     if (!run.entry.enabled || inactive_reason(lua, run)) continue;
     for (const auto& names : {needed_inputs(lua, run), optional_inputs(lua, run)})
       for (const auto& input : names)
@@ -106,12 +107,13 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
   state->shaders = &shaders;
   AFTERGLOW_TRY(state->runtime, Runtime::create(search_path_for(file, options.paths), options.limits, diagnostics));
   Sandbox& box = *state->runtime->box;
+  const StackEntry* current = nullptr;
   auto error = box.run(state->file, [&](lua_State* lua) {
     state->load(lua, options.overrides);
-    state->note_needs(lua);
+    state->note_needs(lua, current);
   });
   box.diagnostics = nullptr;
-  if (error) return std::move(*error);
+  if (error) return with_entry(std::move(*error), current);
   return Preset(std::move(state));
 }
 

@@ -11,6 +11,7 @@ namespace afterglow::script {
 namespace {
 
 constexpr int kStep = 200;                         // instructions between two looks at the budget
+constexpr int kMaxDepth = 10'000;      // nested calls
 constexpr std::size_t kLookEvery = 1u << 20;       // bytes allocated between two looks at the clock
 constexpr std::uint64_t kRefusalCost = 1'000'000;  // a refused allocation costs a full collection
 
@@ -91,14 +92,24 @@ void Sandbox::exhaust(Error error) {
 void Sandbox::on_count(lua_State* lua, lua_Debug* info) {
   Sandbox& box = of(lua);
   box.instructions_ += kStep;
-  if (!box.spent()) return;
-  if (!box.exhausted_) {
+  const auto place = [&](Error& error) {
     Location where;
     if (lua_getinfo(lua, "Sl", info)) where = box.location(info->source, info->currentline);
     if (where.source >= 0 && box.sources_[static_cast<std::size_t>(where.source)].library) where = box.caller(lua, 0);
+    box.locate(error, where);
+  };
+  if (!box.spent()) {
+    // Lua's own limit lies beyond what the memory allows; this one tells what is wrong.
+    lua_Debug deep{};
+    if (!lua_getstack(lua, kMaxDepth, &deep)) return;
+    Error error{ErrorKind::script, fmt::format("stack overflow: calls nest more than {} deep", kMaxDepth)};
+    place(error);
+    box.raise(std::move(error));
+  }
+  if (!box.exhausted_) {
     Error error{ErrorKind::script, fmt::format("instruction budget spent: more than {} instructions or {} s",
                                                box.limits_.instructions, box.limits_.seconds)};
-    box.locate(error, where);
+    place(error);
     box.exhaust(std::move(error));
   }
   box.raise(*box.exhausted_);
@@ -193,7 +204,7 @@ Error Sandbox::error_of(int status, const std::string& file) {
     error = *exhausted_;
   else if (const Error* known = raised(lua_, -1))
     error = *known;
-  if (error.file.empty()) error.file = file;
+  if (error.file.empty() && error.kind == ErrorKind::script) error.file = file;
   return error;
 }
 
@@ -214,7 +225,8 @@ Location Sandbox::location(const char* chunk_name, int line) const {
 
 Location Sandbox::caller(lua_State* lua, int level) const {
   lua_Debug info{};
-  for (; lua_getstack(lua, level, &info); ++level) {
+  // Frames between here and a script's are native or the library's, so few; lua_getstack counts from the top each time.
+  for (const int last = level + 300; level < last && lua_getstack(lua, level, &info); ++level) {
     if (!lua_getinfo(lua, "Sl", &info) || info.currentline <= 0) continue;
     const Location where = location(info.source, info.currentline);
     if (where.source >= 0 && !sources_[static_cast<std::size_t>(where.source)].library) return where;

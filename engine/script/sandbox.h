@@ -33,6 +33,13 @@ struct Location {
   int line = 0;
 };
 
+/// Whom `error(message, 0)` in a function of an effect is about: the entry in the preset that asked for it.
+struct Blame {
+  std::string file;
+  int line = 0;
+  std::string function;  ///< of the call there; a message that begins with one of its keys points at that key
+};
+
 /// Not thread-safe; may move between threads.
 class Sandbox {
  public:
@@ -107,6 +114,7 @@ class Sandbox {
   std::size_t memory_used() const { return used_; }
   /// Messages of `print`; null: dropped.
   Diagnostics* diagnostics = nullptr;
+  const Blame* blame = nullptr;
   int printed = 0;        ///< lines since the run began
   void* owner = nullptr;  ///< whoever binds more functions
 

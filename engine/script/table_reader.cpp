@@ -101,6 +101,7 @@ std::optional<bool> TableReader::boolean(const char* name) {
 
 void TableReader::allow(const std::vector<std::string>& known, bool positions) {
   for (const Key& key : keys_) {
+    if (failures_.size() == kMaxFailures) return;
     if (key.position > 0 ? positions : std::find(known.begin(), known.end(), key.name) != known.end()) continue;
     if (key.position > 0)
       fail(failure(fmt::format("{} has a value without a name at position {}", what_, key.position), {key.name},

@@ -39,13 +39,17 @@ class TableReader {
   void allow(const std::vector<std::string>& known, bool positions);
 
   /// Notes a failure; `finish` throws the one that stands first in the source.
-  void fail(ScriptError error) { failures_.push_back(std::move(error)); }
+  void fail(ScriptError error) {
+    if (failures_.size() < kMaxFailures) failures_.push_back(std::move(error));
+  }
   bool failed() const { return !failures_.empty(); }
   void finish(const char* function);
 
   const std::string& what() const { return what_; }
 
  private:
+  static constexpr std::size_t kMaxFailures = 32;  // each one costs a search of the source
+
   lua_State* lua_;
   int index_;
   std::string what_;

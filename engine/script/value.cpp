@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 
 #include "core/text.h"
 #include "script/read_only.h"
@@ -27,6 +28,12 @@ bool parse_list(std::string text, Value& value) {
   return true;
 }
 
+// Numbers that no 32-bit float holds are shown as they are, and not as infinite.
+std::string shown_number(double value) {
+  return std::isfinite(value) && !std::isfinite(static_cast<float>(value)) ? fmt::format("{}", value)
+                                                                           : number_text(value);
+}
+
 }  // namespace
 
 std::string Value::shown() const {
@@ -36,7 +43,7 @@ std::string Value::shown() const {
     case Kind::boolean:
       return number != 0 ? "true" : "false";
     case Kind::number:
-      return number_text(number);
+      return shown_number(number);
     case Kind::text:
       return '"' + tidy_message(text, 60) + '"';
     case Kind::other:
@@ -45,7 +52,7 @@ std::string Value::shown() const {
       break;
   }
   std::string out = "{";
-  for (int i = 0; i < count; ++i) out += (i ? ", " : "") + number_text(list[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < count; ++i) out += (i ? ", " : "") + shown_number(list[static_cast<std::size_t>(i)]);
   return out + "}";
 }
 
@@ -53,6 +60,7 @@ Value read_value(lua_State* lua, int index) {
   Value value;
   const int type = lua_type(lua, index);
   switch (type) {
+    case LUA_TNONE:
     case LUA_TNIL:
       return value;
     case LUA_TBOOLEAN:

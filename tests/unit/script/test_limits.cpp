@@ -1,0 +1,205 @@
+// Hostile scripts: each ends in one clear error, whatever it tries to swallow it with, and the host lives on.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scene.h"
+
+namespace afterglow::test {
+namespace {
+
+// A small budget, so that the suite is quick; the clock's limit is far away unless a test sets it.
+std::string run(const std::string& statements, std::size_t memory = 16u << 20) {
+  Scene scene;
+  scene.options.limits = {memory, 2'000'000, 60};
+  scene.preset("local fx = require \"afterglow\"\n" + statements + "\nreturn fx.stack {}\n");
+  return scene.load_error();
+}
+
+const std::string kBudget = "error: instruction budget spent: more than 2000000 instructions or 60 s";
+const std::string kMemory = "preset.lua: error: memory limit reached: more than 16 MiB";
+
+TEST(Limits, DefaultsAreThoseOfTheDesign) {
+  const ScriptLimits limits;
+  EXPECT_EQ(limits.memory, 64u << 20);
+  EXPECT_EQ(limits.instructions, 50'000'000u);
+  EXPECT_EQ(limits.seconds, 2.0);
+}
+
+TEST(Limits, EndlessLoops) {
+  EXPECT_EQ(run("while true do end"), "preset.lua:2: " + kBudget);
+  EXPECT_EQ(run("\n\nrepeat local x = 1 until false"), "preset.lua:4: " + kBudget);
+  EXPECT_EQ(run("for i = 1, math.maxinteger do end"), "preset.lua:2: " + kBudget);
+  EXPECT_EQ(run("::a:: goto a"), "preset.lua:2: " + kBudget);
+}
+
+TEST(Limits, PcallCannotSwallowTheBudget) {
+  EXPECT_EQ(run("while true do pcall(function() while true do end end) end"), "preset.lua:2: " + kBudget);
+  EXPECT_EQ(run("local function f() pcall(f) while true do end end\npcall(f)\n"), "preset.lua:2: " + kBudget);
+  EXPECT_EQ(run("pcall(function() while true do end end)"), "preset.lua:2: " + kBudget);  // and then goes on
+}
+
+TEST(Limits, LoopsInMetamethods) {
+  EXPECT_EQ(run("tostring(setmetatable({}, { __tostring = function()\n while true do end end }))"),
+            "preset.lua:3: " + kBudget);
+  EXPECT_EQ(run("local t = setmetatable({}, { __index = function()\n while true do end end }) local x = t.y"),
+            "preset.lua:3: " + kBudget);
+  EXPECT_EQ(run("do local c <close> = setmetatable({}, { __close = function()\n while true do end end }) end"),
+            "preset.lua:3: " + kBudget);
+  EXPECT_THAT(run("local function again() local c <close> = setmetatable({}, { __close = function() again() end }) "
+                  "error(\"x\") end\nwhile true do pcall(again) end",
+                  64u << 20),
+              testing::HasSubstr(kBudget));
+  EXPECT_EQ(run("local t = setmetatable({}, { __newindex = function(t, k, v)\n while true do end end }) t.y = 1"),
+            "preset.lua:3: " + kBudget);
+}
+
+TEST(Limits, CloseHandlersCannotGoOnAfterTheBudget) {
+  EXPECT_EQ(run(R"(local function guard(f) return setmetatable({}, { __close = f }) end
+    pcall(function()
+      local a <close> = guard(function() while true do end end)
+      local b <close> = guard(function() while true do end end)
+      while true do end
+    end))"),
+            "preset.lua:6: " + kBudget);
+}
+
+TEST(Limits, DeepRecursion) {
+  Scene scene;  // with the limits of every day
+  scene.preset("local function f() return 1 + f() end\nf()");
+  EXPECT_EQ(scene.load_error(), "preset.lua:1: error: stack overflow: calls nest more than 10000 deep");
+  EXPECT_EQ(run("local function f() return f() end\nf()"), "preset.lua:2: " + kBudget);  // a tail call is a loop
+  EXPECT_EQ(run("local function f() local ok, e = pcall(f) error(e, 0) end\nf()"),
+            "preset.lua:2: error: C stack overflow");
+  EXPECT_EQ(run("local t = setmetatable({}, {}) getmetatable(t).__index = t\nlocal x = t.y"),
+            "preset.lua:3: error: '__index' chain too long; possible loop");
+  EXPECT_EQ(run("local m = {} m.__index = function(t, k) return t[k] end\nlocal x = setmetatable({}, m).y"),
+            "preset.lua:2: error: C stack overflow");
+}
+
+TEST(Limits, DeepSyntax) {
+  const auto nested = [](int depth) {
+    return "local x = " + std::string(static_cast<std::size_t>(depth), '(') + "1" +
+           std::string(static_cast<std::size_t>(depth), ')');
+  };
+  EXPECT_EQ(run(nested(100)), "");
+  EXPECT_EQ(run(nested(100000)), "preset.lua: error: C stack overflow");
+}
+
+TEST(Limits, Memory) {
+  EXPECT_EQ(run("local s = (\"x\"):rep(1e9)"), kMemory);
+  EXPECT_EQ(run("local s = \"x\" while true do s = s .. s end"), kMemory);
+  EXPECT_EQ(run("local t = {} for i = 1, 1e9 do t[i] = i end"), kMemory);
+  EXPECT_EQ(run("local t = {} for i = 1, 1e9 do t = { t, {}, {}, {} } end"), kMemory);
+  EXPECT_EQ(run("local t = { (\"x\"):rep(1e6):byte(1, -1) }").substr(0, 21), "preset.lua:2: error: ");
+  EXPECT_EQ(
+      run("local t = {} for i = 1, 1e5 do t[i] = \"0123456789\" end local s = table.concat(t, (\"y\"):rep(1000))"),
+      kMemory);
+  EXPECT_EQ(run("string.format((\"%99d\"):rep(100), table.unpack({}))").substr(0, 21), "preset.lua:2: error: ");
+  EXPECT_EQ(run("string.format(\"%1000d\", 1)"), "preset.lua:2: error: invalid conversion specification: '%1000d'");
+  EXPECT_EQ(run("local x = select(2, pcall(string.rep, \"x\", -1)) assert(x == \"\")"), "");
+}
+
+TEST(Limits, PcallCannotSwallowTheMemoryLimit) {
+  EXPECT_EQ(run("while true do pcall(string.rep, \"x\", 1e9) end"), kMemory);
+  EXPECT_EQ(run("pcall(function() local t = {} for i = 1, 1e9 do t[i] = i end end)"), kMemory);
+}
+
+TEST(Limits, ThrashingAtTheMemoryLimitIsCounted) {
+  // Fills the memory almost, then makes garbage that every time forces a full collection.
+  const std::string error = run(R"(local keep = {}
+    for i = 1, 150000 do keep[i] = { i } end
+    while true do local waste = ("x"):rep(900000) end)");
+  EXPECT_TRUE(error.find("instruction budget") != std::string::npos || error.find("memory limit") != std::string::npos)
+      << error;
+}
+
+TEST(Limits, NativeWorkIsCounted) {
+  // Each iteration is few instructions and much work; uncounted they would run for minutes.
+  EXPECT_EQ(
+      run("local t = {} for i = 1, 1e4 do t[i] = i end\nwhile true do table.insert(t, 1, 0) table.remove(t, 1) end"),
+      "preset.lua:3: " + kBudget);
+  EXPECT_EQ(run("local t = {} for i = 1, 1e4 do t[i] = i end\nwhile true do table.sort(t) end"),
+            "preset.lua:3: " + kBudget);
+  EXPECT_EQ(run("local t = {} for i = 1, 1e4 do t[i] = i end\nwhile true do for k in pairs(t) do break end end"),
+            "preset.lua:3: " + kBudget);
+  EXPECT_EQ(run("local s = (\"1\"):rep(1e6)\nwhile true do tonumber(s, 36) end"), "preset.lua:3: " + kBudget);
+  EXPECT_EQ(run("local s = (\"1\"):rep(1e6)\nwhile true do local u = s:upper() end"), "preset.lua:3: " + kBudget);
+  EXPECT_EQ(run("table.concat({}, \"\", 1, 1e15)"),
+            "preset.lua:2: error: table.concat: item 1 is a nil; allowed: texts and numbers");
+}
+
+TEST(Limits, FailingInALoopIsCounted) {
+  EXPECT_EQ(run("while true do pcall(function() return fx.nope end) end"), "preset.lua:2: " + kBudget);
+  EXPECT_EQ(run("while true do pcall(require, \"nope\") end"), "preset.lua:2: " + kBudget);
+  EXPECT_EQ(run("while true do pcall(fx.stack, { zzz = 1 }) end"), "preset.lua:2: " + kBudget);
+  EXPECT_EQ(run("while true do pcall(fx.filters.plus, -1) end"), "preset.lua:2: " + kBudget);
+}
+
+TEST(Limits, DeclaringIsBounded) {
+  EXPECT_EQ(run("while true do fx.bool { default = true } end"), "preset.lua:2: error: more than 4096 settings");
+  EXPECT_EQ(run("local t = {} for i = 1, 5000 do t[i] = 1 end fx.stack(t)"),
+            "preset.lua:2: error: fx.stack has more than 4096 keys");
+  EXPECT_EQ(run("local f = function() end while true do fx.effect { name = \"a\", build = f } end"),
+            "preset.lua:2: error: more than 4096 effects");
+}
+
+TEST(Limits, TheClockAlsoCounts) {
+  Scene scene;
+  scene.options.limits = {64u << 20, ~0ull, 0.05};
+  scene.preset("while true do end");
+  EXPECT_EQ(scene.load_error(),
+            "preset.lua:1: error: instruction budget spent: more than 18446744073709551615 instructions or 0.05 s");
+}
+
+TEST(Limits, HugeScriptsAreRefused) {
+  Scene scene;
+  scene.preset("--" + std::string(2u << 20, 'x'));
+  EXPECT_EQ(scene.load_error(), "preset.lua: error: is larger than 1048576 bytes");
+}
+
+TEST(Limits, ATinyLimitIsAnErrorToo) {
+  Scene scene;
+  scene.options.limits.memory = 1000;
+  scene.preset("");
+  EXPECT_EQ(scene.load_error(), "error: memory limit of 1000 bytes is too small");
+  scene.options.limits.memory = 20000;
+  EXPECT_NE(scene.load_error().find("memory limit"), std::string::npos);
+}
+
+TEST(Limits, BuildsHaveABudgetEach) {
+  Scene scene;
+  scene.options.limits = {16u << 20, 2'000'000, 60};
+  scene.effect("busy", R"(build = function(g, s, source)
+    for i = 1, 300000 do end
+    return source
+  end,)");
+  scene.stack("fx.busy {}");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(scene.build(*preset)) << i;
+}
+
+TEST(Limits, AFailedBuildLeavesAUsableState) {
+  Scene scene;
+  scene.options.limits = {16u << 20, 2'000'000, 60};
+  scene.effect("moody", R"(build = function(g, s, source)
+    if g.frame == 1 then while true do pcall(function() while true do end end) end end
+    if g.frame == 2 then local t = {} for i = 1, 1e9 do t[i] = { i } end end
+    return source
+  end,)");
+  scene.stack("fx.moody {}");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset);
+  for (int round = 0; round < 3; ++round) {
+    scene.context.frame = 1;
+    EXPECT_EQ(scene.shorten(scene.build(*preset).error().text()),
+              "effects/moody.lua:4: " + kBudget + "\n  in effect 'moody' of preset.lua:3");
+    scene.context.frame = 2;
+    EXPECT_EQ(scene.shorten(scene.build(*preset).error().text()), kMemory);
+    scene.context.frame = 3;
+    EXPECT_TRUE(scene.build(*preset));
+  }
+}
+
+}  // namespace
+}  // namespace afterglow::test

@@ -1,0 +1,90 @@
+// Where an entry runs: injection point, then order, then position; and what entries are called.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scene.h"
+
+namespace afterglow::test {
+namespace {
+
+using testing::ElementsAre;
+
+std::vector<std::string> names(const Preset& preset) {
+  std::vector<std::string> out;
+  for (const auto& entry : preset.entries()) out.push_back(entry.name);
+  return out;
+}
+
+struct Order : testing::Test {
+  Order() {
+    for (const std::string name : {"a", "b", "c"})
+      scene.effect(name, "order = " + std::string(name == "c" ? "5" : "10") + R"(,
+        build = function(g, s, source) return source end,)");
+  }
+  std::vector<std::string> order(const std::string& entries) {
+    scene.stack(entries);
+    auto preset = scene.load();
+    if (!preset) return {preset.error().text()};
+    return names(*preset);
+  }
+  Scene scene;
+};
+
+TEST_F(Order, ByOrderThenPosition) {
+  EXPECT_THAT(order("fx.b {}, fx.a {}, fx.c {}"), ElementsAre("c", "b", "a"));
+  EXPECT_THAT(order("fx.b {}, fx.a { order = 9 }, fx.c { order = 9 }"), ElementsAre("a", "c", "b"));
+  EXPECT_THAT(order("fx.a { order = -1 }, fx.b { order = -2 }"), ElementsAre("b", "a"));
+}
+
+TEST_F(Order, InjectionPointsComeFirst) {
+  EXPECT_THAT(
+      order(R"(fx.a { at = "after_post_process", order = -100, name = "w" }, fx.a { at = "post_process", name = "x" },
+                       fx.a { at = "before_post_process", name = "y" },
+                       fx.a { at = "after_opaque_and_sky", order = 1000, name = "z" })"),
+      ElementsAre("z", "y", "x", "w"));
+}
+
+TEST_F(Order, ManyEqualsKeepTheirPlaces) {
+  std::string entries;
+  std::vector<std::string> expected;
+  for (int i = 0; i < 100; ++i) {
+    entries += "fx.a { name = \"e" + std::to_string(i) + "\" },";
+    expected.push_back("e" + std::to_string(i));
+  }
+  EXPECT_EQ(order(entries), expected);
+}
+
+TEST_F(Order, SecondOnesGetANumber) {
+  EXPECT_THAT(order("fx.a {}, fx.a {}, fx.a {}"), ElementsAre("a", "a#2", "a#3"));
+  EXPECT_THAT(order("fx.a {}, fx.b { name = \"a\" }"), ElementsAre("a#2", "a"));
+}
+
+TEST_F(Order, HolesInAStackDoNotMatter) { EXPECT_THAT(order("fx.a {}, nil, fx.b {}"), ElementsAre("a", "b")); }
+
+TEST_F(Order, AnEmptyStackIsFine) {
+  EXPECT_THAT(order(""), ElementsAre());
+  const Graph graph = scene.graph();
+  EXPECT_EQ(graph.result, graph.source);
+}
+
+TEST_F(Order, TheStackIsNamedByItsFileOtherwise) {
+  scene.stack("");
+  EXPECT_EQ(scene.load()->name(), "preset");
+}
+
+TEST_F(Order, SettingsKeepTheOrderOfDeclaration) {
+  scene.effect("many", R"(settings = {
+      zeta = fx.bool { default = true }, alpha = fx.bool { default = true }, mid = fx.bool { default = true },
+      beta = fx.bool { default = true }, last = fx.bool { default = true }, },
+    build = function(g, s, source) return source end,)");
+  scene.stack("fx.many { mid = false, alpha = true }");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  std::vector<std::string> declared;
+  for (const auto& setting : preset->schema("many").settings) declared.push_back(setting.name);
+  EXPECT_THAT(declared, ElementsAre("zeta", "alpha", "mid", "beta", "last"));
+  EXPECT_THAT(preset->entries()[0].changed, ElementsAre("alpha", "mid"));
+}
+
+}  // namespace
+}  // namespace afterglow::test
