@@ -8,6 +8,6 @@ vec3 log_contrast(vec3 x, float k) {
   // v ≤ 0 stands for black in log space (−∞): it stays 0, but for k = 0, where every colour becomes the pivot's grey.
   vec3 v = max(kScale * x + kOffset, vec3(k == 0.0 ? 1.0 : 0.0));
   vec3 exponent = (k - 1.0) * log2(max(v * (1.0 / kPivot), 1e-37));
-  vec3 raised = min(v * exp2(min(exponent, 100.0)), 1e30);
+  vec3 raised = min(v * exp2(exponent), 1e30);
   return (raised - kOffset) * (1.0 / kScale);
 }

@@ -84,6 +84,19 @@ TEST_F(Effects, ColorAdjustmentsAgreeInChains) {
     for (const auto& s : settings) check(scene, lua(s), color_adjustments(scene.source, s));
 }
 
+TEST_F(Effects, ContrastTakesWhatToneCurvesLeaveBelowZero) {
+  // ACES returns down to −0.03; LogC's argument is negative from −0.0086 on, where its logarithm is taken as −∞.
+  Scene scene{"negative", DoubleImage(8, 2), {}, {}};
+  static constexpr double kValues[] = {-0.03, -0.00864, -0.0086, -0.001, -1e-6, 0, 0.01, 3};
+  for (int x = 0; x < 8; ++x) {
+    scene.source.at(x, 0) = Rgba(kValues[x], kValues[7 - x], kValues[x], 1);
+    scene.source.at(x, 1) = Rgba(kValues[x], kValues[x], 1, 0.5);
+  }
+  scene.source = in_floats(scene.source);
+  for (const double contrast : {-100.0, -99.0, -50.0, 50.0, 100.0})
+    check(scene, lua({.contrast = contrast}), color_adjustments(scene.source, {.contrast = contrast}));
+}
+
 TEST_F(Effects, ColorAdjustmentsAllNeutralDoNotRun) {
   const Made made = run_stack("fx.color_adjustments {}", random_scene({8, 8}, 23), Way::plain);
   EXPECT_FALSE(made.ran());
