@@ -34,7 +34,7 @@ class CurveDecoder {
     } else if (encoding.max_code > 0) {
       shared_.resize(static_cast<std::size_t>(encoding.max_code) + 1);
       for (std::size_t i = 0; i < shared_.size(); ++i)
-        shared_[i] = formula(static_cast<float>(static_cast<double>(i) / encoding.max_code));
+        shared_[i] = formula(static_cast<double>(i) / encoding.max_code);
       for (auto& table : tables_) table = &shared_;
     }
   }
@@ -46,22 +46,22 @@ class CurveDecoder {
     if (!table) return formula(stored);
     const auto last = static_cast<float>(table->size() - 1);
     const float position = std::clamp(stored, 0.0f, 1.0f) * last;
-    // Stored codes hit the table exactly; values between them (after un-premultiplying) are interpolated.
+    // Stored codes hit the table; the product above is off by up to 0.01 of 65535. Values between them (divided by alpha) are interpolated.
     const float nearest = std::nearbyint(position);
-    if (std::abs(position - nearest) < 1e-3f) return (*table)[static_cast<std::size_t>(nearest)];
+    if (std::abs(position - nearest) < 0.02f) return (*table)[static_cast<std::size_t>(nearest)];
     const auto index = static_cast<std::size_t>(position);
     const float t = position - static_cast<float>(index);
     return (*table)[index] * (1 - t) + (*table)[index + 1] * t;
   }
 
  private:
-  float formula(float stored) const {
+  float formula(double stored) const {
     switch (encoding_.curve) {
       case TransferCurve::srgb: return static_cast<float>(srgb_to_linear(stored));
       case TransferCurve::rec709:
-        return stored < 0.081f ? stored / 4.5f : static_cast<float>(std::pow((stored + 0.099) / 1.099, 1 / 0.45));
+        return static_cast<float>(stored < 0.081 ? stored / 4.5 : std::pow((stored + 0.099) / 1.099, 1 / 0.45));
       case TransferCurve::power: return static_cast<float>(std::copysign(std::pow(std::abs(stored), encoding_.exponent), stored));
-      default: return stored;
+      default: return static_cast<float>(stored);
     }
   }
 

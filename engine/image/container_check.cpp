@@ -1,5 +1,6 @@
 #include "image/container_check.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include "image/exr_header.h"
 
@@ -29,7 +31,24 @@ bool fill(std::ifstream& in, unsigned char* into, std::size_t size) {
   return static_cast<bool>(in.read(reinterpret_cast<char*>(into), static_cast<std::streamsize>(size)));
 }
 
-/// Walks the chunks up to IEND, without reading pixels.
+/// The checksum of chunk type and data. Told here, damage is one error of ours; libpng would print its own line besides.
+Result<void> check_sum(const fs::path& file, std::ifstream& in, std::uint64_t at, std::uint64_t length) {
+  std::vector<unsigned char> buffer(std::min<std::uint64_t>(length + 4, 1 << 18));
+  in.seekg(static_cast<std::streamoff>(at + 4));
+  uLong sum = crc32(0, nullptr, 0);
+  for (std::uint64_t left = length + 4; left > 0;) {
+    const std::size_t count = std::min<std::uint64_t>(left, buffer.size());
+    if (!fill(in, buffer.data(), count)) return malformed(file, "is truncated");
+    sum = crc32(sum, buffer.data(), static_cast<uInt>(count));
+    left -= count;
+  }
+  std::array<unsigned char, 4> stored{};
+  if (!fill(in, stored.data(), stored.size())) return malformed(file, "is truncated");
+  if (big_endian(stored.data(), 4) != sum) return malformed(file, "is damaged: a checksum is wrong");
+  return {};
+}
+
+/// Walks the chunks up to IEND.
 Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::uint64_t size) {
   ContainerFacts facts;
   facts.kind = ContainerFacts::Kind::png;
@@ -61,6 +80,7 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
     } else if (type == "IEND") {
       return facts;
     }
+    AFTERGLOW_CHECK(check_sum(file, in, at, length));
     at += 12 + length;
   }
 }

@@ -40,8 +40,8 @@ void ExrColorRows::add_slices(int first, int rows, Imf::FrameBuffer& buffer) {
   }
 }
 
-void ExrColorRows::warn_of_overflow(const std::string& file, Diagnostics& diagnostics) const {
-  if (overflows_) diagnostics.warn(fmt::format("{}: {} samples beyond the range of half floats are held at ±65504", file, overflows_));
+void ExrColorRows::warn_of_overflow(Diagnostics& diagnostics) const {
+  if (overflows_) diagnostics.warn(fmt::format("{} samples beyond the range of half floats are held at ±65504", overflows_));
 }
 
 Result<void> set_compression(Imf::Header& header, const std::string& text) {

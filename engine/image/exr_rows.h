@@ -26,7 +26,7 @@ class ExrColorRows {
   /// Slices for rows [first, first + rows) of the data window, counted from its top.
   void add_slices(int first, int rows, Imf::FrameBuffer& buffer);
   /// Says how many samples were held at ±65504, if any were.
-  void warn_of_overflow(const std::string& file, Diagnostics& diagnostics) const;
+  void warn_of_overflow(Diagnostics& diagnostics) const;
 
  private:
   const Picture& picture_;

@@ -145,7 +145,6 @@ class OiioFile : public PictureFile {
     if (!input_->read_image(part, 0, first.channel, first.channel + channels, OIIO::TypeFloat, first.base, x_stride, y_stride,
                             y_stride * spec.height))
       return failed(message_of(input_->geterror()));
-    if (input_->has_error()) return failed(message_of(input_->geterror()));
     return {};
   }
 

@@ -36,7 +36,7 @@ Result<void> write_exr(const Picture& picture, OutputFile& out, const std::strin
       file.writePixels(count);
     }
   }  // the destructor writes the offset table; a failure of that is found in `out`
-  rows.warn_of_overflow(name, diagnostics);
+  rows.warn_of_overflow(diagnostics);
   return {};
 }
 

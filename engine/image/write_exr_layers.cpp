@@ -152,7 +152,7 @@ Result<void> write_exr_with_layers(const Picture& picture, OutputFile& out, cons
                                    Diagnostics& diagnostics) {
   const FileFacts* facts = picture.facts.get();
   if (!facts || !facts->exr_header) {
-    diagnostics.warn(fmt::format("{}: the input is no EXR file and has no layers to keep", name));
+    diagnostics.warn("the input is no EXR file and has no layers to keep");
     return write_exr(picture, out, name, options, diagnostics);
   }
   if (facts->orientation > 1)
@@ -180,7 +180,7 @@ Result<void> write_exr_with_layers(const Picture& picture, OutputFile& out, cons
       }
     }
   }
-  color.warn_of_overflow(name, diagnostics);
+  color.warn_of_overflow(diagnostics);
   return {};
 }
 

@@ -1,6 +1,7 @@
 #include "image/write_flat.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include <OpenImageIO/imageio.h>
@@ -102,27 +103,40 @@ Error library_failed(OIIO::ImageOutput& output) {
   return Error{ErrorKind::io, why.empty() ? "cannot be written" : "cannot be written: " + why};
 }
 
+/// Reads every row of a file that was written without OutputFile to see to it.
+Result<void> read_back(const std::string& name) {
+  const auto input = OIIO::ImageInput::open(name);
+  if (!input) return Error{ErrorKind::io, "cannot be written: reading it back failed: " + trim(OIIO::geterror())};
+  const OIIO::ImageSpec spec = input->spec();
+  std::vector<std::uint8_t> rows(spec.scanline_bytes() * kRows);
+  for (int y = 0; y < spec.height; y += kRows)
+    if (!input->read_scanlines(0, 0, y, std::min(y + kRows, spec.height), 0, 0, spec.nchannels, spec.format, rows.data()))
+      return Error{ErrorKind::io, "cannot be written: reading it back failed: " + trim(input->geterror())};
+  return {};
+}
+
 }  // namespace
 
-Result<void> write_flat(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
+Result<void> write_flat(const Picture& picture, const OutputFormat& format, OutputFile* out, const std::string& name,
                         const WriteOptions& options, Diagnostics& diagnostics) {
   const SampleType type = sample_type(format, options, picture.facts.get());
   const bool alpha = picture.has_alpha && format.alpha;
   if (picture.has_alpha && !alpha && has_transparency(picture))
-    diagnostics.warn(fmt::format("{}: {} files have no alpha; the picture is put on black", name, format.extensions[0].substr(1)));
+    diagnostics.warn(fmt::format("{} files have no alpha; the picture is put on black", format.extensions[0].substr(1)));
   const OIIO::ImageSpec spec = spec_for(picture, format, type, alpha, options);
   const auto output = OIIO::ImageOutput::create(format.name);
   if (!output) return Error{ErrorKind::io, fmt::format("cannot be written: OpenImageIO has no {} writer", format.name)};
-  OiioOutput proxy(out, name);
-  if (!output->set_ioproxy(&proxy) || !output->open(name, spec)) return library_failed(*output);
+  std::optional<OiioOutput> proxy;
+  if (out) output->set_ioproxy(&proxy.emplace(*out, name));
+  if (!output->open(name, spec)) return library_failed(*output);
   std::vector<std::uint8_t> strip;
   for (int y = 0; y < spec.height; y += kRows) {
     const int rows = std::min(kRows, spec.height - y);
     encode_strip(picture, type, alpha, options.dither, y, rows, strip);
-    if (!output->write_scanlines(y, y + rows, 0, oiio_type(type), strip.data()) || out.failure()) return library_failed(*output);
+    if (!output->write_scanlines(y, y + rows, 0, oiio_type(type), strip.data()) || (out && out->failure())) return library_failed(*output);
   }
   if (!output->close()) return library_failed(*output);
-  return {};
+  return out ? Result<void>() : read_back(name);
 }
 
 }  // namespace afterglow

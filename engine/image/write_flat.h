@@ -8,8 +8,9 @@
 
 namespace afterglow {
 
-/// PNG, JPEG, TIFF, HDR: the display window, encoded as the format and sample type want it. May throw what OpenImageIO throws.
-Result<void> write_flat(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
+/// PNG, JPEG, TIFF, HDR: the display window, encoded as the format and sample type want it. With `out` null the library opens file
+/// `name` itself, and what it wrote is read back. May throw what OpenImageIO throws.
+Result<void> write_flat(const Picture& picture, const OutputFormat& format, OutputFile* out, const std::string& name,
                         const WriteOptions& options, Diagnostics& diagnostics);
 
 }  // namespace afterglow

@@ -47,36 +47,49 @@ class Temporary {
   bool committed_ = false;
 };
 
+/// OpenImageIO 2.4 cannot look back at a TIFF that goes through a proxy, and then damages it where Exif data is to be written.
+bool opened_by_library(const OutputFormat& format) { return format.kind == OutputKind::tiff; }
+
 Result<void> write_format(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                           const WriteOptions& options, Diagnostics& diagnostics) {
-  if (format.kind != OutputKind::exr) return write_flat(picture, format, out, name, options, diagnostics);
+  if (format.kind != OutputKind::exr) return write_flat(picture, format, &out, name, options, diagnostics);
   use_exr_threads();
   if (options.keep_layers) return write_exr_with_layers(picture, out, name, options, diagnostics);
   return write_exr(picture, out, name, options, diagnostics);
 }
 
-/// Writes to `temporary` and makes sure that it is all there.
-Result<void> write_checked(const Picture& picture, const OutputFormat& format, const fs::path& temporary, const fs::path& file,
-                           const WriteOptions& options, Diagnostics& diagnostics) {
+/// Writes `temporary` through an OutputFile. What the file itself reports ("No space left on device") goes before what a library
+/// makes of it.
+Result<void> write_through(const Picture& picture, const OutputFormat& format, const fs::path& temporary, const WriteOptions& options,
+                           Diagnostics& diagnostics) {
   OutputFile out(temporary);
   Result<void> written;
   try {
-    if (!out.failure()) written = write_format(picture, format, out, file.string(), options, diagnostics);
+    if (!out.failure()) written = write_format(picture, format, out, temporary.string(), options, diagnostics);
   } catch (const std::exception& error) {
     written = Error{ErrorKind::io, "cannot be written: " + exr_message(error)};
   }
-  // The file's own failure ("No space left on device") says more than what a library makes of it.
-  const Result<void> closed = out.close();
-  AFTERGLOW_CHECK(closed);
+  AFTERGLOW_CHECK(out.close());
   AFTERGLOW_CHECK(written);
   std::error_code ec;
   if (fs::file_size(temporary, ec) != out.size() || ec) return Error{ErrorKind::io, "cannot be written: the file has lost bytes"};
+  return {};
+}
+
+/// Writes to `temporary` and makes sure that it is all there.
+Result<void> write_checked(const Picture& picture, const OutputFormat& format, const fs::path& temporary, const WriteOptions& options,
+                           Diagnostics& diagnostics) {
+  if (opened_by_library(format)) {
+    AFTERGLOW_CHECK(write_flat(picture, format, nullptr, temporary.string(), options, diagnostics));
+  } else {
+    AFTERGLOW_CHECK(write_through(picture, format, temporary, options, diagnostics));
+  }
+  if (options.keep_layers) return {};  // the input's names may be ones that no layer is found by
   ReadOptions anything;
   anything.max_side = 1 << 30;
   anything.max_bytes = ~0ull;
-  if (!options.keep_layers)
-    if (const auto header = read_header(temporary, anything); !header)
-      return Error{ErrorKind::io, "cannot be written: reading it back failed: " + header.error().message};
+  const auto header = read_header(temporary, anything);
+  if (!header) return Error{ErrorKind::io, "cannot be written: reading it back failed: " + header.error().message};
   return {};
 }
 
@@ -113,12 +126,16 @@ Result<void> write_picture(const Picture& picture, const fs::path& file, const W
   AFTERGLOW_CHECK(check_output(file, options));
   AFTERGLOW_TRY(const OutputFormat* format, output_format(file, options));
   const fs::path target = resolved(file);
+  Diagnostics named([&](Severity severity, const std::string& message) {
+    const std::string text = fmt::format("{}: {}", file.string(), message);
+    severity == Severity::warning ? diagnostics.warn(text) : diagnostics.note(text);
+  });
   try {
     AFTERGLOW_CHECK(check_picture(picture));
     Temporary temporary(temporary_beside(target));
-    if (auto written = write_checked(picture, *format, temporary.path(), file, options, diagnostics); !written) {
+    if (auto written = write_checked(picture, *format, temporary.path(), options, named); !written) {
       Error error = std::move(written).error();
-      if (error.file.empty()) error.file = file.string();
+      error.file = file.string();  // not the temporary name
       return error;
     }
     return temporary.commit(target);

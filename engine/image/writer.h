@@ -13,7 +13,7 @@ namespace afterglow {
 enum class SampleType { automatic, half, float32, uint8, uint16 };
 
 struct WriteOptions {
-  SampleType type = SampleType::automatic;  ///< EXR: half unless the input was float; HDR: its own; display formats: uint8 (uint16 when the input had more than 8 bits and the format can)
+  SampleType type = SampleType::automatic;  ///< EXR: half unless the input was float; HDR: its own; display formats: uint8 (uint16 when the input had integers of more than 8 bits and the format can)
   std::string compression;                  ///< empty: ZIP for EXR, the format's default elsewhere; EXR: none rle zip zips piz pxr24 b44 b44a dwaa dwab (with :level)
   int png_level = 1;                        ///< zlib level 0–9
   int jpeg_quality = 95;

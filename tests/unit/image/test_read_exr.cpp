@@ -1,0 +1,289 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfDeepFrameBuffer.h>
+#include <OpenEXR/ImfDeepScanLineOutputFile.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfTiledOutputFile.h>
+
+#include "image/color_matrix.h"
+#include "make_files.h"
+#include "temporary_folder.h"
+
+namespace afterglow {
+namespace {
+using testing::HasSubstr;
+
+TEST(ReadExr, BlendersNamesAndPlainNamesGiveTheSamePicture) {
+  ReadOptions options;
+  options.auxiliary = {"depth", "normal"};
+  const Picture native = read_or_fail(test_image("blender/native.exr"), options), flat = read_or_fail(test_image("blender/flat.exr"), options);
+  EXPECT_EQ(native.color.size(), (Size{96, 54}));
+  EXPECT_EQ(native.color.pixels, flat.color.pixels);
+  EXPECT_EQ(native.auxiliary.at("depth").pixels, flat.auxiliary.at("depth").pixels);
+  const auto &a = native.auxiliary.at("normal").pixels, &b = flat.auxiliary.at("normal").pixels;
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 6e-4);  // rounded to half
+  EXPECT_TRUE(native.has_alpha);
+}
+
+TEST(ReadExr, SameSamplesAsOpenImageIo) {
+  const auto file = test_image("neon.exr");
+  ReadOptions options;
+  options.auxiliary = {"depth"};
+  const Picture picture = read_or_fail(file, options);
+  const auto input = OIIO::ImageInput::open(file.string());
+  std::vector<float> all(static_cast<std::size_t>(1280) * 720 * 8);
+  ASSERT_TRUE(input->read_image(0, 0, 0, 8, OIIO::TypeFloat, all.data()));
+  std::uint64_t negatives = 0;
+  for (std::size_t i = 0; i < all.size() / 8; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      negatives += all[i * 8 + c] < 0;
+      ASSERT_EQ(picture.color.pixels[i * 4 + c], std::max(all[i * 8 + c], 0.0f));
+    }
+    ASSERT_EQ(picture.color.pixels[i * 4 + 3], all[i * 8 + 3]);
+    ASSERT_EQ(picture.auxiliary.at("depth").pixels[i], all[i * 8 + 4]);
+  }
+  EXPECT_EQ(picture.sanitized.negative, negatives);
+  EXPECT_GT(negatives, 0u);
+}
+
+TEST(ReadExr, WindowsAreKept) {
+  const Picture inside = read_or_fail(test_image("openexr/DisplayWindow_t03.exr"));
+  EXPECT_EQ(inside.data_window, (Rect{0, 0, 400, 300}));
+  EXPECT_EQ(inside.display_window, (Rect{30, 20, 370, 280}));
+  const Picture across = read_or_fail(test_image("openexr/DisplayWindow_t08.exr"));
+  EXPECT_EQ(across.data_window, (Rect{30, 40, 400, 300}));
+  EXPECT_EQ(across.display_window, (Rect{0, 0, 501, 401}));
+  EXPECT_EQ(inside.color.pixels, across.color.pixels);
+}
+
+TEST(ReadExr, FirstMipLevel) {
+  const Picture picture = read_or_fail(test_image("openexr/MultiResolution_ColorCodedLevels.exr"));
+  EXPECT_EQ(picture.color.size(), (Size{512, 512}));
+  const auto input = OIIO::ImageInput::open(test_image("openexr/MultiResolution_ColorCodedLevels.exr").string());
+  std::vector<float> level(512 * 512 * 4);
+  ASSERT_TRUE(input->read_image(0, 0, 0, 4, OIIO::TypeFloat, level.data()));
+  EXPECT_EQ(picture.color.pixels, level);
+}
+
+TEST(ReadExr, GreyIsSpread) {
+  const Picture picture = read_or_fail(test_image("openexr/TestImages_GrayRampsHorizontal.exr"));
+  for (std::size_t i = 0; i < picture.color.pixels.size(); i += 4) {
+    ASSERT_EQ(picture.color.pixels[i], picture.color.pixels[i + 1]);
+    ASSERT_EQ(picture.color.pixels[i], picture.color.pixels[i + 2]);
+    ASSERT_EQ(picture.color.pixels[i + 3], 1);
+  }
+  EXPECT_FALSE(picture.has_alpha);
+  EXPECT_NEAR(*std::max_element(picture.color.pixels.begin(), picture.color.pixels.end()), 18, 0.1);
+}
+
+TEST(ReadExr, LuminanceChroma) {
+  const Picture picture = read_or_fail(test_image("openexr/Chromaticities_Rec709_YC.exr"));
+  EXPECT_EQ(picture.color.size(), (Size{610, 406}));
+  float largest = 0;
+  double red = 0, blue = 0;
+  for (std::size_t i = 0; i < picture.color.pixels.size(); i += 4) {
+    for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, picture.color.pixels[i + c]);
+    red += picture.color.pixels[i];
+    blue += picture.color.pixels[i + 2];
+  }
+  EXPECT_NEAR(largest, 8.164, 0.01);  // what OpenEXR's own RgbaInputFile gives
+  EXPECT_GT(red, 2 * blue);
+}
+
+TEST(ReadExr, PartsAndLayers) {
+  const TemporaryFolder folder;
+  const auto file = folder / "parts.exr";
+  auto beauty = make_spec(6, 5, {"R", "G", "B", "A"}, OIIO::TypeHalf), depth = make_spec(6, 5, {"Z"}, OIIO::TypeFloat),
+       extra = make_spec(6, 5, {"diffuse.R", "diffuse.G", "diffuse.B", "spec.R", "spec.G", "spec.B"}, OIIO::TypeHalf);
+  beauty.attribute("oiio:subimagename", "rgba");
+  depth.attribute("oiio:subimagename", "depth");
+  extra.attribute("oiio:subimagename", "extra");
+  ASSERT_NO_FATAL_FAILURE(make_file(file, {extra, depth, beauty}, {marks(6, 5, 6), std::vector<float>(30, 7.5f), marks(6, 5, 4)}));
+  ReadOptions options;
+  options.auxiliary = {"depth", "normal"};
+  Picture picture = read_or_fail(file, options);
+  EXPECT_EQ(picture.color.at(3, 2)[0], mark(3, 2, 0));
+  EXPECT_EQ(picture.color.at(3, 2)[3], mark(3, 2, 3));
+  EXPECT_EQ(picture.auxiliary.at("depth").pixels, std::vector<float>(30, 7.5f));
+  EXPECT_EQ(picture.auxiliary.count("normal"), 0u);
+  options.layer = "spec";
+  picture = read_or_fail(file, options);
+  EXPECT_EQ(picture.color.at(3, 2)[0], mark(3, 2, 3));
+  EXPECT_EQ(picture.color.at(3, 2)[3], 1);
+  options.layer = "spcc";
+  Diagnostics silent;
+  const auto wrong = read_picture(file, options, silent);
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().kind, ErrorKind::io);
+  EXPECT_EQ(wrong.error().file, file.string());
+  EXPECT_EQ(wrong.error().nearest, "spec");
+}
+
+TEST(ReadExr, UintChannelsArePlainNumbers) {
+  const TemporaryFolder folder;
+  const std::vector<std::uint32_t> samples{0, 1, 70000, 4000000000u};
+  Imf::Header header(2, 2);
+  Imf::FrameBuffer buffer;
+  for (const char* name : {"R", "G", "B"}) {
+    header.channels().insert(name, Imf::Channel(Imf::UINT));
+    buffer.insert(name, Imf::Slice(Imf::UINT, reinterpret_cast<char*>(const_cast<std::uint32_t*>(samples.data())), 4, 8));
+  }
+  {
+    Imf::OutputFile out((folder / "u.exr").c_str(), header);
+    out.setFrameBuffer(buffer);
+    out.writePixels(2);
+  }
+  const Picture picture = read_or_fail(folder / "u.exr");
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(picture.color.at(i % 2, i / 2)[1], static_cast<float>(samples[static_cast<std::size_t>(i)]));
+}
+
+TEST(ReadExr, EveryCompression) {
+  const TemporaryFolder folder;
+  for (const char* compression : {"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}) {
+    OIIO::ImageSpec spec = make_spec(45, 33, {"R", "G", "B"}, OIIO::TypeHalf);
+    spec.attribute("compression", compression);
+    std::vector<float> flat(45 * 33 * 3, 0.5f);
+    ASSERT_NO_FATAL_FAILURE(make_file(folder / "c.exr", {spec}, {flat}));
+    const Picture picture = read_or_fail(folder / "c.exr");
+    for (const float v : picture.color.pixels) ASSERT_NEAR(v, v == 1 ? 1 : 0.5, 2e-3) << compression;
+  }
+}
+
+/// A half RGB file with an attribute or two more.
+void make_exr(const std::filesystem::path& file, const std::vector<float>& rgb, int width, int height, const std::function<void(Imf::Header&)>& edit) {
+  Imf::Header header(width, height);
+  edit(header);
+  Imf::FrameBuffer buffer;
+  const Imath::Box2i window = header.dataWindow();
+  for (int c = 0; c < 3; ++c) {
+    const char name[2] = {"RGB"[c], 0};
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, rgb.data() + c, window, 12, 12 * static_cast<std::size_t>(width)));
+  }
+  Imf::OutputFile out(file.c_str(), header);
+  out.setFrameBuffer(buffer);
+  out.writePixels(height);
+}
+
+TEST(ReadExr, PrimariesAreConverted) {
+  const TemporaryFolder folder;
+  const Imf::Chromaticities ap1({0.713f, 0.293f}, {0.165f, 0.830f}, {0.128f, 0.044f}, {0.32168f, 0.33767f});
+  make_exr(folder / "ap1.exr", {0.5f, 0.5f, 0.5f, 0.2f, 0.6f, 0.3f}, 2, 1, [&](Imf::Header& h) { Imf::addChromaticities(h, ap1); });
+  const Picture picture = read_or_fail(folder / "ap1.exr");
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.color.at(0, 0)[c], 0.5, 1e-5);
+  // The published ACEScg → Rec.709 matrix.
+  EXPECT_EQ(picture.color.at(1, 0)[0], 0);  // 1.70505 · 0.2 − 0.62179 · 0.6 − 0.08326 · 0.3 is below 0
+  EXPECT_NEAR(picture.color.at(1, 0)[1], -0.13026 * 0.2 + 1.14080 * 0.6 - 0.01055 * 0.3, 3e-4);
+  EXPECT_NEAR(picture.color.at(1, 0)[2], -0.02400 * 0.2 - 0.12897 * 0.6 + 1.15297 * 0.3, 3e-4);
+}
+
+TEST(ReadExr, Rec709PrimariesChangeNothing) {
+  const TemporaryFolder folder;
+  const std::vector<float> rgb{0.1f, 0.7f, 13.37f};
+  make_exr(folder / "a.exr", rgb, 1, 1, [](Imf::Header& h) { Imf::addChromaticities(h, Imf::Chromaticities()); });
+  const Picture picture = read_or_fail(folder / "a.exr");
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(picture.color.pixels[c], rgb[c]);
+}
+
+TEST(ReadExr, NonsensePrimariesAreWarnedAbout) {
+  const TemporaryFolder folder;
+  make_exr(folder / "a.exr", {1, 2, 3}, 1, 1, [](Imf::Header& h) { Imf::addChromaticities(h, Imf::Chromaticities({0, 0}, {0, 0}, {0, 0}, {0, 0})); });
+  Messages messages;
+  const auto picture = read_picture(folder / "a.exr", {}, messages.diagnostics);
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture.value().color.pixels[2], 3);
+  ASSERT_EQ(messages.warnings.size(), 1u);
+  EXPECT_THAT(messages.warnings[0], HasSubstr("chromaticities"));
+}
+
+TEST(ReadExr, OrientationTurnsPixelsAndWindows) {
+  const TemporaryFolder folder;
+  const std::vector<float> rgb{1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 5, 5, 5, 6, 6, 6};  // 3 × 2
+  make_exr(folder / "a.exr", rgb, 3, 2, [](Imf::Header& h) {
+    h.dataWindow() = {{1, 0}, {3, 1}};
+    h.displayWindow() = {{0, 0}, {9, 4}};
+    h.insert("Orientation", Imf::IntAttribute(6));  // a quarter turn clockwise makes it upright
+  });
+  const Picture picture = read_or_fail(folder / "a.exr");
+  EXPECT_EQ(picture.color.size(), (Size{2, 3}));
+  EXPECT_EQ(picture.display_window.size(), (Size{5, 10}));
+  EXPECT_EQ(picture.data_window, (Rect{3, 1, 2, 3}));
+  EXPECT_EQ(picture.color.at(0, 0)[0], 4);  // the bottom-left pixel goes to the top left
+  EXPECT_EQ(picture.color.at(1, 0)[0], 1);
+  EXPECT_EQ(picture.color.at(1, 2)[0], 3);
+  const auto header = read_header(folder / "a.exr", {});
+  EXPECT_EQ(header.value().data_window, picture.data_window);
+  EXPECT_EQ(header.value().display_window, picture.display_window);
+}
+
+TEST(ReadExr, NotFiniteIsMendedCountedAndSaidOnce) {
+  const TemporaryFolder folder;
+  make_exr(folder / "a.exr", {NAN, -1, INFINITY, 1, -INFINITY, 5}, 2, 1, [](Imf::Header&) {});
+  Messages messages;
+  const auto picture = read_picture(folder / "a.exr", {}, messages.diagnostics);
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture.value().color.pixels, (std::vector<float>{0, 0, 1e30f, 1, 1, 0, 5, 1}));
+  EXPECT_EQ(picture.value().sanitized.nan, 1u);
+  EXPECT_EQ(picture.value().sanitized.negative, 2u);
+  EXPECT_EQ(picture.value().sanitized.too_large, 1u);
+  ASSERT_EQ(messages.warnings.size(), 1u);
+  EXPECT_THAT(messages.warnings[0], HasSubstr("1 NaN"));
+}
+
+TEST(ReadExr, NegativesAloneAreANote) {
+  const TemporaryFolder folder;
+  make_exr(folder / "a.exr", {-1, 1, 1}, 1, 1, [](Imf::Header&) {});
+  Messages messages;
+  ASSERT_TRUE(read_picture(folder / "a.exr", {}, messages.diagnostics));
+  EXPECT_TRUE(messages.warnings.empty());
+  EXPECT_EQ(messages.notes.size(), 1u);
+}
+
+TEST(ReadExr, DeepIsRefused) {
+  const TemporaryFolder folder;
+  Imf::Header header(2, 2);
+  header.channels().insert("R", Imf::Channel(Imf::HALF));
+  header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+  header.setType(Imf::DEEPSCANLINE);
+  header.compression() = Imf::ZIPS_COMPRESSION;
+  {
+    Imf::DeepScanLineOutputFile out((folder / "deep.exr").c_str(), header);
+    std::vector<unsigned> counts(4, 0);
+    std::vector<half*> red(4);
+    std::vector<float*> z(4);
+    Imf::DeepFrameBuffer buffer;
+    buffer.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), 4, 8));
+    buffer.insert("R", Imf::DeepSlice(Imf::HALF, reinterpret_cast<char*>(red.data()), 8, 16, 2));
+    buffer.insert("Z", Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(z.data()), 8, 16, 4));
+    out.setFrameBuffer(buffer);
+    out.writePixels(2);
+  }
+  Diagnostics silent;
+  const auto picture = read_picture(folder / "deep.exr", {}, silent);
+  ASSERT_FALSE(picture);
+  EXPECT_EQ(picture.error().kind, ErrorKind::io);
+  EXPECT_THAT(picture.error().message, HasSubstr("deep EXR"));
+}
+
+TEST(ReadExr, HeaderTellsWhatReadingFinds) {
+  ReadOptions options;
+  options.auxiliary = {"depth"};
+  const auto header = read_header(test_image("neon.exr"), options);
+  ASSERT_TRUE(header);
+  EXPECT_EQ(header.value().format, "openexr");
+  EXPECT_EQ(header.value().auxiliary, (std::vector<std::string>{"depth", "normal"}));
+  EXPECT_EQ(header.value().channels, 8);
+  EXPECT_GE(header.value().host_bytes, 1280u * 720 * (16 + 4));
+  EXPECT_LT(header.value().host_bytes, 1280u * 720 * (16 + 4) * 3);
+}
+
+}  // namespace
+}  // namespace afterglow

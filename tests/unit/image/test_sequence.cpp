@@ -1,0 +1,86 @@
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "image/sequence.h"
+#include "temporary_folder.h"
+
+namespace afterglow {
+namespace {
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(Frames, RangesStepsAndLists) {
+  EXPECT_THAT(parse_frames("7").value(), ElementsAre(7));
+  EXPECT_THAT(parse_frames("1-4").value(), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(parse_frames("1-6x2").value(), ElementsAre(1, 3, 5));
+  EXPECT_THAT(parse_frames("5,1, 10-12").value(), ElementsAre(5, 1, 10, 11, 12));
+  EXPECT_THAT(parse_frames("1-3,2-4").value(), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(parse_frames("-2-1").value(), ElementsAre(-2, -1, 0, 1));
+}
+
+TEST(Frames, Refused) {
+  for (const char* text : {"", "a", "1-", "1-x2", "4-1", "1-4x0", "1-4x-1", "1-4y", "1,,2", "99999999999", "1-2x", "0-2147483647"}) {
+    const auto frames = parse_frames(text);
+    ASSERT_FALSE(frames) << text;
+    EXPECT_EQ(frames.error().kind, ErrorKind::usage) << text;
+    EXPECT_THAT(frames.error().message, HasSubstr("frame list")) << text;
+  }
+  EXPECT_EQ(parse_frames("1-1000000").value().size(), 1000000u);
+  EXPECT_FALSE(parse_frames("1-1000000,2000000"));
+}
+
+TEST(Pattern, PlacesForNumbers) {
+  EXPECT_EQ(parse_pattern("a/shot.####.exr").value().file(12), "a/shot.0012.exr");
+  EXPECT_EQ(parse_pattern("a/shot.%04d.exr").value().file(12), "a/shot.0012.exr");
+  EXPECT_EQ(parse_pattern("shot%d.exr").value().file(12), "shot12.exr");
+  EXPECT_EQ(parse_pattern("shot.#.exr").value().file(12345), "shot.12345.exr");
+  EXPECT_EQ(parse_pattern("100%%.exr").value().file(1), "100%.exr");
+  EXPECT_FALSE(parse_pattern("plain.exr").value().numbered);
+}
+
+TEST(Pattern, Refused) {
+  for (const char* text : {"a.##.b.##.exr", "a%s.exr", "a%4d.exr", "a%", "a####/b.exr", "a%04d##.exr", "", "##########.exr"})
+    EXPECT_FALSE(parse_pattern(text)) << text;
+}
+
+TEST(Pattern, FindsItsOwnSpellingOnly) {
+  const TemporaryFolder folder;
+  for (const char* name : {"s.0001.exr", "s.0010.exr", "s.0002.exr", "s.3.exr", "s.00004.exr", "s.12345.exr", "s.00a1.exr", "t.0005.exr", "s.0006.exr.tmp"})
+    std::ofstream(folder / name) << "x";
+  const auto found = find_frames(parse_pattern((folder / "s.####.exr").string()).value(), std::nullopt);
+  ASSERT_TRUE(found);
+  std::vector<int> numbers;
+  for (const FrameFile& frame : found.value()) numbers.push_back(frame.frame);
+  EXPECT_THAT(numbers, ElementsAre(1, 2, 10, 12345));
+  EXPECT_EQ(found.value()[2].file, folder / "s.0010.exr");
+}
+
+TEST(Pattern, AskedForFramesAreListedEvenWhenMissing) {
+  const TemporaryFolder folder;
+  const auto found = find_frames(parse_pattern((folder / "s.##.exr").string()).value(), std::vector<int>{3, 1});
+  ASSERT_EQ(found.value().size(), 2u);
+  EXPECT_EQ(found.value()[0].file, folder / "s.03.exr");
+}
+
+TEST(Pattern, NothingFound) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(find_frames(parse_pattern((folder / "s.##.exr").string()).value(), std::nullopt).error().kind, ErrorKind::io);
+  EXPECT_EQ(find_frames(parse_pattern((folder / "no/s.##.exr").string()).value(), std::nullopt).error().kind, ErrorKind::io);
+}
+
+TEST(Pattern, PlainFilesHaveTheirOwnNumber) {
+  EXPECT_EQ(find_frames({"a/shot.0012.exr", "", 0, false}, std::nullopt).value()[0].frame, 12);
+  EXPECT_EQ(find_frames({"a/still.exr", "", 0, false}, std::nullopt).value()[0].frame, 1);
+  EXPECT_EQ(find_frames({"a/20261121000000000000.exr", "", 0, false}, std::nullopt).value()[0].frame, 1);
+}
+
+TEST(Pattern, AFileThatOnlyLooksLikeAPattern) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "take#2.exr") << "x";
+  EXPECT_FALSE(parse_pattern((folder / "take#2.exr").string()).value().numbered);
+}
+
+}  // namespace
+}  // namespace afterglow

@@ -1,0 +1,325 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "image/srgb.h"
+#include "image/writer.h"
+#include "make_files.h"
+#include "temporary_folder.h"
+
+namespace afterglow {
+namespace {
+using testing::HasSubstr;
+
+Picture make_picture(int width, int height, bool alpha) {
+  Picture picture;
+  picture.color = Image(width, height, 4);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      float* pixel = picture.color.at(x, y);
+      pixel[3] = alpha ? mark(x, y, 3) : 1;
+      for (int c = 0; c < 3; ++c) pixel[c] = mark(x, y, c) * pixel[3];
+    }
+  }
+  picture.has_alpha = alpha;
+  picture.data_window = picture.display_window = {0, 0, width, height};
+  return picture;
+}
+
+void write_or_fail(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options = {}) {
+  Diagnostics silent;
+  const auto written = write_picture(picture, file, options, silent);
+  ASSERT_TRUE(written) << written.error().text();
+}
+
+OIIO::ImageSpec spec_of(const std::filesystem::path& file) {
+  const auto input = OIIO::ImageInput::open(file.string());
+  EXPECT_TRUE(input) << OIIO::geterror();
+  return input ? input->spec() : OIIO::ImageSpec();
+}
+
+template <class T>
+std::vector<T> samples_of(const std::filesystem::path& file, OIIO::TypeDesc type) {
+  OIIO::ImageSpec raw;
+  raw.attribute("oiio:UnassociatedAlpha", 1);
+  const auto input = OIIO::ImageInput::open(file.string(), &raw);
+  EXPECT_TRUE(input) << OIIO::geterror();
+  const OIIO::ImageSpec& spec = input->spec();
+  std::vector<T> samples(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
+  EXPECT_TRUE(input->read_image(0, 0, 0, spec.nchannels, type, samples.data())) << input->geterror();
+  return samples;
+}
+
+struct Format {
+  const char* name;
+  const char* file;
+  SampleType type;
+  int codes;  ///< largest; 0: floats
+  bool keeps_alpha;
+  double relative;  ///< of floats
+};
+const Format kFormats[] = {
+    {"ExrHalf", "o.exr", SampleType::half, 0, true, 1.0 / 2048},    {"ExrFloat", "o.exr", SampleType::float32, 0, true, 0},
+    {"Png8", "o.png", SampleType::uint8, 255, true, 0},             {"Png16", "o.png", SampleType::uint16, 65535, true, 0},
+    {"Tiff8", "o.tif", SampleType::uint8, 255, true, 0},            {"Tiff16", "o.tiff", SampleType::uint16, 65535, true, 0},
+    {"TiffFloat", "o.tif", SampleType::float32, 0, true, 0},        {"TiffHalf", "o.tif", SampleType::half, 0, true, 1.0 / 2048},
+    {"Hdr", "o.hdr", SampleType::float32, 0, false, 1.0 / 128},
+};
+
+class RoundTrip : public testing::TestWithParam<std::tuple<Format, Size, bool>> {};
+
+TEST_P(RoundTrip, WithinACode) {
+  const auto& [format, size, alpha] = GetParam();
+  const TemporaryFolder folder;
+  const Picture picture = make_picture(size.width, size.height, alpha);
+  WriteOptions options;
+  options.type = format.type;
+  ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / format.file, options));
+  EXPECT_EQ(folder.count(), 1);
+  const Picture back = read_or_fail(folder / format.file);
+  ASSERT_EQ(back.color.size(), size);
+  EXPECT_EQ(back.has_alpha, alpha && format.keeps_alpha);
+  const auto near_code = [&](double a, double b) { return std::abs(linear_to_srgb(a) - linear_to_srgb(b)) * format.codes <= 0.5001; };
+  for (std::size_t i = 0; i < picture.color.pixels.size(); i += 4) {
+    const float* in = &picture.color.pixels[i];
+    const float* out = &back.color.pixels[i];
+    const double a = back.has_alpha ? out[3] : 1;
+    if (back.has_alpha) { ASSERT_NEAR(a, in[3], format.codes > 0 ? 0.5001 / format.codes : format.relative); }
+    for (int c = 0; c < 3; ++c) {
+      if (format.codes > 0) {
+        // Straight colour is what is stored, each with its own alpha.
+        if (a > 0 && in[3] > 0) { ASSERT_TRUE(near_code(out[c] / a, back.has_alpha ? std::min(in[c] / in[3], 1.0f) : in[c])) << in[c] << " → " << out[c]; }
+      } else {
+        // HDR shares one exponent between the channels.
+        const double scale = format.keeps_alpha ? in[c] : std::max({in[0], in[1], in[2]});
+        ASSERT_NEAR(out[c], in[c], scale * format.relative + 6e-8);
+      }
+    }
+  }
+}
+
+std::string round_trip_name(const testing::TestParamInfo<std::tuple<Format, Size, bool>>& info) {
+  const auto& [format, size, alpha] = info.param;
+  return std::string(format.name) + "_" + std::to_string(size.width) + "x" + std::to_string(size.height) + (alpha ? "_alpha" : "");
+}
+INSTANTIATE_TEST_SUITE_P(All, RoundTrip,
+                         testing::Combine(testing::ValuesIn(kFormats), testing::Values(Size{1, 1}, Size{64, 130}, Size{37, 53}, Size{3, 300}), testing::Bool()),
+                         round_trip_name);
+
+TEST(Write, EightBitCodesComeBackExactly) {
+  const TemporaryFolder folder;
+  Picture picture = make_picture(256, 1, false);
+  const std::vector<float> table = srgb_decode_table(255);
+  for (int i = 0; i < 256; ++i)
+    for (int c = 0; c < 3; ++c) picture.color.at(i, 0)[c] = table[static_cast<std::size_t>(i)];
+  for (const char* name : {"o.png", "o.tif"}) {
+    ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / name));
+    const auto codes = samples_of<unsigned char>(folder / name, OIIO::TypeUInt8);
+    for (std::size_t i = 0; i < 256; ++i) ASSERT_EQ(codes[i * 3 + 1], i) << name;
+  }
+}
+
+TEST(Write, DisplayFormatsClampAndSceneFormatsDoNot) {
+  const TemporaryFolder folder;
+  Picture picture = make_picture(2, 1, false);
+  picture.color.pixels = {5, 0.5f, -1, 1, NAN, 1000, 0, 1};
+  ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png"));
+  EXPECT_EQ(samples_of<unsigned char>(folder / "o.png", OIIO::TypeUInt8), (std::vector<unsigned char>{255, 188, 0, 0, 255, 0}));
+  picture.color.pixels[4] = 3;
+  ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.exr"));
+  EXPECT_EQ(samples_of<float>(folder / "o.exr", OIIO::TypeFloat), (std::vector<float>{5, 0.5f, -1, 3, 1000, 0}));
+}
+
+TEST(Write, AlphaZeroKeepsItsColour) {
+  const TemporaryFolder folder;
+  Picture picture = make_picture(1, 1, true);
+  picture.color.pixels = {0.25f, 1, 0, 0};
+  ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png"));
+  EXPECT_EQ(samples_of<unsigned char>(folder / "o.png", OIIO::TypeUInt8), (std::vector<unsigned char>{137, 255, 0, 0}));
+}
+
+TEST(Write, JpegGoesOnBlackAndSaysSoWhenItMatters) {
+  const TemporaryFolder folder;
+  Messages messages;
+  Picture picture = make_picture(16, 16, true);
+  for (std::size_t i = 0; i < picture.color.pixels.size(); ++i) picture.color.pixels[i] = i % 4 == 3 ? 0.5f : 0.25f;
+  ASSERT_TRUE(write_picture(picture, folder / "o.jpg", {}, messages.diagnostics));
+  ASSERT_EQ(messages.warnings.size(), 1u);
+  EXPECT_THAT(messages.warnings[0], HasSubstr("o.jpg"));
+  for (const unsigned char code : samples_of<unsigned char>(folder / "o.jpg", OIIO::TypeUInt8)) ASSERT_NEAR(code, 137, 1);  // not divided
+  for (std::size_t i = 3; i < picture.color.pixels.size(); i += 4) picture.color.pixels[i] = 1;
+  messages.warnings.clear();
+  ASSERT_TRUE(write_picture(picture, folder / "o.jpg", {}, messages.diagnostics));
+  EXPECT_TRUE(messages.warnings.empty());
+}
+
+TEST(Write, WindowsCroppedAndPadded) {
+  const TemporaryFolder folder;
+  for (const char* name : {"openexr/DisplayWindow_t03.exr", "openexr/DisplayWindow_t08.exr"}) {
+    const Picture picture = read_or_fail(test_image(name));
+    ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.exr"));
+    const Picture again = read_or_fail(folder / "o.exr");
+    EXPECT_EQ(again.data_window, picture.data_window);
+    EXPECT_EQ(again.display_window, picture.display_window);
+    EXPECT_EQ(again.color.pixels, picture.color.pixels);
+    ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png"));
+    const Picture shown = read_or_fail(folder / "o.png");
+    ASSERT_EQ(shown.color.size(), picture.display_window.size());
+    for (int y = 0; y < shown.color.height; ++y) {
+      for (int x = 0; x < shown.color.width; ++x) {
+        const int dx = x + picture.display_window.x - picture.data_window.x, dy = y + picture.display_window.y - picture.data_window.y;
+        const bool inside = dx >= 0 && dy >= 0 && dx < picture.color.width && dy < picture.color.height;
+        for (int c = 0; c < 3; ++c)
+          ASSERT_NEAR(linear_to_srgb(shown.color.at(x, y)[c]), inside ? std::min(linear_to_srgb(picture.color.at(dx, dy)[c]), 1.0) : 0, 0.502 / 255);
+      }
+    }
+  }
+}
+
+TEST(Write, PaddingIsTransparentWhereThereIsAlpha) {
+  const TemporaryFolder folder;
+  Picture picture = make_picture(1, 1, true);
+  picture.color.pixels = {1, 1, 1, 1};
+  picture.display_window = {-1, 0, 2, 1};
+  ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png"));
+  EXPECT_EQ(samples_of<unsigned char>(folder / "o.png", OIIO::TypeUInt8), (std::vector<unsigned char>{0, 0, 0, 0, 255, 255, 255, 255}));
+}
+
+TEST(Write, HalfOverflowIsHeldAndSaid) {
+  const TemporaryFolder folder;
+  Messages messages;
+  Picture picture = make_picture(2, 1, false);
+  picture.color.pixels = {1e6f, 65504, 1, 1, -1e6f, INFINITY, 1, 1};
+  ASSERT_TRUE(write_picture(picture, folder / "o.exr", {}, messages.diagnostics));
+  EXPECT_EQ(samples_of<float>(folder / "o.exr", OIIO::TypeFloat), (std::vector<float>{65504, 65504, 1, -65504, 65504, 1}));
+  ASSERT_EQ(messages.warnings.size(), 1u);
+  EXPECT_THAT(messages.warnings[0], HasSubstr("3 samples"));
+}
+
+TEST(Write, SampleTypesFollowTheInput) {
+  const TemporaryFolder folder;
+  const auto type_through = [&](const char* in, OIIO::TypeDesc type, const char* out) {
+    make_file(folder / in, 3, 3, {"R", "G", "B"}, type);
+    write_or_fail(read_or_fail(folder / in), folder / out);
+    return std::string(spec_of(folder / out).format.c_str());
+  };
+  EXPECT_EQ(type_through("h.exr", OIIO::TypeHalf, "o.exr"), "half");
+  EXPECT_EQ(type_through("f.exr", OIIO::TypeFloat, "o.exr"), "float");
+  EXPECT_EQ(type_through("b.png", OIIO::TypeUInt8, "o.exr"), "half");
+  EXPECT_EQ(type_through("h.exr", OIIO::TypeHalf, "o.png"), "uint8");
+  EXPECT_EQ(type_through("w.png", OIIO::TypeUInt16, "o.png"), "uint16");
+  EXPECT_EQ(type_through("w.png", OIIO::TypeUInt16, "o.tif"), "uint16");
+  EXPECT_EQ(type_through("w.png", OIIO::TypeUInt16, "o.jpg"), "uint8");
+  EXPECT_EQ(type_through("f.tif", OIIO::TypeFloat, "o.exr"), "float");
+}
+
+TEST(Write, MetadataIsKeptExceptWhatDescribedTheOldFile) {
+  const TemporaryFolder folder;
+  OIIO::ImageSpec spec = make_spec(20, 10, {"R", "G", "B"}, OIIO::TypeHalf);
+  spec.tile_width = spec.tile_height = 16;
+  spec.attribute("compression", "piz");
+  spec.attribute("Copyright", "someone");
+  spec.attribute("ImageDescription", "a room");
+  spec.attribute("Camera", "Cam");
+  spec.attribute("shot:take", 3);
+  spec.attribute("ExposureTime", 0.25f);
+  spec.attribute("PixelAspectRatio", 2.0f);
+  spec.attribute("Orientation", 1);
+  spec.attribute("BlenderMultiChannel", "yes");
+  ASSERT_NO_FATAL_FAILURE(make_file(folder / "in.exr", {spec}, {marks(20, 10, 3)}));
+  const Picture picture = read_or_fail(folder / "in.exr");
+
+  ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.exr"));
+  const OIIO::ImageSpec exr = spec_of(folder / "o.exr");
+  EXPECT_EQ(exr.get_string_attribute("Copyright"), "someone");
+  EXPECT_EQ(exr.get_string_attribute("Camera"), "Cam");
+  EXPECT_EQ(exr.get_int_attribute("shot:take"), 3);
+  EXPECT_EQ(exr.get_float_attribute("ExposureTime"), 0.25f);
+  EXPECT_EQ(exr.get_float_attribute("PixelAspectRatio"), 2);
+  EXPECT_EQ(exr.get_string_attribute("compression"), "zip");
+  EXPECT_EQ(exr.tile_width, 0);
+  EXPECT_FALSE(exr.find_attribute("BlenderMultiChannel"));
+
+  ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png"));
+  EXPECT_EQ(spec_of(folder / "o.png").get_string_attribute("Camera"), "Cam");
+  EXPECT_EQ(spec_of(folder / "o.png").get_string_attribute("oiio:ColorSpace"), "sRGB");
+  ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.tif"));
+  EXPECT_EQ(spec_of(folder / "o.tif").get_string_attribute("Copyright"), "someone");
+  ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.jpg"));
+  EXPECT_EQ(spec_of(folder / "o.jpg").get_string_attribute("ImageDescription"), "a room");
+
+  // And back from a display format into EXR.
+  ASSERT_NO_FATAL_FAILURE(write_or_fail(read_or_fail(folder / "o.tif"), folder / "back.exr"));
+  EXPECT_EQ(spec_of(folder / "back.exr").get_string_attribute("Copyright"), "someone");
+}
+
+TEST(Write, ProfilesAreRewrittenToMatch) {
+  const TemporaryFolder folder;
+  const Picture picture = read_or_fail(test_image("ldr/rocket.jpg"));  // Adobe RGB
+  for (const char* name : {"o.jpg", "o.tif"}) {
+    ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / name));
+    EXPECT_THAT(std::string(spec_of(folder / name).get_string_attribute("ICCProfile:profile_description")), HasSubstr("sRGB")) << name;
+    // Read again, it is the same picture, but for what sRGB cannot show.
+    const Picture again = read_or_fail(folder / name);
+    for (std::size_t i = 0; i < picture.color.pixels.size(); i += 401) {
+      if (i % 4 == 3) continue;
+      ASSERT_NEAR(linear_to_srgb(again.color.pixels[i]), std::min(linear_to_srgb(picture.color.pixels[i]), 1.0), name[2] == 'j' ? 0.06 : 0.0021) << name;
+    }
+  }
+  ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png"));
+  EXPECT_FALSE(spec_of(folder / "o.png").find_attribute("ICCProfile"));
+  EXPECT_THAT(file_bytes(folder / "o.png"), HasSubstr("sRGB"));
+}
+
+TEST(Write, OrientationTagIsReset) {
+  const TemporaryFolder folder;
+  OIIO::ImageSpec spec = make_spec(4, 2, {"R", "G", "B"}, OIIO::TypeUInt8);
+  spec.attribute("Orientation", 6);
+  ASSERT_NO_FATAL_FAILURE(make_file(folder / "in.tif", {spec}, {marks(4, 2, 3)}));
+  const Picture picture = read_or_fail(folder / "in.tif");
+  for (const char* name : {"o.tif", "o.jpg", "o.exr"}) {
+    ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / name));
+    EXPECT_EQ(spec_of(folder / name).get_int_attribute("Orientation", 1), 1) << name;
+    EXPECT_EQ(read_or_fail(folder / name).color.size(), (Size{2, 4})) << name;
+  }
+}
+
+TEST(Write, Compressions) {
+  const TemporaryFolder folder;
+  const Picture picture = make_picture(40, 40, true);
+  for (const char* compression : {"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab", "dwaa:200", "zip:1", "ZIP"}) {
+    WriteOptions options;
+    options.compression = compression;
+    ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.exr", options)) << compression;
+    const std::string stored = spec_of(folder / "o.exr").get_string_attribute("compression");
+    EXPECT_TRUE(std::string(compression).starts_with(stored) || stored == "zip") << compression << " became " << stored;
+  }
+  const auto refused = [&](const char* compression, const char* file) {
+    WriteOptions options;
+    options.compression = compression;
+    const auto checked = check_output(folder / file, options);
+    EXPECT_FALSE(checked);
+    return checked ? Error{} : checked.error();
+  };
+  EXPECT_EQ(refused("zipp", "o.exr").nearest, "zip");
+  EXPECT_EQ(refused("zipp", "o.exr").kind, ErrorKind::usage);
+  EXPECT_THAT(refused("piz:3", "o.exr").message, HasSubstr("no level"));
+  EXPECT_THAT(refused("dwaa:x", "o.exr").message, HasSubstr("level"));
+  EXPECT_THAT(refused("zip", "o.png").message, HasSubstr("no choice"));
+  EXPECT_EQ(refused("lzv", "o.tif").nearest, "lzw");
+}
+
+TEST(Write, SameBytesEveryTime) {
+  const TemporaryFolder folder;
+  const Picture picture = make_picture(300, 200, true);
+  for (const char* name : {"o.exr", "o.png", "o.jpg", "o.hdr"}) {
+    WriteOptions options;
+    options.dither = true;
+    ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / name, options));
+    const std::string first = file_bytes(folder / name);
+    ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / name, options));
+    EXPECT_EQ(first, file_bytes(folder / name)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace afterglow
