@@ -1,0 +1,105 @@
+// Devices: none, the wrong one, and validation-clean presets.
+#include <nlohmann/json.hpp>
+
+#include "cli_test.h"
+
+namespace afterglow::test {
+namespace {
+
+class Devices : public CliTest {
+ protected:
+  /// A machine without any Vulkan driver.
+  RunOptions without_driver() const {
+    RunOptions options;
+    for (const char* name : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}) options.environment[name] = text("no-driver.json");
+    return options;
+  }
+};
+
+TEST_F(Devices, NoneIsExitCode5) {
+  make_preset("look.lua");
+  make_exr("a.exr");
+  const auto before = files();
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png"}, without_driver());
+  EXPECT_EQ(outcome.exit_code, kDevice);
+  EXPECT_TRUE(is_one_error_line(outcome.err));
+  EXPECT_THAT(outcome.err, HasSubstr("Vulkan"));
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Devices, ListOfNoneIsExitCode5) {
+  const Outcome outcome = run({"devices"}, without_driver());
+  EXPECT_EQ(outcome.exit_code, kDevice);
+  EXPECT_TRUE(is_one_error_line(outcome.err));
+}
+
+TEST_F(Devices, UnknownNameSaysWhatThereIs) {
+  make_preset("look.lua");
+  make_exr("a.exr");
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--device", "voodoo2"});
+  EXPECT_EQ(outcome.exit_code, kDevice);
+  EXPECT_TRUE(is_one_error_line(outcome.err));
+  EXPECT_THAT(outcome.err, HasSubstr("voodoo2"));
+  EXPECT_THAT(outcome.err, HasSubstr("allowed: "));
+  EXPECT_FALSE(fs::exists(path("a.png")));
+}
+
+TEST_F(Devices, CheckGraphAndEffectsNeedNone) {
+  make_preset("look.lua");
+  for (const auto& arguments : {std::vector<std::string>{"check", "look.lua"}, {"graph", "look.lua"}, {"effects"}}) {
+    const Outcome outcome = run(arguments, without_driver());
+    EXPECT_EQ(outcome.exit_code, kDone) << arguments.front() << ": " << outcome.err;
+  }
+}
+
+TEST_F(Devices, TableAndJsonListTheSame) {
+  const Outcome table = run({"devices"}), json = run({"devices", "--json"});
+  ASSERT_EQ(table.exit_code, kDone) << table.err;
+  ASSERT_EQ(json.exit_code, kDone) << json.err;
+  const auto list = nlohmann::json::parse(json.out);
+  ASSERT_GE(list.size(), 1u);
+  for (const auto& device : list) {
+    EXPECT_THAT(table.out, HasSubstr(device.at("name").get<std::string>()));
+    EXPECT_TRUE(device.at("usable").is_boolean());
+  }
+}
+
+/// Names of presets/*.lua and presets/*/*.lua, but for what lies in their effects folders.
+std::vector<std::string> shipped_presets() {
+  std::vector<std::string> names;
+  const fs::path root = fs::path(AFTERGLOW_PROJECT_FOLDER) / "presets";
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    const fs::path relative = fs::relative(entry.path(), root);
+    const bool effect = relative.parent_path().filename() == "effects";
+    if (relative.extension() == ".lua" && !effect) names.push_back(relative.string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+class ShippedPresets : public CliTest, public ::testing::WithParamInterface<std::string> {};
+
+TEST_P(ShippedPresets, RunCleanUnderValidation) {
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--precision", "fp16"}, {"--reference"}}) {
+    std::vector<std::string> arguments{"run", preset(GetParam()).string(), neon().string(), "-o", "out.png", "--validate", "--size", "161x90"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    EXPECT_TRUE(fs::exists(path("out.png")));
+  }
+}
+
+TEST_P(ShippedPresets, PassCheckWithoutWarnings) {
+  const Outcome outcome = run({"check", preset(GetParam()).string()});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Cli, ShippedPresets, ::testing::ValuesIn(shipped_presets()), [](const auto& info) {
+  std::string name = info.param;
+  std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  return name;
+});
+
+}  // namespace
+}  // namespace afterglow::test

@@ -1,0 +1,133 @@
+// check, graph and effects: what they tell about a preset.
+#include <nlohmann/json.hpp>
+
+#include "cli_test.h"
+
+namespace afterglow::test {
+namespace {
+
+using nlohmann::json;
+
+class Inspect : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    // Listed against the order in which they run.
+    write("look.lua",
+          "local fx = require \"afterglow\"\n"
+          "return fx.stack { name = \"Test\",\n"
+          "  fx.color_adjustments { contrast = 15 },\n"
+          "  fx.tone_mapping { mode = \"none\" },\n"
+          "  fx.bloom { intensity = 0.3 } }\n");
+  }
+
+  json parsed(const std::vector<std::string>& arguments) const {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return json::parse(outcome.out, nullptr, false);
+  }
+};
+
+TEST_F(Inspect, CheckShowsOrderAndSettings) {
+  const Outcome outcome = run({"check", "look.lua"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  const auto bloom = outcome.out.find("1. bloom"), tone = outcome.out.find("2. tone_mapping"),
+             color = outcome.out.find("3. color_adjustments");
+  ASSERT_NE(bloom, std::string::npos) << outcome.out;
+  EXPECT_LT(bloom, tone);
+  EXPECT_LT(tone, color);
+  EXPECT_THAT(outcome.out, ContainsRegex("intensity +0\\.3\n"));
+  EXPECT_THAT(outcome.out, ContainsRegex("scatter +0\\.7 +\\(default\\)"));
+  EXPECT_THAT(outcome.out, HasSubstr("skipped: "));
+  EXPECT_THAT(outcome.out, HasSubstr("no errors"));
+}
+
+TEST_F(Inspect, CheckAsJson) {
+  const json check = parsed({"check", "look.lua", "--json", "--set", "bloom.scatter=0.5"});
+  ASSERT_EQ(check.at("entries").size(), 3u);
+  const auto& bloom = check.at("entries").at(0);
+  EXPECT_EQ(bloom.at("effect"), "bloom");
+  EXPECT_EQ(bloom.at("settings").at("scatter"), 0.5);
+  EXPECT_THAT(bloom.at("changed").get<std::vector<std::string>>(), ::testing::UnorderedElementsAre("intensity", "scatter"));
+  EXPECT_TRUE(check.at("entries").at(1).contains("skipped"));
+}
+
+TEST_F(Inspect, CheckLoadsNoImageLibraries) {
+  // Listed, not run: a hundred libraries behind OpenImageIO would cost `check` its speed.
+  RunOptions options;
+  options.environment["LD_TRACE_LOADED_OBJECTS"] = "1";
+  const Outcome outcome = run({"check", "look.lua"}, options);
+  EXPECT_THAT(outcome.out, HasSubstr("libvulkan"));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("libOpenImageIO")));
+}
+
+TEST_F(Inspect, CheckReportsShadowedBuiltIns) {
+  write("effects/tone_mapping.lua",
+        "local fx = require \"afterglow\"\n"
+        "return fx.effect { name = \"tone_mapping\", doc = \"Mine.\", at = \"post_process\", order = 200,\n"
+        "  settings = { mode = fx.enum { \"none\", \"mine\", default = \"mine\", doc = \"Curve.\" } },\n"
+        "  build = function(g, s, source) return source end }\n");
+  const Outcome outcome = run({"check", "look.lua"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.out, ContainsRegex("effects/tone_mapping.lua shadows .*scripts/effects/tone_mapping.lua"));
+}
+
+TEST_F(Inspect, CheckWarmsTheCacheForRun) {
+  RunOptions options;
+  options.environment["AFTERGLOW_CACHE"] = text("cache");
+  ASSERT_EQ(run({"check", "look.lua", "--size", "64x36"}, options).exit_code, kDone);
+  const auto after_check = files();
+  make_exr("a.exr");
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "a.png"}, options).exit_code, kDone);
+  for (const auto& name : files())
+    if (name.starts_with("cache/shaders/"))
+      EXPECT_NE(std::find(after_check.begin(), after_check.end(), name), after_check.end()) << name << " was compiled again";
+}
+
+TEST_F(Inspect, GraphAsJsonNamesKernelsAndSkips) {
+  const json graph = parsed({"graph", "look.lua", "--format", "json", "--size", "640x360"});
+  EXPECT_GT(graph.at("kernels").size(), 3u);
+  bool joined = false;
+  for (const auto& kernel : graph.at("kernels"))
+    if (kernel.at("passes").size() > 1) joined = kernel.contains("joined_because");
+  EXPECT_TRUE(joined) << "the colour steps join the last pass of the bloom";
+  ASSERT_EQ(graph.at("skipped").size(), 1u);
+  EXPECT_EQ(graph.at("skipped").at(0).at("name"), "tone_mapping");
+}
+
+TEST_F(Inspect, GraphAsDotAndSvg) {
+  const Outcome dot = run({"graph", "look.lua"});
+  EXPECT_EQ(dot.exit_code, kDone) << dot.err;
+  EXPECT_THAT(dot.out, ::testing::StartsWith("digraph \"Test\" {"));
+  EXPECT_THAT(dot.out, HasSubstr("-> result;"));
+  EXPECT_THAT(dot.out, HasSubstr("tone_mapping: "));
+  const Outcome svg = run({"graph", "look.lua", "-o", "graph.svg"});
+  EXPECT_EQ(svg.exit_code, kDone) << svg.err;
+  EXPECT_THAT(svg.out, IsEmpty());
+  EXPECT_THAT(read("graph.svg"), ::testing::StartsWith("<svg "));
+  EXPECT_THAT(read("graph.svg"), HasSubstr("bloom."));
+  EXPECT_THAT(read("graph.svg"), ::testing::EndsWith("</svg>\n"));
+}
+
+TEST_F(Inspect, EffectsAreListedWithTheirSettings) {
+  const Outcome table = run({"effects", "bloom"});
+  EXPECT_EQ(table.exit_code, kDone) << table.err;
+  EXPECT_THAT(table.out, ContainsRegex("scatter +float +0\\.05 to 0\\.95 +0\\.7"));
+  const json all = parsed({"effects", "--json"});
+  std::vector<std::string> names;
+  for (const auto& effect : all) names.push_back(effect.at("name"));
+  EXPECT_THAT(names, ::testing::IsSupersetOf({"bloom", "box_bloom", "tone_mapping", "color_adjustments", "color_blit", "outline"}));
+}
+
+TEST_F(Inspect, EffectsOfAPathAreListedToo) {
+  write("mine/effects/halve.lua",
+        "local fx = require \"afterglow\"\n"
+        "return fx.effect { name = \"halve\", doc = \"Half the light.\", at = \"post_process\", order = 1, settings = {},\n"
+        "  build = function(g, s, source) return source end }\n");
+  const Outcome outcome = run({"effects", "--path", "mine"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.out, ContainsRegex("halve +post_process +1 +Half the light\\."));
+}
+
+}  // namespace
+}  // namespace afterglow::test

@@ -1,0 +1,103 @@
+// Outputs appear whole or not at all.
+#include <sys/mount.h>
+#include <unistd.h>
+
+#include "cli_test.h"
+
+namespace afterglow::test {
+namespace {
+
+class Output : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    make_preset("look.lua");
+    make_exr("a.exr", 256, 256);
+  }
+
+  void expect_failure(const Outcome& outcome, const std::string& message) const {
+    EXPECT_EQ(outcome.exit_code, kFiles);
+    EXPECT_TRUE(is_one_error_line(outcome.err));
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+  }
+};
+
+TEST_F(Output, FolderThatDoesNotExist) {
+  const auto before = files();
+  expect_failure(run({"run", "look.lua", "a.exr", "-o", "nowhere/a.png"}), "nowhere");
+  expect_failure(run({"run", "look.lua", "a.exr", "-o", "nowhere/"}), "nowhere");
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Output, FolderThatCannotBeWritten) {
+  // Root may write where others may not, but nobody makes files in /proc.
+  expect_failure(run({"run", "look.lua", "a.exr", "-o", "/proc/a.png"}), "/proc");
+}
+
+TEST_F(Output, FileInPlaceOfAFolder) {
+  write("file", "not a folder");
+  expect_failure(run({"run", "look.lua", "a.exr", "-o", "file/a.png"}), "file");
+}
+
+TEST_F(Output, FolderInPlaceOfTheFile) {
+  fs::create_directories(path("a.png/inside"));
+  // A folder takes outputs; with --format it is one, without it the output would have the input's name.
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--format", "png"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_TRUE(fs::is_regular_file(path("a.png/a.png")));
+}
+
+TEST_F(Output, UnknownFormat) {
+  const auto before = files();
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.xyz"});
+  EXPECT_THAT(outcome.exit_code, ::testing::AnyOf(kUsage, kFiles));
+  EXPECT_TRUE(is_one_error_line(outcome.err));
+  EXPECT_THAT(outcome.err, HasSubstr("a.xyz"));
+  EXPECT_EQ(files(), before);
+}
+
+class FullDisk : public Output, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(FullDisk, LeavesTheOldFileAndNothingElse) {
+  const std::string name = GetParam();
+  write(name, "the picture of yesterday");
+  const auto before = files();
+  RunOptions options;
+  options.largest_file = 3000;  // a.exr's result takes more, in every format
+  options.environment["AFTERGLOW_CACHE"] = text("cache-that-cannot-be-made/x");
+  write("cache-that-cannot-be-made", "");
+  const auto with_cache = files();
+  expect_failure(run({"run", "look.lua", "a.exr", "-o", name, "--compression", name == "out.exr" ? "none" : "", "--png-level", "0"},
+                     options),
+                 name);
+  EXPECT_EQ(files(), with_cache) << "something was left behind";
+  EXPECT_EQ(read(name), "the picture of yesterday");
+}
+
+INSTANTIATE_TEST_SUITE_P(Cli, FullDisk, ::testing::Values("out.exr", "out.png", "out.hdr"), [](const auto& info) {
+  return std::string(info.param).substr(4);
+});
+
+TEST_F(Output, FullFileSystem) {
+  fs::create_directory(path("disk"));
+  if (mount("tmpfs", path("disk").c_str(), "tmpfs", 0, "size=16k") != 0) GTEST_SKIP() << "mounting a tmpfs needs root";
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "disk/a.exr", "--compression", "none"});
+  const bool empty = fs::is_empty(path("disk"));
+  umount(path("disk").c_str());
+  expect_failure(outcome, "disk/a.exr");
+  EXPECT_TRUE(empty) << "something was left behind";
+}
+
+TEST_F(Output, ReportThatCannotBeWritten) {
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--report", "nowhere/report.json"});
+  expect_failure(outcome, "nowhere/report.json");
+  EXPECT_TRUE(fs::exists(path("a.png"))) << "the picture itself is fine";
+}
+
+TEST_F(Output, SameInputSamePixelsSameBytes) {
+  for (const char* name : {"1.png", "2.png"}) ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", name, "--dither"}).exit_code, kDone);
+  EXPECT_EQ(read("1.png"), read("2.png"));
+}
+
+}  // namespace
+}  // namespace afterglow::test

@@ -1,0 +1,164 @@
+// `afterglow run` on single pictures: what it writes and reports.
+#include <OpenImageIO/imageio.h>
+#include <nlohmann/json.hpp>
+
+#include "cli_test.h"
+
+namespace afterglow::test {
+namespace {
+
+class Run : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    make_preset("look.lua");
+    make_exr("a.exr");
+  }
+
+  OIIO::ImageSpec spec_of(const std::string& name) const {
+    auto in = OIIO::ImageInput::open(text(name));
+    EXPECT_TRUE(in) << OIIO::geterror();
+    return in ? in->spec() : OIIO::ImageSpec();
+  }
+};
+
+TEST_F(Run, WritesThePictureAndSaysNothing) {
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png"});
+  EXPECT_EQ(outcome.exit_code, kDone);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_EQ(files(), (std::vector<std::string>{"a.exr", "a.png", "look.lua"}));
+  const auto spec = spec_of("a.png");
+  EXPECT_EQ(spec.width, 64);
+  EXPECT_EQ(spec.height, 36);
+}
+
+TEST_F(Run, TypeAndCompressionAreTakenOver) {
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "f.exr", "--type", "float", "--compression", "piz"}).exit_code, kDone);
+  EXPECT_EQ(spec_of("f.exr").format, OIIO::TypeDesc::FLOAT);
+  EXPECT_EQ(spec_of("f.exr").get_string_attribute("compression"), "piz");
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "h.exr"}).exit_code, kDone);
+  EXPECT_EQ(spec_of("h.exr").format, OIIO::TypeDesc::HALF);
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "u.png", "--type", "uint16"}).exit_code, kDone);
+  EXPECT_EQ(spec_of("u.png").format, OIIO::TypeDesc::UINT16);
+}
+
+TEST_F(Run, SizeScalesThePictureFirst) {
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "small.exr", "--size", "32x18"}).exit_code, kDone);
+  EXPECT_EQ(spec_of("small.exr").width, 32);
+  EXPECT_EQ(spec_of("small.exr").height, 18);
+}
+
+TEST_F(Run, OverridesChangePixelsAndPrecisionHardly) {
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "1.png"}).exit_code, kDone);
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "2.png", "--set", "tone_mapping.mode=neutral"}).exit_code, kDone);
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "3.png", "--reference"}).exit_code, kDone);
+  EXPECT_NE(read("1.png"), read("2.png"));
+  EXPECT_EQ(read("1.png"), read("3.png"));
+}
+
+TEST_F(Run, StatsNameEveryStep) {
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--stats"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  for (const char* step : {"start-up", "script", "compile", "read", "upload", "execute", "read-back", "write", "wall", "memory"})
+    EXPECT_THAT(outcome.out, HasSubstr(step));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("tone_mapping")));
+}
+
+TEST_F(Run, StatsOfPassesNameThePasses) {
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--stats=passes"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("tone_mapping.aces"));
+}
+
+TEST_F(Run, ReportSaysWhatRanAndWhatWasSkipped) {
+  write("look.lua",
+        "local fx = require \"afterglow\"\n"
+        "return fx.stack { name = \"Two\", fx.tone_mapping { mode = \"aces\" }, fx.bloom { intensity = 0 } }\n");
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--report", "report.json"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  const auto report = nlohmann::json::parse(read("report.json"));
+  EXPECT_EQ(report.at("frames").at(0).at("state"), "done");
+  EXPECT_EQ(report.at("frames").at(0).at("width"), 64);
+  EXPECT_EQ(report.at("session").at("kernels").size(), 1u);
+  const auto& skipped = report.at("session").at("skipped");
+  ASSERT_EQ(skipped.size(), 1u);
+  EXPECT_EQ(skipped.at(0).at("name"), "bloom");
+  EXPECT_THAT(skipped.at(0).at("reason").get<std::string>(), Not(IsEmpty()));
+}
+
+TEST_F(Run, MissingDepthIsAWarningAndQuietHidesIt) {
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.outline {}, fx.tone_mapping {} }\n");
+  Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png"});
+  EXPECT_EQ(outcome.exit_code, kDone);
+  EXPECT_THAT(outcome.err, ::testing::StartsWith("warning: "));
+  EXPECT_THAT(outcome.err, HasSubstr("outline"));
+  outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "-q"});
+  EXPECT_EQ(outcome.exit_code, kDone);
+  EXPECT_THAT(outcome.err, IsEmpty());
+}
+
+TEST_F(Run, MissingDepthOfARequiredEffectIsAnError) {
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.outline { required = true } }\n");
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png"});
+  EXPECT_EQ(outcome.exit_code, kScript);
+  EXPECT_TRUE(is_one_error_line(outcome.err));
+  EXPECT_FALSE(fs::exists(path("a.png")));
+}
+
+TEST_F(Run, DepthFromAnotherFile) {
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.outline { source = \"depth\", required = true } }\n");
+  // The red channel of a picture of the same size stands in for depth.
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--depth", "a.exr:R"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+}
+
+TEST_F(Run, EffectsBesideThePresetAndOnThePath) {
+  const std::string effect =
+      "local fx = require \"afterglow\"\n"
+      "return fx.effect { name = \"halve\", doc = \"Half the light.\", at = \"post_process\", order = 1, settings = {},\n"
+      "  build = function(g, s, source) return g:pass { shader = \"halve/halve\", source = source } end }\n";
+  const std::string shader = "vec4 apply(vec4 color) { return vec4(color.rgb * 0.5, color.a); }\n";
+  write("mine/effects/halve.lua", effect);
+  write("mine/shaders/halve/halve.glsl", shader);
+  const std::string look = "local fx = require \"afterglow\"\nreturn fx.stack { fx.halve {} }\n";
+  write("mine/look.lua", look);
+  write("other.lua", look);
+  EXPECT_EQ(run({"run", "mine/look.lua", "a.exr", "-o", "1.exr"}).exit_code, kDone);
+  EXPECT_EQ(run({"run", "other.lua", "a.exr", "-o", "2.exr"}).exit_code, kScript);
+  EXPECT_EQ(run({"run", "other.lua", "a.exr", "-o", "2.exr", "--path", "mine"}).exit_code, kDone);
+  RunOptions options;
+  options.environment["AFTERGLOW_PATH"] = text("mine");
+  EXPECT_EQ(run({"run", "other.lua", "a.exr", "-o", "3.exr"}, options).exit_code, kDone);
+  auto in = OIIO::ImageInput::open(text("1.exr"));
+  ASSERT_TRUE(in);
+  std::vector<float> pixels(64 * 36 * 4);
+  ASSERT_TRUE(in->read_image(0, 0, 0, 4, OIIO::TypeDesc::FLOAT, pixels.data()));
+  EXPECT_NEAR(pixels[0], 0.05, 1e-4);
+  EXPECT_NEAR(pixels[3], 1.0, 0);
+}
+
+TEST_F(Run, SmallestPicture) {
+  make_exr("one.exr", 1, 1);
+  const Outcome outcome = run({"run", preset("neon_night.lua").string(), "one.exr", "-o", "one.png"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+}
+
+TEST_F(Run, BrokenCacheIsRebuilt) {
+  RunOptions options;
+  options.environment["AFTERGLOW_CACHE"] = text("cache");
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "1.png"}, options).exit_code, kDone);
+  int broken = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(path("cache")))
+    if (entry.is_regular_file()) {
+      write(fs::relative(entry.path(), path("")).string(), "rubbish");
+      ++broken;
+    }
+  EXPECT_GT(broken, 0);
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "2.png"}, options);
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_EQ(read("1.png"), read("2.png"));
+}
+
+}  // namespace
+}  // namespace afterglow::test

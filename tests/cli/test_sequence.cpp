@@ -1,0 +1,171 @@
+// Sequences: what is read and written under which name, frames that fail, --resume, Ctrl-C.
+#include <csignal>
+
+#include <nlohmann/json.hpp>
+
+#include "cli_test.h"
+
+namespace afterglow::test {
+namespace {
+
+class Sequence : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    make_preset("look.lua");
+    for (int frame = 1; frame <= 4; ++frame) make_exr("in/shot.000" + std::to_string(frame) + ".exr");
+    fs::create_directory(path("out"));
+  }
+
+  Outcome run_all(const std::vector<std::string>& more = {}, RunOptions options = {}) const {
+    std::vector<std::string> arguments{"run", "look.lua", "in/shot.####.exr", "-o", "out/shot.####.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments, options);
+  }
+
+  /// Names in out/ but for the notes of --resume.
+  std::vector<std::string> outputs() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(path("out")))
+      if (entry.path().filename() != ".afterglow") names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  /// State of each frame in a report, in order.
+  std::vector<std::string> states(const std::string& report) const {
+    std::vector<std::string> all;
+    for (const auto& frame : nlohmann::json::parse(read(report)).at("frames")) all.push_back(frame.at("state"));
+    return all;
+  }
+};
+
+using ::testing::ElementsAre;
+
+TEST_F(Sequence, PatternToPattern) {
+  const Outcome outcome = run_all();
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty()) << "no progress bar without a terminal";
+  EXPECT_THAT(outputs(), ElementsAre("shot.0001.png", "shot.0002.png", "shot.0003.png", "shot.0004.png"));
+}
+
+TEST_F(Sequence, PrintfPatternToFolderWithFormat) {
+  const Outcome outcome = run({"run", "look.lua", "in/shot.%04d.exr", "-o", "out", "--format", "png", "--frames", "1-4x2"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outputs(), ElementsAre("shot.0001.png", "shot.0003.png"));
+}
+
+TEST_F(Sequence, FilesToFolderKeepTheirNames) {
+  const Outcome outcome = run({"run", "look.lua", "in/shot.0002.exr", "in/shot.0004.exr", "-o", "out/"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outputs(), ElementsAre("shot.0002.exr", "shot.0004.exr"));
+}
+
+TEST_F(Sequence, FramesAsked) {
+  EXPECT_EQ(run_all({"--frames", "2-3"}).exit_code, kDone);
+  EXPECT_THAT(outputs(), ElementsAre("shot.0002.png", "shot.0003.png"));
+}
+
+TEST_F(Sequence, MissingFrameIsReportedAndTheRestGoOn) {
+  const Outcome outcome = run_all({"--frames", "3-6"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_THAT(outcome.err, HasSubstr("shot.0005.exr"));
+  EXPECT_THAT(outcome.err, HasSubstr("2 of 4 frames failed"));
+  EXPECT_THAT(outputs(), ElementsAre("shot.0003.png", "shot.0004.png"));
+}
+
+TEST_F(Sequence, BadFrameInTheMiddle) {
+  make_truncated_exr("in/shot.0002.exr");
+  const Outcome outcome = run_all({"--report", "report.json"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_THAT(outcome.err, HasSubstr("shot.0002.exr"));
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 4 frames failed"));
+  EXPECT_THAT(outputs(), ElementsAre("shot.0001.png", "shot.0003.png", "shot.0004.png"));
+  EXPECT_THAT(states("report.json"), ElementsAre("done", "failed", "done", "done"));
+}
+
+TEST_F(Sequence, FailFastStops) {
+  make_truncated_exr("in/shot.0002.exr");
+  const Outcome outcome = run_all({"--fail-fast"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_TRUE(is_one_error_line(outcome.err));
+  EXPECT_THAT(outputs(), ElementsAre("shot.0001.png"));
+}
+
+TEST_F(Sequence, ScriptErrorStopsAtOnce) {
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.mine {} }\n");
+  write("effects/mine.lua",
+        "local fx = require \"afterglow\"\n"
+        "return fx.effect { name = \"mine\", doc = \"A test.\", at = \"post_process\", order = 1, settings = {},\n"
+        "  build = function(g, s, source) error(\"no such luck\") end }\n");
+  const Outcome outcome = run_all();
+  EXPECT_EQ(outcome.exit_code, kScript);
+  EXPECT_THAT(outcome.err, HasSubstr("no such luck"));
+  EXPECT_EQ(outcome.err.find("no such luck"), outcome.err.rfind("no such luck")) << "said once";
+  EXPECT_THAT(outputs(), IsEmpty());
+}
+
+TEST_F(Sequence, ResumeSkipsWhatIsDone) {
+  ASSERT_EQ(run_all({"--frames", "1-2"}).exit_code, kDone);
+  const Outcome outcome = run_all({"--resume", "--report", "report.json"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(states("report.json"), ElementsAre("up to date", "up to date", "done", "done"));
+}
+
+TEST_F(Sequence, ResumeSeesNewInputsLooksAndOptions) {
+  ASSERT_EQ(run_all().exit_code, kDone);
+  // A touched input.
+  fs::last_write_time(path("in/shot.0003.exr"), fs::file_time_type::clock::now() + std::chrono::hours(1));
+  ASSERT_EQ(run_all({"--resume", "--report", "report.json"}).exit_code, kDone);
+  EXPECT_THAT(states("report.json"), ElementsAre("up to date", "up to date", "done", "up to date"));
+  fs::last_write_time(path("in/shot.0003.exr"), fs::last_write_time(path("in/shot.0002.exr")));
+  // An override.
+  ASSERT_EQ(run_all({"--resume", "--set", "tone_mapping.mode=neutral", "--report", "report.json"}).exit_code, kDone);
+  EXPECT_THAT(states("report.json"), ElementsAre("done", "done", "done", "done"));
+  // The preset itself.
+  write("look.lua", read("look.lua") + "-- a change\n");
+  ASSERT_EQ(run_all({"--resume", "--set", "tone_mapping.mode=neutral", "--report", "report.json"}).exit_code, kDone);
+  EXPECT_THAT(states("report.json"), ElementsAre("done", "done", "done", "done"));
+  // An output that is gone.
+  fs::remove(path("out/shot.0001.png"));
+  ASSERT_EQ(run_all({"--resume", "--set", "tone_mapping.mode=neutral", "--report", "report.json"}).exit_code, kDone);
+  EXPECT_THAT(states("report.json"), ElementsAre("done", "up to date", "up to date", "up to date"));
+}
+
+TEST_F(Sequence, WithoutResumeEverythingIsMadeAgain) {
+  ASSERT_EQ(run_all().exit_code, kDone);
+  ASSERT_EQ(run_all({"--report", "report.json"}).exit_code, kDone);
+  EXPECT_THAT(states("report.json"), ElementsAre("done", "done", "done", "done"));
+}
+
+TEST_F(Sequence, TooLittleMemoryForOverlapStillRuns) {
+  const Outcome outcome = run_all({"--max-memory", "8M"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_EQ(outputs().size(), 4u);
+}
+
+TEST_F(Sequence, CtrlCEndsWith130AndNoPartialFile) {
+  for (int frame = 5; frame <= 60; ++frame)
+    fs::copy_file(path("in/shot.0001.exr"), path("in/shot.00" + std::string(frame < 10 ? "0" : "") + std::to_string(frame) + ".exr"));
+  RunOptions options;
+  options.meanwhile = [&](int process) {
+    if (outputs().empty()) return false;
+    kill(process, SIGINT);
+    return true;
+  };
+  const Outcome outcome = run_all({}, options);
+  EXPECT_EQ(outcome.exit_code, kInterrupted);
+  EXPECT_TRUE(is_one_error_line(outcome.err));
+  EXPECT_THAT(outcome.err, HasSubstr("interrupted"));
+  const auto made = outputs();
+  EXPECT_LT(made.size(), 60u);
+  for (const auto& name : made) EXPECT_TRUE(name.starts_with("shot.00") && name.ends_with(".png")) << name;
+  // What was made is whole: going on makes just the rest.
+  const Outcome rest = run_all({"--resume", "--report", "report.json"});
+  EXPECT_EQ(rest.exit_code, kDone) << rest.err;
+  const auto all = states("report.json");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(all.begin(), all.end(), "up to date")), made.size());
+}
+
+}  // namespace
+}  // namespace afterglow::test
