@@ -234,12 +234,13 @@ Result<void> FrameRunner::State::execute(Program& program, KernelTiming timing, 
   }
 
   const auto start = Clock::now();
-  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) {
+  auto done = submitter.submit([&](VkCommandBuffer commands) {
     before(commands);
     program.record(commands, -1, queries);
     if (!separate) after(commands);
-  }));
-  if (auto done = submitter.wait(); !done) return timer.blame(std::move(done).error(), program.plan());
+  });
+  if (done) done = submitter.wait();
+  if (!done) return KernelTimer::blame(std::move(done).error(), program.plan());
   times.execute = milliseconds_since(start);
   if (stamps) {
     AFTERGLOW_TRY(times.kernels, timer.read(program.plan()));
@@ -250,8 +251,9 @@ Result<void> FrameRunner::State::execute(Program& program, KernelTiming timing, 
   times.separate_submissions = true;
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     const auto begin = Clock::now();
-    AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) { program.record(commands, static_cast<int>(i)); }));
-    if (auto done = submitter.wait(); !done) {
+    done = submitter.submit([&](VkCommandBuffer commands) { program.record(commands, static_cast<int>(i)); });
+    if (done) done = submitter.wait();
+    if (!done) {
       Error error = std::move(done).error();
       error.message += fmt::format(" in kernel '{}'", kernels[i].name);
       return error;

@@ -228,7 +228,9 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   return std::unique_ptr<Program>(new Program(std::move(state)));
 }
 
-void Program::set_parameters(const Graph& graph) { state_->parameters.write(graph); }
+void Program::set_parameters(const Graph& graph) {
+  if (same_structure(state_->graph, graph)) state_->parameters.write(graph);
+}
 
 Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result) {
   State& s = *state_;
