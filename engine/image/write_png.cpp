@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <thread>
 #include <vector>
@@ -70,7 +71,6 @@ std::string keyword_of(const std::string& name) {
   if (name == "ImageDescription") return "Description";
   if (name == "Artist") return "Author";
   if (name == "DocumentName") return "Title";
-  if (name == "DateTime") return "Creation Time";
   return name;
 }
 
@@ -78,10 +78,23 @@ bool printable(const std::string& text, bool newlines) {
   return std::all_of(text.begin(), text.end(), [&](unsigned char c) { return (c >= 32 && c < 127) || (newlines && (c == '\n' || c == '\t')); });
 }
 
+/// "YYYY:MM:DD hh:mm:ss" has a chunk of its own.
+bool write_time(OutputFile& out, const std::string& text) {
+  int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0;
+  if (std::sscanf(text.c_str(), "%4d:%2d:%2d %2d:%2d:%2d", &year, &month, &day, &hour, &minute, &second) != 6) return false;
+  const auto inside = [](int value, int low, int high) { return value >= low && value <= high; };
+  if (!inside(year, 1, 9999) || !inside(month, 1, 12) || !inside(day, 1, 31) || !inside(hour, 0, 23) || !inside(minute, 0, 59) || !inside(second, 0, 60))
+    return false;
+  std::string data{static_cast<char>(year >> 8)};
+  for (const int value : {year & 255, month, day, hour, minute, second}) data += static_cast<char>(value);
+  write_chunk(out, "tIME", data);
+  return true;
+}
+
 void write_texts(OutputFile& out, const Metadata& metadata) {
   for (const auto& [name, value] : metadata) {
     const auto* text = std::get_if<std::string>(&value);
-    if (!text || name == "ResolutionUnit") continue;
+    if (!text || name == "ResolutionUnit" || (name == "DateTime" && write_time(out, *text))) continue;
     const std::string keyword = keyword_of(name);
     if (keyword.empty() || keyword.size() > 79 || !printable(keyword, false) || keyword.front() == ' ' || keyword.back() == ' ') continue;
     if (text->find('\0') != std::string::npos) continue;
