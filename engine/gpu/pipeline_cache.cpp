@@ -1,5 +1,5 @@
-// The part of Device that keeps driver-compiled pipelines on disk. The file is our hash of the data, then the data:
-// drivers check little more than the header, and a file cut short by a full disk must not reach them.
+#include "gpu/pipeline_cache.h"
+
 #include <fmt/format.h>
 
 #include <cstring>
@@ -17,8 +17,11 @@ namespace {
 constexpr std::size_t kHashDigits = 32;
 constexpr std::size_t kMaxCacheBytes = 256u << 20;
 
-/// The data of a cache file, or empty when it is missing, damaged or of another device.
-std::string read_cache(const std::string& file, const VkPhysicalDeviceProperties& device) {
+}  // namespace
+
+std::string pipeline_cache_file_content(const std::string& data) { return hash_text(data).hex() + data; }
+
+std::string read_pipeline_cache(const std::string& file, const VkPhysicalDeviceProperties& device) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return {};
   auto content = read_file(file, kMaxCacheBytes);
@@ -33,13 +36,11 @@ std::string read_cache(const std::string& file, const VkPhysicalDeviceProperties
   return ours ? data : std::string{};
 }
 
-}  // namespace
-
 void Device::use_pipeline_cache(const std::string& folder) {
   std::string uuid;
   for (const auto byte : properties_.pipelineCacheUUID) uuid += fmt::format("{:02x}", byte);
   cache_file_ = (std::filesystem::path(folder) / fmt::format("pipelines-{}.bin", uuid)).string();
-  const std::string data = read_cache(cache_file_, properties_);
+  const std::string data = read_pipeline_cache(cache_file_, properties_);
   if (data.empty()) return;
   const VkPipelineCacheCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
                                        .initialDataSize = data.size(),
@@ -62,7 +63,7 @@ void Device::save_pipeline_cache() const {
   std::error_code ignored;
   std::filesystem::create_directories(std::filesystem::path(cache_file_).parent_path(), ignored);
   // A cache that cannot be written costs time only.
-  (void)write_file_atomically(cache_file_, hash_text(data).hex() + data);
+  (void)write_file_atomically(cache_file_, pipeline_cache_file_content(data));
 }
 
 }  // namespace afterglow

@@ -33,8 +33,12 @@ TEST(Half, KnownValues) {
   EXPECT_EQ(half_from_float(-2.0f), 0xc000);
   EXPECT_EQ(half_from_float(65504.0f), kMaxHalfBits);
   EXPECT_EQ(half_from_float(0x1p-24f), 0x0001);
-  EXPECT_EQ(half_from_float(0x1p-25f), 0x0000);    // a tie: to even
-  EXPECT_EQ(half_from_float(0x1.8p-24f), 0x0002);  // a tie: to even
+  EXPECT_EQ(half_from_float(0x1p-25f), 0x0000);      // a tie: to even
+  EXPECT_EQ(half_from_float(0x1.8p-24f), 0x0002);    // a tie: to even
+  EXPECT_EQ(half_from_float(1 + 0x1p-11f), 0x3c00);  // ties between normal halves
+  EXPECT_EQ(half_from_float(1 + 0x1.8p-10f), 0x3c02);
+  EXPECT_EQ(half_from_float(-1 - 0x1.8p-10f), 0xbc02);
+  EXPECT_EQ(half_from_float(1 + 0x1.1p-11f), 0x3c01);  // just above a tie
   EXPECT_EQ(float_from_half(0x3555), 0.333251953125f);
 }
 

@@ -9,6 +9,7 @@
 #include "gpu/device.h"
 #include "gpu/image.h"
 #include "gpu/memory.h"
+#include "gpu/pipeline_cache.h"
 
 namespace afterglow {
 namespace {
@@ -198,6 +199,37 @@ TEST(PipelineCache, DamagedFilesAreIgnored) {
   EXPECT_NE(device->pipeline_cache(), VkPipelineCache{VK_NULL_HANDLE});
   EXPECT_THAT(device->validation_messages(), IsEmpty());
   fs::remove_all(folder);
+}
+
+TEST(PipelineCache, OnlyWholeFilesOfTheSameDeviceAreRead) {
+  VkPhysicalDeviceProperties device{};
+  device.vendorID = 7;
+  device.deviceID = 8;
+  device.pipelineCacheUUID[3] = 9;
+  VkPipelineCacheHeaderVersionOne header{sizeof header, VK_PIPELINE_CACHE_HEADER_VERSION_ONE, 7, 8, {}};
+  header.pipelineCacheUUID[3] = 9;
+  const std::string data = std::string(reinterpret_cast<const char*>(&header), sizeof header) + "compiled pipelines";
+  const std::string content = pipeline_cache_file_content(data);
+  const fs::path file = fs::path(testing::TempDir()) / "afterglow_pipelines.bin";
+  const auto read_back = [&](const std::string& bytes) {
+    std::ofstream(file, std::ios::binary) << bytes;
+    return read_pipeline_cache(file.string(), device);
+  };
+  EXPECT_EQ(read_back(content), data);
+  std::string flipped = content;
+  flipped.back() ^= 1;
+  EXPECT_EQ(read_back(flipped), "");
+  EXPECT_EQ(read_back(content.substr(0, content.size() - 1)), "");
+  EXPECT_EQ(read_back(content + "x"), "");
+  for (auto* number : {&device.vendorID, &device.deviceID}) {
+    ++*number;
+    EXPECT_EQ(read_back(content), "");
+    --*number;
+  }
+  device.pipelineCacheUUID[0] = 1;
+  EXPECT_EQ(read_back(content), "");
+  fs::remove(file);
+  EXPECT_EQ(read_pipeline_cache(file.string(), device), "");
 }
 
 TEST(ImageTest, OverLimitSizesAreRefusedBeforeAnythingIsAllocated) {
