@@ -47,8 +47,8 @@ class CurveDecoder {
     const auto last = static_cast<float>(table->size() - 1);
     const float position = std::clamp(stored, 0.0f, 1.0f) * last;
     // Stored codes hit the table; the product above is off by up to 0.01 of 65535. Values between them (divided by alpha) are interpolated.
-    const float nearest = std::nearbyint(position);
-    if (std::abs(position - nearest) < 0.02f) return (*table)[static_cast<std::size_t>(nearest)];
+    const int nearest = static_cast<int>(position + 0.5f);
+    if (std::abs(position - static_cast<float>(nearest)) < 0.02f) return (*table)[static_cast<std::size_t>(nearest)];
     const auto index = static_cast<std::size_t>(position);
     const float t = position - static_cast<float>(index);
     return (*table)[index] * (1 - t) + (*table)[index + 1] * t;

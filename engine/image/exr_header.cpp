@@ -19,7 +19,7 @@ constexpr std::uint32_t kMagic = 20000630;
 constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 0x1000;
 constexpr std::size_t kMaxName = 255;
 constexpr std::size_t kMaxParts = 4096, kMaxAttributes = 65536, kMaxChannels = 4096;
-constexpr std::int64_t kMaxCoordinate = 1 << 30;  // OpenEXR's own limit; keeps sums of two within an int
+constexpr std::int64_t kMaxCoordinate = 1 << 29;  // half of OpenEXR's limit: differences of two, and sides, stay within an int
 constexpr std::uint64_t kMaxChannelList = 4u << 20;
 
 struct Malformed {

@@ -22,6 +22,12 @@ std::string message_of(std::string text) {
   return text.empty() ? "cannot be read" : "cannot be read: " + text;
 }
 
+/// Offsets that differences of coordinates would not survive, and windows without pixels (a TIFF's position may be any number).
+bool absurd(const Rect& window) {
+  constexpr int kFar = 1 << 29;
+  return window.x < -kFar || window.x > kFar || window.y < -kFar || window.y > kFar || window.width < 1 || window.height < 1;
+}
+
 class OiioFile : public PictureFile {
  public:
   OiioFile(const std::filesystem::path& file, const ContainerFacts& container) : container_(container) { path_ = file; }
@@ -116,17 +122,18 @@ class OiioFile : public PictureFile {
       FilePart part;
       part.data_window = {spec.x, spec.y, spec.width, spec.height};
       part.display_window = {spec.full_x, spec.full_y, spec.full_width, spec.full_height};
-      if (part.display_window.width < 1 || part.display_window.height < 1) part.display_window = part.data_window;
+      if (absurd(part.data_window) || absurd(part.display_window)) {
+        part.data_window = {0, 0, spec.width, spec.height};
+        part.display_window = part.data_window;
+      }
       part.orientation = std::clamp(spec.get_int_attribute("Orientation", 1), 1, 8);
       part.channels = spec.channelnames;
       if (i > 0) part.name = spec.get_string_attribute("oiio:subimagename", fmt::format("page{}", i + 1));
       if (spec.depth > 1) part.unreadable = "is a volume, not a picture";
       if (spec.deep) part.unreadable = "is a deep picture, which is not supported";
-      if (i == 0 || part.unreadable.empty()) {
-        if (const auto fits = check_sides(part.data_window, "data window", limits, path_); !fits) {
-          if (i == 0) return fits;
-          continue;
-        }
+      if (const auto fits = check_sides(part.data_window, "data window", limits, path_); !fits) {
+        if (i == 0) return fits;
+        part.unreadable = fits.error().message;  // kept, so that parts and sub-images have the same numbers
       }
       parts_.push_back(std::move(part));
       specs_.push_back(spec);

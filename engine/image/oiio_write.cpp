@@ -19,6 +19,7 @@ namespace afterglow {
 namespace {
 
 constexpr int kRows = 64;  // a strip
+constexpr int kTiffZipLevel = 2;  // zlib; OpenImageIO takes 6, three times slower for a few per cent
 
 /// An OutputFile as OpenImageIO wants to see it.
 class OiioOutput : public OIIO::Filesystem::IOProxy {
@@ -75,7 +76,10 @@ OIIO::ImageSpec spec_for(const Picture& picture, const OutputFormat& format, Sam
       spec.attribute("CompressionQuality", std::clamp(options.jpeg_quality, 1, 100));
       spec.attribute("jpeg:subsampling", "4:4:4");
       break;
-    case OutputKind::tiff: spec.attribute("compression", options.compression.empty() ? "zip" : lower(options.compression)); break;
+    case OutputKind::tiff:
+      spec.attribute("compression", options.compression.empty() ? "zip" : lower(options.compression));
+      spec.attribute("tiff:zipquality", kTiffZipLevel);
+      break;
     default: break;
   }
   return spec;
