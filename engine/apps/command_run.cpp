@@ -4,18 +4,18 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <future>
 #include <memory>
 
 #include "apps/command.h"
 #include "apps/frame_list.h"
 #include "apps/frame_loop.h"
 #include "apps/options.h"
-#include "apps/pictures.h"
 #include "apps/resume.h"
 #include "apps/run_report.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "image/reader.h"
+#include "image/writer.h"
 
 namespace afterglow {
 namespace {
@@ -122,7 +122,6 @@ struct Run {
   const Arguments& arguments;
   Console& console;
   Clock::time_point start = Clock::now();
-  const PictureFunctions* pictures = nullptr;
   std::unique_ptr<Session> session;
   FrameLoopOptions loop;
   RunReport report;
@@ -152,27 +151,9 @@ WriteOptions write_options(const Arguments& a) {
 
 Result<std::vector<FrameJob>> jobs_of(const Arguments& a) {
   FrameListRequest request = a.files;
-  if (!a.depth.empty() || !a.normal.empty()) {
-    AFTERGLOW_TRY(const auto* pictures, load_pictures());
-    if (!a.depth.empty()) request.depth = pictures->parse_layer_choice(a.depth);
-    if (!a.normal.empty()) request.normal = pictures->parse_layer_choice(a.normal);
-  }
+  if (!a.depth.empty()) request.depth = parse_layer_choice(a.depth);
+  if (!a.normal.empty()) request.normal = parse_layer_choice(a.normal);
   return list_frames(request);
-}
-
-/// Loads the picture module beside the device and the preset, and refuses outputs that cannot be written before any
-/// work.
-Result<void> open(Run& run, const SessionOptions& options) {
-  const auto& frames = run.report.frames;
-  auto loading = std::async(std::launch::async, [&]() -> Result<void> {
-    AFTERGLOW_TRY(run.pictures, load_pictures());
-    return run.pictures->check_output(frames.front().job.output, run.loop.write);
-  });
-  auto session = Session::open(run.arguments.preset.file, options, run.console.diagnostics());
-  auto loaded = loading.get();
-  if (!session) return std::move(session).error();
-  run.session = std::move(session).value();
-  return loaded;
 }
 
 /// Hash of the look for --resume, and the frames that need not be made.
@@ -204,11 +185,13 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   if (!a.size.empty()) {
     AFTERGLOW_TRY(run.loop.size, parse_size(a.size));
   }
-  AFTERGLOW_CHECK(open(run, options));
+  // Outputs that cannot be written are refused before any work.
+  AFTERGLOW_CHECK(check_output(run.report.frames.front().job.output, run.loop.write));
+  AFTERGLOW_TRY(run.session, Session::open(a.preset.file, options, run.console.diagnostics()));
   run.loop.read.auxiliary = run.session->preset().needs();
   AFTERGLOW_CHECK(prepare_resume(run));
   run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
-  FrameLoop loop(*run.session, *run.pictures, run.loop, run.console);
+  FrameLoop loop(*run.session, run.loop, run.console);
   auto done = loop.run(run.report.frames);
   run.report.memory_needed = loop.largest_need();
   return done;

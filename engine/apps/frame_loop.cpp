@@ -41,8 +41,8 @@ struct FrameLoop::Writing {
   std::future<Result<void>> written;
 };
 
-FrameLoop::FrameLoop(Session& session, const PictureFunctions& pictures, FrameLoopOptions options, Console& console)
-    : session_(session), pictures_(pictures), options_(std::move(options)), console_(console) {}
+FrameLoop::FrameLoop(Session& session, FrameLoopOptions options, Console& console)
+    : session_(session), options_(std::move(options)), console_(console) {}
 
 FrameLoop::~FrameLoop() = default;
 
@@ -110,7 +110,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(FrameRecord& frame)
   ReadOptions options = options_.read;
   options.depth = frame.job.depth;
   options.normal = frame.job.normal;
-  const auto header = pictures_.read_header(frame.job.input, options);
+  const auto header = read_header(frame.job.input, options);
   if (!header) {
     reading->refused = named(header.error(), frame.job);
     return reading;
@@ -133,7 +133,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(FrameRecord& frame)
   overlap_ = total_ > 1 && need->three_frames() <= options_.max_memory;
   reading->picture = std::async(std::launch::async, [this, &frame, options]() -> Result<Picture> {
     const auto start = Clock::now();
-    auto picture = pictures_.read_picture(frame.job.input, options, console_.diagnostics());
+    auto picture = read_picture(frame.job.input, options, console_.diagnostics());
     if (picture && options_.size) scale_picture(*picture, *options_.size);
     frame.read = milliseconds_since(start);
     return picture;
@@ -171,7 +171,7 @@ void FrameLoop::begin_writing(FrameRecord& frame, Picture picture) {
   writing_->frame = &frame;
   writing_->written = std::async(std::launch::async, [this, &frame, picture = std::move(picture)]() -> Result<void> {
     const auto start = Clock::now();
-    auto written = pictures_.write_picture(picture, frame.job.output, options_.write, console_.diagnostics());
+    auto written = write_picture(picture, frame.job.output, options_.write, console_.diagnostics());
     frame.write = milliseconds_since(start);
     if (written && options_.record_look) return record_made(frame.job, *options_.record_look);
     return written;

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "apps/console.h"
-#include "apps/pictures.h"
 #include "apps/run_report.h"
 #include "core/hash.h"
+#include "image/reader.h"
+#include "image/writer.h"
 #include "session/session.h"
 
 namespace afterglow {
@@ -27,7 +28,7 @@ struct FrameLoopOptions {
 
 class FrameLoop {
  public:
-  FrameLoop(Session& session, const PictureFunctions& pictures, FrameLoopOptions options, Console& console);
+  FrameLoop(Session& session, FrameLoopOptions options, Console& console);
   ~FrameLoop();
 
   /// Runs the frames that are `waiting` and notes in each what became of it. A frame whose files fail is reported and
@@ -57,7 +58,6 @@ class FrameLoop {
   Result<void> close(Result<void> result);
 
   Session& session_;
-  const PictureFunctions& pictures_;
   FrameLoopOptions options_;
   Console& console_;
   std::unique_ptr<Writing> writing_;
