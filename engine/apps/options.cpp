@@ -67,8 +67,7 @@ void DeviceArguments::add(CLI::App& command) {
 
 DeviceOptions DeviceArguments::options() const {
   const char* environment = std::getenv("AFTERGLOW_VALIDATE");
-  const bool asked =
-      environment != nullptr && std::string_view(environment) != "" && std::string_view(environment) != "0";
+  const bool asked = environment != nullptr && *environment != '\0' && std::string_view(environment) != "0";
   return {device, validate || asked};
 }
 
