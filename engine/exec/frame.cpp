@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstring>
 
+#include "exec/barriers.h"
 #include "exec/convert.h"
 #include "exec/frame_image.h"
 #include "exec/kernel_timer.h"
@@ -53,6 +54,11 @@ VkFormat input_format(const std::string& name, const HostImage& image, VkFormat 
   return image.channels == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
+/// The layout in which the program reads an input.
+VkImageLayout input_layout(const Program& program, const std::string& name) {
+  return name == "source" ? program.source_layout() : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+}
+
 void copy_source(const HostImage& source, std::vector<float>& pixels) {
   if (source.pixels == pixels.data() && source.channels == 4) return;
   const auto [width, height] = source.size;
@@ -90,7 +96,7 @@ struct FrameRunner::State {
   Result<std::uint64_t> upload(FrameImage& image, const HostImage& host);
   Result<std::uint64_t> download(HostResult& out);
   Result<void> bind(Program& program);
-  void before(VkCommandBuffer commands) const;
+  void before(const Program& program, VkCommandBuffer commands);
   void after(VkCommandBuffer commands);
   Result<void> execute(Program& program, KernelTiming timing, FrameTimes& times);
 };
@@ -123,6 +129,7 @@ Result<void> FrameRunner::State::prepare(const Program& program, const std::map<
                    .size = graph.images[id].size,
                    .format = input_format(name, host.at(name), program.storage_format()),
                    .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
+    if (input_layout(program, name) == VK_IMAGE_LAYOUT_GENERAL) descs[name].usage |= VK_IMAGE_USAGE_STORAGE_BIT;
   }
   const ImageDesc result_desc{.name = "result",
                               .size = graph.images[graph.result].size,
@@ -192,13 +199,16 @@ Result<void> FrameRunner::State::bind(Program& program) {
 }
 
 /// Into the layouts that Program::record wants.
-void FrameRunner::State::before(VkCommandBuffer commands) const {
+void FrameRunner::State::before(const Program& program, VkCommandBuffer commands) {
   std::vector<VkImageMemoryBarrier2> barriers;
-  for (const auto& [name, image] : inputs) {
-    if (!image.direct) continue;  // the upload has done it
-    barriers.push_back(image_barrier(image.image.get(), VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT,
-                                     image.layout, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-                                     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
+  for (auto& [name, image] : inputs) {
+    const VkImageLayout wanted = input_layout(program, name);
+    if (!image.direct && image.layout == wanted) continue;  // the upload has done it
+    const auto stage = image.direct ? VK_PIPELINE_STAGE_2_HOST_BIT : VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+    const VkAccessFlags2 access = image.direct ? VK_ACCESS_2_HOST_WRITE_BIT : VK_ACCESS_2_NONE;
+    barriers.push_back(image_barrier(image.image.get(), stage, access, image.layout,
+                                     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(wanted), wanted));
+    image.layout = wanted;
   }
   barriers.push_back(image_barrier(result.image.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0,
                                    VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
@@ -211,10 +221,9 @@ void FrameRunner::State::after(VkCommandBuffer commands) {
   std::vector<VkImageMemoryBarrier2> barriers;
   for (auto& [name, image] : inputs) {
     if (!image.direct) continue;
+    barriers.push_back(image_barrier(image.image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, image.layout,
+                                     VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL));
     image.layout = VK_IMAGE_LAYOUT_GENERAL;
-    barriers.push_back(image_barrier(image.image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0,
-                                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_HOST_BIT,
-                                     VK_ACCESS_2_HOST_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL));
   }
   if (result.direct) {
     barriers.push_back(image_barrier(result.image.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
@@ -235,7 +244,7 @@ Result<void> FrameRunner::State::execute(Program& program, KernelTiming timing, 
 
   const auto start = Clock::now();
   AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) {
-    before(commands);
+    before(program, commands);
     program.record(commands, -1, queries);
     if (!separate) after(commands);
   }));

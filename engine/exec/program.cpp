@@ -37,7 +37,15 @@ struct Program::State {
   DescriptorPoolHandle pool;
   std::vector<KernelCommands> kernels;
   VkImageView result = VK_NULL_HANDLE;
+  bool storage_reads = false;
   bool bound = false;
+
+  VkImageLayout read_layout() const {
+    return storage_reads ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  }
+  VkImageLayout source_layout() const {
+    return options.source_is_storage ? read_layout() : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  }
 
   const CompiledKernel& compiled_of(std::size_t kernel) const { return compiled.unique[compiled.index[kernel]]; }
   Result<void> check();
@@ -45,21 +53,25 @@ struct Program::State {
   Result<void> make_pipelines();
   Result<void> make_descriptors();
   void make_commands();
-  void write_image(VkDescriptorSet set, std::size_t slot, VkImageView view) const;
+  void write_image(std::size_t kernel, std::size_t slot, VkImageView view) const;
 };
 
 namespace {
 
-DrawInterface interface_of(const CompiledKernel& compiled) {
-  return {.block = compiled.block_size > 0,
-          .images = static_cast<int>(compiled.images.size()),
-          .push_bytes = kPushConstantBytes};
+VkDescriptorType descriptor_type(ImageRead read) {
+  return read == ImageRead::sampled ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 }
 
-bool can_interpolate(const Device& device, VkFormat format) {
+DrawInterface interface_of(const CompiledKernel& compiled) {
+  DrawInterface out{.block = compiled.block_size > 0, .images = {}, .push_bytes = kPushConstantBytes};
+  for (const auto& image : compiled.images) out.images.push_back(descriptor_type(image.read));
+  return out;
+}
+
+bool can(const Device& device, VkFormat format, VkFormatFeatureFlags wanted) {
   VkFormatProperties properties{};
   vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
-  return properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  return (properties.optimalTilingFeatures & wanted) == wanted;
 }
 
 }  // namespace
@@ -81,8 +93,11 @@ Result<void> Program::State::check() {
 
 Result<void> Program::State::compile(ShaderLibrary& shaders, KernelCompiler& compiler) {
   const DescribeOptions describe{
-      .hardware_filter = options.hardware_filter && !options.reference && can_interpolate(device, format),
-      .half_storage = options.storage == Storage::fp16};
+      .hardware_filter = options.hardware_filter && !options.reference &&
+                         can(device, format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT),
+      .half_storage = options.storage == Storage::fp16,
+      .storage_reads = storage_reads,
+      .source_is_storage = options.source_is_storage};
   std::vector<KernelDesc> descs;
   for (const auto& kernel : plan.kernels) {
     AFTERGLOW_TRY(KernelDesc desc, describe_kernel(shaders, graph, kernel, describe));
@@ -131,14 +146,15 @@ Result<void> Program::State::make_pipelines() {
 
 /// One set a kernel. Uniform blocks and transient images stay for good; inputs are written by `bind`.
 Result<void> Program::State::make_descriptors() {
-  std::uint32_t blocks = 0, samplers = 0;
+  std::uint32_t blocks = 0, samplers = 0, storage = 0;
   for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
     blocks += compiled_of(i).block_size > 0;
-    samplers += static_cast<std::uint32_t>(images[i].size());
+    for (const auto& image : compiled_of(i).images) ++(image.read == ImageRead::sampled ? samplers : storage);
   }
   std::vector<VkDescriptorPoolSize> sizes;
   if (blocks > 0) sizes.push_back({VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, blocks});
   if (samplers > 0) sizes.push_back({VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, samplers});
+  if (storage > 0) sizes.push_back({VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, storage});
   const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                         .maxSets = static_cast<std::uint32_t>(plan.kernels.size()),
                                         .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
@@ -166,21 +182,26 @@ Result<void> Program::State::make_descriptors() {
                                        .pBufferInfo = &block};
       vkUpdateDescriptorSets(device.handle(), 1, &write, 0, nullptr);
     }
-    for (std::size_t slot = 0; slot < images[i].size(); ++slot) {
-      if (const UnboundImage* image = arena.image(images[i][slot])) write_image(kernel.set, slot, image->view());
-    }
     kernels.push_back(std::move(kernel));
+    for (std::size_t slot = 0; slot < images[i].size(); ++slot) {
+      if (const UnboundImage* image = arena.image(images[i][slot])) write_image(i, slot, image->view());
+    }
   }
   return {};
 }
 
-void Program::State::write_image(VkDescriptorSet set, std::size_t slot, VkImageView view) const {
-  const VkDescriptorImageInfo image{sampler.get(), view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+void Program::State::write_image(std::size_t kernel, std::size_t slot, VkImageView view) const {
+  const ImageId id = images[kernel][slot];
+  const ImageRead read = compiled_of(kernel).images[slot].read;
+  const VkImageLayout layout = arena.image(id)      ? read_layout()
+                               : id == graph.source ? source_layout()
+                                                    : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  const VkDescriptorImageInfo image{read == ImageRead::sampled ? sampler.get() : VkSampler{VK_NULL_HANDLE}, view, layout};
   const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                   .dstSet = set,
+                                   .dstSet = kernels[kernel].set,
                                    .dstBinding = static_cast<std::uint32_t>(slot) + 1,
                                    .descriptorCount = 1,
-                                   .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                   .descriptorType = descriptor_type(read),
                                    .pImageInfo = &image};
   vkUpdateDescriptorSets(device.handle(), 1, &write, 0, nullptr);
 }
@@ -190,7 +211,7 @@ void Program::State::make_commands() {
   auto barriers = kernel_barriers(plan, images, [this](ImageId id) {
     const UnboundImage* image = arena.image(id);
     return image ? image->get() : VkImage{VK_NULL_HANDLE};
-  });
+  }, read_layout());
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     KernelCommands& kernel = kernels[i];
     kernel.pipeline = pipelines[compiled.index[i]].get();
@@ -213,12 +234,14 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   state->plan = make_plan(graph, {.join = !options.reference,
                                   .alias = options.share_memory && !options.reference,
                                   .bytes_per_pixel = half ? 8u : 16u});
+  state->storage_reads = options.storage_reads && can(device, state->format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
   AFTERGLOW_CHECK(state->check());
   if (!state->plan.kernels.empty()) {
     AFTERGLOW_TRY(state->arena, Arena::create(device, graph, state->plan,
                                               {.format = state->format,
                                                .share = options.share_memory && !options.reference,
                                                .readable = options.reference,
+                                               .storage = state->storage_reads,
                                                .max_memory = options.max_memory}));
     AFTERGLOW_CHECK(state->compile(shaders, compiler));
     AFTERGLOW_CHECK(state->make_pipelines());
@@ -257,7 +280,7 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
   for (std::size_t i = 0; i < s.kernels.size(); ++i) {
     for (std::size_t slot = 0; slot < s.images[i].size(); ++slot) {
       if (const auto view = views.find(s.images[i][slot]); view != views.end())
-        s.write_image(s.kernels[i].set, slot, view->second);
+        s.write_image(i, slot, view->second);
     }
   }
   s.result = result.view;
@@ -290,12 +313,13 @@ const Plan& Program::plan() const { return state_->plan; }
 const Graph& Program::graph() const { return state_->graph; }
 ProgramMemory Program::memory() const { return state_->arena.memory(); }
 VkFormat Program::storage_format() const { return state_->format; }
+VkImageLayout Program::source_layout() const { return state_->source_layout(); }
 
 std::optional<Program::Transient> Program::transient(ImageId image) const {
   const UnboundImage* found = state_->arena.image(image);
   if (!found) return std::nullopt;
   return Transient{{found->get(), found->view(), found->desc().format, found->desc().size},
-                   VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                   state_->read_layout(),
                    state_->options.reference};
 }
 
