@@ -4,8 +4,8 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Ink outline",
-  fx.outline { source = "mixed", combine = "max", width = 1.6, fade_distance = 40, depth_scale = 4, normal_scale = 0.8, contrast = 4,
+  fx.outline { source = "mixed", combine = "max", width = 1.6, fade_distance = 40, depth_scale = 4, normal_scale = 0.7, contrast = 5,
                color = { 0.01, 0.008, 0.02 } },
   fx.tone_mapping { mode = "reinhard" },
-  fx.color_adjustments { post_exposure = 0.8, contrast = 10, saturation = 20 },
+  fx.color_adjustments { post_exposure = 1.8, contrast = 8, saturation = 10 },
 }

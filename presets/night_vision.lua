@@ -4,8 +4,8 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Night vision",
-  fx.bloom { mode = "additive", threshold = 0.6, knee = 0.8, intensity = 0.1, max_iterations = 6, fade_fireflies = true },
+  fx.bloom { mode = "additive", threshold = 0.6, knee = 0.8, intensity = 0.02, max_iterations = 6, fade_fireflies = true },
   fx.tone_mapping { mode = "reinhard" },
   fx.color_blit { intensity = 2 },
-  fx.color_adjustments { post_exposure = 0.5, contrast = 20, color_filter = { 1, 1, 1 } },
+  fx.color_adjustments { post_exposure = 0.5, contrast = 20, saturation = -15 },
 }

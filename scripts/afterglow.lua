@@ -4,6 +4,14 @@
 -- is reported as one error at the line of the offending key: FILE:LINE: error: WHAT; allowed: …; did you mean 'X'?
 -- The comments are read by lua-language-server; _meta/afterglow.lua adds the effects (`fx.bloom`, …) to the class below.
 
+-- Scripts run in a sandbox: Lua 5.4 with assert, error, getmetatable, ipairs, pairs, pcall, print, rawequal, rawget, rawlen,
+-- rawset, require, select, setmetatable, tonumber, tostring, type; string.{byte, char, format, len, lower, rep, reverse, sub,
+-- upper}; table.{concat, insert, pack, remove, sort, unpack}; math without random. `pairs` goes in a fixed order (numbers,
+-- texts, booleans), `print` writes a note, every file has globals of its own, and `require` finds "afterglow" and scripts beside
+-- the preset or on the search path ("lib.taps" is lib/taps.lua). An `error(message, 0)` in a function of an effect is about the
+-- preset: it is reported at the entry there, and at one of its settings when the message begins with that setting's name.
+-- A load or a build may take 64 MiB of memory and 50 million instructions or 2 seconds.
+
 local core = ... -- native functions: engine/script/library.cpp
 
 ---@class afterglow.Stack        what a preset returns

@@ -10,7 +10,8 @@
 namespace afterglow {
 namespace {
 
-constexpr double kBoxWidth = 250, kBoxHeight = 44, kGapX = 30, kGapY = 46, kMargin = 24, kTitle = 40, kLine = 18;
+constexpr double kBoxWidth = 250, kBoxHeight = 44, kGapX = 30, kGapY = 46, kMargin = 24, kTitle = 40, kLine = 18,
+                 kMostSwing = 120;
 
 struct Node {
   std::string label, detail, color;
@@ -90,7 +91,7 @@ double lay_out(std::vector<Node>& nodes) {
     };
     std::stable_sort(row.begin(), row.end(), [&](auto a, auto b) { return mean_x(a) < mean_x(b); });
     const double used = static_cast<double>(row.size()) * (kBoxWidth + kGapX) - kGapX;
-    double x = kMargin + (width - used) / 2;
+    double x = kMargin + kMostSwing + (width - used) / 2;
     for (const auto i : row) {
       nodes[i].x = x;
       nodes[i].y = kTitle + kMargin + static_cast<double>(r) * (kBoxHeight + kGapY);
@@ -100,7 +101,19 @@ double lay_out(std::vector<Node>& nodes) {
   return width;
 }
 
+/// How far an edge over several rows swings out to the left of the boxes between.
+double swing(const Node& from, const Node& to) {
+  const auto rows = to.row - from.row;
+  return rows < 2 ? 0 : std::min(kMostSwing, 24 + 8 * static_cast<double>(rows));
+}
+
 std::string edge(const Node& from, const Node& to) {
+  if (const double out = swing(from, to); out > 0) {
+    const double y0 = from.y + kBoxHeight / 2, y1 = to.y + kBoxHeight / 2;
+    return fmt::format(
+        "<path d=\"M{:.0f} {:.0f} C{:.0f} {:.0f} {:.0f} {:.0f} {:.0f} {:.0f}\" marker-end=\"url(#arrow)\"/>\n", from.x,
+        y0, from.x - out, y0, to.x - out, y1, to.x, y1);
+  }
   const double x0 = from.x + kBoxWidth / 2, y0 = from.y + kBoxHeight, x1 = to.x + kBoxWidth / 2, y1 = to.y;
   const double bend = std::max(20.0, (y1 - y0) / 2);
   return fmt::format(
@@ -125,7 +138,7 @@ std::string box(const Node& node) {
 
 std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& title) {
   auto nodes = nodes_of(graph, plan);
-  double width = lay_out(nodes) + 2 * kMargin;
+  double width = lay_out(nodes) + 2 * kMargin + kMostSwing;
   const auto skipped = all_skipped(graph, plan);
   std::vector<std::string> lines;
   if (std::ranges::any_of(plan.kernels, [](const auto& k) { return k.passes.size() > 1; }))

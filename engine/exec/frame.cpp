@@ -8,6 +8,7 @@
 #include "exec/barriers.h"
 #include "exec/convert.h"
 #include "exec/frame_image.h"
+#include "exec/host_input.h"
 #include "exec/kernel_timer.h"
 #include "exec/staging.h"
 #include "exec/submit.h"
@@ -23,52 +24,9 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-Error input_error(const std::string& message) { return Error{ErrorKind::other, message}; }
-
-Result<void> check_input(const Graph& graph, const std::string& name, ImageId id,
-                         const std::map<std::string, HostImage>& inputs) {
-  const auto found = inputs.find(name);
-  if (found == inputs.end() || !found->second.pixels)
-    return input_error(fmt::format("the frame has no image '{}'", name));
-  const Size size = found->second.size, wanted = graph.images[id].size;
-  if (size != wanted) {
-    return input_error(fmt::format("image '{}' has {}×{} pixels, the stack was built for {}×{}", name, size.width,
-                                   size.height, wanted.width, wanted.height));
-  }
-  if (found->second.channels < 1 || found->second.channels > 4) {
-    return input_error(fmt::format("image '{}' has {} channels; 1 to 4 are possible", name, found->second.channels));
-  }
-  return {};
-}
-
-/// The images that a program reads, by the names of HostImages.
-std::map<std::string, ImageId> inputs_of(const Graph& graph) {
-  std::map<std::string, ImageId> out = graph.auxiliary;
-  out["source"] = graph.source;
-  return out;
-}
-
-/// Depths keep one channel; everything but the source is stored as full floats, whatever the storage of the stack.
-VkFormat input_format(const std::string& name, const HostImage& image, VkFormat storage) {
-  if (name == "source") return storage;
-  return image.channels == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
-}
-
 /// The layout in which the program reads an input.
 VkImageLayout input_layout(const Program& program, const std::string& name) {
   return name == "source" ? program.source_layout() : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-}
-
-void copy_source(const HostImage& source, std::vector<float>& pixels) {
-  if (source.pixels == pixels.data() && source.channels == 4) return;
-  const auto [width, height] = source.size;
-  std::vector<float> copy(static_cast<std::size_t>(source.size.area()) * 4);
-  for (int y = 0; y < height; ++y) {
-    const auto first = static_cast<std::ptrdiff_t>(y) * width;
-    pack_row(source.pixels + first * source.channels, source.channels, width, VK_FORMAT_R32G32B32A32_SFLOAT,
-             reinterpret_cast<std::byte*>(copy.data() + first * 4));
-  }
-  pixels = std::move(copy);
 }
 
 StagedImage staged(const FrameImage& image) {
@@ -243,12 +201,13 @@ Result<void> FrameRunner::State::execute(Program& program, KernelTiming timing, 
   }
 
   const auto start = Clock::now();
-  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) {
+  auto done = submitter.submit([&](VkCommandBuffer commands) {
     before(program, commands);
     program.record(commands, -1, queries);
     if (!separate) after(commands);
-  }));
-  if (auto done = submitter.wait(); !done) return timer.blame(std::move(done).error(), program.plan());
+  });
+  if (done) done = submitter.wait();
+  if (!done) return KernelTimer::blame(std::move(done).error(), program.plan());
   times.execute = milliseconds_since(start);
   if (stamps) {
     AFTERGLOW_TRY(times.kernels, timer.read(program.plan()));
@@ -259,8 +218,9 @@ Result<void> FrameRunner::State::execute(Program& program, KernelTiming timing, 
   times.separate_submissions = true;
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     const auto begin = Clock::now();
-    AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) { program.record(commands, static_cast<int>(i)); }));
-    if (auto done = submitter.wait(); !done) {
+    done = submitter.submit([&](VkCommandBuffer commands) { program.record(commands, static_cast<int>(i)); });
+    if (done) done = submitter.wait();
+    if (!done) {
       Error error = std::move(done).error();
       error.message += fmt::format(" in kernel '{}'", kernels[i].name);
       return error;
@@ -306,8 +266,8 @@ Result<HostResult> FrameRunner::read_image(Program& program, ImageId image) {
   if (!found || !found->kept) {
     const auto& images = program.graph().images;
     const bool known = image >= 0 && image < static_cast<int>(images.size());
-    return input_error(
-        fmt::format("the pixels of '{}' are not kept", known ? images[image].name : std::to_string(image)));
+    return Error{ErrorKind::other,
+                 fmt::format("the pixels of '{}' are not kept", known ? images[image].name : std::to_string(image))};
   }
   const auto [width, height] = found->binding.size;
   HostResult out;

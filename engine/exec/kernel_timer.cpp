@@ -28,7 +28,8 @@ Result<std::vector<KernelTime>> KernelTimer::read(const Plan& plan) const {
   const double milliseconds_per_tick = static_cast<double>(device_->properties().limits.timestampPeriod) * 1e-6;
   std::vector<KernelTime> times;
   for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
-    times.push_back({plan.kernels[i].name, static_cast<double>(ticks[i + 1] - ticks[i]) * milliseconds_per_tick});
+    times.push_back({plan.kernels[i].name, static_cast<double>((ticks[i + 1] - ticks[i]) & device_->timestamp_mask()) *
+                                               milliseconds_per_tick});
   }
   return times;
 }

@@ -2,17 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-
 #include "exec/arena.h"
 #include "exec/barriers.h"
 #include "exec/describe.h"
-#include "exec/parallel.h"
+#include "exec/descriptors.h"
+#include "exec/kernel_pipelines.h"
 #include "exec/parameters.h"
 #include "exec/record.h"
 #include "gpu/error.h"
-#include "gpu/fullscreen_vertex.h"
 #include "gpu/pipeline.h"
 
 namespace afterglow {
@@ -31,15 +28,15 @@ struct Program::State {
   std::vector<std::vector<ImageId>> images;  ///< to bind, parallel to the plan's kernels
   ParameterBuffer parameters;
   Arena arena;
-  std::map<DrawInterface, DrawLayout> layouts;
-  std::vector<PipelineHandle> pipelines;  ///< parallel to compiled.unique
+  KernelPipelines pipelines;  ///< of compiled.unique
   SamplerHandle sampler;
-  DescriptorPoolHandle pool;
+  Descriptors descriptors;
   std::vector<KernelCommands> kernels;
   VkImageView result = VK_NULL_HANDLE;
   bool storage_reads = false;
   bool bound = false;
 
+  /// Images between kernels; one layout for both ways of reading.
   VkImageLayout read_layout() const {
     return storage_reads ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   }
@@ -53,20 +50,9 @@ struct Program::State {
   Result<void> make_pipelines();
   Result<void> make_descriptors();
   void make_commands();
-  void write_image(std::size_t kernel, std::size_t slot, VkImageView view) const;
 };
 
 namespace {
-
-VkDescriptorType descriptor_type(ImageRead read) {
-  return read == ImageRead::sampled ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-}
-
-DrawInterface interface_of(const CompiledKernel& compiled) {
-  DrawInterface out{.block = compiled.block_size > 0, .images = {}, .push_bytes = kPushConstantBytes};
-  for (const auto& image : compiled.images) out.images.push_back(descriptor_type(image.read));
-  return out;
-}
 
 bool can(const Device& device, VkFormat format, VkFormatFeatureFlags wanted) {
   VkFormatProperties properties{};
@@ -116,94 +102,29 @@ Result<void> Program::State::compile(ShaderLibrary& shaders, KernelCompiler& com
 }
 
 Result<void> Program::State::make_pipelines() {
-  for (const auto& kernel : compiled.unique) {
-    const DrawInterface interface = interface_of(kernel);
-    if (layouts.contains(interface)) continue;
-    AFTERGLOW_TRY(DrawLayout layout, create_draw_layout(device, interface));
-    layouts.emplace(interface, std::move(layout));
-  }
   std::vector<std::string> names(compiled.unique.size());
   for (std::size_t i = plan.kernels.size(); i-- > 0;) names[compiled.index[i]] = plan.kernels[i].name;
-  AFTERGLOW_TRY(const ShaderModuleHandle vertex,
-                create_shader_module(device, kFullscreenVertex, "full-screen triangle"));
-  std::vector<std::optional<Result<PipelineHandle>>> made(compiled.unique.size());
-  parallel_for(made.size(), [&](std::size_t i) {
-    const CompiledKernel& kernel = compiled.unique[i];
-    auto fragment = create_shader_module(device, kernel.spirv, names[i]);
-    if (!fragment) {
-      made[i].emplace(std::move(fragment).error());
-      return;
-    }
-    made[i].emplace(create_draw_pipeline(device, layouts.at(interface_of(kernel)), vertex.get(), fragment->get(),
-                                         format, names[i]));
-  });
-  for (auto& result_or_error : made) {
-    if (!*result_or_error) return std::move(*result_or_error).error();
-    pipelines.push_back(std::move(*result_or_error).value());
-  }
+  AFTERGLOW_TRY(pipelines, KernelPipelines::create(device, compiled.unique, names, format));
   return {};
 }
 
-/// One set a kernel. Uniform blocks and transient images stay for good; inputs are written by `bind`.
+/// Uniform blocks and transient images stay for good; inputs are written by `bind`.
 Result<void> Program::State::make_descriptors() {
-  std::uint32_t blocks = 0, samplers = 0, storage = 0;
+  std::vector<SetNeeds> needs;
   for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
-    blocks += compiled_of(i).block_size > 0;
-    for (const auto& image : compiled_of(i).images) ++(image.read == ImageRead::sampled ? samplers : storage);
+    const CompiledKernel& kernel = compiled_of(i);
+    needs.push_back({.layout = pipelines.layout(kernel).set.get(),
+                     .block = {parameters.buffer(), parameters.offset(i), kernel.block_size},
+                     .images = descriptor_types(kernel)});
   }
-  std::vector<VkDescriptorPoolSize> sizes;
-  if (blocks > 0) sizes.push_back({VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, blocks});
-  if (samplers > 0) sizes.push_back({VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, samplers});
-  if (storage > 0) sizes.push_back({VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, storage});
-  const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                        .maxSets = static_cast<std::uint32_t>(plan.kernels.size()),
-                                        .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
-                                        .pPoolSizes = sizes.data()};
-  VkDescriptorPool handle = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateDescriptorPool(device.handle(), &info, nullptr, &handle), "cannot create a descriptor pool");
-  pool = DescriptorPoolHandle(device.handle(), handle);
-
+  AFTERGLOW_TRY(descriptors, Descriptors::create(device, needs));
   for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
-    const DrawLayout& layout = layouts.at(interface_of(compiled_of(i)));
-    const VkDescriptorSetLayout set_layout = layout.set.get();
-    const VkDescriptorSetAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                               .descriptorPool = handle,
-                                               .descriptorSetCount = 1,
-                                               .pSetLayouts = &set_layout};
-    KernelCommands kernel{.name = plan.kernels[i].name, .layout = layout.pipeline.get()};
-    AFTERGLOW_VK(vkAllocateDescriptorSets(device.handle(), &allocate, &kernel.set), "cannot allocate descriptors");
-    if (compiled_of(i).block_size > 0) {
-      const VkDescriptorBufferInfo block{parameters.buffer(), parameters.offset(i), compiled_of(i).block_size};
-      const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                       .dstSet = kernel.set,
-                                       .dstBinding = 0,
-                                       .descriptorCount = 1,
-                                       .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
-                                       .pBufferInfo = &block};
-      vkUpdateDescriptorSets(device.handle(), 1, &write, 0, nullptr);
-    }
-    kernels.push_back(std::move(kernel));
     for (std::size_t slot = 0; slot < images[i].size(); ++slot) {
-      if (const UnboundImage* image = arena.image(images[i][slot])) write_image(i, slot, image->view());
+      const UnboundImage* image = arena.image(images[i][slot]);
+      if (image) descriptors.write_image(i, slot, image->view(), read_layout(), sampler.get());
     }
   }
   return {};
-}
-
-void Program::State::write_image(std::size_t kernel, std::size_t slot, VkImageView view) const {
-  const ImageId id = images[kernel][slot];
-  const ImageRead read = compiled_of(kernel).images[slot].read;
-  const VkImageLayout layout = arena.image(id)      ? read_layout()
-                               : id == graph.source ? source_layout()
-                                                    : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-  const VkDescriptorImageInfo image{read == ImageRead::sampled ? sampler.get() : VkSampler{VK_NULL_HANDLE}, view, layout};
-  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                   .dstSet = kernels[kernel].set,
-                                   .dstBinding = static_cast<std::uint32_t>(slot) + 1,
-                                   .descriptorCount = 1,
-                                   .descriptorType = descriptor_type(read),
-                                   .pImageInfo = &image};
-  vkUpdateDescriptorSets(device.handle(), 1, &write, 0, nullptr);
 }
 
 /// Targets, sizes and barriers: fixed for the life of the program.
@@ -212,13 +133,17 @@ void Program::State::make_commands() {
     const UnboundImage* image = arena.image(id);
     return image ? image->get() : VkImage{VK_NULL_HANDLE};
   }, read_layout());
-  for (std::size_t i = 0; i < kernels.size(); ++i) {
-    KernelCommands& kernel = kernels[i];
-    kernel.pipeline = pipelines[compiled.index[i]].get();
-    kernel.target_size = graph.images[plan.kernels[i].output].size;
-    kernel.first_image_size = images[i].empty() ? Size{} : graph.images[images[i].front()].size;
-    kernel.barriers = std::move(barriers[i]);
-    if (const UnboundImage* target = arena.image(plan.kernels[i].output)) kernel.target = target->view();
+  for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
+    const ImageId output = plan.kernels[i].output;
+    const UnboundImage* target = arena.image(output);
+    kernels.push_back({.name = plan.kernels[i].name,
+                       .pipeline = pipelines.pipeline(compiled.index[i]),
+                       .layout = pipelines.layout(compiled_of(i)).pipeline.get(),
+                       .set = descriptors.set(i),
+                       .target = target ? target->view() : VkImageView{VK_NULL_HANDLE},
+                       .target_size = graph.images[output].size,
+                       .first_image_size = images[i].empty() ? Size{} : graph.images[images[i].front()].size,
+                       .barriers = std::move(barriers[i])});
   }
 }
 
@@ -251,7 +176,9 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   return std::unique_ptr<Program>(new Program(std::move(state)));
 }
 
-void Program::set_parameters(const Graph& graph) { state_->parameters.write(graph); }
+void Program::set_parameters(const Graph& graph) {
+  if (same_structure(state_->graph, graph)) state_->parameters.write(graph);
+}
 
 Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result) {
   State& s = *state_;
@@ -279,8 +206,10 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
   for (const auto& [name, id] : s.graph.auxiliary) AFTERGLOW_CHECK(add(name, id));
   for (std::size_t i = 0; i < s.kernels.size(); ++i) {
     for (std::size_t slot = 0; slot < s.images[i].size(); ++slot) {
-      if (const auto view = views.find(s.images[i][slot]); view != views.end())
-        s.write_image(i, slot, view->second);
+      const ImageId id = s.images[i][slot];
+      const VkImageLayout layout = id == s.graph.source ? s.source_layout() : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+      if (const auto view = views.find(id); view != views.end())
+        s.descriptors.write_image(i, slot, view->second, layout, s.sampler.get());
     }
   }
   s.result = result.view;
@@ -325,7 +254,7 @@ std::optional<Program::Transient> Program::transient(ImageId image) const {
 
 Program::Counters Program::counters() const {
   const State& s = *state_;
-  return {.pipelines = static_cast<int>(s.pipelines.size()),
+  return {.pipelines = s.pipelines.size(),
           .images = s.arena.images(),
           .allocations = s.arena.allocations() + (s.parameters.buffer() != VK_NULL_HANDLE ? 1 : 0)};
 }

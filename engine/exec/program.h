@@ -52,7 +52,8 @@ class Program {
                                                  const ProgramOptions& options);
   ~Program();
 
-  /// Rewrites parameter bytes from a graph of the same structure; no shader, pipeline or memory is touched.
+  /// Rewrites parameter bytes from a graph of the same structure; no shader, pipeline or memory is touched. A graph of another
+  /// structure (`same_structure`) is ignored: it needs a program of its own.
   /// Must not be called while a submission of this program is in flight.
   void set_parameters(const Graph& graph);
 

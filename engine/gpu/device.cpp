@@ -10,15 +10,9 @@
 
 namespace afterglow {
 
-Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options, Diagnostics& diagnostics) {
-  auto log = std::make_shared<ValidationLog>();
-  AFTERGLOW_TRY(Instance instance, Instance::create(options.validate ? log : nullptr));
-  AFTERGLOW_TRY(const auto devices, enumerate_devices(instance.get()));
-  std::vector<DeviceInfo> infos;
-  for (const auto& device : devices) infos.push_back(device.info);
-  AFTERGLOW_TRY(const std::size_t index, choose_device(infos, options.device));
-  const PhysicalDevice& chosen = devices[index];
+namespace {
 
+Result<VkDevice> open_device(const PhysicalDevice& chosen) {
   const float priority = 1;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                       .queueFamilyIndex = chosen.queue_family,
@@ -34,16 +28,50 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options, Dia
   VkDevice handle = VK_NULL_HANDLE;
   AFTERGLOW_VK(vkCreateDevice(chosen.handle, &info, nullptr, &handle),
                fmt::format("cannot open device '{}'", chosen.info.name));
+  return handle;
+}
+
+struct Opened {
+  std::size_t index = 0;
+  VkDevice handle = VK_NULL_HANDLE;
+};
+
+/// Opens the device that `choice` means. A GPU that is listed but cannot be opened (its driver is broken, its users are
+/// too many) does not keep "auto" from the ones behind it.
+Result<Opened> open_chosen(std::vector<DeviceInfo> infos, const std::vector<PhysicalDevice>& devices,
+                           const std::string& choice, Diagnostics& diagnostics) {
+  for (;;) {
+    AFTERGLOW_TRY(const std::size_t index, choose_device(infos, choice));
+    auto opened = open_device(devices[index]);
+    if (opened) return Opened{index, *opened};
+    const bool automatic = choice.empty() || choice == "auto";
+    if (!automatic) return std::move(opened).error();
+    diagnostics.warn(opened.error().message + "; trying the next one");
+    infos[index].usable = false;
+    infos[index].why_not = opened.error().message;
+  }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options, Diagnostics& diagnostics) {
+  auto log = std::make_shared<ValidationLog>();
+  AFTERGLOW_TRY(Instance instance, Instance::create(options.validate ? log : nullptr));
+  AFTERGLOW_TRY(const auto devices, enumerate_devices(instance.get()));
+  std::vector<DeviceInfo> infos;
+  for (const auto& device : devices) infos.push_back(device.info);
+  AFTERGLOW_TRY(const Opened opened, open_chosen(std::move(infos), devices, options.device, diagnostics));
+  const PhysicalDevice& chosen = devices[opened.index];
 
   std::unique_ptr<Device> device(new Device);
   device->owned_ = true;
   device->log_ = std::move(log);
-  device->device_ = handle;
+  device->device_ = opened.handle;
   device->instance_ = instance.release(device->messenger_);
   device->physical_ = chosen.handle;
   device->queue_family_ = chosen.queue_family;
   device->info_ = chosen.info;
-  vkGetDeviceQueue(handle, chosen.queue_family, 0, &device->queue_);
+  vkGetDeviceQueue(opened.handle, chosen.queue_family, 0, &device->queue_);
   AFTERGLOW_CHECK(device->finish());
   diagnostics.note(fmt::format("device: {} ({}, {})", chosen.info.name, chosen.info.type, chosen.info.driver));
   return device;
@@ -93,7 +121,8 @@ Result<void> Device::finish() {
   vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, families.data());
-  timestamps_ = families[queue_family_].timestampValidBits > 0 && properties_.limits.timestampPeriod > 0;
+  const std::uint32_t bits = families[queue_family_].timestampValidBits;
+  if (properties_.limits.timestampPeriod > 0 && bits > 0) timestamp_mask_ = ~std::uint64_t{0} >> (64 - bits);
 
   // Null unless VK_EXT_debug_utils was enabled on the instance, by us or by the caller whose instance it is.
   if (messenger_ != VK_NULL_HANDLE || !owned_) {

@@ -57,7 +57,7 @@ class ValidationLog {
 /// One logical device with one graphics+compute queue. Immutable after creation; submissions must come from one thread at a time.
 class Device {
  public:
-  /// `diagnostics` is used during the call alone. Errors: device (none, none that matches, none usable, no validation layer).
+  /// With "auto", a device that cannot be opened is passed over with a warning. `diagnostics` is used during the call alone. Errors: device (none, none that matches, none usable, no validation layer).
   static Result<std::unique_ptr<Device>> create(const DeviceOptions& options, Diagnostics& diagnostics);
   /// Destroys none of the caller's objects. Errors: device (not Vulkan 1.3, a queue family without graphics).
   static Result<std::unique_ptr<Device>> adopt(const AdoptedDevice& adopted, Diagnostics& diagnostics);
@@ -76,7 +76,9 @@ class Device {
   VkDeviceSize max_allocation() const { return max_allocation_; }   ///< bytes of one VkDeviceMemory
   bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   /// Timestamps around draws mean something (false on CPU devices, where rasterisation is deferred).
-  bool timestamps_mean_draws() const { return !is_cpu() && timestamps_; }
+  bool timestamps_mean_draws() const { return !is_cpu() && timestamp_mask_ != 0; }
+  /// The bits of a timestamp that count; 0: the queue has none.
+  std::uint64_t timestamp_mask() const { return timestamp_mask_; }
 
   /// Names an object for debuggers and validation messages; nothing without validation.
   void set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const;
@@ -107,7 +109,7 @@ class Device {
   VkPhysicalDeviceMemoryProperties memory_{};
   VkDeviceSize max_allocation_ = 0;
   DeviceInfo info_;
-  bool timestamps_ = false;
+  std::uint64_t timestamp_mask_ = 0;
   bool owned_ = false;
   std::string cache_file_;
   std::size_t cached_bytes_ = 0;

@@ -6,7 +6,8 @@
 
 namespace afterglow {
 
-std::optional<std::uint32_t> find_memory_type(const Device& device, std::uint32_t bits, HostAccess access) {
+std::optional<std::uint32_t> find_memory_type(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t bits,
+                                              HostAccess access) {
   constexpr VkMemoryPropertyFlags kVisible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
   constexpr VkMemoryPropertyFlags kCoherent = VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   constexpr VkMemoryPropertyFlags kCached = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
@@ -20,8 +21,8 @@ std::optional<std::uint32_t> find_memory_type(const Device& device, std::uint32_
                             ? Wishes{{kVisible | kCoherent, kVisible, kVisible}}
                             : Wishes{{kVisible | kCached | kCoherent, kVisible | kCached, kVisible}};
   for (const VkMemoryPropertyFlags wanted : wishes.flags) {
-    for (std::uint32_t i = 0; i < device.memory().memoryTypeCount; ++i) {
-      const VkMemoryPropertyFlags flags = device.memory().memoryTypes[i].propertyFlags;
+    for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+      const VkMemoryPropertyFlags flags = memory.memoryTypes[i].propertyFlags;
       if (flags & (VK_MEMORY_PROPERTY_PROTECTED_BIT | VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT)) continue;
       if ((bits & (1u << i)) && (flags & wanted) == wanted) return i;
     }
@@ -35,7 +36,7 @@ Result<Memory> Memory::allocate(const Device& device, const VkMemoryRequirements
     return Error{ErrorKind::device, fmt::format("{}: needs {} in one piece, the device allows {}", what,
                                                 bytes_text(needs.size), bytes_text(device.max_allocation()))};
   }
-  const auto type = find_memory_type(device, needs.memoryTypeBits, access);
+  const auto type = find_memory_type(device.memory(), needs.memoryTypeBits, access);
   if (!type) return Error{ErrorKind::device, fmt::format("{}: the device has no suitable memory", what)};
   const VkMemoryAllocateInfo info{
       .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size, .memoryTypeIndex = *type};

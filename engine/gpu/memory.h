@@ -13,9 +13,10 @@ namespace afterglow {
 /// What the CPU does with a piece of memory.
 enum class HostAccess { none, write, read };
 
-/// The first memory type of `bits` that suits: `none` prefers device-local, `write` wants host-visible (coherent
-/// preferred), `read` wants host-visible (cached preferred).
-std::optional<std::uint32_t> find_memory_type(const Device& device, std::uint32_t bits, HostAccess access);
+/// The memory type of `bits` that suits best: `none` prefers device-local, `write` wants host-visible (coherent
+/// preferred), `read` wants host-visible (cached preferred). None when no type will do. Pure.
+std::optional<std::uint32_t> find_memory_type(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t bits,
+                                              HostAccess access);
 
 /// One VkDeviceMemory; mapped for its whole life unless its access is `none`.
 class Memory {

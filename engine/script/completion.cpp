@@ -56,7 +56,7 @@ std::string settings_class(const EffectSchema& effect) {
 
 std::string completion_text(const std::vector<EffectSchema>& effects) {
   std::string out =
-      "---@meta\n"
+      "---@meta _\n"
       "-- Generated from the effects, not to be edited: AFTERGLOW_UPDATE=1 ctest -R Completion.FileIsUpToDate\n"
       "\n"
       "---Keys that every effect of a stack takes besides its settings.\n"

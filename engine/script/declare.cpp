@@ -15,6 +15,13 @@ namespace {
 
 constexpr std::size_t kMaxDeclared = 4096;  // settings, effects, entries of one state
 
+// What `fx` itself holds; an effect of such a name could never be reached.
+const std::vector<std::string>& library_names() {
+  static const std::vector<std::string> names{"bool",  "color", "effect", "enum", "filters",
+                                              "float", "int",   "stack",  "vec2"};
+  return names;
+}
+
 constexpr const char* kMakers[] = {"int", "float", "bool", "enum", "color", "vec2"};
 
 std::vector<std::string> known_keys(SettingType type) {
@@ -197,6 +204,8 @@ int declare_effect(lua_State* lua) {
   schema.name = table.text("name", 65).value_or("");
   if (!is_identifier(schema.name) && !table.failed())
     table.fail(failure("fx.effect needs a name", {"name"}, "letters, digits and '_'"));
+  if (std::find(library_names().begin(), library_names().end(), schema.name) != library_names().end())
+    table.fail(failure(fmt::format("fx.effect: the name '{}' is taken by the library", schema.name), {"name"}));
   schema.doc = table.text("doc").value_or("");
   schema.at = table.text("at").value_or("post_process");
   if (std::find(injection_points().begin(), injection_points().end(), schema.at) == injection_points().end())

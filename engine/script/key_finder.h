@@ -1,5 +1,5 @@
 // Finds the line of a key in the source text of a call, so that an error can point at `treshold = 1` and not at the
-// `fx.bloom{` above it. Works on tokens; knows comments, strings, long brackets and nested functions. Pure text.
+// `fx.glow{` above it. Works on tokens; knows comments, strings, long brackets and nested functions. Pure text.
 #pragma once
 
 #include <string>

@@ -50,7 +50,7 @@ struct EffectSchema {
 
 /// One effect of a stack, in its resolved place.
 struct StackEntry {
-  std::string name;  ///< unique in the stack: "bloom"; a second one is "bloom#2"
+  std::string name;  ///< unique in the stack: "glow"; a second one is "glow#2"
   std::string effect;
   std::string at;  ///< injection point
   int order = 0;
@@ -62,7 +62,7 @@ struct StackEntry {
   int line = 0;
 };
 
-/// `--set bloom.intensity=0.4`: name of the entry (or its effect), setting, text of the value.
+/// `--set glow.intensity=0.4`: name of the entry (or its effect), setting, text of the value.
 struct Override {
   std::string entry, setting, value;
 };

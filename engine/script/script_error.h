@@ -17,8 +17,8 @@ using KeyPath = std::vector<std::string>;
 struct ScriptError {
   Error error;
   KeyPath key = {};  ///< where in the call's table; empty: the call itself
-  std::string function =
-      {};  ///< last identifier of the call, "bloom" of `fx.bloom{…}`; empty: the native function's name
+  /// Last identifier of the call, "glow" of `fx.glow{…}`; empty: the native function's name.
+  std::string function = {};
 };
 
 /// A ScriptError from its parts; file and line are filled in at the boundary, from the caller.

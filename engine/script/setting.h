@@ -13,7 +13,7 @@ namespace afterglow::script {
 std::string allowed_text(const SettingSchema& schema);
 
 /// Errors (script, without file and line): wrong type, out of range, not finite, unknown choice (with the nearest).
-/// `full_name` is what the message calls it: "bloom.knee".
+/// `full_name` is what the message calls it: "glow.knee".
 Result<SettingValue> check_setting(const std::string& full_name, const SettingSchema& schema, const Value& value);
 
 /// "integer", "number", "boolean", "choice", "colour", "vec2".

@@ -64,10 +64,10 @@ Error too_many(std::size_t reads, std::size_t most) {
 /// Adds `reads`, each times its weight, to the variable `into`; equal weights are factored out.
 std::string weighted_sum(const std::string& into, const std::vector<std::pair<std::string, std::string>>& reads) {
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;  // weight → fetches, in order of appearance
-  for (const auto& [weight, fetch] : reads) {
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == weight; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {weight, {}});
-    group->second.push_back(fetch);
+  for (const auto& read : reads) {
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == read.first; });
+    if (group == groups.end()) group = groups.insert(groups.end(), {read.first, {}});
+    group->second.push_back(read.second);
   }
   std::string out;
   for (const auto& [weight, fetches] : groups) {

@@ -46,7 +46,13 @@ class Resolver {
       }
       if (depth > kMaxIncludeDepth)
         return shader_error(at, line.line, fmt::format("includes are nested more than {} deep", kMaxIncludeDepth));
-      AFTERGLOW_TRY(const std::size_t index, add(path, line, depth));
+      auto added = add(path, line, depth);
+      if (!added) {
+        Error error = std::move(added).error();
+        error.trail.push_back(fmt::format("included at {}:{}", at, line.line));
+        return error;
+      }
+      const std::size_t index = *added;
       seen.insert(index);
       seen.insert(includes_[index].uses.begin(), includes_[index].uses.end());
     }

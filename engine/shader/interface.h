@@ -14,6 +14,15 @@
 //   vec4 sample_at(ivec2 pixel) { … }         // kind `sample`; `pixel` is the target's
 //
 // Exactly one of `apply` and `sample_at` must be defined.
+//
+// What every shader can call besides GLSL 4.60 is in shaders/lib/prelude.glsl. An include with a folder
+// ("lib/color.glsl") is looked up along the search path, a bare name ("helper.glsl") first beside the file that
+// includes it; it is hoisted even from within #if.
+//
+// Shaders of different authors stand in one kernel, so every name of file scope is made unique by rewriting the text.
+// That asks for plain text: no names that begin with ag_, no ##, no macros that make declarations or hold half a
+// bracket, no #version, #extension, #pragma or #line, no functions named like GLSL's own, no `discard`. In return, a
+// macro, a struct or a helper of one shader never reaches another.
 #pragma once
 
 #include <string>

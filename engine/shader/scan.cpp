@@ -44,6 +44,9 @@ class Scanner {
     for (const auto& token : out_.tokens) {
       if (token.is_identifier() && token.text.starts_with("ag_"))
         return fail(token, fmt::format("'{}': names that begin with 'ag_' belong to the engine", token.text));
+      if (token.is("discard"))
+        return fail(token,
+                    "'discard' is not allowed: every pixel of an image gets a value; return the colour that came in");
       if (token.directive < 0) code_.push_back(&token);
     }
     AFTERGLOW_TRY(Directives directives, scan_directives(out_.tokens, file_));

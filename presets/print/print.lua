@@ -6,6 +6,6 @@ return fx.stack {
   name = "Print",
   fx.bloom { mode = "scattering", intensity = 0.15, fade_fireflies = true },
   fx.tone_mapping { mode = "neutral" },
-  fx.color_adjustments { post_exposure = 0.6, contrast = 10, saturation = 20 },
+  fx.color_adjustments { post_exposure = 2.4, contrast = -5, saturation = 20 },
   fx.halftone { cell = 6, angle = 30, ink = "#14101c", paper = "#f4ecd8", tint = 0.75 },
 }

@@ -1,4 +1,4 @@
----@meta
+---@meta _
 -- Generated from the effects, not to be edited: AFTERGLOW_UPDATE=1 ctest -R Completion.FileIsUpToDate
 
 ---Keys that every effect of a stack takes besides its settings.

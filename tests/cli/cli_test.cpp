@@ -1,10 +1,10 @@
 #include "cli_test.h"
 
+#include <OpenImageIO/imageio.h>
+
 #include <algorithm>
 #include <fstream>
 #include <sstream>
-
-#include <OpenImageIO/imageio.h>
 
 namespace afterglow::test {
 
@@ -26,7 +26,8 @@ Outcome CliTest::run(const std::vector<std::string>& arguments, RunOptions optio
   options.environment.try_emplace("AFTERGLOW_PATH", "");
   options.environment.try_emplace("AFTERGLOW_HOME", "");
   options.environment.try_emplace("AFTERGLOW_VALIDATE", "");
-  if (std::getenv("XDG_RUNTIME_DIR") == nullptr) options.environment.try_emplace("XDG_RUNTIME_DIR", folder_.parent_path());
+  if (std::getenv("XDG_RUNTIME_DIR") == nullptr)
+    options.environment.try_emplace("XDG_RUNTIME_DIR", folder_.parent_path());
   return run_program(arguments, options);
 }
 
@@ -63,7 +64,8 @@ void CliTest::make_exr(const std::string& name, int width, int height) const {
     }
   fs::create_directories(path(name).parent_path());
   auto out = OIIO::ImageOutput::create(text(name));
-  ASSERT_TRUE(out && out->open(text(name), spec) && out->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) && out->close())
+  ASSERT_TRUE(out && out->open(text(name), spec) && out->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) &&
+              out->close())
       << OIIO::geterror();
 }
 
@@ -74,7 +76,9 @@ void CliTest::make_truncated_exr(const std::string& name) const {
 }
 
 void CliTest::make_preset(const std::string& name) const {
-  write(name, "local fx = require \"afterglow\"\nreturn fx.stack { name = \"Plain\", fx.tone_mapping { mode = \"aces\" } }\n");
+  write(
+      name,
+      "local fx = require \"afterglow\"\nreturn fx.stack { name = \"Plain\", fx.tone_mapping { mode = \"aces\" } }\n");
 }
 
 fs::path preset(const std::string& name) { return fs::path(AFTERGLOW_PROJECT_FOLDER) / "presets" / name; }
@@ -85,7 +89,8 @@ fs::path neon() { return fs::path(AFTERGLOW_TEST_FOLDER) / "images" / "neon.exr"
   if (std::count(text.begin(), text.end(), '\n') != 1 || text.back() != '\n')
     return ::testing::AssertionFailure() << "not one line: " << text;
   if (text.find("error: ") == std::string::npos) return ::testing::AssertionFailure() << "no error: " << text;
-  if (text.find('\x1b') != std::string::npos) return ::testing::AssertionFailure() << "colours without a terminal: " << text;
+  if (text.find('\x1b') != std::string::npos)
+    return ::testing::AssertionFailure() << "colours without a terminal: " << text;
   return ::testing::AssertionSuccess();
 }
 

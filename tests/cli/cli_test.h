@@ -1,12 +1,13 @@
-// What the tests of the command line share: a folder of their own, small pictures and presets, and ways to look at the outcome.
+// What the tests of the command line share: a folder of their own, small pictures and presets, and ways to look at the
+// outcome.
 #pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
 #include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "program.h"
 
@@ -47,8 +48,8 @@ class CliTest : public ::testing::Test {
   fs::path folder_;
 };
 
-fs::path preset(const std::string& name);   ///< presets/NAME
-fs::path neon();                             ///< tests/images/neon.exr
+fs::path preset(const std::string& name);  ///< presets/NAME
+fs::path neon();                           ///< tests/images/neon.exr
 
 /// Exactly one line, which starts as errors do. `text` of Outcome::err.
 ::testing::AssertionResult is_one_error_line(const std::string& text);

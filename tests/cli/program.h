@@ -11,7 +11,7 @@
 namespace afterglow::test {
 
 struct Outcome {
-  int exit_code = -1;      ///< 128 + N when a signal N ended it; -1: it had to be killed after the time limit
+  int exit_code = -1;  ///< 128 + N when a signal N ended it; -1: it had to be killed after the time limit
   std::string out, err;
   double seconds = 0;
 };

@@ -14,7 +14,8 @@ class BadInput : public CliTest {
   }
 
   /// Runs the preset on `input` and expects a refusal that says `message`.
-  void expect_refusal(const std::string& input, const std::string& message, const std::vector<std::string>& more = {}) const {
+  void expect_refusal(const std::string& input, const std::string& message,
+                      const std::vector<std::string>& more = {}) const {
     const auto before = files();
     std::vector<std::string> arguments{"run", "look.lua", input, "-o", "out.png"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -78,8 +79,10 @@ TEST_F(BadInput, SideOf16384IsFine) {
 
 TEST_F(BadInput, NeedAboveMaxMemoryIsRefusedFromTheHeader) {
   make_flat("large.exr", 6000, 4000);
-  // The limit is what the picture needs, not what is left of it after reading: 24 million pixels of 16 bytes are 366 MiB alone.
-  const Outcome outcome = run({"run", "look.lua", "large.exr", "-o", "out.png", "--max-memory", "256M", "--report", "report.json"});
+  // The limit is what the picture needs, not what is left of it after reading: 24 million pixels of 16 bytes are 366
+  // MiB alone.
+  const Outcome outcome =
+      run({"run", "look.lua", "large.exr", "-o", "out.png", "--max-memory", "256M", "--report", "report.json"});
   EXPECT_EQ(outcome.exit_code, kFiles);
   EXPECT_TRUE(is_one_error_line(outcome.err));
   EXPECT_THAT(outcome.err, HasSubstr("large.exr"));

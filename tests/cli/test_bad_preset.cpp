@@ -6,9 +6,11 @@ namespace {
 
 struct BadPreset {
   std::string label, text;
-  std::vector<std::string> messages;   ///< parts of what is said
-  double within = 30;                  ///< seconds; generous, for hostile scripts that must be stopped at all
+  std::vector<std::string> messages;  ///< parts of what is said
+  double within = 30;                 ///< seconds; generous, for hostile scripts that must be stopped at all
 };
+
+void PrintTo(const BadPreset& preset, std::ostream* out) { *out << preset.label; }
 
 constexpr const char* kUse = "local fx = require \"afterglow\"\n";
 
@@ -18,7 +20,8 @@ TEST_P(BadPresets, EndRunAndCheckWithExitCode3) {
   make_exr("a.exr");
   write("look.lua", GetParam().text);
   const auto before = files();
-  for (const auto& arguments : {std::vector<std::string>{"run", "look.lua", "a.exr", "-o", "a.png"}, {"check", "look.lua"}}) {
+  for (const auto& arguments :
+       {std::vector<std::string>{"run", "look.lua", "a.exr", "-o", "a.png"}, {"check", "look.lua"}}) {
     const Outcome outcome = run(arguments);
     SCOPED_TRACE(arguments.front() + ": " + outcome.err);
     EXPECT_EQ(outcome.exit_code, kScript);
@@ -30,23 +33,32 @@ TEST_P(BadPresets, EndRunAndCheckWithExitCode3) {
 
 INSTANTIATE_TEST_SUITE_P(
     Cli, BadPresets,
-    ::testing::Values(
-        BadPreset{"syntax", "return fx.stack {\n", {"look.lua:", "error: "}},
-        BadPreset{"run_time", std::string(kUse) + "local x = nil\nreturn x.y\n", {"look.lua:3: error: "}},
-        BadPreset{"no_stack", "return 1\n", {"look.lua", "error: "}},
-        BadPreset{"unknown_effect", std::string(kUse) + "return fx.stack { fx.blom {} }\n",
-                  {"look.lua:2: error: ", "did you mean 'bloom'?"}},
-        BadPreset{"unknown_setting", std::string(kUse) + "return fx.stack {\n  fx.bloom {\n    intensty = 1 } }\n",
-                  {"look.lua:4: error: ", "did you mean 'intensity'?"}},
-        BadPreset{"out_of_range", std::string(kUse) + "return fx.stack { fx.bloom { knee = 2 } }\n",
-                  {"look.lua:2: error: ", "allowed: "}},
-        BadPreset{"wrong_choice", std::string(kUse) + "return fx.stack { fx.tone_mapping { mode = \"acess\" } }\n",
-                  {"look.lua:2: error: ", "did you mean 'aces'?"}},
-        BadPreset{"wrong_type", std::string(kUse) + "return fx.stack { fx.bloom { knee = \"soft\" } }\n", {"look.lua:2: error: "}},
-        BadPreset{"endless", "while true do end\n", {"look.lua", "instruction budget"}},
-        BadPreset{"endless_in_pcall", "while true do pcall(function() while true do end end) end\n", {"look.lua", "instruction budget"}},
-        BadPreset{"memory", "local t = {}\nfor i = 1, 1e9 do t[i] = (\"x\"):rep(1e6) .. i end\n", {"look.lua", "memory limit"}},
-        BadPreset{"file_access", "local f = io.open(\"/etc/passwd\")\n", {"look.lua:1: error: "}}),
+    ::testing::Values(BadPreset{"syntax", "return fx.stack {\n", {"look.lua:", "error: "}},
+                      BadPreset{"run_time", std::string(kUse) + "local x = nil\nreturn x.y\n", {"look.lua:3: error: "}},
+                      BadPreset{"no_stack", "return 1\n", {"look.lua", "error: "}},
+                      BadPreset{"unknown_effect",
+                                std::string(kUse) + "return fx.stack { fx.blom {} }\n",
+                                {"look.lua:2: error: ", "did you mean 'bloom'?"}},
+                      BadPreset{"unknown_setting",
+                                std::string(kUse) + "return fx.stack {\n  fx.bloom {\n    intensty = 1 } }\n",
+                                {"look.lua:4: error: ", "did you mean 'intensity'?"}},
+                      BadPreset{"out_of_range",
+                                std::string(kUse) + "return fx.stack { fx.bloom { knee = 2 } }\n",
+                                {"look.lua:2: error: ", "allowed: "}},
+                      BadPreset{"wrong_choice",
+                                std::string(kUse) + "return fx.stack { fx.tone_mapping { mode = \"acess\" } }\n",
+                                {"look.lua:2: error: ", "did you mean 'aces'?"}},
+                      BadPreset{"wrong_type",
+                                std::string(kUse) + "return fx.stack { fx.bloom { knee = \"soft\" } }\n",
+                                {"look.lua:2: error: "}},
+                      BadPreset{"endless", "while true do end\n", {"look.lua", "instruction budget"}},
+                      BadPreset{"endless_in_pcall",
+                                "while true do pcall(function() while true do end end) end\n",
+                                {"look.lua", "instruction budget"}},
+                      BadPreset{"memory",
+                                "local t = {}\nfor i = 1, 1e9 do t[i] = (\"x\"):rep(1e6) .. i end\n",
+                                {"look.lua", "memory limit"}},
+                      BadPreset{"file_access", "local f = io.open(\"/etc/passwd\")\n", {"look.lua:1: error: "}}),
     [](const auto& info) { return info.param.label; });
 
 class PresetErrors : public CliTest {
@@ -54,10 +66,11 @@ class PresetErrors : public CliTest {
   /// A preset whose one effect has this shader.
   void make_effect(const std::string& shader) const {
     write("look.lua", std::string(kUse) + "return fx.stack { fx.mine {} }\n");
-    write("effects/mine.lua", std::string(kUse) +
-                                  "return fx.effect { name = \"mine\", doc = \"A test.\", at = \"post_process\", order = 1,\n"
-                                  "  settings = {}, build = function(g, s, source)\n"
-                                  "    return g:pass { shader = \"mine/mine\", source = source } end }\n");
+    write("effects/mine.lua",
+          std::string(kUse) +
+              "return fx.effect { name = \"mine\", doc = \"A test.\", at = \"post_process\", order = 1,\n"
+              "  settings = {}, build = function(g, s, source)\n"
+              "    return g:pass { shader = \"mine/mine\", source = source } end }\n");
     write("shaders/mine/mine.glsl", shader);
   }
 };
@@ -65,7 +78,8 @@ class PresetErrors : public CliTest {
 TEST_F(PresetErrors, GlslErrorNamesTheAuthorsFileAndLine) {
   make_effect("// a comment\nvec4 apply(vec4 color) {\n  return colour;\n}\n");
   make_exr("a.exr");
-  for (const auto& arguments : {std::vector<std::string>{"check", "look.lua"}, {"run", "look.lua", "a.exr", "-o", "a.png"}}) {
+  for (const auto& arguments :
+       {std::vector<std::string>{"check", "look.lua"}, {"run", "look.lua", "a.exr", "-o", "a.png"}}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, kScript);
     EXPECT_THAT(outcome.err, HasSubstr("mine.glsl:3: error: "));

@@ -81,7 +81,8 @@ class ShippedPresets : public CliTest, public ::testing::WithParamInterface<std:
 
 TEST_P(ShippedPresets, RunCleanUnderValidation) {
   for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--precision", "fp16"}, {"--reference"}}) {
-    std::vector<std::string> arguments{"run", preset(GetParam()).string(), neon().string(), "-o", "out.png", "--validate", "--size", "161x90"};
+    std::vector<std::string> arguments{
+        "run", preset(GetParam()).string(), neon().string(), "-o", "out.png", "--validate", "--size", "161x90"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
@@ -97,7 +98,8 @@ TEST_P(ShippedPresets, PassCheckWithoutWarnings) {
 
 INSTANTIATE_TEST_SUITE_P(Cli, ShippedPresets, ::testing::ValuesIn(shipped_presets()), [](const auto& info) {
   std::string name = info.param;
-  std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
   return name;
 });
 

@@ -48,7 +48,8 @@ TEST_F(Inspect, CheckAsJson) {
   const auto& bloom = check.at("entries").at(0);
   EXPECT_EQ(bloom.at("effect"), "bloom");
   EXPECT_EQ(bloom.at("settings").at("scatter"), 0.5);
-  EXPECT_THAT(bloom.at("changed").get<std::vector<std::string>>(), ::testing::UnorderedElementsAre("intensity", "scatter"));
+  EXPECT_THAT(bloom.at("changed").get<std::vector<std::string>>(),
+              ::testing::UnorderedElementsAre("intensity", "scatter"));
   EXPECT_TRUE(check.at("entries").at(1).contains("skipped"));
 }
 
@@ -81,7 +82,8 @@ TEST_F(Inspect, CheckWarmsTheCacheForRun) {
   ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "a.png"}, options).exit_code, kDone);
   for (const auto& name : files())
     if (name.starts_with("cache/shaders/"))
-      EXPECT_NE(std::find(after_check.begin(), after_check.end(), name), after_check.end()) << name << " was compiled again";
+      EXPECT_NE(std::find(after_check.begin(), after_check.end(), name), after_check.end())
+          << name << " was compiled again";
 }
 
 TEST_F(Inspect, GraphAsJsonNamesKernelsAndSkips) {
@@ -116,13 +118,15 @@ TEST_F(Inspect, EffectsAreListedWithTheirSettings) {
   const json all = parsed({"effects", "--json"});
   std::vector<std::string> names;
   for (const auto& effect : all) names.push_back(effect.at("name"));
-  EXPECT_THAT(names, ::testing::IsSupersetOf({"bloom", "box_bloom", "tone_mapping", "color_adjustments", "color_blit", "outline"}));
+  EXPECT_THAT(names, ::testing::IsSupersetOf(
+                         {"bloom", "box_bloom", "tone_mapping", "color_adjustments", "color_blit", "outline"}));
 }
 
 TEST_F(Inspect, EffectsOfAPathAreListedToo) {
   write("mine/effects/halve.lua",
         "local fx = require \"afterglow\"\n"
-        "return fx.effect { name = \"halve\", doc = \"Half the light.\", at = \"post_process\", order = 1, settings = {},\n"
+        "return fx.effect { name = \"halve\", doc = \"Half the light.\", at = \"post_process\", order = 1, settings = "
+        "{},\n"
         "  build = function(g, s, source) return source end }\n");
   const Outcome outcome = run({"effects", "--path", "mine"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;

@@ -23,7 +23,8 @@ class Installed : public CliTest {
 };
 
 TEST_F(Installed, RunsFromAnotherFolderWithItsOwnScripts) {
-  const Outcome outcome = run_installed({"run", "moved/share/afterglow/presets/neon_night.lua", "a.exr", "-o", "a.png"});
+  const Outcome outcome =
+      run_installed({"run", "moved/share/afterglow/presets/neon_night.lua", "a.exr", "-o", "a.png"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
   EXPECT_TRUE(fs::exists(path("a.png")));
   const Outcome effects = run_installed({"effects", "bloom"});
@@ -54,7 +55,8 @@ TEST_F(Installed, OtherProjectsFindThePackage) {
         "  return std::puts((*stack)->preset().name().c_str()), 0;\n}\n");
   RunOptions options;
   options.program = AFTERGLOW_CMAKE;
-  Outcome outcome = run({"-S", "project", "-B", "project/build", "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + text("moved")}, options);
+  Outcome outcome =
+      run({"-S", "project", "-B", "project/build", "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + text("moved")}, options);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   outcome = run({"--build", "project/build"}, options);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out;

@@ -67,16 +67,16 @@ TEST_P(FullDisk, LeavesTheOldFileAndNothingElse) {
   options.environment["AFTERGLOW_CACHE"] = text("cache-that-cannot-be-made/x");
   write("cache-that-cannot-be-made", "");
   const auto with_cache = files();
-  expect_failure(run({"run", "look.lua", "a.exr", "-o", name, "--compression", name == "out.exr" ? "none" : "", "--png-level", "0"},
+  expect_failure(run({"run", "look.lua", "a.exr", "-o", name, "--compression", name == "out.exr" ? "none" : "",
+                      "--png-level", "0"},
                      options),
                  name);
   EXPECT_EQ(files(), with_cache) << "something was left behind";
   EXPECT_EQ(read(name), "the picture of yesterday");
 }
 
-INSTANTIATE_TEST_SUITE_P(Cli, FullDisk, ::testing::Values("out.exr", "out.png", "out.hdr"), [](const auto& info) {
-  return std::string(info.param).substr(4);
-});
+INSTANTIATE_TEST_SUITE_P(Cli, FullDisk, ::testing::Values("out.exr", "out.png", "out.hdr"),
+                         [](const auto& info) { return std::string(info.param).substr(4); });
 
 TEST_F(Output, FullFileSystem) {
   fs::create_directory(path("disk"));
@@ -95,7 +95,8 @@ TEST_F(Output, ReportThatCannotBeWritten) {
 }
 
 TEST_F(Output, SameInputSamePixelsSameBytes) {
-  for (const char* name : {"1.png", "2.png"}) ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", name, "--dither"}).exit_code, kDone);
+  for (const char* name : {"1.png", "2.png"})
+    ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", name, "--dither"}).exit_code, kDone);
   EXPECT_EQ(read("1.png"), read("2.png"));
 }
 

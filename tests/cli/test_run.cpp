@@ -1,5 +1,6 @@
 // `afterglow run` on single pictures: what it writes and reports.
 #include <OpenImageIO/imageio.h>
+
 #include <nlohmann/json.hpp>
 
 #include "cli_test.h"
@@ -34,7 +35,8 @@ TEST_F(Run, WritesThePictureAndSaysNothing) {
 }
 
 TEST_F(Run, TypeAndCompressionAreTakenOver) {
-  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "f.exr", "--type", "float", "--compression", "piz"}).exit_code, kDone);
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "f.exr", "--type", "float", "--compression", "piz"}).exit_code,
+            kDone);
   EXPECT_EQ(spec_of("f.exr").format, OIIO::TypeDesc::FLOAT);
   EXPECT_EQ(spec_of("f.exr").get_string_attribute("compression"), "piz");
   ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "h.exr"}).exit_code, kDone);
@@ -60,7 +62,8 @@ TEST_F(Run, OverridesChangePixelsAndPrecisionHardly) {
 TEST_F(Run, StatsNameEveryStep) {
   const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--stats"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
-  for (const char* step : {"start-up", "script", "compile", "read", "upload", "execute", "read-back", "write", "wall", "memory"})
+  for (const char* step :
+       {"start-up", "script", "compile", "read", "upload", "execute", "read-back", "write", "wall", "memory"})
     EXPECT_THAT(outcome.out, HasSubstr(step));
   EXPECT_THAT(outcome.out, Not(HasSubstr("tone_mapping")));
 }
@@ -107,7 +110,8 @@ TEST_F(Run, MissingDepthOfARequiredEffectIsAnError) {
 }
 
 TEST_F(Run, DepthFromAnotherFile) {
-  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.outline { source = \"depth\", required = true } }\n");
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.outline { source = \"depth\", required = true } }\n");
   // The red channel of a picture of the same size stands in for depth.
   const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--depth", "a.exr:R"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
@@ -116,7 +120,8 @@ TEST_F(Run, DepthFromAnotherFile) {
 TEST_F(Run, EffectsBesideThePresetAndOnThePath) {
   const std::string effect =
       "local fx = require \"afterglow\"\n"
-      "return fx.effect { name = \"halve\", doc = \"Half the light.\", at = \"post_process\", order = 1, settings = {},\n"
+      "return fx.effect { name = \"halve\", doc = \"Half the light.\", at = \"post_process\", order = 1, settings = "
+      "{},\n"
       "  build = function(g, s, source) return g:pass { shader = \"halve/halve\", source = source } end }\n";
   const std::string shader = "vec4 apply(vec4 color) { return vec4(color.rgb * 0.5, color.a); }\n";
   write("mine/effects/halve.lua", effect);

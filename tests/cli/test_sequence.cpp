@@ -1,6 +1,5 @@
 // Sequences: what is read and written under which name, frames that fail, --resume, Ctrl-C.
 #include <csignal>
-
 #include <nlohmann/json.hpp>
 
 #include "cli_test.h"
@@ -35,7 +34,8 @@ class Sequence : public CliTest {
   /// State of each frame in a report, in order.
   std::vector<std::string> states(const std::string& report) const {
     std::vector<std::string> all;
-    for (const auto& frame : nlohmann::json::parse(read(report)).at("frames")) all.push_back(frame.at("state"));
+    const auto parsed = nlohmann::json::parse(read(report));
+    for (const auto& frame : parsed.at("frames")) all.push_back(frame.at("state"));
     return all;
   }
 };
@@ -50,7 +50,8 @@ TEST_F(Sequence, PatternToPattern) {
 }
 
 TEST_F(Sequence, PrintfPatternToFolderWithFormat) {
-  const Outcome outcome = run({"run", "look.lua", "in/shot.%04d.exr", "-o", "out", "--format", "png", "--frames", "1-4x2"});
+  const Outcome outcome =
+      run({"run", "look.lua", "in/shot.%04d.exr", "-o", "out", "--format", "png", "--frames", "1-4x2"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
   EXPECT_THAT(outputs(), ElementsAre("shot.0001.png", "shot.0003.png"));
 }
@@ -146,7 +147,8 @@ TEST_F(Sequence, TooLittleMemoryForOverlapStillRuns) {
 
 TEST_F(Sequence, CtrlCEndsWith130AndNoPartialFile) {
   for (int frame = 5; frame <= 60; ++frame)
-    fs::copy_file(path("in/shot.0001.exr"), path("in/shot.00" + std::string(frame < 10 ? "0" : "") + std::to_string(frame) + ".exr"));
+    fs::copy_file(path("in/shot.0001.exr"),
+                  path("in/shot.00" + std::string(frame < 10 ? "0" : "") + std::to_string(frame) + ".exr"));
   RunOptions options;
   options.meanwhile = [&](int process) {
     if (outputs().empty()) return false;

@@ -7,8 +7,10 @@ namespace {
 struct WrongUse {
   std::string label;
   std::vector<std::string> arguments;
-  std::string message;   ///< part of the line
+  std::string message;  ///< part of the line
 };
+
+void PrintTo(const WrongUse& use, std::ostream* out) { *out << use.label; }
 
 class WrongUsage : public CliTest, public ::testing::WithParamInterface<WrongUse> {};
 
@@ -29,25 +31,31 @@ INSTANTIATE_TEST_SUITE_P(
     Cli, WrongUsage,
     ::testing::Values(
         WrongUse{"command", {"rnu", "look.lua"}, "unknown command 'rnu'"},
-        WrongUse{"command_nearest", {"rnu"}, "did you mean 'run'?"},
-        WrongUse{"option", {"run", "look.lua", "a.exr", "-o", "a.png", "--pecision", "fp16"}, "did you mean '--precision'?"},
+        WrongUse{"command_nearest", {"chekc"}, "did you mean 'check'?"},
+        WrongUse{
+            "option", {"run", "look.lua", "a.exr", "-o", "a.png", "--pecision", "fp16"}, "did you mean '--precision'?"},
         WrongUse{"option_first", {"run", "--pecision", "fp16", "look.lua", "a.exr"}, "unknown option '--pecision'"},
         WrongUse{"option_of_nothing_near", {"check", "look.lua", "--qwertyuiop"}, "unknown option '--qwertyuiop'"},
         WrongUse{"no_output", {"run", "look.lua", "a.exr"}, "--output"},
-        WrongUse{"no_input", {"run", "look.lua", "-o", "a.png"}, "INPUT"},
-        WrongUse{"no_preset", {"check"}, "PRESET"},
+        WrongUse{"no_input", {"run", "look.lua", "-o", "a.png"}, "INPUT"}, WrongUse{"no_preset", {"check"}, "PRESET"},
         WrongUse{"too_much", {"devices", "a.exr"}, "unexpected argument 'a.exr'"},
         WrongUse{"precision", {"run", "look.lua", "a.exr", "-o", "a.png", "--precision", "fp8"}, "fp8"},
         WrongUse{"type", {"run", "look.lua", "a.exr", "-o", "a.png", "--type", "int"}, "int"},
         WrongUse{"png_level", {"run", "look.lua", "a.exr", "-o", "a.png", "--png-level", "10"}, "10"},
         WrongUse{"max_error", {"run", "look.lua", "a.exr", "-o", "a.png", "--max-error", "-1"}, "--max-error"},
-        WrongUse{"max_memory", {"run", "look.lua", "a.exr", "-o", "a.png", "--max-memory", "lots"}, "'lots' is no amount of memory"},
+        WrongUse{"max_memory",
+                 {"run", "look.lua", "a.exr", "-o", "a.png", "--max-memory", "lots"},
+                 "'lots' is no amount of memory"},
         WrongUse{"size", {"run", "look.lua", "a.exr", "-o", "a.png", "--size", "64"}, "'64' is no size"},
         WrongUse{"stats", {"run", "look.lua", "a.exr", "-o", "a.png", "--stats=all"}, "all"},
         WrongUse{"set_without_value", {"check", "look.lua", "--set", "tone_mapping.mode"}, "tone_mapping.mode"},
         WrongUse{"frames", {"run", "look.lua", "a.####.exr", "-o", "b.####.exr", "--frames", "1-"}, "1-"},
-        WrongUse{"frames_of_a_file", {"run", "look.lua", "a.exr", "-o", "a.png", "--frames", "1"}, "--frames needs a numbered input"},
-        WrongUse{"several_into_one", {"run", "look.lua", "a.exr", "b.exr", "-o", "c.png"}, "2 frames cannot go into the one file c.png"},
+        WrongUse{"frames_of_a_file",
+                 {"run", "look.lua", "a.exr", "-o", "a.png", "--frames", "1"},
+                 "--frames needs a numbered input"},
+        WrongUse{"several_into_one",
+                 {"run", "look.lua", "a.exr", "b.exr", "-o", "c.png"},
+                 "2 frames cannot go into the one file c.png"},
         WrongUse{"over_the_input", {"run", "look.lua", "a.exr", "-o", "a.exr"}, "overwritten by its own result"},
         WrongUse{"two_places", {"run", "look.lua", "a.##.##.exr", "-o", "a.png"}, "a.##.##.exr"},
         WrongUse{"graph_format", {"graph", "look.lua", "-o", "graph.pdf"}, "graph.pdf"},

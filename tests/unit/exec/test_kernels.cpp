@@ -117,6 +117,22 @@ TEST_F(KernelTest, SampleReadsNeighboursAndSizes) {
   });
 }
 
+TEST_F(KernelTest, SampleWithoutImagesAndParameters) {
+  shader("pattern",
+         "vec4 sample_at(ivec2 pixel) { return vec4(vec2(pixel) / 256.0, vec2(target_size()) / 1024.0); }\n");
+  const auto build = [](GraphBuilder& b, Size size) { return b.sample("pattern", "pattern", size, {}); };
+  compare(build, [](const Picture64& in) {
+    Picture64 out(in.size);
+    for (int y = 0; y < in.size.height; ++y) {
+      for (int x = 0; x < in.size.width; ++x) {
+        const double values[] = {x / 256.0, y / 256.0, in.size.width / 1024.0, in.size.height / 1024.0};
+        for (int c = 0; c < 4; ++c) out.at(x, y, c) = values[c];
+      }
+    }
+    return out;
+  });
+}
+
 Filter gaussian() {
   Filter filter;
   filter.x.clear();

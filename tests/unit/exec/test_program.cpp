@@ -144,6 +144,22 @@ TEST_F(ProgramTest, ParametersAreRewrittenWithoutNewObjects) {
   EXPECT_EQ(compiler_->counters().compiled, compiled);
 }
 
+TEST_F(ProgramTest, ParametersOfAnotherStructureAreIgnored) {
+  const Size size{7, 5};
+  const auto pixels = noise(size, 16);
+  const std::map<std::string, HostImage> inputs{{"source", {pixels.data(), size, 4}}};
+  const auto made = program(pyramid(size));
+  auto runner = FrameRunner::create(device(), 1u << 30);
+  ASSERT_TRUE(runner);
+  HostResult before, after;
+  ASSERT_TRUE((*runner)->run(*made, inputs, before, KernelTiming::none));
+  GraphBuilder empty(size);
+  made->set_parameters(empty.finish(empty.source()));
+  made->set_parameters(diamond(size));
+  ASSERT_TRUE((*runner)->run(*made, inputs, after, KernelTiming::none));
+  EXPECT_EQ(before.pixels, after.pixels);
+}
+
 TEST_F(ProgramTest, MissingParametersAndInputsNameThePass) {
   GraphBuilder b({4, 4});
   auto result = try_program(b.finish(b.pixel("dim", "gain", b.source())));

@@ -50,7 +50,7 @@ TEST(Completion, EachTypeHasItsForm) {
   add("tint", SettingType::color, 1).min = 0;
   add("shift", SettingType::vec2, 0).unit = "px";
   const std::string text = completion_text({glow});
-  EXPECT_TRUE(text.starts_with("---@meta\n"));
+  EXPECT_TRUE(text.starts_with("---@meta _\n"));
   EXPECT_NE(text.find(R"(
 ---Makes light spread.
 ---@class afterglow.settings.glow : afterglow.EntryKeys

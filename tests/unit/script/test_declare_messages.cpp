@@ -55,6 +55,8 @@ TEST(DeclareMessages, EffectFiles) {
   EXPECT_EQ(file("return 1"), "effects/glow.lua: error: an effect's file must return fx.effect { … }, not 1");
   EXPECT_EQ(file("return fx.effect { name = \"shine\", build = function() end }"),
             "effects/glow.lua: error: declares the effect 'shine', but its file is named 'glow.lua'");
+  EXPECT_EQ(file("return fx.effect {\n build = function() end,\n name = \"stack\" }"),
+            "effects/glow.lua:4: error: fx.effect: the name 'stack' is taken by the library");
   EXPECT_EQ(file("return fx.effect { build = function() end }"),
             "effects/glow.lua:2: error: fx.effect needs a name; allowed: letters, digits and '_'");
   EXPECT_EQ(file("return fx.effect { name = \"glow\" }"),

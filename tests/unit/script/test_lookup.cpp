@@ -137,6 +137,18 @@ TEST(ListEffects, AllOfThePathByName) {
                                           "doc, name, needs, optional, order, settings; did you mean 'order'?"));
 }
 
+// The names that no effect may have are those that the library has.
+TEST(ListEffects, NamesOfTheLibraryAreReserved) {
+  Scene scene;
+  scene.preset(R"(
+    local fx, names = require "afterglow", {}
+    for name in pairs(fx) do names[#names + 1] = name end
+    print(table.concat(names, " "))
+    return fx.stack {})");
+  ASSERT_EQ(scene.load_error(), "");
+  EXPECT_THAT(scene.notes, ElementsAre("preset.lua:4: bool color effect enum filters float int stack vec2"));
+}
+
 // Every effect of the installation, as the design's table has it, can be listed without a complaint.
 TEST(ListEffects, TheInstallationIsSound) {
   Scene scene;

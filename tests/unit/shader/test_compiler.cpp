@@ -159,7 +159,9 @@ TEST_F(KernelCache, AnotherKernelsFileIsNotTaken) {
   EXPECT_EQ(origin(), "compiled");
   const auto file = only_file();
   KernelCompiler compiler(folder_);
-  ASSERT_TRUE(compiler.compile({}).ok());
+  auto sibling = stage_;  // as many parameters and bytes: only the text tells them apart
+  sibling.constants["count"] = 9;
+  ASSERT_TRUE(compiler.compile(one(sibling)).ok());
   for (const auto& other : files_in(folder_))
     if (other != file) fs::copy_file(other, file, fs::copy_options::overwrite_existing);
   EXPECT_EQ(origin(), "compiled");

@@ -157,6 +157,13 @@ vec4 apply(vec4 color) {
   EXPECT_EQ(outcome(join({files_.stage("a", text), files_.stage("b", text)})), "ok");
 }
 
+TEST_F(Join, UnderscoresAreNoTrouble) {
+  const std::string text =
+      "#define _K 2.0\n#define __K 3.0\nuniform float _t;\nfloat __f(float _x) { return _x * _K * __K; }\n"
+      "vec4 apply(vec4 c) { return c * __f(_t); }\n";
+  EXPECT_EQ(outcome(join({files_.stage("a", text), files_.stage("b", text)})), "ok");
+}
+
 TEST_F(Join, UniformsMayBeShadowedByLocals) {
   EXPECT_EQ(
       outcome(join({files_.stage("a", "uniform float t;\nvec4 apply(vec4 c) { float t = t * 2.0; return c * t; }\n")})),

@@ -162,11 +162,22 @@ TEST(ShaderLibrary, IncludeCyclesAreRefused) {
   files.write("lib/b.glsl", "\n#include \"lib/a.glsl\"\n");
   const auto cycle = files.find("fx/x", std::string("#include \"lib/a.glsl\"\n") + kApply);
   ASSERT_FALSE(cycle.ok());
-  EXPECT_EQ(cycle.error().text(),
-            files.path("lib/b.glsl").string() + ":2: error: 'lib/a.glsl' includes itself, directly or through others");
+  EXPECT_THAT(cycle.error().text(), HasSubstr(files.path("lib/b.glsl").string() +
+                                              ":2: error: 'lib/a.glsl' includes itself, directly or through others"));
   const auto self = files.find("fx/y", std::string("#include \"y.glsl\"\n") + kApply);
   ASSERT_FALSE(self.ok());
   EXPECT_THAT(self.error().message, HasSubstr("includes itself"));
+}
+
+TEST(ShaderLibrary, ErrorsInIncludesTellWhoIncludesThem) {
+  ShaderFiles files;
+  files.write("lib/bad.glsl", "oops\n");
+  files.write("lib/outer.glsl", "\n#include \"lib/bad.glsl\"\n");
+  const auto source = files.find("fx/a", std::string("#include \"lib/outer.glsl\"\n") + kApply);
+  ASSERT_FALSE(source.ok());
+  EXPECT_EQ(source.error().file, files.path("lib/bad.glsl").string());
+  EXPECT_THAT(source.error().trail, ElementsAre("included at " + files.path("lib/outer.glsl").string() + ":2",
+                                                "included at " + files.path("fx/a.glsl").string() + ":1"));
 }
 
 TEST(ShaderLibrary, MacrosMayBeDefinedAgain) {

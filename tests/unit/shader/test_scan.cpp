@@ -174,6 +174,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"vec4 fetch(int a) { return vec4(a); }\n" + kEnd, 1, "'fetch' is a helper that every shader has"},
         Bad{"#define image_size 3\n" + kEnd, 1, "'image_size' is a helper"},
         Bad{"float x = ag_push;\n" + kEnd, 1, "names that begin with 'ag_'"},
+        Bad{"vec4 apply(vec4 c) {\n  discard;\n}\n", 2, "'discard' is not allowed"},
         Bad{"void main() {}\n", 1, "main is made by the engine"},
         Bad{"uniform float size;\n" + kEnd, 1, "'size' is a key of g:pass"},
         Bad{"vec4 apply(vec4 c, vec4 source) { return c; }\n", 1, "'source' is a key of g:pass"},

@@ -1,0 +1,54 @@
+#include "exec/host_input.h"
+
+#include <fmt/format.h>
+
+#include "exec/convert.h"
+
+namespace afterglow {
+
+namespace {
+
+Error input_error(const std::string& message) { return Error{ErrorKind::other, message}; }
+
+}  // namespace
+
+Result<void> check_input(const Graph& graph, const std::string& name, ImageId id,
+                         const std::map<std::string, HostImage>& inputs) {
+  const auto found = inputs.find(name);
+  if (found == inputs.end() || !found->second.pixels)
+    return input_error(fmt::format("the frame has no image '{}'", name));
+  const Size size = found->second.size, wanted = graph.images[id].size;
+  if (size != wanted) {
+    return input_error(fmt::format("image '{}' has {}×{} pixels, the stack was built for {}×{}", name, size.width,
+                                   size.height, wanted.width, wanted.height));
+  }
+  if (found->second.channels < 1 || found->second.channels > 4) {
+    return input_error(fmt::format("image '{}' has {} channels; 1 to 4 are possible", name, found->second.channels));
+  }
+  return {};
+}
+
+std::map<std::string, ImageId> inputs_of(const Graph& graph) {
+  std::map<std::string, ImageId> out = graph.auxiliary;
+  out["source"] = graph.source;
+  return out;
+}
+
+VkFormat input_format(const std::string& name, const HostImage& image, VkFormat storage) {
+  if (name == "source") return storage;
+  return image.channels == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+}
+
+void copy_source(const HostImage& source, std::vector<float>& pixels) {
+  if (source.pixels == pixels.data() && source.channels == 4) return;
+  const auto [width, height] = source.size;
+  std::vector<float> copy(static_cast<std::size_t>(source.size.area()) * 4);
+  for (int y = 0; y < height; ++y) {
+    const auto first = static_cast<std::ptrdiff_t>(y) * width;
+    pack_row(source.pixels + first * source.channels, source.channels, width, VK_FORMAT_R32G32B32A32_SFLOAT,
+             reinterpret_cast<std::byte*>(copy.data() + first * 4));
+  }
+  pixels = std::move(copy);
+}
+
+}  // namespace afterglow

@@ -1,0 +1,27 @@
+// What a frame is given, checked against what its program reads.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "exec/frame.h"
+
+namespace afterglow {
+
+/// Errors: other (the image is missing, of another size than in the graph, or has an impossible number of channels).
+Result<void> check_input(const Graph& graph, const std::string& name, ImageId id,
+                         const std::map<std::string, HostImage>& inputs);
+
+/// The images that a program reads, by the names of HostImages.
+std::map<std::string, ImageId> inputs_of(const Graph& graph);
+
+/// Depths keep one channel; everything but the source is stored as full floats, whatever the storage of the stack.
+VkFormat input_format(const std::string& name, const HostImage& image, VkFormat storage);
+
+/// The source as RGBA; `pixels` may be its own memory.
+void copy_source(const HostImage& source, std::vector<float>& pixels);
+
+}  // namespace afterglow
