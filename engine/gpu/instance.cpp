@@ -3,11 +3,31 @@
 #include <algorithm>
 #include <cstring>
 
+#if defined(__SANITIZE_ADDRESS__)
+#include <dlfcn.h>
+#endif
+
 #include "gpu/error.h"
+
+#if defined(__SANITIZE_ADDRESS__)
+// The validation layer leaks a few KiB of its own.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:libVkLayer_khronos_validation.so\n"; }
+#endif
 
 namespace afterglow {
 
 namespace {
+
+/// What lavapipe allocates once is reachable only while it is loaded, and a leak of the layer is matched with its
+/// suppression by name. Under AddressSanitizer both stay loaded when the last instance goes.
+void keep_libraries_loaded() {
+#if defined(__SANITIZE_ADDRESS__)
+  for (const char* library : {"libVkLayer_khronos_validation.so", "libvulkan_lvp.so"}) {
+    dlopen(library, RTLD_LAZY | RTLD_NOLOAD | RTLD_NODELETE);
+  }
+#endif
+}
 
 constexpr const char* kLayer = "VK_LAYER_KHRONOS_validation";
 constexpr std::size_t kMaxMessages = 1000;
@@ -95,6 +115,7 @@ Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log) {
                  "no Vulkan driver found (Debian: mesa-vulkan-drivers brings one that runs on the CPU)"};
   }
   AFTERGLOW_VK(created, "cannot create a Vulkan instance");
+  keep_libraries_loaded();
   if (log) {
     out.debug_utils_ = true;
     const auto create_messenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(

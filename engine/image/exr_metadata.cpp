@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFloatAttribute.h>
@@ -61,68 +62,74 @@ const A* as(const Imf::Attribute& attribute) {
   return dynamic_cast<const A*>(&attribute);
 }
 
+std::vector<float> floats_of(const float* values, std::size_t count) { return {values, values + count}; }
+
+void insert(Imf::Header& header, const std::string& name, const MetadataValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    header.insert(name, Imf::StringAttribute(*text));
+  } else if (const auto* integer = std::get_if<int>(&value)) {
+    header.insert(name, Imf::IntAttribute(*integer));
+  } else if (const auto* number = std::get_if<float>(&value)) {
+    header.insert(name, Imf::FloatAttribute(*number));
+  } else if (const auto* rational = std::get_if<Rational>(&value)) {
+    if (rational->denominator > 0)
+      header.insert(name, Imf::RationalAttribute(Imf::Rational(rational->numerator, static_cast<unsigned>(rational->denominator))));
+  } else if (const auto* floats = std::get_if<std::vector<float>>(&value)) {
+    const std::vector<float>& f = *floats;
+    if (f.size() == 2) header.insert(name, Imf::V2fAttribute(Imath::V2f(f[0], f[1])));
+    if (f.size() == 3) header.insert(name, Imf::V3fAttribute(Imath::V3f(f[0], f[1], f[2])));
+    if (f.size() == 16) {
+      Imath::M44f matrix;
+      std::copy_n(f.begin(), 16, matrix.getValue());
+      header.insert(name, Imf::M44fAttribute(matrix));
+    }
+  }
+}
+
 }  // namespace
 
-OIIO::ParamValueList metadata_of(const Imf::Header& header) {
-  OIIO::ParamValueList list;
+Metadata metadata_of(const Imf::Header& header) {
+  Metadata list;
   for (auto it = header.begin(); it != header.end(); ++it) {
-    const std::string name = general_name(it.name());
     const Imf::Attribute& attribute = it.attribute();
+    MetadataEntry entry{general_name(it.name()), {}};
     if (const auto* text = as<Imf::StringAttribute>(attribute)) {
-      list.attribute(name, text->value());
+      entry.value = text->value();
     } else if (const auto* integer = as<Imf::IntAttribute>(attribute)) {
-      list.attribute(name, integer->value());
+      entry.value = integer->value();
     } else if (const auto* number = as<Imf::FloatAttribute>(attribute)) {
-      list.attribute(name, number->value());
+      entry.value = number->value();
     } else if (const auto* wide = as<Imf::DoubleAttribute>(attribute)) {
-      list.attribute(name, static_cast<float>(wide->value()));
-    } else if (const auto* v2f = as<Imf::V2fAttribute>(attribute)) {
-      list.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::VEC2), &v2f->value());
-    } else if (const auto* v3f = as<Imf::V3fAttribute>(attribute)) {
-      list.attribute(name, OIIO::TypeVector, &v3f->value());
-    } else if (const auto* m44f = as<Imf::M44fAttribute>(attribute)) {
-      list.attribute(name, OIIO::TypeMatrix, &m44f->value());
+      entry.value = static_cast<float>(wide->value());
     } else if (const auto* rational = as<Imf::RationalAttribute>(attribute)) {
-      const std::array<int, 2> parts{rational->value().n, static_cast<int>(rational->value().d)};
-      list.attribute(name, OIIO::TypeRational, parts.data());
+      entry.value = Rational{rational->value().n, static_cast<int>(rational->value().d)};
+    } else if (const auto* v2f = as<Imf::V2fAttribute>(attribute)) {
+      entry.value = floats_of(&v2f->value().x, 2);
+    } else if (const auto* v3f = as<Imf::V3fAttribute>(attribute)) {
+      entry.value = floats_of(&v3f->value().x, 3);
+    } else if (const auto* m44f = as<Imf::M44fAttribute>(attribute)) {
+      entry.value = floats_of(m44f->value().getValue(), 16);
+    } else {
+      continue;
     }
+    list.push_back(std::move(entry));
   }
   return list;
 }
 
-void add_metadata(Imf::Header& header, const OIIO::ParamValueList& metadata) {
-  for (const OIIO::ParamValue& value : metadata) {
-    const std::string name = value.name().string();
-    const OIIO::TypeDesc type = value.type();
+void add_metadata(Imf::Header& header, const Metadata& metadata) {
+  for (const auto& [name, value] : metadata) {
     if (const NamePair* pair = pair_of(name)) {
       if (pair->kind == Kind::text) {
-        header.insert(pair->exr, Imf::StringAttribute(value.get_string()));
-      } else if (const float number = value.get_float(); std::isfinite(number) && number > 0) {
+        header.insert(pair->exr, Imf::StringAttribute(metadata_text(value)));
+      } else if (const float number = metadata_number(value, 0); std::isfinite(number) && number > 0) {
         header.insert(pair->exr, Imf::FloatAttribute(number));
       }
       continue;
     }
     const bool reserved = std::find(kReserved.begin(), kReserved.end(), name) != kReserved.end();
     if (name.empty() || name.size() > 255 || reserved || header.find(name) != header.end()) continue;
-    const auto* floats = static_cast<const float*>(value.data());
-    if (type == OIIO::TypeString) {
-      header.insert(name, Imf::StringAttribute(value.get_string()));
-    } else if (type == OIIO::TypeInt || type == OIIO::TypeUInt || type == OIIO::TypeDesc::UINT16) {
-      header.insert(name, Imf::IntAttribute(value.get_int()));
-    } else if (type == OIIO::TypeFloat) {
-      header.insert(name, Imf::FloatAttribute(*floats));
-    } else if (type == OIIO::TypeRational) {
-      const auto* parts = static_cast<const int*>(value.data());
-      if (parts[1] > 0) header.insert(name, Imf::RationalAttribute(Imf::Rational(parts[0], static_cast<unsigned>(parts[1]))));
-    } else if (type == OIIO::TypeMatrix) {
-      Imath::M44f matrix;
-      std::copy_n(floats, 16, matrix.getValue());
-      header.insert(name, Imf::M44fAttribute(matrix));
-    } else if (type.basetype == OIIO::TypeDesc::FLOAT && type.aggregate == OIIO::TypeDesc::VEC3 && type.arraylen == 0) {
-      header.insert(name, Imf::V3fAttribute(Imath::V3f(floats[0], floats[1], floats[2])));
-    } else if (type.basetype == OIIO::TypeDesc::FLOAT && type.aggregate == OIIO::TypeDesc::VEC2 && type.arraylen == 0) {
-      header.insert(name, Imf::V2fAttribute(Imath::V2f(floats[0], floats[1])));
-    }
+    insert(header, name, value);
   }
 }
 

@@ -6,8 +6,9 @@
 #include <memory>
 #include <string>
 
-#include <OpenImageIO/paramlist.h>
 #include <OpenEXR/ImfHeader.h>
+
+#include "image/metadata.h"
 
 namespace afterglow {
 
@@ -21,7 +22,7 @@ struct FileFacts {
   int orientation = 1;
   int part = 0;                                    ///< of the colour
   std::array<std::string, 4> color_channels{};     ///< names in the file of R, G, B, A; grey has the same three; A may be empty
-  OIIO::ParamValueList metadata;                   ///< under OpenImageIO's names; everything the file said
+  Metadata metadata;                               ///< everything the file said
   std::shared_ptr<const Imf::Header> exr_header;   ///< of the colour's part, when the file was EXR
 };
 

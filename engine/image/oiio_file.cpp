@@ -8,6 +8,7 @@
 
 #include "core/text.h"
 #include "image/icc_profile.h"
+#include "image/oiio_metadata.h"
 
 namespace afterglow {
 namespace {
@@ -97,7 +98,7 @@ class OiioFile : public PictureFile {
     for (std::size_t i = 0; i < 4; ++i)
       if (color.channels[i] >= 0)
         facts.color_channels[i] = parts_[static_cast<std::size_t>(color.part)].channels[static_cast<std::size_t>(color.channels[i])];
-    facts.metadata = spec.extra_attribs;
+    facts.metadata = metadata_of(spec.extra_attribs);
     return facts;
   }
 

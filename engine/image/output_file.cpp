@@ -94,26 +94,4 @@ void ExrOutput::write(const char data[], int size) {
   if (!file_.write(data, static_cast<std::size_t>(size))) throw std::runtime_error(std::strerror(file_.failure()));
 }
 
-bool OiioOutput::seek(int64_t offset) {
-  if (offset < 0) return false;
-  file_.seek(static_cast<std::uint64_t>(offset));
-  return true;
-}
-
-size_t OiioOutput::pwrite(const void* data, size_t size, int64_t offset) {
-  const std::uint64_t before = file_.position();
-  file_.seek(static_cast<std::uint64_t>(offset));
-  const bool written = file_.write(data, size);
-  file_.seek(before);
-  return written ? size : 0;
-}
-
-size_t OiioOutput::pread(void* data, size_t size, int64_t offset) {
-  const std::uint64_t before = file_.position();
-  file_.seek(static_cast<std::uint64_t>(offset));
-  const bool got = file_.read(data, size);
-  file_.seek(before);
-  return got ? size : 0;
-}
-
 }  // namespace afterglow

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <OpenEXR/ImfIO.h>
-#include <OpenImageIO/filesystem.h>
 
 #include "core/result.h"
 
@@ -42,30 +41,13 @@ class OutputFile {
   std::vector<char> buffer_;
 };
 
-/// The same file as OpenEXR and as OpenImageIO want to see it.
+/// The same file as OpenEXR wants to see it.
 class ExrOutput : public Imf::OStream {
  public:
   ExrOutput(OutputFile& file, const char* name) : Imf::OStream(name), file_(file) {}
   void write(const char data[], int size) override;  ///< throws, as OpenEXR asks for
   std::uint64_t tellp() override { return file_.position(); }
   void seekp(std::uint64_t position) override { file_.seek(position); }
-
- private:
-  OutputFile& file_;
-};
-
-class OiioOutput : public OIIO::Filesystem::IOProxy {
- public:
-  OiioOutput(OutputFile& file, const std::string& name) : IOProxy(name, Write), file_(file) {}
-  const char* proxytype() const override { return "afterglow"; }
-  int64_t tell() override { return static_cast<int64_t>(file_.position()); }
-  bool seek(int64_t offset) override;
-  size_t write(const void* data, size_t size) override { return file_.write(data, size) ? size : 0; }
-  size_t read(void* data, size_t size) override { return file_.read(data, size) ? size : 0; }
-  size_t pwrite(const void* data, size_t size, int64_t offset) override;
-  size_t pread(void* data, size_t size, int64_t offset) override;
-  size_t size() const override { return file_.size(); }
-  void flush() const override { file_.flush(); }
 
  private:
   OutputFile& file_;

@@ -33,18 +33,16 @@ bool keeps_metadata(std::string_view name) {
   return std::find(kDropped.begin(), kDropped.end(), plain) == kDropped.end() && !starts_with_any(plain, kDroppedFamilies);
 }
 
-OIIO::ParamValueList kept_metadata(const FileFacts& facts) {
-  OIIO::ParamValueList kept;
-  for (const OIIO::ParamValue& value : facts.metadata) {
-    const std::string name = value.name().string();
-    if (!keeps_metadata(name) || name.size() > kLongestName) continue;
-    if (value.type() == OIIO::TypeString && value.get_string().size() > kLongestText) continue;
-    if (name == "PixelAspectRatio" && swaps_axes(facts.orientation)) {
-      const float ratio = value.get_float();
-      kept.attribute(name, ratio > 0 ? 1 / ratio : 1.0f);
-    } else {
-      kept.push_back(value);
+Metadata kept_metadata(const FileFacts& facts) {
+  Metadata kept;
+  for (MetadataEntry entry : facts.metadata) {
+    if (!keeps_metadata(entry.name) || entry.name.empty() || entry.name.size() > kLongestName) continue;
+    if (const auto* text = std::get_if<std::string>(&entry.value); text && text->size() > kLongestText) continue;
+    if (entry.name == "PixelAspectRatio" && swaps_axes(facts.orientation)) {
+      const float ratio = metadata_number(entry.value, 1);
+      entry.value = ratio > 0 ? 1 / ratio : 1.0f;
     }
+    kept.push_back(std::move(entry));
   }
   return kept;
 }

@@ -3,7 +3,6 @@
 
 #include <string_view>
 
-#include <OpenImageIO/paramlist.h>
 #include <OpenEXR/ImfHeader.h>
 
 #include "image/facts.h"
@@ -14,8 +13,8 @@ namespace afterglow {
 /// profile, chromaticities, names of parts and channels, thumbnails).
 bool keeps_metadata(std::string_view name);
 
-/// What is kept, under OpenImageIO's names.
-OIIO::ParamValueList kept_metadata(const FileFacts& facts);
+/// What is kept.
+Metadata kept_metadata(const FileFacts& facts);
 
 /// Adds what is kept to a new EXR header: attributes as they were when the input was EXR, converted ones else.
 void add_kept_attributes(Imf::Header& header, const FileFacts& facts);

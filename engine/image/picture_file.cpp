@@ -4,7 +4,7 @@
 
 #include "image/container_check.h"
 #include "image/exr_file.h"
-#include "image/oiio_file.h"
+#include "image/oiio_module.h"
 
 namespace afterglow {
 namespace {
@@ -24,19 +24,14 @@ Result<std::unique_ptr<PictureFile>> open_checked_exr(const std::filesystem::pat
 
 }  // namespace
 
-Result<void> check_sides(const Rect& window, const char* what, const SizeLimits& limits, const std::filesystem::path& file) {
-  if (window.width < 1 || window.height < 1) return Error{ErrorKind::io, "has no pixels", file.string()};
-  if (window.width <= limits.max_side && window.height <= limits.max_side) return {};
-  return Error{ErrorKind::io, fmt::format("its {} is {}×{}, larger than {} a side", what, window.width, window.height, limits.max_side),
-               file.string()};
-}
-
 Result<std::unique_ptr<PictureFile>> open_picture(const std::filesystem::path& file, const SizeLimits& limits) {
   AFTERGLOW_TRY(const ContainerFacts container, check_container(file));
   if (container.kind == ContainerFacts::Kind::exr) return open_checked_exr(file, limits);
   if (container.kind == ContainerFacts::Kind::png || container.kind == ContainerFacts::Kind::jpeg)
     AFTERGLOW_CHECK(check_sides({0, 0, container.size.width, container.size.height}, "picture", limits, file));
-  return open_with_oiio(file, container, limits);
+  const auto module = oiio_module();
+  if (!module) return Error{ErrorKind::io, module.error().message, file.string()};
+  return module.value()->open(file, container, limits);
 }
 
 }  // namespace afterglow

@@ -14,6 +14,7 @@
 #include "image/color_encoding.h"
 #include "image/facts.h"
 #include "image/layers.h"
+#include "image/size_limits.h"
 
 namespace afterglow {
 
@@ -53,13 +54,6 @@ class PictureFile {
 
 /// Opens by content, not by extension. Reads the header only. `limits` are checked before a library sees the file where that is
 /// possible (EXR, PNG, JPEG), else right after it has read the header.
-struct SizeLimits {
-  int max_side = 16384;
-  std::uint64_t max_bytes = 6ull << 30;
-};
 Result<std::unique_ptr<PictureFile>> open_picture(const std::filesystem::path& file, const SizeLimits& limits);
-
-/// Errors: io ("is W×H: larger than …").
-Result<void> check_sides(const Rect& window, const char* what, const SizeLimits& limits, const std::filesystem::path& file);
 
 }  // namespace afterglow

@@ -8,11 +8,12 @@
 
 #include "core/file.h"
 #include "image/exr_file.h"
+#include "image/oiio_module.h"
 #include "image/output_file.h"
 #include "image/output_format.h"
 #include "image/reader.h"
 #include "image/write_exr.h"
-#include "image/write_flat.h"
+#include "image/write_png.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -50,12 +51,25 @@ class Temporary {
 /// OpenImageIO 2.4 cannot look back at a TIFF that goes through a proxy, and then damages it where Exif data is to be written.
 bool opened_by_library(const OutputFormat& format) { return format.kind == OutputKind::tiff; }
 
+Result<void> write_by_module(const Picture& picture, const OutputFormat& format, OutputFile* out, const std::string& name, const WriteOptions& options) {
+  AFTERGLOW_TRY(const OiioModule* module, oiio_module());
+  return module->write(picture, format, out, name, options);
+}
+
 Result<void> write_format(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                           const WriteOptions& options, Diagnostics& diagnostics) {
-  if (format.kind != OutputKind::exr) return write_flat(picture, format, &out, name, options, diagnostics);
+  if (format.kind == OutputKind::png) return write_png(picture, sample_type(format, options, picture.facts.get()), out, options);
+  if (format.kind != OutputKind::exr) return write_by_module(picture, format, &out, name, options);
   use_exr_threads();
   if (options.keep_layers) return write_exr_with_layers(picture, out, name, options, diagnostics);
   return write_exr(picture, out, name, options, diagnostics);
+}
+
+/// Whether dropping alpha changes what is seen.
+bool has_transparency(const Picture& picture) {
+  for (std::size_t i = 3; i < picture.color.pixels.size(); i += 4)
+    if (picture.color.pixels[i] < 1) return true;
+  return false;
 }
 
 /// Writes `temporary` through an OutputFile. What the file itself reports ("No space left on device") goes before what a library
@@ -79,12 +93,15 @@ Result<void> write_through(const Picture& picture, const OutputFormat& format, c
 /// Writes to `temporary` and makes sure that it is all there.
 Result<void> write_checked(const Picture& picture, const OutputFormat& format, const fs::path& temporary, const WriteOptions& options,
                            Diagnostics& diagnostics) {
+  if (picture.has_alpha && !format.alpha && has_transparency(picture))
+    diagnostics.warn(fmt::format("{} files have no alpha; the picture is put on black", format.extensions[0].substr(1)));
   if (opened_by_library(format)) {
-    AFTERGLOW_CHECK(write_flat(picture, format, nullptr, temporary.string(), options, diagnostics));
+    AFTERGLOW_CHECK(write_by_module(picture, format, nullptr, temporary.string(), options));
   } else {
     AFTERGLOW_CHECK(write_through(picture, format, temporary, options, diagnostics));
   }
-  if (options.keep_layers) return {};  // the input's names may be ones that no layer is found by
+  // An OutputFile has seen every byte go out; what it cannot see is a library that stopped early without saying so.
+  if (format.kind == OutputKind::png || options.keep_layers) return {};
   ReadOptions anything;
   anything.max_side = 1 << 30;
   anything.max_bytes = ~0ull;

@@ -220,6 +220,8 @@ TEST(Write, MetadataIsKeptExceptWhatDescribedTheOldFile) {
   spec.attribute("Copyright", "someone");
   spec.attribute("ImageDescription", "a room");
   spec.attribute("Camera", "Cam");
+  spec.attribute("DateTime", "2026:11:21 13:05:59");
+  spec.attribute("where", "Zürich");
   spec.attribute("shot:take", 3);
   spec.attribute("ExposureTime", 0.25f);
   spec.attribute("PixelAspectRatio", 2.0f);
@@ -240,7 +242,11 @@ TEST(Write, MetadataIsKeptExceptWhatDescribedTheOldFile) {
   EXPECT_FALSE(exr.find_attribute("BlenderMultiChannel"));
 
   ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png"));
-  EXPECT_EQ(spec_of(folder / "o.png").get_string_attribute("Camera"), "Cam");
+  const OIIO::ImageSpec png = spec_of(folder / "o.png");
+  EXPECT_EQ(png.get_string_attribute("Camera"), "Cam");
+  EXPECT_EQ(png.get_string_attribute("DateTime"), "2026:11:21 13:05:59");
+  EXPECT_EQ(png.get_string_attribute("ImageDescription"), "a room");
+  EXPECT_EQ(png.get_string_attribute("where"), "Zürich");
   EXPECT_EQ(spec_of(folder / "o.png").get_string_attribute("oiio:ColorSpace"), "sRGB");
   ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.tif"));
   EXPECT_EQ(spec_of(folder / "o.tif").get_string_attribute("Copyright"), "someone");
@@ -250,6 +256,36 @@ TEST(Write, MetadataIsKeptExceptWhatDescribedTheOldFile) {
   // And back from a display format into EXR.
   ASSERT_NO_FATAL_FAILURE(write_or_fail(read_or_fail(folder / "o.tif"), folder / "back.exr"));
   EXPECT_EQ(spec_of(folder / "back.exr").get_string_attribute("Copyright"), "someone");
+}
+
+TEST(Write, PngOfEveryShapeAndDepthOfStrip) {
+  // Strips of rows are compressed apart: seams at every height, rows longer than a strip, all levels.
+  const TemporaryFolder folder;
+  for (const Size size : {Size{1, 5000}, Size{16000, 3}, Size{700, 1500}}) {
+    for (const int level : {0, 1, 9}) {
+      const Picture picture = make_picture(size.width, size.height, size.width == 700);
+      WriteOptions options;
+      options.png_level = level;
+      options.type = size.width == 1 ? SampleType::uint16 : SampleType::uint8;
+      ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png", options));
+      const Picture back = read_or_fail(folder / "o.png");
+      ASSERT_EQ(back.color.size(), size);
+      for (std::size_t i = 0; i < picture.color.pixels.size(); ++i) ASSERT_NEAR(back.color.pixels[i], picture.color.pixels[i], 0.006) << i;
+    }
+  }
+}
+
+TEST(Write, ResolutionOfPng) {
+  const TemporaryFolder folder;
+  OIIO::ImageSpec spec = make_spec(4, 4, {"R", "G", "B"}, OIIO::TypeUInt8);
+  spec.attribute("XResolution", 300.0f);
+  spec.attribute("YResolution", 300.0f);
+  spec.attribute("ResolutionUnit", "in");
+  ASSERT_NO_FATAL_FAILURE(make_file(folder / "in.tif", {spec}, {marks(4, 4, 3)}));
+  ASSERT_NO_FATAL_FAILURE(write_or_fail(read_or_fail(folder / "in.tif"), folder / "o.png"));
+  const OIIO::ImageSpec png = spec_of(folder / "o.png");
+  EXPECT_NEAR(png.get_float_attribute("XResolution"), 300, 0.02);
+  EXPECT_NEAR(png.get_float_attribute("YResolution"), 300, 0.02);
 }
 
 TEST(Write, ProfilesAreRewrittenToMatch) {

@@ -1,0 +1,125 @@
+#include "image/oiio_write.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include "core/text.h"
+#include "image/facts.h"
+#include "image/icc_profile.h"
+#include "image/oiio_metadata.h"
+#include "image/output_metadata.h"
+#include "image/strips.h"
+
+namespace afterglow {
+namespace {
+
+constexpr int kRows = 64;  // a strip
+
+/// An OutputFile as OpenImageIO wants to see it.
+class OiioOutput : public OIIO::Filesystem::IOProxy {
+ public:
+  OiioOutput(OutputFile& file, const std::string& name) : IOProxy(name, Write), file_(file) {}
+  const char* proxytype() const override { return "afterglow"; }
+  int64_t tell() override { return static_cast<int64_t>(file_.position()); }
+  bool seek(int64_t offset) override {
+    if (offset < 0) return false;
+    file_.seek(static_cast<std::uint64_t>(offset));
+    return true;
+  }
+  size_t write(const void* data, size_t size) override { return file_.write(data, size) ? size : 0; }
+  size_t read(void* data, size_t size) override { return file_.read(data, size) ? size : 0; }
+  size_t size() const override { return file_.size(); }
+  void flush() const override { file_.flush(); }
+
+ private:
+  OutputFile& file_;
+};
+
+OIIO::TypeDesc oiio_type(SampleType type) {
+  switch (type) {
+    case SampleType::half: return OIIO::TypeHalf;
+    case SampleType::float32: return OIIO::TypeFloat;
+    case SampleType::uint16: return OIIO::TypeUInt16;
+    default: return OIIO::TypeUInt8;
+  }
+}
+
+bool is_integer(SampleType type) { return type == SampleType::uint8 || type == SampleType::uint16; }
+
+void describe_color(OIIO::ImageSpec& spec, SampleType type, const FileFacts* facts) {
+  if (!is_integer(type)) {
+    spec.attribute("oiio:ColorSpace", "Linear");
+    return;
+  }
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  if (!facts || !facts->had_profile) return;
+  const std::vector<std::uint8_t> profile = srgb_icc_profile();
+  if (!profile.empty()) spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())), profile.data());
+}
+
+OIIO::ImageSpec spec_for(const Picture& picture, const OutputFormat& format, SampleType type, bool alpha, const WriteOptions& options) {
+  OIIO::ImageSpec spec(picture.display_window.width, picture.display_window.height, alpha ? 4 : 3, oiio_type(type));
+  if (picture.facts) spec.extra_attribs = param_list(kept_metadata(*picture.facts));
+  describe_color(spec, type, picture.facts.get());
+  if (alpha) {
+    spec.alpha_channel = 3;
+    if (is_integer(type)) spec.attribute("oiio:UnassociatedAlpha", 1);
+  }
+  switch (format.kind) {
+    case OutputKind::jpeg:
+      spec.attribute("CompressionQuality", std::clamp(options.jpeg_quality, 1, 100));
+      spec.attribute("jpeg:subsampling", "4:4:4");
+      break;
+    case OutputKind::tiff: spec.attribute("compression", options.compression.empty() ? "zip" : lower(options.compression)); break;
+    default: break;
+  }
+  return spec;
+}
+
+Error library_failed(OIIO::ImageOutput& output) {
+  const std::string why = trim(output.geterror());
+  return Error{ErrorKind::io, why.empty() ? "cannot be written" : "cannot be written: " + why};
+}
+
+/// Reads every row of a file that was written without OutputFile to see to it.
+Result<void> read_back(const std::string& name) {
+  const auto input = OIIO::ImageInput::open(name);
+  if (!input) return Error{ErrorKind::io, "cannot be written: reading it back failed: " + trim(OIIO::geterror())};
+  const OIIO::ImageSpec spec = input->spec();
+  std::vector<std::uint8_t> rows(spec.scanline_bytes() * kRows);
+  for (int y = 0; y < spec.height; y += kRows)
+    if (!input->read_scanlines(0, 0, y, std::min(y + kRows, spec.height), 0, 0, spec.nchannels, spec.format, rows.data()))
+      return Error{ErrorKind::io, "cannot be written: reading it back failed: " + trim(input->geterror())};
+  return {};
+}
+
+}  // namespace
+
+Result<void> write_with_oiio(const Picture& picture, const OutputFormat& format, OutputFile* out, const std::string& name, const WriteOptions& options) {
+  try {
+    const StripForm form{sample_type(format, options, picture.facts.get()), picture.has_alpha && format.alpha, options.dither};
+    const OIIO::ImageSpec spec = spec_for(picture, format, form.type, form.alpha, options);
+    const auto output = OIIO::ImageOutput::create(format.name);
+    if (!output) return Error{ErrorKind::io, fmt::format("cannot be written: OpenImageIO has no {} writer", format.name)};
+    std::optional<OiioOutput> proxy;
+    if (out) output->set_ioproxy(&proxy.emplace(*out, name));
+    if (!output->open(name, spec)) return library_failed(*output);
+    std::vector<std::uint8_t> strip(form.row_bytes(picture) * kRows);
+    for (int y = 0; y < spec.height; y += kRows) {
+      const int rows = std::min(kRows, spec.height - y);
+      encode_strip(picture, form, y, rows, strip.data());
+      if (!output->write_scanlines(y, y + rows, 0, oiio_type(form.type), strip.data()) || (out && out->failure())) return library_failed(*output);
+    }
+    if (!output->close()) return library_failed(*output);
+    return out ? Result<void>() : read_back(name);
+  } catch (const std::exception& error) {
+    return Error{ErrorKind::io, fmt::format("cannot be written: {}", error.what())};
+  }
+}
+
+}  // namespace afterglow

@@ -1,0 +1,40 @@
+#include "image/strips.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "image/encode.h"
+#include "image/parallel.h"
+
+namespace afterglow {
+
+void encode_rows(const Picture& picture, const StripForm& form, int first, int rows, std::uint8_t* bytes) {
+  const auto width = static_cast<std::size_t>(picture.display_window.width), channels = std::size_t{form.alpha ? 4u : 3u};
+  const float padding = picture.has_alpha ? 0.0f : 1.0f;
+  const CodeRules rules{form.type == SampleType::uint16 ? 65535 : 255, form.alpha, form.dither};
+  const bool integers = form.type == SampleType::uint8 || form.type == SampleType::uint16;
+  std::vector<float> rgba(width * 4), packed(integers ? 0 : width * channels);
+  for (int i = 0; i < rows; ++i, bytes += form.row_bytes(picture)) {
+    display_row(picture, first + i, padding, rgba.data());
+    if (form.type == SampleType::uint8) {
+      encode_row(rules, rgba.data(), static_cast<int>(width), 0, first + i, bytes);
+    } else if (form.type == SampleType::uint16) {
+      encode_row(rules, rgba.data(), static_cast<int>(width), 0, first + i, reinterpret_cast<std::uint16_t*>(bytes));
+    } else {
+      for (std::size_t x = 0; x < width; ++x) std::copy_n(&rgba[x * 4], channels, &packed[x * channels]);
+      if (form.type == SampleType::half) {
+        to_half(packed.data(), reinterpret_cast<std::uint16_t*>(bytes), packed.size());
+      } else {
+        std::copy_n(packed.data(), packed.size(), reinterpret_cast<float*>(bytes));
+      }
+    }
+  }
+}
+
+void encode_strip(const Picture& picture, const StripForm& form, int first, int rows, std::uint8_t* bytes) {
+  parallel_rows(rows, static_cast<long long>(picture.display_window.width) * rows * 4, [&](int begin, int end) {
+    encode_rows(picture, form, first + begin, end - begin, bytes + form.row_bytes(picture) * static_cast<std::size_t>(begin));
+  });
+}
+
+}  // namespace afterglow

@@ -1,0 +1,28 @@
+// The display window as rows of samples in the form that a format without windows stores.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "image/picture.h"
+#include "image/writer.h"
+
+namespace afterglow {
+
+struct StripForm {
+  SampleType type = SampleType::uint8;  ///< integers are sRGB-encoded codes, half and float scene-linear
+  bool alpha = false;                   ///< four samples a pixel, else three
+  bool dither = false;
+
+  std::size_t sample_bytes() const { return type == SampleType::uint8 ? 1 : type == SampleType::float32 ? 4 : 2; }
+  std::size_t row_bytes(const Picture& picture) const {
+    return static_cast<std::size_t>(picture.display_window.width) * (alpha ? 4 : 3) * sample_bytes();
+  }
+};
+
+/// Rows [first, first + rows) of the display window into `bytes`, on this thread.
+void encode_rows(const Picture& picture, const StripForm& form, int first, int rows, std::uint8_t* bytes);
+/// The same on several threads.
+void encode_strip(const Picture& picture, const StripForm& form, int first, int rows, std::uint8_t* bytes);
+
+}  // namespace afterglow
