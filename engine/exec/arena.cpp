@@ -44,13 +44,14 @@ Result<Arena> Arena::create(const Device& device, const Graph& graph, const Plan
   for (std::size_t i = 0; i < plan.transient.size(); ++i) {
     const ImageId id = plan.transient[i];
     if (id == graph.result) continue;
-    const VkImageUsageFlags readable = options.readable ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0;
+    const VkImageUsageFlags more = (options.readable ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0) |
+                                   (options.storage ? VK_IMAGE_USAGE_STORAGE_BIT : 0);
     AFTERGLOW_TRY(UnboundImage image,
                   UnboundImage::create(
                       device, {.name = graph.images[id].name,
                                .size = graph.images[id].size,
                                .format = options.format,
-                               .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | readable}));
+                               .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | more}));
     const auto& needs = image.needs();
     blocks.push_back({needs.size, needs.alignment, plan.lifetimes[i].first, plan.lifetimes[i].last});
     memory_types &= needs.memoryTypeBits;

@@ -13,6 +13,7 @@ struct ArenaOptions {
   VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
   bool share = true;
   bool readable = false;  ///< images may be copied from
+  bool storage = false;   ///< images may be read as storage images
   std::uint64_t max_memory = 0;
 };
 

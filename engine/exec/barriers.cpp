@@ -13,21 +13,27 @@ VkImageMemoryBarrier2 before_drawing(VkImage image) {
                        VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
 }
 
-VkImageMemoryBarrier2 before_reading(VkImage image) {
+VkAccessFlags2 reading_access(VkImageLayout layout) {
+  const VkAccessFlags2 storage = layout == VK_IMAGE_LAYOUT_GENERAL ? VK_ACCESS_2_SHADER_STORAGE_READ_BIT : 0;
+  return VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | storage;
+}
+
+VkImageMemoryBarrier2 before_reading(VkImage image, VkImageLayout layout) {
   return image_barrier(image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
                        VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-                       VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+                       reading_access(layout), layout);
 }
 
 std::vector<std::vector<VkImageMemoryBarrier2>> kernel_barriers(const Plan& plan,
                                                                 const std::vector<std::vector<ImageId>>& read,
-                                                                const std::function<VkImage(ImageId)>& image_of) {
+                                                                const std::function<VkImage(ImageId)>& image_of,
+                                                                VkImageLayout read_layout) {
   std::vector<std::vector<VkImageMemoryBarrier2>> out(plan.kernels.size());
   std::set<ImageId> readable;
   for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
     for (const ImageId id : read[i]) {
       const VkImage image = image_of(id);
-      if (image != VK_NULL_HANDLE && readable.insert(id).second) out[i].push_back(before_reading(image));
+      if (image != VK_NULL_HANDLE && readable.insert(id).second) out[i].push_back(before_reading(image, read_layout));
     }
     const VkImage target = image_of(plan.kernels[i].output);
     if (target != VK_NULL_HANDLE) out[i].push_back(before_drawing(target));

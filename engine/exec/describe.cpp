@@ -34,6 +34,28 @@ const PassInput* find_input(const Pass& pass, const std::string& name) {
   return found == pass.inputs.end() ? nullptr : &*found;
 }
 
+/// One wish for each image slot, in the order that AssembledKernel::images has.
+std::vector<ImageRead> reads_of(const Graph& graph, const PlanKernel& kernel, const KernelDesc& desc,
+                                const DescribeOptions& options) {
+  const ImageRead storage = options.half_storage ? ImageRead::storage_rgba16f : ImageRead::storage_rgba32f;
+  std::vector<ImageRead> reads;
+  const auto add = [&](int stage, const std::string& name) {
+    const PassInput* input = find_input(pass_of_stage(graph, kernel, stage), name);
+    const bool between = input && graph.images[input->image].producer >= 0;
+    const bool source = input && input->image == graph.source && options.source_is_storage;
+    reads.push_back(between || source ? storage : ImageRead::sampled);
+  };
+  if (!desc.sample) add(-1, "source");
+  int stage = 0;
+  const auto add_inputs = [&](const KernelStage& of) {
+    for (const auto& input : of.shader->interface.inputs) add(stage, input.name);
+    ++stage;
+  };
+  if (desc.sample) add_inputs(*desc.sample);
+  for (const auto& of : desc.stages) add_inputs(of);
+  return reads;
+}
+
 }  // namespace
 
 Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, const PlanKernel& kernel,
@@ -57,6 +79,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
     AFTERGLOW_TRY(KernelStage stage, stage_of(shaders, graph.passes[kernel.passes[i]]));
     desc.stages.push_back(std::move(stage));
   }
+  if (options.storage_reads) desc.reads = reads_of(graph, kernel, desc, options);
   return desc;
 }
 

@@ -13,6 +13,8 @@ namespace afterglow {
 struct DescribeOptions {
   bool hardware_filter = false;
   bool half_storage = false;
+  bool storage_reads = false;      ///< images between kernels are read as storage images where their shaders allow it
+  bool source_is_storage = false;  ///< the source too
 };
 
 /// Errors: script (an unknown shader).

@@ -1,6 +1,6 @@
 #include "exec/descriptors.h"
 
-#include <algorithm>
+#include <map>
 
 #include "gpu/error.h"
 
@@ -9,18 +9,18 @@ namespace afterglow {
 namespace {
 
 Result<DescriptorPoolHandle> create_pool(const Device& device, const std::vector<SetNeeds>& needs) {
-  std::uint32_t blocks = 0, images = 0;
+  // One block too many: a pool of nothing is not possible, a program that needs nothing is.
+  std::map<VkDescriptorType, std::uint32_t> counts{{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1u}};
   for (const auto& need : needs) {
-    blocks += need.block.range > 0;
-    images += static_cast<std::uint32_t>(need.images);
+    counts[VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER] += need.block.range > 0;
+    for (const auto type : need.images) ++counts[type];
   }
-  // A pool holds at least one of each kind: kernels without blocks or images are possible, pools without are not.
-  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, std::max(blocks, 1u)},
-                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, std::max(images, 1u)}};
+  std::vector<VkDescriptorPoolSize> sizes;
+  for (const auto& [type, count] : counts) sizes.push_back({type, count});
   const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                         .maxSets = static_cast<std::uint32_t>(needs.size()),
-                                        .poolSizeCount = 2,
-                                        .pPoolSizes = sizes};
+                                        .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
+                                        .pPoolSizes = sizes.data()};
   VkDescriptorPool pool = VK_NULL_HANDLE;
   AFTERGLOW_VK(vkCreateDescriptorPool(device.handle(), &info, nullptr, &pool), "cannot create a descriptor pool");
   return DescriptorPoolHandle(device.handle(), pool);
@@ -40,6 +40,7 @@ Result<Descriptors> Descriptors::create(const Device& device, const std::vector<
     VkDescriptorSet set = VK_NULL_HANDLE;
     AFTERGLOW_VK(vkAllocateDescriptorSets(device.handle(), &allocate, &set), "cannot allocate descriptors");
     out.sets_.push_back(set);
+    out.images_.push_back(need.images);
     if (need.block.range == 0) continue;
     const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                      .dstSet = set,
@@ -52,13 +53,14 @@ Result<Descriptors> Descriptors::create(const Device& device, const std::vector<
   return out;
 }
 
-void Descriptors::write_image(std::size_t kernel, std::size_t slot, VkImageView view, VkSampler sampler) const {
-  const VkDescriptorImageInfo image{sampler, view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+void Descriptors::write_image(std::size_t kernel, std::size_t slot, VkImageView view, VkImageLayout layout,
+                              VkSampler sampler) const {
+  const VkDescriptorImageInfo image{sampler, view, layout};
   const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                    .dstSet = sets_[kernel],
                                    .dstBinding = static_cast<std::uint32_t>(slot) + 1,
                                    .descriptorCount = 1,
-                                   .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                   .descriptorType = images_[kernel][slot],
                                    .pImageInfo = &image};
   vkUpdateDescriptorSets(device_, 1, &write, 0, nullptr);
 }

@@ -8,11 +8,11 @@
 
 namespace afterglow {
 
-/// What one set holds: binding 0 a uniform block unless its range is 0, bindings 1… `images` sampled images.
+/// What one set holds: binding 0 a uniform block unless its range is 0, bindings 1… images of these kinds.
 struct SetNeeds {
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
   VkDescriptorBufferInfo block{};
-  std::size_t images = 0;
+  std::vector<VkDescriptorType> images{};
 };
 
 class Descriptors {
@@ -22,13 +22,14 @@ class Descriptors {
   Descriptors() = default;
 
   VkDescriptorSet set(std::size_t kernel) const { return sets_[kernel]; }
-  /// Must not be called while a submission that uses the set is in flight.
-  void write_image(std::size_t kernel, std::size_t slot, VkImageView view, VkSampler sampler) const;
+  /// `layout`: in which the kernel finds the image. Must not be called while a submission that uses the set is in flight.
+  void write_image(std::size_t kernel, std::size_t slot, VkImageView view, VkImageLayout layout, VkSampler sampler) const;
 
  private:
   VkDevice device_ = VK_NULL_HANDLE;
   DescriptorPoolHandle pool_;
   std::vector<VkDescriptorSet> sets_;
+  std::vector<std::vector<VkDescriptorType>> images_;  ///< parallel to `sets_`
 };
 
 }  // namespace afterglow

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstring>
 
+#include "exec/barriers.h"
 #include "exec/convert.h"
 #include "exec/frame_image.h"
 #include "exec/host_input.h"
@@ -21,6 +22,11 @@ using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// The layout in which the program reads an input.
+VkImageLayout input_layout(const Program& program, const std::string& name) {
+  return name == "source" ? program.source_layout() : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
 }
 
 StagedImage staged(const FrameImage& image) {
@@ -48,7 +54,7 @@ struct FrameRunner::State {
   Result<std::uint64_t> upload(FrameImage& image, const HostImage& host);
   Result<std::uint64_t> download(HostResult& out);
   Result<void> bind(Program& program);
-  void before(VkCommandBuffer commands) const;
+  void before(const Program& program, VkCommandBuffer commands);
   void after(VkCommandBuffer commands);
   Result<void> execute(Program& program, KernelTiming timing, FrameTimes& times);
 };
@@ -81,6 +87,7 @@ Result<void> FrameRunner::State::prepare(const Program& program, const std::map<
                    .size = graph.images[id].size,
                    .format = input_format(name, host.at(name), program.storage_format()),
                    .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
+    if (input_layout(program, name) == VK_IMAGE_LAYOUT_GENERAL) descs[name].usage |= VK_IMAGE_USAGE_STORAGE_BIT;
   }
   const ImageDesc result_desc{.name = "result",
                               .size = graph.images[graph.result].size,
@@ -150,13 +157,16 @@ Result<void> FrameRunner::State::bind(Program& program) {
 }
 
 /// Into the layouts that Program::record wants.
-void FrameRunner::State::before(VkCommandBuffer commands) const {
+void FrameRunner::State::before(const Program& program, VkCommandBuffer commands) {
   std::vector<VkImageMemoryBarrier2> barriers;
-  for (const auto& [name, image] : inputs) {
-    if (!image.direct) continue;  // the upload has done it
-    barriers.push_back(image_barrier(image.image.get(), VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT,
-                                     image.layout, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-                                     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
+  for (auto& [name, image] : inputs) {
+    const VkImageLayout wanted = input_layout(program, name);
+    if (!image.direct && image.layout == wanted) continue;  // the upload has done it
+    const auto stage = image.direct ? VK_PIPELINE_STAGE_2_HOST_BIT : VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+    const VkAccessFlags2 access = image.direct ? VK_ACCESS_2_HOST_WRITE_BIT : VK_ACCESS_2_NONE;
+    barriers.push_back(image_barrier(image.image.get(), stage, access, image.layout,
+                                     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(wanted), wanted));
+    image.layout = wanted;
   }
   barriers.push_back(image_barrier(result.image.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0,
                                    VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
@@ -169,10 +179,9 @@ void FrameRunner::State::after(VkCommandBuffer commands) {
   std::vector<VkImageMemoryBarrier2> barriers;
   for (auto& [name, image] : inputs) {
     if (!image.direct) continue;
+    barriers.push_back(image_barrier(image.image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, image.layout,
+                                     VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL));
     image.layout = VK_IMAGE_LAYOUT_GENERAL;
-    barriers.push_back(image_barrier(image.image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0,
-                                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_HOST_BIT,
-                                     VK_ACCESS_2_HOST_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL));
   }
   if (result.direct) {
     barriers.push_back(image_barrier(result.image.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
@@ -193,7 +202,7 @@ Result<void> FrameRunner::State::execute(Program& program, KernelTiming timing, 
 
   const auto start = Clock::now();
   auto done = submitter.submit([&](VkCommandBuffer commands) {
-    before(commands);
+    before(program, commands);
     program.record(commands, -1, queries);
     if (!separate) after(commands);
   });

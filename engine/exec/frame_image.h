@@ -12,9 +12,10 @@ struct FrameImage {
 
   /// With `access`, an image that the CPU can touch, if the device has such images of this size; else one for staging.
   static Result<FrameImage> create(const Device& device, ImageDesc desc, HostAccess access);
-  /// Whether it can serve for `desc` (tiling and usage aside).
+  /// Whether it can serve for `desc` (tiling aside).
   bool fits(const ImageDesc& desc) const {
-    return image && image.desc().size == desc.size && image.desc().format == desc.format;
+    return image && image.desc().size == desc.size && image.desc().format == desc.format &&
+           (image.desc().usage & desc.usage) == desc.usage;
   }
 };
 

@@ -7,12 +7,18 @@
 
 namespace afterglow {
 
+std::vector<VkDescriptorType> descriptor_types(const CompiledKernel& kernel) {
+  std::vector<VkDescriptorType> types;
+  for (const auto& image : kernel.images)
+    types.push_back(image.read == ImageRead::sampled ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
+                                                     : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
+  return types;
+}
+
 namespace {
 
 DrawInterface interface_of(const CompiledKernel& kernel) {
-  return {.block = kernel.block_size > 0,
-          .images = static_cast<int>(kernel.images.size()),
-          .push_bytes = kPushConstantBytes};
+  return {.block = kernel.block_size > 0, .images = descriptor_types(kernel), .push_bytes = kPushConstantBytes};
 }
 
 }  // namespace

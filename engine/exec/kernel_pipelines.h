@@ -10,6 +10,9 @@
 
 namespace afterglow {
 
+/// What the image slots of a kernel are bound as, in order.
+std::vector<VkDescriptorType> descriptor_types(const CompiledKernel& kernel);
+
 class KernelPipelines {
  public:
   /// Made over threads through the device's pipeline cache. `names` is parallel to `kernels`, for messages and

@@ -33,7 +33,16 @@ struct Program::State {
   Descriptors descriptors;
   std::vector<KernelCommands> kernels;
   VkImageView result = VK_NULL_HANDLE;
+  bool storage_reads = false;
   bool bound = false;
+
+  /// Images between kernels; one layout for both ways of reading.
+  VkImageLayout read_layout() const {
+    return storage_reads ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  }
+  VkImageLayout source_layout() const {
+    return options.source_is_storage ? read_layout() : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  }
 
   const CompiledKernel& compiled_of(std::size_t kernel) const { return compiled.unique[compiled.index[kernel]]; }
   Result<void> check();
@@ -45,10 +54,10 @@ struct Program::State {
 
 namespace {
 
-bool can_interpolate(const Device& device, VkFormat format) {
+bool can(const Device& device, VkFormat format, VkFormatFeatureFlags wanted) {
   VkFormatProperties properties{};
   vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
-  return properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  return (properties.optimalTilingFeatures & wanted) == wanted;
 }
 
 }  // namespace
@@ -70,8 +79,11 @@ Result<void> Program::State::check() {
 
 Result<void> Program::State::compile(ShaderLibrary& shaders, KernelCompiler& compiler) {
   const DescribeOptions describe{
-      .hardware_filter = options.hardware_filter && !options.reference && can_interpolate(device, format),
-      .half_storage = options.storage == Storage::fp16};
+      .hardware_filter = options.hardware_filter && !options.reference &&
+                         can(device, format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT),
+      .half_storage = options.storage == Storage::fp16,
+      .storage_reads = storage_reads,
+      .source_is_storage = options.source_is_storage};
   std::vector<KernelDesc> descs;
   for (const auto& kernel : plan.kernels) {
     AFTERGLOW_TRY(KernelDesc desc, describe_kernel(shaders, graph, kernel, describe));
@@ -103,13 +115,13 @@ Result<void> Program::State::make_descriptors() {
     const CompiledKernel& kernel = compiled_of(i);
     needs.push_back({.layout = pipelines.layout(kernel).set.get(),
                      .block = {parameters.buffer(), parameters.offset(i), kernel.block_size},
-                     .images = images[i].size()});
+                     .images = descriptor_types(kernel)});
   }
   AFTERGLOW_TRY(descriptors, Descriptors::create(device, needs));
   for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
     for (std::size_t slot = 0; slot < images[i].size(); ++slot) {
       const UnboundImage* image = arena.image(images[i][slot]);
-      if (image) descriptors.write_image(i, slot, image->view(), sampler.get());
+      if (image) descriptors.write_image(i, slot, image->view(), read_layout(), sampler.get());
     }
   }
   return {};
@@ -120,7 +132,7 @@ void Program::State::make_commands() {
   auto barriers = kernel_barriers(plan, images, [this](ImageId id) {
     const UnboundImage* image = arena.image(id);
     return image ? image->get() : VkImage{VK_NULL_HANDLE};
-  });
+  }, read_layout());
   for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
     const ImageId output = plan.kernels[i].output;
     const UnboundImage* target = arena.image(output);
@@ -147,12 +159,14 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   state->plan = make_plan(graph, {.join = !options.reference,
                                   .alias = options.share_memory && !options.reference,
                                   .bytes_per_pixel = half ? 8u : 16u});
+  state->storage_reads = options.storage_reads && can(device, state->format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
   AFTERGLOW_CHECK(state->check());
   if (!state->plan.kernels.empty()) {
     AFTERGLOW_TRY(state->arena, Arena::create(device, graph, state->plan,
                                               {.format = state->format,
                                                .share = options.share_memory && !options.reference,
                                                .readable = options.reference,
+                                               .storage = state->storage_reads,
                                                .max_memory = options.max_memory}));
     AFTERGLOW_CHECK(state->compile(shaders, compiler));
     AFTERGLOW_CHECK(state->make_pipelines());
@@ -192,8 +206,10 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
   for (const auto& [name, id] : s.graph.auxiliary) AFTERGLOW_CHECK(add(name, id));
   for (std::size_t i = 0; i < s.kernels.size(); ++i) {
     for (std::size_t slot = 0; slot < s.images[i].size(); ++slot) {
-      if (const auto view = views.find(s.images[i][slot]); view != views.end())
-        s.descriptors.write_image(i, slot, view->second, s.sampler.get());
+      const ImageId id = s.images[i][slot];
+      const VkImageLayout layout = id == s.graph.source ? s.source_layout() : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+      if (const auto view = views.find(id); view != views.end())
+        s.descriptors.write_image(i, slot, view->second, layout, s.sampler.get());
     }
   }
   s.result = result.view;
@@ -226,12 +242,13 @@ const Plan& Program::plan() const { return state_->plan; }
 const Graph& Program::graph() const { return state_->graph; }
 ProgramMemory Program::memory() const { return state_->arena.memory(); }
 VkFormat Program::storage_format() const { return state_->format; }
+VkImageLayout Program::source_layout() const { return state_->source_layout(); }
 
 std::optional<Program::Transient> Program::transient(ImageId image) const {
   const UnboundImage* found = state_->arena.image(image);
   if (!found) return std::nullopt;
   return Transient{{found->get(), found->view(), found->desc().format, found->desc().size},
-                   VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                   state_->read_layout(),
                    state_->options.reference};
 }
 

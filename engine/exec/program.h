@@ -25,6 +25,8 @@ struct ProgramOptions {
   Storage storage = Storage::fp32;
   bool reference = false;         ///< every pass on its own, computed weights, no sharing of memory
   bool hardware_filter = false;   ///< filtered fetches may be used
+  bool storage_reads = false;     ///< read images as storage images where shaders and device allow it: faster on CPU devices
+  bool source_is_storage = false; ///< with storage_reads: the source that will be bound has STORAGE usage and comes in GENERAL layout
   bool share_memory = true;       ///< images whose lifetimes do not overlap share bytes (never with `reference`)
   std::uint64_t max_memory = 6ull << 30;
 };
@@ -68,6 +70,8 @@ class Program {
   const Graph& graph() const;
   ProgramMemory memory() const;
   VkFormat storage_format() const;
+  /// The layout in which `record` wants the source: SHADER_READ_ONLY_OPTIMAL, or GENERAL (then with STORAGE usage).
+  VkImageLayout source_layout() const;
   /// A transient image and the layout it is in after a whole run; null for images without memory of their own (inputs, the result, what
   /// joined passes hand on). Its pixels are `kept` after the run by a program created with `reference` alone.
   struct Transient { ImageBinding binding; VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; bool kept = false; };

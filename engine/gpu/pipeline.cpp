@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -11,11 +12,14 @@ namespace afterglow {
 
 Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface& interface) {
   const auto& limits = device.properties().limits;
-  const auto max_images = std::min(limits.maxPerStageDescriptorSampledImages, limits.maxPerStageDescriptorSamplers);
-  if (static_cast<std::uint32_t>(interface.images) > max_images) {
-    return Error{ErrorKind::device,
-                 fmt::format("a kernel reads {} images, the device allows {}", interface.images, max_images)};
-  }
+  const auto check = [&](VkDescriptorType type, std::uint32_t most) -> Result<void> {
+    const auto count = static_cast<std::uint32_t>(std::count(interface.images.begin(), interface.images.end(), type));
+    if (count <= most) return {};
+    return Error{ErrorKind::device, fmt::format("a kernel reads {} images, the device allows {}", count, most)};
+  };
+  AFTERGLOW_CHECK(check(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                        std::min(limits.maxPerStageDescriptorSampledImages, limits.maxPerStageDescriptorSamplers)));
+  AFTERGLOW_CHECK(check(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, limits.maxPerStageDescriptorStorageImages));
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   if (interface.block) {
     bindings.push_back({.binding = 0,
@@ -24,9 +28,9 @@ Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface&
                         .stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT,
                         .pImmutableSamplers = nullptr});
   }
-  for (int i = 0; i < interface.images; ++i) {
+  for (std::size_t i = 0; i < interface.images.size(); ++i) {
     bindings.push_back({.binding = static_cast<std::uint32_t>(i) + 1,
-                        .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                        .descriptorType = interface.images[i],
                         .descriptorCount = 1,
                         .stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT,
                         .pImmutableSamplers = nullptr});

@@ -4,17 +4,18 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "gpu/device.h"
 #include "gpu/handle.h"
 
 namespace afterglow {
 
-/// What a full-screen fragment shader reads. Set 0: binding 0 a uniform block (when `block`), bindings 1…`images`
-/// combined image samplers; `push_bytes` of push constants.
+/// What a full-screen fragment shader reads. Set 0: binding 0 a uniform block (when `block`), bindings 1… its images, as
+/// combined image samplers or storage images; `push_bytes` of push constants.
 struct DrawInterface {
   bool block = false;
-  int images = 0;
+  std::vector<VkDescriptorType> images;
   std::uint32_t push_bytes = 0;
   friend auto operator<=>(const DrawInterface&, const DrawInterface&) = default;
 };

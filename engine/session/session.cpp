@@ -53,7 +53,7 @@ Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& pres
   state->preset_file = preset.string();
   state->device = std::move(opened.device).value();
   state->stack = std::move(stack).value();
-  state->stack->use(*state->device);
+  state->stack->use(*state->device, true);
   // Timestamps around deferred draws mean nothing: there, each kernel is timed in a submission of its own.
   if (options.timing == KernelTiming::timestamps && !state->device->timestamps_mean_draws())
     state->options.timing = KernelTiming::submissions;

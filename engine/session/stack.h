@@ -32,6 +32,7 @@ struct StackOptions {
 struct StackChoice {
   Storage storage = Storage::fp32;
   bool hardware_filter = false;
+  bool storage_reads = false;   ///< see ProgramOptions
   double max_error = 2e-3;
 };
 
@@ -48,8 +49,8 @@ class Stack {
   /// Bytes of device memory that the stack's images take for such a picture, with the source and the result. Needs no device.
   Result<std::uint64_t> memory_needed(const BuildContext& context);
 
-  /// Decides storage and filtering for a device. Call before `prepare`.
-  void use(Device& device);
+  /// Decides storage and filtering for a device. Call before `prepare`. `source_is_storage`: see ProgramOptions.
+  void use(Device& device, bool source_is_storage = false);
   const StackChoice& choice() const;
 
   /// Makes shaders, pipelines and memory for pictures of this size, or only rewrites parameters when the structure is as before.

@@ -11,6 +11,7 @@
 #include "shader/kernel.h"
 #include "shader/prelude.h"
 #include "shader/rename.h"
+#include "shader/storage_reads.h"
 
 namespace afterglow {
 namespace {
@@ -50,9 +51,10 @@ class Assembler {
     }
     out_.glsl += kHeader;
     if (!block_.empty()) out_.glsl += "layout(set = 0, binding = 0, std140) uniform ag_Block {\n" + block_ + "};\n";
-    out_.glsl += samplers_;
+    out_.glsl += images_;
     out_.glsl += "#line 1 1\n";
     out_.glsl += prelude_text();
+    if (!readers_.empty()) out_.glsl += "#line 1 1\n" + readers_;
     out_.glsl += library_text_ + stages_ + "#line 1 0\n";
     if (kernel_.half_storage) out_.glsl += kRoundToHalf;
     out_.glsl += "void main() {\n  ivec2 ag_pixel = ivec2(gl_FragCoord.xy);\n  vec4 ag_color;\n" + body_;
@@ -65,9 +67,10 @@ class Assembler {
  private:
   Result<void> head() {
     if (kernel_.sample) return add_stage(*kernel_.sample, ShaderKind::sample);
-    add_image(-1, "source", "ag_image0");
+    const ImageRead read = add_image(-1, "source", "ag_image0", true);
+    images_ += fmt::format("#define ag_texel0(p) {}\n", texel(read, "ag_image0", "p"));
     if (!kernel_.filter) {
-      body_ += "  ag_color = texelFetch(ag_image0, ag_pixel, 0);\n";
+      body_ += "  ag_color = ag_texel0(ag_pixel);\n";
       return {};
     }
     AFTERGLOW_TRY(const std::string code,
@@ -76,9 +79,23 @@ class Assembler {
     return {};
   }
 
-  void add_image(int stage, const std::string& name, const std::string& variable) {
-    out_.images.push_back({stage, name});
-    samplers_ += fmt::format("layout(set = 0, binding = {}) uniform sampler2D {};\n", out_.images.size(), variable);
+  /// `by_engine`: all reads of it go through the engine's functions, so that it can be a storage image.
+  ImageRead add_image(int stage, const std::string& name, const std::string& variable, bool by_engine) {
+    const std::size_t slot = out_.images.size();
+    const ImageRead read = by_engine && slot < kernel_.reads.size() ? kernel_.reads[slot] : ImageRead::sampled;
+    out_.images.push_back({stage, name, read});
+    if (read == ImageRead::sampled) {
+      images_ += fmt::format("layout(set = 0, binding = {}) uniform sampler2D {};\n", slot + 1, variable);
+    } else {
+      images_ += fmt::format("layout(set = 0, binding = {}, {}) uniform readonly image2D {};\n", slot + 1,
+                             read == ImageRead::storage_rgba16f ? "rgba16f" : "rgba32f", variable);
+    }
+    return read;
+  }
+
+  static std::string texel(ImageRead read, const std::string& variable, const std::string& pixel) {
+    return read == ImageRead::sampled ? fmt::format("texelFetch({}, {}, 0)", variable, pixel)
+                                      : fmt::format("imageLoad({}, {})", variable, pixel);
   }
 
   std::size_t file_index(const std::string& path) {
@@ -109,12 +126,20 @@ class Assembler {
     }
     for (const auto& name : scanned.names) names.insert_or_assign(name.name, NewName{prefix + name.name, name.macro});
 
+    StorageReaders readers;
     std::string arguments = kind == ShaderKind::pixel ? "ag_color" : "ag_pixel";
     for (const auto& input : source.interface.inputs) {
       const std::string variable =
           input.pixelwise ? fmt::format("ag_image{}", out_.images.size()) : prefix + input.name;
-      add_image(stage_count_, input.name, variable);
-      if (input.pixelwise) arguments += fmt::format(", texelFetch({}, ag_pixel, 0)", variable);
+      const bool by_engine = input.pixelwise || read_by_prelude_alone(scanned.tokens, input.name);
+      const ImageRead read = add_image(stage_count_, input.name, variable, by_engine);
+      if (input.pixelwise) {
+        arguments += ", " + texel(read, variable, "ag_pixel");
+      } else if (read != ImageRead::sampled) {
+        const std::string reader = fmt::format("ag_r{}_", out_.images.size());
+        readers_ += storage_reads(reader, variable);
+        readers[input.name] = reader;
+      }
     }
     for (const auto& param : source.interface.params) {
       if (param.specialised) continue;
@@ -122,7 +147,7 @@ class Assembler {
       out_.params.push_back({stage_count_, param.name, param.type, 0});
     }
     stages_ +=
-        fmt::format("#line 1 {}\n", file_index(source.path.string())) + rewrite(source.text, scanned, names, values);
+        fmt::format("#line 1 {}\n", file_index(source.path.string())) + rewrite(source.text, scanned, names, values, readers);
     body_ +=
         fmt::format("  ag_color = {}{}({});\n", prefix, kind == ShaderKind::pixel ? "apply" : "sample_at", arguments);
     ++stage_count_;
@@ -186,7 +211,7 @@ class Assembler {
 
   const KernelDesc& kernel_;
   AssembledKernel out_;
-  std::string block_, samplers_, library_text_, stages_, body_;
+  std::string block_, images_, readers_, library_text_, stages_, body_;
   std::vector<Library> libraries_;
   int stage_count_ = 0;
 };

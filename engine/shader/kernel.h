@@ -28,6 +28,10 @@ struct KernelStage {
 /// assembler emits cheaper addressing for the exact cases.
 enum class AxisRatio { any, same, half, twice };  // n_dst = n_src · {?, 1, 1/2, 2}, exactly
 
+/// How the engine reads an image: through a sampler, or as a storage image of a format, which some devices do much
+/// faster (lavapipe: 0.6 against 1.8 ns a texel of four floats).
+enum class ImageRead { sampled, storage_rgba32f, storage_rgba16f };
+
 struct KernelDesc {
   /// Head: exactly one of `filter` (source is bound at image 0) or `sample` is set; neither: the own pixel of image 0.
   std::optional<Filter> filter;
@@ -36,6 +40,9 @@ struct KernelDesc {
   std::vector<KernelStage> stages;  ///< pixel stages, in order
   bool hardware_filter = false;     ///< let the sampler interpolate (error of 8-bit fractions) where that helps
   bool half_storage = false;        ///< target is RGBA16F: clamp to ±65504 before the store
+  /// Wished for each image slot, in the order of AssembledKernel::images; those beyond the end are sampled. An input that
+  /// an author's shader uses in any other way than by the prelude's functions stays sampled.
+  std::vector<ImageRead> reads;
 };
 
 /// Where a dynamic parameter lies in the kernel's uniform block.
@@ -47,8 +54,8 @@ struct KernelParam {
 };
 
 /// GLSL ready for the compiler, with what the executor must bind.
-/// Set 0: binding 0 the uniform block (absent when `block_size` is 0), bindings 1… combined image samplers in the order
-/// of `images`. The block is std140; a bool takes 4 bytes, 0 or 1. Kernels with `hardware_filter` need samplers with
+/// Set 0: binding 0 the uniform block (absent when `block_size` is 0), bindings 1… the images in the order of `images`,
+/// combined image samplers or storage images. The block is std140; a bool takes 4 bytes, 0 or 1. Kernels with `hardware_filter` need samplers with
 /// linear filtering and clamp-to-edge; the others only use texelFetch. The result is location 0. Push constants: see
 /// kPushConstantBytes below.
 struct AssembledKernel {
@@ -58,6 +65,7 @@ struct AssembledKernel {
   struct ImageSlot {
     int stage = -1;    ///< -1: the head's source; else as in KernelParam::stage
     std::string name;  ///< input name, or "source" for the head
+    ImageRead read = ImageRead::sampled;  ///< what the kernel got: a combined image sampler or a read-only storage image
   };
   std::vector<ImageSlot> images;
   std::vector<KernelParam> params;      ///< dynamic parameters in the order of the block; offsets are not known yet (0)

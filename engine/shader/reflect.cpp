@@ -56,11 +56,12 @@ Result<Reflection> reflect(const std::vector<std::uint32_t>& spirv) {
       out.members[spvc_compiler_get_member_name(compiler, list[i].base_type_id, m)] = member;
     }
   }
-  if (spvc_resources_get_resource_list_for_type(resources, SPVC_RESOURCE_TYPE_SAMPLED_IMAGE, &list, &count) !=
-      SPVC_SUCCESS)
-    return reflection_error(context);
-  for (std::size_t i = 0; i < count; ++i)
-    out.image_bindings.push_back(spvc_compiler_get_decoration(compiler, list[i].id, SpvDecorationBinding));
+  for (const auto type : {SPVC_RESOURCE_TYPE_SAMPLED_IMAGE, SPVC_RESOURCE_TYPE_STORAGE_IMAGE}) {
+    if (spvc_resources_get_resource_list_for_type(resources, type, &list, &count) != SPVC_SUCCESS)
+      return reflection_error(context);
+    for (std::size_t i = 0; i < count; ++i)
+      out.image_bindings.push_back(spvc_compiler_get_decoration(compiler, list[i].id, SpvDecorationBinding));
+  }
   std::sort(out.image_bindings.begin(), out.image_bindings.end());
   return out;
 }

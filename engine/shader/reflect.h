@@ -17,7 +17,7 @@ struct Reflection {
   };
   std::map<std::string, Member> members;      ///< of the uniform block at set 0, binding 0
   std::uint32_t block_size = 0;               ///< bytes, a multiple of 16; 0: no block
-  std::vector<std::uint32_t> image_bindings;  ///< of combined image samplers in set 0, sorted
+  std::vector<std::uint32_t> image_bindings;  ///< of images in set 0, sorted
 };
 
 /// Errors (other): SPIR-V that cannot be parsed, resources that no kernel has.

@@ -45,6 +45,12 @@ class FieldFinder {
   int depth_ = 0;
 };
 
+/// The reader of `fetch ( image` at token i, or none.
+StorageReaders::const_iterator reader_of(const std::vector<Token>& tokens, std::size_t i, const StorageReaders& readers) {
+  if (readers.empty() || i + 3 >= tokens.size() || !is_reading_function(tokens[i].text) || !tokens[i + 1].is("(")) return readers.end();
+  return readers.find(tokens[i + 2].text);
+}
+
 /// As many line ends as `text` has.
 std::string only_newlines(std::string_view text) {
   std::string out;
@@ -56,7 +62,7 @@ std::string only_newlines(std::string_view text) {
 }  // namespace
 
 std::string rewrite(std::string_view text, const ShaderScan& scanned, const NameMap& names,
-                    const std::vector<std::string>& constants) {
+                    const std::vector<std::string>& constants, const StorageReaders& readers) {
   std::string out;
   out.reserve(text.size() + text.size() / 4);
   std::size_t copied = 0;
@@ -71,13 +77,24 @@ std::string rewrite(std::string_view text, const ShaderScan& scanned, const Name
   };
   FieldFinder fields;
   const Token* previous = nullptr;
-  for (const auto& token : scanned.tokens) {
+  for (std::size_t i = 0; i < scanned.tokens.size(); ++i) {
+    const Token& token = scanned.tokens[i];
     apply_edits_before(token.offset);
     const bool field = (token.directive < 0 && fields.next(token)) || (previous && previous->is("."));
     const bool directive_word =
         token.directive >= 0 && previous && previous->is("#") && previous->directive == token.directive;
     previous = &token;
     if (token.offset < copied || !token.is_identifier() || directive_word) continue;
+    if (const auto reader = reader_of(scanned.tokens, i, readers); reader != readers.end()) {
+      // `fetch(depth, p)` → `ag_r2_fetch(p)`: the image and the comma behind it go.
+      const Token& bracket = scanned.tokens[i + 1];
+      const bool comma = scanned.tokens[i + 3].is(",");
+      out += text.substr(copied, token.offset - copied);
+      out += reader->second;
+      out += text.substr(token.offset, bracket.end() - token.offset);
+      copied = scanned.tokens[i + (comma ? 3 : 2)].end();
+      continue;
+    }
     const auto name = names.find(token.text);
     if (name == names.end() || (field && !name->second.macro)) continue;
     out += text.substr(copied, token.offset - copied);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "shader/scan.h"
+#include "shader/storage_reads.h"
 
 namespace afterglow {
 
@@ -21,9 +22,10 @@ struct NewName {
 /// What a word of the file becomes.
 using NameMap = std::map<std::string, NewName, std::less<>>;
 
-/// `constants[i]` replaces the declaration of parameter i. Ends with a newline.
+/// `constants[i]` replaces the declaration of parameter i; reads of the inputs in `readers` become calls of their own
+/// functions. Ends with a newline.
 std::string rewrite(std::string_view text, const ShaderScan& scanned, const NameMap& names,
-                    const std::vector<std::string>& constants);
+                    const std::vector<std::string>& constants, const StorageReaders& readers = {});
 
 /// Removes the prefixes from a compiler's message: "ag_s0_threshold" → "threshold".
 std::string original_names(std::string_view message);

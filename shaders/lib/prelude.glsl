@@ -6,33 +6,6 @@
 // Size of the image that is being made, in pixels.
 ivec2 target_size() { return ag_target_size; }
 
-// Size of an input, in texels.
-ivec2 image_size(sampler2D image) { return textureSize(image, 0); }
-
-// One texel, exactly as stored.
-vec4 fetch(sampler2D image, ivec2 pixel) {
-  return texelFetch(image, clamp(pixel, ivec2(0), textureSize(image, 0) - 1), 0);
-}
-
-// The four texels around, weighted by f and g = 1 - f: exact where a texture unit would round f to 8 bits.
-vec4 ag_bilinear(sampler2D image, ivec2 base, vec2 f, vec2 g) {
-  ivec2 last = textureSize(image, 0) - 1;
-  ivec2 a = clamp(base, ivec2(0), last);
-  ivec2 b = clamp(base + 1, ivec2(0), last);
-  vec4 upper = texelFetch(image, a, 0) * g.x + texelFetch(image, ivec2(b.x, a.y), 0) * f.x;
-  vec4 lower = texelFetch(image, ivec2(a.x, b.y), 0) * g.x + texelFetch(image, b, 0) * f.x;
-  return upper * g.y + lower * f.y;
-}
-
-// Linear interpolation at a position in texels of the image (the centre of texel i is at i + 1/2).
-vec4 fetch_linear(sampler2D image, vec2 position) {
-  vec2 size = vec2(textureSize(image, 0));
-  vec2 t = clamp(position, vec2(0.0), size) - 0.5;  // reading outside is reading the edge, so this changes nothing else
-  vec2 base = floor(t);
-  vec2 f = t - base;
-  return ag_bilinear(image, ivec2(base), f, 1.0 - f);
-}
-
 // Where the centre of target pixel x lies between source texels: the texel `base` at or before it, and the way to the next
 // texel as the fraction rest/(2 n_target). (x + 1/2) n_source/n_target - 1/2 is a fraction of whole numbers and stays one, so that
 // nothing is rounded for sides up to 16384. (The quotient is guessed in floats, as integer division is slow on many devices; the
@@ -71,10 +44,37 @@ void ag_fraction_beyond(inout int base, int rest, int n_target, float high, floa
   g = ((divisor - whole) - part) / divisor;
 }
 
+// Size of an input, in texels.
+ivec2 image_size(sampler2D image) { return textureSize(image, 0); }
+
+vec4 ag_texel(sampler2D image, ivec2 pixel) { return texelFetch(image, pixel, 0); }
+
+// One texel, exactly as stored.
+vec4 fetch(sampler2D image, ivec2 pixel) { return ag_texel(image, clamp(pixel, ivec2(0), image_size(image) - 1)); }
+
+// The four texels around, weighted by f and g = 1 - f: exact where a texture unit would round f to 8 bits.
+vec4 ag_bilinear(sampler2D image, ivec2 base, vec2 f, vec2 g) {
+  ivec2 last = image_size(image) - 1;
+  ivec2 a = clamp(base, ivec2(0), last);
+  ivec2 b = clamp(base + 1, ivec2(0), last);
+  vec4 upper = ag_texel(image, a) * g.x + ag_texel(image, ivec2(b.x, a.y)) * f.x;
+  vec4 lower = ag_texel(image, ivec2(a.x, b.y)) * g.x + ag_texel(image, b) * f.x;
+  return upper * g.y + lower * f.y;
+}
+
+// Linear interpolation at a position in texels of the image (the centre of texel i is at i + 1/2).
+vec4 fetch_linear(sampler2D image, vec2 position) {
+  vec2 size = vec2(image_size(image));
+  vec2 t = clamp(position, vec2(0.0), size) - 0.5;  // reading outside is reading the edge, so this changes nothing else
+  vec2 base = floor(t);
+  vec2 f = t - base;
+  return ag_bilinear(image, ivec2(base), f, 1.0 - f);
+}
+
 // Linear interpolation at the point of `image` that lies where the centre of target pixel `pixel` does when both images cover
 // the same area, moved by a whole number of texels.
 vec4 sample_scaled(sampler2D image, ivec2 pixel, ivec2 texel_offset) {
-  ivec2 size = textureSize(image, 0);
+  ivec2 size = image_size(image);
   ivec2 base, rest;
   vec2 f, g;
   ag_phase(pixel.x, size.x, ag_target_size.x, base.x, rest.x);

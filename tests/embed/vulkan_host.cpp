@@ -185,3 +185,10 @@ void VulkanHost::barrier(VkCommandBuffer commands, VkImage image, VkImageLayout 
   info.pImageMemoryBarriers = &change;
   vkCmdPipelineBarrier2(commands, &info);
 }
+
+void VulkanHost::barrier(VkCommandBuffer commands, const VkMemoryBarrier2& change) {
+  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  info.memoryBarrierCount = 1;
+  info.pMemoryBarriers = &change;
+  vkCmdPipelineBarrier2(commands, &info);
+}

@@ -27,6 +27,7 @@ class VulkanHost {
   void submit_and_wait(VkCommandBuffer commands);
   static void barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to, VkPipelineStageFlags2 before,
                       VkAccessFlags2 wrote, VkPipelineStageFlags2 after, VkAccessFlags2 reads);
+  static void barrier(VkCommandBuffer commands, const VkMemoryBarrier2& change);
 
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;

@@ -38,7 +38,7 @@ int count(const std::string& text, const std::string& word) {
   return found;
 }
 
-int texels(const KernelDesc& desc) { return count(main_of(desc), "texelFetch("); }
+int texels(const KernelDesc& desc) { return count(main_of(desc), "ag_texel0("); }
 int fetches(const KernelDesc& desc) { return count(main_of(desc), "textureLod("); }
 
 std::vector<Tap> gaussian_halving() {
