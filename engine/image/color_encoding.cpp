@@ -33,8 +33,7 @@ class CurveDecoder {
       for (int c = 0; c < 3; ++c) tables_[c] = &encoding.tables[c];
     } else if (encoding.max_code > 0) {
       shared_.resize(static_cast<std::size_t>(encoding.max_code) + 1);
-      for (std::size_t i = 0; i < shared_.size(); ++i)
-        shared_[i] = formula(static_cast<double>(i) / encoding.max_code);
+      for (std::size_t i = 0; i < shared_.size(); ++i) shared_[i] = formula(static_cast<double>(i) / encoding.max_code);
       for (auto& table : tables_) table = &shared_;
     }
   }
@@ -46,7 +45,8 @@ class CurveDecoder {
     if (!table) return formula(stored);
     const auto last = static_cast<float>(table->size() - 1);
     const float position = std::clamp(stored, 0.0f, 1.0f) * last;
-    // Stored codes hit the table; the product above is off by up to 0.01 of 65535. Values between them (divided by alpha) are interpolated.
+    // Stored codes hit the table; the product above is off by up to 0.01 of 65535. Values between them (divided by
+    // alpha) are interpolated.
     const int nearest = static_cast<int>(position + 0.5f);
     if (std::abs(position - static_cast<float>(nearest)) < 0.02f) return (*table)[static_cast<std::size_t>(nearest)];
     const auto index = static_cast<std::size_t>(position);
@@ -57,11 +57,14 @@ class CurveDecoder {
  private:
   float formula(double stored) const {
     switch (encoding_.curve) {
-      case TransferCurve::srgb: return static_cast<float>(srgb_to_linear(stored));
+      case TransferCurve::srgb:
+        return static_cast<float>(srgb_to_linear(stored));
       case TransferCurve::rec709:
         return static_cast<float>(stored < 0.081 ? stored / 4.5 : std::pow((stored + 0.099) / 1.099, 1 / 0.45));
-      case TransferCurve::power: return static_cast<float>(std::copysign(std::pow(std::abs(stored), encoding_.exponent), stored));
-      default: return static_cast<float>(stored);
+      case TransferCurve::power:
+        return static_cast<float>(std::copysign(std::pow(std::abs(stored), encoding_.exponent), stored));
+      default:
+        return static_cast<float>(stored);
     }
   }
 
@@ -121,7 +124,8 @@ void sanitize_linear(float* rgba, std::size_t pixels, SanitizeCounts& counts) {
   counts.alpha += alpha;
 }
 
-void decode_rows(const ColorEncoding& encoding, const CurveDecoder& curve, float* rgba, std::size_t pixels, SanitizeCounts& counts) {
+void decode_rows(const ColorEncoding& encoding, const CurveDecoder& curve, float* rgba, std::size_t pixels,
+                 SanitizeCounts& counts) {
   if (encoding.grey)
     for (std::size_t i = 0; i < pixels; ++i) rgba[i * 4 + 1] = rgba[i * 4 + 2] = rgba[i * 4];
   if (encoding.alpha == AlphaKind::none)
@@ -129,7 +133,8 @@ void decode_rows(const ColorEncoding& encoding, const CurveDecoder& curve, float
   const bool straight = encoding.alpha == AlphaKind::straight;
   // Associated integers were multiplied after they had been encoded: divide first, multiply again in linear light.
   const bool divide = encoding.alpha == AlphaKind::associated && (!curve.identity() || encoding.transform);
-  if (curve.identity() && !encoding.matrix && !encoding.transform && !straight) return sanitize_linear(rgba, pixels, counts);
+  if (curve.identity() && !encoding.matrix && !encoding.transform && !straight)
+    return sanitize_linear(rgba, pixels, counts);
 
   for (std::size_t i = 0; i < pixels; ++i) {
     float* pixel = rgba + i * 4;
@@ -170,7 +175,8 @@ void decode_color(const ColorEncoding& encoding, Image& rgba, SanitizeCounts& co
   std::mutex mutex;
   parallel_rows(rgba.height, static_cast<long long>(rgba.pixels.size()), [&](int begin, int end) {
     SanitizeCounts own;
-    for (int y = begin; y < end; ++y) decode_rows(encoding, curve, rgba.at(0, y), static_cast<std::size_t>(rgba.width), own);
+    for (int y = begin; y < end; ++y)
+      decode_rows(encoding, curve, rgba.at(0, y), static_cast<std::size_t>(rgba.width), own);
     const std::lock_guard lock(mutex);
     counts += own;
   });

@@ -27,17 +27,17 @@ enum class AlphaKind { none, associated, straight };
 
 struct ColorEncoding {
   TransferCurve curve = TransferCurve::linear;
-  double exponent = 1;                          ///< of `power`
-  std::array<std::vector<float>, 3> tables{};   ///< of `tables`: linear values for equally spaced stored values 0…1
-  std::optional<Matrix3> matrix;                ///< to Rec.709, when the primaries are others
+  double exponent = 1;                         ///< of `power`
+  std::array<std::vector<float>, 3> tables{};  ///< of `tables`: linear values for equally spaced stored values 0…1
+  std::optional<Matrix3> matrix;               ///< to Rec.709, when the primaries are others
   std::shared_ptr<const ProfileTransform> transform;  ///< replaces curve and matrix
   AlphaKind alpha = AlphaKind::none;
-  int max_code = 0;                             ///< 255 or 65535 for integers of that many codes; 0: any value
-  bool grey = false;                            ///< only the first sample of a pixel was read; it stands for all three
+  int max_code = 0;   ///< 255 or 65535 for integers of that many codes; 0: any value
+  bool grey = false;  ///< only the first sample of a pixel was read; it stands for all three
 };
 
-/// Brings rows of RGBA that hold stored values (integers scaled to 0…1) into the form that Picture::color has. `pixels` are
-/// contiguous. Counts what had to be made finite.
+/// Brings rows of RGBA that hold stored values (integers scaled to 0…1) into the form that Picture::color has. `pixels`
+/// are contiguous. Counts what had to be made finite.
 void decode_color(const ColorEncoding& encoding, float* rgba, std::size_t pixels, SanitizeCounts& counts);
 /// The same for a whole image, on several threads.
 void decode_color(const ColorEncoding& encoding, Image& rgba, SanitizeCounts& counts);

@@ -70,9 +70,7 @@ Matrix3 to_rec709(const Chromaticities& primaries) {
   return multiply(inverse(rgb_to_xyz(kRec709)), multiply(adapt_white(primaries.white, kRec709.white), to_xyz));
 }
 
-Matrix3 xyz_d50_to_rec709() {
-  return multiply(inverse(rgb_to_xyz(kRec709)), adapt_white(kD50, kRec709.white));
-}
+Matrix3 xyz_d50_to_rec709() { return multiply(inverse(rgb_to_xyz(kRec709)), adapt_white(kD50, kRec709.white)); }
 
 bool nearly_equal(const Matrix3& a, const Matrix3& b, double tolerance) {
   for (int i = 0; i < 3; ++i)

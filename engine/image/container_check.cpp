@@ -1,5 +1,8 @@
 #include "image/container_check.h"
 
+#include <fmt/format.h>
+#include <zlib.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -7,9 +10,6 @@
 #include <cstring>
 #include <fstream>
 #include <vector>
-
-#include <fmt/format.h>
-#include <zlib.h>
 
 #include "image/exr_header.h"
 
@@ -31,7 +31,8 @@ bool fill(std::ifstream& in, unsigned char* into, std::size_t size) {
   return static_cast<bool>(in.read(reinterpret_cast<char*>(into), static_cast<std::streamsize>(size)));
 }
 
-/// The checksum of chunk type and data. Told here, damage is one error of ours; libpng would print its own line besides.
+/// The checksum of chunk type and data. Told here, damage is one error of ours; libpng would print its own line
+/// besides.
 Result<void> check_sum(const fs::path& file, std::ifstream& in, std::uint64_t at, std::uint64_t length) {
   std::vector<unsigned char> buffer(std::min<std::uint64_t>(length + 4, 1 << 18));
   in.seekg(static_cast<std::streamoff>(at + 4));
@@ -101,7 +102,8 @@ Result<ContainerFacts> check_jpeg(const fs::path& file, std::ifstream& in, std::
   std::size_t at = 2;
   while (at + 1 < bytes.size()) {
     // Between segments and inside coded data alike: the next 0xff that is followed by a marker.
-    if (bytes[at] != 0xff || bytes[at + 1] == 0xff || bytes[at + 1] == 0 || (bytes[at + 1] >= 0xd0 && bytes[at + 1] <= 0xd7)) {
+    if (bytes[at] != 0xff || bytes[at + 1] == 0xff || bytes[at + 1] == 0 ||
+        (bytes[at + 1] >= 0xd0 && bytes[at + 1] <= 0xd7)) {
       const auto* next = static_cast<const unsigned char*>(std::memchr(&bytes[at + 1], 0xff, bytes.size() - at - 1));
       if (!next) break;
       at = static_cast<std::size_t>(next - bytes.data());

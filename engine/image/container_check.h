@@ -1,5 +1,5 @@
-// What PNG and JPEG files say about themselves, read before a library does: sizes that are lies, files that end too early (JPEG
-// decoders invent the missing half), and PNG's colour chunks, which OpenImageIO does not pass on.
+// What PNG and JPEG files say about themselves, read before a library does: sizes that are lies, files that end too
+// early (JPEG decoders invent the missing half), and PNG's colour chunks, which OpenImageIO does not pass on.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +13,11 @@ namespace afterglow {
 
 struct ContainerFacts {
   enum class Kind { other, exr, png, jpeg } kind = Kind::other;
-  Size size;                                   ///< PNG and JPEG
-  bool srgb = false;                           ///< PNG sRGB chunk
-  bool icc = false;                            ///< PNG iCCP chunk
-  std::optional<double> gamma;                 ///< PNG gAMA: the exponent that encoded, e.g. 0.45455
-  std::optional<Chromaticities> primaries;     ///< PNG cHRM
+  Size size;                                ///< PNG and JPEG
+  bool srgb = false;                        ///< PNG sRGB chunk
+  bool icc = false;                         ///< PNG iCCP chunk
+  std::optional<double> gamma;              ///< PNG gAMA: the exponent that encoded, e.g. 0.45455
+  std::optional<Chromaticities> primaries;  ///< PNG cHRM
 };
 
 /// Errors: io (missing, folder, no regular file, empty, unreadable; PNG or JPEG that is malformed or ends too early).

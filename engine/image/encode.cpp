@@ -1,11 +1,11 @@
 #include "image/encode.h"
 
+#include <half.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
-
-#include <half.h>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -21,14 +21,15 @@ float held(float value) { return value > kLargestHalf ? kLargestHalf : value < -
 
 #if defined(__x86_64__)
 /// Eight at a time, where the processor can. Leaves the rest to the caller.
-__attribute__((target("avx,f16c"))) std::size_t to_half_f16c(const float* values, std::uint16_t* halves, std::size_t count,
-                                                             std::uint64_t& overflows) {
+__attribute__((target("avx,f16c"))) std::size_t to_half_f16c(const float* values, std::uint16_t* halves,
+                                                             std::size_t count, std::uint64_t& overflows) {
   const __m256 largest = _mm256_set1_ps(kLargestHalf), smallest = _mm256_set1_ps(-kLargestHalf);
   std::size_t i = 0;
   for (; i + 8 <= count; i += 8) {
     const __m256 v = _mm256_loadu_ps(values + i);
     const __m256 outside = _mm256_or_ps(_mm256_cmp_ps(v, largest, _CMP_GT_OQ), _mm256_cmp_ps(v, smallest, _CMP_LT_OQ));
-    if (const int mask = _mm256_movemask_ps(outside)) overflows += static_cast<unsigned>(__builtin_popcount(static_cast<unsigned>(mask)));
+    if (const int mask = _mm256_movemask_ps(outside))
+      overflows += static_cast<unsigned>(__builtin_popcount(static_cast<unsigned>(mask)));
     // min and max give their second operand for NaN: NaN stays NaN.
     const __m256 inside = _mm256_max_ps(smallest, _mm256_min_ps(largest, v));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(halves + i), _mm256_cvtps_ph(inside, _MM_FROUND_TO_NEAREST_INT));
@@ -57,7 +58,8 @@ constexpr auto kBayer = bayer();
 std::uint32_t dithered(float linear, float noise, int max_code) {
   const double clamped = linear > 0 ? std::min(static_cast<double>(linear), 1.0) : 0.0;
   // Black and white stay what they are: the noise is below half a step.
-  return static_cast<std::uint32_t>(std::clamp(linear_to_srgb(clamped) * max_code + static_cast<double>(noise) + 0.5, 0.0, max_code + 0.5));
+  return static_cast<std::uint32_t>(
+      std::clamp(linear_to_srgb(clamped) * max_code + static_cast<double>(noise) + 0.5, 0.0, max_code + 0.5));
 }
 
 /// The nearest code of a linear quantity; exact, since the product of a float and 65535 fits a double.
@@ -75,7 +77,8 @@ void encode(const CodeRules& rules, const float* rgba, int width, int x0, int y,
     const bool divide = rules.alpha && alpha > 0 && alpha != 1;
     for (int c = 0; c < 3; ++c) {
       const float linear = divide ? rgba[c] / alpha : rgba[c];
-      *codes++ = static_cast<Code>(rules.dither ? dithered(linear, noise[static_cast<unsigned>(x0 + x) % 8], rules.max_code) : encoder(linear));
+      *codes++ = static_cast<Code>(
+          rules.dither ? dithered(linear, noise[static_cast<unsigned>(x0 + x) % 8], rules.max_code) : encoder(linear));
     }
     if (rules.alpha) *codes++ = static_cast<Code>(linear_code(alpha, rules.max_code));
   }
@@ -110,7 +113,8 @@ void display_row(const Picture& picture, int y, float padding_alpha, float* rgba
   const int end = std::clamp(data.x + data.width - display.x, begin, display.width);
   if (row < 0 || row >= data.height || begin == end) return fill(0, display.width);
   fill(0, begin);
-  std::memcpy(rgba + begin * 4, picture.color.at(display.x + begin - data.x, row), static_cast<std::size_t>(end - begin) * 4 * sizeof(float));
+  std::memcpy(rgba + begin * 4, picture.color.at(display.x + begin - data.x, row),
+              static_cast<std::size_t>(end - begin) * 4 * sizeof(float));
   fill(end, display.width);
 }
 

@@ -1,10 +1,5 @@
 #include "image/exr_file.h"
 
-#include <algorithm>
-#include <mutex>
-#include <optional>
-#include <thread>
-
 #include <ImathBox.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
@@ -16,6 +11,11 @@
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <thread>
+
 #include "image/exr_metadata.h"
 
 namespace afterglow {
@@ -25,8 +25,8 @@ constexpr int kMaxThreads = 16;
 
 /// A channel as layers see it. Luminance-chroma channels Y, RY, BY appear as the R, G, B that OpenEXR makes of them.
 struct ChannelSlot {
-  std::string stored;   ///< name in the file
-  int chroma = -1;      ///< 0, 1, 2: R, G, B made from luminance and chroma
+  std::string stored;  ///< name in the file
+  int chroma = -1;     ///< 0, 1, 2: R, G, B made from luminance and chroma
   ExrChannelType type = ExrChannelType::half;
 };
 
@@ -56,7 +56,9 @@ class ExrFile : public PictureFile {
     for (const ExrPart& part : header_) add_part(part);
   }
 
-  std::uint64_t buffer_bytes(int part) const override { return header_[static_cast<std::size_t>(part)].buffer_bytes(Imf::globalThreadCount()); }
+  std::uint64_t buffer_bytes(int part) const override {
+    return header_[static_cast<std::size_t>(part)].buffer_bytes(Imf::globalThreadCount());
+  }
 
   Result<void> read(int part, std::span<const ReadTarget> targets) override {
     try {

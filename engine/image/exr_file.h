@@ -13,8 +13,8 @@ namespace afterglow {
 /// `header` as read_exr_header found it in `file`.
 Result<std::unique_ptr<PictureFile>> open_exr(const std::filesystem::path& file, std::vector<ExrPart> header);
 
-/// OpenEXR decodes and encodes on a thread pool of the process. If nobody has given it threads, it gets one for each core (16 at most);
-/// a count that the program has chosen is left alone.
+/// OpenEXR decodes and encodes on a thread pool of the process. If nobody has given it threads, it gets one for each
+/// core (16 at most); a count that the program has chosen is left alone.
 void use_exr_threads();
 
 /// What an exception of OpenEXR says, on one line.

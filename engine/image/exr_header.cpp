@@ -1,13 +1,13 @@
 #include "image/exr_header.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
 #include <fstream>
 #include <optional>
-
-#include <fmt/format.h>
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -19,7 +19,8 @@ constexpr std::uint32_t kMagic = 20000630;
 constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 0x1000;
 constexpr std::size_t kMaxName = 255;
 constexpr std::size_t kMaxParts = 4096, kMaxAttributes = 65536, kMaxChannels = 4096;
-constexpr std::int64_t kMaxCoordinate = 1 << 29;  // half of OpenEXR's limit: differences of two, and sides, stay within an int
+constexpr std::int64_t kMaxCoordinate =
+    1 << 29;  // half of OpenEXR's limit: differences of two, and sides, stay within an int
 constexpr std::uint64_t kMaxChannelList = 4u << 20;
 
 struct Malformed {
@@ -162,10 +163,18 @@ std::optional<ExrPart> read_part(Bytes& bytes, std::uint32_t flags) {
 /// Scan lines that one chunk holds, by the number of the compression method.
 int lines_per_chunk(int compression) {
   switch (compression) {
-    case 3: case 5: return 16;           // zip, pxr24
-    case 4: case 6: case 7: case 8: return 32;  // piz, b44, b44a, dwaa
-    case 9: return 256;                  // dwab
-    default: return 1;
+    case 3:
+    case 5:
+      return 16;  // zip, pxr24
+    case 4:
+    case 6:
+    case 7:
+    case 8:
+      return 32;  // piz, b44, b44a, dwaa
+    case 9:
+      return 256;  // dwab
+    default:
+      return 1;
   }
 }
 
@@ -185,7 +194,8 @@ std::uint64_t ExrPart::buffer_bytes(int threads) const {
     return width * static_cast<std::uint64_t>(lines) * pixel_bytes() * buffers * 2;  // packed and unpacked
   }
   const std::uint64_t tile_pixels = static_cast<std::uint64_t>(tile.width) * static_cast<std::uint64_t>(tile.height);
-  return tile_pixels * pixel_bytes() * buffers * 2 + (width + static_cast<std::uint64_t>(tile.width)) * static_cast<std::uint64_t>(tile.height) * pixel_bytes();
+  return tile_pixels * pixel_bytes() * buffers * 2 +
+         (width + static_cast<std::uint64_t>(tile.width)) * static_cast<std::uint64_t>(tile.height) * pixel_bytes();
 }
 
 bool is_exr(const fs::path& file) {
@@ -202,7 +212,8 @@ Result<std::vector<ExrPart>> read_exr_header(const fs::path& file) {
     Bytes bytes(file, size);
     if (bytes.number<std::uint32_t>() != kMagic) throw Malformed{"is not an OpenEXR file"};
     const auto version = bytes.number<std::uint32_t>();
-    if ((version & 0xff) != 2) throw Malformed{fmt::format("is of OpenEXR file version {}, which is not known", version & 0xff)};
+    if ((version & 0xff) != 2)
+      throw Malformed{fmt::format("is of OpenEXR file version {}, which is not known", version & 0xff)};
     std::vector<ExrPart> parts;
     if (!(version & kMultiPartFlag)) {
       auto part = read_part(bytes, version);

@@ -1,5 +1,5 @@
-// Reads what an EXR header says, on its own and before any library does: headers lie, and the size of what a library would allocate
-// must be known first. No allocation here is larger than the part of the file that covers it.
+// Reads what an EXR header says, on its own and before any library does: headers lie, and the size of what a library
+// would allocate must be known first. No allocation here is larger than the part of the file that covers it.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct ExrPart {
   std::vector<ExrChannel> channels;  ///< in the file's order, which is alphabetical
   Rect data_window, display_window;
   Size tile;
-  int compression = 0;               ///< the number stored in the file
+  int compression = 0;  ///< the number stored in the file
   int orientation = 1;
 
   std::uint64_t pixel_bytes() const;

@@ -1,12 +1,5 @@
 #include "image/exr_metadata.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfIntAttribute.h>
@@ -15,6 +8,13 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfStringVectorAttribute.h>
 #include <OpenEXR/ImfVecAttribute.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace afterglow {
 namespace {
@@ -39,11 +39,46 @@ constexpr std::array kNames{
 };
 
 /// Names whose types OpenEXR prescribes: a text of a PNG that is called "timeCode" must not become one of them.
-constexpr std::array<std::string_view, 40> kReserved{
-    "chromaticities", "whiteLuminance", "adoptedNeutral", "renderingTransform", "lookModTransform", "xDensity", "owner", "comments", "capDate",
-    "utcOffset", "longitude", "latitude", "altitude", "focus", "expTime", "aperture", "isoSpeed", "envmap", "keyCode", "timeCode", "wrapmodes",
-    "framesPerSecond", "multiView", "worldToCamera", "worldToNDC", "deepImageState", "originalDataWindow", "dwaCompressionLevel", "preview",
-    "screenWindowCenter", "screenWindowWidth", "name", "type", "version", "chunkCount", "view", "channels", "compression", "lineOrder", "tiles"};
+constexpr std::array<std::string_view, 40> kReserved{"chromaticities",
+                                                     "whiteLuminance",
+                                                     "adoptedNeutral",
+                                                     "renderingTransform",
+                                                     "lookModTransform",
+                                                     "xDensity",
+                                                     "owner",
+                                                     "comments",
+                                                     "capDate",
+                                                     "utcOffset",
+                                                     "longitude",
+                                                     "latitude",
+                                                     "altitude",
+                                                     "focus",
+                                                     "expTime",
+                                                     "aperture",
+                                                     "isoSpeed",
+                                                     "envmap",
+                                                     "keyCode",
+                                                     "timeCode",
+                                                     "wrapmodes",
+                                                     "framesPerSecond",
+                                                     "multiView",
+                                                     "worldToCamera",
+                                                     "worldToNDC",
+                                                     "deepImageState",
+                                                     "originalDataWindow",
+                                                     "dwaCompressionLevel",
+                                                     "preview",
+                                                     "screenWindowCenter",
+                                                     "screenWindowWidth",
+                                                     "name",
+                                                     "type",
+                                                     "version",
+                                                     "chunkCount",
+                                                     "view",
+                                                     "channels",
+                                                     "compression",
+                                                     "lineOrder",
+                                                     "tiles"};
 
 std::string general_name(const std::string& name) {
   for (const NamePair& pair : kNames)
@@ -73,7 +108,8 @@ void insert(Imf::Header& header, const std::string& name, const MetadataValue& v
     header.insert(name, Imf::FloatAttribute(*number));
   } else if (const auto* rational = std::get_if<Rational>(&value)) {
     if (rational->denominator > 0)
-      header.insert(name, Imf::RationalAttribute(Imf::Rational(rational->numerator, static_cast<unsigned>(rational->denominator))));
+      header.insert(name, Imf::RationalAttribute(
+                              Imf::Rational(rational->numerator, static_cast<unsigned>(rational->denominator))));
   } else if (const auto* floats = std::get_if<std::vector<float>>(&value)) {
     const std::vector<float>& f = *floats;
     if (f.size() == 2) header.insert(name, Imf::V2fAttribute(Imath::V2f(f[0], f[1])));

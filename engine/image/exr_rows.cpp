@@ -1,9 +1,9 @@
 #include "image/exr_rows.h"
 
-#include <atomic>
-
 #include <OpenEXR/ImfChannelList.h>
 #include <fmt/format.h>
+
+#include <atomic>
 
 #include "image/encode.h"
 #include "image/parallel.h"
@@ -35,18 +35,22 @@ void ExrColorRows::add_slices(int first, int rows, Imf::FrameBuffer& buffer) {
   const std::size_t sample = half ? sizeof(std::uint16_t) : sizeof(float);
   for (std::size_t c = 0; c < 4; ++c) {
     if (names_[c].empty()) continue;
-    const void* base = half ? static_cast<const void*>(halves_.data() + c) : static_cast<const void*>(color.at(0, first) + c);
-    buffer.insert(names_[c], Imf::Slice::Make(half ? Imf::HALF : Imf::FLOAT, base, origin, color.width, rows, 4 * sample, row_samples * sample));
+    const void* base =
+        half ? static_cast<const void*>(halves_.data() + c) : static_cast<const void*>(color.at(0, first) + c);
+    buffer.insert(names_[c], Imf::Slice::Make(half ? Imf::HALF : Imf::FLOAT, base, origin, color.width, rows,
+                                              4 * sample, row_samples * sample));
   }
 }
 
 void ExrColorRows::warn_of_overflow(Diagnostics& diagnostics) const {
-  if (overflows_) diagnostics.warn(fmt::format("{} samples beyond the range of half floats are held at ±65504", overflows_));
+  if (overflows_)
+    diagnostics.warn(fmt::format("{} samples beyond the range of half floats are held at ±65504", overflows_));
 }
 
 Result<void> set_compression(Imf::Header& header, const std::string& text) {
   AFTERGLOW_TRY(const Compression wanted, parse_compression(text.empty() ? "zip" : text));
-  constexpr std::array kNames{"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"};  // in OpenEXR's numbering
+  constexpr std::array kNames{"none",  "rle", "zips", "zip",  "piz",
+                              "pxr24", "b44", "b44a", "dwaa", "dwab"};  // in OpenEXR's numbering
   for (std::size_t i = 0; i < kNames.size(); ++i)
     if (wanted.name == kNames[i]) header.compression() = static_cast<Imf::Compression>(i);
   if (wanted.level < 0) return {};

@@ -1,13 +1,13 @@
 // Rows of a picture's colour in the form that OpenEXR writes.
 #pragma once
 
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+
 #include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfHeader.h>
 
 #include "core/diagnostics.h"
 #include "image/output_format.h"
@@ -15,7 +15,8 @@
 
 namespace afterglow {
 
-/// Strips of rows as slices of a frame buffer: floats are lent straight from the picture, halves are made strip by strip.
+/// Strips of rows as slices of a frame buffer: floats are lent straight from the picture, halves are made strip by
+/// strip.
 class ExrColorRows {
  public:
   /// `names`: channels for R, G, B, A; empty ones are not written.

@@ -1,11 +1,11 @@
 #include "image/icc_profile.h"
 
+#include <lcms2.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
-
-#include <lcms2.h>
 
 #include "image/srgb.h"
 
@@ -27,7 +27,8 @@ using Transform = std::unique_ptr<void, TransformCloser>;
 
 class LittleTransform : public ProfileTransform {
  public:
-  LittleTransform(Context context, Transform transform) : context_(std::move(context)), transform_(std::move(transform)) {}
+  LittleTransform(Context context, Transform transform)
+      : context_(std::move(context)), transform_(std::move(transform)) {}
   void apply(float* rgb, std::size_t pixels) const override {
     cmsDoTransform(transform_.get(), rgb, rgb, static_cast<cmsUInt32Number>(pixels));
   }
@@ -41,7 +42,8 @@ bool like_srgb(const cmsToneCurve* curve) {
   constexpr double kTolerance = 1.0 / 1024;  // in encoded values: a quarter of an 8-bit step
   for (int i = 0; i <= 255; ++i) {
     const double x = i / 255.0;
-    if (!(std::abs(linear_to_srgb(cmsEvalToneCurveFloat(curve, static_cast<float>(x))) - x) <= kTolerance)) return false;
+    if (!(std::abs(linear_to_srgb(cmsEvalToneCurveFloat(curve, static_cast<float>(x))) - x) <= kTolerance))
+      return false;
   }
   return true;
 }
@@ -90,7 +92,9 @@ Matrix3 colorant_matrix(cmsHPROFILE profile) {
 
 Profile linear_rec709(cmsContext context) {
   const cmsCIExyY white{kRec709.white[0], kRec709.white[1], 1};
-  const cmsCIExyYTRIPLE primaries{{kRec709.red[0], kRec709.red[1], 1}, {kRec709.green[0], kRec709.green[1], 1}, {kRec709.blue[0], kRec709.blue[1], 1}};
+  const cmsCIExyYTRIPLE primaries{{kRec709.red[0], kRec709.red[1], 1},
+                                  {kRec709.green[0], kRec709.green[1], 1},
+                                  {kRec709.blue[0], kRec709.blue[1], 1}};
   cmsToneCurve* linear = cmsBuildGamma(context, 1.0);
   cmsToneCurve* curves[3] = {linear, linear, linear};
   Profile profile(cmsCreateRGBProfileTHR(context, &white, &primaries, curves));
@@ -103,7 +107,8 @@ Profile linear_rec709(cmsContext context) {
 Result<void> use_icc_profile(std::span<const std::uint8_t> bytes, int channels, ColorEncoding& encoding) {
   Context context(cmsCreateContext(nullptr, nullptr));
   if (!context) return refused("has an ICC profile for which there is no memory");
-  const Profile profile(cmsOpenProfileFromMemTHR(context.get(), bytes.data(), static_cast<cmsUInt32Number>(bytes.size())));
+  const Profile profile(
+      cmsOpenProfileFromMemTHR(context.get(), bytes.data(), static_cast<cmsUInt32Number>(bytes.size())));
   if (!profile) return refused("has a damaged ICC profile");
   const cmsColorSpaceSignature space = cmsGetColorSpace(profile.get());
   if (space == cmsSigGrayData) {

@@ -11,8 +11,9 @@
 
 namespace afterglow {
 
-/// Sets curve and matrix (or transform) of `encoding` from a profile. `channels` 1 or 3: what the file stores. A profile that is
-/// sRGB in all but name gives the sRGB curve itself. Errors: io (damaged, or for another number of channels); `encoding` is then unchanged.
+/// Sets curve and matrix (or transform) of `encoding` from a profile. `channels` 1 or 3: what the file stores. A
+/// profile that is sRGB in all but name gives the sRGB curve itself. Errors: io (damaged, or for another number of
+/// channels); `encoding` is then unchanged.
 Result<void> use_icc_profile(std::span<const std::uint8_t> profile, int channels, ColorEncoding& encoding);
 
 /// An sRGB profile; the same bytes every time.

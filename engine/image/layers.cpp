@@ -1,9 +1,9 @@
 #include "image/layers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <initializer_list>
-
-#include <fmt/format.h>
 
 #include "core/text.h"
 
@@ -13,10 +13,10 @@ namespace {
 /// Channels of one part that share everything before the last dot of their names.
 struct Layer {
   int part = 0;
-  std::string prefix;     ///< before the last dot; empty for plain R, G, B
-  std::string name;       ///< what users call it: the prefix, or the part's name
-  std::string last;       ///< last component of `name`, lower case: "combined", "depth", "n"
-  std::string group;      ///< what stands before that: the view layer
+  std::string prefix;  ///< before the last dot; empty for plain R, G, B
+  std::string name;    ///< what users call it: the prefix, or the part's name
+  std::string last;    ///< last component of `name`, lower case: "combined", "depth", "n"
+  std::string group;   ///< what stands before that: the view layer
   std::vector<int> channels;
   std::vector<std::string> suffixes;  ///< lower case: "r", "z", …
 
@@ -85,7 +85,8 @@ int color_rank(const Layer& l) {
   if (has_rgb(l)) {
     if (l.name.empty()) return 0;
     if (l.last == "combined") return 1;
-    if (any_of(l.last, {"rgba", "rgb", "beauty", "c", "color", "colour", "main", "default", "image", "final"})) return 2;
+    if (any_of(l.last, {"rgba", "rgb", "beauty", "c", "color", "colour", "main", "default", "image", "final"}))
+      return 2;
     return 4;
   }
   if (grey_of(l) < 0 || l.find({"x"}) >= 0) return -1;
@@ -153,7 +154,8 @@ std::vector<std::string> channel_names(const std::vector<FilePart>& parts) {
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 40;
   if (names.size() <= kMost) return join(names);
-  return join(std::vector<std::string>(names.begin(), names.begin() + kMost)) + fmt::format(" and {} more", names.size() - kMost);
+  return join(std::vector<std::string>(names.begin(), names.begin() + kMost)) +
+         fmt::format(" and {} more", names.size() - kMost);
 }
 
 Error not_found(const std::vector<FilePart>& parts, const std::vector<Layer>& layers, const std::string& what,
@@ -162,7 +164,8 @@ Error not_found(const std::vector<FilePart>& parts, const std::vector<Layer>& la
     if (part.name == name && !part.unreadable.empty()) return Error{ErrorKind::io, part.unreadable};
   std::vector<std::string> known = layer_names(layers);
   for (const std::string& channel : channel_names(parts)) known.push_back(channel);
-  return Error{ErrorKind::io, fmt::format("has no {} '{}'", what, name), "", 0, listed(known), nearest_name(name, known)};
+  return Error{
+      ErrorKind::io, fmt::format("has no {} '{}'", what, name), "", 0, listed(known), nearest_name(name, known)};
 }
 
 std::optional<Error> nothing_readable(const std::vector<FilePart>& parts, const std::vector<Layer>& layers) {
@@ -203,7 +206,8 @@ std::vector<const Layer*> by_nearness(const std::vector<Layer>& layers, const Ch
   bool known = false;
   if (color) {
     for (const Layer& layer : layers) {
-      if (layer.part != color->part || std::find(layer.channels.begin(), layer.channels.end(), color->channels[0]) == layer.channels.end())
+      if (layer.part != color->part ||
+          std::find(layer.channels.begin(), layer.channels.end(), color->channels[0]) == layer.channels.end())
         continue;
       group = layer.group;
       known = true;
@@ -212,7 +216,8 @@ std::vector<const Layer*> by_nearness(const std::vector<Layer>& layers, const Ch
   std::vector<const Layer*> sorted;
   for (const Layer& layer : layers) sorted.push_back(&layer);
   const auto distance = [&](const Layer* l) { return known && l->group == group ? 0 : l->group.empty() ? 1 : 2; };
-  std::stable_sort(sorted.begin(), sorted.end(), [&](const Layer* a, const Layer* b) { return distance(a) < distance(b); });
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](const Layer* a, const Layer* b) { return distance(a) < distance(b); });
   return sorted;
 }
 
@@ -266,12 +271,14 @@ Result<std::optional<ChannelChoice>> find_normal(const std::vector<FilePart>& pa
   const std::vector<Layer> layers = layers_of(parts);
   if (name.empty()) {
     for (const Layer* layer : by_nearness(layers, color))
-      if (auto channels = normal_of(*layer, true)) return std::optional(ChannelChoice{layer->part, std::move(*channels)});
+      if (auto channels = normal_of(*layer, true))
+        return std::optional(ChannelChoice{layer->part, std::move(*channels)});
     return std::optional<ChannelChoice>();
   }
   for (const bool certain : {true, false})
     for (const Layer* layer : layers_named(parts, layers, name))
-      if (auto channels = normal_of(*layer, certain)) return std::optional(ChannelChoice{layer->part, std::move(*channels)});
+      if (auto channels = normal_of(*layer, certain))
+        return std::optional(ChannelChoice{layer->part, std::move(*channels)});
   return not_found(parts, layers, "normal layer", name);
 }
 

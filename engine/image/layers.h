@@ -1,4 +1,5 @@
-// Finds colour, depth and normals among the channels of a file by the names that renderers give them. Pure data, no file access.
+// Finds colour, depth and normals among the channels of a file by the names that renderers give them. Pure data, no
+// file access.
 #pragma once
 
 #include <array>
@@ -20,18 +21,20 @@ struct FilePart {
   std::string unreadable;             ///< why its pixels cannot be read ("deep"), or empty
 };
 
-/// Channels of one part, by index. In a colour choice they stand for R, G, B and A; A is −1 without alpha; grey has R = G = B.
+/// Channels of one part, by index. In a colour choice they stand for R, G, B and A; A is −1 without alpha; grey has R =
+/// G = B.
 struct ChannelChoice {
   int part = 0;
   std::vector<int> channels;
 };
 
-/// --layer NAME, or the usual colour layer when `name` is empty. Names: layer ("ViewLayer.Combined"), view layer ("ViewLayer"), part,
-/// or a single channel (shown grey). Errors: io (there is none; lists the layers, names the nearest).
+/// --layer NAME, or the usual colour layer when `name` is empty. Names: layer ("ViewLayer.Combined"), view layer
+/// ("ViewLayer"), part, or a single channel (shown grey). Errors: io (there is none; lists the layers, names the
+/// nearest).
 Result<ChannelChoice> find_color(const std::vector<FilePart>& parts, const std::string& name);
 
-/// The depth channel: by `name` (channel or layer), else by the usual names, those beside the colour layer first (`color`, may be
-/// null). Nothing when `name` is empty and there is none. Errors: io (no such channel).
+/// The depth channel: by `name` (channel or layer), else by the usual names, those beside the colour layer first
+/// (`color`, may be null). Nothing when `name` is empty and there is none. Errors: io (no such channel).
 Result<std::optional<ChannelChoice>> find_depth(const std::vector<FilePart>& parts, const std::string& name,
                                                 const ChannelChoice* color);
 

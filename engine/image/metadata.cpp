@@ -7,7 +7,8 @@
 namespace afterglow {
 
 const MetadataValue* find_metadata(const Metadata& metadata, std::string_view name) {
-  const auto entry = std::find_if(metadata.begin(), metadata.end(), [&](const MetadataEntry& e) { return e.name == name; });
+  const auto entry =
+      std::find_if(metadata.begin(), metadata.end(), [&](const MetadataEntry& e) { return e.name == name; });
   return entry == metadata.end() ? nullptr : &entry->value;
 }
 

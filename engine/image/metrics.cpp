@@ -8,7 +8,7 @@
 namespace afterglow {
 namespace {
 
-constexpr double kFloor = 0.01;           // math.md §13: keeps the measure meaningful near black
+constexpr double kFloor = 0.01;  // math.md §13: keeps the measure meaningful near black
 constexpr double kPercentile = 0.9999;
 constexpr double kWorstAllowance = 50.0;  // the worst sample may be this many tolerances off
 

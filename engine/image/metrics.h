@@ -7,11 +7,11 @@
 namespace afterglow {
 
 struct ErrorMeasure {
-  double worst = 0;          ///< largest |x − ref| / (|ref| + 0.01)
-  double percentile = 0;     ///< its 99.99th percentile
+  double worst = 0;       ///< largest |x − ref| / (|ref| + 0.01)
+  double percentile = 0;  ///< its 99.99th percentile
   double rms = 0;
   std::size_t worst_index = 0;
-  std::size_t non_finite = 0;   ///< samples of x that are not finite; they count as infinite error
+  std::size_t non_finite = 0;  ///< samples of x that are not finite; they count as infinite error
 };
 ErrorMeasure measure_error(std::span<const float> x, std::span<const double> reference);
 ErrorMeasure measure_error(std::span<const float> x, std::span<const float> reference);

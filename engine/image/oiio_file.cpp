@@ -1,10 +1,10 @@
 #include "image/oiio_file.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "core/text.h"
 #include "image/icc_profile.h"
@@ -13,7 +13,8 @@
 namespace afterglow {
 namespace {
 
-constexpr std::size_t kMaxParts = 64;  // pages of a TIFF; other formats' further images are animation frames or thumbnails
+constexpr std::size_t kMaxParts =
+    64;  // pages of a TIFF; other formats' further images are animation frames or thumbnails
 
 std::string message_of(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -22,10 +23,12 @@ std::string message_of(std::string text) {
   return text.empty() ? "cannot be read" : "cannot be read: " + text;
 }
 
-/// Offsets that differences of coordinates would not survive, and windows without pixels (a TIFF's position may be any number).
+/// Offsets that differences of coordinates would not survive, and windows without pixels (a TIFF's position may be any
+/// number).
 bool absurd(const Rect& window) {
   constexpr int kFar = 1 << 29;
-  return window.x < -kFar || window.x > kFar || window.y < -kFar || window.y > kFar || window.width < 1 || window.height < 1;
+  return window.x < -kFar || window.x > kFar || window.y < -kFar || window.y > kFar || window.width < 1 ||
+         window.height < 1;
 }
 
 class OiioFile : public PictureFile {
@@ -49,12 +52,14 @@ class OiioFile : public PictureFile {
   std::uint64_t buffer_bytes(int part) const override {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
     constexpr std::uint64_t kLines = 64;
-    return spec.scanline_bytes(true) * kLines + (container_.kind == ContainerFacts::Kind::png ? 0 : spec.tile_bytes(true) * 16);
+    return spec.scanline_bytes(true) * kLines +
+           (container_.kind == ContainerFacts::Kind::png ? 0 : spec.tile_bytes(true) * 16);
   }
 
   Result<void> read(int part, std::span<const ReadTarget> targets) override {
     std::vector<ReadTarget> sorted(targets.begin(), targets.end());
-    std::sort(sorted.begin(), sorted.end(), [](const ReadTarget& a, const ReadTarget& b) { return a.channel < b.channel; });
+    std::sort(sorted.begin(), sorted.end(),
+              [](const ReadTarget& a, const ReadTarget& b) { return a.channel < b.channel; });
     try {
       // Runs of neighbouring channels that go to neighbouring floats are read in one pass over the file.
       for (std::size_t i = 0; i < sorted.size();) {
@@ -76,7 +81,8 @@ class OiioFile : public PictureFile {
     ColorEncoding encoding;
     encoding.grey = color.channels[0] == color.channels[1];
     if (color.channels[3] >= 0)
-      encoding.alpha = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) ? AlphaKind::straight : AlphaKind::associated;
+      encoding.alpha =
+          spec.get_int_attribute("oiio:UnassociatedAlpha", 0) ? AlphaKind::straight : AlphaKind::associated;
     const OIIO::TypeDesc type = sample_type(color);
     const bool integer = !type.is_floating_point();
     if (integer && type.size() <= 2) encoding.max_code = type.size() == 1 ? 255 : 65535;
@@ -103,7 +109,8 @@ class OiioFile : public PictureFile {
     facts.had_profile = spec.find_attribute("ICCProfile") != nullptr;
     for (std::size_t i = 0; i < 4; ++i)
       if (color.channels[i] >= 0)
-        facts.color_channels[i] = parts_[static_cast<std::size_t>(color.part)].channels[static_cast<std::size_t>(color.channels[i])];
+        facts.color_channels[i] =
+            parts_[static_cast<std::size_t>(color.part)].channels[static_cast<std::size_t>(color.channels[i])];
     facts.metadata = metadata_of(spec.extra_attribs);
     return facts;
   }
@@ -111,7 +118,8 @@ class OiioFile : public PictureFile {
  private:
   static std::string unknown_format(const std::string& why) {
     // Among OpenImageIO's reasons this one means that no reader knew the bytes.
-    if (why.empty() || why.find("could not find a format reader") != std::string::npos) return "is not a picture in a format that is known";
+    if (why.empty() || why.find("could not find a format reader") != std::string::npos)
+      return "is not a picture in a format that is known";
     return message_of(why);
   }
 
@@ -150,8 +158,8 @@ class OiioFile : public PictureFile {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
     const auto x_stride = static_cast<OIIO::stride_t>(first.pixel_stride * sizeof(float));
     const auto y_stride = static_cast<OIIO::stride_t>(first.row_stride * sizeof(float));
-    if (!input_->read_image(part, 0, first.channel, first.channel + channels, OIIO::TypeFloat, first.base, x_stride, y_stride,
-                            y_stride * spec.height))
+    if (!input_->read_image(part, 0, first.channel, first.channel + channels, OIIO::TypeFloat, first.base, x_stride,
+                            y_stride, y_stride * spec.height))
       return failed(message_of(input_->geterror()));
     return {};
   }
@@ -160,7 +168,8 @@ class OiioFile : public PictureFile {
     const OIIO::ParamValue* profile = spec.find_attribute("ICCProfile");
     if (!profile) return false;
     const auto* bytes = static_cast<const std::uint8_t*>(profile->data());
-    const auto used = use_icc_profile({bytes, static_cast<std::size_t>(profile->type().size())}, encoding.grey ? 1 : 3, encoding);
+    const auto used =
+        use_icc_profile({bytes, static_cast<std::size_t>(profile->type().size())}, encoding.grey ? 1 : 3, encoding);
     if (!used) diagnostics.warn(fmt::format("{}: {}; the profile is ignored", path_.string(), used.error().message));
     return used.ok();
   }

@@ -16,9 +16,11 @@ Metadata metadata_of(const OIIO::ParamValueList& list) {
     } else if (type == OIIO::TypeFloat) {
       entry.value = *floats;
     } else if (type.basetype == OIIO::TypeDesc::FLOAT && param.nvalues() == 1 && type.arraylen == 0 &&
-               (type.aggregate == OIIO::TypeDesc::VEC2 || type.aggregate == OIIO::TypeDesc::VEC3 || type.aggregate == OIIO::TypeDesc::MATRIX44)) {
+               (type.aggregate == OIIO::TypeDesc::VEC2 || type.aggregate == OIIO::TypeDesc::VEC3 ||
+                type.aggregate == OIIO::TypeDesc::MATRIX44)) {
       entry.value = std::vector<float>(floats, floats + static_cast<int>(type.aggregate));
-    } else if (type.is_array() || type.aggregate != OIIO::TypeDesc::SCALAR || type.is_floating_point() || type.basetype == OIIO::TypeDesc::PTR) {
+    } else if (type.is_array() || type.aggregate != OIIO::TypeDesc::SCALAR || type.is_floating_point() ||
+               type.basetype == OIIO::TypeDesc::PTR) {
       continue;  // maker notes and other tables of bytes
     } else {
       entry.value = param.get_int();

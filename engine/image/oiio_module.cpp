@@ -1,9 +1,9 @@
 #include "image/oiio_module.h"
 
-#include <vector>
-
 #include <dlfcn.h>
 #include <fmt/format.h>
+
+#include <vector>
 
 namespace afterglow {
 namespace fs = std::filesystem;

@@ -1,5 +1,6 @@
-// OpenImageIO, at arm's length. Debian's build of it draws in some 250 shared libraries, which take longer to load than a frame takes
-// to read; they are loaded when the first file comes that is neither EXR (read and written) nor PNG (written).
+// OpenImageIO, at arm's length. Debian's build of it draws in some 250 shared libraries, which take longer to load than
+// a frame takes to read; they are loaded when the first file comes that is neither EXR (read and written) nor PNG
+// (written).
 #pragma once
 
 #include <filesystem>
@@ -14,9 +15,11 @@
 namespace afterglow {
 
 struct OiioModule {
-  Result<std::unique_ptr<PictureFile>> (*open)(const std::filesystem::path& file, const ContainerFacts& container, const SizeLimits& limits);
+  Result<std::unique_ptr<PictureFile>> (*open)(const std::filesystem::path& file, const ContainerFacts& container,
+                                               const SizeLimits& limits);
   /// JPEG, TIFF, HDR. With `out` null the library opens file `name` itself, and what it wrote is read back.
-  Result<void> (*write)(const Picture& picture, const OutputFormat& format, OutputFile* out, const std::string& name, const WriteOptions& options);
+  Result<void> (*write)(const Picture& picture, const OutputFormat& format, OutputFile* out, const std::string& name,
+                        const WriteOptions& options);
 };
 
 /// Loads it on the first call; thread-safe. Errors: io (not installed).

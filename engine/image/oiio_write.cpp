@@ -1,12 +1,12 @@
 #include "image/oiio_write.h"
 
-#include <algorithm>
-#include <optional>
-#include <vector>
-
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <vector>
 
 #include "core/text.h"
 #include "image/facts.h"
@@ -18,7 +18,7 @@
 namespace afterglow {
 namespace {
 
-constexpr int kRows = 64;  // a strip
+constexpr int kRows = 64;         // a strip
 constexpr int kTiffZipLevel = 2;  // zlib; OpenImageIO takes 6, three times slower for a few per cent
 
 /// An OutputFile as OpenImageIO wants to see it.
@@ -43,10 +43,14 @@ class OiioOutput : public OIIO::Filesystem::IOProxy {
 
 OIIO::TypeDesc oiio_type(SampleType type) {
   switch (type) {
-    case SampleType::half: return OIIO::TypeHalf;
-    case SampleType::float32: return OIIO::TypeFloat;
-    case SampleType::uint16: return OIIO::TypeUInt16;
-    default: return OIIO::TypeUInt8;
+    case SampleType::half:
+      return OIIO::TypeHalf;
+    case SampleType::float32:
+      return OIIO::TypeFloat;
+    case SampleType::uint16:
+      return OIIO::TypeUInt16;
+    default:
+      return OIIO::TypeUInt8;
   }
 }
 
@@ -60,10 +64,13 @@ void describe_color(OIIO::ImageSpec& spec, SampleType type, const FileFacts* fac
   spec.attribute("oiio:ColorSpace", "sRGB");
   if (!facts || !facts->had_profile) return;
   const std::vector<std::uint8_t> profile = srgb_icc_profile();
-  if (!profile.empty()) spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())), profile.data());
+  if (!profile.empty())
+    spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
+                   profile.data());
 }
 
-OIIO::ImageSpec spec_for(const Picture& picture, const OutputFormat& format, SampleType type, bool alpha, const WriteOptions& options) {
+OIIO::ImageSpec spec_for(const Picture& picture, const OutputFormat& format, SampleType type, bool alpha,
+                         const WriteOptions& options) {
   OIIO::ImageSpec spec(picture.display_window.width, picture.display_window.height, alpha ? 4 : 3, oiio_type(type));
   if (picture.facts) spec.extra_attribs = param_list(kept_metadata(*picture.facts));
   describe_color(spec, type, picture.facts.get());
@@ -80,7 +87,8 @@ OIIO::ImageSpec spec_for(const Picture& picture, const OutputFormat& format, Sam
       spec.attribute("compression", options.compression.empty() ? "zip" : lower(options.compression));
       spec.attribute("tiff:zipquality", kTiffZipLevel);
       break;
-    default: break;
+    default:
+      break;
   }
   return spec;
 }
@@ -97,19 +105,23 @@ Result<void> read_back(const std::string& name) {
   const OIIO::ImageSpec spec = input->spec();
   std::vector<std::uint8_t> rows(spec.scanline_bytes() * kRows);
   for (int y = 0; y < spec.height; y += kRows)
-    if (!input->read_scanlines(0, 0, y, std::min(y + kRows, spec.height), 0, 0, spec.nchannels, spec.format, rows.data()))
+    if (!input->read_scanlines(0, 0, y, std::min(y + kRows, spec.height), 0, 0, spec.nchannels, spec.format,
+                               rows.data()))
       return Error{ErrorKind::io, "cannot be written: reading it back failed: " + trim(input->geterror())};
   return {};
 }
 
 }  // namespace
 
-Result<void> write_with_oiio(const Picture& picture, const OutputFormat& format, OutputFile* out, const std::string& name, const WriteOptions& options) {
+Result<void> write_with_oiio(const Picture& picture, const OutputFormat& format, OutputFile* out,
+                             const std::string& name, const WriteOptions& options) {
   try {
-    const StripForm form{sample_type(format, options, picture.facts.get()), picture.has_alpha && format.alpha, options.dither};
+    const StripForm form{sample_type(format, options, picture.facts.get()), picture.has_alpha && format.alpha,
+                         options.dither};
     const OIIO::ImageSpec spec = spec_for(picture, format, form.type, form.alpha, options);
     const auto output = OIIO::ImageOutput::create(format.name);
-    if (!output) return Error{ErrorKind::io, fmt::format("cannot be written: OpenImageIO has no {} writer", format.name)};
+    if (!output)
+      return Error{ErrorKind::io, fmt::format("cannot be written: OpenImageIO has no {} writer", format.name)};
     std::optional<OiioOutput> proxy;
     if (out) output->set_ioproxy(&proxy.emplace(*out, name));
     if (!output->open(name, spec)) return library_failed(*output);
@@ -117,7 +129,8 @@ Result<void> write_with_oiio(const Picture& picture, const OutputFormat& format,
     for (int y = 0; y < spec.height; y += kRows) {
       const int rows = std::min(kRows, spec.height - y);
       encode_strip(picture, form, y, rows, strip.data());
-      if (!output->write_scanlines(y, y + rows, 0, oiio_type(form.type), strip.data()) || (out && out->failure())) return library_failed(*output);
+      if (!output->write_scanlines(y, y + rows, 0, oiio_type(form.type), strip.data()) || (out && out->failure()))
+        return library_failed(*output);
     }
     if (!output->close()) return library_failed(*output);
     return out ? Result<void>() : read_back(name);

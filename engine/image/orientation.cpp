@@ -7,22 +7,30 @@ namespace afterglow {
 namespace {
 
 // Exif: 1 normal, 2 mirrored left-right, 3 turned by 180°, 4 mirrored top-bottom, 5 transposed, 6 needs a quarter turn
-// clockwise, 7 transposed about the other diagonal, 8 needs a quarter turn anti-clockwise. Seen from the upright picture,
-// each is a choice of axis and of directions in the stored one.
+// clockwise, 7 transposed about the other diagonal, 8 needs a quarter turn anti-clockwise. Seen from the upright
+// picture, each is a choice of axis and of directions in the stored one.
 struct Turn {
   bool swap, flip_x, flip_y;  // flips are of the stored x and y
 };
 
 Turn turn_of(int orientation) {
   switch (orientation) {
-    case 2: return {false, true, false};
-    case 3: return {false, true, true};
-    case 4: return {false, false, true};
-    case 5: return {true, false, false};
-    case 6: return {true, false, true};
-    case 7: return {true, true, true};
-    case 8: return {true, true, false};
-    default: return {false, false, false};
+    case 2:
+      return {false, true, false};
+    case 3:
+      return {false, true, true};
+    case 4:
+      return {false, false, true};
+    case 5:
+      return {true, false, false};
+    case 6:
+      return {true, false, true};
+    case 7:
+      return {true, true, true};
+    case 8:
+      return {true, true, false};
+    default:
+      return {false, false, false};
   }
 }
 

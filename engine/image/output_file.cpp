@@ -1,13 +1,13 @@
 #include "image/output_file.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
-
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <unistd.h>
 
 namespace afterglow {
 namespace {
@@ -57,7 +57,8 @@ bool OutputFile::write(const void* data, std::size_t size) {
 bool OutputFile::flush() {
   if (failure_) return false;
   for (std::size_t done = 0; done < buffer_.size();) {
-    const ssize_t written = ::pwrite(descriptor_, buffer_.data() + done, buffer_.size() - done, static_cast<off_t>(buffer_begin_ + done));
+    const ssize_t written =
+        ::pwrite(descriptor_, buffer_.data() + done, buffer_.size() - done, static_cast<off_t>(buffer_begin_ + done));
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) return fail(written < 0 ? errno : ENOSPC);
     done += static_cast<std::size_t>(written);

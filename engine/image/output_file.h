@@ -1,13 +1,13 @@
-// A file that is being written, which remembers its first failure: libraries that write pictures do not always look at, or pass
-// on, what a write returned. Behind it stands a plain file descriptor.
+// A file that is being written, which remembers its first failure: libraries that write pictures do not always look at,
+// or pass on, what a write returned. Behind it stands a plain file descriptor.
 #pragma once
+
+#include <OpenEXR/ImfIO.h>
 
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
-
-#include <OpenEXR/ImfIO.h>
 
 #include "core/result.h"
 

@@ -1,9 +1,9 @@
 #include "image/output_format.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
-
-#include <fmt/format.h>
 
 #include "core/text.h"
 #include "image/facts.h"
@@ -14,28 +14,44 @@ namespace {
 const std::vector<OutputFormat>& formats() {
   using enum SampleType;
   static const std::vector<OutputFormat> all{
-      {OutputKind::exr, "openexr", {".exr"}, {half, float32}, {"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}, true},
+      {OutputKind::exr,
+       "openexr",
+       {".exr"},
+       {half, float32},
+       {"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"},
+       true},
       {OutputKind::hdr, "hdr", {".hdr"}, {float32}, {}, false},
       {OutputKind::png, "png", {".png"}, {uint8, uint16}, {}, true},
       {OutputKind::jpeg, "jpeg", {".jpg", ".jpeg"}, {uint8}, {}, false},
-      {OutputKind::tiff, "tiff", {".tif", ".tiff"}, {uint8, uint16, half, float32}, {"none", "lzw", "zip", "packbits"}, true},
+      {OutputKind::tiff,
+       "tiff",
+       {".tif", ".tiff"},
+       {uint8, uint16, half, float32},
+       {"none", "lzw", "zip", "packbits"},
+       true},
   };
   return all;
 }
 
 const char* type_name(SampleType type) {
   switch (type) {
-    case SampleType::half: return "half";
-    case SampleType::float32: return "float";
-    case SampleType::uint8: return "uint8";
-    case SampleType::uint16: return "uint16";
-    default: return "auto";
+    case SampleType::half:
+      return "half";
+    case SampleType::float32:
+      return "float";
+    case SampleType::uint8:
+      return "uint8";
+    case SampleType::uint16:
+      return "uint16";
+    default:
+      return "auto";
   }
 }
 
 std::vector<std::string> all_extensions() {
   std::vector<std::string> names;
-  for (const OutputFormat& format : formats()) names.insert(names.end(), format.extensions.begin(), format.extensions.end());
+  for (const OutputFormat& format : formats())
+    names.insert(names.end(), format.extensions.begin(), format.extensions.end());
   return names;
 }
 
@@ -61,27 +77,37 @@ Result<const OutputFormat*> output_format(const std::filesystem::path& file, con
   const std::string extension = lower(file.extension().string());
   const OutputFormat* found = nullptr;
   for (const OutputFormat& format : formats())
-    if (std::find(format.extensions.begin(), format.extensions.end(), extension) != format.extensions.end()) found = &format;
+    if (std::find(format.extensions.begin(), format.extensions.end(), extension) != format.extensions.end())
+      found = &format;
   if (!found) {
     const std::vector<std::string> known = all_extensions();
-    return Error{ErrorKind::usage, extension.empty() ? "has no extension that tells its format" : fmt::format("'{}' is not a format that is written", extension),
-                 file.string(), 0, join(known), nearest_name(extension, known)};
+    return Error{ErrorKind::usage,
+                 extension.empty() ? "has no extension that tells its format"
+                                   : fmt::format("'{}' is not a format that is written", extension),
+                 file.string(),
+                 0,
+                 join(known),
+                 nearest_name(extension, known)};
   }
-  if (options.type != SampleType::automatic && std::find(found->types.begin(), found->types.end(), options.type) == found->types.end()) {
+  if (options.type != SampleType::automatic &&
+      std::find(found->types.begin(), found->types.end(), options.type) == found->types.end()) {
     std::vector<std::string> names;
     for (const SampleType type : found->types) names.emplace_back(type_name(type));
-    return Error{ErrorKind::usage, fmt::format("{} files cannot hold samples of type {}", found->extensions[0].substr(1), type_name(options.type)),
-                 file.string(), 0, join(names)};
+    return Error{
+        ErrorKind::usage,
+        fmt::format("{} files cannot hold samples of type {}", found->extensions[0].substr(1), type_name(options.type)),
+        file.string(), 0, join(names)};
   }
   if (options.keep_layers && found->kind != OutputKind::exr)
     return Error{ErrorKind::usage, "only EXR files can keep layers", file.string(), 0, ".exr"};
   if (options.compression.empty()) return found;
   AFTERGLOW_TRY(const Compression compression, parse_compression(options.compression));
   if (found->compressions.empty())
-    return Error{ErrorKind::usage, fmt::format("{} files have no choice of compression", found->extensions[0].substr(1)), file.string()};
+    return Error{ErrorKind::usage,
+                 fmt::format("{} files have no choice of compression", found->extensions[0].substr(1)), file.string()};
   if (std::find(found->compressions.begin(), found->compressions.end(), compression.name) == found->compressions.end())
-    return Error{ErrorKind::usage, fmt::format("unknown compression '{}'", compression.name), file.string(), 0, join(found->compressions),
-                 nearest_name(compression.name, found->compressions)};
+    return Error{ErrorKind::usage,          fmt::format("unknown compression '{}'", compression.name), file.string(), 0,
+                 join(found->compressions), nearest_name(compression.name, found->compressions)};
   if (compression.level >= 0 && !takes_level(*found, compression.name))
     return Error{ErrorKind::usage, fmt::format("compression '{}' takes no level", compression.name), file.string()};
   return found;
@@ -90,10 +116,14 @@ Result<const OutputFormat*> output_format(const std::filesystem::path& file, con
 SampleType sample_type(const OutputFormat& format, const WriteOptions& options, const FileFacts* facts) {
   if (options.type != SampleType::automatic) return options.type;
   switch (format.kind) {
-    case OutputKind::exr: return facts && facts->floating && facts->bits > 16 ? SampleType::float32 : SampleType::half;
-    case OutputKind::hdr: return SampleType::float32;
-    case OutputKind::jpeg: return SampleType::uint8;
-    default: return facts && !facts->floating && facts->bits > 8 ? SampleType::uint16 : SampleType::uint8;
+    case OutputKind::exr:
+      return facts && facts->floating && facts->bits > 16 ? SampleType::float32 : SampleType::half;
+    case OutputKind::hdr:
+      return SampleType::float32;
+    case OutputKind::jpeg:
+      return SampleType::uint8;
+    default:
+      return facts && !facts->floating && facts->bits > 8 ? SampleType::uint16 : SampleType::uint8;
   }
 }
 

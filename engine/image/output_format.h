@@ -16,8 +16,8 @@ enum class OutputKind { exr, hdr, png, jpeg, tiff };
 
 struct OutputFormat {
   OutputKind kind;
-  const char* name;                       ///< OpenImageIO's
-  std::vector<std::string> extensions;    ///< with the dot, lower case
+  const char* name;                     ///< OpenImageIO's
+  std::vector<std::string> extensions;  ///< with the dot, lower case
   std::vector<SampleType> types;
   std::vector<std::string> compressions;  ///< empty: no choice
   bool alpha;

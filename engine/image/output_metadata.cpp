@@ -1,11 +1,11 @@
 #include "image/output_metadata.h"
 
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+
 #include <algorithm>
 #include <array>
 #include <string>
-
-#include <OpenEXR/ImfChromaticitiesAttribute.h>
-#include <OpenEXR/ImfStandardAttributes.h>
 
 #include "core/text.h"
 #include "image/exr_metadata.h"
@@ -15,13 +15,43 @@ namespace afterglow {
 namespace {
 
 /// Lower case. Names alone, and whole families.
-constexpr std::array<std::string_view, 35> kDropped{
-    "compression", "compressionquality", "dwacompressionlevel", "orientation", "chromaticities", "gamma", "colorspace", "exif:colorspace",
-    "exif:pixelxdimension", "exif:pixelydimension", "exif:gamma", "colorinteropid", "acesimagecontainerflag", "blendermultichannel", "multiview",
-    "channels", "datawindow", "displaywindow", "lineorder", "tiles", "name", "type", "version", "chunkcount", "maxsamplesperpixel",
-    "deepimagestate", "preview", "textureformat", "planarconfig", "bitspersample", "hash", "sha-1", "photometricinterpretation",
-    "rowsperstrip", "iccprofile"};
-constexpr std::array<std::string_view, 9> kDroppedFamilies{"oiio:", "openexr:", "png:", "jpeg:", "tiff:", "iccprofile:", "thumbnail", "gif:", "webp:"};
+constexpr std::array<std::string_view, 35> kDropped{"compression",
+                                                    "compressionquality",
+                                                    "dwacompressionlevel",
+                                                    "orientation",
+                                                    "chromaticities",
+                                                    "gamma",
+                                                    "colorspace",
+                                                    "exif:colorspace",
+                                                    "exif:pixelxdimension",
+                                                    "exif:pixelydimension",
+                                                    "exif:gamma",
+                                                    "colorinteropid",
+                                                    "acesimagecontainerflag",
+                                                    "blendermultichannel",
+                                                    "multiview",
+                                                    "channels",
+                                                    "datawindow",
+                                                    "displaywindow",
+                                                    "lineorder",
+                                                    "tiles",
+                                                    "name",
+                                                    "type",
+                                                    "version",
+                                                    "chunkcount",
+                                                    "maxsamplesperpixel",
+                                                    "deepimagestate",
+                                                    "preview",
+                                                    "textureformat",
+                                                    "planarconfig",
+                                                    "bitspersample",
+                                                    "hash",
+                                                    "sha-1",
+                                                    "photometricinterpretation",
+                                                    "rowsperstrip",
+                                                    "iccprofile"};
+constexpr std::array<std::string_view, 9> kDroppedFamilies{
+    "oiio:", "openexr:", "png:", "jpeg:", "tiff:", "iccprofile:", "thumbnail", "gif:", "webp:"};
 
 /// PNG's limit for a keyword, and a size above which a text is no description any more.
 constexpr std::size_t kLongestName = 79, kLongestText = 64 << 10;
@@ -30,7 +60,8 @@ constexpr std::size_t kLongestName = 79, kLongestText = 64 << 10;
 
 bool keeps_metadata(std::string_view name) {
   const std::string plain = lower(name);
-  return std::find(kDropped.begin(), kDropped.end(), plain) == kDropped.end() && !starts_with_any(plain, kDroppedFamilies);
+  return std::find(kDropped.begin(), kDropped.end(), plain) == kDropped.end() &&
+         !starts_with_any(plain, kDroppedFamilies);
 }
 
 Metadata kept_metadata(const FileFacts& facts) {

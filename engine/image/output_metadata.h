@@ -1,16 +1,16 @@
 // Which metadata of the input a new file keeps: everything but what described the old file.
 #pragma once
 
-#include <string_view>
-
 #include <OpenEXR/ImfHeader.h>
+
+#include <string_view>
 
 #include "image/facts.h"
 
 namespace afterglow {
 
-/// Whether an attribute says something about the picture, not about how the old file stored it (compression, tiling, orientation,
-/// profile, chromaticities, names of parts and channels, thumbnails).
+/// Whether an attribute says something about the picture, not about how the old file stored it (compression, tiling,
+/// orientation, profile, chromaticities, names of parts and channels, thumbnails).
 bool keeps_metadata(std::string_view name);
 
 /// What is kept.

@@ -1,4 +1,5 @@
-// Rows of a picture shared out among a few threads. No pool, no global state: a thread start costs some 20 µs, a picture ms.
+// Rows of a picture shared out among a few threads. No pool, no global state: a thread start costs some 20 µs, a
+// picture ms.
 #pragma once
 
 #include <algorithm>
@@ -8,14 +9,14 @@
 
 namespace afterglow {
 
-/// Calls `work(begin, end)` for disjoint ranges that cover [0, rows), on several threads when `values` (samples in all) is worth it.
-/// `work` must not throw.
+/// Calls `work(begin, end)` for disjoint ranges that cover [0, rows), on several threads when `values` (samples in all)
+/// is worth it. `work` must not throw.
 template <class Work>
 void parallel_rows(int rows, long long values, const Work& work) {
   constexpr long long kValuesPerThread = 1 << 17;
   constexpr long long kMaxThreads = 16;
-  const long long wanted = std::min<long long>({static_cast<long long>(std::thread::hardware_concurrency()),
-                                                values / kValuesPerThread, kMaxThreads, rows});
+  const long long wanted = std::min<long long>(
+      {static_cast<long long>(std::thread::hardware_concurrency()), values / kValuesPerThread, kMaxThreads, rows});
   const int threads = static_cast<int>(std::max(wanted, 1ll));
   const auto bound = [&](int i) { return static_cast<int>(static_cast<long long>(rows) * i / threads); };
   std::vector<std::jthread> helpers;

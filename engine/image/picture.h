@@ -13,21 +13,22 @@ namespace afterglow {
 
 /// What had to be made finite before the stack (design.md, "The source is made finite").
 struct SanitizeCounts {
-  std::uint64_t nan = 0;         ///< NaN colour samples set to 0
-  std::uint64_t negative = 0;    ///< negative colour samples set to 0
-  std::uint64_t too_large = 0;   ///< colour samples above 1e30 (or +infinity) set to 1e30
-  std::uint64_t alpha = 0;       ///< non-finite alpha samples (NaN and ±infinity) set to 1
-  std::uint64_t depth = 0;       ///< non-finite depths set to 1e10
-  std::uint64_t normal = 0;      ///< non-finite normals set to 0 0 0
+  std::uint64_t nan = 0;        ///< NaN colour samples set to 0
+  std::uint64_t negative = 0;   ///< negative colour samples set to 0
+  std::uint64_t too_large = 0;  ///< colour samples above 1e30 (or +infinity) set to 1e30
+  std::uint64_t alpha = 0;      ///< non-finite alpha samples (NaN and ±infinity) set to 1
+  std::uint64_t depth = 0;      ///< non-finite depths set to 1e10
+  std::uint64_t normal = 0;     ///< non-finite normals set to 0 0 0
 };
 
 struct FileFacts;  // format, pixel type, metadata, …: image/reader.h; kept for the writer
 
 /// One frame, ready for a stack. All images cover `data_window` and have its size.
 struct Picture {
-  Image color;   ///< RGBA; scene-linear Rec.709, alpha associated (premultiplied), finite, ≥ 0
-  /// Auxiliary inputs by name. "depth": 1 channel, view-space distance in scene units (background 1e10), or device depth as stored;
-  /// "normal": 3 channels as stored. Only those that the file (or --depth/--normal) holds and the caller asked for.
+  Image color;  ///< RGBA; scene-linear Rec.709, alpha associated (premultiplied), finite, ≥ 0
+  /// Auxiliary inputs by name. "depth": 1 channel, view-space distance in scene units (background 1e10), or device
+  /// depth as stored; "normal": 3 channels as stored. Only those that the file (or --depth/--normal) holds and the
+  /// caller asked for.
   std::map<std::string, Image> auxiliary;
   bool has_alpha = false;  ///< the file stored alpha; without it the A of `color` is 1
   Rect data_window;        ///< where `color` lies, in the coordinates of the file, after orientation is applied

@@ -16,8 +16,10 @@ Result<std::unique_ptr<PictureFile>> open_checked_exr(const std::filesystem::pat
     AFTERGLOW_CHECK(check_sides(part.data_window, "data window", limits, file));
     AFTERGLOW_CHECK(check_sides(part.display_window, "display window", limits, file));
     if (part.buffer_bytes(1) > limits.max_bytes)
-      return Error{ErrorKind::io, fmt::format("needs {} MiB to decode, more than the {} MiB allowed (--max-memory)",
-                                              part.buffer_bytes(1) >> 20, limits.max_bytes >> 20), file.string()};
+      return Error{ErrorKind::io,
+                   fmt::format("needs {} MiB to decode, more than the {} MiB allowed (--max-memory)",
+                               part.buffer_bytes(1) >> 20, limits.max_bytes >> 20),
+                   file.string()};
   }
   return open_exr(file, std::move(parts));
 }

@@ -1,5 +1,5 @@
-// One open picture file, whatever its format: parts and channels by name, samples as stored. Behind it are OpenEXR for .exr and
-// OpenImageIO for everything else.
+// One open picture file, whatever its format: parts and channels by name, samples as stored. Behind it are OpenEXR for
+// .exr and OpenImageIO for everything else.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@
 
 namespace afterglow {
 
-/// Where a channel's samples go: sample (x, y), counted from the corner of the part's data window, to base[y·row_stride + x·pixel_stride].
+/// Where a channel's samples go: sample (x, y), counted from the corner of the part's data window, to base[y·row_stride
+/// + x·pixel_stride].
 struct ReadTarget {
   int channel = 0;
   float* base = nullptr;
@@ -36,8 +37,8 @@ class PictureFile {
 
   /// Memory for decoding this part, besides the targets.
   virtual std::uint64_t buffer_bytes(int part) const = 0;
-  /// All rows of the part; each channel at most once. Integers are scaled to 0…1, except those of EXR, which are plain numbers.
-  /// A file that ends too early is an error, though some rows may have been written.
+  /// All rows of the part; each channel at most once. Integers are scaled to 0…1, except those of EXR, which are plain
+  /// numbers. A file that ends too early is an error, though some rows may have been written.
   virtual Result<void> read(int part, std::span<const ReadTarget> targets) = 0;
   /// How the chosen colour channels are encoded. `warnings` that matter to users are passed on.
   virtual ColorEncoding color_encoding(const ChannelChoice& color, Diagnostics& diagnostics) const = 0;
@@ -52,8 +53,8 @@ class PictureFile {
   std::vector<FilePart> parts_;
 };
 
-/// Opens by content, not by extension. Reads the header only. `limits` are checked before a library sees the file where that is
-/// possible (EXR, PNG, JPEG), else right after it has read the header.
+/// Opens by content, not by extension. Reads the header only. `limits` are checked before a library sees the file where
+/// that is possible (EXR, PNG, JPEG), else right after it has read the header.
 Result<std::unique_ptr<PictureFile>> open_picture(const std::filesystem::path& file, const SizeLimits& limits);
 
 }  // namespace afterglow

@@ -17,13 +17,15 @@ std::uint8_t paeth(int left, int above, int corner) {
 /// Bytes taken as signed: the smaller, the likelier to compress well.
 std::uint32_t weight(const std::uint8_t* bytes, std::size_t size) {
   std::uint32_t sum = 0;
-  for (std::size_t i = 0; i < size; ++i) sum += static_cast<std::uint32_t>(std::abs(static_cast<std::int8_t>(bytes[i])));
+  for (std::size_t i = 0; i < size; ++i)
+    sum += static_cast<std::uint32_t>(std::abs(static_cast<std::int8_t>(bytes[i])));
   return sum;
 }
 
 }  // namespace
 
-void png_filter_row(const std::uint8_t* row, const std::uint8_t* above, std::size_t size, std::size_t pixel, std::uint8_t* scratch, std::uint8_t* out) {
+void png_filter_row(const std::uint8_t* row, const std::uint8_t* above, std::size_t size, std::size_t pixel,
+                    std::uint8_t* scratch, std::uint8_t* out) {
   std::uint8_t *sub = scratch, *up = scratch + size, *average = scratch + 2 * size, *best_of_both = scratch + 3 * size;
   const std::size_t head = std::min(pixel, size);
   std::copy_n(row, head, sub);

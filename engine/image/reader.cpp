@@ -1,10 +1,10 @@
 #include "image/reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <new>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "core/text.h"
 #include "image/color_encoding.h"
@@ -50,7 +50,9 @@ Error in_file(Error error, const fs::path& file) {
 }
 
 Rect upright_data(const FilePart& part) { return upright(part.data_window, part.display_window, part.orientation); }
-Rect upright_display(const FilePart& part) { return upright(part.display_window, part.display_window, part.orientation); }
+Rect upright_display(const FilePart& part) {
+  return upright(part.display_window, part.display_window, part.orientation);
+}
 
 std::uint64_t area(const Rect& rect) { return static_cast<std::uint64_t>(rect.size().area()); }
 
@@ -71,8 +73,8 @@ std::optional<ChannelChoice> sole_layer(const PictureFile& file, const Auxiliary
   return grey ? std::nullopt : std::optional(choice);
 }
 
-Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, const LayerChoice& wanted, const Plan& plan,
-                                                    const ReadOptions& options) {
+Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, const LayerChoice& wanted,
+                                                    const Plan& plan, const ReadOptions& options) {
   AuxiliaryPlan made;
   made.kind = &kind;
   if (!wanted.file.empty()) {
@@ -80,7 +82,8 @@ Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, c
   }
   const PictureFile& file = plan.file_of(made);
   const ChannelChoice* color = made.other ? nullptr : &plan.color;
-  auto found = kind.channels == 1 ? find_depth(file.parts(), wanted.name, color) : find_normal(file.parts(), wanted.name, color);
+  auto found =
+      kind.channels == 1 ? find_depth(file.parts(), wanted.name, color) : find_normal(file.parts(), wanted.name, color);
   if (!found) {
     if (!made.other && looks_like_file(wanted.name)) return Error{ErrorKind::io, "no such file", wanted.name};
     return in_file(std::move(found).error(), file.path());
@@ -93,8 +96,9 @@ Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, c
   made.choice = *found.value();
   const Rect color_window = upright_data(plan.color_part()), window = upright_data(plan.part_of(made));
   if (made.other && window.size() != color_window.size())
-    return Error{ErrorKind::io, fmt::format("its {} is {}×{} pixels, but the picture '{}' has {}×{}", kind.name, window.width, window.height,
-                                            plan.file->path().string(), color_window.width, color_window.height),
+    return Error{ErrorKind::io,
+                 fmt::format("its {} is {}×{} pixels, but the picture '{}' has {}×{}", kind.name, window.width,
+                             window.height, plan.file->path().string(), color_window.width, color_window.height),
                  file.path().string()};
   return std::optional<AuxiliaryPlan>(std::move(made));
 }
@@ -110,13 +114,15 @@ Result<Plan> make_plan(const fs::path& file, const ReadOptions& options, const s
   for (const std::string& name : auxiliary) {
     const bool depth = name == kDepth.name;
     if (!depth && name != kNormal.name) continue;  // kinds that no file holds yet
-    AFTERGLOW_TRY(auto made, plan_auxiliary(depth ? kDepth : kNormal, depth ? options.depth : options.normal, plan, options));
+    AFTERGLOW_TRY(auto made,
+                  plan_auxiliary(depth ? kDepth : kNormal, depth ? options.depth : options.normal, plan, options));
     if (made) plan.auxiliary.push_back(std::move(*made));
   }
   return plan;
 }
 
-/// Host memory at the peak of reading: the images, a second copy of the largest while it is turned, and the decoders' buffers.
+/// Host memory at the peak of reading: the images, a second copy of the largest while it is turned, and the decoders'
+/// buffers.
 std::uint64_t host_bytes(const Plan& plan, const std::vector<std::string>& wanted) {
   std::uint64_t images = area(plan.color_part().data_window) * 4 * sizeof(float);
   std::uint64_t second = plan.color_part().orientation > 1 ? images : 0;
@@ -132,10 +138,12 @@ std::uint64_t host_bytes(const Plan& plan, const std::vector<std::string>& wante
   return images + second + buffers;
 }
 
-/// Targets that spread the given channels over the channels of `image`; a channel that occurs twice is read once, into its first place.
+/// Targets that spread the given channels over the channels of `image`; a channel that occurs twice is read once, into
+/// its first place.
 void add_targets(const std::vector<int>& channels, Image& image, std::vector<ReadTarget>& targets) {
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (channels[i] < 0 || std::find(channels.begin(), channels.begin() + static_cast<std::ptrdiff_t>(i), channels[i]) != channels.begin() + static_cast<std::ptrdiff_t>(i))
+    if (channels[i] < 0 || std::find(channels.begin(), channels.begin() + static_cast<std::ptrdiff_t>(i),
+                                     channels[i]) != channels.begin() + static_cast<std::ptrdiff_t>(i))
       continue;
     targets.push_back({channels[i], image.pixels.data() + i, static_cast<std::size_t>(image.channels),
                        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels)});
@@ -150,7 +158,8 @@ Image placed(Image image, const Rect& window, const Rect& wanted, float backgrou
   const int x0 = std::max(window.x, wanted.x), x1 = std::min(window.x + window.width, wanted.x + wanted.width);
   const int y0 = std::max(window.y, wanted.y), y1 = std::min(window.y + window.height, wanted.y + wanted.height);
   for (int y = y0; y < y1 && x0 < x1; ++y)
-    std::copy_n(image.at(x0 - window.x, y - window.y), static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(image.channels),
+    std::copy_n(image.at(x0 - window.x, y - window.y),
+                static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(image.channels),
                 out.at(x0 - wanted.x, y - wanted.y));
   return out;
 }
@@ -228,7 +237,8 @@ Result<Picture> read_planned(Plan& plan, Diagnostics& diagnostics) {
 LayerChoice parse_layer_choice(const std::string& text) {
   const auto is_file = [](const std::string& name) {
     std::error_code ignored;
-    return !name.empty() && (fs::exists(name, ignored) || name.find('#') != std::string::npos || name.find('%') != std::string::npos);
+    return !name.empty() &&
+           (fs::exists(name, ignored) || name.find('#') != std::string::npos || name.find('%') != std::string::npos);
   };
   if (is_file(text) && text.find(':') == std::string::npos) return {text, ""};
   std::error_code ignored;
@@ -258,8 +268,10 @@ Result<Picture> read_picture(const fs::path& file, const ReadOptions& options, D
   try {
     AFTERGLOW_TRY(Plan plan, make_plan(file, options, options.auxiliary));
     if (const std::uint64_t bytes = host_bytes(plan, options.auxiliary); bytes > options.max_bytes)
-      return Error{ErrorKind::io, fmt::format("needs {} MiB of memory, more than the {} MiB allowed (--max-memory)", bytes >> 20,
-                                              options.max_bytes >> 20), file.string()};
+      return Error{ErrorKind::io,
+                   fmt::format("needs {} MiB of memory, more than the {} MiB allowed (--max-memory)", bytes >> 20,
+                               options.max_bytes >> 20),
+                   file.string()};
     return read_planned(plan, diagnostics);
   } catch (const std::bad_alloc&) {
     return Error{ErrorKind::io, "there is not enough memory to read it", file.string()};

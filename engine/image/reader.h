@@ -1,5 +1,6 @@
-// Reads any picture that OpenImageIO reads and makes it ready for a stack: layers picked, colour decoded to scene-linear Rec.709, alpha
-// associated, orientation applied, values made finite. All functions are thread-safe. Errors: io (file named), usage (bad option text).
+// Reads any picture that OpenImageIO reads and makes it ready for a stack: layers picked, colour decoded to
+// scene-linear Rec.709, alpha associated, orientation applied, values made finite. All functions are thread-safe.
+// Errors: io (file named), usage (bad option text).
 #pragma once
 
 #include <cstdint>
@@ -15,28 +16,29 @@ namespace afterglow {
 
 /// `FILE[:NAME]` of --depth and --normal: another file and/or a channel or layer in it.
 struct LayerChoice {
-  std::filesystem::path file;   ///< empty: the picture's own file; may be a sequence pattern, resolved by the caller
-  std::string name;             ///< channel (depth) or layer (normal); empty: found by the usual names
+  std::filesystem::path file;  ///< empty: the picture's own file; may be a sequence pattern, resolved by the caller
+  std::string name;            ///< channel (depth) or layer (normal); empty: found by the usual names
   bool given() const { return !file.empty() || !name.empty(); }
 };
 /// Splits at the last ':' whose left side is an existing file or pattern; a text that is no file is taken for a NAME.
 LayerChoice parse_layer_choice(const std::string& text);
 
 struct ReadOptions {
-  std::string layer;                    ///< --layer: colour layer ("ViewLayer.Combined", "ViewLayer", part name); empty: the first usual one
+  /// --layer: colour layer ("ViewLayer.Combined", "ViewLayer", part name, channel); empty: the first usual one
+  std::string layer;
   LayerChoice depth, normal;
-  std::vector<std::string> auxiliary;   ///< what the stack asks for: "depth", "normal"; only these are read
-  int max_side = 16384;                 ///< larger sides are refused from the header
-  std::uint64_t max_bytes = 6ull << 30; ///< pictures whose own host memory would be larger are refused from the header
+  std::vector<std::string> auxiliary;    ///< what the stack asks for: "depth", "normal"; only these are read
+  int max_side = 16384;                  ///< larger sides are refused from the header
+  std::uint64_t max_bytes = 6ull << 30;  ///< pictures whose own host memory would be larger are refused from the header
 };
 
 /// What the header says; cheap, allocates nothing large.
 struct PictureHeader {
-  Rect data_window, display_window;     ///< after orientation
+  Rect data_window, display_window;  ///< after orientation
   int channels = 0;
-  std::vector<std::string> auxiliary;   ///< "depth", "normal" that reading would find
-  std::string format;                   ///< OIIO format name: "openexr", "png", …
-  std::uint64_t host_bytes = 0;         ///< host memory that read_picture would take at its peak
+  std::vector<std::string> auxiliary;  ///< "depth", "normal" that reading would find
+  std::string format;                  ///< OIIO format name: "openexr", "png", …
+  std::uint64_t host_bytes = 0;        ///< host memory that read_picture would take at its peak
 };
 
 Result<PictureHeader> read_header(const std::filesystem::path& file, const ReadOptions& options);

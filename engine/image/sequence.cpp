@@ -1,13 +1,13 @@
 #include "image/sequence.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cstdio>
 #include <system_error>
 #include <unordered_set>
-
-#include <fmt/format.h>
 
 #include "core/text.h"
 
@@ -21,7 +21,8 @@ constexpr int kMaxDigits = 9;  // what always fits an int
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 Error bad_frames(const std::string& text, const std::string& why) {
-  return Error{ErrorKind::usage, fmt::format("bad frame list '{}': {}", text, why), "", 0, "N, N-M, N-MxSTEP, joined by commas"};
+  return Error{ErrorKind::usage, fmt::format("bad frame list '{}': {}", text, why), "", 0,
+               "N, N-M, N-MxSTEP, joined by commas"};
 }
 
 /// Reads a number (with a sign) from the front of `text` and removes it.
@@ -76,7 +77,8 @@ struct Place {
 };
 
 Error bad_pattern(const std::string& text, const std::string& why) {
-  return Error{ErrorKind::usage, fmt::format("'{}' {}", text, why), "", 0, "one run of #, or one %d or %04d, in the file name"};
+  return Error{ErrorKind::usage, fmt::format("'{}' {}", text, why), "", 0,
+               "one run of #, or one %d or %04d, in the file name"};
 }
 
 }  // namespace
@@ -148,16 +150,19 @@ Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::op
     for (const int frame : *frames) found.push_back({frame, pattern.file(frame)});
     return found;
   }
-  const std::string shown = pattern.prefix + std::string(static_cast<std::size_t>(pattern.digits), '#') + pattern.suffix;
+  const std::string shown =
+      pattern.prefix + std::string(static_cast<std::size_t>(pattern.digits), '#') + pattern.suffix;
   const fs::path prefix(pattern.prefix);
   const fs::path folder = prefix.has_parent_path() ? prefix.parent_path() : fs::path(".");
   const std::string stem = prefix.filename().string();
   std::error_code ec;
   fs::directory_iterator entry(folder, ec);
-  if (ec) return Error{ErrorKind::io, fmt::format("folder '{}' cannot be read: {}", folder.string(), ec.message()), shown};
+  if (ec)
+    return Error{ErrorKind::io, fmt::format("folder '{}' cannot be read: {}", folder.string(), ec.message()), shown};
   for (; !ec && entry != fs::directory_iterator(); entry.increment(ec)) {
     const std::string name = entry->path().filename().string();
-    if (name.size() <= stem.size() + pattern.suffix.size() || !name.starts_with(stem) || !name.ends_with(pattern.suffix))
+    if (name.size() <= stem.size() + pattern.suffix.size() || !name.starts_with(stem) ||
+        !name.ends_with(pattern.suffix))
       continue;
     const std::string middle = name.substr(stem.size(), name.size() - stem.size() - pattern.suffix.size());
     if (middle.size() > kMaxDigits + 1) continue;
@@ -167,7 +172,8 @@ Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::op
     if (!frame || !rest.empty() || pattern.file(*frame).filename() != name) continue;
     found.push_back({*frame, pattern.file(*frame)});
   }
-  if (ec) return Error{ErrorKind::io, fmt::format("folder '{}' cannot be read: {}", folder.string(), ec.message()), shown};
+  if (ec)
+    return Error{ErrorKind::io, fmt::format("folder '{}' cannot be read: {}", folder.string(), ec.message()), shown};
   if (found.empty()) return Error{ErrorKind::io, "no file matches this pattern", shown};
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
   return found;

@@ -16,16 +16,19 @@ Result<std::vector<int>> parse_frames(const std::string& text);
 /// A file name with one place for a frame number, or a plain file.
 struct Pattern {
   std::string prefix, suffix;
-  int digits = 0;          ///< at least this many, zero-padded
+  int digits = 0;  ///< at least this many, zero-padded
   bool numbered = false;
   std::filesystem::path file(int frame) const;
 };
 /// Errors: usage (two places, an unknown % code).
 Result<Pattern> parse_pattern(const std::string& text);
 
-struct FrameFile { int frame = 0; std::filesystem::path file; };
-/// The files of the pattern that exist, by number; with `frames` exactly those (missing ones are listed too: reading reports them).
-/// A plain file is one frame, 1 unless its name ends in a number. Errors: io (no file matches).
+struct FrameFile {
+  int frame = 0;
+  std::filesystem::path file;
+};
+/// The files of the pattern that exist, by number; with `frames` exactly those (missing ones are listed too: reading
+/// reports them). A plain file is one frame, 1 unless its name ends in a number. Errors: io (no file matches).
 Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::optional<std::vector<int>>& frames);
 
 }  // namespace afterglow

@@ -15,6 +15,7 @@ struct SizeLimits {
 };
 
 /// Errors: io ("its data window is W×H, larger than …"; "has no pixels").
-Result<void> check_sides(const Rect& window, const char* what, const SizeLimits& limits, const std::filesystem::path& file);
+Result<void> check_sides(const Rect& window, const char* what, const SizeLimits& limits,
+                         const std::filesystem::path& file);
 
 }  // namespace afterglow

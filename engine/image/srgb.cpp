@@ -17,8 +17,8 @@ double linear_to_srgb(double linear) {
 
 namespace {
 
-/// Where the encoder gives codes above c: half-way between two codes, back in linear light. The two pieces of the curve do not
-/// quite meet (0.0031308 encodes to 0.0404482 and 0.0404500), so the inverse is taken of the piece that encodes.
+/// Where the encoder gives codes above c: half-way between two codes, back in linear light. The two pieces of the curve
+/// do not quite meet (0.0031308 encodes to 0.0404482 and 0.0404500), so the inverse is taken of the piece that encodes.
 double linear_of(CodeEncoder::Curve curve, double encoded) {
   if (curve == CodeEncoder::Curve::linear) return encoded;
   constexpr double kJoin = 0.0031308;
@@ -38,7 +38,8 @@ CodeEncoder::CodeEncoder(Curve curve, int max_code) : max_code_(static_cast<std:
   thresholds_.resize(max_code_ + 2);
   thresholds_.front() = -kInfinity;
   thresholds_.back() = kInfinity;
-  for (std::uint32_t c = 1; c <= max_code_; ++c) thresholds_[c] = first_float_at(linear_of(curve, (c - 0.5) / max_code_));
+  for (std::uint32_t c = 1; c <= max_code_; ++c)
+    thresholds_[c] = first_float_at(linear_of(curve, (c - 0.5) / max_code_));
 
   const auto code_of = [&](double linear) {
     return max_code_ * (curve == Curve::linear ? linear : linear_to_srgb(linear)) + 0.5;
@@ -47,7 +48,8 @@ CodeEncoder::CodeEncoder(Curve curve, int max_code) : max_code_(static_cast<std:
   lowest_ = std::bit_cast<float>(first_bin_ << kShift);
   const std::uint32_t end = std::bit_cast<std::uint32_t>(1.0f) >> kShift;
   for (std::uint32_t b = first_bin_; b < end; ++b) {
-    const double begin = code_of(std::bit_cast<float>(b << kShift)), next = code_of(std::bit_cast<float>((b + 1) << kShift));
+    const double begin = code_of(std::bit_cast<float>(b << kShift)),
+                 next = code_of(std::bit_cast<float>((b + 1) << kShift));
     bins_.push_back({static_cast<float>(begin), static_cast<float>((next - begin) / (kMask + 1))});
   }
 }
@@ -59,7 +61,8 @@ const CodeEncoder& CodeEncoder::srgb(int max_code) {
 
 std::vector<float> srgb_decode_table(int max_code) {
   std::vector<float> table(static_cast<std::size_t>(max_code) + 1);
-  for (int i = 0; i <= max_code; ++i) table[static_cast<std::size_t>(i)] = static_cast<float>(srgb_to_linear(static_cast<double>(i) / max_code));
+  for (int i = 0; i <= max_code; ++i)
+    table[static_cast<std::size_t>(i)] = static_cast<float>(srgb_to_linear(static_cast<double>(i) / max_code));
   return table;
 }
 

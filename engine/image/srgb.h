@@ -10,9 +10,9 @@ namespace afterglow {
 double srgb_to_linear(double encoded);  ///< odd extension below 0, the same power above 1
 double linear_to_srgb(double linear);
 
-/// Turns linear values into the code 0…max_code whose encoded value is nearest; values outside [0, 1] and NaN are clamped (NaN to 0).
-/// Exact: code c is given exactly from the float on that reaches the linear value of c − ½, computed in double precision.
-/// Immutable after construction, thread-safe.
+/// Turns linear values into the code 0…max_code whose encoded value is nearest; values outside [0, 1] and NaN are
+/// clamped (NaN to 0). Exact: code c is given exactly from the float on that reaches the linear value of c − ½,
+/// computed in double precision. Immutable after construction, thread-safe.
 class CodeEncoder {
  public:
   enum class Curve { srgb, linear };
@@ -20,7 +20,8 @@ class CodeEncoder {
   CodeEncoder(Curve curve, int max_code);
 
   std::uint32_t operator()(float linear) const {
-    // The bin of a float is given by its exponent and the first bits of its mantissa: within one, the curve is nearly a line.
+    // The bin of a float is given by its exponent and the first bits of its mantissa: within one, the curve is nearly a
+    // line.
     if (!(linear > lowest_)) return static_cast<std::uint32_t>(linear >= thresholds_[1]);
     if (linear >= 1.0f) return max_code_;
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(linear);

@@ -9,7 +9,8 @@
 namespace afterglow {
 
 void encode_rows(const Picture& picture, const StripForm& form, int first, int rows, std::uint8_t* bytes) {
-  const auto width = static_cast<std::size_t>(picture.display_window.width), channels = std::size_t{form.alpha ? 4u : 3u};
+  const auto width = static_cast<std::size_t>(picture.display_window.width),
+             channels = std::size_t{form.alpha ? 4u : 3u};
   const float padding = picture.has_alpha ? 0.0f : 1.0f;
   const CodeRules rules{form.type == SampleType::uint16 ? 65535 : 255, form.alpha, form.dither};
   const bool integers = form.type == SampleType::uint8 || form.type == SampleType::uint16;
@@ -33,7 +34,8 @@ void encode_rows(const Picture& picture, const StripForm& form, int first, int r
 
 void encode_strip(const Picture& picture, const StripForm& form, int first, int rows, std::uint8_t* bytes) {
   parallel_rows(rows, static_cast<long long>(picture.display_window.width) * rows * 4, [&](int begin, int end) {
-    encode_rows(picture, form, first + begin, end - begin, bytes + form.row_bytes(picture) * static_cast<std::size_t>(begin));
+    encode_rows(picture, form, first + begin, end - begin,
+                bytes + form.row_bytes(picture) * static_cast<std::size_t>(begin));
   });
 }
 

@@ -1,10 +1,10 @@
 #include "image/write_exr.h"
 
-#include <algorithm>
-
 #include <ImathBox.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfOutputFile.h>
+
+#include <algorithm>
 
 #include "image/exr_rows.h"
 #include "image/facts.h"
@@ -17,13 +17,15 @@ Imath::Box2i box(const Rect& rect) { return {{rect.x, rect.y}, {rect.x + rect.wi
 
 }  // namespace
 
-Result<void> write_exr(const Picture& picture, OutputFile& out, const std::string& name, const WriteOptions& options, Diagnostics& diagnostics) {
+Result<void> write_exr(const Picture& picture, OutputFile& out, const std::string& name, const WriteOptions& options,
+                       Diagnostics& diagnostics) {
   AFTERGLOW_TRY(const OutputFormat* format, output_format("x.exr", options));
   Imf::Header header(box(picture.display_window), box(picture.data_window));
   header.channels() = Imf::ChannelList();
   if (picture.facts) add_kept_attributes(header, *picture.facts);
   AFTERGLOW_CHECK(set_compression(header, options.compression));
-  ExrColorRows rows(picture, {"R", "G", "B", picture.has_alpha ? "A" : ""}, sample_type(*format, options, picture.facts.get()));
+  ExrColorRows rows(picture, {"R", "G", "B", picture.has_alpha ? "A" : ""},
+                    sample_type(*format, options, picture.facts.get()));
   rows.add_channels(header);
   {
     ExrOutput stream(out, name.c_str());

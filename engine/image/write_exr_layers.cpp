@@ -1,8 +1,3 @@
-#include <algorithm>
-#include <array>
-#include <string>
-#include <vector>
-
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDeepScanLineInputPart.h>
 #include <OpenEXR/ImfDeepScanLineOutputPart.h>
@@ -19,6 +14,11 @@
 #include <OpenEXR/ImfTiledOutputPart.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
 #include "image/exr_rows.h"
 #include "image/facts.h"
 #include "image/write_exr.h"
@@ -31,7 +31,8 @@ class OtherChannels {
  public:
   OtherChannels(const Imf::Header& header, const std::vector<std::string>& replaced) {
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it)
-      if (std::find(replaced.begin(), replaced.end(), it.name()) == replaced.end()) channels_.push_back({it.name(), it.channel(), {}});
+      if (std::find(replaced.begin(), replaced.end(), it.name()) == replaced.end())
+        channels_.push_back({it.name(), it.channel(), {}});
   }
 
   /// Channels at less than full resolution are not copied here. Errors: io.
@@ -67,8 +68,8 @@ class OtherChannels {
 
 /// What the colour's layer looks like in the new file.
 struct Replacement {
-  std::array<std::string, 4> names;     ///< of R, G, B, A; A may be empty
-  std::vector<std::string> replaced;    ///< names in the old file that they stand for
+  std::array<std::string, 4> names;   ///< of R, G, B, A; A may be empty
+  std::vector<std::string> replaced;  ///< names in the old file that they stand for
 };
 
 Replacement replacement_for(const FileFacts& facts, const Picture& picture) {
@@ -90,26 +91,31 @@ Replacement replacement_for(const FileFacts& facts, const Picture& picture) {
 }
 
 Result<void> check_unchanged(const Imf::MultiPartInputFile& input, const FileFacts& facts) {
-  const Error changed{ErrorKind::io, fmt::format("cannot keep layers: '{}' has changed since it was read", facts.file.string())};
+  const Error changed{ErrorKind::io,
+                      fmt::format("cannot keep layers: '{}' has changed since it was read", facts.file.string())};
   if (facts.part >= input.parts()) return changed;
   const Imf::Header& now = input.header(facts.part);
-  if (now.dataWindow() != facts.exr_header->dataWindow() || !(now.channels() == facts.exr_header->channels())) return changed;
+  if (now.dataWindow() != facts.exr_header->dataWindow() || !(now.channels() == facts.exr_header->channels()))
+    return changed;
   return {};
 }
 
-Imf::Header color_header(const Imf::Header& old, const FileFacts& facts, const ExrColorRows& color, const OtherChannels& others) {
+Imf::Header color_header(const Imf::Header& old, const FileFacts& facts, const ExrColorRows& color,
+                         const OtherChannels& others) {
   Imf::Header header(old);
   header.channels() = Imf::ChannelList();
   color.add_channels(header);
   others.add_channels(header);
-  for (const char* name : {"tiles", "preview", "chunkCount", "dwaCompressionLevel", "textureformat"}) header.erase(name);
+  for (const char* name : {"tiles", "preview", "chunkCount", "dwaCompressionLevel", "textureformat"})
+    header.erase(name);
   header.setType(Imf::SCANLINEIMAGE);
   header.lineOrder() = Imf::INCREASING_Y;
   if (facts.had_chromaticities) Imf::addChromaticities(header, Imf::Chromaticities());
   return header;
 }
 
-void write_color_part(Imf::MultiPartInputFile& input, Imf::MultiPartOutputFile& output, int part, ExrColorRows& color, OtherChannels& others) {
+void write_color_part(Imf::MultiPartInputFile& input, Imf::MultiPartOutputFile& output, int part, ExrColorRows& color,
+                      OtherChannels& others) {
   Imf::InputPart source(input, part);
   Imf::OutputPart target(output, part);
   const Imath::Box2i window = source.header().dataWindow();
@@ -148,15 +154,16 @@ void copy_part(Imf::MultiPartInputFile& input, Imf::MultiPartOutputFile& output,
 
 }  // namespace
 
-Result<void> write_exr_with_layers(const Picture& picture, OutputFile& out, const std::string& name, const WriteOptions& options,
-                                   Diagnostics& diagnostics) {
+Result<void> write_exr_with_layers(const Picture& picture, OutputFile& out, const std::string& name,
+                                   const WriteOptions& options, Diagnostics& diagnostics) {
   const FileFacts* facts = picture.facts.get();
   if (!facts || !facts->exr_header) {
     diagnostics.warn("the input is no EXR file and has no layers to keep");
     return write_exr(picture, out, name, options, diagnostics);
   }
   if (facts->orientation > 1)
-    return Error{ErrorKind::io, fmt::format("cannot keep layers of a picture that is stored turned (orientation {})", facts->orientation)};
+    return Error{ErrorKind::io, fmt::format("cannot keep layers of a picture that is stored turned (orientation {})",
+                                            facts->orientation)};
   Imf::MultiPartInputFile input(facts->file.c_str());
   AFTERGLOW_CHECK(check_unchanged(input, *facts));
   AFTERGLOW_TRY(const OutputFormat* format, output_format("x.exr", options));

@@ -1,14 +1,14 @@
 #include "image/write_png.h"
 
+#include <fmt/format.h>
+#include <zlib.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
 #include <thread>
 #include <vector>
-
-#include <fmt/format.h>
-#include <zlib.h>
 
 #include "core/text.h"
 #include "image/facts.h"
@@ -20,7 +20,8 @@
 namespace afterglow {
 namespace {
 
-constexpr std::size_t kStripBytes = 1 << 19;  // of samples: long enough that the seams cost nothing, short enough to share out
+constexpr std::size_t kStripBytes =
+    1 << 19;  // of samples: long enough that the seams cost nothing, short enough to share out
 
 void put_number(std::string& bytes, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
@@ -38,7 +39,9 @@ void write_chunk(OutputFile& out, const char* type, const void* data, std::size_
   if (size > 0) out.write(data, size);
   out.write(tail.data(), tail.size());
 }
-void write_chunk(OutputFile& out, const char* type, const std::string& data) { write_chunk(out, type, data.data(), data.size()); }
+void write_chunk(OutputFile& out, const char* type, const std::string& data) {
+  write_chunk(out, type, data.data(), data.size());
+}
 
 void write_resolution(OutputFile& out, const Metadata& metadata) {
   const auto number = [&](const char* name) {
@@ -75,15 +78,18 @@ std::string keyword_of(const std::string& name) {
 }
 
 bool printable(const std::string& text, bool newlines) {
-  return std::all_of(text.begin(), text.end(), [&](unsigned char c) { return (c >= 32 && c < 127) || (newlines && (c == '\n' || c == '\t')); });
+  return std::all_of(text.begin(), text.end(),
+                     [&](unsigned char c) { return (c >= 32 && c < 127) || (newlines && (c == '\n' || c == '\t')); });
 }
 
 /// "YYYY:MM:DD hh:mm:ss" has a chunk of its own.
 bool write_time(OutputFile& out, const std::string& text) {
   int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0;
-  if (std::sscanf(text.c_str(), "%4d:%2d:%2d %2d:%2d:%2d", &year, &month, &day, &hour, &minute, &second) != 6) return false;
+  if (std::sscanf(text.c_str(), "%4d:%2d:%2d %2d:%2d:%2d", &year, &month, &day, &hour, &minute, &second) != 6)
+    return false;
   const auto inside = [](int value, int low, int high) { return value >= low && value <= high; };
-  if (!inside(year, 1, 9999) || !inside(month, 1, 12) || !inside(day, 1, 31) || !inside(hour, 0, 23) || !inside(minute, 0, 59) || !inside(second, 0, 60))
+  if (!inside(year, 1, 9999) || !inside(month, 1, 12) || !inside(day, 1, 31) || !inside(hour, 0, 23) ||
+      !inside(minute, 0, 59) || !inside(second, 0, 60))
     return false;
   std::string data{static_cast<char>(year >> 8)};
   for (const int value : {year & 255, month, day, hour, minute, second}) data += static_cast<char>(value);
@@ -96,12 +102,15 @@ void write_texts(OutputFile& out, const Metadata& metadata) {
     const auto* text = std::get_if<std::string>(&value);
     if (!text || name == "ResolutionUnit" || (name == "DateTime" && write_time(out, *text))) continue;
     const std::string keyword = keyword_of(name);
-    if (keyword.empty() || keyword.size() > 79 || !printable(keyword, false) || keyword.front() == ' ' || keyword.back() == ' ') continue;
+    if (keyword.empty() || keyword.size() > 79 || !printable(keyword, false) || keyword.front() == ' ' ||
+        keyword.back() == ' ')
+      continue;
     if (text->find('\0') != std::string::npos) continue;
     if (printable(*text, true)) {
       write_chunk(out, "tEXt", keyword + '\0' + *text);
     } else {
-      write_chunk(out, "iTXt", keyword + std::string(5, '\0') + *text);  // UTF-8, not compressed, no language, no translation
+      write_chunk(out, "iTXt",
+                  keyword + std::string(5, '\0') + *text);  // UTF-8, not compressed, no language, no translation
     }
   }
 }
@@ -136,17 +145,23 @@ struct Strip {
 class StripEncoder {
  public:
   StripEncoder(const Picture& picture, StripForm form, int level)
-      : picture_(picture), form_(form), row_bytes_(form.row_bytes(picture)), pixel_((form.alpha ? 4 : 3) * form.sample_bytes()), level_(level) {}
+      : picture_(picture),
+        form_(form),
+        row_bytes_(form.row_bytes(picture)),
+        pixel_((form.alpha ? 4 : 3) * form.sample_bytes()),
+        level_(level) {}
 
   int rows_per_strip() const { return static_cast<int>(std::clamp<std::size_t>(kStripBytes / row_bytes_, 1, 4096)); }
 
   void run(Strip& strip) const {
     // The row above is needed to filter the first one.
     const int lead = strip.first > 0 ? 1 : 0;
-    std::vector<std::uint8_t> samples(row_bytes_ * static_cast<std::size_t>(strip.rows + lead)), scratch(4 * row_bytes_);
+    std::vector<std::uint8_t> samples(row_bytes_ * static_cast<std::size_t>(strip.rows + lead)),
+        scratch(4 * row_bytes_);
     encode_rows(picture_, form_, strip.first - lead, strip.rows + lead, samples.data());
     if (form_.type == SampleType::uint16)
-      for (std::size_t i = 0; i + 1 < samples.size(); i += 2) std::swap(samples[i], samples[i + 1]);  // PNG is big-endian
+      for (std::size_t i = 0; i + 1 < samples.size(); i += 2)
+        std::swap(samples[i], samples[i + 1]);  // PNG is big-endian
     std::vector<std::uint8_t> filtered((row_bytes_ + 1) * static_cast<std::size_t>(strip.rows));
     for (int i = 0; i < strip.rows; ++i) {
       const std::uint8_t* row = samples.data() + row_bytes_ * static_cast<std::size_t>(i + lead);
@@ -212,7 +227,8 @@ Result<void> write_png(const Picture& picture, SampleType type, OutputFile& out,
     }
     run_batch(encoder, batch);
     for (const Strip& strip : batch) {
-      if (strip.failure != Z_OK) return Error{ErrorKind::io, fmt::format("cannot be written: compression failed ({})", zError(strip.failure))};
+      if (strip.failure != Z_OK)
+        return Error{ErrorKind::io, fmt::format("cannot be written: compression failed ({})", zError(strip.failure))};
       adler = adler32_combine(adler, strip.adler, static_cast<z_off_t>(strip.filtered));
       std::string data;
       if (strip.first == 0) data += "\x78\x01";  // a zlib stream with a window of 32 KiB

@@ -1,5 +1,5 @@
-// Writes PNG. On its own rather than through libpng, so that strips of rows are encoded and compressed on several threads: compression
-// is what a PNG costs.
+// Writes PNG. On its own rather than through libpng, so that strips of rows are encoded and compressed on several
+// threads: compression is what a PNG costs.
 #pragma once
 
 #include "image/output_file.h"
@@ -7,8 +7,8 @@
 
 namespace afterglow {
 
-/// The display window as 8- or 16-bit RGB or straight RGBA, sRGB. `type` uint8 or uint16. The bytes do not depend on the number of
-/// threads. Failures are found in `out`. Errors: io (zlib).
+/// The display window as 8- or 16-bit RGB or straight RGBA, sRGB. `type` uint8 or uint16. The bytes do not depend on
+/// the number of threads. Failures are found in `out`. Errors: io (zlib).
 Result<void> write_png(const Picture& picture, SampleType type, OutputFile& out, const WriteOptions& options);
 
 }  // namespace afterglow

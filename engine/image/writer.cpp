@@ -1,10 +1,10 @@
 #include "image/writer.h"
 
-#include <cerrno>
-#include <cstring>
-
 #include <fmt/format.h>
 #include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
 
 #include "core/file.h"
 #include "image/exr_file.h"
@@ -48,17 +48,20 @@ class Temporary {
   bool committed_ = false;
 };
 
-/// OpenImageIO 2.4 cannot look back at a TIFF that goes through a proxy, and then damages it where Exif data is to be written.
+/// OpenImageIO 2.4 cannot look back at a TIFF that goes through a proxy, and then damages it where Exif data is to be
+/// written.
 bool opened_by_library(const OutputFormat& format) { return format.kind == OutputKind::tiff; }
 
-Result<void> write_by_module(const Picture& picture, const OutputFormat& format, OutputFile* out, const std::string& name, const WriteOptions& options) {
+Result<void> write_by_module(const Picture& picture, const OutputFormat& format, OutputFile* out,
+                             const std::string& name, const WriteOptions& options) {
   AFTERGLOW_TRY(const OiioModule* module, oiio_module());
   return module->write(picture, format, out, name, options);
 }
 
 Result<void> write_format(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                           const WriteOptions& options, Diagnostics& diagnostics) {
-  if (format.kind == OutputKind::png) return write_png(picture, sample_type(format, options, picture.facts.get()), out, options);
+  if (format.kind == OutputKind::png)
+    return write_png(picture, sample_type(format, options, picture.facts.get()), out, options);
   if (format.kind != OutputKind::exr) return write_by_module(picture, format, &out, name, options);
   use_exr_threads();
   if (options.keep_layers) return write_exr_with_layers(picture, out, name, options, diagnostics);
@@ -72,10 +75,10 @@ bool has_transparency(const Picture& picture) {
   return false;
 }
 
-/// Writes `temporary` through an OutputFile. What the file itself reports ("No space left on device") goes before what a library
-/// makes of it.
-Result<void> write_through(const Picture& picture, const OutputFormat& format, const fs::path& temporary, const WriteOptions& options,
-                           Diagnostics& diagnostics) {
+/// Writes `temporary` through an OutputFile. What the file itself reports ("No space left on device") goes before what
+/// a library makes of it.
+Result<void> write_through(const Picture& picture, const OutputFormat& format, const fs::path& temporary,
+                           const WriteOptions& options, Diagnostics& diagnostics) {
   OutputFile out(temporary);
   Result<void> written;
   try {
@@ -86,15 +89,17 @@ Result<void> write_through(const Picture& picture, const OutputFormat& format, c
   AFTERGLOW_CHECK(out.close());
   AFTERGLOW_CHECK(written);
   std::error_code ec;
-  if (fs::file_size(temporary, ec) != out.size() || ec) return Error{ErrorKind::io, "cannot be written: the file has lost bytes"};
+  if (fs::file_size(temporary, ec) != out.size() || ec)
+    return Error{ErrorKind::io, "cannot be written: the file has lost bytes"};
   return {};
 }
 
 /// Writes to `temporary` and makes sure that it is all there.
-Result<void> write_checked(const Picture& picture, const OutputFormat& format, const fs::path& temporary, const WriteOptions& options,
-                           Diagnostics& diagnostics) {
+Result<void> write_checked(const Picture& picture, const OutputFormat& format, const fs::path& temporary,
+                           const WriteOptions& options, Diagnostics& diagnostics) {
   if (picture.has_alpha && !format.alpha && has_transparency(picture))
-    diagnostics.warn(fmt::format("{} files have no alpha; the picture is put on black", format.extensions[0].substr(1)));
+    diagnostics.warn(
+        fmt::format("{} files have no alpha; the picture is put on black", format.extensions[0].substr(1)));
   if (opened_by_library(format)) {
     AFTERGLOW_CHECK(write_by_module(picture, format, nullptr, temporary.string(), options));
   } else {
@@ -139,7 +144,8 @@ Result<void> check_output(const fs::path& file, const WriteOptions& options) {
   return {};
 }
 
-Result<void> write_picture(const Picture& picture, const fs::path& file, const WriteOptions& options, Diagnostics& diagnostics) {
+Result<void> write_picture(const Picture& picture, const fs::path& file, const WriteOptions& options,
+                           Diagnostics& diagnostics) {
   AFTERGLOW_CHECK(check_output(file, options));
   AFTERGLOW_TRY(const OutputFormat* format, output_format(file, options));
   const fs::path target = resolved(file);

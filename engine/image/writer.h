@@ -1,4 +1,5 @@
-// Writes results whole or not at all. The format is chosen by the extension. Thread-safe. Errors: io, usage (bad option text).
+// Writes results whole or not at all. The format is chosen by the extension. Thread-safe. Errors: io, usage (bad option
+// text).
 #pragma once
 
 #include <filesystem>
@@ -13,19 +14,26 @@ namespace afterglow {
 enum class SampleType { automatic, half, float32, uint8, uint16 };
 
 struct WriteOptions {
-  SampleType type = SampleType::automatic;  ///< EXR: half unless the input was float; HDR: its own; display formats: uint8 (uint16 when the input had integers of more than 8 bits and the format can)
-  std::string compression;                  ///< empty: ZIP for EXR, the format's default elsewhere; EXR: none rle zip zips piz pxr24 b44 b44a dwaa dwab (with :level)
-  int png_level = 1;                        ///< zlib level 0–9
+  /// automatic: EXR half unless the input was float, HDR its own, display formats uint8 (uint16 when the input had
+  /// integers of more than 8 bits and the format can). Float TIFF is scene-linear.
+  SampleType type = SampleType::automatic;
+  /// Empty: ZIP for EXR, the format's default elsewhere. EXR: none rle zip zips piz pxr24 b44 b44a dwaa dwab, some with
+  /// ":level"; TIFF: none lzw zip packbits.
+  std::string compression;
+  int png_level = 1;  ///< zlib level 0–9
   int jpeg_quality = 95;
-  bool dither = false;                      ///< ±½ step of ordered noise before quantising to integers; deterministic
-  bool keep_layers = false;                 ///< EXR → EXR: copy all other channels and parts of `picture.facts`' file unchanged
+  bool dither = false;       ///< ±½ step of ordered noise before quantising to integers; deterministic
+  bool keep_layers = false;  ///< EXR → EXR: copy all other channels and parts of `picture.facts`' file unchanged
 };
 
-/// Scene formats (EXR, HDR) get scene-linear values and, for EXR, both windows; display formats (PNG, JPEG, TIFF) get the display
-/// window, clamped and sRGB-encoded. Alpha is written when the picture has it and the format can; straight where the format wants it.
-Result<void> write_picture(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options, Diagnostics& diagnostics);
+/// Scene formats (EXR, HDR) get scene-linear values and, for EXR, both windows; display formats (PNG, JPEG, TIFF) get
+/// the display window, clamped and sRGB-encoded. Alpha is written when the picture has it and the format can; straight
+/// where the format wants it.
+Result<void> write_picture(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options,
+                           Diagnostics& diagnostics);
 
-/// Checks, without writing, that `file` has an extension we write and that its folder exists and can be written. For errors before the work.
+/// Checks, without writing, that `file` has an extension we write and that its folder exists and can be written. For
+/// errors before the work.
 Result<void> check_output(const std::filesystem::path& file, const WriteOptions& options);
 
 }  // namespace afterglow

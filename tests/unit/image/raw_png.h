@@ -15,7 +15,9 @@ class RawPng {
     head += {static_cast<char>(bits), static_cast<char>(type), 0, 0, 0};
     chunk("IHDR", head);
   }
-  static std::string big_endian(std::uint32_t v) { return {static_cast<char>(v >> 24), static_cast<char>(v >> 16), static_cast<char>(v >> 8), static_cast<char>(v)}; }
+  static std::string big_endian(std::uint32_t v) {
+    return {static_cast<char>(v >> 24), static_cast<char>(v >> 16), static_cast<char>(v >> 8), static_cast<char>(v)};
+  }
   RawPng& chunk(const std::string& type, const std::string& data) {
     const std::string body = type + data;
     bytes_ += big_endian(static_cast<std::uint32_t>(data.size())) + body + big_endian(crc(body));
@@ -32,7 +34,8 @@ class RawPng {
       b = (b + a) % 65521;
     }
     const auto word = [](std::uint16_t v) { return std::string{static_cast<char>(v), static_cast<char>(v >> 8)}; };
-    return chunk("IDAT", std::string("\x78\x01\x01", 3) + word(size) + word(static_cast<std::uint16_t>(~size)) + raw + big_endian(b << 16 | a));
+    return chunk("IDAT", std::string("\x78\x01\x01", 3) + word(size) + word(static_cast<std::uint16_t>(~size)) + raw +
+                             big_endian(b << 16 | a));
   }
   std::string finish() { return chunk("IEND", "").bytes_; }
 

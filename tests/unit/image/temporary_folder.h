@@ -1,13 +1,12 @@
 // A folder for one test's files, gone afterwards.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
-
-#include <gtest/gtest.h>
 
 namespace afterglow {
 
@@ -15,7 +14,8 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string("afterglow_") + test->test_suite_name() + "_" + test->name() + "_" + std::to_string(getpid());
+    std::string name =
+        std::string("afterglow_") + test->test_suite_name() + "_" + test->name() + "_" + std::to_string(getpid());
     for (char& c : name)
       if (c == '/') c = '_';
     path_ = std::filesystem::temp_directory_path() / name;

@@ -1,7 +1,7 @@
-#include <fstream>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <fstream>
 
 #include "make_files.h"
 #include "temporary_folder.h"
@@ -14,7 +14,8 @@ class Auxiliary : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_NO_FATAL_FAILURE(make_file(folder_ / "color.exr", 7, 5, {"R", "G", "B"}, OIIO::TypeHalf));
-    ASSERT_NO_FATAL_FAILURE(make_file(folder_ / "both.exr", 7, 5, {"R", "G", "B", "Z", "near.Z", "N.X", "N.Y", "N.Z"}, OIIO::TypeFloat));
+    ASSERT_NO_FATAL_FAILURE(
+        make_file(folder_ / "both.exr", 7, 5, {"R", "G", "B", "Z", "near.Z", "N.X", "N.Y", "N.Z"}, OIIO::TypeFloat));
     ASSERT_NO_FATAL_FAILURE(make_file(folder_ / "other.exr", 7, 6, {"Z"}, OIIO::TypeFloat));
     options_.auxiliary = {"depth", "normal"};
   }
@@ -122,7 +123,8 @@ TEST_F(Auxiliary, PartsWithOtherWindowsAreCutAndPadded) {
 }
 
 TEST_F(Auxiliary, BackgroundAndNonFinite) {
-  ASSERT_NO_FATAL_FAILURE(make_file(folder_ / "inf.exr", {make_spec(2, 1, {"R", "G", "B", "Z", "N.X", "N.Y", "N.Z"}, OIIO::TypeFloat)},
+  ASSERT_NO_FATAL_FAILURE(make_file(folder_ / "inf.exr",
+                                    {make_spec(2, 1, {"R", "G", "B", "Z", "N.X", "N.Y", "N.Z"}, OIIO::TypeFloat)},
                                     {{1, 1, 1, INFINITY, NAN, 0, 1, 1, 1, 1, 5, 0, 0, 1}}));
   Messages messages;
   const auto picture = read_picture(folder_ / "inf.exr", options_, messages.diagnostics);

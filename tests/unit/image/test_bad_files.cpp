@@ -1,11 +1,11 @@
 // Missing, damaged and hostile files: one clear error, no crash, nothing large allocated.
-#include <cstring>
-#include <random>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+
+#include <cstring>
+#include <random>
 
 #include "make_files.h"
 #include "raw_png.h"
@@ -37,7 +37,9 @@ TEST(BadFiles, NotPictures) {
   EXPECT_EQ(error_of(folder / "pipe.exr").message, "is not a regular file");  // and does not hang
   for (const char* name : {"a.exr", "a.png", "a.jpg", "a.tif", "a.hdr", "a.txt", "a"}) {
     write_bytes(folder / name, "this is no picture at all, whatever its name may say");
-    EXPECT_THAT(error_of(folder / name).message, testing::AnyOf(HasSubstr("not a picture"), HasSubstr("cannot be read"))) << name;
+    EXPECT_THAT(error_of(folder / name).message,
+                testing::AnyOf(HasSubstr("not a picture"), HasSubstr("cannot be read")))
+        << name;
   }
 }
 
@@ -118,8 +120,10 @@ TEST_P(Damaged, SpoiltBytesNeverCrash) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Damaged, testing::Values("zip.exr", "piz.exr", "dwaa.exr", "tiled.exr", "parts.exr", "chroma.exr", "plain.png", "plain.jpg", "plain.tif", "tiled.tif",
-                                                       "plain.hdr", "plain.bmp", "plain.tga"),
+INSTANTIATE_TEST_SUITE_P(All, Damaged,
+                         testing::Values("zip.exr", "piz.exr", "dwaa.exr", "tiled.exr", "parts.exr", "chroma.exr",
+                                         "plain.png", "plain.jpg", "plain.tif", "tiled.tif", "plain.hdr", "plain.bmp",
+                                         "plain.tga"),
                          [](const auto& info) {
                            std::string name = info.param;
                            std::replace(name.begin(), name.end(), '.', '_');
@@ -150,7 +154,8 @@ class MemoryCap {
 class Bombs : public testing::Test {
  protected:
   /// Overwrites the bytes behind an EXR attribute's name, type and size.
-  static void patch(std::string& bytes, const std::string& attribute, const std::string& type, std::size_t offset, std::int32_t value) {
+  static void patch(std::string& bytes, const std::string& attribute, const std::string& type, std::size_t offset,
+                    std::int32_t value) {
     const std::size_t at = bytes.find(attribute + '\0' + type + '\0');
     ASSERT_NE(at, std::string::npos);
     std::memcpy(&bytes[at + attribute.size() + type.size() + 2 + 4 + offset], &value, sizeof value);
@@ -202,7 +207,8 @@ TEST_F(Bombs, HugeExrTiles) {
 }
 
 TEST_F(Bombs, HugePngAndJpeg) {
-  EXPECT_THAT(refused(RawPng(0x7f000004, 4, 8, 2).pixels({"x"}).finish(), "bomb.png").message, HasSubstr("larger than 16384"));
+  EXPECT_THAT(refused(RawPng(0x7f000004, 4, 8, 2).pixels({"x"}).finish(), "bomb.png").message,
+              HasSubstr("larger than 16384"));
   make_file(folder_ / "a.jpg", 4, 4, {"R", "G", "B"}, OIIO::TypeUInt8);
   std::string jpeg = file_bytes(folder_ / "a.jpg");
   const std::size_t frame = jpeg.find("\xff\xc0");
@@ -212,7 +218,8 @@ TEST_F(Bombs, HugePngAndJpeg) {
 }
 
 TEST_F(Bombs, HugeHdr) {
-  EXPECT_THAT(refused("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000 +X 1000000\n", "bomb.hdr").message, HasSubstr("larger than 16384"));
+  EXPECT_THAT(refused("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000 +X 1000000\n", "bomb.hdr").message,
+              HasSubstr("larger than 16384"));
 }
 
 TEST_F(Bombs, MemoryLimitIsKept) {
@@ -221,7 +228,8 @@ TEST_F(Bombs, MemoryLimitIsKept) {
   options.max_bytes = 200 * 100 * 16;  // the pixels fit, the decoder's buffers do not
   EXPECT_THAT(error_of(folder_ / "a.exr", options).message, HasSubstr("--max-memory"));
   options.max_bytes = 0;
-  EXPECT_FALSE(read_header(folder_ / "a.exr", options).ok() && read_header(folder_ / "a.exr", options).value().host_bytes == 0);
+  EXPECT_FALSE(read_header(folder_ / "a.exr", options).ok() &&
+               read_header(folder_ / "a.exr", options).value().host_bytes == 0);
   options = {};
   options.max_side = 199;
   EXPECT_THAT(error_of(folder_ / "a.exr", options).message, HasSubstr("200×100"));
@@ -230,7 +238,8 @@ TEST_F(Bombs, MemoryLimitIsKept) {
 TEST_F(Bombs, ManyChannelsAndLongNames) {
   std::vector<std::string> names{"R", "G", "B"};
   for (int i = 0; i < 300; ++i) names.push_back("layer" + std::to_string(i) + ".R");
-  ASSERT_NO_FATAL_FAILURE(make_file(folder_ / "many.exr", {make_spec(3, 3, names, OIIO::TypeHalf)}, {marks(3, 3, 303)}));
+  ASSERT_NO_FATAL_FAILURE(
+      make_file(folder_ / "many.exr", {make_spec(3, 3, names, OIIO::TypeHalf)}, {marks(3, 3, 303)}));
   const Picture picture = read_or_fail(folder_ / "many.exr");
   EXPECT_EQ(picture.color.at(2, 2)[1], mark(2, 2, 1));
   ReadOptions options;

@@ -1,6 +1,6 @@
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "image/color_encoding.h"
 #include "image/color_matrix.h"
@@ -79,11 +79,14 @@ TEST(Decode, EveryCodeIsTheFormulasValue) {
     srgb.max_code = max_code;
     std::vector<float> rgba(static_cast<std::size_t>(max_code + 1) * 4);
     for (int i = 0; i <= max_code; ++i)
-      for (int c = 0; c < 3; ++c) rgba[static_cast<std::size_t>(i) * 4 + c] = static_cast<float>(i) * (1.0f / static_cast<float>(max_code));
+      for (int c = 0; c < 3; ++c)
+        rgba[static_cast<std::size_t>(i) * 4 + c] = static_cast<float>(i) * (1.0f / static_cast<float>(max_code));
     SanitizeCounts counts;
     decode_color(srgb, rgba.data(), rgba.size() / 4, counts);
     for (int i = 0; i <= max_code; ++i)
-      ASSERT_EQ(rgba[static_cast<std::size_t>(i) * 4 + 1], static_cast<float>(srgb_to_linear(static_cast<double>(i) / max_code))) << i;
+      ASSERT_EQ(rgba[static_cast<std::size_t>(i) * 4 + 1],
+                static_cast<float>(srgb_to_linear(static_cast<double>(i) / max_code)))
+          << i;
   }
 }
 
@@ -130,7 +133,9 @@ TEST(Icc, DamagedProfilesChangeNothing) {
   std::vector<std::uint8_t> profile = srgb_icc_profile();
   for (std::size_t size = 0; size < profile.size(); size += 37) {
     const auto used = use_icc_profile({profile.data(), size}, 3, encoding);
-    if (!used) { EXPECT_EQ(encoding.curve, TransferCurve::srgb) << size; }
+    if (!used) {
+      EXPECT_EQ(encoding.curve, TransferCurve::srgb) << size;
+    }
   }
   EXPECT_FALSE(use_icc_profile({profile.data(), 100}, 3, encoding));
   EXPECT_FALSE(use_icc_profile({}, 3, encoding));

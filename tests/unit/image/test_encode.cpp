@@ -1,10 +1,10 @@
+#include <gtest/gtest.h>
+#include <half.h>
+
 #include <cmath>
 #include <limits>
 #include <random>
 #include <set>
-
-#include <gtest/gtest.h>
-#include <half.h>
 
 #include "image/encode.h"
 #include "image/srgb.h"
@@ -36,7 +36,8 @@ TEST_P(Srgb, ExactAtEveryBorder) {
 TEST_P(Srgb, EveryCodeComesBack) {
   const int max_code = GetParam();
   const std::vector<float> table = srgb_decode_table(max_code);
-  for (int code = 0; code <= max_code; ++code) ASSERT_EQ(CodeEncoder::srgb(max_code)(table[static_cast<std::size_t>(code)]), static_cast<std::uint32_t>(code));
+  for (int code = 0; code <= max_code; ++code)
+    ASSERT_EQ(CodeEncoder::srgb(max_code)(table[static_cast<std::size_t>(code)]), static_cast<std::uint32_t>(code));
 }
 
 TEST_P(Srgb, AnyFloat) {
@@ -49,7 +50,8 @@ TEST_P(Srgb, AnyFloat) {
   }
   const auto top = static_cast<std::uint32_t>(max_code);
   for (const float f : {1.0f, 1.5f, 1e30f, INFINITY}) EXPECT_EQ(encoder(f), top);
-  for (const float f : {0.0f, -0.0f, -1.0f, -INFINITY, NAN, std::numeric_limits<float>::denorm_min()}) EXPECT_EQ(encoder(f), 0u);
+  for (const float f : {0.0f, -0.0f, -1.0f, -INFINITY, NAN, std::numeric_limits<float>::denorm_min()})
+    EXPECT_EQ(encoder(f), 0u);
 }
 INSTANTIATE_TEST_SUITE_P(Codes, Srgb, testing::Values(255, 65535));
 
@@ -86,7 +88,8 @@ TEST(EncodeRow, StraightAlphaDividesInLinearLight) {
   std::vector<std::uint8_t> codes(12);
   encode_row({255, true, false}, rgba.data(), 3, 0, 0, codes.data());
   const auto srgb = [](double v) { return static_cast<std::uint8_t>(std::lround(linear_to_srgb(v) * 255)); };
-  EXPECT_EQ(codes, (std::vector<std::uint8_t>{srgb(0.5), 255, 0, 128, srgb(0.25), 255, 0, 0, srgb(0.25), srgb(0.25), srgb(0.25), 255}));
+  EXPECT_EQ(codes, (std::vector<std::uint8_t>{srgb(0.5), 255, 0, 128, srgb(0.25), 255, 0, 0, srgb(0.25), srgb(0.25),
+                                              srgb(0.25), 255}));
   std::vector<std::uint8_t> opaque(9);
   encode_row({255, false, false}, rgba.data(), 3, 0, 0, opaque.data());
   EXPECT_EQ(opaque[0], srgb(0.25));

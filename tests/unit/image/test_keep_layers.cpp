@@ -1,8 +1,8 @@
-#include <cstring>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <half.h>
+
+#include <cstring>
 
 #include "image/writer.h"
 #include "make_files.h"
@@ -56,7 +56,8 @@ TEST_F(KeepLayers, BlenderFileWithMixedTypes) {
   ASSERT_EQ(after.size(), 1u);
   EXPECT_EQ(after[0].spec.channelnames, before[0].spec.channelnames);
   EXPECT_EQ(after[0].spec.channelformats, before[0].spec.channelformats);
-  EXPECT_EQ(after[0].spec.get_string_attribute("BlenderMultiChannel"), before[0].spec.get_string_attribute("BlenderMultiChannel"));
+  EXPECT_EQ(after[0].spec.get_string_attribute("BlenderMultiChannel"),
+            before[0].spec.get_string_attribute("BlenderMultiChannel"));
   const std::size_t channels = 8;
   for (std::size_t i = 0; i < before[0].samples.size(); ++i) {
     const float was = before[0].samples[i], is = after[0].samples[i];
@@ -72,7 +73,8 @@ TEST_F(KeepLayers, BlenderFileWithMixedTypes) {
 class KeepParts : public KeepLayers, public testing::WithParamInterface<bool> {};
 
 TEST_P(KeepParts, OthersAreCopiedAsTheyAre) {
-  auto beauty = make_spec(33, 21, {"R", "G", "B", "A"}, OIIO::TypeHalf), depth = make_spec(33, 21, {"Z"}, OIIO::TypeFloat),
+  auto beauty = make_spec(33, 21, {"R", "G", "B", "A"}, OIIO::TypeHalf),
+       depth = make_spec(33, 21, {"Z"}, OIIO::TypeFloat),
        extra = make_spec(33, 21, {"extra.R", "extra.G", "extra.B"}, OIIO::TypeHalf);
   beauty.attribute("oiio:subimagename", "rgba");
   beauty.attribute("compression", "piz");
@@ -81,7 +83,8 @@ TEST_P(KeepParts, OthersAreCopiedAsTheyAre) {
   extra.attribute("compression", "dwaa");  // lossy: must not be done twice
   if (GetParam())
     for (OIIO::ImageSpec* spec : {&beauty, &depth, &extra}) spec->tile_width = spec->tile_height = 16;
-  ASSERT_NO_FATAL_FAILURE(make_file(folder_ / "in.exr", {depth, beauty, extra}, {marks(33, 21, 1), marks(33, 21, 4), marks(33, 21, 3)}));
+  ASSERT_NO_FATAL_FAILURE(
+      make_file(folder_ / "in.exr", {depth, beauty, extra}, {marks(33, 21, 1), marks(33, 21, 4), marks(33, 21, 3)}));
   ASSERT_NO_FATAL_FAILURE(process(folder_ / "in.exr", folder_ / "o.exr"));
   const auto before = parts_of(folder_ / "in.exr"), after = parts_of(folder_ / "o.exr");
   ASSERT_EQ(after.size(), 3u);
@@ -89,24 +92,29 @@ TEST_P(KeepParts, OthersAreCopiedAsTheyAre) {
     EXPECT_EQ(after[i].bytes, before[i].bytes) << i;
     EXPECT_EQ(after[i].spec.get_string_attribute("compression"), before[i].spec.get_string_attribute("compression"));
     EXPECT_EQ(after[i].spec.tile_width, before[i].spec.tile_width);
-    EXPECT_EQ(after[i].spec.get_string_attribute("oiio:subimagename"), before[i].spec.get_string_attribute("oiio:subimagename"));
+    EXPECT_EQ(after[i].spec.get_string_attribute("oiio:subimagename"),
+              before[i].spec.get_string_attribute("oiio:subimagename"));
   }
   EXPECT_EQ(after[1].spec.get_string_attribute("compression"), "zip");
   EXPECT_EQ(after[1].spec.tile_width, 0);
   EXPECT_EQ(after[1].samples[4], before[1].samples[4] * 0.5f);
   EXPECT_EQ(after[1].samples[7], before[1].samples[7]);
 }
-INSTANTIATE_TEST_SUITE_P(All, KeepParts, testing::Bool(), [](const auto& info) { return info.param ? "tiled" : "scan_lines"; });
+INSTANTIATE_TEST_SUITE_P(All, KeepParts, testing::Bool(),
+                         [](const auto& info) { return info.param ? "tiled" : "scan_lines"; });
 
 TEST_F(KeepLayers, ChosenLayerIsTheOneReplaced) {
   const std::vector<std::string> names{"R", "G", "B", "glow.R", "glow.G", "glow.B"};
-  ASSERT_NO_FATAL_FAILURE(make_file(folder_ / "in.exr", {make_spec(9, 300, names, OIIO::TypeHalf)}, {marks(9, 300, 6)}));
+  ASSERT_NO_FATAL_FAILURE(
+      make_file(folder_ / "in.exr", {make_spec(9, 300, names, OIIO::TypeHalf)}, {marks(9, 300, 6)}));
   ASSERT_NO_FATAL_FAILURE(process(folder_ / "in.exr", folder_ / "o.exr", "glow"));
   const auto after = parts_of(folder_ / "o.exr");
   EXPECT_EQ(after[0].spec.channelnames, names);
   for (int y = 0; y < 300; ++y)
     for (int x = 0; x < 9; ++x)
-      for (int c = 0; c < 6; ++c) ASSERT_NEAR(after[0].samples[static_cast<std::size_t>((y * 9 + x) * 6 + c)], mark(x, y, c) * (c < 3 ? 1 : 0.5f), 3e-4);
+      for (int c = 0; c < 6; ++c)
+        ASSERT_NEAR(after[0].samples[static_cast<std::size_t>((y * 9 + x) * 6 + c)], mark(x, y, c) * (c < 3 ? 1 : 0.5f),
+                    3e-4);
 }
 
 TEST_F(KeepLayers, TiledMipFileBecomesScanLines) {
@@ -130,7 +138,8 @@ TEST_F(KeepLayers, OntoItself) {
 TEST_F(KeepLayers, FileThatChangedMeanwhile) {
   std::filesystem::copy_file(test_image("blender/native.exr"), folder_ / "a.exr");
   const Picture picture = read_or_fail(folder_ / "a.exr");
-  std::filesystem::copy_file(test_image("blender/flat.exr"), folder_ / "a.exr", std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::copy_file(test_image("blender/flat.exr"), folder_ / "a.exr",
+                             std::filesystem::copy_options::overwrite_existing);
   auto written = write_picture(picture, folder_ / "o.exr", options_, messages_.diagnostics);
   ASSERT_FALSE(written);
   EXPECT_THAT(written.error().message, HasSubstr("changed"));

@@ -21,11 +21,14 @@ Names chosen(const std::vector<FilePart>& parts, const ChannelChoice& choice) {
   Names names;
   for (const int c : choice.channels) {
     const FilePart& from = parts[static_cast<std::size_t>(choice.part)];
-    names.push_back(c < 0 ? "-" : (parts.size() > 1 ? from.name + "/" : "") + from.channels[static_cast<std::size_t>(c)]);
+    names.push_back(c < 0 ? "-"
+                          : (parts.size() > 1 ? from.name + "/" : "") + from.channels[static_cast<std::size_t>(c)]);
   }
   return names;
 }
-Names color(const std::vector<FilePart>& parts, const std::string& name = "") { return chosen(parts, find_color(parts, name).value()); }
+Names color(const std::vector<FilePart>& parts, const std::string& name = "") {
+  return chosen(parts, find_color(parts, name).value());
+}
 Names depth(const std::vector<FilePart>& parts, const std::string& name = "") {
   const auto base = find_color(parts, "");
   const auto found = find_depth(parts, name, base ? &base.value() : nullptr);
@@ -37,12 +40,14 @@ Names normal(const std::vector<FilePart>& parts, const std::string& name = "") {
   return found.value() ? chosen(parts, *found.value()) : Names{};
 }
 
-const std::vector<FilePart> kBlender{part({"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B", "ViewLayer.Combined.A",
-                                           "ViewLayer.Depth.Z", "ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"})};
+const std::vector<FilePart> kBlender{
+    part({"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B", "ViewLayer.Combined.A",
+          "ViewLayer.Depth.Z", "ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"})};
 const std::vector<FilePart> kFlat{part({"R", "G", "B", "A", "Z", "N.X", "N.Y", "N.Z"})};
 
 TEST(Layers, Blender) {
-  EXPECT_THAT(color(kBlender), ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B", "ViewLayer.Combined.A"));
+  EXPECT_THAT(color(kBlender), ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B",
+                                           "ViewLayer.Combined.A"));
   EXPECT_THAT(depth(kBlender), ElementsAre("ViewLayer.Depth.Z"));
   EXPECT_THAT(normal(kBlender), ElementsAre("ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"));
 }
@@ -59,13 +64,14 @@ TEST(Layers, PlainNames) {
 }
 
 TEST(Layers, VectorsAreNoDepth) {
-  EXPECT_THAT(depth({part({"R", "G", "B", "N.X", "N.Y", "N.Z", "Position.X", "Position.Y", "Position.Z"})}), ElementsAre());
+  EXPECT_THAT(depth({part({"R", "G", "B", "N.X", "N.Y", "N.Z", "Position.X", "Position.Y", "Position.Z"})}),
+              ElementsAre());
   EXPECT_THAT(normal({part({"R", "G", "B", "Position.X", "Position.Y", "Position.Z"})}), ElementsAre());
 }
 
 TEST(Layers, PartsByName) {
-  const std::vector<FilePart> parts{part({"R", "G", "B"}, "N"), part({"Z"}, "depth"), part({"R", "G", "B", "A"}, "rgba"),
-                                    part({"R", "G", "B"}, "diffuse")};
+  const std::vector<FilePart> parts{part({"R", "G", "B"}, "N"), part({"Z"}, "depth"),
+                                    part({"R", "G", "B", "A"}, "rgba"), part({"R", "G", "B"}, "diffuse")};
   EXPECT_THAT(color(parts), ElementsAre("rgba/R", "rgba/G", "rgba/B", "rgba/A"));
   EXPECT_THAT(depth(parts), ElementsAre("depth/Z"));
   EXPECT_THAT(normal(parts), ElementsAre("N/R", "N/G", "N/B"));
@@ -74,8 +80,9 @@ TEST(Layers, PartsByName) {
 }
 
 TEST(Layers, DepthOfTheColoursOwnViewLayer) {
-  const std::vector<FilePart> parts{part({"Back.Combined.R", "Back.Combined.G", "Back.Combined.B", "Back.Depth.Z", "Front.Combined.R",
-                                          "Front.Combined.G", "Front.Combined.B", "Front.Depth.Z"})};
+  const std::vector<FilePart> parts{
+      part({"Back.Combined.R", "Back.Combined.G", "Back.Combined.B", "Back.Depth.Z", "Front.Combined.R",
+            "Front.Combined.G", "Front.Combined.B", "Front.Depth.Z"})};
   const auto front = find_color(parts, "Front").value();
   EXPECT_THAT(chosen(parts, front), ElementsAre("Front.Combined.R", "Front.Combined.G", "Front.Combined.B", "-"));
   EXPECT_THAT(chosen(parts, *find_depth(parts, "", &front).value()), ElementsAre("Front.Depth.Z"));
@@ -84,12 +91,15 @@ TEST(Layers, DepthOfTheColoursOwnViewLayer) {
 TEST(Layers, ByName) {
   EXPECT_THAT(color(kBlender, "ViewLayer.Combined"), color(kBlender));
   EXPECT_THAT(color(kBlender, "ViewLayer"), color(kBlender));
-  EXPECT_THAT(color(kBlender, "ViewLayer.Normal"), ElementsAre("ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z", "-"));
-  EXPECT_THAT(color(kBlender, "ViewLayer.Depth.Z"), ElementsAre("ViewLayer.Depth.Z", "ViewLayer.Depth.Z", "ViewLayer.Depth.Z", "-"));
+  EXPECT_THAT(color(kBlender, "ViewLayer.Normal"),
+              ElementsAre("ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z", "-"));
+  EXPECT_THAT(color(kBlender, "ViewLayer.Depth.Z"),
+              ElementsAre("ViewLayer.Depth.Z", "ViewLayer.Depth.Z", "ViewLayer.Depth.Z", "-"));
   EXPECT_THAT(depth(kBlender, "ViewLayer.Depth"), ElementsAre("ViewLayer.Depth.Z"));
   EXPECT_THAT(depth(kBlender, "ViewLayer.Normal.X"), ElementsAre("ViewLayer.Normal.X"));
   EXPECT_THAT(depth(kBlender, "ViewLayer"), ElementsAre("ViewLayer.Depth.Z"));
-  EXPECT_THAT(normal(kBlender, "ViewLayer.Combined"), ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"));
+  EXPECT_THAT(normal(kBlender, "ViewLayer.Combined"),
+              ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"));
 }
 
 TEST(Layers, UnknownNamesListWhatIsThere) {
@@ -119,7 +129,8 @@ TEST(Layers, UnreadableParts) {
 TEST(Layers, OddNames) {
   EXPECT_THAT(color({part({"red", "green", "blue", "alpha"})}), ElementsAre("red", "green", "blue", "alpha"));
   EXPECT_THAT(color({part({"channel0"})}), ElementsAre("channel0", "channel0", "channel0", "-"));
-  EXPECT_THAT(color({part({"left.R", "left.G", "left.B", "right.R", "right.G", "right.B"})}), ElementsAre("left.R", "left.G", "left.B", "-"));
+  EXPECT_THAT(color({part({"left.R", "left.G", "left.B", "right.R", "right.G", "right.B"})}),
+              ElementsAre("left.R", "left.G", "left.B", "-"));
   EXPECT_THAT(color({part({".R", ".G", ".B", "."})}), testing::SizeIs(4));
 }
 

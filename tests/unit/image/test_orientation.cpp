@@ -8,9 +8,18 @@ namespace {
 /// Exif's own definition, by where the stored corner (0,0), first row and first column are seen.
 ///  1: row 0 top, column 0 left      2: top, right    3: bottom, right   4: bottom, left
 ///  5: row 0 left, column 0 top      6: right, top    7: right, bottom   8: left, bottom
-struct Seen { bool row0_on_side, row0_far, column0_far; };
-constexpr Seen kSeen[] = {{}, {false, false, false}, {false, false, true}, {false, true, true}, {false, true, false},
-                          {true, false, false}, {true, true, false}, {true, true, true}, {true, false, true}};
+struct Seen {
+  bool row0_on_side, row0_far, column0_far;
+};
+constexpr Seen kSeen[] = {{},
+                          {false, false, false},
+                          {false, false, true},
+                          {false, true, true},
+                          {false, true, false},
+                          {true, false, false},
+                          {true, true, false},
+                          {true, true, true},
+                          {true, false, true}};
 
 TEST(Orientation, AllEightByTheDefinition) {
   Image stored(3, 2, 1);
@@ -24,7 +33,8 @@ TEST(Orientation, AllEightByTheDefinition) {
       for (int x = 0; x < 3; ++x) {
         // The stored row number counts away from where row 0 is seen, the column number away from where column 0 is.
         const int along_rows = seen.row0_far ? 1 - y : y, along_columns = seen.column0_far ? 2 - x : x;
-        const int seen_x = seen.row0_on_side ? along_rows : along_columns, seen_y = seen.row0_on_side ? along_columns : along_rows;
+        const int seen_x = seen.row0_on_side ? along_rows : along_columns,
+                  seen_y = seen.row0_on_side ? along_columns : along_rows;
         EXPECT_EQ(*turned.at(seen_x, seen_y), *stored.at(x, y)) << "orientation " << o;
       }
     }
@@ -45,7 +55,8 @@ TEST(Orientation, WindowsTurnWithThePixels) {
     for (int y = 0; y < turned.height; ++y) {
       for (int x = 0; x < turned.width; ++x) {
         const int fx = new_display.x + x, fy = new_display.y + y;
-        const bool inside = fx >= new_data.x && fx < new_data.x + new_data.width && fy >= new_data.y && fy < new_data.y + new_data.height;
+        const bool inside = fx >= new_data.x && fx < new_data.x + new_data.width && fy >= new_data.y &&
+                            fy < new_data.y + new_data.height;
         EXPECT_EQ(*turned.at(x, y) == 1, inside) << "orientation " << o << " at " << x << "," << y;
       }
     }

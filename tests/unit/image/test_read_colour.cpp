@@ -24,7 +24,8 @@ TEST(ReadColour, AdobeRgbProfile) {
     double rgb[3];
     for (std::size_t c = 0; c < 3; ++c) rgb[c] = std::pow(codes[i * 3 + c] / 255.0, 563.0 / 256);
     for (std::size_t c = 0; c < 3; ++c)
-      ASSERT_NEAR(picture.color.pixels[i * 4 + c], std::max(matrix[c][0] * rgb[0] + matrix[c][1] * rgb[1] + matrix[c][2] * rgb[2], 0.0), 2e-3);
+      ASSERT_NEAR(picture.color.pixels[i * 4 + c],
+                  std::max(matrix[c][0] * rgb[0] + matrix[c][1] * rgb[1] + matrix[c][2] * rgb[2], 0.0), 2e-3);
   }
 }
 
@@ -39,7 +40,8 @@ TEST(ReadColour, SrgbProfileAndSoftStraightAlpha) {
   ASSERT_TRUE(input->read_image(0, 0, 0, 4, OIIO::TypeUInt8, codes.data()));
   for (std::size_t i = 0; i < codes.size(); i += 4) {
     const double alpha = codes[i + 3] / 255.0;
-    for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(picture.color.pixels[i + c], srgb_to_linear(codes[i + c] / 255.0) * alpha, 1e-6);
+    for (std::size_t c = 0; c < 3; ++c)
+      ASSERT_NEAR(picture.color.pixels[i + c], srgb_to_linear(codes[i + c] / 255.0) * alpha, 1e-6);
     ASSERT_NEAR(picture.color.pixels[i + 3], alpha, 1e-6);
   }
 }
@@ -82,7 +84,9 @@ TEST_P(Orientations, OfTiffAndJpeg) {
     ASSERT_EQ(picture.color.size(), wanted.size()) << extension;
     EXPECT_EQ(picture.data_window.size(), wanted.size());
     for (int y = 0; y < wanted.height; ++y)
-      for (int x = 0; x < wanted.width; ++x) ASSERT_NEAR(linear_to_srgb(picture.color.at(x, y)[0]), *wanted.at(x, y), 3.0 / 255) << extension << " " << x << "," << y;
+      for (int x = 0; x < wanted.width; ++x)
+        ASSERT_NEAR(linear_to_srgb(picture.color.at(x, y)[0]), *wanted.at(x, y), 3.0 / 255)
+            << extension << " " << x << "," << y;
   }
 }
 INSTANTIATE_TEST_SUITE_P(All, Orientations, testing::Range(1, 9));

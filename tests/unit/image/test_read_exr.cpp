@@ -1,6 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
 #include <OpenEXR/ImfDeepFrameBuffer.h>
@@ -11,6 +8,8 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "image/color_matrix.h"
 #include "make_files.h"
@@ -23,7 +22,8 @@ using testing::HasSubstr;
 TEST(ReadExr, BlendersNamesAndPlainNamesGiveTheSamePicture) {
   ReadOptions options;
   options.auxiliary = {"depth", "normal"};
-  const Picture native = read_or_fail(test_image("blender/native.exr"), options), flat = read_or_fail(test_image("blender/flat.exr"), options);
+  const Picture native = read_or_fail(test_image("blender/native.exr"), options),
+                flat = read_or_fail(test_image("blender/flat.exr"), options);
   EXPECT_EQ(native.color.size(), (Size{96, 54}));
   EXPECT_EQ(native.color.pixels, flat.color.pixels);
   EXPECT_EQ(native.auxiliary.at("depth").pixels, flat.auxiliary.at("depth").pixels);
@@ -106,7 +106,8 @@ TEST(ReadExr, PartsAndLayers) {
   beauty.attribute("oiio:subimagename", "rgba");
   depth.attribute("oiio:subimagename", "depth");
   extra.attribute("oiio:subimagename", "extra");
-  ASSERT_NO_FATAL_FAILURE(make_file(file, {extra, depth, beauty}, {marks(6, 5, 6), std::vector<float>(30, 7.5f), marks(6, 5, 4)}));
+  ASSERT_NO_FATAL_FAILURE(
+      make_file(file, {extra, depth, beauty}, {marks(6, 5, 6), std::vector<float>(30, 7.5f), marks(6, 5, 4)}));
   ReadOptions options;
   options.auxiliary = {"depth", "normal"};
   Picture picture = read_or_fail(file, options);
@@ -134,7 +135,8 @@ TEST(ReadExr, UintChannelsArePlainNumbers) {
   Imf::FrameBuffer buffer;
   for (const char* name : {"R", "G", "B"}) {
     header.channels().insert(name, Imf::Channel(Imf::UINT));
-    buffer.insert(name, Imf::Slice(Imf::UINT, reinterpret_cast<char*>(const_cast<std::uint32_t*>(samples.data())), 4, 8));
+    buffer.insert(name,
+                  Imf::Slice(Imf::UINT, reinterpret_cast<char*>(const_cast<std::uint32_t*>(samples.data())), 4, 8));
   }
   {
     Imf::OutputFile out((folder / "u.exr").c_str(), header);
@@ -142,7 +144,8 @@ TEST(ReadExr, UintChannelsArePlainNumbers) {
     out.writePixels(2);
   }
   const Picture picture = read_or_fail(folder / "u.exr");
-  for (int i = 0; i < 4; ++i) EXPECT_EQ(picture.color.at(i % 2, i / 2)[1], static_cast<float>(samples[static_cast<std::size_t>(i)]));
+  for (int i = 0; i < 4; ++i)
+    EXPECT_EQ(picture.color.at(i % 2, i / 2)[1], static_cast<float>(samples[static_cast<std::size_t>(i)]));
 }
 
 TEST(ReadExr, EveryCompression) {
@@ -158,7 +161,8 @@ TEST(ReadExr, EveryCompression) {
 }
 
 /// A half RGB file with an attribute or two more.
-void make_exr(const std::filesystem::path& file, const std::vector<float>& rgb, int width, int height, const std::function<void(Imf::Header&)>& edit) {
+void make_exr(const std::filesystem::path& file, const std::vector<float>& rgb, int width, int height,
+              const std::function<void(Imf::Header&)>& edit) {
   Imf::Header header(width, height);
   edit(header);
   Imf::FrameBuffer buffer;
@@ -176,7 +180,8 @@ void make_exr(const std::filesystem::path& file, const std::vector<float>& rgb, 
 TEST(ReadExr, PrimariesAreConverted) {
   const TemporaryFolder folder;
   const Imf::Chromaticities ap1({0.713f, 0.293f}, {0.165f, 0.830f}, {0.128f, 0.044f}, {0.32168f, 0.33767f});
-  make_exr(folder / "ap1.exr", {0.5f, 0.5f, 0.5f, 0.2f, 0.6f, 0.3f}, 2, 1, [&](Imf::Header& h) { Imf::addChromaticities(h, ap1); });
+  make_exr(folder / "ap1.exr", {0.5f, 0.5f, 0.5f, 0.2f, 0.6f, 0.3f}, 2, 1,
+           [&](Imf::Header& h) { Imf::addChromaticities(h, ap1); });
   const Picture picture = read_or_fail(folder / "ap1.exr");
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.color.at(0, 0)[c], 0.5, 1e-5);
   // The published ACEScg → Rec.709 matrix.
@@ -195,7 +200,9 @@ TEST(ReadExr, Rec709PrimariesChangeNothing) {
 
 TEST(ReadExr, NonsensePrimariesAreWarnedAbout) {
   const TemporaryFolder folder;
-  make_exr(folder / "a.exr", {1, 2, 3}, 1, 1, [](Imf::Header& h) { Imf::addChromaticities(h, Imf::Chromaticities({0, 0}, {0, 0}, {0, 0}, {0, 0})); });
+  make_exr(folder / "a.exr", {1, 2, 3}, 1, 1, [](Imf::Header& h) {
+    Imf::addChromaticities(h, Imf::Chromaticities({0, 0}, {0, 0}, {0, 0}, {0, 0}));
+  });
   Messages messages;
   const auto picture = read_picture(folder / "a.exr", {}, messages.diagnostics);
   ASSERT_TRUE(picture);

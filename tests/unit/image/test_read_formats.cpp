@@ -14,8 +14,8 @@ struct Case {
   const char* extension;
   OIIO::TypeDesc type;
   std::vector<std::string> channels;
-  int codes;          ///< largest code of integers; 0: floats, which are linear
-  double tolerance;   ///< of the stored value
+  int codes;         ///< largest code of integers; 0: floats, which are linear
+  double tolerance;  ///< of the stored value
   bool tiled = false;
 };
 
@@ -72,7 +72,8 @@ TEST_P(Formats, Read) {
       const double factor = alpha && c.codes > 0 ? pixel[3] : 1;  // straight alpha is multiplied
       for (int k = 0; k < 3; ++k) {
         const double stored = mark(x, y, grey ? 0 : k);
-        const double low = linear(std::max(stored - c.tolerance, 0.0)) * factor, high = linear(stored + c.tolerance) * factor;
+        const double low = linear(std::max(stored - c.tolerance, 0.0)) * factor,
+                     high = linear(stored + c.tolerance) * factor;
         ASSERT_GE(pixel[k], low - 1e-6) << x << "," << y << " channel " << k;
         ASSERT_LE(pixel[k], high + 1e-6) << x << "," << y << " channel " << k;
       }
@@ -85,7 +86,9 @@ std::string format_case_name(const testing::TestParamInfo<std::tuple<Case, Size>
   return std::string(c.name) + "_" + std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 INSTANTIATE_TEST_SUITE_P(All, Formats,
-                         testing::Combine(testing::ValuesIn(kCases), testing::Values(Size{1, 1}, Size{64, 48}, Size{37, 53}, Size{1, 70}, Size{301, 3})),
+                         testing::Combine(testing::ValuesIn(kCases),
+                                          testing::Values(Size{1, 1}, Size{64, 48}, Size{37, 53}, Size{1, 70},
+                                                          Size{301, 3})),
                          format_case_name);
 
 class Png : public testing::Test {
@@ -122,7 +125,9 @@ TEST_F(Png, Palette) {
 
 TEST_F(Png, TransparentPalette) {
   RawPng png(2, 1, 8, 3);
-  png.chunk("PLTE", std::string("\xff\xff\xff\xff\x00\x00", 6)).chunk("tRNS", std::string("\x80", 1)).pixels({std::string("\x00\x01", 2)});
+  png.chunk("PLTE", std::string("\xff\xff\xff\xff\x00\x00", 6))
+      .chunk("tRNS", std::string("\x80", 1))
+      .pixels({std::string("\x00\x01", 2)});
   const Picture picture = read(png);
   EXPECT_TRUE(picture.has_alpha);
   EXPECT_NEAR(picture.color.at(0, 0)[0], 128 / 255.0, 1e-6);
@@ -138,23 +143,25 @@ TEST_F(Png, GammaChunk) {
     png.chunk("gAMA", RawPng::big_endian(gamma)).pixels({row});
     return read(png).color.pixels[0];
   };
-  EXPECT_NEAR(value(100000, false), 128 / 255.0, 1e-6);                       // linear
-  EXPECT_NEAR(value(55556, false), std::pow(128 / 255.0, 1.8), 1e-5);         // an old Macintosh
-  EXPECT_NEAR(value(45455, false), srgb_to_linear(128 / 255.0), 1e-6);        // means sRGB
-  EXPECT_NEAR(value(100000, true), srgb_to_linear(128 / 255.0), 1e-6);        // the sRGB chunk wins
+  EXPECT_NEAR(value(100000, false), 128 / 255.0, 1e-6);                 // linear
+  EXPECT_NEAR(value(55556, false), std::pow(128 / 255.0, 1.8), 1e-5);   // an old Macintosh
+  EXPECT_NEAR(value(45455, false), srgb_to_linear(128 / 255.0), 1e-6);  // means sRGB
+  EXPECT_NEAR(value(100000, true), srgb_to_linear(128 / 255.0), 1e-6);  // the sRGB chunk wins
 }
 
 TEST_F(Png, PrimariesChunk) {
   // Display P3 red is outside Rec.709: its green and blue come out negative and are held at 0.
   RawPng png(2, 1, 8, 2);
   std::string chrm;
-  for (const std::uint32_t v : {31270u, 32900u, 68000u, 32000u, 26500u, 69000u, 15000u, 6000u}) chrm += RawPng::big_endian(v);
+  for (const std::uint32_t v : {31270u, 32900u, 68000u, 32000u, 26500u, 69000u, 15000u, 6000u})
+    chrm += RawPng::big_endian(v);
   png.chunk("gAMA", RawPng::big_endian(45455)).chunk("cHRM", chrm).pixels({std::string("\xff\x00\x00\x80\x80\x80", 6)});
   const Picture picture = read(png);
   EXPECT_NEAR(picture.color.at(0, 0)[0], 1.2249, 1e-3);
   EXPECT_EQ(picture.color.at(0, 0)[1], 0);
   EXPECT_EQ(picture.sanitized.negative, 2u);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.color.at(1, 0)[c], srgb_to_linear(128 / 255.0), 1e-4);  // white stays white
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(picture.color.at(1, 0)[c], srgb_to_linear(128 / 255.0), 1e-4);  // white stays white
 }
 
 TEST_F(Png, SixteenBitsAreReadWhole) {
@@ -174,7 +181,8 @@ TEST(Jpeg, ReadsNearly) {
   ASSERT_NO_FATAL_FAILURE(make_file(folder / "in.jpg", {spec}, {flat}));
   const Picture picture = read_or_fail(folder / "in.jpg");
   ASSERT_EQ(picture.color.size(), (Size{33, 17}));
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(linear_to_srgb(picture.color.at(20, 9)[c]), flat[static_cast<std::size_t>(c)], 2.0 / 255);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(linear_to_srgb(picture.color.at(20, 9)[c]), flat[static_cast<std::size_t>(c)], 2.0 / 255);
 }
 
 TEST(Tiff, AssociatedAlphaOfIntegersIsDecodedUndivided) {

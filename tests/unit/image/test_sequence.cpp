@@ -1,7 +1,7 @@
-#include <fstream>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <fstream>
 
 #include "image/sequence.h"
 #include "temporary_folder.h"
@@ -21,7 +21,8 @@ TEST(Frames, RangesStepsAndLists) {
 }
 
 TEST(Frames, Refused) {
-  for (const char* text : {"", "a", "1-", "1-x2", "4-1", "1-4x0", "1-4x-1", "1-4y", "1,,2", "99999999999", "1-2x", "0-2147483647"}) {
+  for (const char* text :
+       {"", "a", "1-", "1-x2", "4-1", "1-4x0", "1-4x-1", "1-4y", "1,,2", "99999999999", "1-2x", "0-2147483647"}) {
     const auto frames = parse_frames(text);
     ASSERT_FALSE(frames) << text;
     EXPECT_EQ(frames.error().kind, ErrorKind::usage) << text;
@@ -41,13 +42,15 @@ TEST(Pattern, PlacesForNumbers) {
 }
 
 TEST(Pattern, Refused) {
-  for (const char* text : {"a.##.b.##.exr", "a%s.exr", "a%4d.exr", "a%", "a####/b.exr", "a%04d##.exr", "", "##########.exr"})
+  for (const char* text :
+       {"a.##.b.##.exr", "a%s.exr", "a%4d.exr", "a%", "a####/b.exr", "a%04d##.exr", "", "##########.exr"})
     EXPECT_FALSE(parse_pattern(text)) << text;
 }
 
 TEST(Pattern, FindsItsOwnSpellingOnly) {
   const TemporaryFolder folder;
-  for (const char* name : {"s.0001.exr", "s.0010.exr", "s.0002.exr", "s.3.exr", "s.00004.exr", "s.12345.exr", "s.00a1.exr", "t.0005.exr", "s.0006.exr.tmp"})
+  for (const char* name : {"s.0001.exr", "s.0010.exr", "s.0002.exr", "s.3.exr", "s.00004.exr", "s.12345.exr",
+                           "s.00a1.exr", "t.0005.exr", "s.0006.exr.tmp"})
     std::ofstream(folder / name) << "x";
   const auto found = find_frames(parse_pattern((folder / "s.####.exr").string()).value(), std::nullopt);
   ASSERT_TRUE(found);
@@ -66,8 +69,10 @@ TEST(Pattern, AskedForFramesAreListedEvenWhenMissing) {
 
 TEST(Pattern, NothingFound) {
   const TemporaryFolder folder;
-  EXPECT_EQ(find_frames(parse_pattern((folder / "s.##.exr").string()).value(), std::nullopt).error().kind, ErrorKind::io);
-  EXPECT_EQ(find_frames(parse_pattern((folder / "no/s.##.exr").string()).value(), std::nullopt).error().kind, ErrorKind::io);
+  EXPECT_EQ(find_frames(parse_pattern((folder / "s.##.exr").string()).value(), std::nullopt).error().kind,
+            ErrorKind::io);
+  EXPECT_EQ(find_frames(parse_pattern((folder / "no/s.##.exr").string()).value(), std::nullopt).error().kind,
+            ErrorKind::io);
 }
 
 TEST(Pattern, PlainFilesHaveTheirOwnNumber) {

@@ -58,10 +58,14 @@ struct Format {
   double relative;  ///< of floats
 };
 const Format kFormats[] = {
-    {"ExrHalf", "o.exr", SampleType::half, 0, true, 1.0 / 2048},    {"ExrFloat", "o.exr", SampleType::float32, 0, true, 0},
-    {"Png8", "o.png", SampleType::uint8, 255, true, 0},             {"Png16", "o.png", SampleType::uint16, 65535, true, 0},
-    {"Tiff8", "o.tif", SampleType::uint8, 255, true, 0},            {"Tiff16", "o.tiff", SampleType::uint16, 65535, true, 0},
-    {"TiffFloat", "o.tif", SampleType::float32, 0, true, 0},        {"TiffHalf", "o.tif", SampleType::half, 0, true, 1.0 / 2048},
+    {"ExrHalf", "o.exr", SampleType::half, 0, true, 1.0 / 2048},
+    {"ExrFloat", "o.exr", SampleType::float32, 0, true, 0},
+    {"Png8", "o.png", SampleType::uint8, 255, true, 0},
+    {"Png16", "o.png", SampleType::uint16, 65535, true, 0},
+    {"Tiff8", "o.tif", SampleType::uint8, 255, true, 0},
+    {"Tiff16", "o.tiff", SampleType::uint16, 65535, true, 0},
+    {"TiffFloat", "o.tif", SampleType::float32, 0, true, 0},
+    {"TiffHalf", "o.tif", SampleType::half, 0, true, 1.0 / 2048},
     {"Hdr", "o.hdr", SampleType::float32, 0, false, 1.0 / 128},
 };
 
@@ -78,16 +82,23 @@ TEST_P(RoundTrip, WithinACode) {
   const Picture back = read_or_fail(folder / format.file);
   ASSERT_EQ(back.color.size(), size);
   EXPECT_EQ(back.has_alpha, alpha && format.keeps_alpha);
-  const auto near_code = [&](double a, double b) { return std::abs(linear_to_srgb(a) - linear_to_srgb(b)) * format.codes <= 0.5001; };
+  const auto near_code = [&](double a, double b) {
+    return std::abs(linear_to_srgb(a) - linear_to_srgb(b)) * format.codes <= 0.5001;
+  };
   for (std::size_t i = 0; i < picture.color.pixels.size(); i += 4) {
     const float* in = &picture.color.pixels[i];
     const float* out = &back.color.pixels[i];
     const double a = back.has_alpha ? out[3] : 1;
-    if (back.has_alpha) { ASSERT_NEAR(a, in[3], format.codes > 0 ? 0.5001 / format.codes : format.relative); }
+    if (back.has_alpha) {
+      ASSERT_NEAR(a, in[3], format.codes > 0 ? 0.5001 / format.codes : format.relative);
+    }
     for (int c = 0; c < 3; ++c) {
       if (format.codes > 0) {
         // Straight colour is what is stored, each with its own alpha.
-        if (a > 0 && in[3] > 0) { ASSERT_TRUE(near_code(out[c] / a, back.has_alpha ? std::min(in[c] / in[3], 1.0f) : in[c])) << in[c] << " → " << out[c]; }
+        if (a > 0 && in[3] > 0) {
+          ASSERT_TRUE(near_code(out[c] / a, back.has_alpha ? std::min(in[c] / in[3], 1.0f) : in[c]))
+              << in[c] << " → " << out[c];
+        }
       } else {
         // HDR shares one exponent between the channels.
         const double scale = format.keeps_alpha ? in[c] : std::max({in[0], in[1], in[2]});
@@ -99,10 +110,13 @@ TEST_P(RoundTrip, WithinACode) {
 
 std::string round_trip_name(const testing::TestParamInfo<std::tuple<Format, Size, bool>>& info) {
   const auto& [format, size, alpha] = info.param;
-  return std::string(format.name) + "_" + std::to_string(size.width) + "x" + std::to_string(size.height) + (alpha ? "_alpha" : "");
+  return std::string(format.name) + "_" + std::to_string(size.width) + "x" + std::to_string(size.height) +
+         (alpha ? "_alpha" : "");
 }
 INSTANTIATE_TEST_SUITE_P(All, RoundTrip,
-                         testing::Combine(testing::ValuesIn(kFormats), testing::Values(Size{1, 1}, Size{64, 130}, Size{37, 53}, Size{3, 300}), testing::Bool()),
+                         testing::Combine(testing::ValuesIn(kFormats),
+                                          testing::Values(Size{1, 1}, Size{64, 130}, Size{37, 53}, Size{3, 300}),
+                                          testing::Bool()),
                          round_trip_name);
 
 TEST(Write, EightBitCodesComeBackExactly) {
@@ -123,7 +137,8 @@ TEST(Write, DisplayFormatsClampAndSceneFormatsDoNot) {
   Picture picture = make_picture(2, 1, false);
   picture.color.pixels = {5, 0.5f, -1, 1, NAN, 1000, 0, 1};
   ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png"));
-  EXPECT_EQ(samples_of<unsigned char>(folder / "o.png", OIIO::TypeUInt8), (std::vector<unsigned char>{255, 188, 0, 0, 255, 0}));
+  EXPECT_EQ(samples_of<unsigned char>(folder / "o.png", OIIO::TypeUInt8),
+            (std::vector<unsigned char>{255, 188, 0, 0, 255, 0}));
   picture.color.pixels[4] = 3;
   ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.exr"));
   EXPECT_EQ(samples_of<float>(folder / "o.exr", OIIO::TypeFloat), (std::vector<float>{5, 0.5f, -1, 3, 1000, 0}));
@@ -145,7 +160,8 @@ TEST(Write, JpegGoesOnBlackAndSaysSoWhenItMatters) {
   ASSERT_TRUE(write_picture(picture, folder / "o.jpg", {}, messages.diagnostics));
   ASSERT_EQ(messages.warnings.size(), 1u);
   EXPECT_THAT(messages.warnings[0], HasSubstr("o.jpg"));
-  for (const unsigned char code : samples_of<unsigned char>(folder / "o.jpg", OIIO::TypeUInt8)) ASSERT_NEAR(code, 137, 1);  // not divided
+  for (const unsigned char code : samples_of<unsigned char>(folder / "o.jpg", OIIO::TypeUInt8))
+    ASSERT_NEAR(code, 137, 1);  // not divided
   for (std::size_t i = 3; i < picture.color.pixels.size(); i += 4) picture.color.pixels[i] = 1;
   messages.warnings.clear();
   ASSERT_TRUE(write_picture(picture, folder / "o.jpg", {}, messages.diagnostics));
@@ -166,10 +182,12 @@ TEST(Write, WindowsCroppedAndPadded) {
     ASSERT_EQ(shown.color.size(), picture.display_window.size());
     for (int y = 0; y < shown.color.height; ++y) {
       for (int x = 0; x < shown.color.width; ++x) {
-        const int dx = x + picture.display_window.x - picture.data_window.x, dy = y + picture.display_window.y - picture.data_window.y;
+        const int dx = x + picture.display_window.x - picture.data_window.x,
+                  dy = y + picture.display_window.y - picture.data_window.y;
         const bool inside = dx >= 0 && dy >= 0 && dx < picture.color.width && dy < picture.color.height;
         for (int c = 0; c < 3; ++c)
-          ASSERT_NEAR(linear_to_srgb(shown.color.at(x, y)[c]), inside ? std::min(linear_to_srgb(picture.color.at(dx, dy)[c]), 1.0) : 0, 0.502 / 255);
+          ASSERT_NEAR(linear_to_srgb(shown.color.at(x, y)[c]),
+                      inside ? std::min(linear_to_srgb(picture.color.at(dx, dy)[c]), 1.0) : 0, 0.502 / 255);
       }
     }
   }
@@ -181,7 +199,8 @@ TEST(Write, PaddingIsTransparentWhereThereIsAlpha) {
   picture.color.pixels = {1, 1, 1, 1};
   picture.display_window = {-1, 0, 2, 1};
   ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png"));
-  EXPECT_EQ(samples_of<unsigned char>(folder / "o.png", OIIO::TypeUInt8), (std::vector<unsigned char>{0, 0, 0, 0, 255, 255, 255, 255}));
+  EXPECT_EQ(samples_of<unsigned char>(folder / "o.png", OIIO::TypeUInt8),
+            (std::vector<unsigned char>{0, 0, 0, 0, 255, 255, 255, 255}));
 }
 
 TEST(Write, HalfOverflowIsHeldAndSaid) {
@@ -190,7 +209,8 @@ TEST(Write, HalfOverflowIsHeldAndSaid) {
   Picture picture = make_picture(2, 1, false);
   picture.color.pixels = {1e6f, 65504, 1, 1, -1e6f, INFINITY, 1, 1};
   ASSERT_TRUE(write_picture(picture, folder / "o.exr", {}, messages.diagnostics));
-  EXPECT_EQ(samples_of<float>(folder / "o.exr", OIIO::TypeFloat), (std::vector<float>{65504, 65504, 1, -65504, 65504, 1}));
+  EXPECT_EQ(samples_of<float>(folder / "o.exr", OIIO::TypeFloat),
+            (std::vector<float>{65504, 65504, 1, -65504, 65504, 1}));
   ASSERT_EQ(messages.warnings.size(), 1u);
   EXPECT_THAT(messages.warnings[0], HasSubstr("3 samples"));
 }
@@ -270,7 +290,8 @@ TEST(Write, PngOfEveryShapeAndDepthOfStrip) {
       ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png", options));
       const Picture back = read_or_fail(folder / "o.png");
       ASSERT_EQ(back.color.size(), size);
-      for (std::size_t i = 0; i < picture.color.pixels.size(); ++i) ASSERT_NEAR(back.color.pixels[i], picture.color.pixels[i], 0.006) << i;
+      for (std::size_t i = 0; i < picture.color.pixels.size(); ++i)
+        ASSERT_NEAR(back.color.pixels[i], picture.color.pixels[i], 0.006) << i;
     }
   }
 }
@@ -293,12 +314,16 @@ TEST(Write, ProfilesAreRewrittenToMatch) {
   const Picture picture = read_or_fail(test_image("ldr/rocket.jpg"));  // Adobe RGB
   for (const char* name : {"o.jpg", "o.tif"}) {
     ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / name));
-    EXPECT_THAT(std::string(spec_of(folder / name).get_string_attribute("ICCProfile:profile_description")), HasSubstr("sRGB")) << name;
+    EXPECT_THAT(std::string(spec_of(folder / name).get_string_attribute("ICCProfile:profile_description")),
+                HasSubstr("sRGB"))
+        << name;
     // Read again, it is the same picture, but for what sRGB cannot show.
     const Picture again = read_or_fail(folder / name);
     for (std::size_t i = 0; i < picture.color.pixels.size(); i += 401) {
       if (i % 4 == 3) continue;
-      ASSERT_NEAR(linear_to_srgb(again.color.pixels[i]), std::min(linear_to_srgb(picture.color.pixels[i]), 1.0), name[2] == 'j' ? 0.06 : 0.0021) << name;
+      ASSERT_NEAR(linear_to_srgb(again.color.pixels[i]), std::min(linear_to_srgb(picture.color.pixels[i]), 1.0),
+                  name[2] == 'j' ? 0.06 : 0.0021)
+          << name;
     }
   }
   ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.png"));
@@ -322,7 +347,8 @@ TEST(Write, OrientationTagIsReset) {
 TEST(Write, Compressions) {
   const TemporaryFolder folder;
   const Picture picture = make_picture(40, 40, true);
-  for (const char* compression : {"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab", "dwaa:200", "zip:1", "ZIP"}) {
+  for (const char* compression :
+       {"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab", "dwaa:200", "zip:1", "ZIP"}) {
     WriteOptions options;
     options.compression = compression;
     ASSERT_NO_FATAL_FAILURE(write_or_fail(picture, folder / "o.exr", options)) << compression;

@@ -1,10 +1,10 @@
 // Outputs appear whole or not at all.
-#include <csignal>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+
+#include <csignal>
 
 #include "image/output_file.h"
 #include "image/writer.h"
@@ -79,8 +79,10 @@ TEST(WriteFailures, ReasonOfTheSystemIsTold) {
   const TemporaryFolder folder;
   Diagnostics silent;
   const FileSizeCap cap(100);
-  EXPECT_THAT(write_picture(noise(100, 100), folder / "o.exr", {}, silent).error().message, HasSubstr("File too large"));
-  EXPECT_THAT(write_picture(noise(100, 100), folder / "o.png", {}, silent).error().message, HasSubstr("File too large"));
+  EXPECT_THAT(write_picture(noise(100, 100), folder / "o.exr", {}, silent).error().message,
+              HasSubstr("File too large"));
+  EXPECT_THAT(write_picture(noise(100, 100), folder / "o.png", {}, silent).error().message,
+              HasSubstr("File too large"));
 }
 
 TEST(WriteFailures, CheckedBeforeTheWork) {
