@@ -44,8 +44,8 @@ Result<Arena> Arena::create(const Device& device, const Graph& graph, const Plan
   for (std::size_t i = 0; i < plan.transient.size(); ++i) {
     const ImageId id = plan.transient[i];
     if (id == graph.result) continue;
-    const VkImageUsageFlags more = (options.readable ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0) |
-                                   (options.storage ? VK_IMAGE_USAGE_STORAGE_BIT : 0);
+    const VkImageUsageFlags more =
+        (options.readable ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0) | (options.storage ? VK_IMAGE_USAGE_STORAGE_BIT : 0);
     AFTERGLOW_TRY(UnboundImage image,
                   UnboundImage::create(
                       device, {.name = graph.images[id].name,

@@ -22,8 +22,10 @@ class Descriptors {
   Descriptors() = default;
 
   VkDescriptorSet set(std::size_t kernel) const { return sets_[kernel]; }
-  /// `layout`: in which the kernel finds the image. Must not be called while a submission that uses the set is in flight.
-  void write_image(std::size_t kernel, std::size_t slot, VkImageView view, VkImageLayout layout, VkSampler sampler) const;
+  /// `layout`: in which the kernel finds the image. Must not be called while a submission that uses the set is in
+  /// flight.
+  void write_image(std::size_t kernel, std::size_t slot, VkImageView view, VkImageLayout layout,
+                   VkSampler sampler) const;
 
  private:
   VkDevice device_ = VK_NULL_HANDLE;

@@ -180,7 +180,8 @@ void FrameRunner::State::after(VkCommandBuffer commands) {
   for (auto& [name, image] : inputs) {
     if (!image.direct) continue;
     barriers.push_back(image_barrier(image.image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, image.layout,
-                                     VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL));
+                                     VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT,
+                                     VK_IMAGE_LAYOUT_GENERAL));
     image.layout = VK_IMAGE_LAYOUT_GENERAL;
   }
   if (result.direct) {

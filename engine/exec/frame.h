@@ -11,40 +11,51 @@
 
 namespace afterglow {
 
-struct KernelTime { std::string name; double milliseconds = 0; };
+struct KernelTime {
+  std::string name;
+  double milliseconds = 0;
+};
 struct FrameTimes {
-  double upload = 0, execute = 0, readback = 0;   ///< milliseconds, wall clock
-  std::vector<KernelTime> kernels;                ///< empty unless asked for and known
-  bool separate_submissions = false;              ///< kernels were timed one submission each; not part of `execute`
+  double upload = 0, execute = 0, readback = 0;  ///< milliseconds, wall clock
+  std::vector<KernelTime> kernels;               ///< empty unless asked for and known
+  bool separate_submissions = false;             ///< kernels were timed one submission each; not part of `execute`
 };
 enum class KernelTiming { none, timestamps, submissions };
 
 /// One input of a frame in host memory: interleaved floats.
-struct HostImage { const float* pixels = nullptr; Size size; int channels = 4; };
-
-struct HostResult {
-  /// RGBA. It may be the very memory of the input "source": it is written after all inputs have been read. A vector that is large enough
-  /// already is not allocated again.
-  std::vector<float> pixels;
-  std::uint64_t clamped = 0;        ///< half storage: source or result samples held at ±65504
-  bool keep_alpha = false;          ///< write R, G and B alone where `pixels` has the size of the result already
+struct HostImage {
+  const float* pixels = nullptr;
+  Size size;
+  int channels = 4;
 };
 
-/// Images, staging memory, command buffer and fence for one frame at a time; reused while sizes stay the same. Not thread-safe.
+struct HostResult {
+  /// RGBA. It may be the very memory of the input "source": it is written after all inputs have been read. A vector
+  /// that is large enough already is not allocated again.
+  std::vector<float> pixels;
+  std::uint64_t clamped = 0;  ///< half storage: source or result samples held at ±65504
+  bool keep_alpha = false;    ///< write R, G and B alone where `pixels` has the size of the result already
+};
+
+/// Images, staging memory, command buffer and fence for one frame at a time; reused while sizes stay the same. Not
+/// thread-safe.
 class FrameRunner {
  public:
-  /// `direct`: on devices whose memory is the CPU's, pixels are written into and read from the images themselves; false takes the
-  /// way over staging buffers that every GPU can go. Errors: device.
+  /// `direct`: on devices whose memory is the CPU's, pixels are written into and read from the images themselves; false
+  /// takes the way over staging buffers that every GPU can go. Errors: device.
   static Result<std::unique_ptr<FrameRunner>> create(Device& device, std::uint64_t max_memory, bool direct = true);
   ~FrameRunner();
-  /// Uploads "source" and the auxiliary images that the graph asks for, runs, reads the result back into `out` (RGBA float; resized by
-  /// it). Errors: other (an input is missing or of another size), io (over `max_memory`), device.
-  Result<FrameTimes> run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out, KernelTiming timing);
+  /// Uploads "source" and the auxiliary images that the graph asks for, runs, reads the result back into `out` (RGBA
+  /// float; resized by it). Errors: other (an input is missing or of another size), io (over `max_memory`), device.
+  Result<FrameTimes> run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out,
+                         KernelTiming timing);
   /// Pixels of a transient image as the last run left them. Needs a program created with `reference`. Errors: other.
   Result<HostResult> read_image(Program& program, ImageId image);
 
-  struct Counters { int images = 0, buffers = 0; };
-  Counters counters() const;   ///< objects made so far; steady frames leave them alone
+  struct Counters {
+    int images = 0, buffers = 0;
+  };
+  Counters counters() const;  ///< objects made so far; steady frames leave them alone
 
  private:
   struct State;

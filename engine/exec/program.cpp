@@ -129,10 +129,13 @@ Result<void> Program::State::make_descriptors() {
 
 /// Targets, sizes and barriers: fixed for the life of the program.
 void Program::State::make_commands() {
-  auto barriers = kernel_barriers(plan, images, [this](ImageId id) {
-    const UnboundImage* image = arena.image(id);
-    return image ? image->get() : VkImage{VK_NULL_HANDLE};
-  }, read_layout());
+  auto barriers = kernel_barriers(
+      plan, images,
+      [this](ImageId id) {
+        const UnboundImage* image = arena.image(id);
+        return image ? image->get() : VkImage{VK_NULL_HANDLE};
+      },
+      read_layout());
   for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
     const ImageId output = plan.kernels[i].output;
     const UnboundImage* target = arena.image(output);

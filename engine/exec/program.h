@@ -1,14 +1,14 @@
 // A graph made runnable on a device: pipelines, memory, descriptors. Record it into any command buffer.
 #pragma once
 
+#include <vulkan/vulkan.h>
+
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <vulkan/vulkan.h>
 
 #include "core/diagnostics.h"
 #include "core/result.h"
@@ -23,11 +23,13 @@ enum class Storage { fp32, fp16 };
 
 struct ProgramOptions {
   Storage storage = Storage::fp32;
-  bool reference = false;         ///< every pass on its own, computed weights, no sharing of memory
-  bool hardware_filter = false;   ///< filtered fetches may be used
-  bool storage_reads = false;     ///< read images as storage images where shaders and device allow it: faster on CPU devices
-  bool source_is_storage = false; ///< with storage_reads: the source that will be bound has STORAGE usage and comes in GENERAL layout
-  bool share_memory = true;       ///< images whose lifetimes do not overlap share bytes (never with `reference`)
+  bool reference = false;        ///< every pass on its own, computed weights, no sharing of memory
+  bool hardware_filter = false;  ///< filtered fetches may be used
+  bool storage_reads =
+      false;  ///< read images as storage images where shaders and device allow it: faster on CPU devices
+  bool source_is_storage =
+      false;  ///< with storage_reads: the source that will be bound has STORAGE usage and comes in GENERAL layout
+  bool share_memory = true;  ///< images whose lifetimes do not overlap share bytes (never with `reference`)
   std::uint64_t max_memory = 6ull << 30;
 };
 
@@ -35,8 +37,9 @@ struct ProgramMemory {
   std::uint64_t arena = 0, sum = 0, lower_bound = 0;  ///< bytes of transient images: shared, unshared, least possible
 };
 
-/// An image of the caller's or of a Frame that a program reads or writes. Reads happen in SHADER_READ_ONLY_OPTIMAL, the result is
-/// written in COLOR_ATTACHMENT_OPTIMAL; the caller brings images into these layouts and is told so in `record`.
+/// An image of the caller's or of a Frame that a program reads or writes. Reads happen in SHADER_READ_ONLY_OPTIMAL, the
+/// result is written in COLOR_ATTACHMENT_OPTIMAL; the caller brings images into these layouts and is told so in
+/// `record`.
 struct ImageBinding {
   VkImage image = VK_NULL_HANDLE;
   VkImageView view = VK_NULL_HANDLE;
@@ -48,22 +51,24 @@ struct ImageBinding {
 class Program {
  public:
   /// Errors: script (shader, a parameter or input that is not given), device (limits, memory), io (over `max_memory`).
-  static Result<std::unique_ptr<Program>> create(Device& device, ShaderLibrary& shaders, KernelCompiler& compiler, const Graph& graph,
-                                                 const ProgramOptions& options);
+  static Result<std::unique_ptr<Program>> create(Device& device, ShaderLibrary& shaders, KernelCompiler& compiler,
+                                                 const Graph& graph, const ProgramOptions& options);
   ~Program();
 
-  /// Rewrites parameter bytes from a graph of the same structure; no shader, pipeline or memory is touched. A graph of another
-  /// structure (`same_structure`) is ignored: it needs a program of its own.
-  /// Must not be called while a submission of this program is in flight.
+  /// Rewrites parameter bytes from a graph of the same structure; no shader, pipeline or memory is touched. A graph of
+  /// another structure (`same_structure`) is ignored: it needs a program of its own. Must not be called while a
+  /// submission of this program is in flight.
   void set_parameters(const Graph& graph);
 
-  /// Points the graph's inputs and its result at images. Formats of inputs are free (sampled as float); the result's must be the
-  /// storage format. Must not be called while a submission is in flight. A program whose graph's result is its source does nothing.
-  Result<void> bind(const std::map<std::string, ImageBinding>& inputs /* "source", "depth", … */, const ImageBinding& result);
+  /// Points the graph's inputs and its result at images. Formats of inputs are free (sampled as float); the result's
+  /// must be the storage format. Must not be called while a submission is in flight. A program whose graph's result is
+  /// its source does nothing.
+  Result<void> bind(const std::map<std::string, ImageBinding>& inputs /* "source", "depth", … */,
+                    const ImageBinding& result);
 
-  /// Records all kernels with their barriers. Inputs must be in SHADER_READ_ONLY_OPTIMAL with their writes made visible to fragment
-  /// shader reads; the result must be in COLOR_ATTACHMENT_OPTIMAL and is left so.
-  /// `only` ≥ 0 records that kernel alone (for pass-by-pass timing). `timestamps`: pool with kernels().size()+1 queries, or null.
+  /// Records all kernels with their barriers. Inputs must be in SHADER_READ_ONLY_OPTIMAL with their writes made visible
+  /// to fragment shader reads; the result must be in COLOR_ATTACHMENT_OPTIMAL and is left so. `only` ≥ 0 records that
+  /// kernel alone (for pass-by-pass timing). `timestamps`: pool with kernels().size()+1 queries, or null.
   void record(VkCommandBuffer commands, int only = -1, VkQueryPool timestamps = VK_NULL_HANDLE) const;
 
   const Plan& plan() const;
@@ -72,13 +77,20 @@ class Program {
   VkFormat storage_format() const;
   /// The layout in which `record` wants the source: SHADER_READ_ONLY_OPTIMAL, or GENERAL (then with STORAGE usage).
   VkImageLayout source_layout() const;
-  /// A transient image and the layout it is in after a whole run; null for images without memory of their own (inputs, the result, what
-  /// joined passes hand on). Its pixels are `kept` after the run by a program created with `reference` alone.
-  struct Transient { ImageBinding binding; VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; bool kept = false; };
+  /// A transient image and the layout it is in after a whole run; null for images without memory of their own (inputs,
+  /// the result, what joined passes hand on). Its pixels are `kept` after the run by a program created with `reference`
+  /// alone.
+  struct Transient {
+    ImageBinding binding;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    bool kept = false;
+  };
   std::optional<Transient> transient(ImageId image) const;
 
-  struct Counters { int pipelines = 0, images = 0, allocations = 0; };
-  Counters counters() const;   ///< objects made so far; steady frames leave them alone
+  struct Counters {
+    int pipelines = 0, images = 0, allocations = 0;
+  };
+  Counters counters() const;  ///< objects made so far; steady frames leave them alone
 
  private:
   struct State;

@@ -1,6 +1,8 @@
 // A Vulkan 1.3 device: picked by name, or adopted from the caller. Owns nothing global.
 #pragma once
 
+#include <vulkan/vulkan.h>
+
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -8,30 +10,30 @@
 #include <string>
 #include <vector>
 
-#include <vulkan/vulkan.h>
-
 #include "core/diagnostics.h"
 #include "core/result.h"
 
 namespace afterglow {
 
 struct DeviceInfo {
-  std::string name, type, driver, uuid;   ///< type: "cpu", "integrated", "discrete", "virtual", "other"
+  std::string name, type, driver, uuid;  ///< type: "cpu", "integrated", "discrete", "virtual", "other"
   std::uint32_t api_version = 0;
   bool usable = false;
-  std::string why_not;                    ///< what it lacks, when not usable
+  std::string why_not;  ///< what it lacks, when not usable
 };
 
-/// Devices in the order in which `--device auto` prefers them: discrete, integrated, virtual, cpu. Errors: device (no loader, no driver).
+/// Devices in the order in which `--device auto` prefers them: discrete, integrated, virtual, cpu. Errors: device (no
+/// loader, no driver).
 Result<std::vector<DeviceInfo>> list_devices();
 
 struct DeviceOptions {
-  std::string device = "auto";   ///< "auto", an index into list_devices(), or a part of a name or uuid (case-insensitive)
-  bool validate = false;         ///< Khronos validation with synchronization checks; errors when the layer is missing
+  std::string device =
+      "auto";             ///< "auto", an index into list_devices(), or a part of a name or uuid (case-insensitive)
+  bool validate = false;  ///< Khronos validation with synchronization checks; errors when the layer is missing
 };
 
-/// A caller's objects to work on; they must outlive the Device. The instance and device are of Vulkan 1.3 with dynamicRendering and
-/// synchronization2 enabled.
+/// A caller's objects to work on; they must outlive the Device. The instance and device are of Vulkan 1.3 with
+/// dynamicRendering and synchronization2 enabled.
 struct AdoptedDevice {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
@@ -40,13 +42,14 @@ struct AdoptedDevice {
   std::uint32_t queue_family = 0;
 };
 
-/// What the validation layer has said. Thread-safe; may outlive its Device, so that messages of the teardown are seen too.
+/// What the validation layer has said. Thread-safe; may outlive its Device, so that messages of the teardown are seen
+/// too.
 class ValidationLog {
  public:
   /// `error`: of severity error and about validation. Warnings (performance advice among them) are kept, not counted.
   void add(bool error, const std::string& message);
   int errors() const;
-  std::vector<std::string> messages() const;   ///< "error: …", "warning: …"; each text once, the first 1000
+  std::vector<std::string> messages() const;  ///< "error: …", "warning: …"; each text once, the first 1000
 
  private:
   mutable std::mutex mutex_;
@@ -54,10 +57,12 @@ class ValidationLog {
   std::vector<std::string> messages_;
 };
 
-/// One logical device with one graphics+compute queue. Immutable after creation; submissions must come from one thread at a time.
+/// One logical device with one graphics+compute queue. Immutable after creation; submissions must come from one thread
+/// at a time.
 class Device {
  public:
-  /// With "auto", a device that cannot be opened is passed over with a warning. `diagnostics` is used during the call alone. Errors: device (none, none that matches, none usable, no validation layer).
+  /// With "auto", a device that cannot be opened is passed over with a warning. `diagnostics` is used during the call
+  /// alone. Errors: device (none, none that matches, none usable, no validation layer).
   static Result<std::unique_ptr<Device>> create(const DeviceOptions& options, Diagnostics& diagnostics);
   /// Destroys none of the caller's objects. Errors: device (not Vulkan 1.3, a queue family without graphics).
   static Result<std::unique_ptr<Device>> adopt(const AdoptedDevice& adopted, Diagnostics& diagnostics);
@@ -73,7 +78,7 @@ class Device {
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   const DeviceInfo& info() const { return info_; }
-  VkDeviceSize max_allocation() const { return max_allocation_; }   ///< bytes of one VkDeviceMemory
+  VkDeviceSize max_allocation() const { return max_allocation_; }  ///< bytes of one VkDeviceMemory
   bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   /// Timestamps around draws mean something (false on CPU devices, where rasterisation is deferred).
   bool timestamps_mean_draws() const { return !is_cpu() && timestamp_mask_ != 0; }
@@ -91,7 +96,8 @@ class Device {
   /// Never null; still valid when the Device is gone.
   std::shared_ptr<const ValidationLog> validation_log() const { return log_; }
 
-  /// Loads and saves the pipeline cache below `folder` (keyed by the device's pipeline cache UUID); unreadable data is ignored.
+  /// Loads and saves the pipeline cache below `folder` (keyed by the device's pipeline cache UUID); unreadable data is
+  /// ignored.
   void use_pipeline_cache(const std::string& folder);
   void save_pipeline_cache() const;
 

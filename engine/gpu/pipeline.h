@@ -11,8 +11,8 @@
 
 namespace afterglow {
 
-/// What a full-screen fragment shader reads. Set 0: binding 0 a uniform block (when `block`), bindings 1… its images, as
-/// combined image samplers or storage images; `push_bytes` of push constants.
+/// What a full-screen fragment shader reads. Set 0: binding 0 a uniform block (when `block`), bindings 1… its images,
+/// as combined image samplers or storage images; `push_bytes` of push constants.
 struct DrawInterface {
   bool block = false;
   std::vector<VkDescriptorType> images;

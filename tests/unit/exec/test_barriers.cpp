@@ -21,7 +21,8 @@ struct Example {
   ImageId result;
   VkImage image_of(ImageId id) const { return id == 0 || id == result ? VK_NULL_HANDLE : handle(id); }
   std::vector<std::vector<VkImageMemoryBarrier2>> barriers() const {
-    return kernel_barriers(plan, read, [this](ImageId id) { return image_of(id); }, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    return kernel_barriers(
+        plan, read, [this](ImageId id) { return image_of(id); }, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   }
 };
 
