@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <exception>
+#include <mutex>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -10,7 +12,7 @@
 namespace afterglow {
 
 /// Calls `work(begin, end)` for disjoint ranges that cover [0, rows), on several threads when `values` (samples in all)
-/// is worth it. `work` must not throw.
+/// is worth it. Rethrows the first exception of any of them when all are done.
 template <class Work>
 void parallel_rows(int rows, long long values, const Work& work) {
   constexpr long long kValuesPerThread = 1 << 17;
@@ -19,14 +21,29 @@ void parallel_rows(int rows, long long values, const Work& work) {
       {static_cast<long long>(std::thread::hardware_concurrency()), values / kValuesPerThread, kMaxThreads, rows});
   const int threads = static_cast<int>(std::max(wanted, 1ll));
   const auto bound = [&](int i) { return static_cast<int>(static_cast<long long>(rows) * i / threads); };
-  std::vector<std::jthread> helpers;
-  int begin = 0;
-  try {
-    for (; begin + 1 < threads; ++begin)
-      helpers.emplace_back([&work, first = bound(begin), last = bound(begin + 1)] { work(first, last); });
-  } catch (const std::system_error&) {  // no more threads to be had: the rest is done here
+
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto guarded = [&](int begin, int end) {
+    try {
+      work(begin, end);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    helpers.reserve(static_cast<std::size_t>(threads));
+    int next = 0;
+    try {
+      for (; next + 1 < threads; ++next)
+        helpers.emplace_back([&guarded, first = bound(next), last = bound(next + 1)] { guarded(first, last); });
+    } catch (const std::system_error&) {  // no more threads to be had: the rest is done here
+    }
+    guarded(bound(next), rows);
   }
-  work(bound(begin), rows);
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace afterglow

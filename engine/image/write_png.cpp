@@ -200,13 +200,7 @@ class StripEncoder {
 void run_batch(const StripEncoder& encoder, std::vector<Strip>& batch) {
   constexpr long long kWorthAThread = 1ll << 32;
   parallel_rows(static_cast<int>(batch.size()), kWorthAThread, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      try {
-        encoder.run(batch[static_cast<std::size_t>(i)]);
-      } catch (const std::bad_alloc&) {
-        batch[static_cast<std::size_t>(i)].failure = Z_MEM_ERROR;
-      }
-    }
+    for (int i = begin; i < end; ++i) encoder.run(batch[static_cast<std::size_t>(i)]);
   });
 }
 

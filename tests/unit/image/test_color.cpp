@@ -55,6 +55,7 @@ TEST(Sanitize, NanDoesNotSpreadThroughAMatrix) {
   decode_color(wide, rgba.data(), 2, counts);
   EXPECT_FLOAT_EQ(rgba[0], 0.5f);
   EXPECT_FLOAT_EQ(rgba[1], 0.75f);
+  EXPECT_FLOAT_EQ(rgba[4], 5e29f);  // the −infinity beside it counts as 0
   for (const float v : rgba) EXPECT_TRUE(std::isfinite(v));
   EXPECT_EQ(counts.nan, 1u);
 }
