@@ -186,6 +186,29 @@ std::uint64_t ExrPart::pixel_bytes() const {
   return bytes;
 }
 
+std::uint64_t ExrPart::least_file_bytes() const {
+  if (deep) return 0;
+  std::uint64_t raw = 0;
+  for (const ExrChannel& channel : channels) {
+    const auto columns = static_cast<std::uint64_t>(data_window.width / channel.x_sampling);
+    const auto lines = static_cast<std::uint64_t>(data_window.height / channel.y_sampling);
+    raw += columns * lines * (channel.type == ExrChannelType::half ? 2 : 4);
+  }
+  switch (compression) {
+    case 0:
+      return raw;
+    case 1:
+      return raw / 64;  // 2 bytes for a run of 128
+    case 2:
+    case 3:
+      return raw / 1100;  // deflate gains 1032 at most
+    case 5:
+      return raw / 1500;  // and floats are cut to 24 bits before
+    default:
+      return 0;
+  }
+}
+
 std::uint64_t ExrPart::buffer_bytes(int threads) const {
   const std::uint64_t buffers = 2 * static_cast<std::uint64_t>(std::max(threads, 1));
   const auto width = static_cast<std::uint64_t>(data_window.width);

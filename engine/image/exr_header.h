@@ -30,6 +30,8 @@ struct ExrPart {
   int orientation = 1;
 
   std::uint64_t pixel_bytes() const;
+  /// Fewer bytes than this cannot hold the part, however well it compresses.
+  std::uint64_t least_file_bytes() const;
   /// Bytes that OpenEXR needs for its line or tile buffers while it reads with `threads` threads.
   std::uint64_t buffer_bytes(int threads) const;
 };

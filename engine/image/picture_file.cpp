@@ -21,6 +21,11 @@ Result<std::unique_ptr<PictureFile>> open_checked_exr(const std::filesystem::pat
                                part.buffer_bytes(1) >> 20, limits.max_bytes >> 20),
                    file.string()};
   }
+  std::uint64_t least = 0;
+  for (const ExrPart& part : parts) least += part.least_file_bytes();
+  std::error_code ec;
+  if (const std::uint64_t size = std::filesystem::file_size(file, ec); !ec && size < least)
+    return Error{ErrorKind::io, fmt::format("is truncated: {} bytes cannot hold its pixels", size), file.string()};
   return open_exr(file, std::move(parts));
 }
 
@@ -31,6 +36,13 @@ Result<std::unique_ptr<PictureFile>> open_picture(const std::filesystem::path& f
   if (container.kind == ContainerFacts::Kind::exr) return open_checked_exr(file, limits);
   if (container.kind == ContainerFacts::Kind::png || container.kind == ContainerFacts::Kind::jpeg)
     AFTERGLOW_CHECK(check_sides({0, 0, container.size.width, container.size.height}, "picture", limits, file));
+  if (container.kind == ContainerFacts::Kind::png) {
+    // A bit a pixel at least, and deflate gains 1032 at most.
+    const std::uint64_t least = static_cast<std::uint64_t>(container.size.area()) / 8 / 1100;
+    std::error_code ec;
+    if (const std::uint64_t size = std::filesystem::file_size(file, ec); !ec && size < least)
+      return Error{ErrorKind::io, fmt::format("is truncated: {} bytes cannot hold its pixels", size), file.string()};
+  }
   const auto module = oiio_module();
   if (!module) return Error{ErrorKind::io, module.error().message, file.string()};
   return module.value()->open(file, container, limits);

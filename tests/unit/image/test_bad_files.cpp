@@ -222,6 +222,29 @@ TEST_F(Bombs, HugeHdr) {
               HasSubstr("larger than 16384"));
 }
 
+TEST_F(Bombs, SidesThatAreAllowedButCannotBeThere) {
+  std::string bytes = exr();
+  patch(bytes, "dataWindow", "box2i", 8, 16000);
+  patch(bytes, "dataWindow", "box2i", 12, 16000);
+  EXPECT_THAT(refused(bytes).message, HasSubstr("cannot hold its pixels"));
+  EXPECT_THAT(refused(RawPng(16000, 16000, 1, 0).pixels({"x"}).finish(), "bomb.png").message,
+              HasSubstr("cannot hold its pixels"));
+}
+
+TEST_F(Bombs, EmptyLookingPicturesAreNoBombs) {
+  // Black compresses as well as anything can.
+  for (const char* compression : {"none", "rle", "zip", "zips", "pxr24", "piz", "dwaa"}) {
+    OIIO::ImageSpec spec = make_spec(2000, 1500, {"R", "G", "B", "A"}, OIIO::TypeFloat);
+    spec.attribute("compression", compression);
+    ASSERT_NO_FATAL_FAILURE(make_file(folder_ / "black.exr", {spec}, {std::vector<float>(2000 * 1500 * 4)}));
+    EXPECT_EQ(read_or_fail(folder_ / "black.exr").color.at(1999, 1499)[0], 0) << compression;
+  }
+  OIIO::ImageSpec spec = make_spec(4000, 3000, {"Y"}, OIIO::TypeUInt8);
+  spec.attribute("png:compressionLevel", 9);
+  ASSERT_NO_FATAL_FAILURE(make_file(folder_ / "black.png", {spec}, {std::vector<float>(4000 * 3000)}));
+  EXPECT_EQ(read_or_fail(folder_ / "black.png").color.at(3999, 2999)[0], 0);
+}
+
 TEST_F(Bombs, MemoryLimitIsKept) {
   make_file(folder_ / "a.exr", 200, 100, {"R", "G", "B"}, OIIO::TypeHalf);
   ReadOptions options;
