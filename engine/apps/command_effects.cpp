@@ -55,6 +55,9 @@ std::string effect_text(const EffectSchema& effect) {
 Result<void> run(const Arguments& arguments, Console& console) {
   const std::vector<std::filesystem::path> extra(arguments.preset.paths.begin(), arguments.preset.paths.end());
   AFTERGLOW_TRY(auto effects, list_effects(search_path_for({}, extra), console.diagnostics()));
+  if (effects.empty())
+    return Error{ErrorKind::script, "no effects were found", "afterglow effects", 0,
+                 "an installation with scripts/effects (AFTERGLOW_HOME names its folder), --path, AFTERGLOW_PATH"};
   if (!arguments.name.empty()) {
     std::vector<std::string> names;
     for (const auto& effect : effects) names.push_back(effect.name);

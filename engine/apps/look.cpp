@@ -21,6 +21,13 @@ Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& a
   return look;
 }
 
+namespace {
+
+// As `run` chooses on a CPU device, the one that is always there.
+constexpr DescribeOptions kAssumed{.storage_reads = true, .source_is_storage = true};
+
+}  // namespace
+
 std::vector<Error> shader_errors(const Look& look) {
   KernelCompiler compiler(cache_folder() / "shaders");  // the folder that Stack uses, so that `run` starts warm
   std::vector<Error> errors;
@@ -30,7 +37,7 @@ std::vector<Error> shader_errors(const Look& look) {
     if (seen.insert(error.text()).second) errors.push_back(error);
   };
   for (const auto& kernel : look.plan.kernels) {
-    const auto desc = describe_kernel(*look.shaders, look.graph, kernel, {});
+    const auto desc = describe_kernel(*look.shaders, look.graph, kernel, kAssumed);
     if (!desc) {
       keep(desc.error());
       continue;
