@@ -74,14 +74,17 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame) {
   state_->result.clamped = 0;
   if (!state_->stack->runs()) return {};
 
-  std::map<std::string, HostImage> inputs{{"source", host_image(picture.color)}};
+  // The result replaces the source in its own memory. Effects never change alpha: the source's own values stay where they are, exact
+  // whatever the storage format.
+  HostResult& result = state_->result;
+  result.pixels = std::move(picture.color.pixels);
+  result.keep_alpha = true;
+  std::map<std::string, HostImage> inputs{{"source", {result.pixels.data(), context.size, picture.color.channels}}};
   for (const auto& [name, id] : state_->stack->prepared_graph().auxiliary) inputs[name] = host_image(picture.auxiliary.at(name));
-  AFTERGLOW_TRY(state_->times.frame,
-                state_->runner->run(*state_->stack->program(), inputs, state_->result, state_->options.timing));
-  // Effects never change alpha: the source's own values go on, exact whatever the storage format.
-  auto& pixels = state_->result.pixels;
-  for (std::size_t i = 3; i < pixels.size(); i += 4) pixels[i] = picture.color.pixels[i];
-  picture.color.pixels.swap(pixels);
+  auto times = state_->runner->run(*state_->stack->program(), inputs, result, state_->options.timing);
+  picture.color.pixels = std::move(result.pixels);
+  if (!times) return std::move(times).error();
+  state_->times.frame = std::move(times).value();
   return {};
 }
 
