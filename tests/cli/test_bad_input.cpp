@@ -43,22 +43,22 @@ TEST_F(BadInput, Missing) { expect_refusal("none.exr", "no such file"); }
 
 TEST_F(BadInput, Truncated) {
   make_truncated_exr("cut.exr");
-  expect_refusal("cut.exr", "");
+  expect_refusal("cut.exr", "cannot be read");
 }
 
 TEST_F(BadInput, Empty) {
   write("empty.exr", "");
-  expect_refusal("empty.exr", "");
+  expect_refusal("empty.exr", "is empty");
 }
 
 TEST_F(BadInput, NoPicture) {
   write("text.exr", std::string(4000, 'x'));
-  expect_refusal("text.exr", "");
+  expect_refusal("text.exr", "not an OpenEXR file");
 }
 
 TEST_F(BadInput, Folder) {
   fs::create_directory(path("folder.exr"));
-  expect_refusal("folder.exr", "");
+  expect_refusal("folder.exr", "is a folder");
 }
 
 TEST_F(BadInput, UnknownLayer) {
@@ -94,7 +94,7 @@ TEST_F(BadInput, NeedAboveMaxMemoryIsRefusedFromTheHeader) {
   EXPECT_LT(std::stoull(report.substr(at + 8)), 512ull << 20);
 }
 
-TEST_F(BadInput, SequenceWithoutFiles) { expect_refusal("shot.####.exr", ""); }
+TEST_F(BadInput, SequenceWithoutFiles) { expect_refusal("shot.####.exr", "no file matches"); }
 
 }  // namespace
 }  // namespace afterglow::test

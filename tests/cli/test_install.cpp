@@ -55,8 +55,9 @@ TEST_F(Installed, OtherProjectsFindThePackage) {
         "  return std::puts((*stack)->preset().name().c_str()), 0;\n}\n");
   RunOptions options;
   options.program = AFTERGLOW_CMAKE;
-  Outcome outcome =
-      run({"-S", "project", "-B", "project/build", "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + text("moved")}, options);
+  Outcome outcome = run({"-S", "project", "-B", "project/build", "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + text("moved"),
+                         "-DCMAKE_CXX_FLAGS=" AFTERGLOW_CXX_FLAGS},
+                        options);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   outcome = run({"--build", "project/build"}, options);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out;

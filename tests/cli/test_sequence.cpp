@@ -145,7 +145,23 @@ TEST_F(Sequence, TooLittleMemoryForOverlapStillRuns) {
   EXPECT_EQ(outputs().size(), 4u);
 }
 
+TEST_F(Sequence, DepthFromAPatternOfItsOwn) {
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.outline { source = \"depth\", required = true } }\n");
+  for (int frame = 1; frame <= 4; ++frame) make_exr("depth/z." + std::to_string(frame) + ".exr");
+  EXPECT_EQ(run_all().exit_code, kScript) << "without depth the required effect cannot run";
+  const Outcome outcome = run_all({"--depth", "depth/z.#.exr:G"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_EQ(outputs().size(), 4u);
+  fs::remove(path("depth/z.2.exr"));
+  const Outcome missing = run_all({"--depth", "depth/z.#.exr:G"});
+  EXPECT_EQ(missing.exit_code, kFiles);
+  EXPECT_THAT(missing.err, HasSubstr("z.2.exr"));
+  EXPECT_THAT(missing.err, HasSubstr("1 of 4 frames failed"));
+}
+
 TEST_F(Sequence, CtrlCEndsWith130AndNoPartialFile) {
+  make_exr("in/shot.0001.exr", 512, 512);  // large enough that sixty of them take a while
   for (int frame = 5; frame <= 60; ++frame)
     fs::copy_file(path("in/shot.0001.exr"),
                   path("in/shot.00" + std::string(frame < 10 ? "0" : "") + std::to_string(frame) + ".exr"));
