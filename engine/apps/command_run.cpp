@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <set>
+#include <utility>
 
 #include "apps/command.h"
 #include "apps/frame_list.h"
@@ -170,7 +172,21 @@ Result<void> prepare_resume(Run& run) {
   run.loop.record_look = look;
   if (!a.resume) return {};
   for (auto& frame : run.report.frames)
-    if (is_up_to_date(frame.job, look)) frame.state = FrameRecord::State::up_to_date;
+    if (is_up_to_date(frame.job, look)) {
+      frame.state = FrameRecord::State::up_to_date;
+      run.console.note(fmt::format("{} is up to date", frame.job.output.string()));
+    }
+  return {};
+}
+
+/// Outputs that cannot be written are refused before any work: one of each folder and format.
+Result<void> check_outputs(const Run& run) {
+  std::set<std::pair<std::filesystem::path, std::filesystem::path>> seen;
+  for (const auto& frame : run.report.frames) {
+    const auto& output = frame.job.output;
+    if (!seen.emplace(output.parent_path(), output.extension()).second) continue;
+    AFTERGLOW_CHECK(check_output(output, run.loop.write));
+  }
   return {};
 }
 
@@ -184,9 +200,11 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   run.loop.read.max_bytes = options.stack.max_memory;
   if (!a.size.empty()) {
     AFTERGLOW_TRY(run.loop.size, parse_size(a.size));
+    if (a.keep_layers)
+      return Error{ErrorKind::usage, "--keep-layers copies layers as they are and cannot go with --size",
+                   "afterglow run"};
   }
-  // Outputs that cannot be written are refused before any work.
-  AFTERGLOW_CHECK(check_output(run.report.frames.front().job.output, run.loop.write));
+  AFTERGLOW_CHECK(check_outputs(run));
   AFTERGLOW_TRY(run.session, Session::open(a.preset.file, options, run.console.diagnostics()));
   run.loop.read.auxiliary = run.session->preset().needs();
   AFTERGLOW_CHECK(prepare_resume(run));
