@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/exr_rows.h"
@@ -102,12 +103,15 @@ Result<void> check_unchanged(const Imf::MultiPartInputFile& input, const FileFac
 
 Imf::Header color_header(const Imf::Header& old, const FileFacts& facts, const ExrColorRows& color,
                          const OtherChannels& others) {
-  Imf::Header header(old);
+  // Built anew rather than by erasing from a copy: Header::erase of OpenEXR 3.1 leaks.
+  constexpr std::array<std::string_view, 6> kGone{"tiles",         "preview",  "chunkCount", "dwaCompressionLevel",
+                                                  "textureformat", "channels"};
+  Imf::Header header(old.displayWindow(), old.dataWindow());
+  for (auto it = old.begin(); it != old.end(); ++it)
+    if (std::find(kGone.begin(), kGone.end(), it.name()) == kGone.end()) header.insert(it.name(), it.attribute());
   header.channels() = Imf::ChannelList();
   color.add_channels(header);
   others.add_channels(header);
-  for (const char* name : {"tiles", "preview", "chunkCount", "dwaCompressionLevel", "textureformat"})
-    header.erase(name);
   header.setType(Imf::SCANLINEIMAGE);
   header.lineOrder() = Imf::INCREASING_Y;
   if (facts.had_chromaticities) Imf::addChromaticities(header, Imf::Chromaticities());
