@@ -104,7 +104,7 @@ Result<void> check_unchanged(const Imf::MultiPartInputFile& input, const FileFac
 Imf::Header color_header(const Imf::Header& old, const FileFacts& facts, const ExrColorRows& color,
                          const OtherChannels& others) {
   // Built anew rather than by erasing from a copy: Header::erase of OpenEXR 3.1 leaks.
-  constexpr std::array<std::string_view, 6> kGone{"tiles",         "preview",  "chunkCount", "dwaCompressionLevel",
+  constexpr std::array<std::string_view, 6> kGone{"tiles",         "preview", "chunkCount", "dwaCompressionLevel",
                                                   "textureformat", "channels"};
   Imf::Header header(old.displayWindow(), old.dataWindow());
   for (auto it = old.begin(); it != old.end(); ++it)
