@@ -27,7 +27,7 @@ void PresetArguments::add(CLI::App& command) {
   command.add_option("PRESET", file, "Look to apply: a Lua file that returns a stack")->required();
   command
       .add_option("--set", overrides,
-                  "Overrides one setting, as if the preset said so: bloom.intensity=0.4 (repeatable)")
+                  "Overrides one setting, as if the preset said so: glow.strength=0.4 (repeatable)")
       ->type_name("EFFECT.SETTING=VALUE")
       ->expected(1)
       ->take_all()

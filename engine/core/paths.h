@@ -17,7 +17,7 @@ struct SearchPath {
 
   /// `effects/NAME.lua` or the installation's `scripts/effects/NAME.lua`; all hits, the winner first.
   std::vector<std::filesystem::path> find_effect(const std::string& name) const;
-  /// `shaders/NAME` (with extension, e.g. "bloom/threshold.glsl"); all hits, the winner first.
+  /// `shaders/NAME` (with extension, e.g. "glow/threshold.glsl"); all hits, the winner first.
   std::vector<std::filesystem::path> find_shader(const std::string& name) const;
   /// Folders that may hold effect scripts, in order.
   std::vector<std::filesystem::path> effect_folders() const;

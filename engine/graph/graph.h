@@ -41,10 +41,10 @@ struct PassInput {
 };
 
 struct Pass {
-  std::string name;       ///< unique: "bloom.down[2]"
-  std::string effect;     ///< name of the effect's entry, "bloom"
+  std::string name;       ///< unique: "glow.down[2]"
+  std::string effect;     ///< name of the effect's entry, "glow"
   PassKind kind = PassKind::pixel;
-  std::string shader;     ///< "bloom/threshold"; empty for filters
+  std::string shader;     ///< "glow/threshold"; empty for filters
   Filter filter;          ///< for kind filter
   std::vector<PassInput> inputs;              ///< a pixel pass's first input is "source"
   std::map<std::string, ParamValue> params;       ///< dynamic: values may change without a rebuild

@@ -14,7 +14,7 @@ namespace afterglow {
 /// One draw: a head pass and the pixel passes joined to it. Indices into Graph::passes, in order.
 struct PlanKernel {
   std::vector<int> passes;
-  std::string name;   ///< "bloom.up[0]+bloom.combine+tone_mapping"
+  std::string name;   ///< "glow.up[0]+glow.combine+curve"
   ImageId output = kNoImage;
 };
 

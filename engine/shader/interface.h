@@ -1,7 +1,7 @@
 // What a shader of an effect declares: its kind, inputs and parameters, found by scanning its text (no compiler
 // needed).
 //
-// An author's shader file, e.g. shaders/bloom/threshold.glsl:
+// An author's shader file, e.g. shaders/glow/threshold.glsl:
 //
 //   #include "lib/color.glsl"                 // an include is a library: hoisted, included once, sees no macros of the
 //   shader uniform float threshold;                  // dynamic parameter: bytes that may change per frame

@@ -21,7 +21,7 @@ namespace afterglow {
 struct KernelStage {
   std::shared_ptr<const ShaderSource> shader;
   std::map<std::string, double> constants;
-  std::string label;  ///< name of the pass, for messages and comments: "bloom.threshold"
+  std::string label;  ///< name of the pass, for messages and comments: "glow.threshold"
 };
 
 /// How source and target sizes of a filter head relate on an axis; the executor picks it from the sizes, the

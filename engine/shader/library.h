@@ -18,7 +18,7 @@ namespace afterglow {
 
 /// One file of GLSL with its includes resolved.
 struct ShaderSource {
-  std::string name;  ///< as asked for, without ".glsl": "bloom/threshold"
+  std::string name;  ///< as asked for, without ".glsl": "glow/threshold"
   std::filesystem::path path;
   std::string text;  ///< as the author wrote it
   ShaderInterface interface;
