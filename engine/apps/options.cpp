@@ -26,8 +26,7 @@ void MessageArguments::apply(Console& console) const {
 void PresetArguments::add(CLI::App& command) {
   command.add_option("PRESET", file, "Look to apply: a Lua file that returns a stack")->required();
   command
-      .add_option("--set", overrides,
-                  "Overrides one setting, as if the preset said so: glow.strength=0.4 (repeatable)")
+      .add_option("--set", overrides, "Overrides one setting, as if the preset said so: glow.strength=0.4 (repeatable)")
       ->type_name("EFFECT.SETTING=VALUE")
       ->expected(1)
       ->take_all()

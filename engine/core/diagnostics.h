@@ -15,7 +15,7 @@ enum class Severity { note, warning };
 class Diagnostics {
  public:
   using Sink = std::function<void(Severity, const std::string&)>;
-  Diagnostics() = default;                                       ///< drops everything
+  Diagnostics() = default;  ///< drops everything
   explicit Diagnostics(Sink sink) : sink_(std::move(sink)) {}
 
   void warn(const std::string& message) { emit(Severity::warning, message); }

@@ -1,13 +1,13 @@
 #include "core/file.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <system_error>
-
-#include <fmt/format.h>
-#include <unistd.h>
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -32,7 +32,8 @@ Result<std::string> read_file(const fs::path& path, std::size_t limit) {
 
 fs::path temporary_beside(const fs::path& path) {
   static std::atomic<unsigned> counter{0};
-  const auto name = fmt::format(".{}.{}-{}.tmp{}", path.stem().string(), getpid(), counter++, path.extension().string());
+  const auto name =
+      fmt::format(".{}.{}-{}.tmp{}", path.stem().string(), getpid(), counter++, path.extension().string());
   return path.parent_path() / name;
 }
 

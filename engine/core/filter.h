@@ -6,8 +6,8 @@
 
 namespace afterglow {
 
-/// How the source is read between texel centres (math.md §1): the nearest texel, the two nearest (bilinear), or the four
-/// of the cubic B-spline (which blurs).
+/// How the source is read between texel centres (math.md §1): the nearest texel, the two nearest (bilinear), or the
+/// four of the cubic B-spline (which blurs).
 enum class Interpolation { nearest, linear, cubic_bspline };
 
 struct Tap {
@@ -22,8 +22,8 @@ struct Tap2d {
   friend bool operator==(const Tap2d&, const Tap2d&) = default;
 };
 
-/// out(X, Y) = Σ weight · I(px + dx, py + dy), where px = (X + ½)·n_src/n_dst in texels (a texel centre is at i + ½), I is
-/// the source under `interpolation`, and reads outside are clamped to the edge texel. The taps are the outer product
+/// out(X, Y) = Σ weight · I(px + dx, py + dy), where px = (X + ½)·n_src/n_dst in texels (a texel centre is at i + ½), I
+/// is the source under `interpolation`, and reads outside are clamped to the edge texel. The taps are the outer product
 /// of `x` and `y`, or `taps` when that is not empty. Weights are used as given, never renormalised.
 struct Filter {
   Interpolation interpolation = Interpolation::linear;

@@ -1,10 +1,10 @@
 #include "core/paths.h"
 
-#include <cstdlib>
-#include <system_error>
-
 #include <fmt/format.h>
 #include <unistd.h>
+
+#include <cstdlib>
+#include <system_error>
 
 #include "core/text.h"
 
@@ -22,9 +22,7 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ec);
 }
 
-bool is_installation(const fs::path& folder) {
-  return is_file(folder / "scripts" / "afterglow.lua");
-}
+bool is_installation(const fs::path& folder) { return is_file(folder / "scripts" / "afterglow.lua"); }
 
 }  // namespace
 
@@ -39,7 +37,8 @@ std::vector<fs::path> SearchPath::find_shader(const std::string& name) const {
   std::vector<fs::path> hits;
   for (const auto& root : user)
     if (is_file(root / "shaders" / name)) hits.push_back(root / "shaders" / name);
-  if (!installation.empty() && is_file(installation / "shaders" / name)) hits.push_back(installation / "shaders" / name);
+  if (!installation.empty() && is_file(installation / "shaders" / name))
+    hits.push_back(installation / "shaders" / name);
   return hits;
 }
 

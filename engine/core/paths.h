@@ -12,8 +12,8 @@ namespace afterglow {
 /// the installation. The first three hold `effects/NAME.lua` and `shaders/…`; the installation holds
 /// `scripts/effects/NAME.lua` and `shaders/…` and comes last.
 struct SearchPath {
-  std::vector<std::filesystem::path> user;   ///< in order of precedence
-  std::filesystem::path installation;        ///< folder that holds scripts/, shaders/, presets/
+  std::vector<std::filesystem::path> user;  ///< in order of precedence
+  std::filesystem::path installation;       ///< folder that holds scripts/, shaders/, presets/
 
   /// `effects/NAME.lua` or the installation's `scripts/effects/NAME.lua`; all hits, the winner first.
   std::vector<std::filesystem::path> find_effect(const std::string& name) const;

@@ -17,11 +17,11 @@ enum class ErrorKind { other = 1, usage = 2, script = 3, io = 4, device = 5, int
 /// indented line for each entry of `trail`.
 struct Error {
   ErrorKind kind = ErrorKind::other;
-  std::string message;            ///< what happened; no full stop, no newline
-  std::string file = {};          ///< offending file, or empty
-  int line = 0;                   ///< 1-based; 0: no line is known
-  std::string allowed = {};       ///< allowed range or values, or empty
-  std::string nearest = {};       ///< nearest valid name, or empty
+  std::string message;                  ///< what happened; no full stop, no newline
+  std::string file = {};                ///< offending file, or empty
+  int line = 0;                         ///< 1-based; 0: no line is known
+  std::string allowed = {};             ///< allowed range or values, or empty
+  std::string nearest = {};             ///< nearest valid name, or empty
   std::vector<std::string> trail = {};  ///< further lines: who called, compiler log, …
 
   /// The one line (and trail lines) that users see; without a trailing newline.
@@ -70,13 +70,13 @@ class [[nodiscard]] Result<void> {
 #define AFTERGLOW_CONCAT(a, b) AFTERGLOW_CONCAT_(a, b)
 
 /// `AFTERGLOW_TRY(auto x, f());` declares x from a successful Result or returns its error.
-#define AFTERGLOW_TRY(declaration, expression)                                                 \
-  auto AFTERGLOW_CONCAT(try_, __LINE__) = (expression);                                        \
+#define AFTERGLOW_TRY(declaration, expression)                                                            \
+  auto AFTERGLOW_CONCAT(try_, __LINE__) = (expression);                                                   \
   if (!AFTERGLOW_CONCAT(try_, __LINE__).ok()) return std::move(AFTERGLOW_CONCAT(try_, __LINE__)).error(); \
   declaration = std::move(AFTERGLOW_CONCAT(try_, __LINE__)).value()
 
 /// `AFTERGLOW_CHECK(f());` returns the error of a Result<void>, or goes on.
-#define AFTERGLOW_CHECK(expression)                                                            \
+#define AFTERGLOW_CHECK(expression)                                                                     \
   if (auto AFTERGLOW_CONCAT(check_, __LINE__) = (expression); !AFTERGLOW_CONCAT(check_, __LINE__).ok()) \
   return std::move(AFTERGLOW_CONCAT(check_, __LINE__)).error()
 

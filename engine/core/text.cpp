@@ -1,11 +1,11 @@
 #include "core/text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <numeric>
-
-#include <fmt/format.h>
 
 namespace afterglow {
 namespace {

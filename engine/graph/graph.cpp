@@ -1,14 +1,15 @@
 #include "graph/graph.h"
 
-#include <set>
-
 #include <fmt/format.h>
+
+#include <set>
 
 namespace afterglow {
 namespace {
 
 Error pass_error(const Pass& pass, std::string what) {
-  return Error{ErrorKind::script, fmt::format("pass '{}' of effect '{}': {}", pass.name, pass.effect, what), pass.file, pass.line};
+  return Error{ErrorKind::script, fmt::format("pass '{}' of effect '{}': {}", pass.name, pass.effect, what), pass.file,
+               pass.line};
 }
 
 bool is_image(const Graph& graph, ImageId id) { return id >= 0 && id < static_cast<ImageId>(graph.images.size()); }
@@ -28,7 +29,8 @@ Result<void> validate_inputs(const Graph& graph, const Pass& pass, const std::ve
     return pass_error(pass, "its first input is not 'source'");
   const Size target = graph.images[pass.output].size;
   for (const auto& input : pass.inputs) {
-    if (!is_image(graph, input.image)) return pass_error(pass, fmt::format("input '{}' is no image of this graph", input.name));
+    if (!is_image(graph, input.image))
+      return pass_error(pass, fmt::format("input '{}' is no image of this graph", input.name));
     const auto& image = graph.images[input.image];
     if (!made[input.image])
       return pass_error(pass, fmt::format("input '{}' reads '{}' before it is made", input.name, image.name));
@@ -51,13 +53,16 @@ Result<void> validate(const Graph& graph) {
     if (!names.insert(pass.name).second) return pass_error(pass, "another pass has the same name");
     if (!is_image(graph, pass.output)) return pass_error(pass, "makes no image");
     if (made[pass.output]) return pass_error(pass, fmt::format("writes '{}' again", graph.images[pass.output].name));
-    if (graph.images[pass.output].producer != static_cast<int>(i)) return pass_error(pass, "its image names another producer");
+    if (graph.images[pass.output].producer != static_cast<int>(i))
+      return pass_error(pass, "its image names another producer");
     AFTERGLOW_CHECK(validate_inputs(graph, pass, made));
     made[pass.output] = true;
   }
-  if (!made[graph.result]) return Error{ErrorKind::script, fmt::format("no pass makes the result '{}'", graph.images[graph.result].name)};
+  if (!made[graph.result])
+    return Error{ErrorKind::script, fmt::format("no pass makes the result '{}'", graph.images[graph.result].name)};
   if (graph.images[graph.result].size != graph.images[graph.source].size)
-    return Error{ErrorKind::script, fmt::format("the result '{}' has another size than the source", graph.images[graph.result].name)};
+    return Error{ErrorKind::script,
+                 fmt::format("the result '{}' has another size than the source", graph.images[graph.result].name)};
   return {};
 }
 
@@ -68,8 +73,9 @@ bool same_structure(const Graph& a, const Graph& b) {
     if (a.images[i].size != b.images[i].size || a.images[i].producer != b.images[i].producer) return false;
   for (std::size_t i = 0; i < a.passes.size(); ++i) {
     const Pass &p = a.passes[i], &q = b.passes[i];
-    if (p.name != q.name || p.kind != q.kind || p.shader != q.shader || !(p.filter == q.filter) || p.inputs != q.inputs ||
-        p.constants != q.constants || p.output != q.output || p.params.size() != q.params.size())
+    if (p.name != q.name || p.kind != q.kind || p.shader != q.shader || !(p.filter == q.filter) ||
+        p.inputs != q.inputs || p.constants != q.constants || p.output != q.output ||
+        p.params.size() != q.params.size())
       return false;
     for (auto x = p.params.begin(), y = q.params.begin(); x != p.params.end(); ++x, ++y)
       if (x->first != y->first || x->second.type != y->second.type) return false;

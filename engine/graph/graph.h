@@ -18,9 +18,9 @@ using ImageId = int;
 inline constexpr ImageId kNoImage = -1;
 
 struct GraphImage {
-  std::string name;             ///< "source", "depth", or the name of the pass that makes it
+  std::string name;  ///< "source", "depth", or the name of the pass that makes it
   Size size;
-  int producer = -1;            ///< index of the pass that makes it; -1: an input of the graph
+  int producer = -1;  ///< index of the pass that makes it; -1: an input of the graph
 };
 
 /// `copy`-free kinds of pass. `filter` is data; `pixel` and `sample` name a shader.
@@ -34,43 +34,44 @@ struct ParamValue {
 };
 
 struct PassInput {
-  std::string name;   ///< as the shader declares it; "source" for the colour of a pixel pass or of a filter
+  std::string name;  ///< as the shader declares it; "source" for the colour of a pixel pass or of a filter
   ImageId image = kNoImage;
   bool pixelwise = false;  ///< read at the target's own pixel only: the image is as large as the target
   friend bool operator==(const PassInput&, const PassInput&) = default;
 };
 
 struct Pass {
-  std::string name;       ///< unique: "glow.down[2]"
-  std::string effect;     ///< name of the effect's entry, "glow"
+  std::string name;    ///< unique: "glow.down[2]"
+  std::string effect;  ///< name of the effect's entry, "glow"
   PassKind kind = PassKind::pixel;
-  std::string shader;     ///< "glow/threshold"; empty for filters
-  Filter filter;          ///< for kind filter
-  std::vector<PassInput> inputs;              ///< a pixel pass's first input is "source"
-  std::map<std::string, ParamValue> params;       ///< dynamic: values may change without a rebuild
-  std::map<std::string, double> constants;        ///< specialised: part of the structure
+  std::string shader;                        ///< "glow/threshold"; empty for filters
+  Filter filter;                             ///< for kind filter
+  std::vector<PassInput> inputs;             ///< a pixel pass's first input is "source"
+  std::map<std::string, ParamValue> params;  ///< dynamic: values may change without a rebuild
+  std::map<std::string, double> constants;   ///< specialised: part of the structure
   ImageId output = kNoImage;
-  std::string file;       ///< script and line that asked for it, for messages
+  std::string file;  ///< script and line that asked for it, for messages
   int line = 0;
 };
 
 /// Something that was left out, and why: an effect, a pass.
 struct Skipped {
   std::string name;
-  std::string reason;   ///< "intensity is 0", "no depth input", "nobody reads its image"
+  std::string reason;  ///< "intensity is 0", "no depth input", "nobody reads its image"
 };
 
 struct Graph {
   std::vector<GraphImage> images;
   std::vector<Pass> passes;
-  ImageId source = kNoImage;                    ///< the picture
-  std::map<std::string, ImageId> auxiliary;     ///< "depth", "normal", … that some effect asked for
-  ImageId result = kNoImage;                    ///< == source when nothing runs
+  ImageId source = kNoImage;                 ///< the picture
+  std::map<std::string, ImageId> auxiliary;  ///< "depth", "normal", … that some effect asked for
+  ImageId result = kNoImage;                 ///< == source when nothing runs
   std::vector<Skipped> skipped;
 };
 
-/// Checks what the script binding cannot break but a program might: ids in range, producers before readers, no image written
-/// twice, sizes ≥ 1, unique names, pixel-wise inputs as large as the target. Errors (script) name effect and pass.
+/// Checks what the script binding cannot break but a program might: ids in range, producers before readers, no image
+/// written twice, sizes ≥ 1, unique names, pixel-wise inputs as large as the target. Errors (script) name effect and
+/// pass.
 Result<void> validate(const Graph& graph);
 
 /// True when b differs from a in dynamic parameter values alone, so that a program made for a can run b.

@@ -9,9 +9,12 @@ using Json = nlohmann::ordered_json;
 
 const char* kind_name(PassKind kind) {
   switch (kind) {
-    case PassKind::pixel: return "pixel";
-    case PassKind::filter: return "filter";
-    case PassKind::sample: return "sample";
+    case PassKind::pixel:
+      return "pixel";
+    case PassKind::filter:
+      return "filter";
+    case PassKind::sample:
+      return "sample";
   }
   return "";
 }
@@ -26,8 +29,10 @@ Json value_json(const ParamValue& value) {
 
 Json pass_json(const Graph& graph, const Pass& pass) {
   Json out{{"name", pass.name}, {"effect", pass.effect}, {"kind", kind_name(pass.kind)}};
-  if (pass.kind == PassKind::filter) out["filter"] = pass.filter.text();
-  else out["shader"] = pass.shader;
+  if (pass.kind == PassKind::filter)
+    out["filter"] = pass.filter.text();
+  else
+    out["shader"] = pass.shader;
   for (const auto& input : pass.inputs) out["inputs"][input.name] = graph.images[input.image].name;
   for (const auto& [name, value] : pass.params) out["parameters"][name] = value_json(value);
   for (const auto& [name, value] : pass.constants) out["constants"][name] = value;
@@ -41,14 +46,16 @@ Json pass_json(const Graph& graph, const Pass& pass) {
 
 std::string to_json(const Graph& graph) {
   Json out;
-  out["source"] = {{"width", graph.images[graph.source].size.width}, {"height", graph.images[graph.source].size.height}};
+  out["source"] = {{"width", graph.images[graph.source].size.width},
+                   {"height", graph.images[graph.source].size.height}};
   out["inputs"] = Json::array();
   for (const auto& [name, id] : graph.auxiliary) out["inputs"].push_back(name);
   out["passes"] = Json::array();
   for (const auto& pass : graph.passes) out["passes"].push_back(pass_json(graph, pass));
   out["result"] = graph.images[graph.result].name;
   out["skipped"] = Json::array();
-  for (const auto& skipped : graph.skipped) out["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
+  for (const auto& skipped : graph.skipped)
+    out["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
   return out.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -99,8 +99,10 @@ Plan make_plan(const Graph& graph, const PlanOptions& options) {
   const std::vector<bool> keep = passes_that_matter(graph);
   Joiner joiner(graph, keep);
   for (std::size_t i = 0; i < graph.passes.size(); ++i) {
-    if (keep[i]) joiner.add(static_cast<int>(i), options.join);
-    else plan.skipped.push_back({graph.passes[i].name, "nobody reads its image"});
+    if (keep[i])
+      joiner.add(static_cast<int>(i), options.join);
+    else
+      plan.skipped.push_back({graph.passes[i].name, "nobody reads its image"});
   }
   plan.kernels = joiner.finish();
   find_lifetimes(graph, plan);

@@ -1,5 +1,5 @@
-// From graph to plan: passes nobody reads are dropped, neighbouring passes are joined into kernels, transient images get places in
-// shared memory. Plain data; no Vulkan.
+// From graph to plan: passes nobody reads are dropped, neighbouring passes are joined into kernels, transient images
+// get places in shared memory. Plain data; no Vulkan.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +14,25 @@ namespace afterglow {
 /// One draw: a head pass and the pixel passes joined to it. Indices into Graph::passes, in order.
 struct PlanKernel {
   std::vector<int> passes;
-  std::string name;   ///< "glow.up[0]+glow.combine+curve"
+  std::string name;  ///< "glow.up[0]+glow.combine+curve"
   ImageId output = kNoImage;
 };
 
 struct PlanOptions {
-  bool join = true;         ///< false: every pass on its own (--reference)
-  bool alias = true;        ///< false: every image has memory of its own
+  bool join = true;   ///< false: every pass on its own (--reference)
+  bool alias = true;  ///< false: every image has memory of its own
   std::uint32_t bytes_per_pixel = 16;
 };
 
 struct Plan {
-  std::vector<PlanKernel> kernels;      ///< in order of execution
-  std::vector<Skipped> skipped;         ///< passes dropped here
-  std::vector<ImageId> transient;       ///< images that need memory, in order of first use (result included when it is not an input)
-  struct Lifetime { int first = 0, last = 0; };  ///< kernel indices, inclusive
-  std::vector<Lifetime> lifetimes;      ///< parallel to `transient`; the result lives to the end
+  std::vector<PlanKernel> kernels;  ///< in order of execution
+  std::vector<Skipped> skipped;     ///< passes dropped here
+  std::vector<ImageId>
+      transient;  ///< images that need memory, in order of first use (result included when it is not an input)
+  struct Lifetime {
+    int first = 0, last = 0;
+  };                                ///< kernel indices, inclusive
+  std::vector<Lifetime> lifetimes;  ///< parallel to `transient`; the result lives to the end
 };
 
 Plan make_plan(const Graph& graph, const PlanOptions& options);

@@ -11,7 +11,7 @@ namespace afterglow::script {
 namespace {
 
 constexpr int kStep = 200;                         // instructions between two looks at the budget
-constexpr int kMaxDepth = 10'000;      // nested calls
+constexpr int kMaxDepth = 10'000;                  // nested calls
 constexpr std::size_t kLookEvery = 1u << 20;       // bytes allocated between two looks at the clock
 constexpr std::uint64_t kRefusalCost = 1'000'000;  // a refused allocation costs a full collection
 

@@ -74,13 +74,14 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame) {
   state_->result.clamped = 0;
   if (!state_->stack->runs()) return {};
 
-  // The result replaces the source in its own memory. Effects never change alpha: the source's own values stay where they are, exact
-  // whatever the storage format.
+  // The result replaces the source in its own memory. Effects never change alpha: the source's own values stay where
+  // they are, exact whatever the storage format.
   HostResult& result = state_->result;
   result.pixels = std::move(picture.color.pixels);
   result.keep_alpha = true;
   std::map<std::string, HostImage> inputs{{"source", {result.pixels.data(), context.size, picture.color.channels}}};
-  for (const auto& [name, id] : state_->stack->prepared_graph().auxiliary) inputs[name] = host_image(picture.auxiliary.at(name));
+  for (const auto& [name, id] : state_->stack->prepared_graph().auxiliary)
+    inputs[name] = host_image(picture.auxiliary.at(name));
   auto times = state_->runner->run(*state_->stack->program(), inputs, result, state_->options.timing);
   picture.color.pixels = std::move(result.pixels);
   if (!times) return std::move(times).error();

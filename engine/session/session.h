@@ -1,4 +1,5 @@
-// Preset + pictures → pictures. What the command line, the player and tests share: a Stack, a device of its own, and the transfers.
+// Preset + pictures → pictures. What the command line, the player and tests share: a Stack, a device of its own, and
+// the transfers.
 #pragma once
 
 #include <memory>
@@ -25,13 +26,13 @@ struct SessionTimes {
 
 struct SessionReport {
   std::string device, driver, preset;
-  std::string storage;            ///< "fp32" or "fp16"
+  std::string storage;  ///< "fp32" or "fp16"
   bool reference = false, hardware_filter = false;
   double max_error = 2e-3;
-  std::vector<Skipped> skipped;   ///< effects and passes that did not run in the last frame, with reasons
-  std::vector<std::string> kernels;   ///< what ran, joined passes as "a+b"
+  std::vector<Skipped> skipped;      ///< effects and passes that did not run in the last frame, with reasons
+  std::vector<std::string> kernels;  ///< what ran, joined passes as "a+b"
   ProgramMemory memory;
-  std::uint64_t clamped = 0;      ///< half storage: samples of the last frame held at ±65504
+  std::uint64_t clamped = 0;  ///< half storage: samples of the last frame held at ±65504
   SessionTimes times;
 };
 
@@ -39,17 +40,19 @@ struct SessionReport {
 class Session {
  public:
   /// Loads the preset while the device opens. Errors: script, device, usage (unknown override).
-  static Result<std::unique_ptr<Session>> open(const std::filesystem::path& preset, const SessionOptions& options, Diagnostics& diagnostics);
+  static Result<std::unique_ptr<Session>> open(const std::filesystem::path& preset, const SessionOptions& options,
+                                               Diagnostics& diagnostics);
   ~Session();
 
   Stack& stack();
   Preset& preset() { return stack().preset(); }
   Device& device();
 
-  /// Makes everything that a picture of this size needs; `process` does it otherwise. May run while the picture is being read.
+  /// Makes everything that a picture of this size needs; `process` does it otherwise. May run while the picture is
+  /// being read.
   Result<void> prepare(const BuildContext& context);
-  /// Runs the stack: `picture.color` becomes the result; its alpha stays. A stack with nothing to do leaves the picture untouched.
-  /// `frame` gives frame number, time and fps; sizes are taken from the picture.
+  /// Runs the stack: `picture.color` becomes the result; its alpha stays. A stack with nothing to do leaves the picture
+  /// untouched. `frame` gives frame number, time and fps; sizes are taken from the picture.
   Result<void> process(Picture& picture, const BuildContext& frame = {});
   SessionReport report() const;
 

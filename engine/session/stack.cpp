@@ -107,7 +107,8 @@ void Stack::use(Device& device, bool source_is_storage) {
   state_->device = &device;
   state_->source_is_storage = source_is_storage;
   state_->choice = choose(device, state_->options, state_->choice.max_error);
-  if (const auto& cache = state_->options.cache_folder; !cache.empty()) device.use_pipeline_cache((cache / "pipelines").string());
+  if (const auto& cache = state_->options.cache_folder; !cache.empty())
+    device.use_pipeline_cache((cache / "pipelines").string());
 }
 
 Result<void> Stack::prepare(const BuildContext& context) {

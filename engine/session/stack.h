@@ -1,5 +1,5 @@
-// A preset made runnable on a device, without moving any pixels: what an engine records into its own command buffer, and what Session
-// drives for whole pictures.
+// A preset made runnable on a device, without moving any pixels: what an engine records into its own command buffer,
+// and what Session drives for whole pictures.
 #pragma once
 
 #include <filesystem>
@@ -22,17 +22,17 @@ enum class Precision { automatic, fp32, fp16 };
 struct StackOptions {
   PresetOptions preset;
   Precision precision = Precision::automatic;
-  std::optional<double> max_error;      ///< E of math.md §13; default: the preset's, else 2e-3
-  bool reference = false;               ///< every pass on its own in fp32 with computed weights: the slow truth
-  std::uint64_t max_memory = 6ull << 30;   ///< bytes of device memory for images
-  std::filesystem::path cache_folder;   ///< for shaders and pipelines; empty: no disk caches
+  std::optional<double> max_error;        ///< E of math.md §13; default: the preset's, else 2e-3
+  bool reference = false;                 ///< every pass on its own in fp32 with computed weights: the slow truth
+  std::uint64_t max_memory = 6ull << 30;  ///< bytes of device memory for images
+  std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
 };
 
 /// How a stack is executed; decided from the device, E and --precision.
 struct StackChoice {
   Storage storage = Storage::fp32;
   bool hardware_filter = false;
-  bool storage_reads = false;   ///< see ProgramOptions
+  bool storage_reads = false;  ///< see ProgramOptions
   double max_error = 2e-3;
 };
 
@@ -40,21 +40,24 @@ struct StackChoice {
 class Stack {
  public:
   /// Runs the preset's script; touches no device. Errors: script, usage (override).
-  static Result<std::unique_ptr<Stack>> load(const std::filesystem::path& preset, const StackOptions& options, Diagnostics& diagnostics);
+  static Result<std::unique_ptr<Stack>> load(const std::filesystem::path& preset, const StackOptions& options,
+                                             Diagnostics& diagnostics);
   ~Stack();
 
   Preset& preset();
   /// What runs for a picture of this size: passes, and what was skipped and why. Needs no device.
   Result<Graph> graph(const BuildContext& context);
-  /// Bytes of device memory that the stack's images take for such a picture, with the source and the result. Needs no device.
+  /// Bytes of device memory that the stack's images take for such a picture, with the source and the result. Needs no
+  /// device.
   Result<std::uint64_t> memory_needed(const BuildContext& context);
 
   /// Decides storage and filtering for a device. Call before `prepare`. `source_is_storage`: see ProgramOptions.
   void use(Device& device, bool source_is_storage = false);
   const StackChoice& choice() const;
 
-  /// Makes shaders, pipelines and memory for pictures of this size, or only rewrites parameters when the structure is as before.
-  /// Must not be called while a submission that uses this stack is in flight. Errors: script, device, io (memory limit).
+  /// Makes shaders, pipelines and memory for pictures of this size, or only rewrites parameters when the structure is
+  /// as before. Must not be called while a submission that uses this stack is in flight. Errors: script, device, io
+  /// (memory limit).
   Result<void> prepare(const BuildContext& context);
   /// False when no effect has anything to do: the result *is* the source, and `record` records nothing.
   bool runs() const;
@@ -69,8 +72,8 @@ class Stack {
   Result<void> bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result);
   void record(VkCommandBuffer commands) const;
 
-  double script_milliseconds() const;    ///< loading and building so far
-  double compile_milliseconds() const;   ///< shaders and pipelines so far
+  double script_milliseconds() const;   ///< loading and building so far
+  double compile_milliseconds() const;  ///< shaders and pipelines so far
 
  private:
   struct State;

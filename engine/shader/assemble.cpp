@@ -146,8 +146,8 @@ class Assembler {
       block_ += fmt::format("  {} {}{};\n", glsl_name(param.type), prefix, param.name);
       out_.params.push_back({stage_count_, param.name, param.type, 0});
     }
-    stages_ +=
-        fmt::format("#line 1 {}\n", file_index(source.path.string())) + rewrite(source.text, scanned, names, values, readers);
+    stages_ += fmt::format("#line 1 {}\n", file_index(source.path.string())) +
+               rewrite(source.text, scanned, names, values, readers);
     body_ +=
         fmt::format("  ag_color = {}{}({});\n", prefix, kind == ShaderKind::pixel ? "apply" : "sample_at", arguments);
     ++stage_count_;

@@ -134,9 +134,7 @@ std::string declare(char letter, const char* type, const std::string& scale, std
 
 using Fetch = std::string (*)(const std::string& x, const std::string& y);
 
-std::string texel(const std::string& x, const std::string& y) {
-  return fmt::format("ag_texel0(ivec2({}, {}))", x, y);
-}
+std::string texel(const std::string& x, const std::string& y) { return fmt::format("ag_texel0(ivec2({}, {}))", x, y); }
 std::string filtered(const std::string& x, const std::string& y) {
   return fmt::format("textureLod(ag_image0, vec2({}, {}), 0.0)", x, y);
 }

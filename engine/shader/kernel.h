@@ -40,8 +40,8 @@ struct KernelDesc {
   std::vector<KernelStage> stages;  ///< pixel stages, in order
   bool hardware_filter = false;     ///< let the sampler interpolate (error of 8-bit fractions) where that helps
   bool half_storage = false;        ///< target is RGBA16F: clamp to ±65504 before the store
-  /// Wished for each image slot, in the order of AssembledKernel::images; those beyond the end are sampled. An input that
-  /// an author's shader uses in any other way than by the prelude's functions stays sampled.
+  /// Wished for each image slot, in the order of AssembledKernel::images; those beyond the end are sampled. An input
+  /// that an author's shader uses in any other way than by the prelude's functions stays sampled.
   std::vector<ImageRead> reads;
 };
 
@@ -55,9 +55,9 @@ struct KernelParam {
 
 /// GLSL ready for the compiler, with what the executor must bind.
 /// Set 0: binding 0 the uniform block (absent when `block_size` is 0), bindings 1… the images in the order of `images`,
-/// combined image samplers or storage images. The block is std140; a bool takes 4 bytes, 0 or 1. Kernels with `hardware_filter` need samplers with
-/// linear filtering and clamp-to-edge; the others only use texelFetch. The result is location 0. Push constants: see
-/// kPushConstantBytes below.
+/// combined image samplers or storage images. The block is std140; a bool takes 4 bytes, 0 or 1. Kernels with
+/// `hardware_filter` need samplers with linear filtering and clamp-to-edge; the others only use texelFetch. The result
+/// is location 0. Push constants: see kPushConstantBytes below.
 struct AssembledKernel {
   std::string glsl;
   /// Image slots: the head's source (filter or own pixel) or the sample stage's sampler2D inputs in order of
@@ -65,7 +65,8 @@ struct AssembledKernel {
   struct ImageSlot {
     int stage = -1;    ///< -1: the head's source; else as in KernelParam::stage
     std::string name;  ///< input name, or "source" for the head
-    ImageRead read = ImageRead::sampled;  ///< what the kernel got: a combined image sampler or a read-only storage image
+    ImageRead read =
+        ImageRead::sampled;  ///< what the kernel got: a combined image sampler or a read-only storage image
   };
   std::vector<ImageSlot> images;
   std::vector<KernelParam> params;      ///< dynamic parameters in the order of the block; offsets are not known yet (0)

@@ -46,8 +46,10 @@ class FieldFinder {
 };
 
 /// The reader of `fetch ( image` at token i, or none.
-StorageReaders::const_iterator reader_of(const std::vector<Token>& tokens, std::size_t i, const StorageReaders& readers) {
-  if (readers.empty() || i + 3 >= tokens.size() || !is_reading_function(tokens[i].text) || !tokens[i + 1].is("(")) return readers.end();
+StorageReaders::const_iterator reader_of(const std::vector<Token>& tokens, std::size_t i,
+                                         const StorageReaders& readers) {
+  if (readers.empty() || i + 3 >= tokens.size() || !is_reading_function(tokens[i].text) || !tokens[i + 1].is("("))
+    return readers.end();
   return readers.find(tokens[i + 2].text);
 }
 

@@ -1,5 +1,6 @@
-// Records a preset into this program's own command buffer, between two of its own images, twice in one submission's worth of frames,
-// and compares the pixels with what Session makes of the same picture. Exit 0: equal and validation clean.
+// Records a preset into this program's own command buffer, between two of its own images, twice in one submission's
+// worth of frames, and compares the pixels with what Session makes of the same picture. Exit 0: equal and validation
+// clean.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -37,13 +38,16 @@ void copy(VkCommandBuffer commands, VkBuffer buffer, VkImage image, bool to_imag
   VkBufferImageCopy region{};
   region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
   region.imageExtent = {kWidth, kHeight, 1};
-  if (to_image) vkCmdCopyBufferToImage(commands, buffer, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-  else vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &region);
+  if (to_image)
+    vkCmdCopyBufferToImage(commands, buffer, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+  else
+    vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &region);
 }
 
 std::vector<float> run_embedded(VulkanHost& host, const char* preset, const std::vector<float>& picture) {
   afterglow::Diagnostics diagnostics;
-  const auto device = must(afterglow::Device::adopt({host.instance, host.physical, host.device, host.queue, host.family}, diagnostics));
+  const auto device =
+      must(afterglow::Device::adopt({host.instance, host.physical, host.device, host.queue, host.family}, diagnostics));
   afterglow::StackOptions options;
   options.precision = afterglow::Precision::fp32;
   const auto stack = must(afterglow::Stack::load(preset, options, diagnostics));
@@ -51,7 +55,8 @@ std::vector<float> run_embedded(VulkanHost& host, const char* preset, const std:
   must(stack->prepare({.size = {kWidth, kHeight}, .auxiliary = {}}));
 
   HostImageVk source = host.make_image(kWidth, kHeight, VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
-  HostImageVk result = host.make_image(kWidth, kHeight, VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+  HostImageVk result =
+      host.make_image(kWidth, kHeight, VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
   VkDeviceMemory memory;
   float* mapped;
   const VkBuffer buffer = host.make_buffer(picture.size() * sizeof(float), memory, &mapped);
@@ -66,23 +71,27 @@ std::vector<float> run_embedded(VulkanHost& host, const char* preset, const std:
     VulkanHost::barrier(commands, source.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                         VK_PIPELINE_STAGE_2_NONE, 0, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
     copy(commands, buffer, source.image, true);
-    VulkanHost::barrier(commands, source.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                        VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+    VulkanHost::barrier(commands, source.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
+                        VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                         VK_ACCESS_2_SHADER_SAMPLED_READ_BIT);
     VulkanHost::barrier(commands, result.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                         VK_PIPELINE_STAGE_2_NONE, 0, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                         VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
     stack->record(commands);
-    VulkanHost::barrier(commands, result.image, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                        VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
-                        VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
+    VulkanHost::barrier(commands, result.image, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                        VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                        VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_2_COPY_BIT,
+                        VK_ACCESS_2_TRANSFER_READ_BIT);
     // The buffer was read by the first copy and is written by the second.
-    const VkMemoryBarrier2 copied{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-                                  VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
+    const VkMemoryBarrier2 copied{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr,
+                                  VK_PIPELINE_STAGE_2_COPY_BIT,       VK_ACCESS_2_TRANSFER_READ_BIT,
+                                  VK_PIPELINE_STAGE_2_COPY_BIT,       VK_ACCESS_2_TRANSFER_WRITE_BIT};
     VulkanHost::barrier(commands, copied);
     copy(commands, buffer, result.image, false);
-    VulkanHost::barrier(commands, {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, VK_PIPELINE_STAGE_2_COPY_BIT,
-                                   VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
+    VulkanHost::barrier(commands,
+                        {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, VK_PIPELINE_STAGE_2_COPY_BIT,
+                         VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
     host.submit_and_wait(commands);
   }
   std::vector<float> out(mapped, mapped + picture.size());
@@ -124,8 +133,10 @@ int main(int argc, char** argv) try {
     worst = std::max(worst, std::abs(double(embedded[i]) - expected[i]) / (std::abs(double(expected[i])) + 0.01));
     change = std::max(change, std::abs(double(embedded[i]) - picture[i]));
   }
-  std::printf("embedded against session: worst relative error %.3g; the preset changed the picture by up to %.3g; validation errors: %d\n",
-              worst, change, validation_errors);
+  std::printf(
+      "embedded against session: worst relative error %.3g; the preset changed the picture by up to %.3g; validation "
+      "errors: %d\n",
+      worst, change, validation_errors);
   return worst <= 1e-6 && change > 0.01 && validation_errors == 0 ? 0 : 1;
 } catch (const std::exception& failure) {
   std::fprintf(stderr, "embed: %s\n", failure.what());

@@ -35,7 +35,8 @@ VulkanHost::VulkanHost() {
   const char* debug_utils = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
   const bool validate = has_layer(layer);
   const VkValidationFeatureEnableEXT synchronization = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
-  const VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT, nullptr, 1, &synchronization, 0, nullptr};
+  const VkValidationFeaturesEXT features{
+      VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT, nullptr, 1, &synchronization, 0, nullptr};
   VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
   application.apiVersion = VK_API_VERSION_1_3;
   VkInstanceCreateInfo create{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
@@ -146,7 +147,8 @@ VkBuffer VulkanHost::make_buffer(VkDeviceSize size, VkDeviceMemory& memory, floa
 
 VkCommandBuffer VulkanHost::begin() {
   VkCommandBuffer commands;
-  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool_, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool_,
+                                       VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
   check(vkAllocateCommandBuffers(device, &allocate, &commands), "vkAllocateCommandBuffers");
   VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
@@ -168,8 +170,9 @@ void VulkanHost::submit_and_wait(VkCommandBuffer commands) {
   vkDestroyFence(device, fence, nullptr);
 }
 
-void VulkanHost::barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to, VkPipelineStageFlags2 before,
-                         VkAccessFlags2 wrote, VkPipelineStageFlags2 after, VkAccessFlags2 reads) {
+void VulkanHost::barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to,
+                         VkPipelineStageFlags2 before, VkAccessFlags2 wrote, VkPipelineStageFlags2 after,
+                         VkAccessFlags2 reads) {
   VkImageMemoryBarrier2 change{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
   change.srcStageMask = before;
   change.srcAccessMask = wrote;

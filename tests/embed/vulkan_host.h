@@ -1,10 +1,10 @@
 // The "engine" side of the embedding test: a program with Vulkan objects of its own.
 #pragma once
 
+#include <vulkan/vulkan.h>
+
 #include <cstdint>
 #include <vector>
-
-#include <vulkan/vulkan.h>
 
 struct HostImageVk {
   VkImage image = VK_NULL_HANDLE;
@@ -25,8 +25,9 @@ class VulkanHost {
   VkBuffer make_buffer(VkDeviceSize size, VkDeviceMemory& memory, float** mapped);
   VkCommandBuffer begin();
   void submit_and_wait(VkCommandBuffer commands);
-  static void barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to, VkPipelineStageFlags2 before,
-                      VkAccessFlags2 wrote, VkPipelineStageFlags2 after, VkAccessFlags2 reads);
+  static void barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to,
+                      VkPipelineStageFlags2 before, VkAccessFlags2 wrote, VkPipelineStageFlags2 after,
+                      VkAccessFlags2 reads);
   static void barrier(VkCommandBuffer commands, const VkMemoryBarrier2& change);
 
   VkInstance instance = VK_NULL_HANDLE;

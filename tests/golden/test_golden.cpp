@@ -1,18 +1,19 @@
 // Whole pictures: the program runs each case and the result is compared with the picture beside it.
 //
-// case.json: { "preset": …, "input": …, "output": "png"|"exr", "arguments": […], "fail": t, "fail_fraction": f, "hard_fail": h }
-// Paths are relative to the project. A case passes when at most the fraction f of the samples differs by more than t, and none by more
-// than h (absolute differences of the stored values). After a wanted change: AFTERGLOW_UPDATE=1 ctest -R Golden, then look at the pictures.
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-
+// case.json: { "preset": …, "input": …, "output": "png"|"exr", "arguments": […], "fail": t, "fail_fraction": f,
+// "hard_fail": h } Paths are relative to the project. A case passes when at most the fraction f of the samples differs
+// by more than t, and none by more than h (absolute differences of the stored values). After a wanted change:
+// AFTERGLOW_UPDATE=1 ctest -R Golden, then look at the pictures.
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 namespace {
 namespace fs = std::filesystem;
@@ -30,8 +31,14 @@ struct Case {
 
 Case read_case(const fs::path& folder) {
   const auto json = nlohmann::json::parse(std::ifstream(folder / "case.json"));
-  return {folder.filename(), json.at("preset"), json.at("input"), json.at("output"), json.value("arguments", std::vector<std::string>{}),
-          json.at("fail"), json.at("hard_fail"), json.at("fail_fraction")};
+  return {folder.filename(),
+          json.at("preset"),
+          json.at("input"),
+          json.at("output"),
+          json.value("arguments", std::vector<std::string>{}),
+          json.at("fail"),
+          json.at("hard_fail"),
+          json.at("fail_fraction")};
 }
 
 std::vector<Case> cases() {
@@ -63,7 +70,8 @@ class Golden : public testing::TestWithParam<Case> {};
 TEST_P(Golden, PictureIsAsExpected) {
   const Case& c = GetParam();
   const fs::path expected = kGolden / c.name / ("expected." + c.output);
-  const fs::path made = fs::temp_directory_path() / ("afterglow_golden_" + c.name + "_" + std::to_string(getpid()) + "." + c.output);
+  const fs::path made =
+      fs::temp_directory_path() / ("afterglow_golden_" + c.name + "_" + std::to_string(getpid()) + "." + c.output);
   std::vector<std::string> words{AFTERGLOW_PROGRAM, "run", kProject / c.preset, kProject / c.input, "-o", made, "-q"};
   words.insert(words.end(), c.arguments.begin(), c.arguments.end());
   ASSERT_EQ(run(words), 0);

@@ -1,11 +1,11 @@
 // Rules of the house that a compiler does not check.
+#include <gtest/gtest.h>
+
 #include <cctype>
 #include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "core/file.h"
 
@@ -38,11 +38,13 @@ std::set<std::string> words_of(const std::string& text) {
 
 TEST(House, TheEngineKnowsNoEffectByName) {
   std::vector<std::string> effects;
-  for (const auto& file : files_below(kProject / "scripts" / "effects", {".lua"})) effects.push_back(file.stem().string());
+  for (const auto& file : files_below(kProject / "scripts" / "effects", {".lua"}))
+    effects.push_back(file.stem().string());
   ASSERT_FALSE(effects.empty());
   int files = 0;
   for (const auto& file : files_below(kProject / "engine", {".h", ".cpp", ".txt", ".in"})) {
-    if (fs::relative(file, kProject / "engine").begin()->string() == "reference") continue;  // the oracles of tests and bench
+    if (fs::relative(file, kProject / "engine").begin()->string() == "reference")
+      continue;  // the oracles of tests and bench
     ++files;
     const auto words = words_of(read_file(file).value());
     for (const auto& effect : effects) EXPECT_FALSE(words.contains(effect)) << file << " names '" << effect << "'";
@@ -52,7 +54,8 @@ TEST(House, TheEngineKnowsNoEffectByName) {
 
 /// The rooms in order; each uses only those before it (CONTRIBUTING.md).
 TEST(House, RoomsUseOnlyRoomsAboveThem) {
-  const std::vector<std::string> rooms{"core", "image", "gpu", "shader", "graph", "script", "exec", "session", "reference", "apps"};
+  const std::vector<std::string> rooms{"core",   "image", "gpu",     "shader",    "graph",
+                                       "script", "exec",  "session", "reference", "apps"};
   for (std::size_t room = 0; room < rooms.size(); ++room) {
     for (const auto& file : files_below(kProject / "engine" / rooms[room], {".h", ".cpp"})) {
       const std::string text = read_file(file).value();

@@ -1,8 +1,8 @@
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-
-#include <gtest/gtest.h>
 
 #include "core/diagnostics.h"
 #include "core/file.h"
@@ -17,8 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(Error, PrintsOneLineWithPlaceAllowedAndNearest) {
-  const Error error{ErrorKind::script, "unknown setting 'treshold'", "a.lua", 3, "threshold, knee", "threshold", {"in bloom"}};
-  EXPECT_EQ(error.text(), "a.lua:3: error: unknown setting 'treshold'; allowed: threshold, knee; did you mean 'threshold'?\n  in bloom");
+  const Error error{ErrorKind::script, "unknown setting 'treshold'", "a.lua", 3, "threshold, knee", "threshold",
+                    {"in bloom"}};
+  EXPECT_EQ(
+      error.text(),
+      "a.lua:3: error: unknown setting 'treshold'; allowed: threshold, knee; did you mean 'threshold'?\n  in bloom");
   EXPECT_EQ((Error{ErrorKind::io, "is empty", "b.exr"}).text(), "b.exr: error: is empty");
   EXPECT_EQ(Error{.message = "plain"}.text(), "error: plain");
 }

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "graphs.h"
@@ -20,8 +21,9 @@ TEST(Validate, NamesEffectPassAndPlace) {
   Builder b;
   const ImageId half = b.filter("down", b.graph.source, {8, 4});
   b.pixel("add", b.graph.source, {{"high", half, true}});
-  EXPECT_EQ(validate(b.graph).error().text(),
-            "test.lua:2: error: pass 'test.add' of effect 'test': input 'high' is 8×4 but is read pixel by pixel into 16×8");
+  EXPECT_EQ(
+      validate(b.graph).error().text(),
+      "test.lua:2: error: pass 'test.add' of effect 'test': input 'high' is 8×4 but is read pixel by pixel into 16×8");
 }
 
 TEST(Validate, RefusesWhatNoProgramCanRun) {

@@ -1,6 +1,6 @@
-#include <random>
-
 #include <gtest/gtest.h>
+
+#include <random>
 
 #include "graph/plan.h"
 
@@ -37,7 +37,8 @@ TEST(Place, NeverOverlapsWhatLivesAtOnce) {
         EXPECT_LE(p.offsets[i] + blocks[i].size, p.total);
         for (std::size_t j = 0; j < i; ++j) {
           const bool alive_together = blocks[i].first <= blocks[j].last && blocks[j].first <= blocks[i].last;
-          const bool overlap = p.offsets[i] < p.offsets[j] + blocks[j].size && p.offsets[j] < p.offsets[i] + blocks[i].size;
+          const bool overlap =
+              p.offsets[i] < p.offsets[j] + blocks[j].size && p.offsets[j] < p.offsets[i] + blocks[i].size;
           EXPECT_FALSE(overlap && (alive_together || !share));
         }
       }

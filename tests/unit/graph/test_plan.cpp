@@ -1,6 +1,6 @@
-#include <random>
-
 #include <gtest/gtest.h>
+
+#include <random>
 
 #include "graph/plan.h"
 #include "graphs.h"
@@ -82,7 +82,8 @@ TEST(Plan, StopsBeforeTooManyImages) {
   EXPECT_EQ(make_plan(b.graph, {}).kernels.size(), 2u);
 }
 
-// On random graphs: joined or not, every pass that matters runs once and after what it reads; lifetimes cover all readers.
+// On random graphs: joined or not, every pass that matters runs once and after what it reads; lifetimes cover all
+// readers.
 TEST(Plan, HoldsOnRandomGraphs) {
   std::mt19937 random(7);
   for (int round = 0; round < 500; ++round) {
@@ -93,9 +94,15 @@ TEST(Plan, HoldsOnRandomGraphs) {
       const auto pick = [&] { return images[random() % images.size()]; };
       const std::string name = "p" + std::to_string(i);
       switch (random() % 3) {
-        case 0: images.push_back(b.pixel(name, pick(), {{"other", pick(), true}})); break;
-        case 1: images.push_back(b.filter(name, pick(), {16, 8})); break;
-        default: images.push_back(b.pixel(name, pick())); break;
+        case 0:
+          images.push_back(b.pixel(name, pick(), {{"other", pick(), true}}));
+          break;
+        case 1:
+          images.push_back(b.filter(name, pick(), {16, 8}));
+          break;
+        default:
+          images.push_back(b.pixel(name, pick()));
+          break;
       }
     }
     ASSERT_TRUE(validate(b.graph));

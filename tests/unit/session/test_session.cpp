@@ -1,10 +1,10 @@
 // Stack and Session on the real device with presets and effects written to a folder of the test's own.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-
-#include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "session/session.h"
 
@@ -36,7 +36,8 @@ class SessionTest : public testing::Test {
     write("shaders/gain/gain.glsl", "uniform float amount;\nvec4 apply(vec4 color) { return color * amount; }\n");
     write("shaders/gain/fog.glsl",
           "uniform sampler2D source;\nuniform sampler2D depth;\n"
-          "vec4 sample_at(ivec2 pixel) { return vec4(fetch(source, pixel).rgb, 1) + vec4(vec3(fetch(depth, pixel).r), 0); }\n");
+          "vec4 sample_at(ivec2 pixel) { return vec4(fetch(source, pixel).rgb, 1) + vec4(vec3(fetch(depth, pixel).r), "
+          "0); }\n");
     preset("fx.gain { amount = 2 }");
   }
   void TearDown() override { fs::remove_all(folder_); }

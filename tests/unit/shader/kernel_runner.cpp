@@ -49,7 +49,8 @@ const KernelRunner::Pipeline& KernelRunner::pipeline(const CompiledKernel& kerne
   if (made) return *made;
   made = std::make_unique<Pipeline>();
   made->layout = need(create_draw_layout(
-      *device_, {kernel.block_size > 0, std::vector<VkDescriptorType>(kernel.images.size(), VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER),
+      *device_, {kernel.block_size > 0,
+                 std::vector<VkDescriptorType>(kernel.images.size(), VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER),
                  kPushConstantBytes}));
   made->vertex = need(create_shader_module(*device_, kFullscreenVertex, "vertex"));
   made->fragment = need(create_shader_module(*device_, kernel.spirv, "kernel"));

@@ -17,10 +17,12 @@ bool by_prelude(const std::string& text, const std::string& name = "depth") {
 }
 
 TEST(StorageReads, OnlyWhatThePreludeReadsAlone) {
-  EXPECT_TRUE(by_prelude("uniform sampler2D depth;\nvec4 sample_at(ivec2 p) { return fetch(depth, p) + fetch_linear(depth, vec2(p)); }"));
+  EXPECT_TRUE(by_prelude(
+      "uniform sampler2D depth;\nvec4 sample_at(ivec2 p) { return fetch(depth, p) + fetch_linear(depth, vec2(p)); }"));
   EXPECT_TRUE(by_prelude("uniform sampler2D depth;\nint f() { return image_size(depth).x; }"));
   EXPECT_FALSE(by_prelude("uniform sampler2D depth;\nvec4 f(ivec2 p) { return texelFetch(depth, p, 0); }"));
-  EXPECT_FALSE(by_prelude("uniform sampler2D depth;\nvec4 g(sampler2D i) { return fetch(i, ivec2(0)); }\nvec4 f() { return g(depth); }"));
+  EXPECT_FALSE(by_prelude(
+      "uniform sampler2D depth;\nvec4 g(sampler2D i) { return fetch(i, ivec2(0)); }\nvec4 f() { return g(depth); }"));
   EXPECT_FALSE(by_prelude("uniform sampler2D depth;\n#define READ(p) fetch(depth, p)\n"));
 }
 
@@ -64,7 +66,8 @@ TEST(StorageReads, EachSlotGetsWhatWasWishedForIt) {
 TEST(StorageReads, AnInputThatCannotBeStaysSampled) {
   const ShaderFiles files;
   KernelDesc desc;
-  desc.sample = files.stage("test/raw", "uniform sampler2D picture;\nvec4 sample_at(ivec2 p) { return texelFetch(picture, p, 0); }");
+  desc.sample = files.stage(
+      "test/raw", "uniform sampler2D picture;\nvec4 sample_at(ivec2 p) { return texelFetch(picture, p, 0); }");
   desc.reads = {ImageRead::storage_rgba32f};
   const auto assembled = assemble(desc);
   ASSERT_TRUE(assembled) << assembled.error().text();
@@ -91,7 +94,9 @@ TEST(StorageReads, KernelsAreValidAndLinesStay) {
     }
   }
   KernelDesc wrong;
-  wrong.sample = files.stage("test/wrong", "uniform sampler2D picture;\nvec4 sample_at(ivec2 p) {\n  vec4 c = fetch(picture,\n    p);\n  return d;\n}");
+  wrong.sample = files.stage(
+      "test/wrong",
+      "uniform sampler2D picture;\nvec4 sample_at(ivec2 p) {\n  vec4 c = fetch(picture,\n    p);\n  return d;\n}");
   wrong.reads = {ImageRead::storage_rgba32f};
   const auto failed = compiler.compile(wrong);
   ASSERT_FALSE(failed);
