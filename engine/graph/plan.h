@@ -19,9 +19,7 @@ struct PlanKernel {
 };
 
 struct PlanOptions {
-  bool join = true;   ///< false: every pass on its own (--reference)
-  bool alias = true;  ///< false: every image has memory of its own
-  std::uint32_t bytes_per_pixel = 16;
+  bool join = true;  ///< false: every pass on its own (--reference)
 };
 
 struct Plan {
