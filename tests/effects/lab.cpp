@@ -41,6 +41,7 @@ struct Lab {
 BuildContext context_of(const Scene& scene) {
   BuildContext context;
   context.size = scene.source.size();
+  context.frame = scene.frame;
   if (scene.depth) context.auxiliary["depth"] = scene.depth->size();
   if (scene.normal) context.auxiliary["normal"] = scene.normal->size();
   return context;
@@ -77,6 +78,7 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
                                .storage_reads = way != Way::plain,
                                .source_is_storage = way != Way::plain};
   auto program = need(Program::create(*lab.device, shaders, lab.compiler, graph, options));
+  made.kernels = program->plan().kernels.size();
   auto runner = need(FrameRunner::create(*lab.device, options.max_memory));
 
   std::map<std::string, HostImage> inputs{{"source", {source.data(), made.size, 4}}};
