@@ -42,6 +42,7 @@ BuildContext context_of(const Scene& scene) {
   BuildContext context;
   context.size = scene.source.size();
   context.frame = scene.frame;
+  context.time = (scene.frame - 1) / context.fps;
   if (scene.depth) context.auxiliary["depth"] = scene.depth->size();
   if (scene.normal) context.auxiliary["normal"] = scene.normal->size();
   return context;
