@@ -48,9 +48,8 @@ DoubleImage anamorphic_streaks(const DoubleImage& source, const AnamorphicStreak
   DoubleImage streaks = levels.back();
   for (std::size_t i = levels.size() - 1; i-- > 0;) {
     const DoubleImage up = resample(streaks, levels[i].size(), {});
-    streaks = generate(up.size(), [&](int x, int y) {
-      return levels[i].at(x, y) + s.stretch * (up.at(x, y) - levels[i].at(x, y));
-    });
+    streaks = generate(
+        up.size(), [&](int x, int y) { return levels[i].at(x, y) + s.stretch * (up.at(x, y) - levels[i].at(x, y)); });
   }
   streaks = resample(streaks, source.size(), {});
   return generate(source.size(), [&](int x, int y) {

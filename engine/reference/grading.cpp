@@ -44,8 +44,8 @@ DoubleImage white_balance(const DoubleImage& source, double temperature, double 
   const double x = 0.31271 - t1 * (t1 < 0 ? 0.1 : 0.05);
   const double y = 2.87 * x - 3 * x * x - 0.27509507 + t2 * 0.05;
   const Rgb balance = Rgb(0.949237, 1.03542, 1.08728) / cones_of(x, y);
-  const auto to_cones =
-      rows({3.90405e-1, 5.49941e-1, 8.92632e-3}, {7.08416e-2, 9.63172e-1, 1.35775e-3}, {2.31082e-2, 1.28021e-1, 9.36245e-1});
+  const auto to_cones = rows({3.90405e-1, 5.49941e-1, 8.92632e-3}, {7.08416e-2, 9.63172e-1, 1.35775e-3},
+                             {2.31082e-2, 1.28021e-1, 9.36245e-1});
   const auto from_cones = rows({2.85847e+0, -1.62879e+0, -2.48910e-2}, {-2.10182e-1, 1.15820e+0, 3.24281e-4},
                                {-4.18120e-2, -1.18169e-1, 1.06867e+0});
   return map_color(source, [&](const Rgb& c) { return glm::max(from_cones * (balance * (to_cones * c)), Rgb(0)); });
@@ -54,8 +54,7 @@ DoubleImage white_balance(const DoubleImage& source, double temperature, double 
 DoubleImage channel_mixer(const DoubleImage& source, const ChannelMix& mix) {
   return map_color(source, [&](const Rgb& c) {
     Rgb out;
-    for (int i = 0; i < 3; ++i)
-      out[i] = glm::max(0.0, (mix[i][0] * c.r + mix[i][1] * c.g + mix[i][2] * c.b) / 100);
+    for (int i = 0; i < 3; ++i) out[i] = glm::max(0.0, (mix[i][0] * c.r + mix[i][1] * c.g + mix[i][2] * c.b) / 100);
     return out;
   });
 }

@@ -16,7 +16,8 @@ double normal(std::uint32_t word) {
 }
 
 Rgb cell_noise(int x, int y, const FilmGrain& s) {
-  const Words w = pcg3d({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y) + (s.seed << 16u), s.frame + s.seed});
+  const Words w =
+      pcg3d({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y) + (s.seed << 16u), s.frame + s.seed});
   return {normal(w[0]), normal(w[1]), normal(w[2])};
 }
 

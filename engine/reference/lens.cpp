@@ -53,7 +53,9 @@ DoubleImage lens_distortion(const DoubleImage& source, const LensDistortion& s) 
     const Point ray = axes * (uv - 0.5 - (2.0 * s.center - 1.0));
     const double r = glm::length(ray);
     if (s.intensity != 0 && r > 0)
-      uv += ray * ((s.intensity > 0 ? std::tan(std::min(r * theta, kRightAngle)) / (r * sigma) : std::atan(r * sigma) / (r * theta)) - 1);
+      uv += ray * ((s.intensity > 0 ? std::tan(std::min(r * theta, kRightAngle)) / (r * sigma)
+                                    : std::atan(r * sigma) / (r * theta)) -
+                   1);
     return Rgba(Rgb(read(source, uv)), source.at(x, y).a);
   });
 }

@@ -28,8 +28,8 @@ EffectCase smeared(double distance, double angle) {
 }
 
 EffectCase defocused(const BokehBlur& v) {
-  return {fmt::format("fx.bokeh_blur {{ radius = {}, blades = {}, rotation = {}, highlights = {} }}", v.radius, v.blades,
-                      v.rotation, v.highlights),
+  return {fmt::format("fx.bokeh_blur {{ radius = {}, blades = {}, rotation = {}, highlights = {} }}", v.radius,
+                      v.blades, v.rotation, v.highlights),
           [=](const Scene& s) { return bokeh_blur(s.source, v); }};
 }
 
@@ -100,8 +100,8 @@ TEST_F(Effects, BokehOfAPointIsADiscOfItsLight) {
 
 TEST_F(Effects, BlursKeepOneColour) {
   const Scene scene{"constant", DoubleImage(37, 22, Rgba(0.25, 0.75, 0.5, 1)), {}, {}};
-  for (const char* entries : {"fx.dual_kawase {}", "fx.radial_blur {}", "fx.directional_blur { angle = 30 }", "fx.bokeh_blur {}",
-                              "fx.bokeh_blur { blades = 6, highlights = 8 }"})
+  for (const char* entries : {"fx.dual_kawase {}", "fx.radial_blur {}", "fx.directional_blur { angle = 30 }",
+                              "fx.bokeh_blur {}", "fx.bokeh_blur { blades = 6, highlights = 8 }"})
     EXPECT_TRUE(agrees(run_stack(entries, scene, Way::plain).result, scene.source, 2e-6, kRgba)) << entries;
 }
 

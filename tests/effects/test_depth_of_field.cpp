@@ -27,7 +27,8 @@ Scene halves(double left, double right) {
   return scene;
 }
 
-constexpr const char* kWide = "fx.depth_of_field { focus_distance = 2, aperture = 1, focal_length = 100, max_radius = 10 }";
+constexpr const char* kWide =
+    "fx.depth_of_field { focus_distance = 2, aperture = 1, focal_length = 100, max_radius = 10 }";
 
 TEST_F(Effects, DepthOfFieldAgrees) {
   agree_everywhere({focused({}), focused({.focus_distance = 2, .aperture = 1.4, .focal_length = 85, .max_radius = 9}),
@@ -44,8 +45,9 @@ TEST_F(Effects, DepthOfFieldReadsDeviceDepth) {
   const auto expected = depth_of_field(scene.source, *scene.depth, v);
   for (auto& p : scene.depth->pixels) p.r = (1 / p.r - 1 / f) / (1 / n - 1 / f);
   const std::string entries = focused(v).entries;
-  const Made made = run_stack(entries.substr(0, entries.size() - 2) + ", depth_space = \"device\", near = 0.1, far = 2000 }",
-                              scene, Way::plain);
+  const Made made =
+      run_stack(entries.substr(0, entries.size() - 2) + ", depth_space = \"device\", near = 0.1, far = 2000 }", scene,
+                Way::plain);
   EXPECT_TRUE(agrees(made.result, expected, 1e-2, kRgba));  // far away, floats of device depth are coarse
 }
 

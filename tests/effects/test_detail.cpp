@@ -20,19 +20,21 @@ EffectCase pixelated(int size) {
 
 EffectCase edged(const EdgeDetection& v) {
   static constexpr const char* kNames[] = {"sobel", "scharr", "roberts"};
-  return {fmt::format("fx.edge_detection {{ operator = \"{}\", intensity = {}, threshold = {}, color = {{ {}, {}, {} }}, "
-                      "background = {{ {}, {}, {} }}, background_opacity = {} }}",
-                      kNames[static_cast<int>(v.kind)], v.intensity, v.threshold, v.color.r, v.color.g, v.color.b,
-                      v.background.r, v.background.g, v.background.b, v.background_opacity),
-          [=](const Scene& s) { return edge_detection(s.source, v); }};
+  return {
+      fmt::format("fx.edge_detection {{ operator = \"{}\", intensity = {}, threshold = {}, color = {{ {}, {}, {} }}, "
+                  "background = {{ {}, {}, {} }}, background_opacity = {} }}",
+                  kNames[static_cast<int>(v.kind)], v.intensity, v.threshold, v.color.r, v.color.g, v.color.b,
+                  v.background.r, v.background.g, v.background.b, v.background_opacity),
+      [=](const Scene& s) { return edge_detection(s.source, v); }};
 }
 
 EffectCase smoothed(const Fxaa& v) {
   static constexpr const char* kNames[] = {"low", "medium", "high"};
-  return {fmt::format("fx.fxaa {{ fixed_threshold = {}, relative_threshold = {}, subpixel_blending = {}, quality = "
-                      "\"{}\" }}",
-                      v.fixed_threshold, v.relative_threshold, v.subpixel_blending, kNames[static_cast<int>(v.quality)]),
-          [=](const Scene& s) { return fxaa(s.source, v); }};
+  return {
+      fmt::format("fx.fxaa {{ fixed_threshold = {}, relative_threshold = {}, subpixel_blending = {}, quality = "
+                  "\"{}\" }}",
+                  v.fixed_threshold, v.relative_threshold, v.subpixel_blending, kNames[static_cast<int>(v.quality)]),
+      [=](const Scene& s) { return fxaa(s.source, v); }};
 }
 
 TEST_F(Effects, SharpenAgrees) {
@@ -56,8 +58,11 @@ TEST_F(Effects, PixelateAgrees) {
 
 TEST_F(Effects, EdgeDetectionAgrees) {
   for (const auto kind : {EdgeOperator::sobel, EdgeOperator::scharr, EdgeOperator::roberts})
-    agree_everywhere({edged({.kind = kind}), edged({.kind = kind, .intensity = 0.7, .threshold = 0.3,
-                                                    .color = {0.1, 2, 0.3}, .background = {0.9, 0.8, 0.1},
+    agree_everywhere({edged({.kind = kind}), edged({.kind = kind,
+                                                    .intensity = 0.7,
+                                                    .threshold = 0.3,
+                                                    .color = {0.1, 2, 0.3},
+                                                    .background = {0.9, 0.8, 0.1},
                                                     .background_opacity = 0.6})},
                      kSteep);
   expect_skipped("fx.edge_detection { intensity = 0 }", "intensity and background_opacity are 0");
@@ -68,10 +73,11 @@ TEST_F(Effects, AStepFromBlackToWhiteIsAnEdgeOfOne) {
   for (int y = 0; y < 8; ++y)
     for (int x = 4; x < 8; ++x) scene.source.at(x, y) = Rgba(1, 1, 1, 1);
   for (const char* kind : {"sobel", "scharr", "roberts"}) {
-    const auto made = run_stack(fmt::format("fx.edge_detection {{ operator = \"{}\", intensity = 0.5, threshold = 0, color "
-                                            "= {{ 1, 1, 1 }}, background = {{ 0, 0, 0 }}, background_opacity = 1 }}",
-                                            kind),
-                                scene, Way::plain);
+    const auto made =
+        run_stack(fmt::format("fx.edge_detection {{ operator = \"{}\", intensity = 0.5, threshold = 0, color "
+                              "= {{ 1, 1, 1 }}, background = {{ 0, 0, 0 }}, background_opacity = 1 }}",
+                              kind),
+                  scene, Way::plain);
     EXPECT_NEAR(made.result[4 * (4 * 8 + 3)], 0.5, 1e-6) << kind;  // half of it: nothing is clamped
     EXPECT_NEAR(made.result[4 * (4 * 8 + 1)], 0, 1e-6) << kind;
   }

@@ -10,14 +10,15 @@ namespace {
 using namespace reference;
 
 EffectCase streaked(const AnamorphicStreaks& v) {
-  return {fmt::format("fx.anamorphic_streaks {{ threshold = {}, stretch = {}, intensity = {}, tint = {{ {}, {}, {} }} }}",
-                      v.threshold, v.stretch, v.intensity, v.tint.r, v.tint.g, v.tint.b),
-          [=](const Scene& s) { return anamorphic_streaks(s.source, v); }};
+  return {
+      fmt::format("fx.anamorphic_streaks {{ threshold = {}, stretch = {}, intensity = {}, tint = {{ {}, {}, {} }} }}",
+                  v.threshold, v.stretch, v.intensity, v.tint.r, v.tint.g, v.tint.b),
+      [=](const Scene& s) { return anamorphic_streaks(s.source, v); }};
 }
 
 EffectCase dirty(const LensDirt& v) {
-  return {fmt::format("fx.lens_dirt {{ intensity = {}, threshold = {}, density = {}, size = {}, seed = {} }}", v.intensity,
-                      v.threshold, v.density, v.size, v.seed),
+  return {fmt::format("fx.lens_dirt {{ intensity = {}, threshold = {}, density = {}, size = {}, seed = {} }}",
+                      v.intensity, v.threshold, v.density, v.size, v.seed),
           [=](const Scene& s) { return lens_dirt(s.source, v); }};
 }
 

@@ -64,14 +64,16 @@ TEST_F(Effects, WarmWhiteBalanceIsWarm) {
 }
 
 TEST_F(Effects, ChannelMixerAgrees) {
-  agree_everywhere({mixed({{{0, 100, 0}, {0, 0, 100}, {100, 0, 0}}}), mixed({{{30, 59, 11}, {30, 59, 11}, {30, 59, 11}}}),
+  agree_everywhere({mixed({{{0, 100, 0}, {0, 0, 100}, {100, 0, 0}}}),
+                    mixed({{{30, 59, 11}, {30, 59, 11}, {30, 59, 11}}}),
                     mixed({{{140, -20, -20}, {0, 100, 0}, {-50, 0, 200}}})});
   expect_skipped("fx.channel_mixer {}", "all settings are neutral");
 }
 
 TEST_F(Effects, SplitToningAgrees) {
   agree_everywhere({toned({.shadows = {0.2, 0.4, 0.7}, .highlights = {0.8, 0.6, 0.3}}),
-                    toned({.shadows = {0.5, 0.5, 0.8}, .balance = 60}), toned({.highlights = {1, 0, 0.4}, .balance = -30})});
+                    toned({.shadows = {0.5, 0.5, 0.8}, .balance = 60}),
+                    toned({.highlights = {1, 0, 0.4}, .balance = -30})});
   expect_skipped("fx.split_toning {}", "both tints are grey");
   expect_skipped("fx.split_toning { shadows = \"#808080\", highlights = \"#808080\" }", "both tints are grey");
 }
@@ -79,7 +81,10 @@ TEST_F(Effects, SplitToningAgrees) {
 TEST_F(Effects, ShadowsMidtonesHighlightsAgree) {
   agree_everywhere({scaled({.shadows = {0.7, 0.9, 1.3}, .highlights = {1.2, 1.05, 0.8}}),
                     scaled({.shadows_offset = 0.2, .midtones_offset = -0.3, .highlights_offset = -1}),
-                    scaled({.midtones = {0, 2, 1}, .shadows_start = 0.1, .shadows_end = 0.9, .highlights_start = 0.4,
+                    scaled({.midtones = {0, 2, 1},
+                            .shadows_start = 0.1,
+                            .shadows_end = 0.9,
+                            .highlights_start = 0.4,
                             .highlights_end = 8})});
   expect_skipped("fx.shadows_midtones_highlights {}", "all factors are 1");
   expect_skipped("fx.shadows_midtones_highlights { shadows_end = 0.5 }", "all factors are 1");
@@ -90,7 +95,8 @@ TEST_F(Effects, LiftGammaGainAgree) {
                     graded({.lift_offset = 0.05}), graded({.gamma_offset = 0.4, .gain_offset = -0.3}),
                     graded({.gamma_offset = -0.5, .gain_offset = 0.8})});
   expect_skipped("fx.lift_gamma_gain {}", "all settings are neutral");
-  expect_skipped("fx.lift_gamma_gain { gain = { 0.5, 0.5, 0.5 } }", "all settings are neutral");  // a grey is the middle
+  expect_skipped("fx.lift_gamma_gain { gain = { 0.5, 0.5, 0.5 } }",
+                 "all settings are neutral");  // a grey is the middle
 }
 
 TEST_F(Effects, AWholeGradeIsOneKernel) {

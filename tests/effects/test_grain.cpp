@@ -12,8 +12,8 @@ namespace {
 using namespace reference;
 
 EffectCase grained(const FilmGrain& v) {
-  return {fmt::format("fx.film_grain {{ intensity = {}, response = {}, size = {}, colored = {}, seed = {} }}", v.intensity,
-                      v.response, v.size, v.colored, v.seed),
+  return {fmt::format("fx.film_grain {{ intensity = {}, response = {}, size = {}, colored = {}, seed = {} }}",
+                      v.intensity, v.response, v.size, v.colored, v.seed),
           [=](const Scene& s) {
             auto settings = v;
             settings.frame = static_cast<std::uint32_t>(s.frame);
@@ -23,7 +23,8 @@ EffectCase grained(const FilmGrain& v) {
 
 /// A picture of one grey, frame by frame.
 std::vector<float> grain_of(double frame, const char* entries = "fx.film_grain { intensity = 1, response = 0 }") {
-  return run_stack(entries, {"grey", DoubleImage(128, 128, Rgba(0.25, 0.25, 0.25, 1)), {}, {}, frame}, Way::plain).result;
+  return run_stack(entries, {"grey", DoubleImage(128, 128, Rgba(0.25, 0.25, 0.25, 1)), {}, {}, frame}, Way::plain)
+      .result;
 }
 
 TEST_F(Effects, FilmGrainAgrees) {
@@ -41,8 +42,8 @@ TEST_F(Effects, FilmGrainDependsOnTheFrameAlone) {
 }
 
 TEST_F(Effects, FilmGrainHasMeanOneAndItsDeviationAtEverySize) {
-  for (const char* entries : {"fx.film_grain { intensity = 1, response = 0 }",
-                              "fx.film_grain { intensity = 1, response = 0, size = 1.7 }"}) {
+  for (const char* entries :
+       {"fx.film_grain { intensity = 1, response = 0 }", "fx.film_grain { intensity = 1, response = 0, size = 1.7 }"}) {
     double sum = 0, squares = 0;
     constexpr int kFrames = 8;
     for (int frame = 1; frame <= kFrames; ++frame) {

@@ -10,10 +10,11 @@ namespace {
 using namespace reference;
 
 EffectCase darkened(const Vignette& v) {
-  return {fmt::format("fx.vignette {{ intensity = {}, smoothness = {}, color = {{ {}, {}, {} }}, center = {{ {}, {} }}, "
-                      "rounded = {} }}",
-                      v.intensity, v.smoothness, v.color.r, v.color.g, v.color.b, v.center.x, v.center.y, v.rounded),
-          [=](const Scene& s) { return vignette(s.source, v); }};
+  return {
+      fmt::format("fx.vignette {{ intensity = {}, smoothness = {}, color = {{ {}, {}, {} }}, center = {{ {}, {} }}, "
+                  "rounded = {} }}",
+                  v.intensity, v.smoothness, v.color.r, v.color.g, v.color.b, v.center.x, v.center.y, v.rounded),
+      [=](const Scene& s) { return vignette(s.source, v); }};
 }
 
 EffectCase fringed(double intensity, int samples) {
@@ -48,10 +49,11 @@ TEST_F(Effects, ChromaticAberrationKeepsWhatHasOneColour) {
 }
 
 TEST_F(Effects, LensDistortionAgrees) {
-  agree_everywhere({bent({.intensity = 0.4}), bent({.intensity = -0.6}), bent({.intensity = 0, .scale = 1.7}),
-                    bent({.intensity = 0.3, .x_multiplier = 0, .y_multiplier = 0.6, .center = {0.4, 0.55}, .scale = 0.8}),
-                    bent({.intensity = -1, .scale = 2})},
-                   kBetweenPixels);
+  agree_everywhere(
+      {bent({.intensity = 0.4}), bent({.intensity = -0.6}), bent({.intensity = 0, .scale = 1.7}),
+       bent({.intensity = 0.3, .x_multiplier = 0, .y_multiplier = 0.6, .center = {0.4, 0.55}, .scale = 0.8}),
+       bent({.intensity = -1, .scale = 2})},
+      kBetweenPixels);
   expect_skipped("fx.lens_distortion { intensity = 0 }", "nothing bends and scale is 1");
   expect_skipped("fx.lens_distortion { x_multiplier = 0, y_multiplier = 0 }", "nothing bends and scale is 1");
 }

@@ -53,10 +53,12 @@ const char* const kExtremes[] = {
     "1e30 }",
     "fx.white_balance { temperature = 100, tint = -100 }",
     "fx.white_balance { temperature = -100, tint = 100 }",
-    "fx.channel_mixer { red_out_green_in = 200, red_out_blue_in = 200, green_out_red_in = -200, blue_out_blue_in = -200 }",
+    "fx.channel_mixer { red_out_green_in = 200, red_out_blue_in = 200, green_out_red_in = -200, blue_out_blue_in = "
+    "-200 }",
     "fx.split_toning { shadows = { 0, 1e30, 0.5 }, highlights = { 1e30, 0, 0 }, balance = -100 }",
     "fx.split_toning { shadows = { 0, 0, 0 }, highlights = { 0, 0, 0 }, balance = 100 }",
-    "fx.shadows_midtones_highlights { shadows = { 1e300, 0, 1 }, midtones_offset = 1, highlights_offset = -1, shadows_start "
+    "fx.shadows_midtones_highlights { shadows = { 1e300, 0, 1 }, midtones_offset = 1, highlights_offset = -1, "
+    "shadows_start "
     "= 100, shadows_end = 0, highlights_start = 0, highlights_end = 0 }",
     "fx.shadows_midtones_highlights { highlights = { 1e300, 1e300, 1e300 } }",
     "fx.lift_gamma_gain { lift = { 1e300, 0, 0 }, gamma = { 0, 1e300, 0 }, gain = { 0, 0, 1e300 }, lift_offset = 1 }",
@@ -70,7 +72,8 @@ const char* const kExtremes[] = {
     "fx.sharpen { intensity = 1, contrast = 1 }",
     "fx.fxaa { fixed_threshold = 0.0312, relative_threshold = 0.063, subpixel_blending = 1 }",
     "fx.pixelate { size = 1024 }",
-    "fx.edge_detection { operator = \"scharr\", intensity = 100, threshold = 0, color = { 1e30, 0, 0 }, background_opacity = "
+    "fx.edge_detection { operator = \"scharr\", intensity = 100, threshold = 0, color = { 1e30, 0, 0 }, "
+    "background_opacity = "
     "1 }",
     "fx.dual_kawase { iterations = 12, offset = 3 }",
     "fx.radial_blur { intensity = 1, samples = 128, center = { 1, 0 } }",
