@@ -22,6 +22,7 @@ namespace afterglow {
 enum class Storage { fp32, fp16 };
 
 struct ProgramOptions {
+  Joining joining = Joining::all;
   Storage storage = Storage::fp32;
   bool reference = false;        ///< every pass on its own, computed weights, no sharing of memory
   bool hardware_filter = false;  ///< filtered fetches may be used

@@ -11,6 +11,7 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
+#include "exec/choice.h"
 #include "exec/program.h"
 #include "gpu/device.h"
 #include "script/preset.h"
@@ -26,20 +27,21 @@ struct StackOptions {
   bool reference = false;                 ///< every pass on its own in fp32 with computed weights: the slow truth
   std::uint64_t max_memory = 6ull << 30;  ///< bytes of device memory for images
   std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
+  std::optional<Choice> choice;           ///< execute so, whatever calibration and precision say
+  std::filesystem::path calibration;      ///< a table of `afterglow calibrate`; empty: the shipped one
 };
 
-/// How a stack is executed; decided from the device, E and --precision.
+/// How a stack is executed, and why so.
 struct StackChoice {
-  Storage storage = Storage::fp32;
-  bool hardware_filter = false;
-  bool storage_reads = false;  ///< see ProgramOptions
+  Choice execution;
+  std::string from;  ///< "calibration/devices.json, any gpu", "given", "--reference"
   double max_error = 2e-3;
 };
 
 /// Bound to one device, which must outlive it. Not thread-safe.
 class Stack {
  public:
-  /// Runs the preset's script; touches no device. Errors: script, usage (override).
+  /// Runs the preset's script; touches no device. Errors: script, usage (override), io (calibration).
   static Result<std::unique_ptr<Stack>> load(const std::filesystem::path& preset, const StackOptions& options,
                                              Diagnostics& diagnostics);
   ~Stack();
@@ -51,7 +53,7 @@ class Stack {
   /// device.
   Result<std::uint64_t> memory_needed(const BuildContext& context);
 
-  /// Decides storage and filtering for a device. Call before `prepare`. `source_is_storage`: see ProgramOptions.
+  /// Looks up how to execute on a device. Call before `prepare`. `source_is_storage`: see ProgramOptions.
   void use(Device& device, bool source_is_storage = false);
   const StackChoice& choice() const;
 
