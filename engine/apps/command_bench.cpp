@@ -48,13 +48,14 @@ struct Bench {
   std::unique_ptr<Device> device;
   StackOptions base;
   bench::Report report;
+  std::size_t total = 1;  ///< cells and goals to measure
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 
   bench::Step step() {
     return [this](const std::string& what) -> Result<void> {
       if (interrupted()) return interrupt_error();
       const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-      console.progress(report.cells.size() + report.goals.size(), 0, what, seconds.count());
+      console.progress(report.cells.size() + report.goals.size(), total, what, seconds.count());
       return {};
     };
   }
@@ -93,6 +94,7 @@ Result<void> measure_matrix(Bench& bench) {
   AFTERGLOW_TRY(const auto all_sizes, parse_sizes(sizes));
   AFTERGLOW_TRY(const auto variants, parse_variants(names));
   AFTERGLOW_TRY(const auto varied, vary_settings(variants, a.vary));
+  bench.total = a.presets.size() * (all_sizes.size() + scaling_sizes(a.scaling).size());
   for (const Size size : all_sizes) AFTERGLOW_CHECK(measure(bench, size, varied, true));
   AFTERGLOW_TRY(const auto chosen, parse_variants("chosen"));
   for (const Size size : scaling_sizes(a.scaling)) AFTERGLOW_CHECK(measure(bench, size, chosen, false));
@@ -101,19 +103,19 @@ Result<void> measure_matrix(Bench& bench) {
 
 Result<void> measure_goals(Bench& bench) {
   AFTERGLOW_TRY(const auto goals, bench::load_goals(bench.arguments.goals));
+  bench.total = bench.report.cells.size() + goals.size();
   std::error_code problem;
   const fs::path folder = fs::temp_directory_path(problem) / fmt::format("afterglow-bench-{}", getpid());
-  Result<void> done;
   for (const auto& goal : goals) {
     fs::create_directories(folder, problem);
-    auto result = bench::measure_goal(*bench.device, bench.base, goal,
-                                      {fs::read_symlink("/proc/self/exe", problem), folder},
-                                      bench.console.diagnostics(), bench.step());
+    auto result =
+        bench::measure_goal(*bench.device, bench.base, goal, {fs::read_symlink("/proc/self/exe", problem), folder},
+                            bench.console.diagnostics(), bench.step());
     fs::remove_all(folder, problem);
     if (!result) return std::move(result).error();
     bench.report.goals.push_back(std::move(result).value());
   }
-  return done;
+  return {};
 }
 
 void print_cell(const bench::Cell& cell) {
@@ -136,8 +138,12 @@ void print_goals(const std::vector<bench::GoalResult>& goals) {
   if (goals.empty()) return;
   Table table({"goal", "size", "measured", "wanted", "reached"});
   for (const auto& g : goals)
-    table.add({g.name, g.size, g.ratio ? fmt::format("{:.2f}{}{}", *g.ratio, g.unit.empty() ? "" : " ", g.unit) : g.note,
-               fmt::format("{} {:g}", g.at_least ? "≥" : "≤", g.goal), !g.ratio ? "–" : g.reached() ? "yes" : "no"});
+    table.add({g.name, g.size,
+               g.ratio ? fmt::format("{:.2f}{}{}", *g.ratio, g.unit.empty() ? "" : " ", g.unit) : g.note,
+               fmt::format("{} {:g}", g.at_least ? "≥" : "≤", g.goal),
+               !g.ratio      ? "–"
+               : g.reached() ? "yes"
+                             : "no"});
   fmt::print("\n{}", table.text());
 }
 
@@ -147,7 +153,8 @@ Result<void> compare(const Bench& bench) {
   AFTERGLOW_TRY(const std::string old, read_file(a.compare));
   AFTERGLOW_TRY(const auto comparisons, bench::compare_reports(old, a.compare, bench.report));
   if (comparisons.empty())
-    return Error{ErrorKind::usage, "nothing that was measured now is in it", a.compare, 0, "the same presets, sizes, variants"};
+    return Error{ErrorKind::usage, "nothing that was measured now is in it", a.compare, 0,
+                 "the same presets, sizes, variants"};
   Table table({"", "before ms", "now ms", "now ÷ before"});
   std::size_t slower = 0;
   for (const auto& c : comparisons) {
@@ -165,7 +172,7 @@ Result<void> compare(const Bench& bench) {
 Result<void> run_command(const Arguments& a, Console& console) {
   if (a.presets.empty() && a.goals.empty())
     return Error{ErrorKind::usage, "nothing to measure", "afterglow bench", 0, "one or more PRESETs, --goals FILE"};
-  Bench bench{a, console, nullptr, {}, {}};
+  Bench bench{.arguments = a, .console = console, .device = nullptr, .base = {}, .report = {}};
   PresetArguments preset;
   preset.overrides = a.overrides;
   preset.paths = a.paths;
@@ -176,8 +183,13 @@ Result<void> run_command(const Arguments& a, Console& console) {
   bench.base.max_memory = 64ull << 30;  // what does not fit is the device's to say
   AFTERGLOW_TRY(bench.device, Device::create(a.device.options(), console.diagnostics()));
   const DeviceInfo& info = bench.device->info();
-  bench.report = {.version = AFTERGLOW_VERSION, .device = info.name, .driver = info.driver, .kind = info.type,
-                  .repeat = a.quick ? kQuickRepeat : a.repeat, .cells = {}, .goals = {}};
+  bench.report = {.version = AFTERGLOW_VERSION,
+                  .device = info.name,
+                  .driver = info.driver,
+                  .kind = info.type,
+                  .repeat = a.quick ? kQuickRepeat : a.repeat,
+                  .cells = {},
+                  .goals = {}};
 
   if (!a.presets.empty()) AFTERGLOW_CHECK(measure_matrix(bench));
   if (!a.goals.empty()) AFTERGLOW_CHECK(measure_goals(bench));
@@ -195,12 +207,13 @@ void add_options(CLI::App& app, Arguments& a) {
   };
   app.add_option("PRESET", a.presets, "Looks to measure");
   app.add_option("--sizes", a.sizes, "Sizes of the picture (default 1920x1080,3840x2160)")->type_name("WxH,…");
-  app.add_option("--variants", a.variants,
-                 "Ways of execution, as `devices` and --report name them, or plain16f, plain32f, chosen (what `run` does)")
+  app.add_option(
+         "--variants", a.variants,
+         "Ways of execution, as `devices` and --report name them, or plain16f, plain32f, chosen (what `run` does)")
       ->type_name("NAME,…");
   list("--set", a.overrides, "Overrides one setting for all that is measured (repeatable)", "EFFECT.SETTING=VALUE");
-  list("--vary", a.vary,
-       "Measures each value of a setting; errors are against the preset as it is (repeatable)", "EFFECT.SETTING=VALUE,…");
+  list("--vary", a.vary, "Measures each value of a setting; errors are against the preset as it is (repeatable)",
+       "EFFECT.SETTING=VALUE,…");
   list("--path", a.paths, "Folder with effects/ and shaders/ of yours (repeatable)", "FOLDER");
   app.add_option("--scaling", a.scaling, "Also squares of 256, 512, … up to this side, as `run` executes them")
       ->check(CLI::Range(0, 16384))
@@ -230,7 +243,8 @@ Command add_bench_command(CLI::App& program) {
   app->footer(
       "Examples:\n"
       "  afterglow bench presets/neon_night.lua -o bench\n"
-      "  afterglow bench look.lua --sizes 1280x720 --variants \"plain16f,joined fp32+storage-reads\" --compare old/bench.json\n"
+      "  afterglow bench look.lua --sizes 1280x720 --variants \"plain16f,joined fp32+storage-reads\" --compare "
+      "old/bench.json\n"
       "  afterglow bench look.lua --vary glow.max_iterations=4,8,16 --quick\n"
       "All that is measured at one size is prepared first and then run in turns; upload and read-back are not in it.");
   return {app, [arguments](Console& console) { return run_command(*arguments, console); }};

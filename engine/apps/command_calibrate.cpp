@@ -46,7 +46,7 @@ Result<void> run_command(const Arguments& a, Console& console) {
   const auto start = std::chrono::steady_clock::now();
   const auto step = [&](const std::string& what) -> Result<void> {
     if (interrupted()) return interrupt_error();
-    console.progress(0, 0, what, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    console.progress(0, 1, what, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     return {};
   };
   AFTERGLOW_TRY(const auto result, bench::calibrate(*device, request, console.diagnostics(), step));
@@ -65,7 +65,8 @@ Command add_calibrate_command(CLI::App& program) {
   app->add_option("--look", arguments->look, "Look to measure on (default: one that comes with the program)")
       ->type_name("PRESET");
   app->add_option("--size", arguments->size, "Size of the picture (default 1280x720)")->type_name("WxH");
-  app->add_option("--repeat", arguments->repeat, "Rounds; medians are of as many (default 9)")->check(CLI::Range(1, 1000));
+  app->add_option("--repeat", arguments->repeat, "Rounds; medians are of as many (default 9)")
+      ->check(CLI::Range(1, 1000));
   arguments->device.add(*app);
   app->footer("Takes a minute or so; best on a quiet machine.");
   return {app, [arguments](Console& console) { return run_command(*arguments, console); }};

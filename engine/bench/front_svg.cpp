@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "bench/report.h"
 
 namespace afterglow::bench {
 namespace {
 
-constexpr double kWidth = 760, kHeight = 420, kLeft = 70, kRight = 24, kTop = 44, kBottom = 56;
+constexpr double kWidth = 900, kHeight = 420, kLeft = 70, kRight = 300, kTop = 44, kBottom = 56;
 constexpr double kLeastError = 1e-8;  ///< what is exact stands here on a logarithmic axis
 
 std::string escaped(const std::string& text) {
@@ -22,7 +21,9 @@ std::string escaped(const std::string& text) {
 struct LogAxis {
   double low, high, from, to;
   LogAxis(double least, double most, double begin, double end)
-      : low(std::floor(std::log10(least) * 2 - 0.2) / 2), high(std::ceil(std::log10(most) * 2 + 0.2) / 2), from(begin),
+      : low(std::floor(std::log10(least) * 2 - 0.2) / 2),
+        high(std::ceil(std::log10(most) * 2 + 0.2) / 2),
+        from(begin),
         to(end) {}
   double at(double value) const { return from + (std::log10(value) - low) / (high - low) * (to - from); }
   /// 1, 2, 5, 10, … where there are few decades, else powers of ten.
@@ -65,11 +66,13 @@ std::string front_svg(const Report& report, const Cell& cell) {
       kWidth, kHeight, kLeft, escaped(cell.preset), cell.size.width, cell.size.height, escaped(report.device));
   for (const double tick : x.ticks())
     out += fmt::format(
-        "<path d=\"M{0:.1f} {1}V{2}\" stroke=\"#ddd\"/><text x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\">{4:g}</text>\n",
+        "<path d=\"M{0:.1f} {1}V{2}\" stroke=\"#ddd\"/><text x=\"{0:.1f}\" y=\"{3}\" "
+        "text-anchor=\"middle\">{4:g}</text>\n",
         x.at(tick), kTop, kHeight - kBottom, kHeight - kBottom + 16, tick);
   for (const double tick : y.ticks())
     out += fmt::format(
-        "<path d=\"M{1} {0:.1f}H{2}\" stroke=\"#ddd\"/><text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:.0e}</text>\n",
+        "<path d=\"M{1} {0:.1f}H{2}\" stroke=\"#ddd\"/><text x=\"{3}\" y=\"{4:.1f}\" "
+        "text-anchor=\"end\">{5:.0e}</text>\n",
         y.at(tick), kLeft, kWidth - kRight, kLeft - 6, y.at(tick) + 4, tick);
   out += fmt::format(
       "<text x=\"{:.0f}\" y=\"{}\" text-anchor=\"middle\">milliseconds, median of {} (bar: quartiles)</text>\n"
@@ -82,23 +85,21 @@ std::string front_svg(const Report& report, const Cell& cell) {
 
   std::string line;
   for (const Point* p : points)
-    if (p->front) line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", x.at(p->execute.median), y.at(error_of(*p)));
+    if (p->front)
+      line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", x.at(p->execute.median), y.at(error_of(*p)));
   if (!line.empty()) out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"#c43\" stroke-width=\"2\"/>\n", line);
-  std::set<int> used;  // lines of text in use, so that names do not lie on each other
+  int number = 0;
   for (const Point* p : points) {
-    const double px = x.at(p->execute.median), py = y.at(error_of(*p));
+    const double px = x.at(p->execute.median), py = y.at(error_of(*p)), row = kTop + 18.0 * ++number;
+    const char* color = p->front ? "#c43" : "#47a";
     out += fmt::format(
-        "<path d=\"M{:.1f} {:.1f}H{:.1f}\" stroke=\"#888\"/>"
-        "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5\" fill=\"{}\"><title>{}: {:.2f} ms, {:.2e}</title></circle>\n",
-        x.at(std::max(p->execute.lower, 1e-3)), py, x.at(p->execute.upper), px, py, p->front ? "#c43" : "#47a",
-        escaped(p->label), p->execute.median, p->quality->error.percentile);
-    int row = static_cast<int>(py / 13);
-    while (used.contains(row)) --row;
-    used.insert(row);
-    const bool left = px > kWidth * 0.7;
-    out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"10\">{}</text>\n",
-                       left ? px - 8 : px + 8, row * 13 + 10.0, left ? "end" : "start",
-                       escaped(p->label + (p->settings.empty() ? "" : " " + p->settings)));
+        "<path d=\"M{:.1f} {:.1f}H{:.1f}\" stroke=\"#888\"/><circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"8\" fill=\"{}\"/>"
+        "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" font-size=\"10\" fill=\"#fff\">{}</text>\n",
+        x.at(std::max(p->execute.lower, 1e-3)), py, x.at(p->execute.upper), px, py, color, px, py + 3.5, number);
+    out += fmt::format(
+        "<text x=\"{:.0f}\" y=\"{:.0f}\" font-size=\"11\" fill=\"{}\">{}  {}: {:.3g} ms, {:.1e}</text>\n",
+        kWidth - kRight + 16, row, color, number, escaped(p->label + (p->settings.empty() ? "" : " " + p->settings)),
+        p->execute.median, p->quality->error.percentile);
   }
   return out + "</svg>\n";
 }
