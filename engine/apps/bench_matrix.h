@@ -28,6 +28,6 @@ std::vector<Size> scaling_sizes(int most);
 /// and all together, and what `run` would choose.
 inline constexpr const char* kDefaultVariants =
     "plain16f,plain32f,heads fp32,heads fp32 storage-reads,joined fp32,joined fp16 storage-reads,"
-    "joined fp32 storage-reads,chosen";
+    "joined fp32 storage-reads,heads fp32 rows8,joined fp32 storage-reads rows8,chosen";
 
 }  // namespace afterglow

@@ -23,7 +23,13 @@ std::vector<Choice> candidates() {
   for (const Storage storage : {Storage::fp32, Storage::fp16})
     for (const bool hardware_filter : {false, true})
       for (const bool storage_reads : {false, true})
-        out.push_back({.storage = storage, .hardware_filter = hardware_filter, .storage_reads = storage_reads});
+        for (const int rows : {1, 4, kMaxRows}) {
+          if (hardware_filter && rows > 1) continue;  // a filtered fetch serves one row
+          out.push_back({.storage = storage,
+                         .hardware_filter = hardware_filter,
+                         .storage_reads = storage_reads,
+                         .rows = rows});
+        }
   return out;
 }
 

@@ -29,7 +29,7 @@ struct CalibrationRequest {
   int repeat = 9;
 };
 
-/// The ways of execution that calibration tries: all combinations.
+/// The ways of execution that calibration tries: all combinations that make sense, joined.
 std::vector<Choice> candidates();
 
 /// From measured points (with quality), the fastest within each of a few allowed errors. What does not gain at least 3 %

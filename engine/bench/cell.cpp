@@ -38,9 +38,14 @@ Result<Truth> find_truth(Device& device, const CellRequest& request, Diagnostics
   return Truth{fmt::format("--reference: '{}' has no oracle", unknown), {rgb.begin(), rgb.end()}};
 }
 
-/// What is measured in turns; pictures by format are shared.
+/// What stacks may share: format, and rows of the result's targets.
+using PictureKind = std::pair<VkFormat, int>;
+
+PictureKind kind_of(const PreparedStack& stack) { return {stack.format(), stack.result_rows()}; }
+
+/// What is measured in turns.
 struct Field {
-  std::map<VkFormat, DevicePicture> pictures;
+  std::map<PictureKind, DevicePicture> pictures;
   std::vector<PreparedStack> stacks;
   KernelWork copy;
   BufferCopy memory;
@@ -48,15 +53,15 @@ struct Field {
 
 Result<void> prepare(Device& device, const CellRequest& request, Field& field) {
   const Picture& picture = *request.picture;
-  std::vector<VkFormat> formats{kFloats};
-  for (auto& stack : field.stacks) formats.push_back(stack.format());
-  for (const VkFormat format : formats)
-    if (!field.pictures.contains(format)) {
-      AFTERGLOW_TRY(field.pictures[format], DevicePicture::create(device, picture, format));
+  std::vector<PictureKind> kinds{{kFloats, 1}};
+  for (const auto& stack : field.stacks) kinds.push_back(kind_of(stack));
+  for (const PictureKind& kind : kinds)
+    if (!field.pictures.contains(kind)) {
+      AFTERGLOW_TRY(field.pictures[kind], DevicePicture::create(device, picture, kind.first, kind.second));
     }
-  for (auto& stack : field.stacks) AFTERGLOW_CHECK(stack.record(device, field.pictures.at(stack.format())));
+  for (auto& stack : field.stacks) AFTERGLOW_CHECK(stack.record(device, field.pictures.at(kind_of(stack))));
   KernelCompiler compiler(request.base.cache_folder.empty() ? "" : request.base.cache_folder / "shaders");
-  const DevicePicture& floats = field.pictures.at(kFloats);
+  const DevicePicture& floats = field.pictures.at({kFloats, 1});
   AFTERGLOW_TRY(field.copy,
                 KernelWork::create(device, compiler, {}, floats.source(), floats.result(), "copy"));
   const auto bytes = static_cast<VkDeviceSize>(picture.color.size().area()) * 16;

@@ -46,7 +46,7 @@ Result<FrameImage> upload_image(const Device& device, const Image& image, VkForm
   return out;
 }
 
-Result<DevicePicture> DevicePicture::create(const Device& device, const Picture& picture, VkFormat format) {
+Result<DevicePicture> DevicePicture::create(const Device& device, const Picture& picture, VkFormat format, int rows) {
   DevicePicture out;
   AFTERGLOW_TRY(out.inputs_["source"],
                 upload_image(device, picture.color, format, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT, kRest));
@@ -55,10 +55,10 @@ Result<DevicePicture> DevicePicture::create(const Device& device, const Picture&
                   upload_image(device, image, input_format(name, host(image), format), VK_IMAGE_USAGE_SAMPLED_BIT,
                                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
   }
-  AFTERGLOW_TRY(out.result_, GpuImage::create(device, {.name = "result",
-                                                       .size = picture.color.size(),
-                                                       .format = format,
-                                                       .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}));
+  const ImageDesc result{
+      .name = "result", .size = picture.color.size(), .format = format, .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
+  AFTERGLOW_TRY(out.result_,
+                FrameImage::create(device, result, device.is_cpu() ? HostAccess::read : HostAccess::none, rows));
   return out;
 }
 
@@ -72,14 +72,21 @@ std::map<std::string, ImageBinding> DevicePicture::inputs() const {
 ImageBinding DevicePicture::source() const { return inputs().at("source"); }
 
 ImageBinding DevicePicture::result() const {
-  return {result_.get(), result_.view(), result_.desc().format, result_.desc().size};
+  const GpuImage& image = result_.image;
+  return {image.get(), image.view(), image.desc().format, image.desc().size, result_.rows.views()};
 }
 
 void DevicePicture::before(VkCommandBuffer commands, VkImageLayout source_layout) const {
-  std::vector<VkImageMemoryBarrier2> barriers{
-      image_barrier(result_.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
-                    VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)};
+  std::vector<VkImage> results{result_.image.get()};
+  for (int k = 0; k < result_.rows.rows(); ++k) results.push_back(result_.rows.image(k));
+  const VkImageLayout drawn =
+      result_.rows.rows() > 1 ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  std::vector<VkImageMemoryBarrier2> barriers;
+  for (const VkImage image : results)
+    barriers.push_back(image_barrier(image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+                                     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, drawn));
   if (source_layout != kRest)
     barriers.push_back(image_barrier(source().image, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, kRest,
                                      VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(source_layout),

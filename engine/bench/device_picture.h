@@ -12,8 +12,9 @@ namespace afterglow::bench {
 
 class DevicePicture {
  public:
-  /// Uploads the colour as `format` (RGBA32F or RGBA16F), auxiliary images as full floats. Errors: device.
-  static Result<DevicePicture> create(const Device& device, const Picture& picture, VkFormat format);
+  /// Uploads the colour as `format` (RGBA32F or RGBA16F), auxiliary images as full floats. `rows`: the result gets
+  /// targets by so many rows (Program::result_rows). Errors: device.
+  static Result<DevicePicture> create(const Device& device, const Picture& picture, VkFormat format, int rows = 1);
   DevicePicture() = default;
 
   std::map<std::string, ImageBinding> inputs() const;
@@ -27,7 +28,7 @@ class DevicePicture {
 
  private:
   std::map<std::string, FrameImage> inputs_;
-  GpuImage result_;
+  FrameImage result_;
 };
 
 /// A new image on the device with the pixels of `image`, in GENERAL, or in SHADER_READ_ONLY_OPTIMAL. Errors: device.

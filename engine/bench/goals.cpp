@@ -64,7 +64,7 @@ Result<void> prepare(Device& device, const StackOptions& base, const GoalTerm& t
   }
   const Variant variant{.choice = term.choice, .overrides = term.overrides};
   AFTERGLOW_TRY(out.stack, PreparedStack::create(device, term.look, base, variant, out.picture, diagnostics));
-  AFTERGLOW_TRY(out.on_device, DevicePicture::create(device, out.picture, out.stack.format()));
+  AFTERGLOW_TRY(out.on_device, DevicePicture::create(device, out.picture, out.stack.format(), out.stack.result_rows()));
   return out.stack.record(device, out.on_device);
 }
 

@@ -30,12 +30,12 @@ Result<KernelWork> KernelWork::create(const Device& device, KernelCompiler& comp
                                 .pipeline = out.pipelines_.pipeline(0),
                                 .layout = layout.pipeline.get(),
                                 .set = out.descriptors_.set(0),
-                                .target = target.view,
+                                .targets = {target.view},
                                 .target_size = target.size,
                                 .first_image_size = source.size,
-                                .barriers = {again(target)}};
+                                .barriers = {.images = {again(target)}}};
   AFTERGLOW_TRY(out.work_, TimedWork::create(device, [&](VkCommandBuffer buffer) {
-                  record_kernel(device, buffer, commands, VK_NULL_HANDLE);
+                  record_kernel(device, buffer, commands, {});
                 }));
   return out;
 }

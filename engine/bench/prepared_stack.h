@@ -38,6 +38,8 @@ class PreparedStack {
   Stack& stack() { return *stack_; }
   bool runs() const { return stack_->runs(); }
   VkFormat format() const { return stack_->result_format(); }
+  /// Program::result_rows
+  int result_rows() const { return stack_->program() ? stack_->program()->result_rows() : 1; }
 
  private:
   Variant variant_;

@@ -11,7 +11,6 @@ namespace afterglow {
 namespace {
 
 constexpr std::string_view kRows = "rows";
-constexpr int kMostRows = 64;
 
 /// A word and what it makes of a choice.
 struct Word {
@@ -37,13 +36,13 @@ int rows_of(const std::string& word) {
   int rows = 0;
   const char* end = word.data() + word.size();
   const auto [stop, problem] = std::from_chars(word.data() + kRows.size(), end, rows);
-  return problem == std::errc() && stop == end && rows >= 1 && rows <= kMostRows ? rows : 0;
+  return problem == std::errc() && stop == end && rows >= 1 && rows <= kMaxRows ? rows : 0;
 }
 
 Error unknown_word(const std::string& word) {
   std::vector<std::string> names;
   for (const auto& known : kWords) names.emplace_back(known.text);
-  names.push_back(fmt::format("{}1 to {}{}", kRows, kRows, kMostRows));
+  names.push_back(fmt::format("{}1 to {}{}", kRows, kRows, kMaxRows));
   return {ErrorKind::usage,         fmt::format("'{}' says nothing about execution", word), {}, 0, join(names),
           nearest_name(word, names)};
 }
@@ -84,6 +83,7 @@ ProgramOptions program_options(const Choice& choice) {
   options.hardware_filter = choice.hardware_filter;
   options.storage_reads = choice.storage_reads;
   options.share_memory = choice.share_memory;
+  options.rows = choice.rows;
   return options;
 }
 

@@ -15,7 +15,7 @@ struct Choice {
   bool hardware_filter = false;  ///< see ProgramOptions, also for the rest
   bool storage_reads = false;
   bool share_memory = true;
-  int rows = 1;  ///< pixels that one invocation makes
+  int rows = 1;  ///< 1 … kMaxRows
   friend bool operator==(const Choice&, const Choice&) = default;
 };
 

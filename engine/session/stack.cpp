@@ -42,7 +42,7 @@ struct Stack::State {
   Device* device = nullptr;
   Calibration calibration;
   StackChoice choice;
-  bool source_is_storage = false;
+  bool own_images = false;
   Graph graph;
   bool prepared = false;
   std::unique_ptr<Program> program;
@@ -107,9 +107,9 @@ Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
   return total;
 }
 
-void Stack::use(Device& device, bool source_is_storage) {
+void Stack::use(Device& device, bool own_images) {
   state_->device = &device;
-  state_->source_is_storage = source_is_storage;
+  state_->own_images = own_images;
   state_->choice = choose(device, state_->options, state_->calibration, state_->choice.max_error);
   if (const auto& cache = state_->options.cache_folder; !cache.empty())
     device.use_pipeline_cache((cache / "pipelines").string());
@@ -129,7 +129,8 @@ Result<void> Stack::prepare(const BuildContext& context) {
   const auto start = Clock::now();
   ProgramOptions options = program_options(state_->choice.execution);
   options.reference = state_->options.reference;
-  options.source_is_storage = state_->source_is_storage;
+  options.source_is_storage = state_->own_images;
+  options.result_by_rows = state_->own_images;
   options.max_memory = state_->options.max_memory;
   auto program = Program::create(*state_->device, *state_->shaders, *state_->compiler, state_->graph, options);
   if (!program) {
