@@ -21,6 +21,13 @@ namespace afterglow {
 
 enum class Storage { fp32, fp16 };
 
+/// Pixels of a target from which it is worth a kernel of its own: on smaller ones little is won, and each kernel must
+/// be compiled.
+struct WorthAKernel {
+  std::int64_t ratio = 1 << 16;  ///< that knows how its sizes relate
+  std::int64_t rows = 1 << 19;   ///< that makes several rows an invocation
+};
+
 struct ProgramOptions {
   Joining joining = Joining::all;
   Storage storage = Storage::fp32;
@@ -33,6 +40,7 @@ struct ProgramOptions {
   /// Rows of pixels that one invocation may make where neighbouring rows read the same texels (1 … kMaxRows): faster on
   /// CPU devices. More than 1 makes the images between kernels linear.
   int rows = 1;
+  WorthAKernel worth;
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   bool share_memory = true;     ///< images whose lifetimes do not overlap share bytes (never with `reference`)
   std::uint64_t max_memory = 6ull << 30;
