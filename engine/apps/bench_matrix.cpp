@@ -47,7 +47,8 @@ Result<std::vector<bench::Variant>> vary_settings(const std::vector<bench::Varia
   for (const auto& text : vary) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals + 1 == text.size())
-      return Error{ErrorKind::usage, fmt::format("'{}' varies nothing", text), "--vary", 0, "EFFECT.SETTING=VALUE,VALUE,…"};
+      return Error{ErrorKind::usage, fmt::format("'{}' varies nothing", text), "--vary", 0,
+                   "EFFECT.SETTING=VALUE,VALUE,…"};
     std::vector<bench::Variant> next;
     for (const auto& variant : out)
       for (const auto& value : split(std::string_view(text).substr(equals + 1), ',')) {

@@ -25,10 +25,8 @@ std::vector<Choice> candidates() {
       for (const bool storage_reads : {false, true})
         for (const int rows : {1, 4, kMaxRows}) {
           if (hardware_filter && rows > 1) continue;  // a filtered fetch serves one row
-          out.push_back({.storage = storage,
-                         .hardware_filter = hardware_filter,
-                         .storage_reads = storage_reads,
-                         .rows = rows});
+          out.push_back(
+              {.storage = storage, .hardware_filter = hardware_filter, .storage_reads = storage_reads, .rows = rows});
         }
   return out;
 }
@@ -80,9 +78,10 @@ std::string calibration_json(const CalibrationResult& result) {
   measured["look"] = result.cell.preset;
   measured["size"] = fmt::format("{}x{}", result.cell.size.width, result.cell.size.height);
   for (const auto& point : result.cell.points)
-    measured["choices"].push_back(Json{{"choice", point.choice},
-                                       {"milliseconds", point.execute.median},
-                                       {"error", point.quality ? Json(point.quality->error.percentile) : Json(nullptr)}});
+    measured["choices"].push_back(
+        Json{{"choice", point.choice},
+             {"milliseconds", point.execute.median},
+             {"error", point.quality ? Json(point.quality->error.percentile) : Json(nullptr)}});
   for (const auto& cost : result.operations) measured["nanoseconds_per_pixel"][cost.name] = cost.nanoseconds_per_pixel;
   return Json{{"devices", Json::array({std::move(entry)})}}.dump(2) + "\n";
 }

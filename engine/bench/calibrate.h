@@ -17,9 +17,9 @@ struct OperationCost {
 
 struct CalibrationResult {
   DeviceInfo device;
-  Cell cell;                               ///< every candidate on the calibration's look
+  Cell cell;  ///< every candidate on the calibration's look
   std::vector<OperationCost> operations;
-  std::vector<CalibratedChoice> choices;   ///< for Calibration
+  std::vector<CalibratedChoice> choices;  ///< for Calibration
 };
 
 struct CalibrationRequest {
@@ -32,9 +32,9 @@ struct CalibrationRequest {
 /// The ways of execution that calibration tries: all combinations that make sense, joined.
 std::vector<Choice> candidates();
 
-/// From measured points (with quality), the fastest within each of a few allowed errors. What does not gain at least 3 %
-/// over a more exact choice is left out, so that noise does not cost exactness. The first is for every error. Empty when
-/// no point has a quality.
+/// From measured points (with quality), the fastest within each of a few allowed errors. What does not gain at least 3
+/// % over a more exact choice is left out, so that noise does not cost exactness. The first is for every error. Empty
+/// when no point has a quality.
 std::vector<CalibratedChoice> fastest_within_errors(const std::vector<Point>& points);
 
 /// Errors: those of `measure_cell`.

@@ -62,8 +62,7 @@ Result<void> prepare(Device& device, const CellRequest& request, Field& field) {
   for (auto& stack : field.stacks) AFTERGLOW_CHECK(stack.record(device, field.pictures.at(kind_of(stack))));
   KernelCompiler compiler(request.base.cache_folder.empty() ? "" : request.base.cache_folder / "shaders");
   const DevicePicture& floats = field.pictures.at({kFloats, 1});
-  AFTERGLOW_TRY(field.copy,
-                KernelWork::create(device, compiler, {}, floats.source(), floats.result(), "copy"));
+  AFTERGLOW_TRY(field.copy, KernelWork::create(device, compiler, {}, floats.source(), floats.result(), "copy"));
   const auto bytes = static_cast<VkDeviceSize>(picture.color.size().area()) * 16;
   AFTERGLOW_TRY(field.memory, BufferCopy::create(device, bytes));
   return {};

@@ -45,17 +45,19 @@ Result<double> time_command(const std::filesystem::path& program, const std::vec
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   const auto start = std::chrono::steady_clock::now();
   pid_t child = 0;
-  const int problem = posix_spawn(&child, words[0].c_str(), &actions, nullptr, pointers(words).data(),
-                                  pointers(variables).data());
+  const int problem =
+      posix_spawn(&child, words[0].c_str(), &actions, nullptr, pointers(words).data(), pointers(variables).data());
   posix_spawn_file_actions_destroy(&actions);
-  if (problem != 0) return Error{ErrorKind::other, fmt::format("cannot start {}: {}", words[0], std::strerror(problem))};
+  if (problem != 0)
+    return Error{ErrorKind::other, fmt::format("cannot start {}: {}", words[0], std::strerror(problem))};
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    return Error{ErrorKind::other, fmt::format("{} {} failed with exit code {}", words[0], words.size() > 1 ? words[1] : "",
-                                               WIFEXITED(status) ? WEXITSTATUS(status) : -1)};
+    return Error{ErrorKind::other,
+                 fmt::format("{} {} failed with exit code {}", words[0], words.size() > 1 ? words[1] : "",
+                             WIFEXITED(status) ? WEXITSTATUS(status) : -1)};
   return seconds;
 }
 

@@ -48,8 +48,8 @@ Result<FrameImage> upload_image(const Device& device, const Image& image, VkForm
 
 Result<DevicePicture> DevicePicture::create(const Device& device, const Picture& picture, VkFormat format, int rows) {
   DevicePicture out;
-  AFTERGLOW_TRY(out.inputs_["source"],
-                upload_image(device, picture.color, format, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT, kRest));
+  AFTERGLOW_TRY(out.inputs_["source"], upload_image(device, picture.color, format,
+                                                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT, kRest));
   for (const auto& [name, image] : picture.auxiliary) {
     AFTERGLOW_TRY(out.inputs_[name],
                   upload_image(device, image, input_format(name, host(image), format), VK_IMAGE_USAGE_SAMPLED_BIT,

@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 Result<Size> read_size(const std::string& text) {
   Size size;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest) != 2 || size.width < 1 || size.height < 1 ||
-      size.width > 16384 || size.height > 16384)
+  if (std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest) != 2 || size.width < 1 ||
+      size.height < 1 || size.width > 16384 || size.height > 16384)
     return Error{ErrorKind::io, fmt::format("'{}' is no size", text)};
   return size;
 }

@@ -49,8 +49,8 @@ Result<void> prepare(Device& device, const StackOptions& base, const GoalTerm& t
   if (term.copy) {
     AFTERGLOW_TRY(out.on_device, DevicePicture::create(device, out.picture, kFloats));
     KernelCompiler compiler(base.cache_folder.empty() ? "" : base.cache_folder / "shaders");
-    AFTERGLOW_TRY(out.copy, KernelWork::create(device, compiler, {}, out.on_device.source(), out.on_device.result(),
-                                               "copy"));
+    AFTERGLOW_TRY(out.copy,
+                  KernelWork::create(device, compiler, {}, out.on_device.source(), out.on_device.result(), "copy"));
     return {};
   }
   if (term.frame) {

@@ -14,13 +14,13 @@ namespace afterglow::bench {
 /// One time in a sum: `times` · the median of what it describes.
 struct GoalTerm {
   double times = 1;
-  bool copy = false;                          ///< one RGBA32F copy pass of the picture
-  std::filesystem::path look;                 ///< else: a preset
+  bool copy = false;           ///< one RGBA32F copy pass of the picture
+  std::filesystem::path look;  ///< else: a preset
   std::vector<Override> overrides;
-  std::optional<Choice> choice;               ///< empty: as `run` would choose
-  bool frame = false;                         ///< a whole frame as `run` makes it, not only what was recorded
-  double light = 1;                           ///< factor of the picture
-  std::optional<Size> size;                   ///< another than the goal's
+  std::optional<Choice> choice;  ///< empty: as `run` would choose
+  bool frame = false;            ///< a whole frame as `run` makes it, not only what was recorded
+  double light = 1;              ///< factor of the picture
+  std::optional<Size> size;      ///< another than the goal's
 };
 
 /// A whole command: reading, executing, writing.
@@ -41,8 +41,8 @@ struct Goal {
   int repeat = 9;
 };
 
-/// Reads a file of goals (docs/benchmarks/goals.json is one); looks are relative to it. A goal with several sizes becomes
-/// several. Errors (io): no such file, no such goals; they name the goal.
+/// Reads a file of goals (docs/benchmarks/goals.json is one); looks are relative to it. A goal with several sizes
+/// becomes several. Errors (io): no such file, no such goals; they name the goal.
 Result<std::vector<Goal>> load_goals(const std::filesystem::path& file);
 
 /// What commands need: this program and a folder for pictures and caches.
@@ -50,8 +50,8 @@ struct GoalTools {
   std::filesystem::path program, folder;
 };
 
-/// Measures one. A goal that fails because of a look, or because memory does not suffice, is a result with a note; errors
-/// of the device and of `step` end the work.
+/// Measures one. A goal that fails because of a look, or because memory does not suffice, is a result with a note;
+/// errors of the device and of `step` end the work.
 Result<GoalResult> measure_goal(Device& device, const StackOptions& base, const Goal& goal, const GoalTools& tools,
                                 Diagnostics& diagnostics, const Step& step);
 

@@ -20,8 +20,7 @@ Result<KernelWork> KernelWork::create(const Device& device, KernelCompiler& comp
   KernelWork out;
   AFTERGLOW_TRY(out.compiled_, compiler.compile(kernel));
   AFTERGLOW_TRY(out.pipelines_, KernelPipelines::create(device, {out.compiled_}, {name}, target.format));
-  AFTERGLOW_TRY(out.sampler_,
-                create_sampler(device, kernel.hardware_filter ? VK_FILTER_LINEAR : VK_FILTER_NEAREST));
+  AFTERGLOW_TRY(out.sampler_, create_sampler(device, kernel.hardware_filter ? VK_FILTER_LINEAR : VK_FILTER_NEAREST));
   const DrawLayout& layout = out.pipelines_.layout(out.compiled_);
   AFTERGLOW_TRY(out.descriptors_,
                 Descriptors::create(device, {{.layout = layout.set.get(), .images = descriptor_types(out.compiled_)}}));
@@ -34,9 +33,8 @@ Result<KernelWork> KernelWork::create(const Device& device, KernelCompiler& comp
                                 .target_size = target.size,
                                 .first_image_size = source.size,
                                 .barriers = {.images = {again(target)}}};
-  AFTERGLOW_TRY(out.work_, TimedWork::create(device, [&](VkCommandBuffer buffer) {
-                  record_kernel(device, buffer, commands, {});
-                }));
+  AFTERGLOW_TRY(out.work_, TimedWork::create(
+                               device, [&](VkCommandBuffer buffer) { record_kernel(device, buffer, commands, {}); }));
   return out;
 }
 
@@ -45,7 +43,8 @@ Result<BufferCopy> BufferCopy::create(const Device& device, VkDeviceSize bytes) 
   AFTERGLOW_TRY(out.from_,
                 Buffer::create(device, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                                HostAccess::none, "copied from"));
-  AFTERGLOW_TRY(out.to_, Buffer::create(device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::none, "copied to"));
+  AFTERGLOW_TRY(out.to_,
+                Buffer::create(device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::none, "copied to"));
   // Memory that nothing has written may be no memory at all.
   AFTERGLOW_TRY(TimedWork fill, TimedWork::create(device, [&](VkCommandBuffer commands) {
                   vkCmdFillBuffer(commands, out.from_.get(), 0, VK_WHOLE_SIZE, 0x3f000000);

@@ -39,8 +39,8 @@ ImageBinding binding(const GpuImage& image) {
   return {image.get(), image.view(), image.desc().format, image.desc().size};
 }
 
-Result<std::unique_ptr<FormatCopy>> make_copy(const Device& device, KernelCompiler& compiler, const ImageBinding& source,
-                                              const NamedFormat& format) {
+Result<std::unique_ptr<FormatCopy>> make_copy(const Device& device, KernelCompiler& compiler,
+                                              const ImageBinding& source, const NamedFormat& format) {
   auto out = std::make_unique<FormatCopy>();
   const ImageDesc desc{.name = format.name,
                        .size = source.size,

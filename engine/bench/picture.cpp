@@ -20,9 +20,9 @@ struct Sphere {
   float light;  ///< above 0: a lamp that shines by itself
 };
 constexpr Sphere kSpheres[] = {
-    {-0.55f, 0.12f, 0.26f, 6.0f, {0.70f, 0.25f, 0.15f}, 0},  {0.05f, 0.20f, 0.22f, 5.0f, {0.15f, 0.45f, 0.70f}, 0},
-    {0.60f, 0.08f, 0.30f, 7.0f, {0.55f, 0.55f, 0.50f}, 0},   {-0.15f, -0.25f, 0.05f, 4.0f, {1.0f, 0.85f, 0.6f}, 40},
-    {0.38f, -0.33f, 0.03f, 4.5f, {0.4f, 0.7f, 1.0f}, 25},    {-0.72f, -0.30f, 0.04f, 4.2f, {1.0f, 0.3f, 0.2f}, 12},
+    {-0.55f, 0.12f, 0.26f, 6.0f, {0.70f, 0.25f, 0.15f}, 0}, {0.05f, 0.20f, 0.22f, 5.0f, {0.15f, 0.45f, 0.70f}, 0},
+    {0.60f, 0.08f, 0.30f, 7.0f, {0.55f, 0.55f, 0.50f}, 0},  {-0.15f, -0.25f, 0.05f, 4.0f, {1.0f, 0.85f, 0.6f}, 40},
+    {0.38f, -0.33f, 0.03f, 4.5f, {0.4f, 0.7f, 1.0f}, 25},   {-0.72f, -0.30f, 0.04f, 4.2f, {1.0f, 0.3f, 0.2f}, 12},
     {0.78f, -0.22f, 0.008f, 4.0f, {1.0f, 1.0f, 1.0f}, 35},
 };
 
@@ -53,7 +53,8 @@ Surface look(float x, float y) {
     const float w = std::sqrt(1 - r2);
     s.normal = {u, v, -w};
     s.depth = sphere.depth - w * sphere.radius;
-    const float shade = sphere.light > 0 ? sphere.light : 0.05f + 1.6f * std::max(0.0f, -0.4f * u - 0.6f * v + 0.7f * w);
+    const float shade =
+        sphere.light > 0 ? sphere.light : 0.05f + 1.6f * std::max(0.0f, -0.4f * u - 0.6f * v + 0.7f * w);
     for (int c = 0; c < 3; ++c) s.color[c] = sphere.color[c] * shade;
   }
   return s;

@@ -51,7 +51,8 @@ Result<PreparedStack> PreparedStack::create(Device& device, const std::filesyste
 }
 
 Result<Point> PreparedStack::try_out(Device& device, const Picture& picture, bool passes, std::vector<float>& rgb) {
-  Point point{.choice = choice_name(stack_->choice().execution), .label = variant_.label, .settings = variant_.settings};
+  Point point{
+      .choice = choice_name(stack_->choice().execution), .label = variant_.label, .settings = variant_.settings};
   if (!runs()) {
     rgb = rgb_of(picture.color.pixels);
     return point;
@@ -62,11 +63,12 @@ Result<Point> PreparedStack::try_out(Device& device, const Picture& picture, boo
   AFTERGLOW_TRY(const auto runner, FrameRunner::create(device, 64ull << 30));
   std::map<std::string, HostImage> inputs{
       {"source", {picture.color.pixels.data(), picture.color.size(), picture.color.channels}}};
-  for (const auto& [name, image] : picture.auxiliary) inputs[name] = {image.pixels.data(), image.size(), image.channels};
+  for (const auto& [name, image] : picture.auxiliary)
+    inputs[name] = {image.pixels.data(), image.size(), image.channels};
 
   HostResult result;
   std::vector<FrameTimes> runs;
-  const KernelTiming timing = !passes                           ? KernelTiming::none
+  const KernelTiming timing = !passes                          ? KernelTiming::none
                               : device.timestamps_mean_draws() ? KernelTiming::timestamps
                                                                : KernelTiming::submissions;
   for (int i = 0; i <= (passes ? kPassRuns : 1); ++i) {

@@ -19,7 +19,8 @@ std::string report_html(const Report& report);
 /// Run time against error of one cell, with the front drawn.
 std::string front_svg(const Report& report, const Cell& cell);
 
-/// bench.json, bench.csv, bench.html and front.svg (of the cell with most points) in `folder`, which is made. Errors: io.
+/// bench.json, bench.csv, bench.html and front.svg (of the cell with most points) in `folder`, which is made. Errors:
+/// io.
 Result<void> write_report(const Report& report, const std::filesystem::path& folder);
 
 /// One point of two reports, medians in milliseconds.
@@ -29,6 +30,7 @@ struct Comparison {
   double ratio() const { return now / before; }
 };
 /// Points that are in both. Errors: io (`old_json` is no report).
-Result<std::vector<Comparison>> compare_reports(const std::string& old_json, const std::string& file, const Report& now);
+Result<std::vector<Comparison>> compare_reports(const std::string& old_json, const std::string& file,
+                                                const Report& now);
 
 }  // namespace afterglow::bench

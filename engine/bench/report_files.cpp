@@ -33,7 +33,8 @@ std::string report_html(const Report& report) {
 Result<void> write_report(const Report& report, const std::filesystem::path& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
-  if (problem) return Error{ErrorKind::io, fmt::format("cannot make the folder: {}", problem.message()), folder.string()};
+  if (problem)
+    return Error{ErrorKind::io, fmt::format("cannot make the folder: {}", problem.message()), folder.string()};
   AFTERGLOW_CHECK(write_file_atomically(folder / "bench.json", report_json(report)));
   AFTERGLOW_CHECK(write_file_atomically(folder / "bench.csv", report_csv(report)));
   AFTERGLOW_CHECK(write_file_atomically(folder / "bench.html", report_html(report)));

@@ -84,9 +84,8 @@ std::string key(const std::string& preset, int width, int height, const std::str
 }  // namespace
 
 std::string report_json(const Report& report) {
-  Json out{{"format", kWhatItIs},        {"afterglow", report.version}, {"device", report.device},
-           {"driver", report.driver},    {"kind", report.kind},         {"repeat", report.repeat},
-           {"cells", Json::array()},     {"goals", Json::array()}};
+  Json out{{"format", kWhatItIs}, {"afterglow", report.version}, {"device", report.device}, {"driver", report.driver},
+           {"kind", report.kind}, {"repeat", report.repeat},     {"cells", Json::array()},  {"goals", Json::array()}};
   for (const auto& cell : report.cells) out["cells"].push_back(cell_json(cell));
   for (const auto& goal : report.goals) out["goals"].push_back(goal_json(goal));
   return out.dump(1) + "\n";
@@ -109,8 +108,7 @@ Result<std::vector<Comparison>> compare_reports(const std::string& old_json, con
   std::vector<Comparison> out;
   for (const auto& cell : now.cells)
     for (const auto& point : cell.points) {
-      const auto name =
-          key(cell.preset, cell.size.width, cell.size.height, point.label, point.choice, point.settings);
+      const auto name = key(cell.preset, cell.size.width, cell.size.height, point.label, point.choice, point.settings);
       if (const auto found = before.find(name); found != before.end() && found->second > 0)
         out.push_back({name, found->second, point.execute.median});
     }

@@ -27,19 +27,19 @@ struct Point {
   Spread execute;        ///< recorded once and submitted; without upload and read-back
   double upload = 0, read_back = 0;
   int kernels = 0;
-  std::uint64_t image_memory = 0;    ///< bytes between passes
-  std::vector<KernelTime> passes;    ///< each alone
-  std::optional<Quality> quality;    ///< empty: there was nothing to compare with
-  bool front = false;                ///< nothing else is both faster and closer to the truth
+  std::uint64_t image_memory = 0;  ///< bytes between passes
+  std::vector<KernelTime> passes;  ///< each alone
+  std::optional<Quality> quality;  ///< empty: there was nothing to compare with
+  bool front = false;              ///< nothing else is both faster and closer to the truth
 };
 
 /// One preset at one size; everything in it was measured in turns.
 struct Cell {
   std::string preset;
   Size size;
-  std::string truth;    ///< what errors are measured against: "double precision", "--reference", or why there is nothing
-  Spread copy;          ///< one RGBA32F pass of texelFetch over the whole picture
-  Spread memory;        ///< a plain copy of as many bytes by the device
+  std::string truth;  ///< what errors are measured against: "double precision", "--reference", or why there is nothing
+  Spread copy;        ///< one RGBA32F pass of texelFetch over the whole picture
+  Spread memory;      ///< a plain copy of as many bytes by the device
   double gigabytes_per_second = 0;  ///< read and written by that copy
   std::vector<Point> points;
 };

@@ -42,7 +42,8 @@ TEST_F(Bench, QuickWritesEveryFile) {
 }
 
 TEST_F(Bench, VariantsAndVariedSettingsMakeTheMatrix) {
-  const Outcome outcome = quick({"--variants", "apart fp32+unshared,chosen", "--vary", "tone_mapping.mode=aces,reinhard,neutral"});
+  const Outcome outcome =
+      quick({"--variants", "apart fp32+unshared,chosen", "--vary", "tone_mapping.mode=aces,reinhard,neutral"});
   ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
   const json points = report("bench/bench.json").at("cells").at(0).at("points");
   ASSERT_EQ(points.size(), 6u);
@@ -115,7 +116,8 @@ TEST_F(Bench, WhatCalibrateWritesRunTakes) {
   EXPECT_TRUE(device.at("measured").at("nanoseconds_per_pixel").contains("copy RGBA32F"));
   const std::string choice = device.at("choices").at(0).at("choice");
   make_exr("a.exr");
-  outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--calibration", "mine.json", "--max-error", "1e-5", "--report", "r.json"});
+  outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--calibration", "mine.json", "--max-error", "1e-5",
+                 "--report", "r.json"});
   ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
   const json session = json::parse(read("r.json")).at("session");
   EXPECT_EQ(session.at("choice"), choice);
@@ -124,7 +126,9 @@ TEST_F(Bench, WhatCalibrateWritesRunTakes) {
 
 TEST_F(Bench, RunTakesItsChoiceFromATable) {
   make_exr("a.exr");
-  write("table.json", R"({"devices": [{"choices": [{"max_error": 0, "choice": "apart fp32"}, {"max_error": 1e-3, "choice": "joined fp16"}]}]})");
+  write(
+      "table.json",
+      R"({"devices": [{"choices": [{"max_error": 0, "choice": "apart fp32"}, {"max_error": 1e-3, "choice": "joined fp16"}]}]})");
   const auto choice = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"run", "look.lua", "a.exr", "-o", "a.png", "--report", "r.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -135,7 +139,8 @@ TEST_F(Bench, RunTakesItsChoiceFromATable) {
   };
   EXPECT_EQ(choice({"--calibration", "table.json"}), "joined fp16 | table.json, any device");
   EXPECT_EQ(choice({"--calibration", "table.json", "--max-error", "1e-4"}), "apart fp32 | table.json, any device");
-  EXPECT_EQ(choice({"--calibration", "table.json", "--precision", "fp32"}), "joined fp32 | table.json, any device; --precision");
+  EXPECT_EQ(choice({"--calibration", "table.json", "--precision", "fp32"}),
+            "joined fp32 | table.json, any device; --precision");
   EXPECT_EQ(choice({"--calibration", "table.json", "--reference"}), "apart fp32 unshared | --reference");
   EXPECT_THAT(choice({}), HasSubstr("calibration/devices.json"));
   const Outcome devices = run({"devices", "--calibration", "table.json"});

@@ -70,6 +70,18 @@ TEST_F(Cells, EveryChoiceGivesTheTruth) {
   EXPECT_GT(cell->gigabytes_per_second, 0);
 }
 
+TEST_F(Cells, EveryShippedLookAgreesWithTheWholeOracle) {
+  int with_oracle = 0;
+  for (const auto& entry : fs::directory_iterator(AFTERGLOW_PROJECT_FOLDER "/presets")) {
+    if (entry.path().extension() != ".lua") continue;
+    const auto cell = measure(entry.path(), {{"chosen", {}, {}, {}}});
+    ASSERT_TRUE(cell) << cell.error().text();
+    EXPECT_LE(cell->points.at(0).quality->error.percentile, 1e-5) << entry.path() << " against " << cell->truth;
+    with_oracle += cell->truth == "double precision";
+  }
+  EXPECT_GE(with_oracle, 9);
+}
+
 TEST_F(Cells, HeadsAreThreePassesALevelAndOne) {
   const auto cell =
       measure(look("fx.bloom { max_iterations = 3, downscale_limit = 1 }"), {{"plain16f", kPlain16f, {}, {}}});
