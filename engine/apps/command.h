@@ -21,5 +21,7 @@ Command add_check_command(CLI::App& program);
 Command add_graph_command(CLI::App& program);
 Command add_effects_command(CLI::App& program);
 Command add_devices_command(CLI::App& program);
+Command add_bench_command(CLI::App& program);
+Command add_calibrate_command(CLI::App& program);
 
 }  // namespace afterglow
