@@ -113,7 +113,7 @@ SampleType sample_type(const std::string& text) {
 
 /// Every option that changes pixels, for the hash that --resume compares.
 std::string pixel_options(const Arguments& a) {
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", join(a.preset.overrides, "|"),
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", join(a.preset.overrides, "|"), a.preset.at,
                      a.execution.precision, a.execution.max_error.value_or(0), a.execution.reference, a.layer, a.depth,
                      a.normal, a.size, a.fps, a.type, a.compression, a.png_level, a.jpeg_quality, a.dither,
                      a.keep_layers);

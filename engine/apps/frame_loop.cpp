@@ -125,6 +125,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(FrameRecord& frame)
   context.frame = frame.job.frame;
   context.fps = options_.fps;
   context.time = frame.job.frame / options_.fps;
+  context.position = header->camera;
   const auto need = need_of(*header, context, frame.job);
   if (!need) {
     reading->refused = need.error();

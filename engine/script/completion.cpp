@@ -20,6 +20,7 @@ std::string lua_type(const SettingSchema& setting) {
     case SettingType::color:
       return "number[]|string";
     case SettingType::vec2:
+    case SettingType::vec3:
       return "number[]";
     case SettingType::enumeration:
       break;
