@@ -19,6 +19,7 @@ struct Command {
 Command add_run_command(CLI::App& program);
 Command add_check_command(CLI::App& program);
 Command add_graph_command(CLI::App& program);
+Command add_explain_command(CLI::App& program);
 Command add_effects_command(CLI::App& program);
 Command add_devices_command(CLI::App& program);
 
