@@ -70,6 +70,13 @@ local fx = {}
 ---@type fun(stack: { name?: string, max_error?: number, position?: number[]|afterglow.Moving, [integer]: afterglow.Entry|afterglow.Volume }): afterglow.Stack
 fx.stack = core.stack
 
+---The stack of another preset, found by name (beside this one, in `--path`, `AFTERGLOW_PATH`, the installation), with some of it
+---changed: `ENTRY = { SETTING = VALUE, … }` by an entry's name, or by an effect's for all its entries; `enabled = false` leaves one
+---out. Items without a name are added behind the others. What that preset brings along (effects/, shaders/) is found too.
+---Errors: unknown presets, entries and settings; values that a setting does not allow; a preset that extends itself.
+---@type fun(preset: string, changes?: table): afterglow.Stack
+fx.extend = core.extend
+
 ---Settings that hold in a part of the scene, or everywhere. Volumes are blended in by ascending `priority` (default 0), equal ones
 ---in the order of the list, with factor = clamp01(weight), times 1 − d²/B² at the distance d from the shape with blend distance B
 ---(beyond it, and outside when B is 0: nothing). Numbers, vectors and colours go from what was there towards the volume's value by

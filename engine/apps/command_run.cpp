@@ -166,9 +166,7 @@ Result<void> prepare_resume(Run& run) {
   Preset& preset = run.session->preset();
   AFTERGLOW_TRY(const BuildContext context, assumed.context(preset));
   AFTERGLOW_TRY(const Graph graph, run.session->stack().graph(context));
-  AFTERGLOW_TRY(const PresetOptions options, a.preset.options());
-  AFTERGLOW_TRY(const Hash look,
-                look_hash(preset, graph, search_path_for(a.preset.file, options.paths), pixel_options(a)));
+  AFTERGLOW_TRY(const Hash look, look_hash(preset, graph, pixel_options(a)));
   run.loop.record_look = look;
   if (!a.resume) return {};
   for (auto& frame : run.report.frames)

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cstdlib>
+#include <set>
 #include <system_error>
 
 #include "core/text.h"
@@ -20,6 +23,11 @@ std::string environment(const char* name) {
 bool is_file(const fs::path& path) {
   std::error_code ec;
   return fs::is_regular_file(path, ec);
+}
+
+bool is_preset_name(const std::string& name) {
+  return !name.empty() && name.size() <= 100 &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
 }
 
 bool is_installation(const fs::path& folder) { return is_file(folder / "scripts" / "afterglow.lua"); }
@@ -47,6 +55,38 @@ std::vector<fs::path> SearchPath::effect_folders() const {
   for (const auto& root : user) folders.push_back(root / "effects");
   if (!installation.empty()) folders.push_back(installation / "scripts" / "effects");
   return folders;
+}
+
+std::vector<fs::path> SearchPath::preset_folders() const {
+  std::vector<fs::path> folders;
+  for (const auto& root : user) {
+    folders.push_back(root);
+    folders.push_back(root / "presets");
+  }
+  if (!installation.empty()) folders.push_back(installation / "presets");
+  return folders;
+}
+
+std::vector<fs::path> SearchPath::find_preset(const std::string& name) const {
+  if (!is_preset_name(name)) return {};
+  std::vector<fs::path> hits;
+  for (const auto& folder : preset_folders())
+    for (const auto& file : {folder / (name + ".lua"), folder / name / (name + ".lua")})
+      if (is_file(file)) hits.push_back(file);
+  return hits;
+}
+
+std::vector<std::string> SearchPath::preset_names() const {
+  std::set<std::string> names;
+  for (const auto& folder : preset_folders()) {
+    std::error_code ec;
+    for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+      const std::string name = it->path().stem().string();
+      if (!is_preset_name(name)) continue;
+      if (it->path().extension() == ".lua" || is_file(it->path() / (name + ".lua"))) names.insert(name);
+    }
+  }
+  return {names.begin(), names.end()};
 }
 
 fs::path find_installation() {

@@ -19,8 +19,15 @@ struct SearchPath {
   std::vector<std::filesystem::path> find_effect(const std::string& name) const;
   /// `shaders/NAME` (with extension, e.g. "glow/threshold.glsl"); all hits, the winner first.
   std::vector<std::filesystem::path> find_shader(const std::string& name) const;
+  /// The preset of that name: `NAME.lua` or `NAME/NAME.lua`, in each folder itself and in its `presets/`; all hits, the
+  /// winner first. Names are letters, digits, '_' and '-'.
+  std::vector<std::filesystem::path> find_preset(const std::string& name) const;
+  /// Names that `find_preset` knows, sorted.
+  std::vector<std::string> preset_names() const;
   /// Folders that may hold effect scripts, in order.
   std::vector<std::filesystem::path> effect_folders() const;
+  /// Folders that may hold presets, in order.
+  std::vector<std::filesystem::path> preset_folders() const;
 };
 
 /// The folder with scripts/, shaders/ and presets/: AFTERGLOW_HOME, else found from the running binary

@@ -67,6 +67,7 @@ void push_core(lua_State* lua) {
       {"vec2", &native<declare_setting<SettingType::vec2>, "vec2">},
       {"vec3", &native<declare_setting<SettingType::vec3>, "vec3">},
       {"curve", &native<declare_curve, "curve">},
+      {"extend", &native<declare_extend, "extend">},
       {"volume", &native<declare_volume, "volume">},
       {"fail", &native<fail, "fail">},
       {"show", &native<show, "show">},

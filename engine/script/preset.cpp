@@ -32,7 +32,6 @@ struct Preset::State {
 
   void load(lua_State* lua, const PresetOptions& options);
   void resolve(lua_State* lua, const BuildContext& context);
-  DeclaredStack run_script(lua_State* lua);
   void note_needs(lua_State* lua, const StackEntry*& current);
   ImageRef build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
                        Diagnostics& diagnostics);
@@ -71,23 +70,11 @@ Error with_entry(Error error, const StackEntry* entry) {
 
 }  // namespace
 
-DeclaredStack Preset::State::run_script(lua_State* lua) {
-  load_chunk(lua, file);
-  call(lua, 0, 1);
-  const Handle* handle = to_object<Handle>(lua, -1, kStackKind);
-  if (!handle)
-    throw ScriptError{{ErrorKind::script,
-                       fmt::format("a preset must return fx.stack {{ … }}, not {}", read_value(lua, -1).shown()),
-                       file}};
-  DeclaredStack stack = runtime->stacks[static_cast<std::size_t>(handle->index)];
-  lua_pop(lua, 1);
-  return stack;
-}
-
 void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   open_graph_binding(lua);
-  DeclaredStack stack = run_script(lua);
+  DeclaredStack stack = load_stack(lua, file);
   runtime->declaring = false;
+  shaders->search(runtime->path);
   if (auto applied = apply_overrides(stack.entries, options.overrides, runtime->effects); !applied)
     throw ScriptError{applied.error()};
   sort_entries(stack.entries);
@@ -162,6 +149,7 @@ const std::vector<StackEntry>& Preset::entries() const { return state_->entries;
 bool Preset::may_change() const { return state_->may_change; }
 const Explanation& Preset::explanation() const { return state_->explanation; }
 std::vector<std::string> Preset::needs() const { return state_->needs; }
+const SearchPath& Preset::path() const { return state_->runtime->path; }
 const std::vector<std::filesystem::path>& Preset::files() const { return state_->runtime->files; }
 
 const EffectSchema& Preset::schema(const std::string& effect) const {

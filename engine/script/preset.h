@@ -116,6 +116,8 @@ class Preset {
   /// Names of auxiliary inputs that enabled, active effects ask for; where settings may change, those that they could
   /// ask for.
   std::vector<std::string> needs() const;
+  /// Where names are looked up; a preset that extends another has that one's folder in it too.
+  const SearchPath& path() const;
   const std::vector<std::filesystem::path>& files() const;  ///< every script read: preset, library, effects
 
   /// Bytes that the script's state holds, after a collection.

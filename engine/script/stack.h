@@ -16,6 +16,9 @@ int library_index(lua_State* lua);
 /// fx.stack.
 int declare_stack(lua_State* lua);
 
+/// fx.extend.
+int declare_extend(lua_State* lua);
+
 /// Names that the table of a stack may have besides its items.
 const std::vector<std::string>& stack_keys();
 

@@ -26,10 +26,12 @@ TableReader::TableReader(lua_State* lua, int index, std::string what)
 TableReader::TableReader(lua_State* lua, int index, std::string what, TableReader& parent, KeyPath place)
     : lua_(lua), index_(lua_absindex(lua, index)), what_(std::move(what)), parent_(&parent), place_(std::move(place)) {
   luaL_checkstack(lua, 10, nullptr);
-  if (lua_istable(lua, index_))
+  if (lua_istable(lua, index_)) {
     read_keys();
-  else
-    fail(failure(fmt::format("{}: {} = {} is not a table", parent.what(), what_, read_value(lua, index_).shown())));
+    return;
+  }
+  fail(failure(fmt::format("{}: {} = {} is not a table", parent.what(), what_, read_value(lua, index_).shown())));
+  index_ = 0;
 }
 
 void TableReader::fail(ScriptError error) {
@@ -73,6 +75,7 @@ void TableReader::push(const Key& key) const {
 }
 
 void TableReader::push(const char* name) const {
+  if (index_ == 0) return lua_pushnil(lua_);
   lua_pushstring(lua_, name);
   lua_rawget(lua_, index_);
 }

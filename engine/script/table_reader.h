@@ -55,7 +55,7 @@ class TableReader {
   void read_keys();
 
   lua_State* lua_;
-  int index_;
+  int index_;  // 0: no table
   std::string what_;
   TableReader* parent_ = nullptr;
   KeyPath place_;  // in the parent
