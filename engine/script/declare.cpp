@@ -15,13 +15,6 @@ namespace {
 
 constexpr std::size_t kMaxDeclared = 4096;  // settings, effects, entries of one state
 
-// What `fx` itself holds; an effect of such a name could never be reached.
-const std::vector<std::string>& library_names() {
-  static const std::vector<std::string> names{"bool",  "color", "curve", "effect", "enum", "extend", "filters",
-                                              "float", "int",   "stack", "vec2",   "vec3", "volume"};
-  return names;
-}
-
 constexpr const char* kMakers[] = {"int", "float", "bool", "enum", "color", "vec2", "vec3"};
 
 std::vector<std::string> known_keys(SettingType type) {

@@ -133,6 +133,9 @@ class Preset {
   std::unique_ptr<State> state_;
 };
 
+/// May a new effect be called so? Errors (usage): no identifier, a word of Lua or of the library, taken.
+Result<void> check_new_effect_name(const std::string& name, const SearchPath& path);
+
 /// Every effect on the search path, by name. Scripts that fail to load are warned about and left out.
 Result<std::vector<EffectSchema>> list_effects(const SearchPath& path, Diagnostics& diagnostics);
 /// The text of a lua-language-server completion file (`_meta`) for these effects.
