@@ -203,7 +203,8 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
                    "afterglow run"};
   }
   AFTERGLOW_CHECK(check_outputs(run));
-  AFTERGLOW_TRY(run.session, Session::open(a.preset.file, options, run.console.diagnostics()));
+  AFTERGLOW_TRY(const std::filesystem::path preset, a.preset.preset_file());
+  AFTERGLOW_TRY(run.session, Session::open(preset, options, run.console.diagnostics()));
   run.loop.read.auxiliary = run.session->preset().needs();
   AFTERGLOW_CHECK(prepare_resume(run));
   run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);

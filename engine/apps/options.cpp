@@ -24,7 +24,9 @@ void MessageArguments::apply(Console& console) const {
 }
 
 void PresetArguments::add(CLI::App& command) {
-  command.add_option("PRESET", file, "Look to apply: a Lua file that returns a stack")->required();
+  command
+      .add_option("PRESET", file, "Look to apply: a Lua file that returns a stack, its name, or a pack that holds it")
+      ->required();
   command
       .add_option("--set", overrides, "Overrides one setting, as if the preset said so: glow.strength=0.4 (repeatable)")
       ->type_name("EFFECT.SETTING=VALUE")
@@ -41,7 +43,8 @@ void PresetArguments::add(CLI::App& command) {
 void PresetArguments::add_paths(CLI::App& command) {
   command
       .add_option("--path", paths,
-                  "Folder with effects/ and shaders/ of yours, before AFTERGLOW_PATH and the installation (repeatable)")
+                  "Folder or zip with presets/, effects/ and shaders/ of yours, before AFTERGLOW_PATH and the "
+                  "installation (repeatable)")
       ->type_name("FOLDER")
       ->expected(1)
       ->take_all()
@@ -59,6 +62,10 @@ Result<PresetOptions> PresetArguments::options() const {
     AFTERGLOW_TRY(options.at, parse_position(at));
   }
   return options;
+}
+
+Result<std::filesystem::path> PresetArguments::preset_file() const {
+  return find_preset_file(file, {paths.begin(), paths.end()});
 }
 
 void DeviceArguments::add(CLI::App& command) {

@@ -31,6 +31,8 @@ struct PresetArguments {
   void add(CLI::App& command);
   void add_paths(CLI::App& command);  ///< --path alone
   Result<PresetOptions> options() const;
+  /// The file that PRESET means: see find_preset_file. Errors: script.
+  Result<std::filesystem::path> preset_file() const;
 };
 
 /// --device, --validate (or AFTERGLOW_VALIDATE=1).

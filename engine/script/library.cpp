@@ -97,6 +97,7 @@ void push_library(lua_State* lua) {
 
 Result<std::unique_ptr<Runtime>> Runtime::create(SearchPath path, const ScriptLimits& limits,
                                                  Diagnostics& diagnostics) {
+  if (path.error) return *path.error;
   if (path.installation.empty())
     return Error{ErrorKind::script,
                  "the installation with scripts/afterglow.lua was not found (AFTERGLOW_HOME names its folder)"};

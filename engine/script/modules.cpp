@@ -133,8 +133,8 @@ DeclaredStack load_named_stack(lua_State* lua, const std::string& name) {
     if (file->string().starts_with((root / "").string()) && !lies_in(*file, root))
       throw failure(fmt::format("preset '{}' is a link that leads out of {}", name, root.string()));
   auto& user = runtime.path.user;
-  const fs::path folder = file->parent_path();
-  if (std::find(user.begin(), user.end(), folder) == user.end()) user.push_back(folder);
+  for (const auto& folder : folders_of_preset(*file))
+    if (std::find(user.begin(), user.end(), folder) == user.end()) user.push_back(folder);
   return load_stack(lua, *file);
 }
 
