@@ -25,7 +25,7 @@ Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& a
 namespace {
 
 // As `run` chooses on a CPU device, the one that is always there.
-constexpr DescribeOptions kAssumed{.storage_reads = true, .source_is_storage = true};
+constexpr DescribeOptions kAssumed{.storage_reads = true, .source_is_storage = true, .rows = kMaxRows};
 
 }  // namespace
 

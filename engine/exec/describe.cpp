@@ -16,6 +16,7 @@ AxisRatio axis_ratio(int source, int target) {
   if (source == target) return AxisRatio::same;
   if (source == 2 * target) return AxisRatio::half;
   if (2 * source == target) return AxisRatio::twice;
+  if (4 * source == target) return AxisRatio::fourfold;
   return AxisRatio::any;
 }
 
@@ -56,6 +57,20 @@ std::vector<ImageRead> reads_of(const Graph& graph, const PlanKernel& kernel, co
   return reads;
 }
 
+/// How many rows of the target an invocation of this kernel should make, of at most `wanted`: several where
+/// neighbouring rows read mostly the same texels, and where there is but a pixel's own colour to work on.
+int rows_that_pay(const KernelDesc& kernel, int wanted) {
+  constexpr double kWorthwhile = 1.5;  // times fewer lines
+  constexpr int kMostLines = 12;       // that a processor fetches ahead at a time
+  if (kernel.sample || kernel.hardware_filter) return 1;
+  if (!kernel.filter) return wanted;
+  for (int rows = wanted; rows > 1; rows /= 2) {
+    const auto lines = lines_shared(*kernel.filter, kernel.ratio_y, rows);
+    if (lines && lines->together <= kMostLines && lines->apart > kWorthwhile * lines->together) return rows;
+  }
+  return 1;
+}
+
 }  // namespace
 
 Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, const PlanKernel& kernel,
@@ -63,13 +78,18 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
   KernelDesc desc;
   desc.hardware_filter = options.hardware_filter;
   desc.half_storage = options.half_storage;
+  const long long pixels = graph.images[kernel.output].size.area();
   const Pass& head = graph.passes[kernel.passes.front()];
   std::size_t first_stage = 1;
   if (head.kind == PassKind::filter) {
     const Size source = graph.images[head.inputs.front().image].size, target = graph.images[head.output].size;
     desc.filter = head.filter;
-    desc.ratio_x = axis_ratio(source.width, target.width);
-    desc.ratio_y = axis_ratio(source.height, target.height);
+    if (pixels >= options.worth.ratio) {
+      desc.ratio_x = axis_ratio(source.width, target.width);
+      desc.ratio_y = axis_ratio(source.height, target.height);
+    } else if (source == target) {
+      desc.ratio_x = desc.ratio_y = AxisRatio::same;
+    }
   } else if (head.kind == PassKind::sample) {
     AFTERGLOW_TRY(desc.sample, stage_of(shaders, head));
   } else {
@@ -80,6 +100,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
     desc.stages.push_back(std::move(stage));
   }
   if (options.storage_reads) desc.reads = reads_of(graph, kernel, desc, options);
+  if (pixels >= options.worth.rows) desc.rows = rows_that_pay(desc, options.rows);
   return desc;
 }
 

@@ -50,10 +50,15 @@ struct FrameRunner::State {
   int images = 0;
 
   Result<void> prepare(const Program& program, const std::map<std::string, HostImage>& host);
-  Result<void> make_image(FrameImage& image, const ImageDesc& desc, HostAccess access);
+  Result<void> make_image(FrameImage& image, const ImageDesc& desc, HostAccess access, int rows = 1);
   Result<std::uint64_t> upload(FrameImage& image, const HostImage& host);
   Result<std::uint64_t> download(HostResult& out);
   Result<void> bind(Program& program);
+  /// The layout in which the result is drawn, and every VkImage of it: itself and its targets by rows.
+  VkImageLayout result_layout() const {
+    return result.rows.rows() > 1 ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  }
+  std::vector<VkImage> result_images() const;
   void before(const Program& program, VkCommandBuffer commands);
   void after(VkCommandBuffer commands);
   Result<void> execute(Program& program, KernelTiming timing, FrameTimes& times);
@@ -68,10 +73,10 @@ Result<std::unique_ptr<FrameRunner>> FrameRunner::create(Device& device, std::ui
   return std::unique_ptr<FrameRunner>(new FrameRunner(std::move(state)));
 }
 
-Result<void> FrameRunner::State::make_image(FrameImage& image, const ImageDesc& desc, HostAccess access) {
-  if (image.fits(desc)) return {};
+Result<void> FrameRunner::State::make_image(FrameImage& image, const ImageDesc& desc, HostAccess access, int rows) {
+  if (image.fits(desc, rows)) return {};
   image = {};  // before the new one is made: the two need not exist at once
-  AFTERGLOW_TRY(image, FrameImage::create(device, desc, direct ? access : HostAccess::none));
+  AFTERGLOW_TRY(image, FrameImage::create(device, desc, direct ? access : HostAccess::none, rows));
   ++images;
   return {};
 }
@@ -109,7 +114,7 @@ Result<void> FrameRunner::State::prepare(const Program& program, const std::map<
   }
   std::erase_if(inputs, [&](const auto& entry) { return !wanted.contains(entry.first); });
   for (const auto& [name, desc] : descs) AFTERGLOW_CHECK(make_image(inputs[name], desc, HostAccess::write));
-  return make_image(result, result_desc, HostAccess::read);
+  return make_image(result, result_desc, HostAccess::read, program.result_rows());
 }
 
 Result<std::uint64_t> FrameRunner::State::upload(FrameImage& image, const HostImage& host) {
@@ -142,18 +147,25 @@ Result<std::uint64_t> FrameRunner::State::download(HostResult& out) {
     float* to = out.pixels.data() + row_values * static_cast<std::size_t>(y);
     return keep_alpha ? unpack_row_rgb(from, format, width, to) : unpack_row(from, format, width, to);
   };
-  if (!result.direct) return staging.download(staged(result), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, unpack);
+  if (!result.direct) return staging.download(staged(result), result_layout(), unpack);
   result.image.memory().invalidate();
   return over_rows(height, result.image.row_pitch(), [&](int y) { return unpack(y, result.image.row(y)); });
 }
 
 Result<void> FrameRunner::State::bind(Program& program) {
   const auto binding = [](const FrameImage& image) {
-    return ImageBinding{image.image.get(), image.image.view(), image.image.desc().format, image.image.desc().size};
+    return ImageBinding{image.image.get(), image.image.view(), image.image.desc().format, image.image.desc().size,
+                        image.rows.views()};
   };
   std::map<std::string, ImageBinding> bindings;
   for (const auto& [name, image] : inputs) bindings[name] = binding(image);
   return program.bind(bindings, binding(result));
+}
+
+std::vector<VkImage> FrameRunner::State::result_images() const {
+  std::vector<VkImage> all{result.image.get()};
+  for (int k = 0; k < result.rows.rows(); ++k) all.push_back(result.rows.image(k));
+  return all;
 }
 
 /// Into the layouts that Program::record wants.
@@ -168,9 +180,11 @@ void FrameRunner::State::before(const Program& program, VkCommandBuffer commands
                                      VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(wanted), wanted));
     image.layout = wanted;
   }
-  barriers.push_back(image_barrier(result.image.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0,
-                                   VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                   VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL));
+  for (const VkImage image : result_images()) {
+    barriers.push_back(image_barrier(image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0,
+                                     VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, result_layout()));
+  }
   record_barriers(commands, barriers.data(), barriers.size());
 }
 
@@ -185,9 +199,11 @@ void FrameRunner::State::after(VkCommandBuffer commands) {
     image.layout = VK_IMAGE_LAYOUT_GENERAL;
   }
   if (result.direct) {
-    barriers.push_back(image_barrier(result.image.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                     VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT, VK_IMAGE_LAYOUT_GENERAL));
+    for (const VkImage image : result_images()) {
+      barriers.push_back(image_barrier(
+          image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+          result_layout(), VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT, VK_IMAGE_LAYOUT_GENERAL));
+    }
   }
   record_barriers(commands, barriers.data(), barriers.size());
 }

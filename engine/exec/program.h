@@ -21,6 +21,13 @@ namespace afterglow {
 
 enum class Storage { fp32, fp16 };
 
+/// Pixels of a target from which it is worth a kernel of its own: on smaller ones little is won, and each kernel must
+/// be compiled.
+struct WorthAKernel {
+  std::int64_t ratio = 1 << 16;  ///< that knows how its sizes relate
+  std::int64_t rows = 1 << 19;   ///< that makes several rows an invocation
+};
+
 struct ProgramOptions {
   Storage storage = Storage::fp32;
   bool reference = false;        ///< every pass on its own, computed weights, no sharing of memory
@@ -29,7 +36,12 @@ struct ProgramOptions {
       false;  ///< read images as storage images where shaders and device allow it: faster on CPU devices
   bool source_is_storage =
       false;  ///< with storage_reads: the source that will be bound has STORAGE usage and comes in GENERAL layout
-  bool share_memory = true;  ///< images whose lifetimes do not overlap share bytes (never with `reference`)
+  /// Rows of pixels that one invocation may make where neighbouring rows read the same texels (1 … kMaxRows): faster on
+  /// CPU devices. More than 1 makes the images between kernels linear.
+  int rows = 1;
+  WorthAKernel worth;
+  bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
+  bool share_memory = true;     ///< images whose lifetimes do not overlap share bytes (never with `reference`)
   std::uint64_t max_memory = 6ull << 30;
 };
 
@@ -38,13 +50,14 @@ struct ProgramMemory {
 };
 
 /// An image of the caller's or of a Frame that a program reads or writes. Reads happen in SHADER_READ_ONLY_OPTIMAL, the
-/// result is written in COLOR_ATTACHMENT_OPTIMAL; the caller brings images into these layouts and is told so in
-/// `record`.
+/// result is written in COLOR_ATTACHMENT_OPTIMAL (by rows: in GENERAL); the caller brings images into these layouts and
+/// is told so in `record`.
 struct ImageBinding {
   VkImage image = VK_NULL_HANDLE;
   VkImageView view = VK_NULL_HANDLE;
   VkFormat format = VK_FORMAT_UNDEFINED;
   Size size;
+  std::vector<VkImageView> rows{};  ///< RowTargets::views() of a result that is written several rows at a time
 };
 
 /// Immutable structure; parameters may be rewritten between frames. Not thread-safe.
@@ -67,7 +80,8 @@ class Program {
                     const ImageBinding& result);
 
   /// Records all kernels with their barriers. Inputs must be in SHADER_READ_ONLY_OPTIMAL with their writes made visible
-  /// to fragment shader reads; the result must be in COLOR_ATTACHMENT_OPTIMAL and is left so. `only` ≥ 0 records that
+  /// to fragment shader reads; the result must be in COLOR_ATTACHMENT_OPTIMAL (with
+  /// `result_rows` above 1, it and its targets in GENERAL) and is left so. `only` ≥ 0 records that
   /// kernel alone (for pass-by-pass timing). `timestamps`: pool with kernels().size()+1 queries, or null.
   void record(VkCommandBuffer commands, int only = -1, VkQueryPool timestamps = VK_NULL_HANDLE) const;
 
@@ -75,6 +89,8 @@ class Program {
   const Graph& graph() const;
   ProgramMemory memory() const;
   VkFormat storage_format() const;
+  /// With `result_by_rows`: how many rows the targets of the result must have; 1: they are not used.
+  int result_rows() const;
   /// The layout in which `record` wants the source: SHADER_READ_ONLY_OPTIMAL, or GENERAL (then with STORAGE usage).
   VkImageLayout source_layout() const;
   /// A transient image and the layout it is in after a whole run; null for images without memory of their own (inputs,

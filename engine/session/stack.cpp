@@ -28,6 +28,7 @@ StackChoice choose(const Device& device, const StackOptions& options, double max
   choice.storage = half ? Storage::fp16 : Storage::fp32;
   choice.hardware_filter = !device.is_cpu() && max_error >= kErrorOfHardwareFilter;
   choice.storage_reads = device.is_cpu();
+  choice.rows = device.is_cpu() ? kMaxRows : 1;
   return choice;
 }
 
@@ -41,7 +42,7 @@ struct Stack::State {
   std::optional<Preset> preset;
   Device* device = nullptr;
   StackChoice choice;
-  bool source_is_storage = false;
+  bool own_images = false;
   Graph graph;
   bool prepared = false;
   std::unique_ptr<Program> program;
@@ -103,9 +104,9 @@ Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
   return total;
 }
 
-void Stack::use(Device& device, bool source_is_storage) {
+void Stack::use(Device& device, bool own_images) {
   state_->device = &device;
-  state_->source_is_storage = source_is_storage;
+  state_->own_images = own_images;
   state_->choice = choose(device, state_->options, state_->choice.max_error);
   if (const auto& cache = state_->options.cache_folder; !cache.empty())
     device.use_pipeline_cache((cache / "pipelines").string());
@@ -128,7 +129,9 @@ Result<void> Stack::prepare(const BuildContext& context) {
   options.reference = state_->options.reference;
   options.hardware_filter = state_->choice.hardware_filter;
   options.storage_reads = state_->choice.storage_reads;
-  options.source_is_storage = state_->source_is_storage;
+  options.source_is_storage = state_->own_images;
+  options.rows = state_->choice.rows;
+  options.result_by_rows = state_->own_images;
   options.max_memory = state_->options.max_memory;
   auto program = Program::create(*state_->device, *state_->shaders, *state_->compiler, state_->graph, options);
   if (!program) {

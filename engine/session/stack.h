@@ -33,6 +33,7 @@ struct StackChoice {
   Storage storage = Storage::fp32;
   bool hardware_filter = false;
   bool storage_reads = false;  ///< see ProgramOptions
+  int rows = 1;                ///< see ProgramOptions
   double max_error = 2e-3;
 };
 
@@ -51,8 +52,9 @@ class Stack {
   /// device.
   Result<std::uint64_t> memory_needed(const BuildContext& context);
 
-  /// Decides storage and filtering for a device. Call before `prepare`. `source_is_storage`: see ProgramOptions.
-  void use(Device& device, bool source_is_storage = false);
+  /// Decides storage and filtering for a device. Call before `prepare`. `own_images`: source and result will be a
+  /// FrameRunner's, made as the program likes them best (ProgramOptions::source_is_storage, result_by_rows).
+  void use(Device& device, bool own_images = false);
   const StackChoice& choice() const;
 
   /// Makes shaders, pipelines and memory for pictures of this size, or only rewrites parameters when the structure is
