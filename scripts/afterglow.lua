@@ -20,7 +20,8 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@class afterglow.SettingType  what a setting may be
 ---@class afterglow.Volume       settings for a part of the scene
 ---@class afterglow.Curve        a value over time
----@alias afterglow.Moving afterglow.Curve|fun(t: { frame: number, time: number, fps: number }): any  a value over time
+---@alias afterglow.OfTime fun(t: { frame: number, time: number, fps: number }): any  a value as a function of time
+---@alias afterglow.Moving afterglow.Curve|afterglow.OfTime  a value over time
 
 ---An image of the pass graph. Images are never changed: a pass makes a new one.
 ---@class afterglow.Image
