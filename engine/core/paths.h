@@ -16,7 +16,7 @@ namespace afterglow {
 struct SearchPath {
   std::vector<std::filesystem::path> user;  ///< in order of precedence
   std::filesystem::path installation;       ///< folder that holds scripts/, shaders/, presets/
-  std::optional<Error> error;               ///< of a pack that cannot be used: loading a preset fails with it
+  std::optional<Error> error = {};          ///< of a pack that cannot be used: loading a preset fails with it
 
   /// `effects/NAME.lua` or the installation's `scripts/effects/NAME.lua`; all hits, the winner first.
   std::vector<std::filesystem::path> find_effect(const std::string& name) const;

@@ -77,7 +77,8 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
                                    const DescribeOptions& options) {
   KernelDesc desc;
   desc.hardware_filter = options.hardware_filter;
-  desc.half_storage = options.half_storage;
+  desc.target = options.half_storage ? KernelTarget::float16 : KernelTarget::float32;
+  if (options.codes && kernel.output == graph.result) desc.target = KernelTarget::codes8;
   const long long pixels = graph.images[kernel.output].size.area();
   const Pass& head = graph.passes[kernel.passes.front()];
   std::size_t first_stage = 1;

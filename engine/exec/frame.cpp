@@ -53,6 +53,7 @@ struct FrameRunner::State {
   Result<void> make_image(FrameImage& image, const ImageDesc& desc, HostAccess access, int rows = 1);
   Result<std::uint64_t> upload(FrameImage& image, const HostImage& host);
   Result<std::uint64_t> download(HostResult& out);
+  Result<std::uint64_t> over_result_rows(const std::function<std::uint64_t(int y, const std::byte* from)>& row);
   Result<void> bind(Program& program);
   /// The layout in which the result is drawn, and every VkImage of it: itself and its targets by rows.
   VkImageLayout result_layout() const {
@@ -96,7 +97,7 @@ Result<void> FrameRunner::State::prepare(const Program& program, const std::map<
   }
   const ImageDesc result_desc{.name = "result",
                               .size = graph.images[graph.result].size,
-                              .format = program.storage_format(),
+                              .format = program.result_format(),
                               .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
 
   const auto bytes = [](const ImageDesc& d) {
@@ -133,10 +134,26 @@ Result<std::uint64_t> FrameRunner::State::upload(FrameImage& image, const HostIm
   return held;
 }
 
+/// Calls `row` for every row of the result, and sums up what it returns.
+Result<std::uint64_t> FrameRunner::State::over_result_rows(
+    const std::function<std::uint64_t(int y, const std::byte* from)>& row) {
+  if (!result.direct) return staging.download(staged(result), result_layout(), row);
+  result.image.memory().invalidate();
+  return over_rows(result.image.desc().size.height, result.image.row_pitch(),
+                   [&](int y) { return row(y, result.image.row(y)); });
+}
+
 Result<std::uint64_t> FrameRunner::State::download(HostResult& out) {
   const auto [width, height] = result.image.desc().size;
   const VkFormat format = result.image.desc().format;
   const auto row_values = static_cast<std::size_t>(width) * 4;
+  if (format == VK_FORMAT_R8G8B8A8_UNORM) {
+    out.codes.resize(row_values * static_cast<std::size_t>(height));
+    return over_result_rows([&](int y, const std::byte* from) {
+      std::memcpy(out.codes.data() + row_values * static_cast<std::size_t>(y), from, row_values);
+      return std::uint64_t{0};
+    });
+  }
   const auto values = row_values * static_cast<std::size_t>(height);
   const bool keep_alpha = out.keep_alpha && out.pixels.size() == values;
   if (out.pixels.size() != values) {
@@ -147,9 +164,7 @@ Result<std::uint64_t> FrameRunner::State::download(HostResult& out) {
     float* to = out.pixels.data() + row_values * static_cast<std::size_t>(y);
     return keep_alpha ? unpack_row_rgb(from, format, width, to) : unpack_row(from, format, width, to);
   };
-  if (!result.direct) return staging.download(staged(result), result_layout(), unpack);
-  result.image.memory().invalidate();
-  return over_rows(height, result.image.row_pitch(), [&](int y) { return unpack(y, result.image.row(y)); });
+  return over_result_rows(unpack);
 }
 
 Result<void> FrameRunner::State::bind(Program& program) {

@@ -33,8 +33,9 @@ struct HostResult {
   /// RGBA. It may be the very memory of the input "source": it is written after all inputs have been read. A vector
   /// that is large enough already is not allocated again.
   std::vector<float> pixels;
-  std::uint64_t clamped = 0;  ///< half storage: source or result samples held at ±65504
-  bool keep_alpha = false;    ///< write R, G and B alone where `pixels` has the size of the result already
+  std::vector<std::uint8_t> codes;  ///< instead of `pixels`, of a program with ProgramOptions::codes: RGBA
+  std::uint64_t clamped = 0;        ///< half storage: source or result samples held at ±65504
+  bool keep_alpha = false;          ///< write R, G and B alone where `pixels` has the size of the result already
 };
 
 /// Images, staging memory, command buffer and fence for one frame at a time; reused while sizes stay the same. Not

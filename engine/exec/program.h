@@ -40,6 +40,7 @@ struct ProgramOptions {
   /// CPU devices. More than 1 makes the images between kernels linear.
   int rows = 1;
   WorthAKernel worth;
+  bool codes = false;           ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   bool share_memory = true;     ///< images whose lifetimes do not overlap share bytes (never with `reference`)
   std::uint64_t max_memory = 6ull << 30;
@@ -74,7 +75,7 @@ class Program {
   void set_parameters(const Graph& graph);
 
   /// Points the graph's inputs and its result at images. Formats of inputs are free (sampled as float); the result's
-  /// must be the storage format. Must not be called while a submission is in flight. A program whose graph's result is
+  /// is `result_format`. Must not be called while a submission is in flight. A program whose graph's result is
   /// its source does nothing.
   Result<void> bind(const std::map<std::string, ImageBinding>& inputs /* "source", "depth", … */,
                     const ImageBinding& result);
@@ -89,6 +90,7 @@ class Program {
   const Graph& graph() const;
   ProgramMemory memory() const;
   VkFormat storage_format() const;
+  VkFormat result_format() const;  ///< the storage format, or R8G8B8A8_UNORM with ProgramOptions::codes
   /// With `result_by_rows`: how many rows the targets of the result must have; 1: they are not used.
   int result_rows() const;
   /// The layout in which `record` wants the source: SHADER_READ_ONLY_OPTIMAL, or GENERAL (then with STORAGE usage).

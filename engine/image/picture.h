@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "image/image.h"
 
@@ -30,6 +31,8 @@ struct Picture {
   /// depth as stored; "normal": 3 channels as stored. Only those that the file (or --depth/--normal) holds and the
   /// caller asked for.
   std::map<std::string, Image> auxiliary;
+  /// When not empty, `color` as 8-bit display codes that need no more encoding, RGBA: sRGB, alpha straight.
+  std::vector<std::uint8_t> codes;
   bool has_alpha = false;  ///< the file stored alpha; without it the A of `color` is 1
   Rect data_window;        ///< where `color` lies, in the coordinates of the file, after orientation is applied
   Rect display_window;     ///< what a display format shows

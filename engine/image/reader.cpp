@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/text.h"
-#include "image/camera.h"
 #include "image/color_encoding.h"
 #include "image/orientation.h"
 #include "image/picture_file.h"
@@ -257,7 +256,8 @@ Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& optio
     header.display_window = upright_display(plan.color_part());
     header.channels = static_cast<int>(plan.color_part().channels.size());
     for (const AuxiliaryPlan& extra : plan.auxiliary) header.auxiliary.push_back(extra.kind->name);
-    header.camera = camera_position(plan.file->facts(plan.color).metadata);
+    header.has_alpha = plan.color.channels[3] >= 0;
+    header.facts = std::make_shared<const FileFacts>(plan.file->facts(plan.color));
     header.format = plan.file->format();
     header.host_bytes = host_bytes(plan, options.auxiliary);
     return header;

@@ -3,10 +3,8 @@
 // Errors: io (file named), usage (bad option text).
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,10 +36,11 @@ struct ReadOptions {
 struct PictureHeader {
   Rect data_window, display_window;  ///< after orientation
   int channels = 0;
-  std::vector<std::string> auxiliary;           ///< "depth", "normal" that reading would find
-  std::optional<std::array<double, 3>> camera;  ///< its place in the scene: image/camera.h
-  std::string format;                           ///< OIIO format name: "openexr", "png", …
-  std::uint64_t host_bytes = 0;                 ///< host memory that read_picture would take at its peak
+  std::vector<std::string> auxiliary;  ///< "depth", "normal" that reading would find
+  bool has_alpha = false;
+  std::shared_ptr<const FileFacts> facts;
+  std::string format;            ///< OIIO format name: "openexr", "png", …
+  std::uint64_t host_bytes = 0;  ///< host memory that read_picture would take at its peak
 };
 
 Result<PictureHeader> read_header(const std::filesystem::path& file, const ReadOptions& options);

@@ -62,14 +62,17 @@ Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& pres
   return std::unique_ptr<Session>(new Session(std::move(state)));
 }
 
-Result<void> Session::prepare(const BuildContext& context) { return state_->stack->prepare(context); }
+Result<void> Session::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding) {
+  return state_->stack->prepare(context, encoding);
+}
 
-Result<void> Session::process(Picture& picture, const BuildContext& frame) {
+Result<void> Session::process(Picture& picture, const BuildContext& frame,
+                              const std::optional<DisplayEncoding>& encoding) {
   BuildContext context = frame;
   context.size = picture.color.size();
   context.auxiliary.clear();
   for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
-  AFTERGLOW_CHECK(prepare(context));
+  AFTERGLOW_CHECK(prepare(context, encoding));
   state_->times.frame = {};
   state_->result.clamped = 0;
   if (!state_->stack->runs()) return {};
@@ -84,6 +87,7 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame) {
     inputs[name] = host_image(picture.auxiliary.at(name));
   auto times = state_->runner->run(*state_->stack->program(), inputs, result, state_->options.timing);
   picture.color.pixels = std::move(result.pixels);
+  picture.codes = std::move(result.codes);
   if (!times) return std::move(times).error();
   state_->times.frame = std::move(times).value();
   return {};

@@ -50,10 +50,12 @@ class Session {
 
   /// Makes everything that a picture of this size needs; `process` does it otherwise. May run while the picture is
   /// being read.
-  Result<void> prepare(const BuildContext& context);
+  Result<void> prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {});
   /// Runs the stack: `picture.color` becomes the result; its alpha stays. A stack with nothing to do leaves the picture
   /// untouched. `frame` gives frame number, time and fps; sizes are taken from the picture.
-  Result<void> process(Picture& picture, const BuildContext& frame = {});
+  /// With `encoding` the result may come as `picture.codes` instead, and `picture.color` stays the source.
+  Result<void> process(Picture& picture, const BuildContext& frame = {},
+                       const std::optional<DisplayEncoding>& encoding = {});
   SessionReport report() const;
 
  private:

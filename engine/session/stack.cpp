@@ -32,6 +32,22 @@ StackChoice choose(const Device& device, const StackOptions& options, double max
   return choice;
 }
 
+/// A pixel pass behind the result, which joins the last kernel like any other.
+void encode_for_display(Graph& graph, const DisplayEncoding& encoding) {
+  const auto output = static_cast<ImageId>(graph.images.size());
+  Pass pass;
+  pass.name = "output.display";
+  pass.effect = "output";
+  pass.shader = encoding.straight_alpha ? "output/display_straight" : "output/display";
+  pass.inputs = {{"source", graph.result}};
+  if (encoding.straight_alpha) pass.inputs.push_back({"original", graph.source, true});
+  pass.constants = {{"dither", encoding.dither ? 1.0 : 0.0}};
+  pass.output = output;
+  graph.images.push_back({pass.name, graph.images[graph.result].size, static_cast<int>(graph.passes.size())});
+  graph.passes.push_back(std::move(pass));
+  graph.result = output;
+}
+
 }  // namespace
 
 struct Stack::State {
@@ -77,6 +93,7 @@ double Stack::script_milliseconds() const { return state_->script_ms; }
 double Stack::compile_milliseconds() const { return state_->compile_ms; }
 
 VkFormat Stack::result_format() const {
+  if (state_->program) return state_->program->result_format();
   return state_->choice.storage == Storage::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
@@ -112,8 +129,10 @@ void Stack::use(Device& device, bool own_images) {
     device.use_pipeline_cache((cache / "pipelines").string());
 }
 
-Result<void> Stack::prepare(const BuildContext& context) {
+Result<void> Stack::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding) {
   AFTERGLOW_TRY(Graph graph, this->graph(context));
+  const bool encoded = encoding && !state_->options.reference && graph.result != graph.source;
+  if (encoded) encode_for_display(graph, *encoding);
   const bool reusable = state_->prepared && same_structure(state_->graph, graph);
   state_->graph = std::move(graph);
   state_->prepared = true;
@@ -132,6 +151,7 @@ Result<void> Stack::prepare(const BuildContext& context) {
   options.source_is_storage = state_->own_images;
   options.rows = state_->choice.rows;
   options.result_by_rows = state_->own_images;
+  options.codes = encoded;
   options.max_memory = state_->options.max_memory;
   auto program = Program::create(*state_->device, *state_->shaders, *state_->compiler, state_->graph, options);
   if (!program) {

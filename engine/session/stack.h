@@ -28,6 +28,13 @@ struct StackOptions {
   std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
 };
 
+/// 8-bit display codes as the last kernel's work: sRGB-encoded, as a display file holds them.
+struct DisplayEncoding {
+  bool straight_alpha = false;  ///< colours are divided by the source's alpha, which becomes the codes' alpha
+  bool dither = false;          ///< ±½ step of ordered noise
+  friend bool operator==(const DisplayEncoding&, const DisplayEncoding&) = default;
+};
+
 /// How a stack is executed; decided from the device, E and --precision.
 struct StackChoice {
   Storage storage = Storage::fp32;
@@ -60,7 +67,8 @@ class Stack {
   /// Makes shaders, pipelines and memory for pictures of this size, or only rewrites parameters when the structure is
   /// as before. Must not be called while a submission that uses this stack is in flight. Errors: script, device, io
   /// (memory limit).
-  Result<void> prepare(const BuildContext& context);
+  /// With `encoding` (not with StackOptions::reference) the result is RGBA8.
+  Result<void> prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {});
   /// False when no effect has anything to do: the result *is* the source, and `record` records nothing.
   bool runs() const;
   /// The program of the last `prepare`; null before it, and when nothing runs.
@@ -68,7 +76,8 @@ class Stack {
   /// The graph of the last `prepare`.
   const Graph& prepared_graph() const;
 
-  /// Format that the result image must have: VK_FORMAT_R32G32B32A32_SFLOAT or VK_FORMAT_R16G16B16A16_SFLOAT.
+  /// Format that the result image must have: VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT, or with a
+  /// display encoding VK_FORMAT_R8G8B8A8_UNORM.
   VkFormat result_format() const;
   /// See Program::bind and Program::record for layouts and barriers.
   Result<void> bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result);

