@@ -156,6 +156,7 @@ Result<void> FrameLoop::process(Reading& reading) {
   if (!processed) return fail(frame, named(processed.error(), frame.job));
   const SessionReport report = session_.report();
   frame.times = report.times.frame;
+  frame.skipped = report.skipped_now;
   if (report.clamped > 0)
     console_.diagnostics().warn_once(
         "clamped", fmt::format("{}: {} samples were held at ±65504, the largest half float", frame.job.input.string(),

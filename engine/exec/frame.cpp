@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "exec/barriers.h"
+#include "exec/brightest.h"
 #include "exec/convert.h"
 #include "exec/frame_image.h"
 #include "exec/host_input.h"
@@ -51,7 +52,7 @@ struct FrameRunner::State {
 
   Result<void> prepare(const Program& program, const std::map<std::string, HostImage>& host);
   Result<void> make_image(FrameImage& image, const ImageDesc& desc, HostAccess access);
-  Result<std::uint64_t> upload(FrameImage& image, const HostImage& host);
+  Result<std::uint64_t> upload(FrameImage& image, const HostImage& host, Brightest* brightest);
   Result<std::uint64_t> download(HostResult& out);
   Result<void> bind(Program& program);
   void before(const Program& program, VkCommandBuffer commands);
@@ -112,10 +113,12 @@ Result<void> FrameRunner::State::prepare(const Program& program, const std::map<
   return make_image(result, result_desc, HostAccess::read);
 }
 
-Result<std::uint64_t> FrameRunner::State::upload(FrameImage& image, const HostImage& host) {
+/// `brightest`: what to note the pixels in while they are at hand, or null.
+Result<std::uint64_t> FrameRunner::State::upload(FrameImage& image, const HostImage& host, Brightest* brightest) {
   const ImageDesc& desc = image.image.desc();
   const auto pack = [&](int y, std::byte* to) {
     const float* row = host.pixels + static_cast<std::ptrdiff_t>(y) * desc.size.width * host.channels;
+    if (brightest) brightest->add_row(row, host.channels, desc.size.width);
     return pack_row(row, host.channels, desc.size.width, desc.format, to);
   };
   if (!image.direct) {
@@ -233,7 +236,7 @@ Result<void> FrameRunner::State::execute(Program& program, KernelTiming timing, 
 }
 
 Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out,
-                                    KernelTiming timing) {
+                                    KernelTiming timing, const Choose& choose) {
   State& s = *state_;
   const Graph& graph = program.graph();
   FrameTimes times;
@@ -246,14 +249,25 @@ Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string
   AFTERGLOW_CHECK(s.prepare(program, inputs));
 
   auto start = Clock::now();
+  Brightest brightest;
   for (auto& [name, image] : s.inputs) {
-    AFTERGLOW_TRY(const std::uint64_t held, s.upload(image, inputs.at(name)));
+    const bool looked_at = choose && name == "source";
+    AFTERGLOW_TRY(const std::uint64_t held, s.upload(image, inputs.at(name), looked_at ? &brightest : nullptr));
     out.clamped += held;
   }
   times.upload = milliseconds_since(start);
 
-  AFTERGLOW_CHECK(s.bind(program));
-  AFTERGLOW_CHECK(s.execute(program, timing, times));
+  Program* chosen = &program;
+  if (choose) {
+    const bool half = program.storage_format() == VK_FORMAT_R16G16B16A16_SFLOAT;
+    AFTERGLOW_TRY(chosen, choose(brightest.value(half ? Storage::fp16 : Storage::fp32)));
+  }
+  if (!chosen) {
+    copy_source(inputs.at("source"), out.pixels);
+    return times;
+  }
+  AFTERGLOW_CHECK(s.bind(*chosen));
+  AFTERGLOW_CHECK(s.execute(*chosen, timing, times));
 
   start = Clock::now();
   AFTERGLOW_TRY(const std::uint64_t held, s.download(out));

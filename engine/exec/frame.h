@@ -45,10 +45,14 @@ class FrameRunner {
   /// takes the way over staging buffers that every GPU can go. Errors: device.
   static Result<std::unique_ptr<FrameRunner>> create(Device& device, std::uint64_t max_memory, bool direct = true);
   ~FrameRunner();
+  /// Which program runs a frame, asked once its source has been packed. `brightest`: the largest red, green or blue of it,
+  /// see exec/brightest.h. It must take the same inputs; null: nothing has to run, the result is the source.
+  using Choose = std::function<Result<Program*>(float brightest)>;
+
   /// Uploads "source" and the auxiliary images that the graph asks for, runs, reads the result back into `out` (RGBA
   /// float; resized by it). Errors: other (an input is missing or of another size), io (over `max_memory`), device.
   Result<FrameTimes> run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out,
-                         KernelTiming timing);
+                         KernelTiming timing, const Choose& choose = {});
   /// Pixels of a transient image as the last run left them. Needs a program created with `reference`. Errors: other.
   Result<HostResult> read_image(Program& program, ImageId image);
 

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "graph/condition.h"
 #include "graph/graph.h"
 
 namespace afterglow {
@@ -56,6 +57,11 @@ std::string to_json(const Graph& graph) {
   out["skipped"] = Json::array();
   for (const auto& skipped : graph.skipped)
     out["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
+  for (const auto& condition : graph.idle)
+    out["idle"].push_back({{"effect", condition.effect},
+                           {"looks_at", graph.images[condition.image].name},
+                           {"brightest", condition.limit},
+                           {"skipped_when", idle_reason(condition)}});
   return out.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -32,6 +32,8 @@ struct Session::State {
   std::unique_ptr<FrameRunner> runner;
   HostResult result;
   SessionTimes times;
+  Program* ran = nullptr;  ///< in the last frame; null: nothing
+  std::vector<Skipped> skipped_now;
 };
 
 Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -62,7 +64,12 @@ Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& pres
   return std::unique_ptr<Session>(new Session(std::move(state)));
 }
 
-Result<void> Session::prepare(const BuildContext& context) { return state_->stack->prepare(context); }
+Result<void> Session::prepare(const BuildContext& context) {
+  state_->ran = nullptr;
+  AFTERGLOW_CHECK(state_->stack->prepare(context));
+  state_->ran = state_->stack->program();
+  return {};
+}
 
 Result<void> Session::process(Picture& picture, const BuildContext& frame) {
   BuildContext context = frame;
@@ -72,6 +79,7 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame) {
   AFTERGLOW_CHECK(prepare(context));
   state_->times.frame = {};
   state_->result.clamped = 0;
+  state_->skipped_now.clear();
   if (!state_->stack->runs()) return {};
 
   // The result replaces the source in its own memory. Effects never change alpha: the source's own values stay where
@@ -82,7 +90,14 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame) {
   std::map<std::string, HostImage> inputs{{"source", {result.pixels.data(), context.size, picture.color.channels}}};
   for (const auto& [name, id] : state_->stack->prepared_graph().auxiliary)
     inputs[name] = host_image(picture.auxiliary.at(name));
-  auto times = state_->runner->run(*state_->stack->program(), inputs, result, state_->options.timing);
+  FrameRunner::Choose choose;
+  if (state_->stack->depends_on_content())
+    choose = [this](float brightest) -> Result<Program*> {
+      AFTERGLOW_TRY(const IdlePrograms::Choice choice, state_->stack->program_for(brightest));
+      state_->skipped_now = *choice.skipped;
+      return state_->ran = choice.program;
+    };
+  auto times = state_->runner->run(*state_->stack->program(), inputs, result, state_->options.timing, choose);
   picture.color.pixels = std::move(result.pixels);
   if (!times) return std::move(times).error();
   state_->times.frame = std::move(times).value();
@@ -100,8 +115,13 @@ SessionReport Session::report() const {
   report.hardware_filter = stack.choice().hardware_filter;
   report.max_error = stack.choice().max_error;
   report.skipped = stack.prepared_graph().skipped;
+  report.skipped_now = state_->skipped_now;
+  report.counters = {.programs = stack.programs(),
+                     .images = state_->runner->counters().images,
+                     .buffers = state_->runner->counters().buffers};
+  if (state_->ran)
+    for (const auto& kernel : state_->ran->plan().kernels) report.kernels.push_back(kernel.name);
   if (const Program* program = state_->stack->program()) {
-    for (const auto& kernel : program->plan().kernels) report.kernels.push_back(kernel.name);
     report.skipped.insert(report.skipped.end(), program->plan().skipped.begin(), program->plan().skipped.end());
     report.memory = program->memory();
   }

@@ -29,11 +29,15 @@ struct SessionReport {
   std::string storage;  ///< "fp32" or "fp16"
   bool reference = false, hardware_filter = false;
   double max_error = 2e-3;
-  std::vector<Skipped> skipped;      ///< effects and passes that did not run in the last frame, with reasons
-  std::vector<std::string> kernels;  ///< what ran, joined passes as "a+b"
+  std::vector<Skipped> skipped;       ///< effects and passes that no frame of this size runs, with reasons
+  std::vector<Skipped> skipped_now;  ///< what the last frame did not run besides, because of its content
+  std::vector<std::string> kernels;  ///< what ran in the last frame, joined passes as "a+b"
   ProgramMemory memory;
   std::uint64_t clamped = 0;  ///< half storage: samples of the last frame held at ±65504
   SessionTimes times;
+  struct Counters {
+    int programs = 0, images = 0, buffers = 0;
+  } counters;  ///< objects made so far; steady frames leave them alone
 };
 
 /// Not thread-safe.

@@ -1,5 +1,6 @@
 #include "session/stack.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "graph/plan.h"
@@ -18,7 +19,7 @@ double milliseconds_since(Clock::time_point start) {
 constexpr double kErrorOfHalf = 2e-3;
 constexpr double kErrorOfHardwareFilter = 5e-3;
 
-StackChoice choose(const Device& device, const StackOptions& options, double max_error) {
+StackChoice choice_for(const Device& device, const StackOptions& options, double max_error) {
   StackChoice choice;
   choice.max_error = max_error;
   if (options.reference) return choice;
@@ -45,7 +46,19 @@ struct Stack::State {
   Graph graph;
   bool prepared = false;
   std::unique_ptr<Program> program;
+  IdlePrograms idle;
   double script_ms = 0, compile_ms = 0;
+
+  ProgramOptions program_options() const {
+    ProgramOptions out;
+    out.storage = choice.storage;
+    out.reference = options.reference;
+    out.hardware_filter = choice.hardware_filter;
+    out.storage_reads = choice.storage_reads;
+    out.source_is_storage = source_is_storage;
+    out.max_memory = options.max_memory;
+    return out;
+  }
 };
 
 Stack::Stack(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -106,7 +119,7 @@ Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
 void Stack::use(Device& device, bool source_is_storage) {
   state_->device = &device;
   state_->source_is_storage = source_is_storage;
-  state_->choice = choose(device, state_->options, state_->choice.max_error);
+  state_->choice = choice_for(device, state_->options, state_->choice.max_error);
   if (const auto& cache = state_->options.cache_folder; !cache.empty())
     device.use_pipeline_cache((cache / "pipelines").string());
 }
@@ -118,18 +131,14 @@ Result<void> Stack::prepare(const BuildContext& context) {
   state_->prepared = true;
   if (reusable) {
     if (state_->program) state_->program->set_parameters(state_->graph);
+    state_->idle.set_parameters(state_->graph);
     return {};
   }
   state_->program.reset();
+  state_->idle = {};
   if (!runs()) return {};
   const auto start = Clock::now();
-  ProgramOptions options;
-  options.storage = state_->choice.storage;
-  options.reference = state_->options.reference;
-  options.hardware_filter = state_->choice.hardware_filter;
-  options.storage_reads = state_->choice.storage_reads;
-  options.source_is_storage = state_->source_is_storage;
-  options.max_memory = state_->options.max_memory;
+  const ProgramOptions options = state_->program_options();
   auto program = Program::create(*state_->device, *state_->shaders, *state_->compiler, state_->graph, options);
   if (!program) {
     state_->prepared = false;
@@ -140,6 +149,27 @@ Result<void> Stack::prepare(const BuildContext& context) {
   state_->compile_ms += milliseconds_since(start);
   return {};
 }
+
+bool Stack::depends_on_content() const {
+  const StackOptions& options = state_->options;
+  return state_->program && options.skip_idle && !options.reference && !state_->graph.idle.empty();
+}
+
+Result<IdlePrograms::Choice> Stack::program_for(float brightest) {
+  const auto start = Clock::now();
+  const int before = state_->idle.size();
+  ProgramOptions options = state_->program_options();
+  options.max_memory -= std::min(options.max_memory, state_->program->memory().arena);
+  auto choice = state_->idle.choose(*state_->device, *state_->shaders, *state_->compiler, *state_->program,
+                                    state_->graph, options, brightest);
+  if (state_->idle.size() > before) {
+    state_->device->save_pipeline_cache();
+    state_->compile_ms += milliseconds_since(start);
+  }
+  return choice;
+}
+
+int Stack::programs() const { return (state_->program ? 1 : 0) + state_->idle.size(); }
 
 Result<void> Stack::bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result) {
   if (!state_->program) return {};

@@ -11,6 +11,7 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
+#include "exec/idle_programs.h"
 #include "exec/program.h"
 #include "gpu/device.h"
 #include "script/preset.h"
@@ -24,6 +25,7 @@ struct StackOptions {
   Precision precision = Precision::automatic;
   std::optional<double> max_error;        ///< E of math.md §13; default: the preset's, else 2e-3
   bool reference = false;                 ///< every pass on its own in fp32 with computed weights: the slow truth
+  bool skip_idle = true;                  ///< run frames without the effects that their content makes idle (never with `reference`)
   std::uint64_t max_memory = 6ull << 30;  ///< bytes of device memory for images
   std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
 };
@@ -65,6 +67,14 @@ class Stack {
   Program* program();
   /// The graph of the last `prepare`.
   const Graph& prepared_graph() const;
+
+  /// Whether the content of a frame may make effects idle: then ask `program_for` for the program of each frame.
+  bool depends_on_content() const;
+  /// The program for a frame whose source is at most this bright (see IdlePrograms), and what it leaves out. Programs are
+  /// made when they are first wanted, and kept. Errors: those of `prepare`.
+  Result<IdlePrograms::Choice> program_for(float brightest);
+  /// Programs made for the present structure.
+  int programs() const;
 
   /// Format that the result image must have: VK_FORMAT_R32G32B32A32_SFLOAT or VK_FORMAT_R16G16B16A16_SFLOAT.
   VkFormat result_format() const;
