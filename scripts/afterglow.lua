@@ -40,6 +40,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field shader string               shaders/NAME.glsl
 ---@field source? afterglow.Image     the colour of a pixel shader (`apply`); the sampler of that name of a `sample_at` shader
 ---@field size? afterglow.Image|integer[]  of the new image, for `sample_at` shaders; default: that of `source`
+---@field reach? number               of `sample_at` shaders: how many texels from the pixel's own place it reads at most; default: anywhere
 ---@field name? string                default: the last part of the shader's name
 ---@field [string] any
 

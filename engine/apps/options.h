@@ -53,6 +53,8 @@ struct ExecutionArguments {
 
 /// "1920x1080". Errors: usage.
 Result<Size> parse_size(const std::string& text);
+/// "X,Y,W,H": whole numbers, X and Y not negative, W and H at least 1. Errors: usage.
+Result<Rect> parse_region(const std::string& text);
 /// "6G", "512M", "1.5GiB", "1000000": bytes, units of 1024. Errors: usage.
 Result<std::uint64_t> parse_memory(const std::string& text);
 /// "6.0 GiB", "512 MiB".
@@ -61,6 +63,7 @@ std::string memory_text(std::uint64_t bytes);
 /// The picture that `check` and `graph` assume: --size, with every auxiliary input that the stack asks for.
 struct AssumedPicture {
   std::string size = "1920x1080";
+  std::string region;                ///< --region; empty: all
   std::vector<std::string> without;  ///< --without depth
   void add(CLI::App& command);
   Result<BuildContext> context(const Preset& preset) const;

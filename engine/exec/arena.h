@@ -6,6 +6,7 @@
 
 #include "exec/program.h"
 #include "gpu/image.h"
+#include "gpu/row_targets.h"
 
 namespace afterglow {
 
@@ -14,6 +15,9 @@ struct ArenaOptions {
   bool share = true;
   bool readable = false;  ///< images may be copied from
   bool storage = false;   ///< images may be read as storage images
+  /// Wanted for the target of each kernel, parallel to the plan's kernels: rows that one invocation makes. Empty: one,
+  /// and images are tiled as the device likes. Else images are linear and stay in GENERAL.
+  std::vector<int> rows;
   std::uint64_t max_memory = 0;
 };
 
@@ -26,6 +30,10 @@ class Arena {
 
   /// Null for images that are not in the arena.
   const UnboundImage* image(ImageId id) const;
+  /// The draw targets of an image that is written several rows at a time; null for the others.
+  const RowTargets* row_targets(ImageId id) const;
+  /// Every VkImage of a linear arena; their content may be thrown away before the first kernel.
+  std::vector<VkImage> linear_images() const;
   const ProgramMemory& memory() const { return memory_; }
   int images() const { return static_cast<int>(images_.size()); }
   int allocations() const { return static_cast<int>(allocations_.size()); }
@@ -33,6 +41,8 @@ class Arena {
  private:
   std::vector<Memory> allocations_;  // before the images: freed after them
   std::map<ImageId, UnboundImage> images_;
+  std::map<ImageId, RowTargets> row_targets_;
+  bool linear_ = false;
   ProgramMemory memory_;
 };
 

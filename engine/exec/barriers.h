@@ -19,15 +19,27 @@ VkImageMemoryBarrier2 before_drawing(VkImage image);
 /// also read as storage images.
 VkImageMemoryBarrier2 before_reading(VkImage image, VkImageLayout layout);
 
+/// An image that is drawn and read in GENERAL from here on. What it held is lost.
+VkImageMemoryBarrier2 into_general(VkImage image);
+
 /// How fragment shaders may read an image that is in `layout`.
 VkAccessFlags2 reading_access(VkImageLayout layout);
+
+/// What must happen before a kernel.
+struct KernelBarriers {
+  std::vector<VkImageMemoryBarrier2> images;
+  /// Everything drawn so far becomes readable, and what was read may be drawn over: for images that stay in GENERAL and
+  /// are seen through several VkImages each, which no image barrier can name.
+  bool memory = false;
+};
 
 /// The barriers before each kernel. `read`: the images that each kernel reads; `image_of`: the Vulkan image of a
 /// transient image, null for those that are the caller's (inputs, the result), which the caller's barriers take care
 /// of.
-std::vector<std::vector<VkImageMemoryBarrier2>> kernel_barriers(const Plan& plan,
-                                                                const std::vector<std::vector<ImageId>>& read,
-                                                                const std::function<VkImage(ImageId)>& image_of,
-                                                                VkImageLayout read_layout);
+std::vector<KernelBarriers> kernel_barriers(const Plan& plan, const std::vector<std::vector<ImageId>>& read,
+                                            const std::function<VkImage(ImageId)>& image_of, VkImageLayout read_layout);
+
+/// Records what must happen; nothing when that is nothing.
+void record_barriers(VkCommandBuffer commands, const KernelBarriers& barriers);
 
 }  // namespace afterglow

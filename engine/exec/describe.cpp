@@ -16,6 +16,7 @@ AxisRatio axis_ratio(int source, int target) {
   if (source == target) return AxisRatio::same;
   if (source == 2 * target) return AxisRatio::half;
   if (2 * source == target) return AxisRatio::twice;
+  if (4 * source == target) return AxisRatio::fourfold;
   return AxisRatio::any;
 }
 
@@ -56,6 +57,20 @@ std::vector<ImageRead> reads_of(const Graph& graph, const PlanKernel& kernel, co
   return reads;
 }
 
+/// How many rows of the target an invocation of this kernel should make, of at most `wanted`: several where
+/// neighbouring rows read mostly the same texels, and where there is but a pixel's own colour to work on.
+int rows_that_pay(const KernelDesc& kernel, int wanted) {
+  constexpr double kWorthwhile = 1.5;  // times fewer lines
+  constexpr int kMostLines = 12;       // that a processor fetches ahead at a time
+  if (kernel.sample || kernel.hardware_filter) return 1;
+  if (!kernel.filter) return wanted;
+  for (int rows = wanted; rows > 1; rows /= 2) {
+    const auto lines = lines_shared(*kernel.filter, kernel.ratio_y, rows);
+    if (lines && lines->together <= kMostLines && lines->apart > kWorthwhile * lines->together) return rows;
+  }
+  return 1;
+}
+
 }  // namespace
 
 Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, const PlanKernel& kernel,
@@ -80,6 +95,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
     desc.stages.push_back(std::move(stage));
   }
   if (options.storage_reads) desc.reads = reads_of(graph, kernel, desc, options);
+  desc.rows = rows_that_pay(desc, options.rows);
   return desc;
 }
 

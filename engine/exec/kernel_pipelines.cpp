@@ -41,8 +41,8 @@ Result<KernelPipelines> KernelPipelines::create(const Device& device, const std:
       made[i].emplace(std::move(fragment).error());
       return;
     }
-    made[i].emplace(
-        create_draw_pipeline(device, out.layout(kernels[i]), vertex.get(), fragment->get(), format, names[i]));
+    made[i].emplace(create_draw_pipeline(device, out.layout(kernels[i]), vertex.get(), fragment->get(),
+                                         {format, kernels[i].rows}, names[i]));
   });
   for (auto& pipeline : made) {
     if (!*pipeline) return std::move(*pipeline).error();

@@ -6,24 +6,32 @@
 
 namespace afterglow {
 
-void record_kernel(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel, VkImageView result) {
+void record_kernel(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel,
+                   const std::vector<VkImageView>& result) {
   device.begin_label(commands, kernel.name);
-  record_barriers(commands, kernel.barriers.data(), kernel.barriers.size());
+  record_barriers(commands, kernel.barriers);
 
   const auto width = static_cast<std::uint32_t>(kernel.target_size.width);
-  const auto height = static_cast<std::uint32_t>(kernel.target_size.height);
-  const VkRect2D area{{0, 0}, {width, height}};
-  // Every pixel is drawn: what the target held need not be loaded.
-  const VkRenderingAttachmentInfo color{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                        .imageView = kernel.target != VK_NULL_HANDLE ? kernel.target : result,
-                                        .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                        .loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-                                        .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
+  const auto height = static_cast<std::uint32_t>((kernel.target_size.height + kernel.rows - 1) / kernel.rows);
+  const Rect& part = kernel.part;
+  const int first_row = part.y / kernel.rows, last_row = (part.y + part.height + kernel.rows - 1) / kernel.rows;
+  const VkRect2D area{{part.x, first_row},
+                      {static_cast<std::uint32_t>(part.width), static_cast<std::uint32_t>(last_row - first_row)}};
+  const auto& targets = kernel.targets.empty() ? result : kernel.targets;
+  std::array<VkRenderingAttachmentInfo, kMaxRows> colors;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    // Every pixel that anybody reads is drawn: what the target held need not be loaded.
+    colors[i] = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                 .imageView = targets[i],
+                 .imageLayout = kernel.target_layout,
+                 .loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                 .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
+  }
   const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                                   .renderArea = area,
                                   .layerCount = 1,
-                                  .colorAttachmentCount = 1,
-                                  .pColorAttachments = &color};
+                                  .colorAttachmentCount = static_cast<std::uint32_t>(targets.size()),
+                                  .pColorAttachments = colors.data()};
   vkCmdBeginRendering(commands, &rendering);
   const VkViewport viewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1};
   vkCmdSetViewport(commands, 0, 1, &viewport);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "exec/barriers.h"
 #include "gpu/device.h"
 #include "gpu/image.h"
 
@@ -16,11 +17,16 @@ struct KernelCommands {
   VkPipeline pipeline = VK_NULL_HANDLE;
   VkPipelineLayout layout = VK_NULL_HANDLE;
   VkDescriptorSet set = VK_NULL_HANDLE;
-  VkImageView target = VK_NULL_HANDLE;  ///< null: the result that the program is bound to
+  std::vector<VkImageView> targets;  ///< one for each row that an invocation makes; empty: the result
+  int rows = 1;
   Size target_size, first_image_size;
-  std::vector<VkImageMemoryBarrier2> barriers;  ///< that must come before it
+  Rect part;  ///< what is drawn of the target; whole groups of rows
+  VkImageLayout target_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  KernelBarriers barriers;  ///< that must come before it
 };
 
-void record_kernel(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel, VkImageView result);
+/// `result`: the targets that the program is bound to.
+void record_kernel(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel,
+                   const std::vector<VkImageView>& result);
 
 }  // namespace afterglow

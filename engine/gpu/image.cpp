@@ -88,9 +88,16 @@ Result<void> UnboundImage::bind(const Device& device, VkDeviceMemory memory, VkD
 }
 
 Result<GpuImage> GpuImage::create(const Device& device, const ImageDesc& desc, HostAccess access) {
+  AFTERGLOW_TRY(UnboundImage image, UnboundImage::create(device, desc));
+  const VkMemoryRequirements needs = image.needs();
+  return create(device, std::move(image), needs, access);
+}
+
+Result<GpuImage> GpuImage::create(const Device& device, UnboundImage image, const VkMemoryRequirements& needs,
+                                  HostAccess access) {
   GpuImage out;
-  AFTERGLOW_TRY(out.image_, UnboundImage::create(device, desc));
-  AFTERGLOW_TRY(out.memory_, Memory::allocate(device, out.image_.needs(), access, "image '" + desc.name + "'"));
+  out.image_ = std::move(image);
+  AFTERGLOW_TRY(out.memory_, Memory::allocate(device, needs, access, "image '" + out.desc().name + "'"));
   AFTERGLOW_CHECK(out.image_.bind(device, out.memory_.get(), 0));
   if (access != HostAccess::none) {
     const VkImageSubresource subresource{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0};

@@ -51,6 +51,9 @@ class UnboundImage {
 class GpuImage {
  public:
   static Result<GpuImage> create(const Device& device, const ImageDesc& desc, HostAccess access = HostAccess::none);
+  /// For an image of the caller's and memory that it need not have to itself; `needs` says how much.
+  static Result<GpuImage> create(const Device& device, UnboundImage image, const VkMemoryRequirements& needs,
+                                 HostAccess access);
   GpuImage() = default;
 
   VkImage get() const { return image_.get(); }

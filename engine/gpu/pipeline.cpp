@@ -70,7 +70,7 @@ Result<ShaderModuleHandle> create_shader_module(const Device& device, std::span<
 }
 
 Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayout& layout, VkShaderModule vertex,
-                                            VkShaderModule fragment, VkFormat format, const std::string& name) {
+                                            VkShaderModule fragment, DrawTargets targets, const std::string& name) {
   const auto stage = [](VkShaderStageFlagBits bit, VkShaderModule module) {
     return VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                                            .pNext = nullptr,
@@ -95,17 +95,19 @@ Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayo
       .lineWidth = 1};
   const VkPipelineMultisampleStateCreateInfo one_sample{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO, .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-  const VkPipelineColorBlendAttachmentState overwrite{.colorWriteMask = 0xf};
+  const auto count = static_cast<std::uint32_t>(targets.count);
+  const std::vector<VkPipelineColorBlendAttachmentState> overwrite(count, {.colorWriteMask = 0xf});
+  const std::vector<VkFormat> formats(count, targets.format);
   const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-                                                  .attachmentCount = 1,
-                                                  .pAttachments = &overwrite};
+                                                  .attachmentCount = count,
+                                                  .pAttachments = overwrite.data()};
   constexpr std::array kDynamic{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
   const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
                                                  .dynamicStateCount = static_cast<std::uint32_t>(kDynamic.size()),
                                                  .pDynamicStates = kDynamic.data()};
   const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
-                                                .colorAttachmentCount = 1,
-                                                .pColorAttachmentFormats = &format};
+                                                .colorAttachmentCount = count,
+                                                .pColorAttachmentFormats = formats.data()};
   const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
                                           .pNext = &rendering,
                                           .stageCount = static_cast<std::uint32_t>(stages.size()),

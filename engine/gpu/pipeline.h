@@ -1,4 +1,4 @@
-// Full-screen draws: descriptor layouts, pipeline layouts and pipelines for one colour target.
+// Full-screen draws: descriptor layouts, pipeline layouts and pipelines.
 #pragma once
 
 #include <cstdint>
@@ -31,10 +31,16 @@ Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface&
 Result<ShaderModuleHandle> create_shader_module(const Device& device, std::span<const std::uint32_t> spirv,
                                                 const std::string& name);
 
-/// A pipeline that runs `fragment` on every pixel of a target of `format`; viewport and scissor are dynamic. Goes
-/// through the device's pipeline cache. Thread-safe.
+/// Colour attachments of a draw: `count` of the same format.
+struct DrawTargets {
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  int count = 1;
+};
+
+/// A pipeline that runs `fragment` on every pixel of its targets; viewport and scissor are dynamic. Goes through the
+/// device's pipeline cache. Thread-safe.
 Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayout& layout, VkShaderModule vertex,
-                                            VkShaderModule fragment, VkFormat format, const std::string& name);
+                                            VkShaderModule fragment, DrawTargets targets, const std::string& name);
 
 /// Texels at their centres, or interpolated; clamped to the edge, level 0.
 Result<SamplerHandle> create_sampler(const Device& device, VkFilter filter);

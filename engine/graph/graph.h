@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,9 @@ struct Pass {
   std::vector<PassInput> inputs;             ///< a pixel pass's first input is "source"
   std::map<std::string, ParamValue> params;  ///< dynamic: values may change without a rebuild
   std::map<std::string, double> constants;   ///< specialised: part of the structure
+  /// Of a sample pass: how far from the point that corresponds to a target pixel's centre it reads, in texels of each
+  /// input. Empty: anywhere. Decides what a region needs, nothing else.
+  std::optional<double> reach;
   ImageId output = kNoImage;
   std::string file;  ///< script and line that asked for it, for messages
   int line = 0;

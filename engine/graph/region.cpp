@@ -1,5 +1,7 @@
 #include "graph/region.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -55,6 +57,14 @@ Rect filter_rect(const Filter& filter, const Rect& target, Size source_size, Siz
   return source_rect(target, source_size, target_size, x, y, around);
 }
 
+/// Grown to whole groups of rows.
+Rect by_rows(Rect rect, int rows, int height) {
+  const int end = std::min((rect.y + rect.height + rows - 1) / rows * rows, height);
+  rect.y = rect.y / rows * rows;
+  rect.height = end - rect.y;
+  return rect;
+}
+
 /// What a pass reads of an input when `target` of its output is drawn.
 Rect input_rect(const Graph& graph, const Pass& pass, const PassInput& input, const Rect& target) {
   if (input.pixelwise) return target;
@@ -75,15 +85,16 @@ Rect united(const Rect& a, const Rect& b) {
   return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
 }
 
-Regions regions(const Graph& graph, const Plan& plan, const Rect& wanted) {
+Regions regions(const Graph& graph, const Plan& plan, const Rect& wanted, int rows) {
   Regions out;
   out.kernels.resize(plan.kernels.size());
   out.images.resize(graph.images.size());
   out.images[graph.result] = wanted;
   for (std::size_t k = plan.kernels.size(); k-- > 0;) {
     const PlanKernel& kernel = plan.kernels[k];
-    const Rect target = out.kernels[k] = out.images[kernel.output];
-    if (is_empty(target)) continue;
+    if (is_empty(out.images[kernel.output])) continue;
+    const Rect target = out.kernels[k] =
+        by_rows(out.images[kernel.output], rows, graph.images[kernel.output].size.height);
     for (const int index : kernel.passes) {
       const Pass& pass = graph.passes[index];
       // All passes of a kernel make images of one size, at the same pixels. What flows from one to the next is no image:
@@ -95,13 +106,17 @@ Regions regions(const Graph& graph, const Plan& plan, const Rect& wanted) {
   return out;
 }
 
-double drawn_share(const Graph& graph, const Plan& plan, const Regions& regions) {
+bool same_reach(const Graph& a, const Graph& b) {
+  return std::ranges::equal(a.passes, b.passes, {}, &Pass::reach, &Pass::reach);
+}
+
+Skipped skipped_pixels(const Graph& graph, const Plan& plan, const Regions& regions) {
   double drawn = 0, all = 0;
   for (std::size_t k = 0; k < plan.kernels.size(); ++k) {
-    drawn += static_cast<double>(std::max(0LL, regions.kernels[k].size().area()));
+    drawn += static_cast<double>(regions.kernels[k].size().area());
     all += static_cast<double>(graph.images[plan.kernels[k].output].size.area());
   }
-  return all > 0 ? drawn / all : 0;
+  return {fmt::format("{:.1f} % of the pixels", all > 0 ? 100 * (1 - drawn / all) : 0.0), "the region does not need them"};
 }
 
 }  // namespace afterglow

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/hash.h"
 #include "image/image.h"
 
 namespace afterglow {
@@ -30,11 +31,16 @@ struct Picture {
   /// depth as stored; "normal": 3 channels as stored. Only those that the file (or --depth/--normal) holds and the
   /// caller asked for.
   std::map<std::string, Image> auxiliary;
+  /// Hashes of `color` ("source") and of auxiliary images, where they are known: equal hashes mean equal pixels.
+  std::map<std::string, Hash> content;
   bool has_alpha = false;  ///< the file stored alpha; without it the A of `color` is 1
   Rect data_window;        ///< where `color` lies, in the coordinates of the file, after orientation is applied
   Rect display_window;     ///< what a display format shows
   SanitizeCounts sanitized;
   std::shared_ptr<const FileFacts> facts;  ///< never null after reading; may be null for pictures made in memory
 };
+
+/// Fills in `content`. Whoever changes pixels afterwards has to clear it.
+void note_content(Picture& picture);
 
 }  // namespace afterglow

@@ -35,6 +35,7 @@ struct PassRequest {
   std::optional<std::string> name;
   std::string shader;
   std::optional<Size> size;
+  std::optional<double> reach;      ///< see Pass::reach
   std::vector<Argument> arguments;  ///< "source" among them
 };
 

@@ -1,5 +1,7 @@
 #include "session/session.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <future>
 
@@ -19,7 +21,19 @@ OpenedDevice open_device(const DeviceOptions& options, Diagnostics& diagnostics)
   return {std::move(device), std::chrono::duration<double, std::milli>(Clock::now() - start).count()};
 }
 
-HostImage host_image(const Image& image) { return {image.pixels.data(), image.size(), image.channels}; }
+HostImage host_image(const Picture& picture, const std::string& name, const Image& image) {
+  HostImage out{image.pixels.data(), image.size(), image.channels};
+  if (const auto known = picture.content.find(name); known != picture.content.end()) out.content = known->second;
+  return out;
+}
+
+/// What a frame did not do because it was done before.
+std::vector<Skipped> kept_of(const FrameTimes& times) {
+  if (times.kernels_kept == 0) return {};
+  if (times.kernels_run == 0) return {{"frame", "its picture and settings are those of an earlier frame"}};
+  return {{fmt::format("{} of {} kernels", times.kernels_kept, times.kernels_kept + times.kernels_run),
+           "nothing that they read has changed"}};
+}
 
 }  // namespace
 
@@ -64,19 +78,19 @@ Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& pres
   return std::unique_ptr<Session>(new Session(std::move(state)));
 }
 
-Result<void> Session::prepare(const BuildContext& context) {
+Result<void> Session::prepare(const BuildContext& context, const std::optional<Rect>& region) {
   state_->ran = nullptr;
-  AFTERGLOW_CHECK(state_->stack->prepare(context));
+  AFTERGLOW_CHECK(state_->stack->prepare(context, region));
   state_->ran = state_->stack->program();
   return {};
 }
 
-Result<void> Session::process(Picture& picture, const BuildContext& frame) {
+Result<void> Session::process(Picture& picture, const BuildContext& frame, const std::optional<Rect>& region) {
   BuildContext context = frame;
   context.size = picture.color.size();
   context.auxiliary.clear();
   for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
-  AFTERGLOW_CHECK(prepare(context));
+  AFTERGLOW_CHECK(prepare(context, region));
   state_->times.frame = {};
   state_->result.clamped = 0;
   state_->skipped_now.clear();
@@ -85,11 +99,12 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame) {
   // The result replaces the source in its own memory. Effects never change alpha: the source's own values stay where
   // they are, exact whatever the storage format.
   HostResult& result = state_->result;
+  std::map<std::string, HostImage> inputs{{"source", host_image(picture, "source", picture.color)}};
+  for (const auto& [name, id] : state_->stack->prepared_graph().auxiliary)
+    inputs[name] = host_image(picture, name, picture.auxiliary.at(name));
   result.pixels = std::move(picture.color.pixels);
   result.keep_alpha = true;
-  std::map<std::string, HostImage> inputs{{"source", {result.pixels.data(), context.size, picture.color.channels}}};
-  for (const auto& [name, id] : state_->stack->prepared_graph().auxiliary)
-    inputs[name] = host_image(picture.auxiliary.at(name));
+  picture.content.erase("source");
   FrameRunner::Choose choose;
   if (state_->stack->depends_on_content())
     choose = [this](float brightest) -> Result<Program*> {
@@ -101,6 +116,7 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame) {
   picture.color.pixels = std::move(result.pixels);
   if (!times) return std::move(times).error();
   state_->times.frame = std::move(times).value();
+  for (auto& kept : kept_of(state_->times.frame)) state_->skipped_now.push_back(std::move(kept));
   return {};
 }
 
@@ -123,6 +139,8 @@ SessionReport Session::report() const {
     for (const auto& kernel : state_->ran->plan().kernels) report.kernels.push_back(kernel.name);
   if (const Program* program = state_->stack->program()) {
     report.skipped.insert(report.skipped.end(), program->plan().skipped.begin(), program->plan().skipped.end());
+    if (stack.region())
+      report.skipped.push_back(skipped_pixels(program->graph(), program->plan(), program->parts()));
     report.memory = program->memory();
   }
   report.clamped = state_->result.clamped;

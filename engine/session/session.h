@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,7 @@ struct SessionReport {
   bool reference = false, hardware_filter = false;
   double max_error = 2e-3;
   std::vector<Skipped> skipped;       ///< effects and passes that no frame of this size runs, with reasons
-  std::vector<Skipped> skipped_now;  ///< what the last frame did not run besides, because of its content
+  std::vector<Skipped> skipped_now;  ///< what the last frame did not run besides, because of its content, or because it was done before
   std::vector<std::string> kernels;  ///< what ran in the last frame, joined passes as "a+b"
   ProgramMemory memory;
   std::uint64_t clamped = 0;  ///< half storage: samples of the last frame held at ±65504
@@ -54,10 +55,12 @@ class Session {
 
   /// Makes everything that a picture of this size needs; `process` does it otherwise. May run while the picture is
   /// being read.
-  Result<void> prepare(const BuildContext& context);
+  Result<void> prepare(const BuildContext& context, const std::optional<Rect>& region = {});
   /// Runs the stack: `picture.color` becomes the result; its alpha stays. A stack with nothing to do leaves the picture
-  /// untouched. `frame` gives frame number, time and fps; sizes are taken from the picture.
-  Result<void> process(Picture& picture, const BuildContext& frame = {});
+  /// untouched. `frame` gives frame number, time and fps; sizes are taken from the picture. With `region`, in pixels of the
+  /// picture and within it, that part of the picture becomes the result's; the rest stays as it is. Pictures whose `content`
+  /// is known and was there before are not run again while settings stay.
+  Result<void> process(Picture& picture, const BuildContext& frame = {}, const std::optional<Rect>& region = {});
   SessionReport report() const;
 
  private:

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "graph/plan.h"
+#include "graph/region.h"
 #include "shader/kernel.h"
 
 namespace afterglow {
@@ -29,6 +30,7 @@ StackChoice choice_for(const Device& device, const StackOptions& options, double
   choice.storage = half ? Storage::fp16 : Storage::fp32;
   choice.hardware_filter = !device.is_cpu() && max_error >= kErrorOfHardwareFilter;
   choice.storage_reads = device.is_cpu();
+  choice.rows = device.is_cpu() ? kMaxRows : 1;
   return choice;
 }
 
@@ -42,8 +44,9 @@ struct Stack::State {
   std::optional<Preset> preset;
   Device* device = nullptr;
   StackChoice choice;
-  bool source_is_storage = false;
+  bool own_images = false;
   Graph graph;
+  std::optional<Rect> region;  ///< that `program` was made for
   bool prepared = false;
   std::unique_ptr<Program> program;
   IdlePrograms idle;
@@ -55,7 +58,11 @@ struct Stack::State {
     out.reference = options.reference;
     out.hardware_filter = choice.hardware_filter;
     out.storage_reads = choice.storage_reads;
-    out.source_is_storage = source_is_storage;
+    out.source_is_storage = own_images;
+    out.rows = choice.rows;
+    out.result_by_rows = own_images;
+    out.region = region;
+    out.keep_images = options.keep_images;
     out.max_memory = options.max_memory;
     return out;
   }
@@ -110,23 +117,25 @@ Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
     const auto pixels = static_cast<std::uint64_t>(graph.images[plan.transient[i]].size.area());
     blocks.push_back({pixels * bytes_per_pixel, 1, plan.lifetimes[i].first, plan.lifetimes[i].last});
   }
-  std::uint64_t total = place(blocks, !reference).total;
+  std::uint64_t total = place(blocks, !reference && !state_->options.keep_images).total;
   for (const auto& image : graph.images)
     if (image.producer < 0) total += static_cast<std::uint64_t>(image.size.area()) * bytes_per_pixel;
   return total;
 }
 
-void Stack::use(Device& device, bool source_is_storage) {
+void Stack::use(Device& device, bool own_images) {
   state_->device = &device;
-  state_->source_is_storage = source_is_storage;
+  state_->own_images = own_images;
   state_->choice = choice_for(device, state_->options, state_->choice.max_error);
   if (const auto& cache = state_->options.cache_folder; !cache.empty())
     device.use_pipeline_cache((cache / "pipelines").string());
 }
 
-Result<void> Stack::prepare(const BuildContext& context) {
+Result<void> Stack::prepare(const BuildContext& context, const std::optional<Rect>& region) {
   AFTERGLOW_TRY(Graph graph, this->graph(context));
-  const bool reusable = state_->prepared && same_structure(state_->graph, graph);
+  const bool same_region = state_->region == region && (!region || same_reach(state_->graph, graph));
+  const bool reusable = state_->prepared && same_region && same_structure(state_->graph, graph);
+  state_->region = region;
   state_->graph = std::move(graph);
   state_->prepared = true;
   if (reusable) {
@@ -169,6 +178,7 @@ Result<IdlePrograms::Choice> Stack::program_for(float brightest) {
   return choice;
 }
 
+const std::optional<Rect>& Stack::region() const { return state_->region; }
 int Stack::programs() const { return (state_->program ? 1 : 0) + state_->idle.size(); }
 
 Result<void> Stack::bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result) {

@@ -26,6 +26,7 @@ struct StackOptions {
   std::optional<double> max_error;        ///< E of math.md §13; default: the preset's, else 2e-3
   bool reference = false;                 ///< every pass on its own in fp32 with computed weights: the slow truth
   bool skip_idle = true;                  ///< run frames without the effects that their content makes idle (never with `reference`)
+  bool keep_images = false;  ///< images between passes stay, so that after an edit only what it changes runs again
   std::uint64_t max_memory = 6ull << 30;  ///< bytes of device memory for images
   std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
 };
@@ -35,6 +36,7 @@ struct StackChoice {
   Storage storage = Storage::fp32;
   bool hardware_filter = false;
   bool storage_reads = false;  ///< see ProgramOptions
+  int rows = 1;                ///< see ProgramOptions
   double max_error = 2e-3;
 };
 
@@ -53,14 +55,16 @@ class Stack {
   /// device.
   Result<std::uint64_t> memory_needed(const BuildContext& context);
 
-  /// Decides storage and filtering for a device. Call before `prepare`. `source_is_storage`: see ProgramOptions.
-  void use(Device& device, bool source_is_storage = false);
+  /// Decides storage and filtering for a device. Call before `prepare`. `own_images`: source and result will be a
+  /// FrameRunner's, made as the program likes them best (ProgramOptions::source_is_storage, result_by_rows).
+  void use(Device& device, bool own_images = false);
   const StackChoice& choice() const;
 
   /// Makes shaders, pipelines and memory for pictures of this size, or only rewrites parameters when the structure is
   /// as before. Must not be called while a submission that uses this stack is in flight. Errors: script, device, io
   /// (memory limit).
-  Result<void> prepare(const BuildContext& context);
+  /// With `region`, in pixels of the picture and within it, only that part of the result is made.
+  Result<void> prepare(const BuildContext& context, const std::optional<Rect>& region = {});
   /// False when no effect has anything to do: the result *is* the source, and `record` records nothing.
   bool runs() const;
   /// The program of the last `prepare`; null before it, and when nothing runs.
@@ -73,6 +77,8 @@ class Stack {
   /// The program for a frame whose source is at most this bright (see IdlePrograms), and what it leaves out. Programs are
   /// made when they are first wanted, and kept. Errors: those of `prepare`.
   Result<IdlePrograms::Choice> program_for(float brightest);
+  /// The region of the last `prepare`.
+  const std::optional<Rect>& region() const;
   /// Programs made for the present structure.
   int programs() const;
 

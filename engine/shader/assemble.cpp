@@ -8,6 +8,7 @@
 
 #include "shader/axis.h"
 #include "shader/filter_head.h"
+#include "shader/interleave.h"
 #include "shader/kernel.h"
 #include "shader/prelude.h"
 #include "shader/rename.h"
@@ -20,8 +21,7 @@ constexpr std::size_t kMaxImages = 16;  ///< what every Vulkan device can bind t
 
 constexpr std::string_view kHeader =
     "#version 460\n"
-    "layout(push_constant) uniform ag_Push { ivec2 ag_target_size; ivec2 ag_source_size; };\n"
-    "layout(location = 0) out vec4 ag_result;\n";
+    "layout(push_constant) uniform ag_Push { ivec2 ag_target_size; ivec2 ag_source_size; };\n";
 
 /// Rounds to half floats, to nearest even, so that the store is exact whatever rounding the device's attachments have.
 constexpr std::string_view kRoundToHalf = R"(
@@ -41,6 +41,8 @@ class Assembler {
   Result<AssembledKernel> run() {
     if (kernel_.filter && kernel_.sample)
       return Error{ErrorKind::other, "a kernel has one head: a filter or a sample stage"};
+    if (kernel_.rows < 1 || kernel_.rows > kMaxRows)
+      return Error{ErrorKind::other, fmt::format("an invocation makes 1 to {} rows, not {}", kMaxRows, kernel_.rows)};
     out_.file_names = {"", "lib/prelude.glsl"};
     AFTERGLOW_CHECK(head());
     for (const auto& stage : kernel_.stages) AFTERGLOW_CHECK(add_stage(stage, ShaderKind::pixel));
@@ -50,6 +52,8 @@ class Assembler {
       return error;
     }
     out_.glsl += kHeader;
+    for (int row = 0; row < kernel_.rows; ++row)
+      out_.glsl += fmt::format("layout(location = {0}) out vec4 ag_result{0};\n", row);
     if (!block_.empty()) out_.glsl += "layout(set = 0, binding = 0, std140) uniform ag_Block {\n" + block_ + "};\n";
     out_.glsl += images_;
     out_.glsl += "#line 1 1\n";
@@ -57,9 +61,15 @@ class Assembler {
     if (!readers_.empty()) out_.glsl += "#line 1 1\n" + readers_;
     out_.glsl += library_text_ + stages_ + "#line 1 0\n";
     if (kernel_.half_storage) out_.glsl += kRoundToHalf;
-    out_.glsl += "void main() {\n  ivec2 ag_pixel = ivec2(gl_FragCoord.xy);\n  vec4 ag_color;\n" + body_;
-    out_.glsl +=
-        kernel_.half_storage ? "  ag_result = ag_round_to_half(ag_color);\n}\n" : "  ag_result = ag_color;\n}\n";
+    if (kernel_.half_storage) row_ += "  ag_color = ag_round_to_half(ag_color);\n";
+    if (row_.empty()) {
+      every_row("ag_result{0} = ag_color{0};");
+    } else {
+      out_.glsl +=
+          fmt::format("vec4 {}(vec4 ag_color{}) {{\n{}  return ag_color;\n}}\n", kRowFunction, row_parameters_, row_);
+      every_row("ag_result{0} = " + std::string(kRowFunction) + "(ag_color{0}" + row_arguments_ + ");");
+    }
+    out_.glsl += head_function_ + "void main() {\n" + pixels() + body_ + "}\n";
     out_.hash = hash_text(out_.glsl);
     return std::move(out_);
   }
@@ -70,13 +80,33 @@ class Assembler {
     const ImageRead read = add_image(-1, "source", "ag_image0", true);
     images_ += fmt::format("#define ag_texel0(p) {}\n", texel(read, "ag_image0", "p"));
     if (!kernel_.filter) {
-      body_ += "  ag_color = ag_texel0(ag_pixel);\n";
-      return {};
+      every_row("vec4 ag_color{0} = ag_texel0(ag_pixel{0});");
+    } else if (!kernel_.hardware_filter && shares_rows(*kernel_.filter, kernel_.ratio_y, kernel_.rows)) {
+      AFTERGLOW_TRY(const std::string code,
+                    filter_rows(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.rows));
+      body_ += code;
+    } else {
+      AFTERGLOW_TRY(const std::string code,
+                    filter_head(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.hardware_filter));
+      head_function_ = "vec4 ag_filter(ivec2 ag_pixel) {\n  vec4 ag_color;\n" + code + "  return ag_color;\n}\n";
+      every_row("vec4 ag_color{0} = ag_filter(ag_pixel{0});");
     }
-    AFTERGLOW_TRY(const std::string code,
-                  filter_head(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.hardware_filter));
-    body_ += code;
     return {};
+  }
+
+  /// Declares the pixels of the invocation. Those below the target's last row are made like it and land in padding.
+  std::string pixels() const {
+    if (kernel_.rows == 1) return "  ivec2 ag_pixel0 = ivec2(gl_FragCoord.xy);\n";
+    std::string out = fmt::format("  ivec2 ag_pixel = ivec2(gl_FragCoord.xy) * ivec2(1, {});\n", kernel_.rows);
+    for (int row = 0; row < kernel_.rows; ++row)
+      out +=
+          fmt::format("  ivec2 ag_pixel{0} = ivec2(ag_pixel.x, min(ag_pixel.y + {0}, ag_target_size.y - 1));\n", row);
+    return out;
+  }
+
+  /// Adds a statement to main() for each row; {0} is its number.
+  void every_row(const std::string& statement) {
+    for (int row = 0; row < kernel_.rows; ++row) body_ += "  " + fmt::format(fmt::runtime(statement), row) + "\n";
   }
 
   /// `by_engine`: all reads of it go through the engine's functions, so that it can be a storage image.
@@ -127,14 +157,16 @@ class Assembler {
     for (const auto& name : scanned.names) names.insert_or_assign(name.name, NewName{prefix + name.name, name.macro});
 
     StorageReaders readers;
-    std::string arguments = kind == ShaderKind::pixel ? "ag_color" : "ag_pixel";
+    std::string arguments = "ag_color";
     for (const auto& input : source.interface.inputs) {
       const std::string variable =
           input.pixelwise ? fmt::format("ag_image{}", out_.images.size()) : prefix + input.name;
       const bool by_engine = input.pixelwise || read_by_prelude_alone(scanned.tokens, input.name);
       const ImageRead read = add_image(stage_count_, input.name, variable, by_engine);
       if (input.pixelwise) {
-        arguments += ", " + texel(read, variable, "ag_pixel");
+        arguments += ", ag_in" + std::to_string(out_.images.size());
+        row_parameters_ += ", vec4 ag_in" + std::to_string(out_.images.size());
+        row_arguments_ += ", " + texel(read, variable, "ag_pixel{0}");
       } else if (read != ImageRead::sampled) {
         const std::string reader = fmt::format("ag_r{}_", out_.images.size());
         readers_ += storage_reads(reader, variable);
@@ -148,8 +180,10 @@ class Assembler {
     }
     stages_ += fmt::format("#line 1 {}\n", file_index(source.path.string())) +
                rewrite(source.text, scanned, names, values, readers);
-    body_ +=
-        fmt::format("  ag_color = {}{}({});\n", prefix, kind == ShaderKind::pixel ? "apply" : "sample_at", arguments);
+    if (kind == ShaderKind::sample)
+      every_row("vec4 ag_color{0} = " + prefix + "sample_at(ag_pixel{0});");
+    else
+      row_ += fmt::format("  ag_color = {}apply({});\n", prefix, arguments);
     ++stage_count_;
     return {};
   }
@@ -211,7 +245,10 @@ class Assembler {
 
   const KernelDesc& kernel_;
   AssembledKernel out_;
-  std::string block_, images_, readers_, library_text_, stages_, body_;
+  std::string block_, images_, readers_, library_text_, stages_;
+  std::string head_function_;                         ///< what finds one row's colour where rows share nothing
+  std::string row_, row_parameters_, row_arguments_;  ///< what is done to one row's colour
+  std::string body_;                                  ///< of main()
   std::vector<Library> libraries_;
   int stage_count_ = 0;
 };

@@ -48,14 +48,14 @@ std::string product(double constant, const std::string& variable) {
   return float_literal(constant) + " * " + variable;
 }
 
-Axis::Axis(char letter, AxisRatio ratio, Interpolation interpolation)
-    : letter_(letter), ratio_(ratio), interpolation_(interpolation) {}
+Axis::Axis(char letter, AxisRatio ratio, Interpolation interpolation, int pixels)
+    : letter_(letter), ratio_(ratio), interpolation_(interpolation), pixels_(pixels) {}
 
 std::string Axis::name(const char* what, int phase) const { return fmt::format("ag_{}{}{}", letter_, what, phase); }
 
 std::string Axis::base(int phase) const {
   if (ratio_ == AxisRatio::same) return fmt::format("ag_pixel.{}", letter_);
-  if (ratio_ == AxisRatio::half) return fmt::format("ag_{}2", letter_);
+  if (fixed()) return fmt::format("ag_{}0", letter_);
   return name("i", phase);
 }
 
@@ -66,14 +66,14 @@ int Axis::phase_for(double fraction) {
   return static_cast<int>(fractions_.size()) - 1;
 }
 
-std::vector<TapTerm> Axis::read(double offset) {
+std::vector<TapTerm> Axis::read(double offset, int pixel) {
   if (interpolation_ == Interpolation::nearest) offset += 0.5;  // ⌊p + offset⌋ = ⌊t + ½⌋
   std::vector<TapTerm> terms;
   const auto add = [&](int phase, int shift, double constant, std::string variable = {}) {
     if (constant != 0) terms.push_back({{phase, shift}, constant, std::move(variable)});
   };
   if (fixed()) {
-    const auto [i, f] = split(offset + (ratio_ == AxisRatio::half ? 0.5 : 0.0));
+    const auto [i, f] = split(offset + (pixel + 0.5) * step() - 0.5);
     if (interpolation_ == Interpolation::nearest) {
       add(0, i, 1);
     } else if (interpolation_ == Interpolation::linear) {
@@ -130,13 +130,21 @@ std::vector<FetchTerm> Axis::fetch_pairs(const std::map<TexelKey, double>& texel
   return terms;
 }
 
+std::string Axis::by_place(const std::vector<std::string>& values) const {
+  std::string out = values.back();
+  for (std::size_t place = values.size() - 1; place-- > 0;)
+    if (values[place] != values[place + 1])
+      out = fmt::format("ag_{}place <= {} ? {} : {}", letter_, place, values[place], out);
+  return out;
+}
+
 std::string Axis::setup() const {
   std::string out;
-  if (ratio_ == AxisRatio::half) out += fmt::format("  int ag_{0}2 = 2 * ag_pixel.{0};\n", letter_);
+  if (ratio_ == AxisRatio::half) out += fmt::format("  int ag_{0}0 = 2 * ag_pixel.{0};\n", letter_);
+  if (period() > 1) out += fmt::format("  int ag_{0}0 = ag_pixel.{0} >> {1};\n", letter_, period() / 2);
   if (fixed()) return out;
-  if (ratio_ == AxisRatio::twice) {
-    out += fmt::format("  bool ag_{0}odd = (ag_pixel.{0} & 1) != 0;\n  int ag_{0}i = ((ag_pixel.{0} + 1) >> 1) - 1;\n",
-                       letter_);
+  if (period() > 1) {
+    out += fmt::format("  int ag_{0}place = ag_pixel.{0} & {1};\n", letter_, period() - 1);
   } else {
     out += fmt::format(
         "  int ag_{0}i, ag_{0}rest;\n"
@@ -147,16 +155,24 @@ std::string Axis::setup() const {
     const int phase = static_cast<int>(c);
     const double fraction = fractions_[c];
     const std::string i = name("i", phase), f = name("f", phase), g = name("g", phase);
-    if (ratio_ == AxisRatio::twice) {
-      const auto [even_carry, even] = split(0.75 + fraction);
-      const auto [odd_carry, odd] = split(0.25 + fraction);
-      const auto choose = [&](const std::string& if_odd, const std::string& if_even) {
-        return if_odd == if_even ? if_even : fmt::format("ag_{}odd ? {} : {}", letter_, if_odd, if_even);
-      };
-      out += fmt::format("  int {1} = ag_{0}i + ({2});\n", letter_, i,
-                         choose(std::to_string(odd_carry), std::to_string(even_carry)));
-      out += fmt::format("  float {} = {}, {} = {};\n", f, choose(float_literal(odd), float_literal(even)), g,
-                         choose(float_literal(1 - odd), float_literal(1 - even)));
+    if (period() > 1) {
+      std::vector<std::string> carries, fs, gs;
+      std::array<std::vector<std::string>, 4> weights;
+      for (int place = 0; place < period(); ++place) {
+        const auto [carry, rest] = split(fraction + (place + 0.5) * step() - 0.5);
+        carries.push_back(std::to_string(carry));
+        fs.push_back(float_literal(rest));
+        gs.push_back(float_literal(1 - rest));
+        for (std::size_t k = 0; k < 4; ++k) weights[k].push_back(float_literal(bspline(rest)[k]));
+      }
+      out += fmt::format("  int {} = ag_{}0 + ({});\n", i, letter_, by_place(carries));
+      // The same numbers as on a fixed axis, so that it does not matter how many pixels an invocation makes.
+      if (interpolation_ == Interpolation::cubic_bspline) {
+        out += fmt::format("  vec4 {} = vec4({}, {}, {}, {});\n", name("w", phase), by_place(weights[0]),
+                           by_place(weights[1]), by_place(weights[2]), by_place(weights[3]));
+      } else {
+        out += fmt::format("  float {} = {}, {} = {};\n", f, by_place(fs), g, by_place(gs));
+      }
     } else if (fraction == 0) {
       out += fmt::format(
           "  int {1} = ag_{0}i;\n  float {2}, {3};\n  ag_fraction(ag_{0}rest, ag_target_size.{0}, {2}, {3});\n",
@@ -168,7 +184,7 @@ std::string Axis::setup() const {
           "  ag_fraction_beyond({1}, ag_{0}rest, ag_target_size.{0}, {4}, {5}, {2}, {3});\n",
           letter_, i, f, g, float_literal(high), float_literal(fraction - high));
     }
-    if (interpolation_ == Interpolation::cubic_bspline)
+    if (interpolation_ == Interpolation::cubic_bspline && period() == 1)
       out += fmt::format(
           "  vec4 {0} = vec4({2} * {2} * {2}, 4.0 + (3.0 * {1} - 6.0) * ({1} * {1}), 4.0 + (3.0 * {2} - 6.0) * ({2} * "
           "{2}), "

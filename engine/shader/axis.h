@@ -1,9 +1,9 @@
 // How a filter reads along one axis: which texels, with which weights, as GLSL. Internal to the room.
 //
 // The point of a tap lies at p + offset, p = (x + ½)·n_src/n_dst; t = p − ½ + offset, texel i = ⌊t⌋, fraction f = t −
-// i, g = 1 − f. Where the ratio fixes f (same, half) weights are numbers; else they are made of f and g, found exactly
-// from integers (twice: by parity; any: ag_phase of the prelude). Taps whose offsets differ by whole texels share f ("a
-// class").
+// i, g = 1 − f. Where the ratio fixes f (same, half; enlarging, when an invocation makes whole periods of 2 or 4
+// pixels) weights are numbers; else they are made of f and g, found exactly from integers (enlarging: by the pixel's
+// place in its period; any: ag_phase of the prelude). Taps whose offsets differ by whole texels share f ("a class").
 #pragma once
 
 #include <map>
@@ -39,14 +39,15 @@ struct FetchTerm {
 
 class Axis {
  public:
-  /// `letter`: 'x' or 'y'.
-  Axis(char letter, AxisRatio ratio, Interpolation interpolation);
+  /// `letter`: 'x' or 'y'. `pixels`: how many target pixels an invocation makes along this axis, from ag_pixel on.
+  Axis(char letter, AxisRatio ratio, Interpolation interpolation, int pixels = 1);
 
   /// Weights are plain numbers.
-  bool fixed() const { return ratio_ == AxisRatio::same || ratio_ == AxisRatio::half; }
+  bool fixed() const { return ratio_ != AxisRatio::any && pixels_ % period() == 0; }
 
-  /// The texels that a tap of weight 1 reads.
-  std::vector<TapTerm> read(double offset);
+  /// The texels that a tap of weight 1 reads for one of the invocation's pixels (other than the first: fixed axes
+  /// only).
+  std::vector<TapTerm> read(double offset, int pixel = 0);
   /// The same through the sampler's interpolation. Not for Interpolation::nearest.
   std::vector<FetchTerm> fetch(double offset);
   /// For a fixed axis: filtered fetches for merged texels, neighbours in pairs.
@@ -58,13 +59,20 @@ class Axis {
   std::string index(TexelKey texel) const;
 
  private:
+  /// Target pixels after which f repeats; 1 for ratios that do not enlarge.
+  int period() const { return ratio_ == AxisRatio::twice ? 2 : ratio_ == AxisRatio::fourfold ? 4 : 1; }
+  /// Texels a target pixel; not for `any`.
+  double step() const { return ratio_ == AxisRatio::half ? 2.0 : 1.0 / period(); }
   int phase_for(double fraction);
+  /// An expression for the value of the pixel's place in its period.
+  std::string by_place(const std::vector<std::string>& values) const;
   std::string name(const char* what, int phase) const;  ///< "ag_xf0"
   std::string base(int phase) const;
 
   char letter_;
   AxisRatio ratio_;
   Interpolation interpolation_;
+  int pixels_;
   std::vector<double> fractions_;  ///< of each class, in [0, 1)
 };
 

@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "shader/glsl.h"
+#include "shader/interleave.h"
 #include "shader/kernel.h"
 #include "shader/kernel_file.h"
 #include "shader/reflect.h"
@@ -64,10 +65,12 @@ struct KernelCompiler::State {
 namespace {
 
 /// Compares what the compiler made with what the assembler promised; a difference is a fault of the engine.
-Result<KernelFile> build(const AssembledKernel& assembled) {
+Result<KernelFile> build(const AssembledKernel& assembled, int rows) {
+  constexpr int kTogether = 4;  // rows: more of them would not fit into a processor's registers
   KernelFile kernel;
   kernel.text = assembled.hash;
   AFTERGLOW_TRY(kernel.spirv, compile_glsl(assembled.glsl, assembled.file_names));
+  if (rows > 1) kernel.spirv = interleave_rows(kernel.spirv, kTogether);
   AFTERGLOW_TRY(const Reflection reflection, reflect(kernel.spirv));
   kernel.block_size = reflection.block_size;
   for (const auto& param : assembled.params) {
@@ -103,7 +106,7 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
     } else if ((entry->made = state_->load(assembled))) {
       ++state_->from_disk;
     } else {
-      AFTERGLOW_TRY(KernelFile kernel, build(assembled));
+      AFTERGLOW_TRY(KernelFile kernel, build(assembled, desc.rows));
       ++state_->compiled;
       state_->save(kernel);
       entry->made = std::make_shared<const KernelFile>(std::move(kernel));
@@ -116,6 +119,7 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   out.params = std::move(assembled.params);
   for (std::size_t i = 0; i < out.params.size(); ++i) out.params[i].offset = made->offsets[i];
   out.block_size = made->block_size;
+  out.rows = desc.rows;
   out.hash = assembled.hash;
   return out;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "shader/axis.h"
@@ -139,6 +140,31 @@ std::string filtered(const std::string& x, const std::string& y) {
   return fmt::format("textureLod(ag_image0, vec2({}, {}), 0.0)", x, y);
 }
 
+/// What the rows of the target weigh in each row of texels: row of the target → constant.
+using RowWeights = std::map<int, double>;
+
+/// Several rows of the target at once: each line of texels is summed once and added to all rows that it is part of.
+std::string shared_rows(const std::vector<Read>& x, Axis& axis, const std::vector<Tap>& taps, int rows) {
+  std::map<TexelKey, RowWeights> texels;
+  for (int row = 0; row < rows; ++row)
+    for (const auto& tap : taps)
+      for (const auto& term : axis.read(tap.offset, row)) texels[term.texel][row] += tap.weight * term.constant;
+  std::string out;
+  for (int row = 0; row < rows; ++row) out += fmt::format("  vec4 ag_color{} = vec4(0.0);\n", row);
+  if (x.empty()) return out;
+  out += "  vec4 ag_line;\n  int ag_row;\n";
+  for (const auto& [key, weights] : texels) {
+    if (std::ranges::all_of(weights, [](const auto& w) { return w.second == 0; })) continue;
+    std::vector<std::pair<std::string, std::string>> reads;
+    for (const auto& column : x)
+      reads.emplace_back(column.weight, fmt::format("ag_texel0(ivec2({}, ag_row))", column.at));
+    out += fmt::format("  ag_row = {};\n  ag_line = vec4(0.0);\n", axis.index(key)) + weighted_sum("ag_line", reads);
+    for (const auto& [row, weight] : weights)
+      if (weight != 0) out += fmt::format("  ag_color{} += {};\n", row, product(weight, "ag_line"));
+  }
+  return out;
+}
+
 /// Rows first, then their weighted sum.
 std::string straight_rows(const std::vector<Read>& x, const std::vector<Read>& y, Fetch fetch) {
   std::string out = "  ag_color = vec4(0.0);\n";
@@ -255,6 +281,36 @@ Result<std::string> free_sampler_head(const Filter& filter, AxisRatio ratio_x, A
 }
 
 }  // namespace
+
+bool shares_rows(const Filter& filter, AxisRatio ratio_y, int rows) {
+  return rows > 1 && filter.separable() && Axis('y', ratio_y, filter.interpolation, rows).fixed();
+}
+
+std::optional<LinesRead> lines_shared(const Filter& filter, AxisRatio ratio_y, int rows) {
+  if (!shares_rows(filter, ratio_y, rows)) return std::nullopt;
+  Axis axis('y', ratio_y, filter.interpolation, rows);
+  std::set<TexelKey> together;
+  LinesRead lines;
+  for (int row = 0; row < rows; ++row) {
+    std::set<TexelKey> one;
+    for (const auto& tap : filter.y)
+      for (const auto& term : axis.read(tap.offset, row)) one.insert(term.texel);
+    lines.apart += static_cast<int>(one.size());
+    together.insert(one.begin(), one.end());
+  }
+  lines.together = static_cast<int>(together.size());
+  return lines;
+}
+
+Result<std::string> filter_rows(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, int rows) {
+  AFTERGLOW_CHECK(check(filter));
+  Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation, rows);
+  auto columns = axis_reads(x, filter.x);
+  if (columns.size() > kMaxAxisReads || filter.y.size() > kMaxAxisReads)
+    return too_many(std::max(columns.size(), filter.y.size()), kMaxAxisReads);
+  std::string out = x.setup() + y.setup() + kLast + declare('x', "int", "", columns);
+  return out + shared_rows(columns, y, filter.y, rows);
+}
 
 Result<std::string> filter_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter) {
   AFTERGLOW_CHECK(check(filter));

@@ -12,4 +12,11 @@ namespace afterglow {
 /// sizes. Errors (script): no taps, weights or offsets that are not finite, more texel reads than a kernel should have.
 Result<std::string> filter_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter);
 
+/// Whether several rows of the target can be made together with rows of texels that they share.
+bool shares_rows(const Filter& filter, AxisRatio ratio_y, int rows);
+
+/// Statements for main() that declare ag_color0 … and set them to the target's rows ag_pixel.y …, where `shares_rows`.
+/// Exact fetches only. Errors: as filter_head.
+Result<std::string> filter_rows(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, int rows);
+
 }  // namespace afterglow

@@ -26,11 +26,13 @@ struct KernelStage {
 
 /// How source and target sizes of a filter head relate on an axis; the executor picks it from the sizes, the
 /// assembler emits cheaper addressing for the exact cases.
-enum class AxisRatio { any, same, half, twice };  // n_dst = n_src · {?, 1, 1/2, 2}, exactly
+enum class AxisRatio { any, same, half, twice, fourfold };  // n_dst = n_src · {?, 1, 1/2, 2, 4}, exactly
 
 /// How the engine reads an image: through a sampler, or as a storage image of a format, which some devices do much
 /// faster (lavapipe: 0.6 against 1.8 ns a texel of four floats).
 enum class ImageRead { sampled, storage_rgba32f, storage_rgba16f };
+
+inline constexpr int kMaxRows = 8;  ///< colour attachments that every desktop device has
 
 struct KernelDesc {
   /// Head: exactly one of `filter` (source is bound at image 0) or `sample` is set; neither: the own pixel of image 0.
@@ -40,6 +42,9 @@ struct KernelDesc {
   std::vector<KernelStage> stages;  ///< pixel stages, in order
   bool hardware_filter = false;     ///< let the sampler interpolate (error of 8-bit fractions) where that helps
   bool half_storage = false;        ///< target is RGBA16F: clamp to ±65504 before the store
+  /// Rows of the target that one invocation makes, each its own output location: invocation (x, Y) makes the pixels
+  /// (x, rows·Y) … (x, rows·Y + rows − 1). What neighbouring rows both read is read once. 1 … kMaxRows.
+  int rows = 1;
   /// Wished for each image slot, in the order of AssembledKernel::images; those beyond the end are sampled. An input
   /// that an author's shader uses in any other way than by the prelude's functions stays sampled.
   std::vector<ImageRead> reads;
@@ -57,7 +62,8 @@ struct KernelParam {
 /// Set 0: binding 0 the uniform block (absent when `block_size` is 0), bindings 1… the images in the order of `images`,
 /// combined image samplers or storage images. The block is std140; a bool takes 4 bytes, 0 or 1. Kernels with
 /// `hardware_filter` need samplers with linear filtering and clamp-to-edge; the others only use texelFetch. The result
-/// is location 0. Push constants: see kPushConstantBytes below.
+/// is location 0, or with several rows an invocation, locations 0 … rows−1. Push constants: see kPushConstantBytes
+/// below.
 struct AssembledKernel {
   std::string glsl;
   /// Image slots: the head's source (filter or own pixel) or the sample stage's sampler2D inputs in order of
@@ -82,8 +88,16 @@ struct CompiledKernel {
   std::vector<AssembledKernel::ImageSlot> images;
   std::vector<KernelParam> params;
   std::uint32_t block_size = 0;  ///< bytes of the uniform block; 0: none
+  int rows = 1;                  ///< see KernelDesc::rows
   Hash hash;
 };
+
+/// Lines of texels that neighbouring rows of the target read: all `together`, and each by itself, summed.
+struct LinesRead {
+  int together = 0, apart = 0;
+};
+/// For a kernel with this filter as its head; nothing where each row is made by itself.
+std::optional<LinesRead> lines_shared(const Filter& filter, AxisRatio ratio_y, int rows);
 
 /// Pure text. Errors: script, only for what ShaderLibrary could not see.
 Result<AssembledKernel> assemble(const KernelDesc& kernel);

@@ -66,7 +66,7 @@ return fx.effect {
     local knee = knee_vector(s)
     local image
     if s.fade_fireflies then
-      image = g:pass { shader = "bloom/fireflies", source = source, size = { width, height }, knee = knee, name = "prefilter" }
+      image = g:pass { shader = "bloom/fireflies", source = source, size = { width, height }, knee = knee, reach = 3, name = "prefilter" }
     else
       image = g:filter { source = source, size = { width, height }, filter = fx.filters.bilinear(), name = "half" }
       image = g:pass { shader = "bloom/threshold", source = image, knee = knee, name = "prefilter" }

@@ -75,7 +75,9 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
   const ProgramOptions options{.storage = way == Way::joined_half ? Storage::fp16 : Storage::fp32,
                                .reference = way == Way::plain,
                                .storage_reads = way != Way::plain,
-                               .source_is_storage = way != Way::plain};
+                               .source_is_storage = way != Way::plain,
+                               .rows = way == Way::plain ? 1 : kMaxRows,
+                               .result_by_rows = way != Way::plain};
   auto program = need(Program::create(*lab.device, shaders, lab.compiler, graph, options));
   auto runner = need(FrameRunner::create(*lab.device, options.max_memory));
 

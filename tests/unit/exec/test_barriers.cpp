@@ -20,7 +20,7 @@ struct Example {
   std::vector<std::vector<ImageId>> read;
   ImageId result;
   VkImage image_of(ImageId id) const { return id == 0 || id == result ? VK_NULL_HANDLE : handle(id); }
-  std::vector<std::vector<VkImageMemoryBarrier2>> barriers() const {
+  std::vector<KernelBarriers> barriers() const {
     return kernel_barriers(
         plan, read, [this](ImageId id) { return image_of(id); }, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   }
@@ -39,7 +39,7 @@ TEST(KernelBarriers, EveryReadOfATargetComesBehindABarrierThatShowsItsWrites) {
   const auto barriers = e.barriers();
   std::map<VkImage, VkImageLayout> layout;
   for (std::size_t k = 0; k < e.read.size(); ++k) {
-    for (const auto& barrier : barriers[k]) {
+    for (const auto& barrier : barriers[k].images) {
       if (barrier.newLayout == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL) {
         EXPECT_EQ(barrier.oldLayout, layout.at(barrier.image)) << "a target must be drawn before it is read";
         EXPECT_TRUE(barrier.srcStageMask & kOutput);
@@ -65,7 +65,7 @@ TEST(KernelBarriers, DrawingWaitsForAllReadersBefore) {
   const auto barriers = e.barriers();
   for (std::size_t k = 0; k + 1 < e.read.size(); ++k) {
     int found = 0;
-    for (const auto& barrier : barriers[k]) {
+    for (const auto& barrier : barriers[k].images) {
       if (barrier.image != handle(e.plan.kernels[k].output)) continue;
       ++found;
       EXPECT_EQ(barrier.oldLayout, VK_IMAGE_LAYOUT_UNDEFINED);
@@ -83,7 +83,7 @@ TEST(KernelBarriers, NoneForTheCallersImagesAndNoneTwice) {
   const auto barriers = e.barriers();
   std::map<VkImage, int> to_read;
   for (const auto& before : barriers) {
-    for (const auto& barrier : before) {
+    for (const auto& barrier : before.images) {
       EXPECT_NE(barrier.image, handle(0));
       EXPECT_NE(barrier.image, handle(e.result));
       if (barrier.newLayout == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL) ++to_read[barrier.image];

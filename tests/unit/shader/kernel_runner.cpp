@@ -7,6 +7,7 @@
 #include "gpu/fullscreen_vertex.h"
 #include "gpu/image.h"
 #include "gpu/pipeline.h"
+#include "gpu/row_targets.h"
 
 namespace afterglow {
 namespace {
@@ -54,8 +55,8 @@ const KernelRunner::Pipeline& KernelRunner::pipeline(const CompiledKernel& kerne
                  kPushConstantBytes}));
   made->vertex = need(create_shader_module(*device_, kFullscreenVertex, "vertex"));
   made->fragment = need(create_shader_module(*device_, kernel.spirv, "kernel"));
-  made->pipeline =
-      need(create_draw_pipeline(*device_, made->layout, made->vertex.get(), made->fragment.get(), format, "kernel"));
+  made->pipeline = need(create_draw_pipeline(*device_, made->layout, made->vertex.get(), made->fragment.get(),
+                                             {format, kernel.rows}, "kernel"));
   return *made;
 }
 
@@ -80,11 +81,24 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
 
   std::vector<GpuImage> inputs;
   for (const auto& image : images) inputs.push_back(upload(*device_, image));
-  const auto output = need(
-      GpuImage::create(*device_, {.name = "target",
-                                  .size = target,
-                                  .format = format,
-                                  .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
+  const bool by_rows = kernel.rows > 1;
+  auto unbound = need(
+      UnboundImage::create(*device_, {.name = "target",
+                                      .size = target,
+                                      .format = format,
+                                      .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                                      .tiling = by_rows ? VK_IMAGE_TILING_LINEAR : VK_IMAGE_TILING_OPTIMAL}));
+  RowTargets rows;
+  VkMemoryRequirements needs = unbound.needs();
+  if (by_rows) {
+    if (RowTargets::possible(*device_, unbound.desc(), kernel.rows) != kernel.rows)
+      throw std::runtime_error("the device cannot draw by rows");
+    rows = need(RowTargets::create(*device_, unbound, kernel.rows));
+    needs = rows.needs();
+  }
+  const auto output = need(GpuImage::create(*device_, std::move(unbound), needs, HostAccess::none));
+  if (by_rows && !rows.bind(*device_, output.memory().get(), 0)) throw std::runtime_error("no targets by rows");
+  const VkImageLayout drawn = by_rows ? VK_IMAGE_LAYOUT_GENERAL : kDraw;
   const auto staging = need(Buffer::create(*device_, static_cast<VkDeviceSize>(target.area()) * pixel_bytes,
                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::read, "staging"));
   const auto uniforms = need(Buffer::create(*device_, std::max<std::size_t>(block.size(), 16),
@@ -139,23 +153,32 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
     barriers.push_back(image_barrier(input.get(), VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT,
                                      VK_IMAGE_LAYOUT_PREINITIALIZED, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                                      VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, kRead));
-  barriers.push_back(image_barrier(output.get(), VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_UNDEFINED,
-                                   VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                   VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, kDraw));
+  const auto before = [&](VkImage image) {
+    return image_barrier(image, VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_UNDEFINED,
+                         VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                         drawn);
+  };
+  barriers.push_back(before(output.get()));
+  for (int k = 0; k < rows.rows(); ++k) barriers.push_back(before(rows.image(k)));
   record_barriers(commands, barriers.data(), barriers.size());
-  const VkRect2D area{{0, 0}, {static_cast<std::uint32_t>(target.width), static_cast<std::uint32_t>(target.height)}};
-  const VkRenderingAttachmentInfo attachment{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                             .imageView = output.view(),
-                                             .imageLayout = kDraw,
-                                             .loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-                                             .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
+  const VkExtent2D size{static_cast<std::uint32_t>(target.width), static_cast<std::uint32_t>(target.height)};
+  const VkRect2D area{{0, 0},
+                      {size.width, static_cast<std::uint32_t>((target.height + kernel.rows - 1) / kernel.rows)}};
+  std::vector<VkRenderingAttachmentInfo> attachments;
+  for (const VkImageView view : by_rows ? rows.views() : std::vector{output.view()}) {
+    attachments.push_back({.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                           .imageView = view,
+                           .imageLayout = drawn,
+                           .loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                           .storeOp = VK_ATTACHMENT_STORE_OP_STORE});
+  }
   const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                                   .renderArea = area,
                                   .layerCount = 1,
-                                  .colorAttachmentCount = 1,
-                                  .pColorAttachments = &attachment};
+                                  .colorAttachmentCount = static_cast<std::uint32_t>(attachments.size()),
+                                  .pColorAttachments = attachments.data()};
   vkCmdBeginRendering(commands, &rendering);
-  const VkViewport viewport{0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0, 1};
+  const VkViewport viewport{0, 0, static_cast<float>(area.extent.width), static_cast<float>(area.extent.height), 0, 1};
   vkCmdSetViewport(commands, 0, 1, &viewport);
   vkCmdSetScissor(commands, 0, 1, &area);
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.get());
@@ -166,11 +189,11 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
   vkCmdDraw(commands, 3, 1, 0, 0);
   vkCmdEndRendering(commands);
   const auto to_copy = image_barrier(output.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, kDraw, VK_PIPELINE_STAGE_2_COPY_BIT,
+                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, drawn, VK_PIPELINE_STAGE_2_COPY_BIT,
                                      VK_ACCESS_2_TRANSFER_READ_BIT, kCopy);
   record_barriers(commands, &to_copy, 1);
   const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                 .imageExtent = {area.extent.width, area.extent.height, 1}};
+                                 .imageExtent = {size.width, size.height, 1}};
   vkCmdCopyImageToBuffer(commands, output.get(), kCopy, staging.get(), 1, &region);
   need(vkEndCommandBuffer(commands));
   const VkSubmitInfo submit{

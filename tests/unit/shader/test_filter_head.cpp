@@ -26,10 +26,11 @@ KernelDesc kernel(Filter filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hard
   return desc;
 }
 
+/// From the head's function on.
 std::string main_of(const KernelDesc& desc) {
   const auto assembled = assemble(desc);
   if (!assembled) return assembled.error().text();
-  return assembled->glsl.substr(assembled->glsl.find("void main()"));
+  return assembled->glsl.substr(std::min(assembled->glsl.find("vec4 ag_filter("), assembled->glsl.find("void main()")));
 }
 
 int count(const std::string& text, const std::string& word) {

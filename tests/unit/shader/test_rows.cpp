@@ -1,0 +1,144 @@
+// Several rows an invocation: what the work on one pixel is taken apart into, and that every row gets the very bits
+// that it gets alone.
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <random>
+#include <spirv-tools/libspirv.hpp>
+
+#include "kernel_runner.h"
+#include "shader/interleave.h"
+#include "shader/spirv_module.h"
+#include "shader_files.h"
+
+namespace afterglow {
+namespace {
+
+TestImage light(Size size, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> value(0.0f, 3.0f);
+  TestImage image{size, std::vector<float>(static_cast<std::size_t>(size.area()) * 4)};
+  for (float& v : image.rgba) v = value(random);
+  return image;
+}
+
+KernelRunner& runner() {
+  static KernelRunner kRunner;
+  return kRunner;
+}
+
+// Straight, choosing, choosing within a choice, with helpers, precise, looping, returning early.
+constexpr const char* kStages[] = {
+    "vec4 apply(vec4 color) { return color * 2.0 + 1.0; }",
+    "vec4 apply(vec4 color, vec4 other) { return color.r > other.r ? sqrt(color) / (other + 0.5) : other - color; }",
+    R"(float ramp(float x) { return x > 1.0 ? (x > 2.0 ? 2.0 / x : x * x) : exp2(-x); }
+uniform float gain;
+vec4 apply(vec4 color) {
+  vec3 c = color.rgb;
+  if (c.r > c.g) { c.b = ramp(c.r); c.g *= gain; } else { c.r = ramp(c.g); }
+  if (c.b > 1.5) c *= 0.5;
+  return vec4(ramp(c.r), ramp(c.g), ramp(c.b), color.a);
+})",
+    R"(vec4 apply(vec4 color) {
+  precise vec4 sum = color * 1.1 + color.brga * 0.3 - color * color;
+  return sum;
+})",
+    "vec4 apply(vec4 color) { for (int i = 0; i < int(color.r * 3.0); ++i) color.g += sin(color.b); return color; }",
+    "vec4 apply(vec4 color) { if (color.r > 1.0) return color.bgra; return color * 0.5; }",
+};
+
+class Rows : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(Rows, EachHasTheBitsThatItHasAlone) {
+  const ShaderFiles files;
+  KernelDesc desc;
+  desc.stages = {files.stage("test/stage", kStages[GetParam()])};
+  KernelCompiler compiler{std::filesystem::path()};
+  const auto alone = compiler.compile(desc);
+  ASSERT_TRUE(alone) << alone.error().text();
+  const float gain = 0.7f;
+  std::vector<std::byte> block(16);
+  std::memcpy(block.data(), &gain, sizeof gain);
+  for (const Size size : {Size{1, 1}, Size{13, 9}, Size{33, 32}}) {
+    std::vector<TestImage> images;
+    for (std::size_t i = 0; i < alone->images.size(); ++i) images.push_back(light(size, static_cast<unsigned>(i) + 1));
+    const TestImage expected = runner().run(*alone, images, size, block);
+    for (const int rows : {2, 4, 8}) {
+      desc.rows = rows;
+      const auto kernel = compiler.compile(desc);
+      ASSERT_TRUE(kernel) << kernel.error().text();
+      EXPECT_EQ(runner().run(*kernel, images, size, block).rgba, expected.rgba) << rows << " rows, " << size.width;
+    }
+  }
+  EXPECT_EQ(runner().validation_errors(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Rows, testing::Range<std::size_t>(0, std::size(kStages)));
+
+/// The module of a kernel with 8 rows and this stage.
+CompiledKernel compiled(const char* stage) {
+  const ShaderFiles files;
+  KernelDesc desc;
+  desc.stages = {files.stage("test/stage", stage)};
+  desc.rows = 8;
+  return KernelCompiler{std::filesystem::path()}.compile(desc).value();
+}
+
+std::ptrdiff_t count(const CompiledKernel& kernel, spv::Op op) {
+  const auto module = parse(kernel.spirv);
+  return std::ranges::count(module->code, op, &Instruction::op);
+}
+
+TEST(Interleave, TakesBranchesThatChooseApart) {
+  for (const std::size_t stage : {0, 1, 2, 3}) {
+    const CompiledKernel kernel = compiled(kStages[stage]);
+    EXPECT_EQ(count(kernel, spv::OpFunctionCall), 0) << stage;
+    EXPECT_EQ(count(kernel, spv::OpBranchConditional), 0) << stage;
+    EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_3).Validate(kernel.spirv)) << stage;
+  }
+}
+
+TEST(Interleave, LeavesLoopsAsTheyAre) {
+  const CompiledKernel kernel = compiled(kStages[4]);
+  EXPECT_EQ(count(kernel, spv::OpLoopMerge), 1);
+  EXPECT_GE(count(kernel, spv::OpFunctionCall), 8);
+}
+
+TEST(Interleave, RowsTakeTurns) {
+  // Four square roots, one of each row, follow one another.
+  const auto module = parse(compiled("vec4 apply(vec4 color) { return vec4(exp2(sqrt(color.r))); }").spirv);
+  std::string order;
+  for (const auto& instruction : module->code)
+    if (instruction.op == spv::OpExtInst)
+      order += instruction.words[4] == 31 ? 's' : instruction.words[4] == 29 ? 'e' : '-';
+  EXPECT_THAT(order, testing::EndsWith("sssseeeesssseeee"));
+}
+
+TEST(Interleave, EveryCopyIsAsPreciseAsTheOriginal) {
+  const auto module = parse(compiled(kStages[3]).spirv);
+  std::ptrdiff_t decorated = 0, arithmetic = 0;
+  for (const auto& instruction : module->code) {
+    decorated += instruction.op == spv::OpDecorate && instruction.words[2] == spv::DecorationNoContraction;
+    arithmetic += instruction.op == spv::OpFAdd || instruction.op == spv::OpFSub || instruction.op == spv::OpFMul ||
+                  instruction.op == spv::OpVectorTimesScalar;
+  }
+  EXPECT_GE(arithmetic, 8 * 5);
+  EXPECT_GE(decorated, arithmetic);
+}
+
+TEST(Interleave, LeavesWhatIsNoModuleAlone) {
+  const std::vector<std::uint32_t> noise{1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(interleave_rows(noise, 4), noise);
+  EXPECT_EQ(interleave_rows({}, 4), std::vector<std::uint32_t>{});
+}
+
+TEST(Rows, OutsideWhatADeviceHas) {
+  KernelDesc desc;
+  for (const int rows : {0, -1, 9}) {
+    desc.rows = rows;
+    EXPECT_FALSE(assemble(desc)) << rows;
+  }
+}
+
+}  // namespace
+}  // namespace afterglow
