@@ -78,13 +78,18 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
   KernelDesc desc;
   desc.hardware_filter = options.hardware_filter;
   desc.half_storage = options.half_storage;
+  const long long pixels = graph.images[kernel.output].size.area();
   const Pass& head = graph.passes[kernel.passes.front()];
   std::size_t first_stage = 1;
   if (head.kind == PassKind::filter) {
     const Size source = graph.images[head.inputs.front().image].size, target = graph.images[head.output].size;
     desc.filter = head.filter;
-    desc.ratio_x = axis_ratio(source.width, target.width);
-    desc.ratio_y = axis_ratio(source.height, target.height);
+    if (pixels >= options.worth.ratio) {
+      desc.ratio_x = axis_ratio(source.width, target.width);
+      desc.ratio_y = axis_ratio(source.height, target.height);
+    } else if (source == target) {
+      desc.ratio_x = desc.ratio_y = AxisRatio::same;
+    }
   } else if (head.kind == PassKind::sample) {
     AFTERGLOW_TRY(desc.sample, stage_of(shaders, head));
   } else {
@@ -95,7 +100,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
     desc.stages.push_back(std::move(stage));
   }
   if (options.storage_reads) desc.reads = reads_of(graph, kernel, desc, options);
-  desc.rows = rows_that_pay(desc, options.rows);
+  if (pixels >= options.worth.rows) desc.rows = rows_that_pay(desc, options.rows);
   return desc;
 }
 

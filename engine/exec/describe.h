@@ -2,8 +2,10 @@
 // found to passes and images of the graph.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
+#include "exec/program.h"
 #include "graph/graph.h"
 #include "graph/plan.h"
 #include "shader/kernel.h"
@@ -16,6 +18,7 @@ struct DescribeOptions {
   bool storage_reads = false;      ///< images between kernels are read as storage images where their shaders allow it
   bool source_is_storage = false;  ///< the source too
   int rows = 1;                    ///< an invocation may make so many where that pays
+  WorthAKernel worth;
 };
 
 /// Errors: script (an unknown shader).

@@ -122,7 +122,8 @@ Result<std::vector<KernelDesc>> Program::State::describe(ShaderLibrary& shaders)
                                  .half_storage = options.storage == Storage::fp16,
                                  .storage_reads = storage_reads,
                                  .source_is_storage = options.source_is_storage,
-                                 .rows = options.reference ? 1 : options.rows};
+                                 .rows = options.reference ? 1 : options.rows,
+                                 .worth = options.worth};
   std::vector<KernelDesc> descs;
   for (const auto& kernel : plan.kernels) {
     AFTERGLOW_TRY(KernelDesc desc, describe_kernel(shaders, graph, kernel, describe));

@@ -22,6 +22,13 @@ namespace afterglow {
 
 enum class Storage { fp32, fp16 };
 
+/// Pixels of a target from which it is worth a kernel of its own: on smaller ones little is won, and each kernel must
+/// be compiled.
+struct WorthAKernel {
+  std::int64_t ratio = 1 << 16;  ///< that knows how its sizes relate
+  std::int64_t rows = 1 << 19;   ///< that makes several rows an invocation
+};
+
 struct ProgramOptions {
   Storage storage = Storage::fp32;
   bool reference = false;        ///< every pass on its own, computed weights, no sharing of memory
@@ -33,6 +40,7 @@ struct ProgramOptions {
   /// Rows of pixels that one invocation may make where neighbouring rows read the same texels (1 … kMaxRows): faster on
   /// CPU devices. More than 1 makes the images between kernels linear.
   int rows = 1;
+  WorthAKernel worth;
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.
   std::optional<Rect> region{};

@@ -77,6 +77,7 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
                                .storage_reads = way != Way::plain,
                                .source_is_storage = way != Way::plain,
                                .rows = way == Way::plain ? 1 : kMaxRows,
+                               .worth = {0, 0},
                                .result_by_rows = way != Way::plain};
   auto program = need(Program::create(*lab.device, shaders, lab.compiler, graph, options));
   auto runner = need(FrameRunner::create(*lab.device, options.max_memory));
