@@ -92,6 +92,13 @@ TEST_F(Idle, BloomUpToTheLimitAndAbove) {
       }
 }
 
+TEST_F(Idle, LargePicturesWhoseKernelsAreOthers) {
+  open("fx.bloom { knee = 0, threshold = 1.3 }, fx.tone_mapping { mode = \"reinhard\" }");
+  const float limit = limit_of(1.3, 0);
+  EXPECT_EQ(same_both_ways(noise({1024, 512}, limit, 1)).size(), 1u);
+  EXPECT_TRUE(same_both_ways(noise({1024, 512}, std::nextafter(limit, 2.0f), 2)).empty());
+}
+
 TEST_F(Idle, OddSizesStayBelowTheLimit) {
   open("fx.bloom { knee = 0, mode = \"scattering\" }, fx.tone_mapping { mode = \"reinhard\" }");
   EXPECT_TRUE(same_both_ways(noise({61, 47}, 1.0f, 1)).empty());

@@ -83,6 +83,8 @@ TEST_P(RegionOfEffects, IsTheCrop) {
   check({64, 48}, Precision::automatic, true);
 }
 
+TEST_P(RegionOfEffects, IsTheCropOfLargePictures) { check({1024, 520}, Precision::automatic, false); }
+
 INSTANTIATE_TEST_SUITE_P(
     , RegionOfEffects,
     testing::Values(
