@@ -29,12 +29,12 @@ class RegionOfEffects : public testing::TestWithParam<Case> {
   void TearDown() override { std::filesystem::remove(file()); }
   static std::string file() { return testing::TempDir() + "/afterglow_region_" + std::to_string(getpid()) + ".lua"; }
 
-  static Picture picture(Size size) {
+  static Picture picture(Size size, unsigned seed = 7) {
     Picture out;
     out.color = Image(size.width, size.height, 4);
     out.auxiliary["depth"] = Image(size.width, size.height, 1);
     out.auxiliary["normal"] = Image(size.width, size.height, 3);
-    std::mt19937 random(7);
+    std::mt19937 random(seed);
     const auto fill = [&](Image& image, float scale) {
       for (auto& value : image.pixels) value = scale * static_cast<float>(random() % 1000) / 999.0f;
     };
@@ -53,13 +53,20 @@ class RegionOfEffects : public testing::TestWithParam<Case> {
     options.stack.precision = precision;
     options.stack.reference = reference;
     Diagnostics diagnostics;
+    Picture whole = picture(size);
+    {
+      const auto other = Session::open(file(), options, diagnostics);
+      ASSERT_TRUE(other) << other.error().text();
+      ASSERT_TRUE((*other)->process(whole));
+    }
+    // What is not uploaded for a region is of another picture.
     auto session = Session::open(file(), options, diagnostics);
     ASSERT_TRUE(session) << session.error().text();
-    Picture whole = picture(size);
-    ASSERT_TRUE((*session)->process(whole));
+    Picture another = picture(size, 99);
+    ASSERT_TRUE((*session)->process(another));
     const int w = size.width, h = size.height;
-    for (const Rect& part : {Rect{0, 0, w, h}, Rect{0, 0, 1, 1}, Rect{w - 1, h - 1, 1, 1}, Rect{w / 3, h / 3, 13, 9},
-                             Rect{w - 20, 0, 20, 7}, Rect{0, h / 2, w, 1}, Rect{w / 2, 0, 1, h}}) {
+    for (const Rect& part : {Rect{w / 3, h / 3, 13, 9}, Rect{0, 0, 1, 1}, Rect{w - 1, h - 1, 1, 1}, Rect{0, h * 2 / 3, w, 1},
+                             Rect{w - 20, 0, 20, 7}, Rect{w / 2, 0, 1, h}, Rect{0, 0, w, h}}) {
       Picture some = picture(size);
       const auto done = (*session)->process(some, {}, part);
       ASSERT_TRUE(done) << done.error().text();
