@@ -7,12 +7,22 @@
 namespace afterglow {
 namespace {
 
-Image cut(const Image& image, const Rect& part) {
-  Image out(part.width, part.height, image.channels);
-  for (int y = 0; y < part.height; ++y)
-    std::copy_n(image.at(part.x, part.y + y),
-                static_cast<std::size_t>(part.width) * static_cast<std::size_t>(image.channels), out.at(0, y));
+/// `part` of rows of `width` pixels.
+template <class Value>
+std::vector<Value> cut(const std::vector<Value>& pixels, int width, int channels, const Rect& part) {
+  std::vector<Value> out;
+  out.reserve(static_cast<std::size_t>(part.size().area() * channels));
+  for (int y = 0; y < part.height; ++y) {
+    const auto row = pixels.begin() + (static_cast<std::ptrdiff_t>(part.y + y) * width + part.x) * channels;
+    out.insert(out.end(), row, row + static_cast<std::ptrdiff_t>(part.width) * channels);
+  }
   return out;
+}
+
+void cut(Image& image, const Rect& part) {
+  image.pixels = cut(image.pixels, image.width, image.channels, part);
+  image.width = part.width;
+  image.height = part.height;
 }
 
 }  // namespace
@@ -31,8 +41,9 @@ Result<Rect> part_of_region(const Rect& region, const Rect& data_window, const R
 }
 
 void crop_picture(Picture& picture, const Rect& region, const Rect& part) {
-  picture.color = cut(picture.color, part);
-  for (auto& [name, image] : picture.auxiliary) image = cut(image, part);
+  if (!picture.codes.empty()) picture.codes = cut(picture.codes, picture.color.width, 4, part);
+  cut(picture.color, part);
+  for (auto& [name, image] : picture.auxiliary) cut(image, part);
   picture.content.clear();
   const Rect& display = picture.display_window;
   picture.data_window = {picture.data_window.x + part.x - display.x - region.x,

@@ -11,8 +11,8 @@ namespace afterglow {
 /// window, or the picture has no pixels there).
 Result<Rect> part_of_region(const Rect& region, const Rect& data_window, const Rect& display_window);
 
-/// Cuts all images down to `part` of them, which is where `region` lies; the picture is then as large as the region, with
-/// its upper left corner at (0, 0).
+/// Cuts all images down to `part` of them, which is where `region` lies; the picture is then as large as the region,
+/// with its upper left corner at (0, 0).
 void crop_picture(Picture& picture, const Rect& region, const Rect& part);
 
 }  // namespace afterglow

@@ -10,6 +10,8 @@
 #include "apps/options.h"
 #include "apps/resume.h"
 #include "apps/scale.h"
+#include "image/camera.h"
+#include "image/facts.h"
 
 namespace afterglow {
 namespace {
@@ -35,6 +37,7 @@ struct FrameLoop::Reading {
   std::optional<Error> refused;  ///< by the header; nothing was read
   BuildContext context;
   std::optional<Rect> part;  ///< of the picture, when there is a region
+  std::optional<DisplayEncoding> encoding;
   std::future<Result<Picture>> picture;
 };
 
@@ -62,7 +65,8 @@ Result<void> FrameLoop::run(std::vector<FrameRecord>& frames) {
     auto reading = next ? std::move(next) : begin_reading(*waiting[i]);
     // Shaders, pipelines and memory are made while the first picture is read.
     if (i == 0 && !reading->refused) {
-      if (auto prepared = session_.prepare(reading->context, reading->part); !prepared && ends_run(prepared.error()))
+      if (auto prepared = session_.prepare(reading->context, reading->encoding, reading->part);
+          !prepared && ends_run(prepared.error()))
         return close(fail(*reading->frame, std::move(prepared).error()));
     }
     if (reading->picture.valid()) reading->picture.wait();
@@ -124,9 +128,9 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(FrameRecord& frame)
   if (options_.region) {
     const Rect& data = header->data_window;
     const Rect window = options_.size ? scaled_window(data, header->display_window, *options_.size) : data;
-    const Rect shown =
-        options_.size ? Rect{header->display_window.x, header->display_window.y, options_.size->width, options_.size->height}
-                      : header->display_window;
+    const Rect shown = options_.size ? Rect{header->display_window.x, header->display_window.y, options_.size->width,
+                                            options_.size->height}
+                                     : header->display_window;
     const auto part = part_of_region(*options_.region, window, shown);
     if (!part) {
       reading->refused = named(part.error(), frame.job);
@@ -140,6 +144,9 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(FrameRecord& frame)
   context.frame = frame.job.frame;
   context.fps = options_.fps;
   context.time = frame.job.frame / options_.fps;
+  context.position = camera_position(header->facts->metadata);
+  if (const auto codes = display_codes(frame.job.output, options_.write, header->has_alpha, header->facts.get()))
+    reading->encoding = DisplayEncoding{codes->straight_alpha, codes->dither};
   const auto need = need_of(*header, context, frame.job);
   if (!need) {
     reading->refused = need.error();
@@ -165,7 +172,7 @@ Result<void> FrameLoop::process(Reading& reading) {
   if (!picture) return fail(frame, named(std::move(picture).error(), frame.job));
   if (interrupted()) return interrupt_error();
   frame.size = picture->color.size();
-  const auto processed = session_.process(*picture, reading.context, reading.part);
+  const auto processed = session_.process(*picture, reading.context, reading.encoding, reading.part);
   // Validation goes first: it says what a failure comes from.
   if (session_.device().validation_errors() > 0)
     return fail(frame, {ErrorKind::device, "Vulkan validation: " + session_.device().validation_messages().front()});

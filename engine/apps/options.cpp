@@ -25,12 +25,18 @@ void MessageArguments::apply(Console& console) const {
 }
 
 void PresetArguments::add(CLI::App& command) {
-  command.add_option("PRESET", file, "Look to apply: a Lua file that returns a stack")->required();
+  command
+      .add_option("PRESET", file, "Look to apply: a Lua file that returns a stack, its name, or a pack that holds it")
+      ->required();
   command
       .add_option("--set", overrides, "Overrides one setting, as if the preset said so: glow.strength=0.4 (repeatable)")
       ->type_name("EFFECT.SETTING=VALUE")
       ->expected(1)
       ->take_all()
+      ->group("Preset");
+  command
+      .add_option("--at", at, "Where the picture is seen from, for volumes (default: the preset's, else the file's)")
+      ->type_name("X,Y,Z")
       ->group("Preset");
   add_paths(command);
 }
@@ -38,7 +44,8 @@ void PresetArguments::add(CLI::App& command) {
 void PresetArguments::add_paths(CLI::App& command) {
   command
       .add_option("--path", paths,
-                  "Folder with effects/ and shaders/ of yours, before AFTERGLOW_PATH and the installation (repeatable)")
+                  "Folder or zip with presets/, effects/ and shaders/ of yours, before AFTERGLOW_PATH and the "
+                  "installation (repeatable)")
       ->type_name("FOLDER")
       ->expected(1)
       ->take_all()
@@ -52,7 +59,14 @@ Result<PresetOptions> PresetArguments::options() const {
     AFTERGLOW_TRY(Override parsed, parse_override(text));
     options.overrides.push_back(std::move(parsed));
   }
+  if (!at.empty()) {
+    AFTERGLOW_TRY(options.at, parse_position(at));
+  }
   return options;
+}
+
+Result<std::filesystem::path> PresetArguments::preset_file() const {
+  return find_preset_file(file, {paths.begin(), paths.end()});
 }
 
 void DeviceArguments::add(CLI::App& command) {
@@ -85,6 +99,12 @@ void ExecutionArguments::add(CLI::App& command) {
       ->check(CLI::PositiveNumber)
       ->type_name("E")
       ->group("Device");
+  command
+      .add_option(
+          "--calibration", calibration,
+          "Table of `afterglow calibrate` that says how to execute (default: the one that comes with the program)")
+      ->type_name("FILE")
+      ->group("Device");
   command.add_flag("--reference", reference, "The slow truth: every pass on its own, full floats, computed weights")
       ->group("Device");
   command.add_option("--max-memory", max_memory, "Refuse pictures that need more: 512M, 6G (default 6G)")
@@ -99,6 +119,7 @@ Result<StackOptions> ExecutionArguments::options() const {
                                             : Precision::automatic;
   options.max_error = max_error;
   options.reference = reference;
+  options.calibration = calibration;
   AFTERGLOW_TRY(options.max_memory, parse_memory(max_memory));
   options.cache_folder = cache_folder();
   return options;
@@ -129,6 +150,19 @@ Result<Rect> parse_region(const std::string& text) {
     return Error{ErrorKind::usage, fmt::format("'{}' is no region", text), "--region", 0,
                  "X,Y,WIDTH,HEIGHT in pixels; X and Y 0 to 16384, WIDTH and HEIGHT 1 to 16384"};
   return Rect{numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+Result<Position> parse_position(const std::string& text) {
+  Position position{};
+  const auto parts = split(text, ',');
+  bool good = parts.size() == 3;
+  for (std::size_t i = 0; good && i < 3; ++i) {
+    const std::string part = trim(parts[i]);
+    const auto [end, ec] = std::from_chars(part.data(), part.data() + part.size(), position[i]);
+    good = ec == std::errc() && end == part.data() + part.size() && std::isfinite(position[i]);
+  }
+  if (good) return position;
+  return Error{ErrorKind::usage, fmt::format("'{}' is no position", text), "--at", 0, "X,Y,Z, three numbers"};
 }
 
 Result<std::uint64_t> parse_memory(const std::string& text) {
@@ -166,6 +200,14 @@ void AssumedPicture::add(CLI::App& command) {
   command.add_option("--region", region, "Part of the picture that is wanted, as `run` takes it")
       ->type_name("X,Y,W,H")
       ->group("Picture");
+  command.add_option("--frame", frame, "Number of the assumed picture in its sequence (default 1)")
+      ->check(CLI::Number)
+      ->type_name("N")
+      ->group("Picture");
+  command.add_option("--fps", fps, "Frames a second, for animated presets (default 24)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N")
+      ->group("Picture");
   command
       .add_option("--without", without, "Auxiliary input that the assumed picture lacks: depth, normal (repeatable)")
       ->type_name("INPUT")
@@ -177,6 +219,9 @@ void AssumedPicture::add(CLI::App& command) {
 Result<BuildContext> AssumedPicture::context(const Preset& preset) const {
   BuildContext context;
   AFTERGLOW_TRY(context.size, parse_size(size));
+  context.frame = frame;
+  context.fps = fps;
+  context.time = frame / fps;
   for (const auto& name : preset.needs())
     if (std::find(without.begin(), without.end(), name) == without.end()) context.auxiliary[name] = context.size;
   return context;

@@ -70,9 +70,8 @@ std::string skipped_in_frames_text(const RunReport& report) {
   std::vector<std::pair<Skipped, std::size_t>> found;
   for (const auto& frame : report.frames)
     for (const auto& skipped : frame.skipped) {
-      auto at = std::ranges::find_if(found, [&](const auto& f) {
-        return f.first.name == skipped.name && f.first.reason == skipped.reason;
-      });
+      auto at = std::ranges::find_if(
+          found, [&](const auto& f) { return f.first.name == skipped.name && f.first.reason == skipped.reason; });
       if (at == found.end()) at = found.insert(found.end(), {skipped, 0});
       ++at->second;
     }
@@ -113,10 +112,12 @@ Json session_json(const SessionReport& session) {
       {"preset", session.preset},
       {"device", session.device},
       {"driver", session.driver},
-      {"storage", session.storage},
+      {"choice", choice_name(session.choice.execution)},
+      {"choice_from", session.choice.from},
+      {"storage", session.choice.execution.storage == Storage::fp16 ? "fp16" : "fp32"},
       {"reference", session.reference},
-      {"hardware_filter", session.hardware_filter},
-      {"max_error", session.max_error},
+      {"hardware_filter", session.choice.execution.hardware_filter},
+      {"max_error", session.choice.max_error},
       {"kernels", session.kernels},
       {"skipped", Json::array()},
       {"image_memory",
@@ -138,8 +139,8 @@ std::uint64_t peak_memory() {
 std::string report_text(const RunReport& report, bool passes) {
   std::string out;
   if (report.session)
-    out += fmt::format("{} on {} ({}{})\n", report.session->preset, report.session->device, report.session->storage,
-                       report.session->reference ? ", reference" : "");
+    out += fmt::format("{} on {} ({}; {})\n", report.session->preset, report.session->device,
+                       choice_name(report.session->choice.execution), report.session->choice.from);
   const std::size_t done = count(report, FrameRecord::State::done);
   out += fmt::format("frames: {} done, {} up to date, {} failed\n", done, count(report, FrameRecord::State::up_to_date),
                      count(report, FrameRecord::State::failed));

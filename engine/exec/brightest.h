@@ -14,12 +14,13 @@ class Brightest {
   /// Interleaved floats; of four or more channels the first three count, of fewer all of them.
   void add_row(const float* row, int channels, int width);
 
-  /// The largest red, green or blue that the device will read from images of this storage. NaN when some value is negative
-  /// (−0 too) or not finite.
+  /// The largest red, green or blue that the device will read from images of this storage. NaN when some value is
+  /// negative (−0 too) or not finite.
   float value(Storage storage) const;
 
  private:
-  std::atomic<std::uint32_t> bits_{0};  ///< of floats; as integers, those that are ≥ 0 sort as they do, all others above them
+  std::atomic<std::uint32_t> bits_{
+      0};  ///< of floats; as integers, those that are ≥ 0 sort as they do, all others above them
 };
 
 }  // namespace afterglow

@@ -46,7 +46,10 @@ std::vector<ImageRead> reads_of(const Graph& graph, const PlanKernel& kernel, co
     const bool source = input && input->image == graph.source && options.source_is_storage;
     reads.push_back(between || source ? storage : ImageRead::sampled);
   };
-  if (!desc.sample) add(-1, "source");
+  if (desc.filter && desc.hardware_filter)
+    reads.push_back(ImageRead::sampled);  // the sampler interpolates
+  else if (!desc.sample)
+    add(-1, "source");
   int stage = 0;
   const auto add_inputs = [&](const KernelStage& of) {
     for (const auto& input : of.shader->interface.inputs) add(stage, input.name);
@@ -77,7 +80,8 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
                                    const DescribeOptions& options) {
   KernelDesc desc;
   desc.hardware_filter = options.hardware_filter;
-  desc.half_storage = options.half_storage;
+  desc.target = options.half_storage ? KernelTarget::float16 : KernelTarget::float32;
+  if (options.codes && kernel.output == graph.result) desc.target = KernelTarget::codes8;
   const long long pixels = graph.images[kernel.output].size.area();
   const Pass& head = graph.passes[kernel.passes.front()];
   std::size_t first_stage = 1;

@@ -15,6 +15,7 @@ namespace afterglow {
 struct DescribeOptions {
   bool hardware_filter = false;
   bool half_storage = false;
+  bool codes = false;              ///< the result holds 8-bit codes
   bool storage_reads = false;      ///< images between kernels are read as storage images where their shaders allow it
   bool source_is_storage = false;  ///< the source too
   int rows = 1;                    ///< an invocation may make so many where that pays

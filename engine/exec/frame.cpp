@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 
 #include "exec/barriers.h"
 #include "exec/brightest.h"
@@ -33,7 +34,7 @@ VkImageLayout input_layout(const Program& program, const std::string& name) {
 ImageDesc result_desc_of(const Program& program) {
   return {.name = "result",
           .size = program.graph().images[program.graph().result].size,
-          .format = program.storage_format(),
+          .format = program.result_format(),
           .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
 }
 
@@ -79,6 +80,8 @@ struct FrameRunner::State {
   std::vector<bool> kernels_to_run(const Program& program) const;
   void has_run(Program& program);
   Result<std::uint64_t> download(const Rect& part, HostResult& out);
+  Result<std::uint64_t> over_result_rows(const Rect& part,
+                                         const std::function<std::uint64_t(int y, const std::byte* from)>& row);
   Result<void> bind(Program& program);
   /// The layout in which the result is drawn, and every VkImage of it: itself and its targets by rows.
   VkImageLayout result_layout() const {
@@ -204,8 +207,8 @@ std::vector<bool> FrameRunner::State::kernels_to_run(const Program& program) con
   const auto last = ran_with.find(program.id());
   std::vector<ImageId> changed;
   for (const auto& [name, id] : inputs_of(program.graph())) {
-    const bool same = last != ran_with.end() && last->second.contains(name) &&
-                      last->second.at(name) == held.at(name).version;
+    const bool same =
+        last != ran_with.end() && last->second.contains(name) && last->second.at(name) == held.at(name).version;
     if (!same) changed.push_back(id);
   }
   return program.kernels_to_run(changed, result.writer != program.id());
@@ -220,26 +223,42 @@ void FrameRunner::State::has_run(Program& program) {
   for (const auto& [name, input] : held) versions_of[name] = input.version;
 }
 
+/// Calls `row` for every row of that part of the result, with its first pixel there, and sums up what it returns.
+Result<std::uint64_t> FrameRunner::State::over_result_rows(
+    const Rect& part, const std::function<std::uint64_t(int y, const std::byte* from)>& row) {
+  const std::size_t left = static_cast<std::size_t>(part.x) * bytes_per_pixel(result.image.desc().format);
+  const auto inside = [&](int y, const std::byte* from) -> std::uint64_t {
+    return y < part.y || y >= part.y + part.height ? 0 : row(y, from + left);
+  };
+  if (!result.direct) return staging.download(staged(result), result_layout(), inside);
+  result.image.memory().invalidate();
+  return over_rows(part.height, result.image.row_pitch(),
+                   [&](int y) { return row(part.y + y, result.image.row(part.y + y) + left); });
+}
+
 Result<std::uint64_t> FrameRunner::State::download(const Rect& part, HostResult& out) {
   const auto [width, height] = result.image.desc().size;
   const VkFormat format = result.image.desc().format;
   const auto row_values = static_cast<std::size_t>(width) * 4;
+  if (format == VK_FORMAT_R8G8B8A8_UNORM) {
+    out.codes.resize(row_values * static_cast<std::size_t>(height));
+    return over_result_rows(part, [&](int y, const std::byte* from) {
+      std::memcpy(out.codes.data() + row_values * static_cast<std::size_t>(y) + static_cast<std::ptrdiff_t>(part.x) * 4,
+                  from, static_cast<std::size_t>(part.width) * 4);
+      return std::uint64_t{0};
+    });
+  }
   const auto values = row_values * static_cast<std::size_t>(height);
   const bool keep_alpha = out.keep_alpha && out.pixels.size() == values;
   if (out.pixels.size() != values) {
     std::vector<float>().swap(out.pixels);  // growing would keep the old ones while it copies them
     out.pixels.resize(values);
   }
-  const auto unpack = [&](int y, const std::byte* from) -> std::uint64_t {
-    if (y < part.y || y >= part.y + part.height) return 0;
-    from += static_cast<std::size_t>(part.x) * bytes_per_pixel(format);
+  const auto unpack = [&](int y, const std::byte* from) {
     float* to = out.pixels.data() + row_values * static_cast<std::size_t>(y) + static_cast<std::ptrdiff_t>(part.x) * 4;
     return keep_alpha ? unpack_row_rgb(from, format, part.width, to) : unpack_row(from, format, part.width, to);
   };
-  if (!result.direct) return staging.download(staged(result), result_layout(), unpack);
-  result.image.memory().invalidate();
-  return over_rows(part.height, result.image.row_pitch(),
-                   [&](int y) { return unpack(part.y + y, result.image.row(part.y + y)); });
+  return over_result_rows(part, unpack);
 }
 
 Result<void> FrameRunner::State::bind(Program& program) {

@@ -37,8 +37,9 @@ struct HostResult {
   /// RGBA. It may be the very memory of the input "source": it is written after all inputs have been read. A vector
   /// that is large enough already is not allocated again.
   std::vector<float> pixels;
-  std::uint64_t clamped = 0;  ///< half storage: source or result samples held at ±65504
-  bool keep_alpha = false;    ///< write R, G and B alone where `pixels` has the size of the result already
+  std::vector<std::uint8_t> codes;  ///< instead of `pixels`, of a program with ProgramOptions::codes: RGBA
+  std::uint64_t clamped = 0;        ///< half storage: source or result samples held at ±65504
+  bool keep_alpha = false;          ///< write R, G and B alone where `pixels` has the size of the result already
 };
 
 /// Images, staging memory, command buffer and fence for one frame at a time; reused while sizes stay the same. Not
@@ -49,8 +50,8 @@ class FrameRunner {
   /// takes the way over staging buffers that every GPU can go. Errors: device.
   static Result<std::unique_ptr<FrameRunner>> create(Device& device, std::uint64_t max_memory, bool direct = true);
   ~FrameRunner();
-  /// Which program runs a frame, asked once its source has been packed. `brightest`: the largest red, green or blue of it,
-  /// see exec/brightest.h. It must take the same inputs; null: nothing has to run, the result is the source.
+  /// Which program runs a frame, asked once its source has been packed. `brightest`: the largest red, green or blue of
+  /// it, see exec/brightest.h. It must take the same inputs; null: nothing has to run, the result is the source.
   using Choose = std::function<Result<Program*>(float brightest)>;
 
   /// Uploads "source" and the auxiliary images that the graph asks for, runs, reads the result back into `out` (RGBA

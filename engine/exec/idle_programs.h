@@ -14,7 +14,7 @@ class IdlePrograms {
  public:
   /// What runs a frame.
   struct Choice {
-    Program* program = nullptr;            ///< null: nothing runs, the result is the source
+    Program* program = nullptr;                     ///< null: nothing runs, the result is the source
     const std::vector<Skipped>* skipped = nullptr;  ///< the idle effects, with reasons; never null
   };
 

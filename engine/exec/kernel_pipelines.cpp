@@ -17,6 +17,17 @@ std::vector<VkDescriptorType> descriptor_types(const CompiledKernel& kernel) {
 
 namespace {
 
+VkFormat format_of(KernelTarget target) {
+  switch (target) {
+    case KernelTarget::float16:
+      return VK_FORMAT_R16G16B16A16_SFLOAT;
+    case KernelTarget::codes8:
+      return VK_FORMAT_R8G8B8A8_UNORM;
+    default:
+      return VK_FORMAT_R32G32B32A32_SFLOAT;
+  }
+}
+
 DrawInterface interface_of(const CompiledKernel& kernel) {
   return {.block = kernel.block_size > 0, .images = descriptor_types(kernel), .push_bytes = kPushConstantBytes};
 }
@@ -24,7 +35,7 @@ DrawInterface interface_of(const CompiledKernel& kernel) {
 }  // namespace
 
 Result<KernelPipelines> KernelPipelines::create(const Device& device, const std::vector<CompiledKernel>& kernels,
-                                                const std::vector<std::string>& names, VkFormat format) {
+                                                const std::vector<std::string>& names) {
   KernelPipelines out;
   for (const auto& kernel : kernels) {
     const DrawInterface interface = interface_of(kernel);
@@ -42,7 +53,7 @@ Result<KernelPipelines> KernelPipelines::create(const Device& device, const std:
       return;
     }
     made[i].emplace(create_draw_pipeline(device, out.layout(kernels[i]), vertex.get(), fragment->get(),
-                                         {format, kernels[i].rows}, names[i]));
+                                         {format_of(kernels[i].target), kernels[i].rows}, names[i]));
   });
   for (auto& pipeline : made) {
     if (!*pipeline) return std::move(*pipeline).error();

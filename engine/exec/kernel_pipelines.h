@@ -18,7 +18,7 @@ class KernelPipelines {
   /// Made over threads through the device's pipeline cache. `names` is parallel to `kernels`, for messages and
   /// debuggers. Errors: device.
   static Result<KernelPipelines> create(const Device& device, const std::vector<CompiledKernel>& kernels,
-                                        const std::vector<std::string>& names, VkFormat format);
+                                        const std::vector<std::string>& names);
   KernelPipelines() = default;
 
   VkPipeline pipeline(int kernel) const { return pipelines_[static_cast<std::size_t>(kernel)].get(); }

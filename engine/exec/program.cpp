@@ -14,9 +14,9 @@
 #include "exec/kernel_pipelines.h"
 #include "exec/parameters.h"
 #include "exec/record.h"
-#include "graph/changes.h"
 #include "gpu/error.h"
 #include "gpu/pipeline.h"
+#include "graph/changes.h"
 
 namespace afterglow {
 
@@ -61,6 +61,7 @@ struct Program::State {
     const bool general = output == graph.result ? result_rows > 1 : linear;
     return general ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   }
+  VkFormat result_format() const { return options.codes ? VK_FORMAT_R8G8B8A8_UNORM : format; }
   bool hardware_filter() const;
   ImageDesc result_desc() const;
 
@@ -97,7 +98,7 @@ bool Program::State::hardware_filter() const {
 ImageDesc Program::State::result_desc() const {
   return {.name = "result",
           .size = graph.images[graph.result].size,
-          .format = format,
+          .format = result_format(),
           .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
           .tiling = VK_IMAGE_TILING_LINEAR};
 }
@@ -111,7 +112,7 @@ Result<void> Program::State::check() {
     const GraphImage& image = graph.images[kernel.output];
     AFTERGLOW_CHECK(check_image(device, {.name = image.name,
                                          .size = image.size,
-                                         .format = format,
+                                         .format = kernel.output == graph.result ? result_format() : format,
                                          .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}));
   }
   return {};
@@ -120,6 +121,7 @@ Result<void> Program::State::check() {
 Result<std::vector<KernelDesc>> Program::State::describe(ShaderLibrary& shaders) {
   const DescribeOptions describe{.hardware_filter = hardware_filter(),
                                  .half_storage = options.storage == Storage::fp16,
+                                 .codes = options.codes,
                                  .storage_reads = storage_reads,
                                  .source_is_storage = options.source_is_storage,
                                  .rows = options.reference ? 1 : options.rows,
@@ -173,7 +175,7 @@ Result<void> Program::State::compile(KernelCompiler& compiler, const std::vector
 Result<void> Program::State::make_pipelines() {
   std::vector<std::string> names(compiled.unique.size());
   for (std::size_t i = plan.kernels.size(); i-- > 0;) names[compiled.index[i]] = plan.kernels[i].name;
-  AFTERGLOW_TRY(pipelines, KernelPipelines::create(device, compiled.unique, names, format));
+  AFTERGLOW_TRY(pipelines, KernelPipelines::create(device, compiled.unique, names));
   return {};
 }
 
@@ -198,7 +200,9 @@ Result<void> Program::State::make_descriptors() {
 
 /// What each kernel draws.
 Result<void> Program::State::find_parts() {
-  const auto whole = [this](ImageId id) { return Rect{0, 0, graph.images[id].size.width, graph.images[id].size.height}; };
+  const auto whole = [this](ImageId id) {
+    return Rect{0, 0, graph.images[id].size.width, graph.images[id].size.height};
+  };
   if (options.region) {
     const Rect &part = *options.region, all = whole(graph.result);
     if (part.width < 1 || part.height < 1 || part.x < 0 || part.y < 0 || part.x + part.width > all.width ||
@@ -281,7 +285,7 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   auto state = std::make_unique<State>(device, graph, options);
   const bool half = options.storage == Storage::fp16;
   state->format = half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
-  state->plan = make_plan(graph, {.join = !options.reference});
+  state->plan = make_plan(graph, {.joining = options.reference ? Joining::none : options.joining});
   state->storage_reads = options.storage_reads && can(device, state->format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
   static std::atomic<std::uint64_t> programs = 0;
   state->id = ++programs;
@@ -324,9 +328,9 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
   if (s.kernels.empty()) return {};
   const auto fail = [](const std::string& message) { return Error{ErrorKind::other, message}; };
   const Size size = s.graph.images[s.graph.result].size;
-  if (result.view == VK_NULL_HANDLE || result.format != s.format || result.size != size) {
+  if (result.view == VK_NULL_HANDLE || result.format != s.result_format() || result.size != size) {
     return fail(
-        fmt::format("the result must be an image of {}×{} pixels in the storage format", size.width, size.height));
+        fmt::format("the result must be an image of {}×{} pixels in the result's format", size.width, size.height));
   }
   if (s.result_rows > 1 && result.rows.size() != static_cast<std::size_t>(s.result_rows))
     return fail(fmt::format("the result must have targets by {} rows", s.result_rows));
@@ -388,6 +392,7 @@ const Plan& Program::plan() const { return state_->plan; }
 const Graph& Program::graph() const { return state_->graph; }
 ProgramMemory Program::memory() const { return state_->arena.memory(); }
 VkFormat Program::storage_format() const { return state_->format; }
+VkFormat Program::result_format() const { return state_->result_format(); }
 int Program::result_rows() const { return state_->result_rows; }
 VkImageLayout Program::source_layout() const { return state_->source_layout(); }
 

@@ -30,6 +30,7 @@ struct WorthAKernel {
 };
 
 struct ProgramOptions {
+  Joining joining = Joining::all;
   Storage storage = Storage::fp32;
   bool reference = false;        ///< every pass on its own, computed weights, no sharing of memory
   bool hardware_filter = false;  ///< filtered fetches may be used
@@ -41,13 +42,14 @@ struct ProgramOptions {
   /// CPU devices. More than 1 makes the images between kernels linear.
   int rows = 1;
   WorthAKernel worth;
+  bool codes = false;           ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.
   std::optional<Rect> region{};
   /// Images between kernels keep their pixels from run to run (they share no memory), so that `record` can run the
   /// kernels alone for which something has changed.
   bool keep_images = false;
-  bool share_memory = true;     ///< images whose lifetimes do not overlap share bytes (never with `reference`)
+  bool share_memory = true;  ///< images whose lifetimes do not overlap share bytes (never with `reference`)
   std::uint64_t max_memory = 6ull << 30;
 };
 
@@ -80,8 +82,8 @@ class Program {
   void set_parameters(const Graph& graph);
 
   /// The kernels that have to run for the result to be right, when these inputs have new pixels since the last run, and
-  /// for what `set_parameters` has changed since then. Parallel to the plan's kernels. Without `keep_images` all or none.
-  /// `result_lost`: the result image does not hold what this program last wrote.
+  /// for what `set_parameters` has changed since then. Parallel to the plan's kernels. Without `keep_images` all or
+  /// none. `result_lost`: the result image does not hold what this program last wrote.
   std::vector<bool> kernels_to_run(const std::vector<ImageId>& changed_inputs, bool result_lost) const;
   /// Notes that everything that had to run has run.
   void up_to_date();
@@ -89,7 +91,7 @@ class Program {
   std::uint64_t id() const;
 
   /// Points the graph's inputs and its result at images. Formats of inputs are free (sampled as float); the result's
-  /// must be the storage format. Must not be called while a submission is in flight. A program whose graph's result is
+  /// is `result_format`. Must not be called while a submission is in flight. A program whose graph's result is
   /// its source does nothing.
   Result<void> bind(const std::map<std::string, ImageBinding>& inputs /* "source", "depth", … */,
                     const ImageBinding& result);
@@ -108,6 +110,7 @@ class Program {
   VkFormat storage_format() const;
   /// What is read of inputs and made of the others: everything, unless there is a region.
   const Regions& parts() const;
+  VkFormat result_format() const;  ///< the storage format, or R8G8B8A8_UNORM with ProgramOptions::codes
   /// With `result_by_rows`: how many rows the targets of the result must have; 1: they are not used.
   int result_rows() const;
   /// The layout in which `record` wants the source: SHADER_READ_ONLY_OPTIMAL, or GENERAL (then with STORAGE usage).

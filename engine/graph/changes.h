@@ -7,8 +7,8 @@
 
 namespace afterglow {
 
-/// Parallel to the plan's kernels: those of `changed_kernels` (their parameters have new values), those that read an image
-/// of `changed_images` (inputs with new pixels), and all that read what these make.
+/// Parallel to the plan's kernels: those of `changed_kernels` (their parameters have new values), those that read an
+/// image of `changed_images` (inputs with new pixels), and all that read what these make.
 std::vector<bool> kernels_to_run(const Graph& graph, const Plan& plan, const std::vector<bool>& changed_kernels,
                                  const std::vector<ImageId>& changed_images);
 

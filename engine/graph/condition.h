@@ -9,9 +9,9 @@
 
 namespace afterglow {
 
-/// Parallel to `graph.idle`: true where the condition holds for a source whose largest red, green or blue is `brightest`
-/// (NaN when some are negative or not finite: then none holds). An effect that looks at the output of idle ones looks at
-/// the source too; of what other passes make nothing is known.
+/// Parallel to `graph.idle`: true where the condition holds for a source whose largest red, green or blue is
+/// `brightest` (NaN when some are negative or not finite: then none holds). An effect that looks at the output of idle
+/// ones looks at the source too; of what other passes make nothing is known.
 std::vector<bool> idle_effects(const Graph& graph, float brightest);
 
 /// The graph in which every image that an idle effect makes is replaced by the one it is equal to, without the passes

@@ -64,8 +64,8 @@ struct Skipped {
   std::string reason;  ///< "intensity is 0", "no depth input", "nobody reads its image"
 };
 
-/// An effect whose output is exactly its input, bit for bit, as long as no red, green or blue of `image` is above `limit`
-/// (a 32-bit float; all of them finite and ≥ 0). See graph/condition.h.
+/// An effect whose output is exactly its input, bit for bit, as long as no red, green or blue of `image` is above
+/// `limit` (a 32-bit float; all of them finite and ≥ 0). See graph/condition.h.
 struct IdleCondition {
   std::string effect;         ///< name of the effect's entry
   ImageId image = kNoImage;   ///< the effect's own source: what is looked at, and what takes the place of `output`
@@ -84,8 +84,8 @@ struct Graph {
 };
 
 /// Checks what the script binding cannot break but a program might: ids in range, producers before readers, no image
-/// written twice, sizes ≥ 1, unique names, pixel-wise inputs as large as the target, conditions between images of one size.
-/// Errors (script) name effect and pass.
+/// written twice, sizes ≥ 1, unique names, pixel-wise inputs as large as the target, conditions between images of one
+/// size. Errors (script) name effect and pass.
 Result<void> validate(const Graph& graph);
 
 /// True when b differs from a in dynamic parameter values alone, so that a program made for a can run b.

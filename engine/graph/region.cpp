@@ -97,8 +97,8 @@ Regions regions(const Graph& graph, const Plan& plan, const Rect& wanted, int ro
         by_rows(out.images[kernel.output], rows, graph.images[kernel.output].size.height);
     for (const int index : kernel.passes) {
       const Pass& pass = graph.passes[index];
-      // All passes of a kernel make images of one size, at the same pixels. What flows from one to the next is no image:
-      // its entry is set all the same, and no kernel draws it.
+      // All passes of a kernel make images of one size, at the same pixels. What flows from one to the next is no
+      // image: its entry is set all the same, and no kernel draws it.
       for (const auto& input : pass.inputs)
         out.images[input.image] = united(out.images[input.image], input_rect(graph, pass, input, target));
     }
@@ -116,7 +116,8 @@ Skipped skipped_pixels(const Graph& graph, const Plan& plan, const Regions& regi
     drawn += static_cast<double>(regions.kernels[k].size().area());
     all += static_cast<double>(graph.images[plan.kernels[k].output].size.area());
   }
-  return {fmt::format("{:.1f} % of the pixels", all > 0 ? 100 * (1 - drawn / all) : 0.0), "the region does not need them"};
+  return {fmt::format("{:.1f} % of the pixels", all > 0 ? 100 * (1 - drawn / all) : 0.0),
+          "the region does not need them"};
 }
 
 }  // namespace afterglow

@@ -84,6 +84,27 @@ void encode(const CodeRules& rules, const float* rgba, int width, int x0, int y,
   }
 }
 
+/// Row `y` of the display window from `pixels`, which cover the data window.
+template <class Sample>
+void padded_row(const Picture& picture, const Sample* pixels, int y, Sample padding_alpha, Sample* rgba) {
+  const Rect &data = picture.data_window, &display = picture.display_window;
+  const auto fill = [&](int begin, int end) {
+    for (int x = begin; x < end; ++x) {
+      rgba[x * 4] = rgba[x * 4 + 1] = rgba[x * 4 + 2] = 0;
+      rgba[x * 4 + 3] = padding_alpha;
+    }
+  };
+  const int row = display.y + y - data.y;
+  const int begin = std::clamp(data.x - display.x, 0, display.width);
+  const int end = std::clamp(data.x + data.width - display.x, begin, display.width);
+  if (row < 0 || row >= data.height || begin == end) return fill(0, display.width);
+  fill(0, begin);
+  const std::size_t first =
+      (static_cast<std::size_t>(row) * static_cast<std::size_t>(data.width) + (display.x + begin - data.x)) * 4;
+  std::copy_n(pixels + first, static_cast<std::size_t>(end - begin) * 4, rgba + begin * 4);
+  fill(end, display.width);
+}
+
 }  // namespace
 
 std::uint64_t to_half(const float* values, std::uint16_t* halves, std::size_t count) {
@@ -101,21 +122,10 @@ std::uint64_t to_half(const float* values, std::uint16_t* halves, std::size_t co
 }
 
 void display_row(const Picture& picture, int y, float padding_alpha, float* rgba) {
-  const Rect &data = picture.data_window, &display = picture.display_window;
-  const auto fill = [&](int begin, int end) {
-    for (int x = begin; x < end; ++x) {
-      rgba[x * 4] = rgba[x * 4 + 1] = rgba[x * 4 + 2] = 0;
-      rgba[x * 4 + 3] = padding_alpha;
-    }
-  };
-  const int row = display.y + y - data.y;
-  const int begin = std::clamp(data.x - display.x, 0, display.width);
-  const int end = std::clamp(data.x + data.width - display.x, begin, display.width);
-  if (row < 0 || row >= data.height || begin == end) return fill(0, display.width);
-  fill(0, begin);
-  std::memcpy(rgba + begin * 4, picture.color.at(display.x + begin - data.x, row),
-              static_cast<std::size_t>(end - begin) * 4 * sizeof(float));
-  fill(end, display.width);
+  padded_row(picture, picture.color.pixels.data(), y, padding_alpha, rgba);
+}
+void display_row(const Picture& picture, int y, std::uint8_t padding_alpha, std::uint8_t* rgba) {
+  padded_row(picture, picture.codes.data(), y, padding_alpha, rgba);
 }
 
 void encode_row(const CodeRules& rules, const float* rgba, int width, int x, int y, std::uint8_t* codes) {

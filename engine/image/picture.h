@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/hash.h"
 #include "image/image.h"
@@ -33,6 +34,8 @@ struct Picture {
   std::map<std::string, Image> auxiliary;
   /// Hashes of `color` ("source") and of auxiliary images, where they are known: equal hashes mean equal pixels.
   std::map<std::string, Hash> content;
+  /// When not empty, `color` as 8-bit display codes that need no more encoding, RGBA: sRGB, alpha straight.
+  std::vector<std::uint8_t> codes;
   bool has_alpha = false;  ///< the file stored alpha; without it the A of `color` is 1
   Rect data_window;        ///< where `color` lies, in the coordinates of the file, after orientation is applied
   Rect display_window;     ///< what a display format shows

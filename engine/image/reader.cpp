@@ -256,6 +256,8 @@ Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& optio
     header.display_window = upright_display(plan.color_part());
     header.channels = static_cast<int>(plan.color_part().channels.size());
     for (const AuxiliaryPlan& extra : plan.auxiliary) header.auxiliary.push_back(extra.kind->name);
+    header.has_alpha = plan.color.channels[3] >= 0;
+    header.facts = std::make_shared<const FileFacts>(plan.file->facts(plan.color));
     header.format = plan.file->format();
     header.host_bytes = host_bytes(plan, options.auxiliary);
     return header;

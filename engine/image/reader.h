@@ -37,8 +37,10 @@ struct PictureHeader {
   Rect data_window, display_window;  ///< after orientation
   int channels = 0;
   std::vector<std::string> auxiliary;  ///< "depth", "normal" that reading would find
-  std::string format;                  ///< OIIO format name: "openexr", "png", …
-  std::uint64_t host_bytes = 0;        ///< host memory that read_picture would take at its peak
+  bool has_alpha = false;
+  std::shared_ptr<const FileFacts> facts;
+  std::string format;            ///< OIIO format name: "openexr", "png", …
+  std::uint64_t host_bytes = 0;  ///< host memory that read_picture would take at its peak
 };
 
 Result<PictureHeader> read_header(const std::filesystem::path& file, const ReadOptions& options);

@@ -13,6 +13,14 @@ void encode_rows(const Picture& picture, const StripForm& form, int first, int r
              channels = std::size_t{form.alpha ? 4u : 3u};
   const float padding = picture.has_alpha ? 0.0f : 1.0f;
   const CodeRules rules{form.type == SampleType::uint16 ? 65535 : 255, form.alpha, form.dither};
+  if (form.type == SampleType::uint8 && !picture.codes.empty()) {
+    std::vector<std::uint8_t> row(width * 4);
+    for (int i = 0; i < rows; ++i) {
+      display_row(picture, first + i, static_cast<std::uint8_t>(padding * 255), row.data());
+      for (std::size_t x = 0; x < width; ++x, bytes += channels) std::copy_n(&row[x * 4], channels, bytes);
+    }
+    return;
+  }
   const bool integers = form.type == SampleType::uint8 || form.type == SampleType::uint16;
   std::vector<float> rgba(width * 4), packed(integers ? 0 : width * channels);
   for (int i = 0; i < rows; ++i, bytes += form.row_bytes(picture)) {
@@ -20,7 +28,8 @@ void encode_rows(const Picture& picture, const StripForm& form, int first, int r
     if (form.type == SampleType::uint8) {
       encode_row(rules, rgba.data(), static_cast<int>(width), form.dither_x, form.dither_y + first + i, bytes);
     } else if (form.type == SampleType::uint16) {
-      encode_row(rules, rgba.data(), static_cast<int>(width), form.dither_x, form.dither_y + first + i, reinterpret_cast<std::uint16_t*>(bytes));
+      encode_row(rules, rgba.data(), static_cast<int>(width), form.dither_x, form.dither_y + first + i,
+                 reinterpret_cast<std::uint16_t*>(bytes));
     } else {
       for (std::size_t x = 0; x < width; ++x) std::copy_n(&rgba[x * 4], channels, &packed[x * channels]);
       if (form.type == SampleType::half) {

@@ -127,6 +127,13 @@ Result<void> check_picture(const Picture& picture) {
 
 }  // namespace
 
+std::optional<DisplayCodes> display_codes(const fs::path& file, const WriteOptions& options, bool has_alpha,
+                                          const FileFacts* facts) {
+  const auto format = output_format(file, options);
+  if (!format || sample_type(**format, options, facts) != SampleType::uint8) return std::nullopt;
+  return DisplayCodes{.straight_alpha = has_alpha && (*format)->alpha, .dither = options.dither};
+}
+
 Result<void> check_output(const fs::path& file, const WriteOptions& options) {
   const auto refuse = [&](const std::string& why) { return Error{ErrorKind::io, why, file.string()}; };
   AFTERGLOW_TRY([[maybe_unused]] const OutputFormat* format, output_format(file, options));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/diagnostics.h"
@@ -22,7 +23,7 @@ struct WriteOptions {
   std::string compression;
   int png_level = 1;  ///< zlib level 0–9
   int jpeg_quality = 95;
-  bool dither = false;       ///< ±½ step of ordered noise before quantising to integers; deterministic
+  bool dither = false;             ///< ±½ step of ordered noise before quantising to integers; deterministic
   int dither_x = 0, dither_y = 0;  ///< where the picture's upper left pixel lies in the noise (≥ 0)
   bool keep_layers = false;  ///< EXR → EXR: copy all other channels and parts of `picture.facts`' file unchanged
 };
@@ -32,6 +33,16 @@ struct WriteOptions {
 /// where the format wants it.
 Result<void> write_picture(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options,
                            Diagnostics& diagnostics);
+
+/// How `write_picture` will make 8-bit display codes for `file`, so that another can make them (Picture::codes).
+struct DisplayCodes {
+  bool straight_alpha = false;
+  bool dither = false;
+  friend bool operator==(const DisplayCodes&, const DisplayCodes&) = default;
+};
+/// Nothing when it will write anything else. `has_alpha` and `facts` are the picture's; `facts` may be null.
+std::optional<DisplayCodes> display_codes(const std::filesystem::path& file, const WriteOptions& options,
+                                          bool has_alpha, const FileFacts* facts);
 
 /// Checks, without writing, that `file` has an extension we write and that its folder exists and can be written. For
 /// errors before the work.

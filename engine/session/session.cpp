@@ -78,19 +78,21 @@ Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& pres
   return std::unique_ptr<Session>(new Session(std::move(state)));
 }
 
-Result<void> Session::prepare(const BuildContext& context, const std::optional<Rect>& region) {
+Result<void> Session::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding,
+                              const std::optional<Rect>& region) {
   state_->ran = nullptr;
-  AFTERGLOW_CHECK(state_->stack->prepare(context, region));
+  AFTERGLOW_CHECK(state_->stack->prepare(context, encoding, region));
   state_->ran = state_->stack->program();
   return {};
 }
 
-Result<void> Session::process(Picture& picture, const BuildContext& frame, const std::optional<Rect>& region) {
+Result<void> Session::process(Picture& picture, const BuildContext& frame,
+                              const std::optional<DisplayEncoding>& encoding, const std::optional<Rect>& region) {
   BuildContext context = frame;
   context.size = picture.color.size();
   context.auxiliary.clear();
   for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
-  AFTERGLOW_CHECK(prepare(context, region));
+  AFTERGLOW_CHECK(prepare(context, encoding, region));
   state_->times.frame = {};
   state_->result.clamped = 0;
   state_->skipped_now.clear();
@@ -114,6 +116,7 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame, const
     };
   auto times = state_->runner->run(*state_->stack->program(), inputs, result, state_->options.timing, choose);
   picture.color.pixels = std::move(result.pixels);
+  picture.codes = std::move(result.codes);
   if (!times) return std::move(times).error();
   state_->times.frame = std::move(times).value();
   for (auto& kept : kept_of(state_->times.frame)) state_->skipped_now.push_back(std::move(kept));
@@ -126,10 +129,8 @@ SessionReport Session::report() const {
   report.device = state_->device->info().name;
   report.driver = state_->device->info().driver;
   report.preset = state_->preset_file;
-  report.storage = stack.choice().storage == Storage::fp16 ? "fp16" : "fp32";
+  report.choice = stack.choice();
   report.reference = state_->options.stack.reference;
-  report.hardware_filter = stack.choice().hardware_filter;
-  report.max_error = stack.choice().max_error;
   report.skipped = stack.prepared_graph().skipped;
   report.skipped_now = state_->skipped_now;
   report.counters = {.programs = stack.programs(),
@@ -139,8 +140,7 @@ SessionReport Session::report() const {
     for (const auto& kernel : state_->ran->plan().kernels) report.kernels.push_back(kernel.name);
   if (const Program* program = state_->stack->program()) {
     report.skipped.insert(report.skipped.end(), program->plan().skipped.begin(), program->plan().skipped.end());
-    if (stack.region())
-      report.skipped.push_back(skipped_pixels(program->graph(), program->plan(), program->parts()));
+    if (stack.region()) report.skipped.push_back(skipped_pixels(program->graph(), program->plan(), program->parts()));
     report.memory = program->memory();
   }
   report.clamped = state_->result.clamped;

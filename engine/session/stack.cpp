@@ -5,6 +5,7 @@
 
 #include "graph/plan.h"
 #include "graph/region.h"
+#include "session/calibration.h"
 #include "shader/kernel.h"
 
 namespace afterglow {
@@ -16,22 +17,36 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// Measured worst cases of whole stacks (math.md §13): half storage 1e-3, 8-bit fractions of a sampler on top 2.7e-3.
-constexpr double kErrorOfHalf = 2e-3;
-constexpr double kErrorOfHardwareFilter = 5e-3;
+constexpr Choice kReference{.joining = Joining::none, .share_memory = false};
 
-StackChoice choice_for(const Device& device, const StackOptions& options, double max_error) {
-  StackChoice choice;
-  choice.max_error = max_error;
-  if (options.reference) return choice;
-  // On CPU devices full floats and integer fetches are faster than half floats and filtered fetches, and exact.
-  const bool half_pays = !device.is_cpu() && max_error >= kErrorOfHalf;
-  const bool half = options.precision == Precision::fp16 || (options.precision == Precision::automatic && half_pays);
-  choice.storage = half ? Storage::fp16 : Storage::fp32;
-  choice.hardware_filter = !device.is_cpu() && max_error >= kErrorOfHardwareFilter;
-  choice.storage_reads = device.is_cpu();
-  choice.rows = device.is_cpu() ? kMaxRows : 1;
+StackChoice choose(const Device& device, const StackOptions& options, const Calibration& calibration,
+                   double max_error) {
+  if (options.reference) return {kReference, "--reference", max_error};
+  if (options.choice) return {*options.choice, "given", max_error};
+  StackChoice choice{{}, {}, max_error};
+  const Calibration::Found found = calibration.find(device.info(), max_error);
+  choice.execution = found.choice;
+  choice.from = found.from;
+  if (options.precision == Precision::automatic) return choice;
+  choice.execution.storage = options.precision == Precision::fp16 ? Storage::fp16 : Storage::fp32;
+  choice.from += "; --precision";
   return choice;
+}
+
+/// A pixel pass behind the result, which joins the last kernel like any other.
+void encode_for_display(Graph& graph, const DisplayEncoding& encoding) {
+  const auto output = static_cast<ImageId>(graph.images.size());
+  Pass pass;
+  pass.name = "output.display";
+  pass.effect = "output";
+  pass.shader = encoding.straight_alpha ? "output/display_straight" : "output/display";
+  pass.inputs = {{"source", graph.result}};
+  if (encoding.straight_alpha) pass.inputs.push_back({"original", graph.source, true});
+  pass.constants = {{"dither", encoding.dither ? 1.0 : 0.0}};
+  pass.output = output;
+  graph.images.push_back({pass.name, graph.images[graph.result].size, static_cast<int>(graph.passes.size())});
+  graph.passes.push_back(std::move(pass));
+  graph.result = output;
 }
 
 }  // namespace
@@ -43,24 +58,23 @@ struct Stack::State {
   std::unique_ptr<KernelCompiler> compiler;
   std::optional<Preset> preset;
   Device* device = nullptr;
+  Calibration calibration;
   StackChoice choice;
   bool own_images = false;
   Graph graph;
   std::optional<Rect> region;  ///< that `program` was made for
+  bool encoded = false;        ///< its result holds display codes
   bool prepared = false;
   std::unique_ptr<Program> program;
   IdlePrograms idle;
   double script_ms = 0, compile_ms = 0;
 
-  ProgramOptions program_options() const {
-    ProgramOptions out;
-    out.storage = choice.storage;
+  ProgramOptions options_of_programs() const {
+    ProgramOptions out = program_options(choice.execution);
     out.reference = options.reference;
-    out.hardware_filter = choice.hardware_filter;
-    out.storage_reads = choice.storage_reads;
     out.source_is_storage = own_images;
-    out.rows = choice.rows;
     out.result_by_rows = own_images;
+    out.codes = encoded;
     out.region = region;
     out.keep_images = options.keep_images;
     out.max_memory = options.max_memory;
@@ -82,6 +96,8 @@ Result<std::unique_ptr<Stack>> Stack::load(const std::filesystem::path& preset, 
   state->compiler = std::make_unique<KernelCompiler>(cache.empty() ? cache : cache / "shaders");
   AFTERGLOW_TRY(Preset loaded, Preset::load(preset, options.preset, *state->shaders, diagnostics));
   state->preset.emplace(std::move(loaded));
+  AFTERGLOW_TRY(state->calibration,
+                options.calibration.empty() ? Calibration::shipped() : Calibration::load(options.calibration));
   state->choice.max_error = options.max_error.value_or(state->preset->max_error().value_or(state->choice.max_error));
   state->script_ms = milliseconds_since(start);
   return std::unique_ptr<Stack>(new Stack(std::move(state)));
@@ -96,7 +112,9 @@ double Stack::script_milliseconds() const { return state_->script_ms; }
 double Stack::compile_milliseconds() const { return state_->compile_ms; }
 
 VkFormat Stack::result_format() const {
-  return state_->choice.storage == Storage::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+  if (state_->program) return state_->program->result_format();
+  return state_->choice.execution.storage == Storage::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT
+                                                           : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
 Result<Graph> Stack::graph(const BuildContext& context) {
@@ -111,7 +129,7 @@ Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
   AFTERGLOW_TRY(const Graph graph, this->graph(context));
   const bool reference = state_->options.reference;
   const std::uint64_t bytes_per_pixel = state_->options.precision == Precision::fp16 && !reference ? 8 : 16;
-  const Plan plan = make_plan(graph, {.join = !reference});
+  const Plan plan = make_plan(graph, {.joining = reference ? Joining::none : Joining::all});
   std::vector<Block> blocks;
   for (std::size_t i = 0; i < plan.transient.size(); ++i) {
     const auto pixels = static_cast<std::uint64_t>(graph.images[plan.transient[i]].size.area());
@@ -126,16 +144,20 @@ Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
 void Stack::use(Device& device, bool own_images) {
   state_->device = &device;
   state_->own_images = own_images;
-  state_->choice = choice_for(device, state_->options, state_->choice.max_error);
+  state_->choice = choose(device, state_->options, state_->calibration, state_->choice.max_error);
   if (const auto& cache = state_->options.cache_folder; !cache.empty())
     device.use_pipeline_cache((cache / "pipelines").string());
 }
 
-Result<void> Stack::prepare(const BuildContext& context, const std::optional<Rect>& region) {
+Result<void> Stack::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding,
+                            const std::optional<Rect>& region) {
   AFTERGLOW_TRY(Graph graph, this->graph(context));
+  const bool encoded = encoding && !state_->options.reference && graph.result != graph.source;
+  if (encoded) encode_for_display(graph, *encoding);
   const bool same_region = state_->region == region && (!region || same_reach(state_->graph, graph));
   const bool reusable = state_->prepared && same_region && same_structure(state_->graph, graph);
   state_->region = region;
+  state_->encoded = encoded;
   state_->graph = std::move(graph);
   state_->prepared = true;
   if (reusable) {
@@ -147,7 +169,7 @@ Result<void> Stack::prepare(const BuildContext& context, const std::optional<Rec
   state_->idle = {};
   if (!runs()) return {};
   const auto start = Clock::now();
-  const ProgramOptions options = state_->program_options();
+  const ProgramOptions options = state_->options_of_programs();
   auto program = Program::create(*state_->device, *state_->shaders, *state_->compiler, state_->graph, options);
   if (!program) {
     state_->prepared = false;
@@ -167,7 +189,7 @@ bool Stack::depends_on_content() const {
 Result<IdlePrograms::Choice> Stack::program_for(float brightest) {
   const auto start = Clock::now();
   const int before = state_->idle.size();
-  ProgramOptions options = state_->program_options();
+  ProgramOptions options = state_->options_of_programs();
   options.max_memory -= std::min(options.max_memory, state_->program->memory().arena);
   auto choice = state_->idle.choose(*state_->device, *state_->shaders, *state_->compiler, *state_->program,
                                     state_->graph, options, brightest);

@@ -11,6 +11,7 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
+#include "exec/choice.h"
 #include "exec/idle_programs.h"
 #include "exec/program.h"
 #include "gpu/device.h"
@@ -23,27 +24,34 @@ enum class Precision { automatic, fp32, fp16 };
 struct StackOptions {
   PresetOptions preset;
   Precision precision = Precision::automatic;
-  std::optional<double> max_error;        ///< E of math.md §13; default: the preset's, else 2e-3
-  bool reference = false;                 ///< every pass on its own in fp32 with computed weights: the slow truth
-  bool skip_idle = true;                  ///< run frames without the effects that their content makes idle (never with `reference`)
+  std::optional<double> max_error;  ///< E of math.md §13; default: the preset's, else 2e-3
+  bool reference = false;           ///< every pass on its own in fp32 with computed weights: the slow truth
+  bool skip_idle = true;     ///< run frames without the effects that their content makes idle (never with `reference`)
   bool keep_images = false;  ///< images between passes stay, so that after an edit only what it changes runs again
   std::uint64_t max_memory = 6ull << 30;  ///< bytes of device memory for images
   std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
+  std::optional<Choice> choice;           ///< execute so, whatever calibration and precision say
+  std::filesystem::path calibration;      ///< a table of `afterglow calibrate`; empty: the shipped one
 };
 
-/// How a stack is executed; decided from the device, E and --precision.
+/// 8-bit display codes as the last kernel's work: sRGB-encoded, as a display file holds them.
+struct DisplayEncoding {
+  bool straight_alpha = false;  ///< colours are divided by the source's alpha, which becomes the codes' alpha
+  bool dither = false;          ///< ±½ step of ordered noise
+  friend bool operator==(const DisplayEncoding&, const DisplayEncoding&) = default;
+};
+
+/// How a stack is executed, and why so.
 struct StackChoice {
-  Storage storage = Storage::fp32;
-  bool hardware_filter = false;
-  bool storage_reads = false;  ///< see ProgramOptions
-  int rows = 1;                ///< see ProgramOptions
+  Choice execution;
+  std::string from;  ///< "calibration/devices.json, any gpu", "given", "--reference"
   double max_error = 2e-3;
 };
 
 /// Bound to one device, which must outlive it. Not thread-safe.
 class Stack {
  public:
-  /// Runs the preset's script; touches no device. Errors: script, usage (override).
+  /// Runs the preset's script; touches no device. Errors: script, usage (override), io (calibration).
   static Result<std::unique_ptr<Stack>> load(const std::filesystem::path& preset, const StackOptions& options,
                                              Diagnostics& diagnostics);
   ~Stack();
@@ -55,7 +63,7 @@ class Stack {
   /// device.
   Result<std::uint64_t> memory_needed(const BuildContext& context);
 
-  /// Decides storage and filtering for a device. Call before `prepare`. `own_images`: source and result will be a
+  /// Looks up how to execute on a device. Call before `prepare`. `own_images`: source and result will be a
   /// FrameRunner's, made as the program likes them best (ProgramOptions::source_is_storage, result_by_rows).
   void use(Device& device, bool own_images = false);
   const StackChoice& choice() const;
@@ -63,8 +71,10 @@ class Stack {
   /// Makes shaders, pipelines and memory for pictures of this size, or only rewrites parameters when the structure is
   /// as before. Must not be called while a submission that uses this stack is in flight. Errors: script, device, io
   /// (memory limit).
-  /// With `region`, in pixels of the picture and within it, only that part of the result is made.
-  Result<void> prepare(const BuildContext& context, const std::optional<Rect>& region = {});
+  /// With `encoding` (not with StackOptions::reference) the result is RGBA8. With `region`, in pixels of the picture
+  /// and within it, only that part of the result is made.
+  Result<void> prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {},
+                       const std::optional<Rect>& region = {});
   /// False when no effect has anything to do: the result *is* the source, and `record` records nothing.
   bool runs() const;
   /// The program of the last `prepare`; null before it, and when nothing runs.
@@ -74,15 +84,16 @@ class Stack {
 
   /// Whether the content of a frame may make effects idle: then ask `program_for` for the program of each frame.
   bool depends_on_content() const;
-  /// The program for a frame whose source is at most this bright (see IdlePrograms), and what it leaves out. Programs are
-  /// made when they are first wanted, and kept. Errors: those of `prepare`.
+  /// The program for a frame whose source is at most this bright (see IdlePrograms), and what it leaves out. Programs
+  /// are made when they are first wanted, and kept. Errors: those of `prepare`.
   Result<IdlePrograms::Choice> program_for(float brightest);
   /// The region of the last `prepare`.
   const std::optional<Rect>& region() const;
   /// Programs made for the present structure.
   int programs() const;
 
-  /// Format that the result image must have: VK_FORMAT_R32G32B32A32_SFLOAT or VK_FORMAT_R16G16B16A16_SFLOAT.
+  /// Format that the result image must have: VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT, or with a
+  /// display encoding VK_FORMAT_R8G8B8A8_UNORM.
   VkFormat result_format() const;
   /// See Program::bind and Program::record for layouts and barriers.
   Result<void> bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result);

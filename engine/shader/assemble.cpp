@@ -60,14 +60,15 @@ class Assembler {
     out_.glsl += prelude_text();
     if (!readers_.empty()) out_.glsl += "#line 1 1\n" + readers_;
     out_.glsl += library_text_ + stages_ + "#line 1 0\n";
-    if (kernel_.half_storage) out_.glsl += kRoundToHalf;
-    if (kernel_.half_storage) row_ += "  ag_color = ag_round_to_half(ag_color);\n";
+    if (kernel_.target == KernelTarget::float16) out_.glsl += kRoundToHalf;
+    if (kernel_.target == KernelTarget::float16) row_ += "  ag_color = ag_round_to_half(ag_color);\n";
+    if (kernel_.target == KernelTarget::codes8) row_ += "  ag_color = clamp(ag_color, 0.0, 1.0);\n";
     if (row_.empty()) {
       every_row("ag_result{0} = ag_color{0};");
     } else {
-      out_.glsl +=
-          fmt::format("vec4 {}(vec4 ag_color{}) {{\n{}  return ag_color;\n}}\n", kRowFunction, row_parameters_, row_);
-      every_row("ag_result{0} = " + std::string(kRowFunction) + "(ag_color{0}" + row_arguments_ + ");");
+      out_.glsl += fmt::format("vec4 {}(vec4 ag_color, ivec2 ag_at{}) {{\n{}  return ag_color;\n}}\n", kRowFunction,
+                               row_parameters_, row_);
+      every_row("ag_result{0} = " + std::string(kRowFunction) + "(ag_color{0}, ag_pixel{0}" + row_arguments_ + ");");
     }
     out_.glsl += head_function_ + "void main() {\n" + pixels() + body_ + "}\n";
     out_.hash = hash_text(out_.glsl);
@@ -173,6 +174,7 @@ class Assembler {
         readers[input.name] = reader;
       }
     }
+    if (source.interface.at_pixel) arguments += ", ag_at";
     for (const auto& param : source.interface.params) {
       if (param.specialised) continue;
       block_ += fmt::format("  {} {}{};\n", glsl_name(param.type), prefix, param.name);

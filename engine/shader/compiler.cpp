@@ -120,6 +120,7 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   for (std::size_t i = 0; i < out.params.size(); ++i) out.params[i].offset = made->offsets[i];
   out.block_size = made->block_size;
   out.rows = desc.rows;
+  out.target = desc.target;
   out.hash = assembled.hash;
   return out;
 }

@@ -46,7 +46,7 @@ Result<EntryPoint> parse_entry_point(const Token& result, const Token& name, std
   const bool apply = name.is("apply");
   const auto wrong = [&](const Token& where, std::string what) {
     Error error = shader_error(file, where.line, std::move(what));
-    error.allowed = apply ? "vec4 apply(vec4 color, vec4 NAME, …)" : "vec4 sample_at(ivec2 pixel)";
+    error.allowed = apply ? "vec4 apply(vec4 color, vec4 NAME, …, ivec2 pixel)" : "vec4 sample_at(ivec2 pixel)";
     return error;
   };
   if (!result.is("vec4")) return wrong(name, fmt::format("{} must return vec4, not {}", name.text, result.text));
@@ -59,10 +59,12 @@ Result<EntryPoint> parse_entry_point(const Token& result, const Token& name, std
     return out;
   }
   if (list.empty()) return wrong(name, "apply takes the colour as its first argument");
-  for (const auto& argument : list)
-    if (!argument.type->is("vec4"))
-      return wrong(*argument.type, fmt::format("argument '{}' of apply must be a vec4", argument.name->text));
-  for (std::size_t i = 1; i < list.size(); ++i) out.inputs.push_back(*list[i].name);
+  out.at_pixel = list.size() > 1 && list.back().type->is("ivec2");
+  const std::size_t colors = list.size() - (out.at_pixel ? 1 : 0);
+  for (std::size_t i = 0; i < colors; ++i)
+    if (!list[i].type->is("vec4"))
+      return wrong(*list[i].type, fmt::format("argument '{}' of apply must be a vec4", list[i].name->text));
+  for (std::size_t i = 1; i < colors; ++i) out.inputs.push_back(*list[i].name);
   return out;
 }
 

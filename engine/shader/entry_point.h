@@ -14,6 +14,7 @@ namespace afterglow {
 struct EntryPoint {
   ShaderKind kind = ShaderKind::pixel;
   std::vector<Token> inputs;  ///< names of the pixel-wise inputs: the arguments of `apply` behind the colour
+  bool at_pixel = false;      ///< `apply` ends with the target's pixel
 };
 
 /// `name` is "apply" or "sample_at"; `arguments` are the tokens between its parentheses. Errors (script).

@@ -9,6 +9,7 @@
 //   vec4 apply(vec4 color) { … }              // kind `pixel`
 //
 //   vec4 apply(vec4 color, vec4 high)         // `high`: a second input of the same size, read at its own pixel
+//   vec4 apply(vec4 color, ivec2 pixel)       // an ivec2 at the end: where the pixel lies in the target
 //
 //   uniform sampler2D depth;                  // an input image that is read freely
 //   vec4 sample_at(ivec2 pixel) { … }         // kind `sample`; `pixel` is the target's
@@ -54,6 +55,7 @@ struct ShaderInput {
 
 struct ShaderInterface {
   ShaderKind kind = ShaderKind::pixel;
+  bool at_pixel = false;  ///< `apply` takes the target's pixel as its last argument
   std::vector<ShaderInput>
       inputs;  ///< in order of declaration; for `apply` without its first argument (the colour that flows through)
   std::vector<ShaderParam> params;  ///< in order of declaration

@@ -32,6 +32,10 @@ enum class AxisRatio { any, same, half, twice, fourfold };  // n_dst = n_src · 
 /// faster (lavapipe: 0.6 against 1.8 ns a texel of four floats).
 enum class ImageRead { sampled, storage_rgba32f, storage_rgba16f };
 
+/// What a kernel writes: RGBA32F; RGBA16F (held to ±65504 and rounded); RGBA8 of codes that the last stage gives as
+/// 0…1.
+enum class KernelTarget { float32, float16, codes8 };
+
 inline constexpr int kMaxRows = 8;  ///< colour attachments that every desktop device has
 
 struct KernelDesc {
@@ -41,7 +45,7 @@ struct KernelDesc {
   std::optional<KernelStage> sample;
   std::vector<KernelStage> stages;  ///< pixel stages, in order
   bool hardware_filter = false;     ///< let the sampler interpolate (error of 8-bit fractions) where that helps
-  bool half_storage = false;        ///< target is RGBA16F: clamp to ±65504 before the store
+  KernelTarget target = KernelTarget::float32;
   /// Rows of the target that one invocation makes, each its own output location: invocation (x, Y) makes the pixels
   /// (x, rows·Y) … (x, rows·Y + rows − 1). What neighbouring rows both read is read once. 1 … kMaxRows.
   int rows = 1;
@@ -88,7 +92,8 @@ struct CompiledKernel {
   std::vector<AssembledKernel::ImageSlot> images;
   std::vector<KernelParam> params;
   std::uint32_t block_size = 0;  ///< bytes of the uniform block; 0: none
-  int rows = 1;                  ///< see KernelDesc::rows
+  int rows = 1;                  ///< see KernelDesc
+  KernelTarget target = KernelTarget::float32;
   Hash hash;
 };
 

@@ -319,6 +319,7 @@ class Scanner {
     AFTERGLOW_TRY(const EntryPoint parsed,
                   parse_entry_point(result, name, std::span(code_).subspan(open + 1, close - open - 1), file_));
     out_.interface.kind = parsed.kind;
+    out_.interface.at_pixel = parsed.at_pixel;
     for (const auto& input : parsed.inputs)
       AFTERGLOW_CHECK(add_input({std::string(input.text), true, input.line}, input));
     return {};
@@ -328,7 +329,7 @@ class Scanner {
   Result<void> entry_point() {
     if (!apply_line_ && !sample_line_) {
       Error error = fail(0, "the shader defines neither apply nor sample_at");
-      error.allowed = "vec4 apply(vec4 color, vec4 NAME, …), vec4 sample_at(ivec2 pixel)";
+      error.allowed = "vec4 apply(vec4 color, vec4 NAME, …, ivec2 pixel), vec4 sample_at(ivec2 pixel)";
       const std::vector<std::string> entries = {"apply", "sample_at"};
       for (const auto& name : out_.names) {
         if (name.macro) continue;

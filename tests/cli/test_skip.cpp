@@ -96,7 +96,8 @@ TEST_F(Skip, HeldFramesAreWrittenAgainWithoutRunning) {
   const Outcome outcome =
       run({"run", "look.lua", "in/a.#.exr", "-o", "out/a.#.png", "--stats", "--report", "report.json"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("skipped frame in 1 of 3 frames: its picture and settings are those of an earlier"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("skipped frame in 1 of 3 frames: its picture and settings are those of an earlier"));
   EXPECT_EQ(read("out/a.1.png"), read("out/a.2.png"));
   EXPECT_THAT(read("report.json"), HasSubstr("its picture and settings are those of an earlier frame"));
 }

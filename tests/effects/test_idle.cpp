@@ -45,8 +45,7 @@ class Idle : public testing::Test {
     EXPECT_TRUE(without_->process(b));
     int different = 0;
     for (std::size_t i = 0; i < a.color.pixels.size(); ++i)
-      different +=
-          std::bit_cast<std::uint32_t>(a.color.pixels[i]) != std::bit_cast<std::uint32_t>(b.color.pixels[i]);
+      different += std::bit_cast<std::uint32_t>(a.color.pixels[i]) != std::bit_cast<std::uint32_t>(b.color.pixels[i]);
     EXPECT_EQ(different, 0);
     EXPECT_TRUE(without_->report().skipped_now.empty());
     return with_->report().skipped_now;
@@ -55,8 +54,7 @@ class Idle : public testing::Test {
   static Image noise(Size size, float largest, unsigned seed) {
     Image out(size.width, size.height, 4);
     std::mt19937 random(seed);
-    for (auto& value : out.pixels)
-      value = std::min(largest, largest * static_cast<float>(random() % 4097) / 4096.0f);
+    for (auto& value : out.pixels) value = std::min(largest, largest * static_cast<float>(random() % 4097) / 4096.0f);
     for (int y = 0; y < size.height / 2; ++y)  // a part at the very limit, beside blacks
       for (int x = 0; x < size.width; ++x)
         for (int c = 0; c < 3; ++c) out.at(x, y)[c] = (x / 8) % 2 ? largest : 0.0f;
@@ -69,7 +67,8 @@ class Idle : public testing::Test {
 
 /// Linear limits of bloom, rounded as its shader has them.
 float limit_of(double gamma_threshold, double knee) {
-  const double t = gamma_threshold < 1 ? std::pow((gamma_threshold + 0.055) / 1.055, 2.4) : std::pow(gamma_threshold, 2.2);
+  const double t =
+      gamma_threshold < 1 ? std::pow((gamma_threshold + 0.055) / 1.055, 2.4) : std::pow(gamma_threshold, 2.2);
   return static_cast<float>(t - t * knee);
 }
 
@@ -121,8 +120,8 @@ TEST_F(Idle, OneBrightPixelInAnyCornerRunsTheEffect) {
 TEST_F(Idle, ValuesThatAreNoLightRunTheEffect) {
   open("fx.bloom { }, fx.tone_mapping { mode = \"reinhard\" }");
   const float inf = std::numeric_limits<float>::infinity();
-  for (const float value : {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::quiet_NaN(), inf, -inf,
-                            -1.0f, -0.0f, -1e-30f, 3e38f}) {
+  for (const float value : {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::quiet_NaN(), inf,
+                            -inf, -1.0f, -0.0f, -1e-30f, 3e38f}) {
     Image image = noise({64, 48}, 0.25f, 5);
     image.at(33, 20)[1] = value;
     Picture picture;
@@ -134,7 +133,8 @@ TEST_F(Idle, ValuesThatAreNoLightRunTheEffect) {
 
 TEST_F(Idle, BoxBloom) {
   for (const std::string brightness : {"max", "luma"}) {
-    open("fx.box_bloom { threshold = 0.8, brightness = \"" + brightness + "\" }, fx.tone_mapping { mode = \"reinhard\" }");
+    open("fx.box_bloom { threshold = 0.8, brightness = \"" + brightness +
+         "\" }, fx.tone_mapping { mode = \"reinhard\" }");
     EXPECT_EQ(same_both_ways(noise({61, 47}, 0.8f, 1)).size(), brightness == "max" ? 1u : 0u);
     EXPECT_EQ(same_both_ways(noise({61, 47}, 0.799998f, 2)).size(), 1u);
     EXPECT_TRUE(same_both_ways(noise({61, 47}, 0.80001f, 3)).empty());

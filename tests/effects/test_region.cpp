@@ -65,10 +65,11 @@ class RegionOfEffects : public testing::TestWithParam<Case> {
     Picture another = picture(size, 99);
     ASSERT_TRUE((*session)->process(another));
     const int w = size.width, h = size.height;
-    for (const Rect& part : {Rect{w / 3, h / 3, 13, 9}, Rect{0, 0, 1, 1}, Rect{w - 1, h - 1, 1, 1}, Rect{0, h * 2 / 3, w, 1},
-                             Rect{w - 20, 0, 20, 7}, Rect{w / 2, 0, 1, h}, Rect{0, 0, w, h}}) {
+    for (const Rect& part :
+         {Rect{w / 3, h / 3, 13, 9}, Rect{0, 0, 1, 1}, Rect{w - 1, h - 1, 1, 1}, Rect{0, h * 2 / 3, w, 1},
+          Rect{w - 20, 0, 20, 7}, Rect{w / 2, 0, 1, h}, Rect{0, 0, w, h}}) {
       Picture some = picture(size);
-      const auto done = (*session)->process(some, {}, part);
+      const auto done = (*session)->process(some, {}, {}, part);
       ASSERT_TRUE(done) << done.error().text();
       int different = 0;
       for (int y = part.y; y < part.y + part.height; ++y)
@@ -96,7 +97,8 @@ INSTANTIATE_TEST_SUITE_P(
     , RegionOfEffects,
     testing::Values(
         Case{"Scattering", "fx.bloom { mode = \"scattering\", max_iterations = 16 }, fx.tone_mapping { }"},
-        Case{"Fireflies", "fx.bloom { fade_fireflies = true, bicubic_upsampling = false }, fx.color_adjustments { contrast = 20 }"},
+        Case{"Fireflies",
+             "fx.bloom { fade_fireflies = true, bicubic_upsampling = false }, fx.color_adjustments { contrast = 20 }"},
         Case{"OneLevel", "fx.bloom { max_iterations = 1 }"},
         Case{"BoxBloom", "fx.box_bloom { threshold = 0.5 }, fx.color_blit { intensity = 1.5 }"},
         Case{"Outline", "fx.outline { width = 3.4, contrast = 3 }, fx.bloom { max_iterations = 2 }"},

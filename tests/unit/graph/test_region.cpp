@@ -91,7 +91,8 @@ class RandomGraph {
       return b.pixel(name, from, more);
     }
     if (kind == 1) {
-      const ImageId made = b.sample(name, {{"source", from}, {"other", images[static_cast<std::size_t>(number(0, i))]}}, size);
+      const ImageId made =
+          b.sample(name, {{"source", from}, {"other", images[static_cast<std::size_t>(number(0, i))]}}, size);
       if (number(0, 3)) b.graph.passes.back().reach = number(0, 5) / 2.0;
       return made;
     }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "image/encode.h"
 #include "session/session.h"
 
 namespace afterglow {
@@ -71,6 +72,54 @@ TEST_F(SessionTest, RunsTheStackAndKeepsAlpha) {
     EXPECT_FLOAT_EQ(p.color.pixels[i], before.color.pixels[i] * (i % 4 == 3 ? 1 : 2)) << i;
   EXPECT_EQ((*session)->report().kernels, std::vector<std::string>{"gain.gain"});
   EXPECT_EQ((*session)->device().validation_errors(), 0);
+}
+
+/// The codes that the writer makes of a picture of linear light, by its own way.
+std::vector<std::uint8_t> written_codes(const Picture& picture, const DisplayEncoding& encoding) {
+  const int width = picture.color.width, height = picture.color.height;
+  std::vector<std::uint8_t> out;
+  for (int y = 0; y < height; ++y) {
+    std::vector<std::uint8_t> row(static_cast<std::size_t>(width) * 4);
+    encode_row({255, true, encoding.dither}, picture.color.at(0, y), width, 0, y, row.data());
+    out.insert(out.end(), row.begin(), row.end());
+  }
+  return out;
+}
+
+TEST_F(SessionTest, DisplayCodesAreThoseOfTheWriter) {
+  SessionOptions options;
+  for (const bool reference : {false, true})
+    for (const bool straight : {false, true})
+      for (const bool dither : {false, true})
+        for (const Size size : {Size{13, 7}, Size{1031, 517}}) {  // the larger one is made several rows at a time
+          SCOPED_TRACE(testing::Message() << straight << dither << reference << " " << size.width);
+          preset("fx.gain { amount = 0.4 }");
+          options.stack.reference = reference;
+          auto session = open(options);
+          ASSERT_TRUE(session) << session.error().text();
+          Picture p = picture(size.width, size.height);
+          for (std::size_t i = 3; i < p.color.pixels.size(); i += 4)
+            p.color.pixels[i] = straight ? static_cast<float>(i % 5) / 4 : 1.0f;
+          Picture light = p;
+          const DisplayEncoding encoding{straight, dither};
+          ASSERT_TRUE((*session)->process(light));
+          ASSERT_TRUE((*session)->process(p, {}, encoding));
+          EXPECT_EQ((*session)->device().validation_errors(), 0);
+          if (reference) {
+            EXPECT_TRUE(p.codes.empty()) << "the slow truth is encoded in double precision";
+            EXPECT_EQ(p.color.pixels, light.color.pixels);
+            continue;
+          }
+          const auto expected = written_codes(light, encoding);
+          ASSERT_EQ(p.codes.size(), expected.size());
+          std::size_t different = 0;
+          for (std::size_t i = 0; i < expected.size(); ++i) {
+            different += p.codes[i] != expected[i];
+            ASSERT_LE(std::abs(p.codes[i] - expected[i]), 1) << i;
+          }
+          EXPECT_LE(different, expected.size() / 300 + 1);  // within 0.0004 of the border between two codes
+          EXPECT_EQ((*session)->report().kernels, std::vector<std::string>{"gain.gain+output.display"});
+        }
 }
 
 TEST_F(SessionTest, NothingToDoLeavesThePictureAndSaysWhy) {
@@ -140,7 +189,7 @@ TEST_F(SessionTest, HalfStorageStaysWithinItsTolerance) {
   options.stack.precision = Precision::fp16;
   auto session = open(options);
   ASSERT_TRUE(session) << session.error().text();
-  EXPECT_EQ((*session)->report().storage, "fp16");
+  EXPECT_EQ((*session)->report().choice.execution.storage, Storage::fp16);
   Picture p = picture(9, 9);
   const auto before = p.color.pixels;
   ASSERT_TRUE((*session)->process(p));
@@ -153,8 +202,8 @@ TEST_F(SessionTest, SmallErrorsMeanFullFloats) {
   options.stack.max_error = 1e-4;
   auto session = open(options);
   ASSERT_TRUE(session) << session.error().text();
-  EXPECT_EQ((*session)->report().storage, "fp32");
-  EXPECT_FALSE((*session)->report().hardware_filter);
+  EXPECT_EQ((*session)->report().choice.execution.storage, Storage::fp32);
+  EXPECT_FALSE((*session)->report().choice.execution.hardware_filter);
 }
 
 TEST_F(SessionTest, MemoryIsForeseenWithoutADevice) {

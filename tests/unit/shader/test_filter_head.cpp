@@ -175,7 +175,7 @@ TEST(Spirv, EveryHeadWithAndWithoutStagesIsValid) {
   int valid = 0;
   for (std::size_t i = 0; i < heads.size(); ++i) {
     auto desc = heads[i];
-    desc.half_storage = i % 2 == 1;
+    desc.target = i % 2 == 1 ? KernelTarget::float16 : KernelTarget::float32;
     if (i % 3 != 0) desc.stages.push_back(first);
     if (i % 3 == 2) desc.stages.push_back(second);
     const auto compiled = compiler.compile(desc);

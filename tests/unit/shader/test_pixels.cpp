@@ -354,7 +354,7 @@ TEST(KernelPixels, HalfStorageRoundsToNearestEvenAndClamps) {
                            6.0996e-5f,    1e-20f};
   std::copy(std::begin(special), std::end(special), source.rgba.begin());
   KernelDesc desc;
-  desc.half_storage = true;
+  desc.target = KernelTarget::float16;
   KernelCompiler compiler{std::filesystem::path()};
   const auto kernel = compiler.compile(desc);
   ASSERT_TRUE(kernel.ok()) << kernel.error().text();

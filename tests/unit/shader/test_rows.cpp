@@ -45,6 +45,7 @@ vec4 apply(vec4 color) {
 })",
     "vec4 apply(vec4 color) { for (int i = 0; i < int(color.r * 3.0); ++i) color.g += sin(color.b); return color; }",
     "vec4 apply(vec4 color) { if (color.r > 1.0) return color.bgra; return color * 0.5; }",
+    "vec4 apply(vec4 color, ivec2 pixel) { return color + vec4(pixel, pixel.y * 3, 1); }",
 };
 
 class Rows : public testing::TestWithParam<std::size_t> {};
@@ -87,6 +88,23 @@ CompiledKernel compiled(const char* stage) {
 std::ptrdiff_t count(const CompiledKernel& kernel, spv::Op op) {
   const auto module = parse(kernel.spirv);
   return std::ranges::count(module->code, op, &Instruction::op);
+}
+
+TEST(Rows, KnowWhereTheyAre) {
+  const ShaderFiles files;
+  KernelDesc desc;
+  desc.stages = {files.stage("test/stage", "vec4 apply(vec4 color, ivec2 pixel) { return vec4(pixel, 0, 1); }")};
+  for (const int rows : {1, 8}) {
+    desc.rows = rows;
+    const auto kernel = KernelCompiler{std::filesystem::path()}.compile(desc);
+    ASSERT_TRUE(kernel) << kernel.error().text();
+    const TestImage out = runner().run(*kernel, {light({7, 11}, 1)}, {7, 11});
+    for (int y = 0; y < 11; ++y)
+      for (int x = 0; x < 7; ++x) {
+        EXPECT_EQ(out.at(x, y)[0], static_cast<float>(x));
+        EXPECT_EQ(out.at(x, y)[1], static_cast<float>(y));
+      }
+  }
 }
 
 TEST(Interleave, TakesBranchesThatChooseApart) {
