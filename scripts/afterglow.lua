@@ -44,6 +44,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field shader string               shaders/NAME.glsl
 ---@field source? afterglow.Image     the colour of a pixel shader (`apply`); the sampler of that name of a `sample_at` shader
 ---@field size? afterglow.Image|integer[]  of the new image, for `sample_at` shaders; default: that of `source`
+---@field reach? number               of `sample_at` shaders: how many texels from the pixel's own place it reads at most; default: anywhere
 ---@field name? string                default: the last part of the shader's name
 ---@field [string] any
 
@@ -103,9 +104,11 @@ fx.curve = core.curve
 --- - `active(s)` false when the settings make the effect an identity, with the reason as second value
 --- - `needs`, `optional` auxiliary inputs ("depth", "normal"), or a function of the settings that returns them. Without a
 ---   needed one the effect is skipped with a warning.
+--- - `idle(s, source)` what makes the effect an identity in a frame: `{ brightest = L }` says that it changes no pixel, to the
+---   last bit, as long as no red, green or blue of `source` is above L. Frames of which that is known are run without it.
 --- - `build(g, s, source)` describes the passes with `g` and returns the image that replaces `source`
 ---Errors: unknown or missing keys, wrong types, unknown injection point or input.
----@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, settings?: table<string, afterglow.SettingType>, active?: (fun(s: table): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
+---@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, settings?: table<string, afterglow.SettingType>, active?: (fun(s: table): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image): { brightest: number }?), build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
 fx.effect = core.effect
 
 ---An integer from `min` to `max` (both included, both optional). 4.0 is one, 4.5 is not. `unit` is for people: "px", "EV".

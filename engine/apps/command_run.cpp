@@ -29,7 +29,7 @@ struct Arguments {
   DeviceArguments device;
   ExecutionArguments execution;
   FrameListRequest files;
-  std::string layer, depth, normal, size;
+  std::string layer, depth, normal, size, region;
   std::string type = "auto", compression;
   int png_level = 1, jpeg_quality = 95;
   bool dither = false, keep_layers = false, resume = false, fail_fast = false;
@@ -54,6 +54,10 @@ void add_files(CLI::App& app, Arguments& a) {
       ->type_name("FILE[:LAYER]")
       ->group(input);
   app.add_option("--size", a.size, "Scale the picture first, for a quick look")->type_name("WxH")->group(input);
+  app.add_option("--region", a.region,
+                 "Only this part of the picture, counted from the upper left corner: the crop of the whole result")
+      ->type_name("X,Y,W,H")
+      ->group(input);
 
   app.add_option("--frames", a.files.frames, "Frames to run: 1-24, 1-24x2, 1,5,10-12 (default: all there are)")
       ->type_name("LIST")
@@ -113,10 +117,10 @@ SampleType sample_type(const std::string& text) {
 
 /// Every option that changes pixels, for the hash that --resume compares.
 std::string pixel_options(const Arguments& a, const StackChoice& choice) {
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", join(a.preset.overrides, "|"), a.preset.at,
-                     choice_name(choice.execution), a.execution.precision, a.execution.max_error.value_or(0),
-                     a.execution.reference, a.layer, a.depth, a.normal, a.size, a.fps, a.type, a.compression,
-                     a.png_level, a.jpeg_quality, a.dither, a.keep_layers);
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", join(a.preset.overrides, "|"),
+                     a.preset.at, choice_name(choice.execution), a.execution.precision,
+                     a.execution.max_error.value_or(0), a.execution.reference, a.layer, a.depth, a.normal, a.size,
+                     a.region, a.fps, a.type, a.compression, a.png_level, a.jpeg_quality, a.dither, a.keep_layers);
 }
 
 /// Everything about one run that outlives a step.
@@ -202,6 +206,15 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
       return Error{ErrorKind::usage, "--keep-layers copies layers as they are and cannot go with --size",
                    "afterglow run"};
   }
+  if (!a.region.empty()) {
+    AFTERGLOW_TRY(run.loop.region, parse_region(a.region));
+    run.loop.write.dither_x = run.loop.region->x;
+    run.loop.write.dither_y = run.loop.region->y;
+    if (a.keep_layers)
+      return Error{ErrorKind::usage, "--keep-layers copies layers as they are and cannot go with --region",
+                   "afterglow run"};
+  }
+  run.loop.reuse = !a.execution.reference;
   AFTERGLOW_CHECK(check_outputs(run));
   AFTERGLOW_TRY(const std::filesystem::path preset, a.preset.preset_file());
   AFTERGLOW_TRY(run.session, Session::open(preset, options, run.console.diagnostics()));

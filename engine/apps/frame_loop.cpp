@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "apps/crop.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
 #include "apps/resume.h"
@@ -35,6 +36,7 @@ struct FrameLoop::Reading {
   FrameRecord* frame = nullptr;
   std::optional<Error> refused;  ///< by the header; nothing was read
   BuildContext context;
+  std::optional<Rect> part;  ///< of the picture, when there is a region
   std::optional<DisplayEncoding> encoding;
   std::future<Result<Picture>> picture;
 };
@@ -63,7 +65,7 @@ Result<void> FrameLoop::run(std::vector<FrameRecord>& frames) {
     auto reading = next ? std::move(next) : begin_reading(*waiting[i]);
     // Shaders, pipelines and memory are made while the first picture is read.
     if (i == 0 && !reading->refused) {
-      if (auto prepared = session_.prepare(reading->context, reading->encoding);
+      if (auto prepared = session_.prepare(reading->context, reading->encoding, reading->part);
           !prepared && ends_run(prepared.error()))
         return close(fail(*reading->frame, std::move(prepared).error()));
     }
@@ -123,6 +125,19 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(FrameRecord& frame)
   BuildContext& context = reading->context;
   context.size =
       options_.size ? scaled_size(header->data_window.size(), display, *options_.size) : header->data_window.size();
+  if (options_.region) {
+    const Rect& data = header->data_window;
+    const Rect window = options_.size ? scaled_window(data, header->display_window, *options_.size) : data;
+    const Rect shown = options_.size ? Rect{header->display_window.x, header->display_window.y, options_.size->width,
+                                            options_.size->height}
+                                     : header->display_window;
+    const auto part = part_of_region(*options_.region, window, shown);
+    if (!part) {
+      reading->refused = named(part.error(), frame.job);
+      return reading;
+    }
+    reading->part = *part;
+  }
   for (const auto& name : header->auxiliary)
     if (std::find(options.auxiliary.begin(), options.auxiliary.end(), name) != options.auxiliary.end())
       context.auxiliary[name] = context.size;
@@ -142,6 +157,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(FrameRecord& frame)
     const auto start = Clock::now();
     auto picture = read_picture(frame.job.input, options, console_.diagnostics());
     if (picture && options_.size) scale_picture(*picture, *options_.size);
+    if (picture && options_.reuse && total_ > 1) note_content(*picture);
     frame.read = milliseconds_since(start);
     return picture;
   });
@@ -156,17 +172,19 @@ Result<void> FrameLoop::process(Reading& reading) {
   if (!picture) return fail(frame, named(std::move(picture).error(), frame.job));
   if (interrupted()) return interrupt_error();
   frame.size = picture->color.size();
-  const auto processed = session_.process(*picture, reading.context, reading.encoding);
+  const auto processed = session_.process(*picture, reading.context, reading.encoding, reading.part);
   // Validation goes first: it says what a failure comes from.
   if (session_.device().validation_errors() > 0)
     return fail(frame, {ErrorKind::device, "Vulkan validation: " + session_.device().validation_messages().front()});
   if (!processed) return fail(frame, named(processed.error(), frame.job));
   const SessionReport report = session_.report();
   frame.times = report.times.frame;
+  frame.skipped = report.skipped_now;
   if (report.clamped > 0)
     console_.diagnostics().warn_once(
         "clamped", fmt::format("{}: {} samples were held at ±65504, the largest half float", frame.job.input.string(),
                                report.clamped));
+  if (reading.part) crop_picture(*picture, *options_.region, *reading.part);
   if (interrupted()) return interrupt_error();
   AFTERGLOW_CHECK(finish_writing());
   begin_writing(frame, std::move(*picture));

@@ -19,7 +19,9 @@ namespace afterglow {
 struct FrameLoopOptions {
   ReadOptions read;  ///< depth and normal are those of each frame
   WriteOptions write;
-  std::optional<Size> size;  ///< display window to scale pictures to before the stack
+  std::optional<Size> size;    ///< display window to scale pictures to before the stack
+  std::optional<Rect> region;  ///< part of the display window that is wanted
+  bool reuse = true;           ///< pictures that were just run are not run again
   double fps = 24;
   std::uint64_t max_memory = 6ull << 30;
   std::optional<Hash> record_look;  ///< leave notes for --resume

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/graph_view.h"
+#include "graph/condition.h"
 
 namespace afterglow {
 namespace {
@@ -38,6 +39,14 @@ std::vector<Skipped> all_skipped(const Graph& graph, const Plan& plan) {
   std::vector<Skipped> all = graph.skipped;
   all.insert(all.end(), plan.skipped.begin(), plan.skipped.end());
   return all;
+}
+
+std::vector<std::string> idle_lines(const Graph& graph) {
+  std::vector<std::string> out;
+  for (const auto& condition : graph.idle)
+    if (condition.image == graph.source)
+      out.push_back(fmt::format("{}, when {}", condition.effect, idle_reason(condition)));
+  return out;
 }
 
 int kernel_of(const Plan& plan, int pass) {
@@ -81,6 +90,10 @@ std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& t
   for (std::size_t i = 0; i < skipped.size(); ++i)
     out += fmt::format("  skipped{} [label={}, style=\"rounded,dashed\", fontcolor=gray40, color=gray60];\n", i,
                        quoted(fmt::format("{}: {}", skipped[i].name, skipped[i].reason)));
+  const auto idle = idle_lines(graph);
+  for (std::size_t i = 0; i < idle.size(); ++i)
+    out += fmt::format("  idle{} [label={}, style=\"rounded,dotted\", fontcolor=gray40, color=gray60];\n", i,
+                       quoted("not run: " + idle[i]));
   return out + "}\n";
 }
 

@@ -144,6 +144,7 @@ std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& t
   if (std::ranges::any_of(plan.kernels, [](const auto& k) { return k.passes.size() > 1; }))
     lines.push_back(std::string("Passes of one tint are joined into one kernel: the later ones ") + kJoinReason + ".");
   for (const auto& entry : skipped) lines.push_back(fmt::format("Skipped {}: {}", entry.name, entry.reason));
+  for (const auto& line : idle_lines(graph)) lines.push_back("Not run: " + line);
   for (const auto& line : lines) width = std::max(width, 2 * kMargin + 7.5 * static_cast<double>(line.size()));
   double bottom = 0;
   for (const auto& node : nodes) bottom = std::max(bottom, node.y + kBoxHeight);

@@ -18,6 +18,8 @@ std::string graph_json(const Graph& graph, const Plan& plan, const std::string& 
 
 /// What was skipped, by the script and by the plan.
 std::vector<Skipped> all_skipped(const Graph& graph, const Plan& plan);
+/// What frames may leave out because of their content: "glow, when nothing is brighter than 0.5".
+std::vector<std::string> idle_lines(const Graph& graph);
 /// Index of the kernel that runs a pass, or -1 when it was dropped.
 int kernel_of(const Plan& plan, int pass);
 /// "1920×1080" of the image a pass makes.

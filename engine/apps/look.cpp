@@ -2,8 +2,10 @@
 
 #include <set>
 
+#include "apps/crop.h"
 #include "core/paths.h"
 #include "exec/describe.h"
+#include "graph/region.h"
 #include "shader/kernel.h"
 
 namespace afterglow {
@@ -19,6 +21,12 @@ Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& a
   AFTERGLOW_TRY(look.graph, look.preset->build(context, console.diagnostics()));
   AFTERGLOW_CHECK(validate(look.graph));
   look.plan = make_plan(look.graph, {});
+  if (!assumed.region.empty()) {
+    AFTERGLOW_TRY(const Rect region, parse_region(assumed.region));
+    const Rect whole{0, 0, context.size.width, context.size.height};
+    AFTERGLOW_TRY(const Rect part, part_of_region(region, whole, whole));
+    look.plan.skipped.push_back(skipped_pixels(look.graph, look.plan, regions(look.graph, look.plan, part)));
+  }
   return look;
 }
 

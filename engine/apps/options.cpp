@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -136,6 +137,21 @@ Result<Size> parse_size(const std::string& text) {
   return size;
 }
 
+Result<Rect> parse_region(const std::string& text) {
+  const auto parts = split(text, ',');
+  std::array<int, 4> numbers{};
+  bool good = parts.size() == numbers.size();
+  for (std::size_t i = 0; good && i < numbers.size(); ++i) {
+    const auto [end, ec] = std::from_chars(parts[i].data(), parts[i].data() + parts[i].size(), numbers[i]);
+    good = ec == std::errc() && end == parts[i].data() + parts[i].size() && numbers[i] >= (i < 2 ? 0 : 1) &&
+           numbers[i] <= 16384;
+  }
+  if (!good)
+    return Error{ErrorKind::usage, fmt::format("'{}' is no region", text), "--region", 0,
+                 "X,Y,WIDTH,HEIGHT in pixels; X and Y 0 to 16384, WIDTH and HEIGHT 1 to 16384"};
+  return Rect{numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
 Result<Position> parse_position(const std::string& text) {
   Position position{};
   const auto parts = split(text, ',');
@@ -180,6 +196,9 @@ std::string memory_text(std::uint64_t bytes) {
 void AssumedPicture::add(CLI::App& command) {
   command.add_option("--size", size, "Size of the assumed picture (default 1920x1080)")
       ->type_name("WxH")
+      ->group("Picture");
+  command.add_option("--region", region, "Part of the picture that is wanted, as `run` takes it")
+      ->type_name("X,Y,W,H")
       ->group("Picture");
   command.add_option("--frame", frame, "Number of the assumed picture in its sequence (default 1)")
       ->check(CLI::Number)

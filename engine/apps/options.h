@@ -57,6 +57,8 @@ struct ExecutionArguments {
 
 /// "1920x1080". Errors: usage.
 Result<Size> parse_size(const std::string& text);
+/// "X,Y,W,H": whole numbers, X and Y not negative, W and H at least 1. Errors: usage.
+Result<Rect> parse_region(const std::string& text);
 /// "6G", "512M", "1.5GiB", "1000000": bytes, units of 1024. Errors: usage.
 Result<std::uint64_t> parse_memory(const std::string& text);
 /// "6.0 GiB", "512 MiB".
@@ -69,6 +71,7 @@ Result<Position> parse_position(const std::string& text);
 /// stack asks for.
 struct AssumedPicture {
   std::string size = "1920x1080";
+  std::string region;  ///< --region; empty: all
   double frame = 1, fps = 24;
   std::vector<std::string> without;  ///< --without depth
   void add(CLI::App& command);

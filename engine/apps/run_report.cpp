@@ -65,6 +65,25 @@ std::string passes_text(const FrameRecord& frame) {
   return how + table.text("  ");
 }
 
+/// What single frames did not run, each reason once, with the number of frames.
+std::string skipped_in_frames_text(const RunReport& report) {
+  std::vector<std::pair<Skipped, std::size_t>> found;
+  for (const auto& frame : report.frames)
+    for (const auto& skipped : frame.skipped) {
+      auto at = std::ranges::find_if(
+          found, [&](const auto& f) { return f.first.name == skipped.name && f.first.reason == skipped.reason; });
+      if (at == found.end()) at = found.insert(found.end(), {skipped, 0});
+      ++at->second;
+    }
+  const std::size_t done = count(report, FrameRecord::State::done);
+  std::string out;
+  for (const auto& [skipped, frames] : found) {
+    const std::string where = frames == done ? "" : fmt::format(" in {} of {} frames", frames, done);
+    out += fmt::format("skipped {}{}: {}\n", skipped.name, where, skipped.reason);
+  }
+  return out;
+}
+
 Json frame_json(const FrameRecord& frame) {
   static constexpr const char* kStates[] = {"not run", "done", "up to date", "failed"};
   Json out{{"frame", frame.job.frame},
@@ -82,6 +101,8 @@ Json frame_json(const FrameRecord& frame) {
                              {"write", frame.write}};
   for (const auto& kernel : frame.times.kernels)
     out["passes"].push_back(Json{{"name", kernel.name}, {"milliseconds", kernel.milliseconds}});
+  for (const auto& skipped : frame.skipped)
+    out["skipped"].push_back(Json{{"name", skipped.name}, {"reason", skipped.reason}});
   if (!frame.times.kernels.empty()) out["passes_submitted_alone"] = frame.times.separate_submissions;
   return out;
 }
@@ -137,6 +158,7 @@ std::string report_text(const RunReport& report, bool passes) {
   if (report.session) {
     for (const auto& skipped : report.session->skipped)
       out += fmt::format("skipped {}: {}\n", skipped.name, skipped.reason);
+    out += skipped_in_frames_text(report);
     if (report.session->clamped > 0)
       out += fmt::format("{} samples of the last frame were held at ±65504 (half floats)\n", report.session->clamped);
   }

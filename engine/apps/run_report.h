@@ -18,6 +18,7 @@ struct FrameRecord {
   Size size;
   double read = 0, write = 0;
   FrameTimes times;
+  std::vector<Skipped> skipped;  ///< what this frame did not run because of its content
 };
 
 struct RunReport {

@@ -88,16 +88,19 @@ Size scaled_size(Size data, Size display, Size target) {
           std::max(1, scaled(data.height, display.height, target.height))};
 }
 
+Rect scaled_window(const Rect& data, const Rect& display, Size target) {
+  const Size size = scaled_size(data.size(), display.size(), target);
+  return {display.x + scaled(data.x - display.x, display.width, target.width),
+          display.y + scaled(data.y - display.y, display.height, target.height), size.width, size.height};
+}
+
 void scale_picture(Picture& picture, Size target) {
   const Size display = picture.display_window.size();
   const Size size = scaled_size(picture.data_window.size(), display, target);
   picture.color = resample_columns(resample_rows(picture.color, size.width), size.height);
   for (auto& [name, image] : picture.auxiliary) image = nearest(image, size);
-  // The display window keeps its corner, the data window its place in it.
   const Rect old = picture.display_window;
-  picture.data_window = {old.x + scaled(picture.data_window.x - old.x, display.width, target.width),
-                         old.y + scaled(picture.data_window.y - old.y, display.height, target.height), size.width,
-                         size.height};
+  picture.data_window = scaled_window(picture.data_window, old, target);
   picture.display_window = {old.x, old.y, target.width, target.height};
 }
 

@@ -32,6 +32,7 @@ Result<KernelWork> KernelWork::create(const Device& device, KernelCompiler& comp
                                 .targets = {target.view},
                                 .target_size = target.size,
                                 .first_image_size = source.size,
+                                .part = {0, 0, target.size.width, target.size.height},
                                 .barriers = {.images = {again(target)}}};
   AFTERGLOW_TRY(out.work_, TimedWork::create(
                                device, [&](VkCommandBuffer buffer) { record_kernel(device, buffer, commands, {}); }));

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 
 #include "exec/barriers.h"
+#include "exec/brightest.h"
 #include "exec/convert.h"
 #include "exec/frame_image.h"
 #include "exec/host_input.h"
@@ -29,6 +31,13 @@ VkImageLayout input_layout(const Program& program, const std::string& name) {
   return name == "source" ? program.source_layout() : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
 }
 
+ImageDesc result_desc_of(const Program& program) {
+  return {.name = "result",
+          .size = program.graph().images[program.graph().result].size,
+          .format = program.result_format(),
+          .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
+}
+
 StagedImage staged(const FrameImage& image) {
   return {image.image.get(), image.image.desc().format, image.image.desc().size};
 }
@@ -44,6 +53,19 @@ struct FrameRunner::State {
   bool direct;
   std::map<std::string, FrameImage> inputs;
   FrameImage result;
+  std::map<int, FrameImage> other_results;  ///< by rows: programs that take turns may write different numbers of them
+
+  /// What an input holds.
+  struct Held {
+    std::optional<Hash> content;
+    Rect part;
+    std::uint64_t version = 0;  ///< another one for other pixels
+    std::uint64_t clamped = 0;
+    std::optional<float> brightest;
+  };
+  std::map<std::string, Held> held;
+  std::uint64_t versions = 0;
+  std::map<std::uint64_t, std::map<std::string, std::uint64_t>> ran_with;  ///< program → versions of its inputs
   Staging staging;
   KernelTimer timer;
   Submitter submitter;  // last: it waits before the images go
@@ -51,9 +73,15 @@ struct FrameRunner::State {
 
   Result<void> prepare(const Program& program, const std::map<std::string, HostImage>& host);
   Result<void> make_image(FrameImage& image, const ImageDesc& desc, HostAccess access, int rows = 1);
-  Result<std::uint64_t> upload(FrameImage& image, const HostImage& host);
-  Result<std::uint64_t> download(HostResult& out);
-  Result<std::uint64_t> over_result_rows(const std::function<std::uint64_t(int y, const std::byte* from)>& row);
+  Result<std::uint64_t> upload(FrameImage& image, const HostImage& host, const Rect& part, Brightest* brightest);
+  Result<void> upload_changed(const Program& program, const std::map<std::string, HostImage>& host, bool look,
+                              HostResult& out);
+  Result<void> take_result(const ImageDesc& desc, int rows);
+  std::vector<bool> kernels_to_run(const Program& program) const;
+  void has_run(Program& program);
+  Result<std::uint64_t> download(const Rect& part, HostResult& out);
+  Result<std::uint64_t> over_result_rows(const Rect& part,
+                                         const std::function<std::uint64_t(int y, const std::byte* from)>& row);
   Result<void> bind(Program& program);
   /// The layout in which the result is drawn, and every VkImage of it: itself and its targets by rows.
   VkImageLayout result_layout() const {
@@ -62,7 +90,7 @@ struct FrameRunner::State {
   std::vector<VkImage> result_images() const;
   void before(const Program& program, VkCommandBuffer commands);
   void after(VkCommandBuffer commands);
-  Result<void> execute(Program& program, KernelTiming timing, FrameTimes& times);
+  Result<void> execute(Program& program, const std::vector<bool>& run, KernelTiming timing, FrameTimes& times);
 };
 
 FrameRunner::FrameRunner(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -95,10 +123,7 @@ Result<void> FrameRunner::State::prepare(const Program& program, const std::map<
                    .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
     if (input_layout(program, name) == VK_IMAGE_LAYOUT_GENERAL) descs[name].usage |= VK_IMAGE_USAGE_STORAGE_BIT;
   }
-  const ImageDesc result_desc{.name = "result",
-                              .size = graph.images[graph.result].size,
-                              .format = program.result_format(),
-                              .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
+  const ImageDesc result_desc = result_desc_of(program);
 
   const auto bytes = [](const ImageDesc& d) {
     return static_cast<std::uint64_t>(d.size.area()) * bytes_per_pixel(d.format);
@@ -114,43 +139,112 @@ Result<void> FrameRunner::State::prepare(const Program& program, const std::map<
                              bytes_text(total), bytes_text(max_memory))};
   }
   std::erase_if(inputs, [&](const auto& entry) { return !wanted.contains(entry.first); });
-  for (const auto& [name, desc] : descs) AFTERGLOW_CHECK(make_image(inputs[name], desc, HostAccess::write));
-  return make_image(result, result_desc, HostAccess::read, program.result_rows());
+  std::erase_if(held, [&](const auto& entry) { return !wanted.contains(entry.first); });
+  for (const auto& [name, desc] : descs) {
+    if (!inputs[name].fits(desc)) held.erase(name);
+    AFTERGLOW_CHECK(make_image(inputs[name], desc, HostAccess::write));
+  }
+  return take_result(result_desc, program.result_rows());
 }
 
-Result<std::uint64_t> FrameRunner::State::upload(FrameImage& image, const HostImage& host) {
+/// The result image for programs that write so many rows at a time; those for others stay.
+Result<void> FrameRunner::State::take_result(const ImageDesc& desc, int rows) {
+  std::erase_if(other_results, [&](const auto& other) { return !other.second.fits(desc, other.first); });
+  if (result.fits(desc, rows)) return {};
+  const int has = std::max(result.rows.rows(), 1);
+  if (has != rows && result.fits(desc, has)) {
+    other_results[has] = std::move(result);
+    result = std::move(other_results[rows]);
+    other_results.erase(rows);
+  }
+  return make_image(result, desc, HostAccess::read, rows);
+}
+
+/// The rows of `part`; the others hold anything. `brightest`: what to note pixels in while they are at hand, or null.
+Result<std::uint64_t> FrameRunner::State::upload(FrameImage& image, const HostImage& host, const Rect& part,
+                                                 Brightest* brightest) {
   const ImageDesc& desc = image.image.desc();
-  const auto pack = [&](int y, std::byte* to) {
+  const auto pack = [&](int y, std::byte* to) -> std::uint64_t {
+    if (y < part.y || y >= part.y + part.height) return 0;
     const float* row = host.pixels + static_cast<std::ptrdiff_t>(y) * desc.size.width * host.channels;
+    if (brightest) brightest->add_row(row, host.channels, desc.size.width);
     return pack_row(row, host.channels, desc.size.width, desc.format, to);
   };
   if (!image.direct) {
     image.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
     return staging.upload(staged(image), pack);
   }
-  const auto held =
-      over_rows(desc.size.height, image.image.row_pitch(), [&](int y) { return pack(y, image.image.row(y)); });
+  const auto clamped = over_rows(part.height, image.image.row_pitch(),
+                                 [&](int y) { return pack(part.y + y, image.image.row(part.y + y)); });
   image.image.memory().flush();
-  return held;
+  return clamped;
 }
 
-/// Calls `row` for every row of the result, and sums up what it returns.
+/// Every input that may hold other pixels than those it is given. `look`: find out how bright the source is.
+Result<void> FrameRunner::State::upload_changed(const Program& program, const std::map<std::string, HostImage>& host,
+                                                bool look, HostResult& out) {
+  const bool half = program.storage_format() == VK_FORMAT_R16G16B16A16_SFLOAT;
+  for (const auto& [name, id] : inputs_of(program.graph())) {
+    const HostImage& given = host.at(name);
+    const Rect& part = program.parts().images[id];
+    const bool look_here = look && name == "source";
+    Held& known = held[name];
+    const bool same = given.content && known.content == given.content && known.part == part;
+    if (!same || (look_here && !known.brightest)) {
+      Brightest brightest;
+      known = {.content = {}, .part = part, .version = ++versions, .clamped = 0, .brightest = {}};
+      AFTERGLOW_TRY(known.clamped, upload(inputs.at(name), given, part, look_here ? &brightest : nullptr));
+      known.content = given.content;
+      if (look_here) known.brightest = brightest.value(half ? Storage::fp16 : Storage::fp32);
+    }
+    out.clamped += known.clamped;
+  }
+  return {};
+}
+
+/// What has to run after the uploads.
+std::vector<bool> FrameRunner::State::kernels_to_run(const Program& program) const {
+  const auto last = ran_with.find(program.id());
+  std::vector<ImageId> changed;
+  for (const auto& [name, id] : inputs_of(program.graph())) {
+    const bool same =
+        last != ran_with.end() && last->second.contains(name) && last->second.at(name) == held.at(name).version;
+    if (!same) changed.push_back(id);
+  }
+  return program.kernels_to_run(changed, result.writer != program.id());
+}
+
+void FrameRunner::State::has_run(Program& program) {
+  constexpr std::size_t kMostRemembered = 64;  // programs are few; those that are gone are not worth more than this
+  program.up_to_date();
+  result.writer = program.id();
+  if (ran_with.size() >= kMostRemembered) ran_with.clear();
+  auto& versions_of = ran_with[program.id()];
+  for (const auto& [name, input] : held) versions_of[name] = input.version;
+}
+
+/// Calls `row` for every row of that part of the result, with its first pixel there, and sums up what it returns.
 Result<std::uint64_t> FrameRunner::State::over_result_rows(
-    const std::function<std::uint64_t(int y, const std::byte* from)>& row) {
-  if (!result.direct) return staging.download(staged(result), result_layout(), row);
+    const Rect& part, const std::function<std::uint64_t(int y, const std::byte* from)>& row) {
+  const std::size_t left = static_cast<std::size_t>(part.x) * bytes_per_pixel(result.image.desc().format);
+  const auto inside = [&](int y, const std::byte* from) -> std::uint64_t {
+    return y < part.y || y >= part.y + part.height ? 0 : row(y, from + left);
+  };
+  if (!result.direct) return staging.download(staged(result), result_layout(), inside);
   result.image.memory().invalidate();
-  return over_rows(result.image.desc().size.height, result.image.row_pitch(),
-                   [&](int y) { return row(y, result.image.row(y)); });
+  return over_rows(part.height, result.image.row_pitch(),
+                   [&](int y) { return row(part.y + y, result.image.row(part.y + y) + left); });
 }
 
-Result<std::uint64_t> FrameRunner::State::download(HostResult& out) {
+Result<std::uint64_t> FrameRunner::State::download(const Rect& part, HostResult& out) {
   const auto [width, height] = result.image.desc().size;
   const VkFormat format = result.image.desc().format;
   const auto row_values = static_cast<std::size_t>(width) * 4;
   if (format == VK_FORMAT_R8G8B8A8_UNORM) {
     out.codes.resize(row_values * static_cast<std::size_t>(height));
-    return over_result_rows([&](int y, const std::byte* from) {
-      std::memcpy(out.codes.data() + row_values * static_cast<std::size_t>(y), from, row_values);
+    return over_result_rows(part, [&](int y, const std::byte* from) {
+      std::memcpy(out.codes.data() + row_values * static_cast<std::size_t>(y) + static_cast<std::ptrdiff_t>(part.x) * 4,
+                  from, static_cast<std::size_t>(part.width) * 4);
       return std::uint64_t{0};
     });
   }
@@ -161,10 +255,10 @@ Result<std::uint64_t> FrameRunner::State::download(HostResult& out) {
     out.pixels.resize(values);
   }
   const auto unpack = [&](int y, const std::byte* from) {
-    float* to = out.pixels.data() + row_values * static_cast<std::size_t>(y);
-    return keep_alpha ? unpack_row_rgb(from, format, width, to) : unpack_row(from, format, width, to);
+    float* to = out.pixels.data() + row_values * static_cast<std::size_t>(y) + static_cast<std::ptrdiff_t>(part.x) * 4;
+    return keep_alpha ? unpack_row_rgb(from, format, part.width, to) : unpack_row(from, format, part.width, to);
   };
-  return over_result_rows(unpack);
+  return over_result_rows(part, unpack);
 }
 
 Result<void> FrameRunner::State::bind(Program& program) {
@@ -223,7 +317,8 @@ void FrameRunner::State::after(VkCommandBuffer commands) {
   record_barriers(commands, barriers.data(), barriers.size());
 }
 
-Result<void> FrameRunner::State::execute(Program& program, KernelTiming timing, FrameTimes& times) {
+Result<void> FrameRunner::State::execute(Program& program, const std::vector<bool>& run, KernelTiming timing,
+                                         FrameTimes& times) {
   const auto& kernels = program.plan().kernels;
   const bool separate = timing == KernelTiming::submissions;
   const bool stamps = timing == KernelTiming::timestamps && device.timestamps_mean_draws();
@@ -235,7 +330,7 @@ Result<void> FrameRunner::State::execute(Program& program, KernelTiming timing, 
   const auto start = Clock::now();
   auto done = submitter.submit([&](VkCommandBuffer commands) {
     before(program, commands);
-    program.record(commands, -1, queries);
+    program.record(commands, -1, queries, run);
     if (!separate) after(commands);
   });
   if (done) done = submitter.wait();
@@ -249,6 +344,7 @@ Result<void> FrameRunner::State::execute(Program& program, KernelTiming timing, 
   // Each kernel once more, alone: the same pixels again, since no input has changed.
   times.separate_submissions = true;
   for (std::size_t i = 0; i < kernels.size(); ++i) {
+    if (!run[i]) continue;
     const auto begin = Clock::now();
     done = submitter.submit([&](VkCommandBuffer commands) { program.record(commands, static_cast<int>(i)); });
     if (done) done = submitter.wait();
@@ -264,7 +360,7 @@ Result<void> FrameRunner::State::execute(Program& program, KernelTiming timing, 
 }
 
 Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out,
-                                    KernelTiming timing) {
+                                    KernelTiming timing, const Choose& choose) {
   State& s = *state_;
   const Graph& graph = program.graph();
   FrameTimes times;
@@ -277,17 +373,32 @@ Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string
   AFTERGLOW_CHECK(s.prepare(program, inputs));
 
   auto start = Clock::now();
-  for (auto& [name, image] : s.inputs) {
-    AFTERGLOW_TRY(const std::uint64_t held, s.upload(image, inputs.at(name)));
-    out.clamped += held;
-  }
+  AFTERGLOW_CHECK(s.upload_changed(program, inputs, choose != nullptr, out));
   times.upload = milliseconds_since(start);
 
-  AFTERGLOW_CHECK(s.bind(program));
-  AFTERGLOW_CHECK(s.execute(program, timing, times));
+  Program* chosen = &program;
+  if (choose) {
+    AFTERGLOW_TRY(chosen, choose(*s.held.at("source").brightest));
+  }
+  if (!chosen) {
+    copy_source(inputs.at("source"), out.pixels);
+    return times;
+  }
+  if (chosen != &program) AFTERGLOW_CHECK(s.take_result(result_desc_of(*chosen), chosen->result_rows()));
+  const std::vector<bool> run = s.kernels_to_run(*chosen);
+  times.kernels_run = static_cast<int>(std::ranges::count(run, true));
+  times.kernels_kept = static_cast<int>(run.size()) - times.kernels_run;
+  if (times.kernels_run > 0) {
+    s.result.writer = 0;
+    s.ran_with.erase(chosen->id());  // until it has run
+    AFTERGLOW_CHECK(s.bind(*chosen));
+    AFTERGLOW_CHECK(s.execute(*chosen, run, timing, times));
+    s.has_run(*chosen);
+  }
 
   start = Clock::now();
-  AFTERGLOW_TRY(const std::uint64_t held, s.download(out));
+  const Rect& part = chosen->parts().images[chosen->graph().result];
+  AFTERGLOW_TRY(const std::uint64_t held, s.download(part, out));
   out.clamped += held;
   times.readback = milliseconds_since(start);
   return times;

@@ -4,9 +4,11 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/hash.h"
 #include "exec/program.h"
 
 namespace afterglow {
@@ -18,6 +20,7 @@ struct KernelTime {
 struct FrameTimes {
   double upload = 0, execute = 0, readback = 0;  ///< milliseconds, wall clock
   std::vector<KernelTime> kernels;               ///< empty unless asked for and known
+  int kernels_run = 0, kernels_kept = 0;         ///< kept: what they made in an earlier run is still right
   bool separate_submissions = false;             ///< kernels were timed one submission each; not part of `execute`
 };
 enum class KernelTiming { none, timestamps, submissions };
@@ -27,6 +30,7 @@ struct HostImage {
   const float* pixels = nullptr;
   Size size;
   int channels = 4;
+  std::optional<Hash> content{};  ///< of the pixels, when known: an image of the same content is not uploaded again
 };
 
 struct HostResult {
@@ -46,10 +50,16 @@ class FrameRunner {
   /// takes the way over staging buffers that every GPU can go. Errors: device.
   static Result<std::unique_ptr<FrameRunner>> create(Device& device, std::uint64_t max_memory, bool direct = true);
   ~FrameRunner();
+  /// Which program runs a frame, asked once its source has been packed. `brightest`: the largest red, green or blue of
+  /// it, see exec/brightest.h. It must take the same inputs; null: nothing has to run, the result is the source.
+  using Choose = std::function<Result<Program*>(float brightest)>;
+
   /// Uploads "source" and the auxiliary images that the graph asks for, runs, reads the result back into `out` (RGBA
-  /// float; resized by it). Errors: other (an input is missing or of another size), io (over `max_memory`), device.
+  /// float; resized by it). What is known to be the same as before is not done again: uploads of the same content, and
+  /// kernels for which nothing has changed (Program::kernels_to_run). Of a program with a region, the region alone is
+  /// written. Errors: other (an input is missing or of another size), io (over `max_memory`), device.
   Result<FrameTimes> run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out,
-                         KernelTiming timing);
+                         KernelTiming timing, const Choose& choose = {});
   /// Pixels of a transient image as the last run left them. Needs a program created with `reference`. Errors: other.
   Result<HostResult> read_image(Program& program, ImageId image);
 

@@ -10,6 +10,7 @@ struct FrameImage {
   RowTargets rows;                                   ///< of an image that is written several rows at a time
   bool direct = false;                               ///< the CPU touches its pixels; else they go over Staging
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< between frames
+  std::uint64_t writer = 0;                          ///< of a result: id of the program whose last run it holds
 
   /// With `access`, an image that the CPU can touch, if the device has such images of this size; else one for staging.
   /// `rows` above 1: linear, with targets by so many rows.

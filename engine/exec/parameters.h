@@ -23,14 +23,16 @@ class ParameterBuffer {
                                         const std::vector<const CompiledKernel*>& compiled);
   ParameterBuffer() = default;
 
-  /// Writes the values of `graph`, which has the structure of the one given to `create`. Touches bytes alone.
-  void write(const Graph& graph);
+  /// Writes the values of `graph`, which has the structure of the one given to `create`. Touches bytes alone. Sets
+  /// `changed` (parallel to the kernels) for each kernel that gets other bytes than it had.
+  void write(const Graph& graph, std::vector<bool>& changed);
 
   VkBuffer buffer() const { return buffer_.get(); }  ///< null when no kernel has parameters
   VkDeviceSize offset(std::size_t kernel) const { return blocks_[kernel].offset; }
 
  private:
   std::vector<KernelBlock> blocks_;
+  std::vector<std::byte> values_;  ///< what the buffer holds: device memory is slow to read
   Buffer buffer_;
 };
 

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <functional>
+#include <set>
 
 #include "exec/arena.h"
 #include "exec/barriers.h"
@@ -13,6 +16,7 @@
 #include "exec/record.h"
 #include "gpu/error.h"
 #include "gpu/pipeline.h"
+#include "graph/changes.h"
 
 namespace afterglow {
 
@@ -25,6 +29,9 @@ struct Program::State {
   ProgramOptions options;
   VkFormat format = VK_FORMAT_UNDEFINED;
   Plan plan;
+  Regions parts;
+  std::vector<bool> changed;  ///< kernels with new parameters since the last run; all before the first
+  std::uint64_t id = 0;
 
   CompiledKernels compiled;
   std::vector<std::vector<ImageId>> images;  ///< to bind, parallel to the plan's kernels
@@ -66,6 +73,10 @@ struct Program::State {
   Result<void> make_pipelines();
   Result<void> make_descriptors();
   void make_commands();
+  Result<void> find_parts();
+  VkImage barrier_image(ImageId id) const;
+  void record_some(VkCommandBuffer commands, const std::vector<bool>& run,
+                   const std::function<void(std::size_t)>& stamp) const;
 };
 
 namespace {
@@ -126,7 +137,7 @@ Result<std::vector<KernelDesc>> Program::State::describe(ShaderLibrary& shaders)
 /// The images between kernels, and how many rows their kernels and the last one really make at a time.
 Result<void> Program::State::make_images(std::vector<KernelDesc>& descs) {
   ArenaOptions wanted{.format = format,
-                      .share = options.share_memory && !options.reference,
+                      .share = options.share_memory && !options.reference && !options.keep_images,
                       .readable = options.reference,
                       .storage = storage_reads,
                       .rows = {},
@@ -187,15 +198,34 @@ Result<void> Program::State::make_descriptors() {
   return {};
 }
 
+/// What each kernel draws.
+Result<void> Program::State::find_parts() {
+  const auto whole = [this](ImageId id) {
+    return Rect{0, 0, graph.images[id].size.width, graph.images[id].size.height};
+  };
+  if (options.region) {
+    const Rect &part = *options.region, all = whole(graph.result);
+    if (part.width < 1 || part.height < 1 || part.x < 0 || part.y < 0 || part.x + part.width > all.width ||
+        part.y + part.height > all.height)
+      return Error{ErrorKind::other, "the region is not within the picture"};
+    parts = regions(graph, plan, part, options.rows);
+    return {};
+  }
+  for (const auto& kernel : plan.kernels) parts.kernels.push_back(whole(kernel.output));
+  for (std::size_t i = 0; i < graph.images.size(); ++i) parts.images.push_back(whole(static_cast<ImageId>(i)));
+  return {};
+}
+
+/// The image that barriers name for this one, or null.
+VkImage Program::State::barrier_image(ImageId id) const {
+  const UnboundImage* image = linear ? nullptr : arena.image(id);
+  return image ? image->get() : VkImage{VK_NULL_HANDLE};
+}
+
 /// Targets, sizes and barriers: fixed for the life of the program.
 void Program::State::make_commands() {
   auto barriers = kernel_barriers(
-      plan, images,
-      [this](ImageId id) {
-        const UnboundImage* image = linear ? nullptr : arena.image(id);
-        return image ? image->get() : VkImage{VK_NULL_HANDLE};
-      },
-      read_layout());
+      plan, images, [this](ImageId id) { return barrier_image(id); }, read_layout());
   for (const VkImage image : arena.linear_images()) begin.images.push_back(into_general(image));
   for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
     const ImageId output = plan.kernels[i].output;
@@ -215,8 +245,34 @@ void Program::State::make_commands() {
                        .rows = compiled_of(i).rows,
                        .target_size = graph.images[output].size,
                        .first_image_size = images[i].empty() ? Size{} : graph.images[images[i].front()].size,
+                       .part = parts.kernels[i],
                        .target_layout = target_layout(output),
                        .barriers = std::move(barriers[i])});
+  }
+}
+
+/// Some kernels: images that the others have made are in the layout for reading already and stay so.
+void Program::State::record_some(VkCommandBuffer commands, const std::vector<bool>& run,
+                                 const std::function<void(std::size_t)>& stamp) const {
+  Plan some;
+  std::vector<std::vector<ImageId>> read;
+  std::set<ImageId> made;
+  for (std::size_t i = 0; i < kernels.size(); ++i) {
+    if (!run[i]) continue;
+    some.kernels.push_back(plan.kernels[i]);
+    read.push_back(images[i]);
+    made.insert(plan.kernels[i].output);
+  }
+  const auto image_of = [&](ImageId id) { return made.contains(id) ? barrier_image(id) : VkImage{VK_NULL_HANDLE}; };
+  auto barriers = kernel_barriers(some, read, image_of, read_layout());
+  for (std::size_t i = 0, next = 0; i < kernels.size(); ++i) {
+    if (run[i]) {
+      KernelCommands kernel = kernels[i];
+      kernel.barriers = std::move(barriers[next++]);
+      kernel.barriers.memory = linear;
+      record_kernel(device, commands, kernel, result);
+    }
+    stamp(i + 1);
   }
 }
 
@@ -231,6 +287,10 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   state->format = half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
   state->plan = make_plan(graph, {.joining = options.reference ? Joining::none : options.joining});
   state->storage_reads = options.storage_reads && can(device, state->format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
+  static std::atomic<std::uint64_t> programs = 0;
+  state->id = ++programs;
+  state->changed.assign(state->plan.kernels.size(), true);
+  AFTERGLOW_CHECK(state->find_parts());
   AFTERGLOW_CHECK(state->check());
   if (!state->plan.kernels.empty()) {
     AFTERGLOW_TRY(std::vector<KernelDesc> descs, state->describe(shaders));
@@ -244,8 +304,24 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
 }
 
 void Program::set_parameters(const Graph& graph) {
-  if (same_structure(state_->graph, graph)) state_->parameters.write(graph);
+  if (same_structure(state_->graph, graph)) state_->parameters.write(graph, state_->changed);
 }
+
+std::vector<bool> Program::kernels_to_run(const std::vector<ImageId>& changed_inputs, bool result_lost) const {
+  const State& s = *state_;
+  std::vector<bool> changed = s.changed;
+  if (result_lost)
+    for (std::size_t i = 0; i < changed.size(); ++i)
+      if (s.plan.kernels[i].output == s.graph.result) changed[i] = true;
+  std::vector<bool> run = afterglow::kernels_to_run(s.graph, s.plan, changed, changed_inputs);
+  const bool any = std::ranges::find(run, true) != run.end();
+  if (any && !s.options.keep_images) run.assign(run.size(), true);
+  return run;
+}
+
+void Program::up_to_date() { state_->changed.assign(state_->changed.size(), false); }
+std::uint64_t Program::id() const { return state_->id; }
+const Regions& Program::parts() const { return state_->parts; }
 
 Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result) {
   State& s = *state_;
@@ -286,7 +362,7 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
   return {};
 }
 
-void Program::record(VkCommandBuffer commands, int only, VkQueryPool timestamps) const {
+void Program::record(VkCommandBuffer commands, int only, VkQueryPool timestamps, const std::vector<bool>& run) const {
   const State& s = *state_;
   if (!s.bound) return;
   if (only >= 0) {
@@ -301,6 +377,10 @@ void Program::record(VkCommandBuffer commands, int only, VkQueryPool timestamps)
     vkCmdResetQueryPool(commands, timestamps, 0, static_cast<std::uint32_t>(s.kernels.size() + 1));
   }
   stamp(0);
+  if (std::ranges::find(run, false) != run.end()) {
+    s.record_some(commands, run, stamp);
+    return;
+  }
   record_barriers(commands, s.begin);
   for (std::size_t i = 0; i < s.kernels.size(); ++i) {
     record_kernel(s.device, commands, s.kernels[i], s.result);

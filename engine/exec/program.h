@@ -15,6 +15,7 @@
 #include "gpu/device.h"
 #include "graph/graph.h"
 #include "graph/plan.h"
+#include "graph/region.h"
 #include "shader/kernel.h"
 
 namespace afterglow {
@@ -43,7 +44,12 @@ struct ProgramOptions {
   WorthAKernel worth;
   bool codes = false;           ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
-  bool share_memory = true;     ///< images whose lifetimes do not overlap share bytes (never with `reference`)
+  /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.
+  std::optional<Rect> region{};
+  /// Images between kernels keep their pixels from run to run (they share no memory), so that `record` can run the
+  /// kernels alone for which something has changed.
+  bool keep_images = false;
+  bool share_memory = true;  ///< images whose lifetimes do not overlap share bytes (never with `reference`)
   std::uint64_t max_memory = 6ull << 30;
 };
 
@@ -75,6 +81,15 @@ class Program {
   /// submission of this program is in flight.
   void set_parameters(const Graph& graph);
 
+  /// The kernels that have to run for the result to be right, when these inputs have new pixels since the last run, and
+  /// for what `set_parameters` has changed since then. Parallel to the plan's kernels. Without `keep_images` all or
+  /// none. `result_lost`: the result image does not hold what this program last wrote.
+  std::vector<bool> kernels_to_run(const std::vector<ImageId>& changed_inputs, bool result_lost) const;
+  /// Notes that everything that had to run has run.
+  void up_to_date();
+  /// Tells programs apart for as long as the process lives.
+  std::uint64_t id() const;
+
   /// Points the graph's inputs and its result at images. Formats of inputs are free (sampled as float); the result's
   /// is `result_format`. Must not be called while a submission is in flight. A program whose graph's result is
   /// its source does nothing.
@@ -85,12 +100,16 @@ class Program {
   /// to fragment shader reads; the result must be in COLOR_ATTACHMENT_OPTIMAL (with
   /// `result_rows` above 1, it and its targets in GENERAL) and is left so. `only` ≥ 0 records that
   /// kernel alone (for pass-by-pass timing). `timestamps`: pool with kernels().size()+1 queries, or null.
-  void record(VkCommandBuffer commands, int only = -1, VkQueryPool timestamps = VK_NULL_HANDLE) const;
+  /// `run`: as `kernels_to_run` said, or empty for all.
+  void record(VkCommandBuffer commands, int only = -1, VkQueryPool timestamps = VK_NULL_HANDLE,
+              const std::vector<bool>& run = {}) const;
 
   const Plan& plan() const;
   const Graph& graph() const;
   ProgramMemory memory() const;
   VkFormat storage_format() const;
+  /// What is read of inputs and made of the others: everything, unless there is a region.
+  const Regions& parts() const;
   VkFormat result_format() const;  ///< the storage format, or R8G8B8A8_UNORM with ProgramOptions::codes
   /// With `result_by_rows`: how many rows the targets of the result must have; 1: they are not used.
   int result_rows() const;

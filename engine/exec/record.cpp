@@ -13,11 +13,14 @@ void record_kernel(const Device& device, VkCommandBuffer commands, const KernelC
 
   const auto width = static_cast<std::uint32_t>(kernel.target_size.width);
   const auto height = static_cast<std::uint32_t>((kernel.target_size.height + kernel.rows - 1) / kernel.rows);
-  const VkRect2D area{{0, 0}, {width, height}};
+  const Rect& part = kernel.part;
+  const int first_row = part.y / kernel.rows, last_row = (part.y + part.height + kernel.rows - 1) / kernel.rows;
+  const VkRect2D area{{part.x, first_row},
+                      {static_cast<std::uint32_t>(part.width), static_cast<std::uint32_t>(last_row - first_row)}};
   const auto& targets = kernel.targets.empty() ? result : kernel.targets;
   std::array<VkRenderingAttachmentInfo, kMaxRows> colors;
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    // Every pixel is drawn: what the target held need not be loaded.
+    // Every pixel that anybody reads is drawn: what the target held need not be loaded.
     colors[i] = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                  .imageView = targets[i],
                  .imageLayout = kernel.target_layout,

@@ -20,6 +20,7 @@ struct KernelCommands {
   std::vector<VkImageView> targets;  ///< one for each row that an invocation makes; empty: the result
   int rows = 1;
   Size target_size, first_image_size;
+  Rect part;  ///< what is drawn of the target; whole groups of rows
   VkImageLayout target_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   KernelBarriers barriers;  ///< that must come before it
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace afterglow {
@@ -41,6 +43,29 @@ Result<void> validate_inputs(const Graph& graph, const Pass& pass, const std::ve
   return {};
 }
 
+Result<void> validate_conditions(const Graph& graph) {
+  for (const auto& condition : graph.idle) {
+    const auto wrong = [&](const char* what) {
+      return Error{ErrorKind::script, fmt::format("idle of effect '{}': {}", condition.effect, what)};
+    };
+    if (!is_image(graph, condition.image) || !is_image(graph, condition.output))
+      return wrong("it is about no image of this graph");
+    if (graph.images[condition.output].producer < 0) return wrong("no pass makes the image that it replaces");
+    if (graph.images[condition.image].producer >= graph.images[condition.output].producer)
+      return wrong("it looks at an image that is made after the one it replaces");
+    if (graph.images[condition.image].size != graph.images[condition.output].size)
+      return wrong("the two images have different sizes");
+    if (!std::isfinite(condition.limit)) return wrong("its limit is not finite");
+  }
+  return {};
+}
+
+bool same_conditions(const Graph& a, const Graph& b) {
+  return std::ranges::equal(a.idle, b.idle, [](const IdleCondition& x, const IdleCondition& y) {
+    return x.image == y.image && x.output == y.output;
+  });
+}
+
 }  // namespace
 
 Result<void> validate(const Graph& graph) {
@@ -63,12 +88,13 @@ Result<void> validate(const Graph& graph) {
   if (graph.images[graph.result].size != graph.images[graph.source].size)
     return Error{ErrorKind::script,
                  fmt::format("the result '{}' has another size than the source", graph.images[graph.result].name)};
-  return {};
+  return validate_conditions(graph);
 }
 
 bool same_structure(const Graph& a, const Graph& b) {
   if (a.images.size() != b.images.size() || a.passes.size() != b.passes.size()) return false;
   if (a.source != b.source || a.result != b.result || a.auxiliary != b.auxiliary) return false;
+  if (!same_conditions(a, b)) return false;
   for (std::size_t i = 0; i < a.images.size(); ++i)
     if (a.images[i].size != b.images[i].size || a.images[i].producer != b.images[i].producer) return false;
   for (std::size_t i = 0; i < a.passes.size(); ++i) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,9 @@ struct Pass {
   std::vector<PassInput> inputs;             ///< a pixel pass's first input is "source"
   std::map<std::string, ParamValue> params;  ///< dynamic: values may change without a rebuild
   std::map<std::string, double> constants;   ///< specialised: part of the structure
+  /// Of a sample pass: how far from the point that corresponds to a target pixel's centre it reads, in texels of each
+  /// input. Empty: anywhere. Decides what a region needs, nothing else.
+  std::optional<double> reach;
   ImageId output = kNoImage;
   std::string file;  ///< script and line that asked for it, for messages
   int line = 0;
@@ -60,6 +64,15 @@ struct Skipped {
   std::string reason;  ///< "intensity is 0", "no depth input", "nobody reads its image"
 };
 
+/// An effect whose output is exactly its input, bit for bit, as long as no red, green or blue of `image` is above
+/// `limit` (a 32-bit float; all of them finite and ≥ 0). See graph/condition.h.
+struct IdleCondition {
+  std::string effect;         ///< name of the effect's entry
+  ImageId image = kNoImage;   ///< the effect's own source: what is looked at, and what takes the place of `output`
+  ImageId output = kNoImage;  ///< what the effect makes
+  double limit = 0;           ///< rounded to a 32-bit float, as parameters of shaders are
+};
+
 struct Graph {
   std::vector<GraphImage> images;
   std::vector<Pass> passes;
@@ -67,11 +80,12 @@ struct Graph {
   std::map<std::string, ImageId> auxiliary;  ///< "depth", "normal", … that some effect asked for
   ImageId result = kNoImage;                 ///< == source when nothing runs
   std::vector<Skipped> skipped;
+  std::vector<IdleCondition> idle;  ///< in the order of the stack; limits may change without a rebuild
 };
 
 /// Checks what the script binding cannot break but a program might: ids in range, producers before readers, no image
-/// written twice, sizes ≥ 1, unique names, pixel-wise inputs as large as the target. Errors (script) name effect and
-/// pass.
+/// written twice, sizes ≥ 1, unique names, pixel-wise inputs as large as the target, conditions between images of one
+/// size. Errors (script) name effect and pass.
 Result<void> validate(const Graph& graph);
 
 /// True when b differs from a in dynamic parameter values alone, so that a program made for a can run b.

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "graph/condition.h"
 #include "graph/graph.h"
 
 namespace afterglow {
@@ -36,6 +37,7 @@ Json pass_json(const Graph& graph, const Pass& pass) {
   for (const auto& input : pass.inputs) out["inputs"][input.name] = graph.images[input.image].name;
   for (const auto& [name, value] : pass.params) out["parameters"][name] = value_json(value);
   for (const auto& [name, value] : pass.constants) out["constants"][name] = value;
+  if (pass.reach) out["reach"] = *pass.reach;
   const auto& image = graph.images[pass.output];
   out["output"] = {{"image", image.name}, {"width", image.size.width}, {"height", image.size.height}};
   out["from"] = {{"file", pass.file}, {"line", pass.line}};
@@ -56,6 +58,11 @@ std::string to_json(const Graph& graph) {
   out["skipped"] = Json::array();
   for (const auto& skipped : graph.skipped)
     out["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
+  for (const auto& condition : graph.idle)
+    out["idle"].push_back({{"effect", condition.effect},
+                           {"looks_at", graph.images[condition.image].name},
+                           {"brightest", condition.limit},
+                           {"skipped_when", idle_reason(condition)}});
   return out.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -117,7 +117,7 @@ Result<void> write_with_oiio(const Picture& picture, const OutputFormat& format,
                              const std::string& name, const WriteOptions& options) {
   try {
     const StripForm form{sample_type(format, options, picture.facts.get()), picture.has_alpha && format.alpha,
-                         options.dither};
+                         options.dither, options.dither_x, options.dither_y};
     const OIIO::ImageSpec spec = spec_for(picture, format, form.type, form.alpha, options);
     const auto output = OIIO::ImageOutput::create(format.name);
     if (!output)

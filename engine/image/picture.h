@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/hash.h"
 #include "image/image.h"
 
 namespace afterglow {
@@ -31,6 +32,8 @@ struct Picture {
   /// depth as stored; "normal": 3 channels as stored. Only those that the file (or --depth/--normal) holds and the
   /// caller asked for.
   std::map<std::string, Image> auxiliary;
+  /// Hashes of `color` ("source") and of auxiliary images, where they are known: equal hashes mean equal pixels.
+  std::map<std::string, Hash> content;
   /// When not empty, `color` as 8-bit display codes that need no more encoding, RGBA: sRGB, alpha straight.
   std::vector<std::uint8_t> codes;
   bool has_alpha = false;  ///< the file stored alpha; without it the A of `color` is 1
@@ -39,5 +42,8 @@ struct Picture {
   SanitizeCounts sanitized;
   std::shared_ptr<const FileFacts> facts;  ///< never null after reading; may be null for pictures made in memory
 };
+
+/// Fills in `content`. Whoever changes pixels afterwards has to clear it.
+void note_content(Picture& picture);
 
 }  // namespace afterglow

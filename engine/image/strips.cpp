@@ -26,9 +26,10 @@ void encode_rows(const Picture& picture, const StripForm& form, int first, int r
   for (int i = 0; i < rows; ++i, bytes += form.row_bytes(picture)) {
     display_row(picture, first + i, padding, rgba.data());
     if (form.type == SampleType::uint8) {
-      encode_row(rules, rgba.data(), static_cast<int>(width), 0, first + i, bytes);
+      encode_row(rules, rgba.data(), static_cast<int>(width), form.dither_x, form.dither_y + first + i, bytes);
     } else if (form.type == SampleType::uint16) {
-      encode_row(rules, rgba.data(), static_cast<int>(width), 0, first + i, reinterpret_cast<std::uint16_t*>(bytes));
+      encode_row(rules, rgba.data(), static_cast<int>(width), form.dither_x, form.dither_y + first + i,
+                 reinterpret_cast<std::uint16_t*>(bytes));
     } else {
       for (std::size_t x = 0; x < width; ++x) std::copy_n(&rgba[x * 4], channels, &packed[x * channels]);
       if (form.type == SampleType::half) {

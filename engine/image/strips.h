@@ -13,6 +13,7 @@ struct StripForm {
   SampleType type = SampleType::uint8;  ///< integers are sRGB-encoded codes, half and float scene-linear
   bool alpha = false;                   ///< four samples a pixel, else three
   bool dither = false;
+  int dither_x = 0, dither_y = 0;  ///< where the upper left pixel lies in the noise
 
   std::size_t sample_bytes() const { return type == SampleType::uint8 ? 1 : type == SampleType::float32 ? 4 : 2; }
   std::size_t row_bytes(const Picture& picture) const {

@@ -193,7 +193,7 @@ int declare_effect(lua_State* lua) {
   if (!runtime.declaring) throw failure("fx.effect can only be used while a script loads");
   if (runtime.effects.size() >= kMaxDeclared) throw failure(fmt::format("more than {} effects", kMaxDeclared));
   TableReader table(lua, 1, "fx.effect");
-  table.allow({"active", "at", "build", "doc", "name", "needs", "optional", "order", "settings"}, false);
+  table.allow({"active", "at", "build", "doc", "idle", "name", "needs", "optional", "order", "settings"}, false);
   Effect effect;
   EffectSchema& schema = effect.schema;
   schema.name = table.text("name", 65).value_or("");
@@ -210,6 +210,7 @@ int declare_effect(lua_State* lua) {
   read_settings(lua, table, schema);
   effect.active = read_function(lua, table, "active", false);
   effect.build = read_function(lua, table, "build", true);
+  effect.idle = read_function(lua, table, "idle", false);
   effect.needs = read_inputs(lua, table, "needs");
   effect.optional = read_inputs(lua, table, "optional");
   table.finish("effect");

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/text.h"
 #include "script/declare.h"
 #include "script/graph_binding.h"
 #include "script/native.h"
 #include "script/read_only.h"
 #include "script/setting.h"
+#include "script/table_reader.h"
 
 namespace afterglow::script {
 namespace {
@@ -110,6 +113,39 @@ std::vector<std::string> needed_inputs(lua_State* lua, const EntryRun& run) {
 
 std::vector<std::string> optional_inputs(lua_State* lua, const EntryRun& run) {
   return input_names(lua, run, effect_of(lua, run).optional, "optional");
+}
+
+std::optional<double> idle_limit(lua_State* lua, const EntryRun& run, const ImageRef& source) {
+  const Effect& effect = effect_of(lua, run);
+  if (!effect.idle.set()) return {};
+  {
+    const Blaming blaming(lua, run.entry);
+    lua_rawgeti(lua, LUA_REGISTRYINDEX, effect.idle.ref);
+    lua_rawgeti(lua, LUA_REGISTRYINDEX, run.settings_ref);
+    push_image(lua, source);
+    call(lua, 2, 1);
+  }
+  const std::string what = fmt::format("idle of effect '{}'", effect.schema.name);
+  const Value given = read_value(lua, -1);
+  if (given.kind == Value::Kind::nothing) {
+    lua_pop(lua, 1);
+    return {};
+  }
+  if (!lua_istable(lua, -1))
+    fail_in(lua, effect.idle, fmt::format("{} returned {}, not a condition: {{ brightest = L }}", what, given.shown()));
+  Value limit;
+  try {
+    TableReader table(lua, -1, what);
+    table.allow({"brightest"}, false);
+    limit = table.value("brightest");
+    table.finish("idle");
+  } catch (ScriptError& error) {
+    fail_in(lua, effect.idle, "", &error);
+  }
+  lua_pop(lua, 1);
+  if (limit.kind != Value::Kind::number || !std::isfinite(static_cast<float>(limit.number)))
+    fail_in(lua, effect.idle, fmt::format("{}: brightest = {} is not a finite number", what, limit.shown()));
+  return limit.number;
 }
 
 ImageRef run_build(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source) {

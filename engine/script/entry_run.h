@@ -25,6 +25,9 @@ void make_settings(lua_State* lua, EntryRun& run);
 std::optional<std::string> inactive_reason(lua_State* lua, const EntryRun& run);
 std::vector<std::string> needed_inputs(lua_State* lua, const EntryRun& run);
 std::vector<std::string> optional_inputs(lua_State* lua, const EntryRun& run);
+/// What `idle` says about an effect that was built on `source`: the largest red, green or blue of it up to which the
+/// effect changes nothing. Empty when there is no such limit.
+std::optional<double> idle_limit(lua_State* lua, const EntryRun& run, const ImageRef& source);
 /// Runs `build` on `source`; the image it returned.
 ImageRef run_build(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source);
 

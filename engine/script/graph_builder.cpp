@@ -133,6 +133,11 @@ ImageRef GraphBuilder::pass(const PassRequest& request, const CallPlace& place) 
   const ShaderInterface& interface = (*shader)->interface;
   pass.kind = interface.kind == ShaderKind::pixel ? PassKind::pixel : PassKind::sample;
   pass.shader = request.shader;
+  pass.reach = request.reach;
+  if (pass.reach && pass.kind == PassKind::pixel)
+    fail(pass, "a pixel shader reads its own pixel alone; leave out reach", {"reach"});
+  if (pass.reach && !(*pass.reach >= 0 && *pass.reach <= kMaxSide))
+    fail(pass, fmt::format("reach = {} is out of range", *pass.reach), {"reach"}, fmt::format("0…{}", kMaxSide));
   bind(pass, request, interface);
   const Size size = target_size(pass, request);
   for (const auto& input : pass.inputs) {

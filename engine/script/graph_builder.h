@@ -35,6 +35,7 @@ struct PassRequest {
   std::optional<std::string> name;
   std::string shader;
   std::optional<Size> size;
+  std::optional<double> reach;      ///< see Pass::reach
   std::vector<Argument> arguments;  ///< "source" among them
 };
 
@@ -74,6 +75,10 @@ class GraphBuilder {
 
   void add_skipped(std::string name, std::string reason) {
     graph_.skipped.push_back({std::move(name), std::move(reason)});
+  }
+  /// The present entry makes `output` of `source`, which stay equal while nothing of `source` is above `limit`.
+  void add_idle(const ImageRef& source, const ImageRef& output, double limit) {
+    graph_.idle.push_back({entry_->name, source.id, output.id, limit});
   }
   Graph finish(ImageId result);
 

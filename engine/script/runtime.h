@@ -30,7 +30,7 @@ struct InputList {
 
 struct Effect {
   EffectSchema schema;
-  FunctionRef active, build;
+  FunctionRef active, build, idle;
   InputList needs, optional;
 };
 

@@ -1,5 +1,7 @@
 #include "session/session.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <future>
 
@@ -19,7 +21,19 @@ OpenedDevice open_device(const DeviceOptions& options, Diagnostics& diagnostics)
   return {std::move(device), std::chrono::duration<double, std::milli>(Clock::now() - start).count()};
 }
 
-HostImage host_image(const Image& image) { return {image.pixels.data(), image.size(), image.channels}; }
+HostImage host_image(const Picture& picture, const std::string& name, const Image& image) {
+  HostImage out{image.pixels.data(), image.size(), image.channels};
+  if (const auto known = picture.content.find(name); known != picture.content.end()) out.content = known->second;
+  return out;
+}
+
+/// What a frame did not do because it was done before.
+std::vector<Skipped> kept_of(const FrameTimes& times) {
+  if (times.kernels_kept == 0) return {};
+  if (times.kernels_run == 0) return {{"frame", "its picture and settings are those of an earlier frame"}};
+  return {{fmt::format("{} of {} kernels", times.kernels_kept, times.kernels_kept + times.kernels_run),
+           "nothing that they read has changed"}};
+}
 
 }  // namespace
 
@@ -32,6 +46,8 @@ struct Session::State {
   std::unique_ptr<FrameRunner> runner;
   HostResult result;
   SessionTimes times;
+  Program* ran = nullptr;  ///< in the last frame; null: nothing
+  std::vector<Skipped> skipped_now;
 };
 
 Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -62,34 +78,48 @@ Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& pres
   return std::unique_ptr<Session>(new Session(std::move(state)));
 }
 
-Result<void> Session::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding) {
-  return state_->stack->prepare(context, encoding);
+Result<void> Session::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding,
+                              const std::optional<Rect>& region) {
+  state_->ran = nullptr;
+  AFTERGLOW_CHECK(state_->stack->prepare(context, encoding, region));
+  state_->ran = state_->stack->program();
+  return {};
 }
 
 Result<void> Session::process(Picture& picture, const BuildContext& frame,
-                              const std::optional<DisplayEncoding>& encoding) {
+                              const std::optional<DisplayEncoding>& encoding, const std::optional<Rect>& region) {
   BuildContext context = frame;
   context.size = picture.color.size();
   context.auxiliary.clear();
   for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
-  AFTERGLOW_CHECK(prepare(context, encoding));
+  AFTERGLOW_CHECK(prepare(context, encoding, region));
   state_->times.frame = {};
   state_->result.clamped = 0;
+  state_->skipped_now.clear();
   if (!state_->stack->runs()) return {};
 
   // The result replaces the source in its own memory. Effects never change alpha: the source's own values stay where
   // they are, exact whatever the storage format.
   HostResult& result = state_->result;
+  std::map<std::string, HostImage> inputs{{"source", host_image(picture, "source", picture.color)}};
+  for (const auto& [name, id] : state_->stack->prepared_graph().auxiliary)
+    inputs[name] = host_image(picture, name, picture.auxiliary.at(name));
   result.pixels = std::move(picture.color.pixels);
   result.keep_alpha = true;
-  std::map<std::string, HostImage> inputs{{"source", {result.pixels.data(), context.size, picture.color.channels}}};
-  for (const auto& [name, id] : state_->stack->prepared_graph().auxiliary)
-    inputs[name] = host_image(picture.auxiliary.at(name));
-  auto times = state_->runner->run(*state_->stack->program(), inputs, result, state_->options.timing);
+  picture.content.erase("source");
+  FrameRunner::Choose choose;
+  if (state_->stack->depends_on_content())
+    choose = [this](float brightest) -> Result<Program*> {
+      AFTERGLOW_TRY(const IdlePrograms::Choice choice, state_->stack->program_for(brightest));
+      state_->skipped_now = *choice.skipped;
+      return state_->ran = choice.program;
+    };
+  auto times = state_->runner->run(*state_->stack->program(), inputs, result, state_->options.timing, choose);
   picture.color.pixels = std::move(result.pixels);
   picture.codes = std::move(result.codes);
   if (!times) return std::move(times).error();
   state_->times.frame = std::move(times).value();
+  for (auto& kept : kept_of(state_->times.frame)) state_->skipped_now.push_back(std::move(kept));
   return {};
 }
 
@@ -102,9 +132,15 @@ SessionReport Session::report() const {
   report.choice = stack.choice();
   report.reference = state_->options.stack.reference;
   report.skipped = stack.prepared_graph().skipped;
+  report.skipped_now = state_->skipped_now;
+  report.counters = {.programs = stack.programs(),
+                     .images = state_->runner->counters().images,
+                     .buffers = state_->runner->counters().buffers};
+  if (state_->ran)
+    for (const auto& kernel : state_->ran->plan().kernels) report.kernels.push_back(kernel.name);
   if (const Program* program = state_->stack->program()) {
-    for (const auto& kernel : program->plan().kernels) report.kernels.push_back(kernel.name);
     report.skipped.insert(report.skipped.end(), program->plan().skipped.begin(), program->plan().skipped.end());
+    if (stack.region()) report.skipped.push_back(skipped_pixels(program->graph(), program->plan(), program->parts()));
     report.memory = program->memory();
   }
   report.clamped = state_->result.clamped;

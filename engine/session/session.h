@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,11 +29,16 @@ struct SessionReport {
   std::string device, driver, preset;
   StackChoice choice;
   bool reference = false;
-  std::vector<Skipped> skipped;      ///< effects and passes that did not run in the last frame, with reasons
-  std::vector<std::string> kernels;  ///< what ran, joined passes as "a+b"
+  std::vector<Skipped> skipped;  ///< effects and passes that no frame of this size runs, with reasons
+  /// What the last frame did not run besides, because of its content, or because it was done before.
+  std::vector<Skipped> skipped_now;
+  std::vector<std::string> kernels;  ///< what ran in the last frame, joined passes as "a+b"
   ProgramMemory memory;
   std::uint64_t clamped = 0;  ///< half storage: samples of the last frame held at ±65504
   SessionTimes times;
+  struct Counters {
+    int programs = 0, images = 0, buffers = 0;
+  } counters;  ///< objects made so far; steady frames leave them alone
 };
 
 /// Not thread-safe.
@@ -49,12 +55,15 @@ class Session {
 
   /// Makes everything that a picture of this size needs; `process` does it otherwise. May run while the picture is
   /// being read.
-  Result<void> prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {});
+  Result<void> prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {},
+                       const std::optional<Rect>& region = {});
   /// Runs the stack: `picture.color` becomes the result; its alpha stays. A stack with nothing to do leaves the picture
   /// untouched. `frame` gives frame number, time and fps; sizes are taken from the picture.
   /// With `encoding` the result may come as `picture.codes` instead, and `picture.color` stays the source.
+  /// With `region`, in pixels of the picture and within it, that part of the result is made and the rest is undefined.
+  /// Pictures whose `content` is known and was there before are not run again while settings stay.
   Result<void> process(Picture& picture, const BuildContext& frame = {},
-                       const std::optional<DisplayEncoding>& encoding = {});
+                       const std::optional<DisplayEncoding>& encoding = {}, const std::optional<Rect>& region = {});
   SessionReport report() const;
 
  private:

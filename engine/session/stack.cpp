@@ -1,8 +1,10 @@
 #include "session/stack.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "graph/plan.h"
+#include "graph/region.h"
 #include "session/calibration.h"
 #include "shader/kernel.h"
 
@@ -60,9 +62,24 @@ struct Stack::State {
   StackChoice choice;
   bool own_images = false;
   Graph graph;
+  std::optional<Rect> region;  ///< that `program` was made for
+  bool encoded = false;        ///< its result holds display codes
   bool prepared = false;
   std::unique_ptr<Program> program;
+  IdlePrograms idle;
   double script_ms = 0, compile_ms = 0;
+
+  ProgramOptions options_of_programs() const {
+    ProgramOptions out = program_options(choice.execution);
+    out.reference = options.reference;
+    out.source_is_storage = own_images;
+    out.result_by_rows = own_images;
+    out.codes = encoded;
+    out.region = region;
+    out.keep_images = options.keep_images;
+    out.max_memory = options.max_memory;
+    return out;
+  }
 };
 
 Stack::Stack(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -118,7 +135,7 @@ Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
     const auto pixels = static_cast<std::uint64_t>(graph.images[plan.transient[i]].size.area());
     blocks.push_back({pixels * bytes_per_pixel, 1, plan.lifetimes[i].first, plan.lifetimes[i].last});
   }
-  std::uint64_t total = place(blocks, !reference).total;
+  std::uint64_t total = place(blocks, !reference && !state_->options.keep_images).total;
   for (const auto& image : graph.images)
     if (image.producer < 0) total += static_cast<std::uint64_t>(image.size.area()) * bytes_per_pixel;
   return total;
@@ -132,26 +149,27 @@ void Stack::use(Device& device, bool own_images) {
     device.use_pipeline_cache((cache / "pipelines").string());
 }
 
-Result<void> Stack::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding) {
+Result<void> Stack::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding,
+                            const std::optional<Rect>& region) {
   AFTERGLOW_TRY(Graph graph, this->graph(context));
   const bool encoded = encoding && !state_->options.reference && graph.result != graph.source;
   if (encoded) encode_for_display(graph, *encoding);
-  const bool reusable = state_->prepared && same_structure(state_->graph, graph);
+  const bool same_region = state_->region == region && (!region || same_reach(state_->graph, graph));
+  const bool reusable = state_->prepared && same_region && same_structure(state_->graph, graph);
+  state_->region = region;
+  state_->encoded = encoded;
   state_->graph = std::move(graph);
   state_->prepared = true;
   if (reusable) {
     if (state_->program) state_->program->set_parameters(state_->graph);
+    state_->idle.set_parameters(state_->graph);
     return {};
   }
   state_->program.reset();
+  state_->idle = {};
   if (!runs()) return {};
   const auto start = Clock::now();
-  ProgramOptions options = program_options(state_->choice.execution);
-  options.reference = state_->options.reference;
-  options.source_is_storage = state_->own_images;
-  options.result_by_rows = state_->own_images;
-  options.codes = encoded;
-  options.max_memory = state_->options.max_memory;
+  const ProgramOptions options = state_->options_of_programs();
   auto program = Program::create(*state_->device, *state_->shaders, *state_->compiler, state_->graph, options);
   if (!program) {
     state_->prepared = false;
@@ -162,6 +180,28 @@ Result<void> Stack::prepare(const BuildContext& context, const std::optional<Dis
   state_->compile_ms += milliseconds_since(start);
   return {};
 }
+
+bool Stack::depends_on_content() const {
+  const StackOptions& options = state_->options;
+  return state_->program && options.skip_idle && !options.reference && !state_->graph.idle.empty();
+}
+
+Result<IdlePrograms::Choice> Stack::program_for(float brightest) {
+  const auto start = Clock::now();
+  const int before = state_->idle.size();
+  ProgramOptions options = state_->options_of_programs();
+  options.max_memory -= std::min(options.max_memory, state_->program->memory().arena);
+  auto choice = state_->idle.choose(*state_->device, *state_->shaders, *state_->compiler, *state_->program,
+                                    state_->graph, options, brightest);
+  if (state_->idle.size() > before) {
+    state_->device->save_pipeline_cache();
+    state_->compile_ms += milliseconds_since(start);
+  }
+  return choice;
+}
+
+const std::optional<Rect>& Stack::region() const { return state_->region; }
+int Stack::programs() const { return (state_->program ? 1 : 0) + state_->idle.size(); }
 
 Result<void> Stack::bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result) {
   if (!state_->program) return {};

@@ -12,6 +12,7 @@
 #include "core/diagnostics.h"
 #include "core/result.h"
 #include "exec/choice.h"
+#include "exec/idle_programs.h"
 #include "exec/program.h"
 #include "gpu/device.h"
 #include "script/preset.h"
@@ -23,8 +24,10 @@ enum class Precision { automatic, fp32, fp16 };
 struct StackOptions {
   PresetOptions preset;
   Precision precision = Precision::automatic;
-  std::optional<double> max_error;        ///< E of math.md §13; default: the preset's, else 2e-3
-  bool reference = false;                 ///< every pass on its own in fp32 with computed weights: the slow truth
+  std::optional<double> max_error;  ///< E of math.md §13; default: the preset's, else 2e-3
+  bool reference = false;           ///< every pass on its own in fp32 with computed weights: the slow truth
+  bool skip_idle = true;     ///< run frames without the effects that their content makes idle (never with `reference`)
+  bool keep_images = false;  ///< images between passes stay, so that after an edit only what it changes runs again
   std::uint64_t max_memory = 6ull << 30;  ///< bytes of device memory for images
   std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
   std::optional<Choice> choice;           ///< execute so, whatever calibration and precision say
@@ -68,14 +71,26 @@ class Stack {
   /// Makes shaders, pipelines and memory for pictures of this size, or only rewrites parameters when the structure is
   /// as before. Must not be called while a submission that uses this stack is in flight. Errors: script, device, io
   /// (memory limit).
-  /// With `encoding` (not with StackOptions::reference) the result is RGBA8.
-  Result<void> prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {});
+  /// With `encoding` (not with StackOptions::reference) the result is RGBA8. With `region`, in pixels of the picture
+  /// and within it, only that part of the result is made.
+  Result<void> prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {},
+                       const std::optional<Rect>& region = {});
   /// False when no effect has anything to do: the result *is* the source, and `record` records nothing.
   bool runs() const;
   /// The program of the last `prepare`; null before it, and when nothing runs.
   Program* program();
   /// The graph of the last `prepare`.
   const Graph& prepared_graph() const;
+
+  /// Whether the content of a frame may make effects idle: then ask `program_for` for the program of each frame.
+  bool depends_on_content() const;
+  /// The program for a frame whose source is at most this bright (see IdlePrograms), and what it leaves out. Programs
+  /// are made when they are first wanted, and kept. Errors: those of `prepare`.
+  Result<IdlePrograms::Choice> program_for(float brightest);
+  /// The region of the last `prepare`.
+  const std::optional<Rect>& region() const;
+  /// Programs made for the present structure.
+  int programs() const;
 
   /// Format that the result image must have: VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT, or with a
   /// display encoding VK_FORMAT_R8G8B8A8_UNORM.

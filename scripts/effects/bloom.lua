@@ -47,6 +47,14 @@ return fx.effect {
     return true
   end,
 
+  -- Light below (1 - knee) of the threshold does not bloom. Half the size of an even picture is the mean of four texels, never above
+  -- the largest of them; other sizes weigh texels with rounded numbers, which may lift the mean by some 1e-7.
+  idle = function(s, source)
+    local knee = knee_vector(s)
+    local even = source.width % 2 == 0 and source.height % 2 == 0
+    return { brightest = -knee[2] * (even and 1 or 1 - 1e-6) }
+  end,
+
   build = function(g, s, source)
     local width, height = source.width // 2, source.height // 2
     if width < 2 * s.downscale_limit or height < 2 * s.downscale_limit then
@@ -58,7 +66,7 @@ return fx.effect {
     local knee = knee_vector(s)
     local image
     if s.fade_fireflies then
-      image = g:pass { shader = "bloom/fireflies", source = source, size = { width, height }, knee = knee, name = "prefilter" }
+      image = g:pass { shader = "bloom/fireflies", source = source, size = { width, height }, knee = knee, reach = 3, name = "prefilter" }
     else
       image = g:filter { source = source, size = { width, height }, filter = fx.filters.bilinear(), name = "half" }
       image = g:pass { shader = "bloom/threshold", source = image, knee = knee, name = "prefilter" }

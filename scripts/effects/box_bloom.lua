@@ -14,6 +14,9 @@ return fx.effect {
     brightness = fx.enum { "max", "luma", default = "max", doc = "What the threshold compares: the largest channel, or 0.3 R + 0.59 G + 0.11 B." },
   },
 
+  -- The weights of luma add up to 1 but for their rounding.
+  idle = function(s) return { brightest = s.threshold * (s.brightness == "max" and 1 or 1 - 1e-6) } end,
+
   build = function(g, s, source)
     local blur = s.pattern == "plus" and fx.filters.plus(1) or fx.filters.box(1)
     local image = g:pass { shader = "box_bloom/threshold", source = source, threshold = s.threshold, luma = s.brightness == "luma", name = "threshold" }

@@ -67,6 +67,7 @@ return fx.effect {
       shader = "outline/lines", size = source, name = "lines",
       depth = depth or source, normal = normal or source,  -- what is missing is not read
       use_depth = use.depth, use_normal = use.normal,
+      reach = s.difference == "derivative" and 1 or math.min(s.width, 16383) + 1,
       derivative = s.difference == "derivative", fade = use.fade and depth ~= nil,
       device_input = s.depth_space == "device", reversed_z = s.reversed_z, raw_depth = s.source == "device_depth",
       combine_max = s.combine == "max",

@@ -1,4 +1,4 @@
-// lerp(high, color + (high − T(high)), amount): what is spread is only the light that passed the threshold T, so the light that T took
+// lerp(high, color + (high − T(high)), amount), written so that it is `high` to the last bit where nothing blooms: what is spread is only the light that passed the threshold T, so the light that T took
 // away is given back and a picture of one colour stays as it is (Catlike Coding, Custom SRP 12: "Scattering Threshold").
 #include "lib/soft_knee.glsl"
 
@@ -6,6 +6,6 @@ uniform float amount;
 uniform vec4 knee;
 
 vec4 apply(vec4 color, vec4 high) {
-  vec3 kept = high.rgb - soft_knee_threshold(high.rgb, knee);
-  return vec4(lerp(high.rgb, color.rgb + kept, amount), high.a);
+  vec3 spread = soft_knee_threshold(high.rgb, knee);
+  return vec4(high.rgb + amount * (color.rgb - spread), high.a);
 }

@@ -134,7 +134,7 @@ TEST(ListEffects, AllOfThePathByName) {
   EXPECT_THAT(names, testing::Not(testing::Contains("broken")));
   EXPECT_THAT(scene.warnings, ElementsAre("effect 'broken' is left out: effects/broken.lua:3: error: fx.effect has no "
                                           "'odrer'; allowed: active, at, build, "
-                                          "doc, name, needs, optional, order, settings; did you mean 'order'?"));
+                                          "doc, idle, name, needs, optional, order, settings; did you mean 'order'?"));
 }
 
 // The names that no effect may have are those that the library has.
@@ -146,7 +146,9 @@ TEST(ListEffects, NamesOfTheLibraryAreReserved) {
     print(table.concat(names, " "))
     return fx.stack {})");
   ASSERT_EQ(scene.load_error(), "");
-  EXPECT_THAT(scene.notes, ElementsAre("preset.lua:4: bool color curve effect enum extend filters float int stack vec2 vec3 volume"));
+  EXPECT_THAT(
+      scene.notes,
+      ElementsAre("preset.lua:4: bool color curve effect enum extend filters float int stack vec2 vec3 volume"));
 }
 
 // Every effect of the installation, as the design's table has it, can be listed without a complaint.

@@ -1,0 +1,26 @@
+// The brightest value of a picture, found while it is packed for the device.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "exec/program.h"
+
+namespace afterglow {
+
+/// Collects rows of one picture; rows may come from several threads.
+class Brightest {
+ public:
+  /// Interleaved floats; of four or more channels the first three count, of fewer all of them.
+  void add_row(const float* row, int channels, int width);
+
+  /// The largest red, green or blue that the device will read from images of this storage. NaN when some value is
+  /// negative (−0 too) or not finite.
+  float value(Storage storage) const;
+
+ private:
+  std::atomic<std::uint32_t> bits_{
+      0};  ///< of floats; as integers, those that are ≥ 0 sort as they do, all others above them
+};
+
+}  // namespace afterglow
