@@ -35,7 +35,7 @@ DrawInterface interface_of(const CompiledKernel& kernel) {
 }  // namespace
 
 Result<KernelPipelines> KernelPipelines::create(const Device& device, const std::vector<CompiledKernel>& kernels,
-                                                const std::vector<std::string>& names) {
+                                                const std::vector<std::string>& names, VkFormat format) {
   KernelPipelines out;
   for (const auto& kernel : kernels) {
     const DrawInterface interface = interface_of(kernel);
@@ -53,7 +53,7 @@ Result<KernelPipelines> KernelPipelines::create(const Device& device, const std:
       return;
     }
     made[i].emplace(create_draw_pipeline(device, out.layout(kernels[i]), vertex.get(), fragment->get(),
-                                         {format_of(kernels[i].target), kernels[i].rows}, names[i]));
+                                         {format != VK_FORMAT_UNDEFINED ? format : format_of(kernels[i].target), kernels[i].rows}, names[i]));
   });
   for (auto& pipeline : made) {
     if (!*pipeline) return std::move(*pipeline).error();

@@ -16,9 +16,10 @@ std::vector<VkDescriptorType> descriptor_types(const CompiledKernel& kernel);
 class KernelPipelines {
  public:
   /// Made over threads through the device's pipeline cache. `names` is parallel to `kernels`, for messages and
-  /// debuggers. Errors: device.
+  /// debuggers. `format`: of the targets, in place of what the kernels are made for. Errors: device.
   static Result<KernelPipelines> create(const Device& device, const std::vector<CompiledKernel>& kernels,
-                                        const std::vector<std::string>& names);
+                                        const std::vector<std::string>& names,
+                                        VkFormat format = VK_FORMAT_UNDEFINED);
   KernelPipelines() = default;
 
   VkPipeline pipeline(int kernel) const { return pipelines_[static_cast<std::size_t>(kernel)].get(); }
