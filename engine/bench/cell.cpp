@@ -9,8 +9,6 @@
 namespace afterglow::bench {
 namespace {
 
-constexpr VkFormat kFloats = VK_FORMAT_R32G32B32A32_SFLOAT;
-
 /// The right result, R, G and B; empty when there is none.
 struct Truth {
   std::string name;
@@ -38,11 +36,6 @@ Result<Truth> find_truth(Device& device, const CellRequest& request, Diagnostics
   return Truth{fmt::format("--reference: '{}' has no oracle", unknown), {rgb.begin(), rgb.end()}};
 }
 
-/// What stacks may share: format, and rows of the result's targets.
-using PictureKind = std::pair<VkFormat, int>;
-
-PictureKind kind_of(const PreparedStack& stack) { return {stack.format(), stack.result_rows()}; }
-
 /// What is measured in turns.
 struct Field {
   std::map<PictureKind, DevicePicture> pictures;
@@ -53,15 +46,15 @@ struct Field {
 
 Result<void> prepare(Device& device, const CellRequest& request, Field& field) {
   const Picture& picture = *request.picture;
-  std::vector<PictureKind> kinds{{kFloats, 1}};
-  for (const auto& stack : field.stacks) kinds.push_back(kind_of(stack));
+  std::vector<PictureKind> kinds(1);  // full floats, for the copy
+  for (const auto& stack : field.stacks) kinds.push_back(stack.picture_kind());
   for (const PictureKind& kind : kinds)
     if (!field.pictures.contains(kind)) {
-      AFTERGLOW_TRY(field.pictures[kind], DevicePicture::create(device, picture, kind.first, kind.second));
+      AFTERGLOW_TRY(field.pictures[kind], DevicePicture::create(device, picture, kind));
     }
-  for (auto& stack : field.stacks) AFTERGLOW_CHECK(stack.record(device, field.pictures.at(kind_of(stack))));
+  for (auto& stack : field.stacks) AFTERGLOW_CHECK(stack.record(device, field.pictures.at(stack.picture_kind())));
   KernelCompiler compiler(request.base.cache_folder.empty() ? "" : request.base.cache_folder / "shaders");
-  const DevicePicture& floats = field.pictures.at({kFloats, 1});
+  const DevicePicture& floats = field.pictures.at(PictureKind{});
   AFTERGLOW_TRY(field.copy, KernelWork::create(device, compiler, {}, floats.source(), floats.result(), "copy"));
   const auto bytes = static_cast<VkDeviceSize>(picture.color.size().area()) * 16;
   AFTERGLOW_TRY(field.memory, BufferCopy::create(device, bytes));

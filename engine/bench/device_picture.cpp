@@ -46,19 +46,21 @@ Result<FrameImage> upload_image(const Device& device, const Image& image, VkForm
   return out;
 }
 
-Result<DevicePicture> DevicePicture::create(const Device& device, const Picture& picture, VkFormat format, int rows) {
+Result<DevicePicture> DevicePicture::create(const Device& device, const Picture& picture, const PictureKind& kind) {
   DevicePicture out;
-  AFTERGLOW_TRY(out.inputs_["source"], upload_image(device, picture.color, format,
+  AFTERGLOW_TRY(out.inputs_["source"], upload_image(device, picture.color, kind.source,
                                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT, kRest));
   for (const auto& [name, image] : picture.auxiliary) {
     AFTERGLOW_TRY(out.inputs_[name],
-                  upload_image(device, image, input_format(name, host(image), format), VK_IMAGE_USAGE_SAMPLED_BIT,
+                  upload_image(device, image, input_format(name, host(image), kind.source), VK_IMAGE_USAGE_SAMPLED_BIT,
                                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
   }
-  const ImageDesc result{
-      .name = "result", .size = picture.color.size(), .format = format, .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
+  const ImageDesc result{.name = "result",
+                         .size = picture.color.size(),
+                         .format = kind.result,
+                         .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
   AFTERGLOW_TRY(out.result_,
-                FrameImage::create(device, result, device.is_cpu() ? HostAccess::read : HostAccess::none, rows));
+                FrameImage::create(device, result, device.is_cpu() ? HostAccess::read : HostAccess::none, kind.rows));
   return out;
 }
 

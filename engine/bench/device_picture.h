@@ -1,6 +1,7 @@
 // A picture and room for a result on the device, shared by all that is measured on that picture.
 #pragma once
 
+#include <compare>
 #include <map>
 #include <string>
 
@@ -10,11 +11,18 @@
 
 namespace afterglow::bench {
 
+/// What stacks must have in common to share a picture.
+struct PictureKind {
+  VkFormat source = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< or RGBA16F
+  VkFormat result = VK_FORMAT_R32G32B32A32_SFLOAT;
+  int rows = 1;  ///< targets of the result (Program::result_rows)
+  friend auto operator<=>(const PictureKind&, const PictureKind&) = default;
+};
+
 class DevicePicture {
  public:
-  /// Uploads the colour as `format` (RGBA32F or RGBA16F), auxiliary images as full floats. `rows`: the result gets
-  /// targets by so many rows (Program::result_rows). Errors: device.
-  static Result<DevicePicture> create(const Device& device, const Picture& picture, VkFormat format, int rows = 1);
+  /// Uploads the colour, and auxiliary images as full floats. Errors: device.
+  static Result<DevicePicture> create(const Device& device, const Picture& picture, const PictureKind& kind);
   DevicePicture() = default;
 
   std::map<std::string, ImageBinding> inputs() const;

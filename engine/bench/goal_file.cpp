@@ -25,6 +25,7 @@ Result<GoalTerm> read_term(const Json& json, const fs::path& folder) {
   term.times = json.value("times", 1.0);
   term.copy = json.value("copy", false);
   term.frame = json.value("frame", false);
+  term.display = json.value("display", false);
   term.light = json.value("light", 1.0);
   if (json.contains("size")) {
     AFTERGLOW_TRY(term.size, read_size(json.at("size")));

@@ -15,7 +15,6 @@ namespace afterglow::bench {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr VkFormat kFloats = VK_FORMAT_R32G32B32A32_SFLOAT;
 
 /// A term made ready. Addresses must stay: what is recorded refers to the pictures.
 struct Contestant {
@@ -47,7 +46,7 @@ Result<void> prepare(Device& device, const StackOptions& base, const GoalTerm& t
                      Diagnostics& diagnostics) {
   out.picture = lit_picture(term.size.value_or(size), term.light);
   if (term.copy) {
-    AFTERGLOW_TRY(out.on_device, DevicePicture::create(device, out.picture, kFloats));
+    AFTERGLOW_TRY(out.on_device, DevicePicture::create(device, out.picture, {}));
     KernelCompiler compiler(base.cache_folder.empty() ? "" : base.cache_folder / "shaders");
     AFTERGLOW_TRY(out.copy,
                   KernelWork::create(device, compiler, {}, out.on_device.source(), out.on_device.result(), "copy"));
@@ -62,9 +61,10 @@ Result<void> prepare(Device& device, const StackOptions& base, const GoalTerm& t
     AFTERGLOW_TRY(out.session, Session::open(term.look, options, diagnostics));
     return {};
   }
-  const Variant variant{.choice = term.choice, .overrides = term.overrides};
+  Variant variant{.choice = term.choice, .overrides = term.overrides};
+  if (term.display) variant.encoding.emplace();
   AFTERGLOW_TRY(out.stack, PreparedStack::create(device, term.look, base, variant, out.picture, diagnostics));
-  AFTERGLOW_TRY(out.on_device, DevicePicture::create(device, out.picture, out.stack.format(), out.stack.result_rows()));
+  AFTERGLOW_TRY(out.on_device, DevicePicture::create(device, out.picture, out.stack.picture_kind()));
   return out.stack.record(device, out.on_device);
 }
 

@@ -18,6 +18,7 @@ struct GoalTerm {
   std::filesystem::path look;  ///< else: a preset
   std::vector<Override> overrides;
   std::optional<Choice> choice;  ///< empty: as `run` would choose
+  bool display = false;          ///< the last kernel writes 8-bit display codes
   bool frame = false;            ///< a whole frame as `run` makes it, not only what was recorded
   double light = 1;              ///< factor of the picture
   std::optional<Size> size;      ///< another than the goal's

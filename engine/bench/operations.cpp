@@ -78,7 +78,7 @@ KernelDesc shift(bool hardware_filter) {
 Result<std::vector<OperationCost>> measure_operations(Device& device, const StackOptions& base, const Picture& picture,
                                                       int repeat, const Step& step) {
   KernelCompiler compiler(base.cache_folder.empty() ? "" : base.cache_folder / "shaders");
-  AFTERGLOW_TRY(const DevicePicture floats, DevicePicture::create(device, picture, kFloats));
+  AFTERGLOW_TRY(const DevicePicture floats, DevicePicture::create(device, picture, {}));
   std::vector<std::string> names;
   std::vector<Measured> all;
   std::vector<std::unique_ptr<FormatCopy>> copies;

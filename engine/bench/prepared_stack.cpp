@@ -46,8 +46,14 @@ Result<PreparedStack> PreparedStack::create(Device& device, const std::filesyste
   options.preset.overrides.insert(options.preset.overrides.end(), variant.overrides.begin(), variant.overrides.end());
   AFTERGLOW_TRY(out.stack_, Stack::load(preset, options, diagnostics));
   out.stack_->use(device, true);
-  AFTERGLOW_CHECK(out.stack_->prepare(context_of(picture)));
+  AFTERGLOW_CHECK(out.stack_->prepare(context_of(picture), variant.encoding));
   return out;
+}
+
+PictureKind PreparedStack::picture_kind() const {
+  const Program* program = stack_->program();
+  if (!program) return {};
+  return {program->storage_format(), program->result_format(), program->result_rows()};
 }
 
 Result<Point> PreparedStack::try_out(Device& device, const Picture& picture, bool passes, std::vector<float>& rgb) {

@@ -17,6 +17,7 @@ struct Variant {
   std::optional<Choice> choice;  ///< empty: as `run` would choose
   std::string settings;          ///< for reports: what `overrides` add to the preset
   std::vector<Override> overrides;
+  std::optional<DisplayEncoding> encoding;  ///< the last kernel writes 8-bit codes; not for `try_out`
 };
 
 class PreparedStack {
@@ -37,9 +38,8 @@ class PreparedStack {
 
   Stack& stack() { return *stack_; }
   bool runs() const { return stack_->runs(); }
-  VkFormat format() const { return stack_->result_format(); }
-  /// Program::result_rows
-  int result_rows() const { return stack_->program() ? stack_->program()->result_rows() : 1; }
+  /// What it must be recorded on.
+  PictureKind picture_kind() const;
 
  private:
   Variant variant_;

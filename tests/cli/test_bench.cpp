@@ -92,7 +92,7 @@ TEST_F(Bench, MistakesAreSaidBeforeAnythingIsMeasured) {
 
 TEST_F(Bench, GoalsAreMeasuredAndStored) {
   write("goals.json", R"({"goals": [
-    {"name": "ratio", "sizes": ["32x18"], "over": [{"look": "look.lua", "choice": "plain16f"}, {"look": "look.lua", "frame": true}],
+    {"name": "ratio", "sizes": ["32x18"], "over": [{"look": "look.lua", "choice": "plain16f"}, {"look": "look.lua", "frame": true}, {"look": "look.lua", "display": true}],
      "under": [{"copy": true}], "at_least": 1e-9, "repeat": 2},
     {"name": "command", "sizes": ["32x18"], "command": {"look": "look.lua", "frames": 2, "cold": true}, "at_most": 1e9, "repeat": 1},
     {"name": "broken", "sizes": ["32x18"], "over": [{"look": "none.lua"}], "under": [{"copy": true}], "at_most": 1}]})");

@@ -24,7 +24,7 @@ class Goals : public testing::Test {
 TEST_F(Goals, ReadsRatiosAndCommands) {
   const auto goals = load(R"({"goals": [
     {"name": "a", "sizes": ["64x32", "8x4"], "over": [{"look": "l.lua", "choice": "plain16f", "set": ["glow.x=1"]}],
-     "under": [{"copy": true, "times": -4}, {"look": "l.lua", "frame": true, "light": 0.5, "size": "2x2"}],
+     "under": [{"copy": true, "times": -4}, {"look": "l.lua", "frame": true, "display": true, "light": 0.5, "size": "2x2"}],
      "at_least": 4.5, "next": 6},
     {"name": "b", "sizes": ["2x2"], "command": {"look": "l.lua", "frames": 3, "cold": true}, "at_most": 0.3, "repeat": 5}]})");
   ASSERT_TRUE(goals) << goals.error().text();
@@ -40,6 +40,8 @@ TEST_F(Goals, ReadsRatiosAndCommands) {
   EXPECT_TRUE(a.under.at(0).copy);
   EXPECT_EQ(a.under.at(0).times, -4);
   EXPECT_TRUE(a.under.at(1).frame);
+  EXPECT_TRUE(a.under.at(1).display);
+  EXPECT_FALSE(a.over.at(0).display);
   EXPECT_EQ(a.under.at(1).light, 0.5);
   EXPECT_EQ(a.under.at(1).size, (Size{2, 2}));
   const Goal& b = goals->at(2);
