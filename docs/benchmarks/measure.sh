@@ -1,28 +1,26 @@
 #!/usr/bin/env bash
-# Measures whole commands as users run them: neon_night on 1920×1080 and 3840×2160 enlargements of tests/images/neon.exr.
-# Writes docs/benchmarks/commands.txt. Needs /usr/bin/time (package `time`), oiiotool (openimageio-tools) and a quiet machine.
+# Measures everything that docs/benchmarks shows, in less than eight minutes on two quiet cores:
+#
+#   docs/benchmarks/measure.sh [FOLDER]
+#
+# FOLDER (default docs/benchmarks) gets bench.json, bench.csv, bench.html, front.svg (the goals are in them) and calibration.json;
+# commands.txt comes from commands.sh. A bench.json that is there already is compared with: the last lines are the ratios, and the exit
+# code is 1 when something has become more than 1.15 times as slow.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+folder=${1:-docs/benchmarks}
 ./dev build >/dev/null
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-out=docs/benchmarks/commands.txt
+mkdir -p "$folder"
 
-for size in 1920x1080 3840x2160; do
-  oiiotool tests/images/neon.exr --ch ViewLayer.Combined.R,ViewLayer.Combined.G,ViewLayer.Combined.B,ViewLayer.Combined.A \
-    --chnames R,G,B,A --resize:filter=triangle "$size" -d half --compression zip -o "$work/$size.exr"
-done
+./dev calibrate -o "$folder/calibration.json"
+docs/benchmarks/commands.sh >/dev/null
 
-run() { /usr/bin/time -f "  whole command: %e s, peak %M KiB" ./dev run presets/neon_night.lua "$@" --stats 2>&1; }
-
-{
-  echo "# $(date -u +%F), $(git describe --always --dirty), $(nproc) cores of $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n1)"
-  for size in 1920x1080 3840x2160; do
-    echo; echo "## $size half ZIP EXR to 8-bit PNG, all caches empty"
-    AFTERGLOW_CACHE=$work/cold MESA_SHADER_CACHE_DIR=$work/cold-mesa run "$work/$size.exr" -o "$work/out.png"
-    rm -rf "$work/cold" "$work/cold-mesa"
-    run "$work/$size.exr" -o "$work/out.png" >/dev/null
-    for i in 1 2 3; do echo; echo "## $size, warm, run $i"; run "$work/$size.exr" -o "$work/out.png"; done
-    for i in 1 2 3; do echo; echo "## $size, warm, --reference (every pass on its own), run $i"; run "$work/$size.exr" -o "$work/out.png" --reference; done
-  done
-} | tee "$out"
+compare=()
+if [[ -f $folder/bench.json ]]; then
+  old=$(mktemp)
+  trap 'rm -f "$old"' EXIT
+  cp "$folder/bench.json" "$old"
+  compare=(--compare "$old")
+fi
+./dev bench docs/benchmarks/looks/scatter_aces.lua --sizes 1920x1080,3840x2160 --scaling 4096 --goals docs/benchmarks/goals.json \
+  -o "$folder" ${compare[@]+"${compare[@]}"}

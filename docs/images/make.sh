@@ -8,7 +8,8 @@ render() { # NAME PRESET INPUT OPTION…
   "$program" run "presets/$2" "tests/images/$3" -o "docs/images/$1" --jpeg-quality 82 "${@:4}"
 }
 render before.jpg plain_aces.lua neon.exr --size 640x360 --set tone_mapping.mode=none
-for preset in neon_night neon_additive filmic_scatter portrait_haze ink_outline night_vision animation_safe plain_aces; do
+for preset in neon_night neon_additive filmic_scatter portrait_haze ink_outline night_vision animation_safe plain_aces \
+  anamorphic_night faded_film vhs_tape shallow_focus; do
   render "$preset.jpg" "$preset.lua" neon.exr --size 640x360
 done
 render print.jpg print/print.lua neon.exr --size 640x360

@@ -23,5 +23,7 @@ Command add_explain_command(CLI::App& program);
 Command add_effects_command(CLI::App& program);
 Command add_new_command(CLI::App& program);
 Command add_devices_command(CLI::App& program);
+Command add_bench_command(CLI::App& program);
+Command add_calibrate_command(CLI::App& program);
 
 }  // namespace afterglow

@@ -8,6 +8,7 @@
 #include "apps/command.h"
 #include "apps/table.h"
 #include "gpu/device.h"
+#include "session/calibration.h"
 
 namespace afterglow {
 namespace {
@@ -17,7 +18,9 @@ std::string version_text(std::uint32_t version) {
                      VK_API_VERSION_PATCH(version));
 }
 
-std::string as_json(const std::vector<DeviceInfo>& devices) {
+constexpr double kDefaultError = 2e-3;  ///< of a preset that says nothing
+
+std::string as_json(const std::vector<DeviceInfo>& devices, const Calibration& calibration) {
   auto list = nlohmann::json::array();
   for (std::size_t i = 0; i < devices.size(); ++i) {
     const auto& device = devices[i];
@@ -29,17 +32,21 @@ std::string as_json(const std::vector<DeviceInfo>& devices) {
                          {"vulkan", version_text(device.api_version)},
                          {"usable", device.usable}};
     if (!device.usable) entry["why_not"] = device.why_not;
+    const auto found = calibration.find(device, kDefaultError);
+    entry["choice"] = choice_name(found.choice);
+    entry["choice_from"] = found.from;
     list.push_back(std::move(entry));
   }
   return list.dump(2) + "\n";
 }
 
-std::string as_table(const std::vector<DeviceInfo>& devices) {
-  Table table({"#", "name", "type", "driver", "Vulkan", "usable"});
+std::string as_table(const std::vector<DeviceInfo>& devices, const Calibration& calibration) {
+  Table table({"#", "name", "type", "driver", "Vulkan", "usable", "executes", "because of"});
   for (std::size_t i = 0; i < devices.size(); ++i) {
     const auto& device = devices[i];
+    const auto found = calibration.find(device, kDefaultError);
     table.add({std::to_string(i), device.name, device.type, device.driver, version_text(device.api_version),
-               device.usable ? "yes" : "no: " + device.why_not});
+               device.usable ? "yes" : "no: " + device.why_not, choice_name(found.choice), found.from});
   }
   return table.text();
 }
@@ -51,9 +58,14 @@ Command add_devices_command(CLI::App& program) {
       program.add_subcommand("devices", "List the Vulkan devices that --device can choose from, the preferred first");
   auto json = std::make_shared<bool>(false);
   app->add_flag("--json", *json, "Print JSON");
-  return {app, [json](Console&) -> Result<void> {
+  auto file = std::make_shared<std::string>();
+  app->add_option("--calibration", *file,
+                  "Table of `afterglow calibrate` (default: the one that comes with the program)")
+      ->type_name("FILE");
+  return {app, [json, file](Console&) -> Result<void> {
+            AFTERGLOW_TRY(const auto calibration, file->empty() ? Calibration::shipped() : Calibration::load(*file));
             AFTERGLOW_TRY(const auto devices, list_devices());
-            fmt::print("{}", *json ? as_json(devices) : as_table(devices));
+            fmt::print("{}", *json ? as_json(devices, calibration) : as_table(devices, calibration));
             return {};
           }};
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/command.h"
+#include "apps/effect_page.h"
 #include "apps/options.h"
 #include "apps/setting_text.h"
 #include "apps/table.h"
@@ -19,7 +20,7 @@ namespace {
 struct Arguments {
   std::string name;
   PresetArguments preset;  // --path alone
-  bool json = false, completion = false;
+  bool json = false, markdown = false, completion = false;
 };
 
 nlohmann::json as_json(const EffectSchema& effect) {
@@ -69,6 +70,8 @@ Result<void> run(const Arguments& arguments, Console& console) {
   }
   if (arguments.completion) {
     fmt::print("{}", completion_text(effects));
+  } else if (arguments.markdown) {
+    for (const auto& effect : effects) fmt::print("{}", effect_page(effect));
   } else if (arguments.json) {
     auto list = nlohmann::json::array();
     for (const auto& effect : effects) list.push_back(as_json(effect));
@@ -86,6 +89,7 @@ Command add_effects_command(CLI::App& program) {
   auto arguments = std::make_shared<Arguments>();
   app->add_option("NAME", arguments->name, "Effect whose settings to show");
   app->add_flag("--json", arguments->json, "Print JSON");
+  app->add_flag("--markdown", arguments->markdown, "Print documents in Markdown");
   app->add_flag("--completion", arguments->completion, "Print completion data for lua-language-server (scripts/_meta)");
   arguments->preset.add_paths(*app);
   return {app, [arguments](Console& console) { return run(*arguments, console); }};

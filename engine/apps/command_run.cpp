@@ -112,11 +112,11 @@ SampleType sample_type(const std::string& text) {
 }
 
 /// Every option that changes pixels, for the hash that --resume compares.
-std::string pixel_options(const Arguments& a) {
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", join(a.preset.overrides, "|"), a.preset.at,
-                     a.execution.precision, a.execution.max_error.value_or(0), a.execution.reference, a.layer, a.depth,
-                     a.normal, a.size, a.fps, a.type, a.compression, a.png_level, a.jpeg_quality, a.dither,
-                     a.keep_layers);
+std::string pixel_options(const Arguments& a, const StackChoice& choice) {
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", join(a.preset.overrides, "|"), a.preset.at,
+                     choice_name(choice.execution), a.execution.precision, a.execution.max_error.value_or(0),
+                     a.execution.reference, a.layer, a.depth, a.normal, a.size, a.fps, a.type, a.compression,
+                     a.png_level, a.jpeg_quality, a.dither, a.keep_layers);
 }
 
 /// Everything about one run that outlives a step.
@@ -166,7 +166,7 @@ Result<void> prepare_resume(Run& run) {
   Preset& preset = run.session->preset();
   AFTERGLOW_TRY(const BuildContext context, assumed.context(preset));
   AFTERGLOW_TRY(const Graph graph, run.session->stack().graph(context));
-  AFTERGLOW_TRY(const Hash look, look_hash(preset, graph, pixel_options(a)));
+  AFTERGLOW_TRY(const Hash look, look_hash(preset, graph, pixel_options(a, run.session->stack().choice())));
   run.loop.record_look = look;
   if (!a.resume) return {};
   for (auto& frame : run.report.frames)

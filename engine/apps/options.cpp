@@ -98,6 +98,12 @@ void ExecutionArguments::add(CLI::App& command) {
       ->check(CLI::PositiveNumber)
       ->type_name("E")
       ->group("Device");
+  command
+      .add_option(
+          "--calibration", calibration,
+          "Table of `afterglow calibrate` that says how to execute (default: the one that comes with the program)")
+      ->type_name("FILE")
+      ->group("Device");
   command.add_flag("--reference", reference, "The slow truth: every pass on its own, full floats, computed weights")
       ->group("Device");
   command.add_option("--max-memory", max_memory, "Refuse pictures that need more: 512M, 6G (default 6G)")
@@ -112,6 +118,7 @@ Result<StackOptions> ExecutionArguments::options() const {
                                             : Precision::automatic;
   options.max_error = max_error;
   options.reference = reference;
+  options.calibration = calibration;
   AFTERGLOW_TRY(options.max_memory, parse_memory(max_memory));
   options.cache_folder = cache_folder();
   return options;

@@ -43,12 +43,13 @@ struct DeviceArguments {
   DeviceOptions options() const;
 };
 
-/// --precision, --max-error, --reference, --max-memory.
+/// --precision, --max-error, --calibration, --reference, --max-memory.
 struct ExecutionArguments {
   std::string precision = "auto";
   std::optional<double> max_error;
   bool reference = false;
   std::string max_memory = "6G";
+  std::string calibration;
   void add(CLI::App& command);
   /// Everything of StackOptions but the preset. Errors: usage.
   Result<StackOptions> options() const;

@@ -91,10 +91,12 @@ Json session_json(const SessionReport& session) {
       {"preset", session.preset},
       {"device", session.device},
       {"driver", session.driver},
-      {"storage", session.storage},
+      {"choice", choice_name(session.choice.execution)},
+      {"choice_from", session.choice.from},
+      {"storage", session.choice.execution.storage == Storage::fp16 ? "fp16" : "fp32"},
       {"reference", session.reference},
-      {"hardware_filter", session.hardware_filter},
-      {"max_error", session.max_error},
+      {"hardware_filter", session.choice.execution.hardware_filter},
+      {"max_error", session.choice.max_error},
       {"kernels", session.kernels},
       {"skipped", Json::array()},
       {"image_memory",
@@ -116,8 +118,8 @@ std::uint64_t peak_memory() {
 std::string report_text(const RunReport& report, bool passes) {
   std::string out;
   if (report.session)
-    out += fmt::format("{} on {} ({}{})\n", report.session->preset, report.session->device, report.session->storage,
-                       report.session->reference ? ", reference" : "");
+    out += fmt::format("{} on {} ({}; {})\n", report.session->preset, report.session->device,
+                       choice_name(report.session->choice.execution), report.session->choice.from);
   const std::size_t done = count(report, FrameRecord::State::done);
   out += fmt::format("frames: {} done, {} up to date, {} failed\n", done, count(report, FrameRecord::State::up_to_date),
                      count(report, FrameRecord::State::failed));

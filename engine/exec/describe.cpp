@@ -46,7 +46,10 @@ std::vector<ImageRead> reads_of(const Graph& graph, const PlanKernel& kernel, co
     const bool source = input && input->image == graph.source && options.source_is_storage;
     reads.push_back(between || source ? storage : ImageRead::sampled);
   };
-  if (!desc.sample) add(-1, "source");
+  if (desc.filter && desc.hardware_filter)
+    reads.push_back(ImageRead::sampled);  // the sampler interpolates
+  else if (!desc.sample)
+    add(-1, "source");
   int stage = 0;
   const auto add_inputs = [&](const KernelStage& of) {
     for (const auto& input : of.shader->interface.inputs) add(stage, input.name);

@@ -229,7 +229,7 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   auto state = std::make_unique<State>(device, graph, options);
   const bool half = options.storage == Storage::fp16;
   state->format = half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
-  state->plan = make_plan(graph, {.join = !options.reference});
+  state->plan = make_plan(graph, {.joining = options.reference ? Joining::none : options.joining});
   state->storage_reads = options.storage_reads && can(device, state->format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
   AFTERGLOW_CHECK(state->check());
   if (!state->plan.kernels.empty()) {

@@ -29,6 +29,7 @@ struct WorthAKernel {
 };
 
 struct ProgramOptions {
+  Joining joining = Joining::all;
   Storage storage = Storage::fp32;
   bool reference = false;        ///< every pass on its own, computed weights, no sharing of memory
   bool hardware_filter = false;  ///< filtered fetches may be used

@@ -41,10 +41,10 @@ class Joiner {
   Joiner(const Graph& graph, const std::vector<bool>& keep)
       : graph_(graph), readers_(count_readers(graph, keep)), kernel_of_(graph.images.size(), -1) {}
 
-  void add(int index, bool join) {
+  void add(int index, Joining joining) {
     const Pass& pass = graph_.passes[index];
     PlanKernel kernel{{index}, pass.name, pass.output};
-    const int feeder = join && pass.kind == PassKind::pixel ? feeder_of(pass) : -1;
+    const int feeder = pass.kind == PassKind::pixel ? feeder_of(pass, joining) : -1;
     if (feeder >= 0) {
       // The joined kernel runs where its last pass stood, so that everything its later passes read is there.
       PlanKernel& first = kernels_[feeder];
@@ -63,12 +63,19 @@ class Joiner {
 
  private:
   // The kernel that makes the colour of this pixel pass, when nobody else reads that image; -1: none.
-  int feeder_of(const Pass& pass) const {
+  int feeder_of(const Pass& pass, Joining joining) const {
+    if (joining == Joining::none) return -1;
     const ImageId color = pass.inputs.front().image;
     const int feeder = kernel_of_[color];
     if (feeder < 0 || readers_[color] != 1) return -1;
+    if (joining == Joining::heads && !is_head_of(kernels_[feeder], pass)) return -1;
     if (bound_images(graph_, kernels_[feeder]) + pass.inputs.size() - 1 > kMaxImagesPerKernel) return -1;
     return feeder;
+  }
+
+  bool is_head_of(const PlanKernel& kernel, const Pass& pass) const {
+    const Pass& head = graph_.passes[kernel.passes.front()];
+    return kernel.passes.size() == 1 && head.kind == PassKind::filter && head.effect == pass.effect;
   }
 
   const Graph& graph_;
@@ -100,7 +107,7 @@ Plan make_plan(const Graph& graph, const PlanOptions& options) {
   Joiner joiner(graph, keep);
   for (std::size_t i = 0; i < graph.passes.size(); ++i) {
     if (keep[i])
-      joiner.add(static_cast<int>(i), options.join);
+      joiner.add(static_cast<int>(i), options.joining);
     else
       plan.skipped.push_back({graph.passes[i].name, "nobody reads its image"});
   }

@@ -18,8 +18,15 @@ struct PlanKernel {
   ImageId output = kNoImage;
 };
 
+/// Which passes share a kernel.
+enum class Joining {
+  none,   ///< every pass on its own
+  heads,  ///< a filter with the pixel pass of the same effect that follows it: passes as math.md §4 writes them
+  all     ///< pixel passes with whatever feeds them
+};
+
 struct PlanOptions {
-  bool join = true;  ///< false: every pass on its own (--reference)
+  Joining joining = Joining::all;
 };
 
 struct Plan {

@@ -1,6 +1,6 @@
 // OpenImageIO, at arm's length. Debian's build of it draws in some 250 shared libraries, which take longer to load than
 // a frame takes to read; they are loaded when the first file comes that is neither EXR (read and written) nor PNG
-// (written).
+// (written), or when pictures are compared as people see them.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +8,7 @@
 #include <string>
 
 #include "image/container_check.h"
+#include "image/image.h"
 #include "image/output_file.h"
 #include "image/output_format.h"
 #include "image/picture_file.h"
@@ -20,6 +21,8 @@ struct OiioModule {
   /// JPEG, TIFF, HDR. With `out` null the library opens file `name` itself, and what it wrote is read back.
   Result<void> (*write)(const Picture& picture, const OutputFormat& format, OutputFile* out, const std::string& name,
                         const WriteOptions& options);
+  /// See visible_difference.h.
+  Result<double> (*visible_difference)(const Image& a, const Image& b);
 };
 
 /// Loads it on the first call; thread-safe. Errors: io (not installed).

@@ -1,9 +1,11 @@
 // The module's one symbol.
+#include "image/oiio_compare.h"
 #include "image/oiio_file.h"
 #include "image/oiio_module.h"
 #include "image/oiio_write.h"
 
 extern "C" __attribute__((visibility("default"))) const afterglow::OiioModule* afterglow_oiio_module() {
-  static constexpr afterglow::OiioModule module{&afterglow::open_with_oiio, &afterglow::write_with_oiio};
+  static constexpr afterglow::OiioModule module{&afterglow::open_with_oiio, &afterglow::write_with_oiio,
+                                               &afterglow::visible_difference_with_oiio};
   return &module;
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "image/parallel.h"
 
 namespace afterglow::reference {
 
@@ -57,21 +58,24 @@ Rgba sample_bspline(const DoubleImage& image, double px, double py);
 /// Weights of the cubic B-spline for texels c−2 … c+1, t ∈ [0, 1) the position behind the centre of texel c−1.
 glm::dvec4 bspline_weights(double t);
 
-/// A new image of `size` whose pixel (x, y) is f(x, y).
+/// A new image of `size` whose pixel (x, y) is f(x, y). f is called from several threads at once.
 template <class F>
 DoubleImage generate(Size size, F&& f) {
   DoubleImage out(size);
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x) out.at(x, y) = f(x, y);
+  parallel_rows(size.height, 4LL * size.area(), [&](int begin, int end) {
+    for (int y = begin; y < end; ++y)
+      for (int x = 0; x < size.width; ++x) out.at(x, y) = f(x, y);
+  });
   return out;
 }
 
-/// `image` with its colour replaced by f(colour); alpha kept.
+/// `image` with its colour replaced by f(colour); alpha kept. f is called from several threads at once.
 template <class F>
 DoubleImage map_color(const DoubleImage& image, F&& f) {
-  DoubleImage out = image;
-  for (auto& p : out.pixels) p = Rgba(f(Rgb(p)), p.a);
-  return out;
+  return generate(image.size(), [&](int x, int y) {
+    const Rgba& p = image.at(x, y);
+    return Rgba(f(Rgb(p)), p.a);
+  });
 }
 
 }  // namespace afterglow::reference

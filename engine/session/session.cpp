@@ -99,10 +99,8 @@ SessionReport Session::report() const {
   report.device = state_->device->info().name;
   report.driver = state_->device->info().driver;
   report.preset = state_->preset_file;
-  report.storage = stack.choice().storage == Storage::fp16 ? "fp16" : "fp32";
+  report.choice = stack.choice();
   report.reference = state_->options.stack.reference;
-  report.hardware_filter = stack.choice().hardware_filter;
-  report.max_error = stack.choice().max_error;
   report.skipped = stack.prepared_graph().skipped;
   if (const Program* program = state_->stack->program()) {
     for (const auto& kernel : program->plan().kernels) report.kernels.push_back(kernel.name);

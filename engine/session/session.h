@@ -26,9 +26,8 @@ struct SessionTimes {
 
 struct SessionReport {
   std::string device, driver, preset;
-  std::string storage;  ///< "fp32" or "fp16"
-  bool reference = false, hardware_filter = false;
-  double max_error = 2e-3;
+  StackChoice choice;
+  bool reference = false;
   std::vector<Skipped> skipped;      ///< effects and passes that did not run in the last frame, with reasons
   std::vector<std::string> kernels;  ///< what ran, joined passes as "a+b"
   ProgramMemory memory;

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "graph/plan.h"
+#include "session/calibration.h"
 #include "shader/kernel.h"
 
 namespace afterglow {
@@ -14,21 +15,19 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// Measured worst cases of whole stacks (math.md §13): half storage 1e-3, 8-bit fractions of a sampler on top 2.7e-3.
-constexpr double kErrorOfHalf = 2e-3;
-constexpr double kErrorOfHardwareFilter = 5e-3;
+constexpr Choice kReference{.joining = Joining::none, .share_memory = false};
 
-StackChoice choose(const Device& device, const StackOptions& options, double max_error) {
-  StackChoice choice;
-  choice.max_error = max_error;
-  if (options.reference) return choice;
-  // On CPU devices full floats and integer fetches are faster than half floats and filtered fetches, and exact.
-  const bool half_pays = !device.is_cpu() && max_error >= kErrorOfHalf;
-  const bool half = options.precision == Precision::fp16 || (options.precision == Precision::automatic && half_pays);
-  choice.storage = half ? Storage::fp16 : Storage::fp32;
-  choice.hardware_filter = !device.is_cpu() && max_error >= kErrorOfHardwareFilter;
-  choice.storage_reads = device.is_cpu();
-  choice.rows = device.is_cpu() ? kMaxRows : 1;
+StackChoice choose(const Device& device, const StackOptions& options, const Calibration& calibration,
+                   double max_error) {
+  if (options.reference) return {kReference, "--reference", max_error};
+  if (options.choice) return {*options.choice, "given", max_error};
+  StackChoice choice{{}, {}, max_error};
+  const Calibration::Found found = calibration.find(device.info(), max_error);
+  choice.execution = found.choice;
+  choice.from = found.from;
+  if (options.precision == Precision::automatic) return choice;
+  choice.execution.storage = options.precision == Precision::fp16 ? Storage::fp16 : Storage::fp32;
+  choice.from += "; --precision";
   return choice;
 }
 
@@ -57,6 +56,7 @@ struct Stack::State {
   std::unique_ptr<KernelCompiler> compiler;
   std::optional<Preset> preset;
   Device* device = nullptr;
+  Calibration calibration;
   StackChoice choice;
   bool own_images = false;
   Graph graph;
@@ -79,6 +79,8 @@ Result<std::unique_ptr<Stack>> Stack::load(const std::filesystem::path& preset, 
   state->compiler = std::make_unique<KernelCompiler>(cache.empty() ? cache : cache / "shaders");
   AFTERGLOW_TRY(Preset loaded, Preset::load(preset, options.preset, *state->shaders, diagnostics));
   state->preset.emplace(std::move(loaded));
+  AFTERGLOW_TRY(state->calibration,
+                options.calibration.empty() ? Calibration::shipped() : Calibration::load(options.calibration));
   state->choice.max_error = options.max_error.value_or(state->preset->max_error().value_or(state->choice.max_error));
   state->script_ms = milliseconds_since(start);
   return std::unique_ptr<Stack>(new Stack(std::move(state)));
@@ -94,7 +96,8 @@ double Stack::compile_milliseconds() const { return state_->compile_ms; }
 
 VkFormat Stack::result_format() const {
   if (state_->program) return state_->program->result_format();
-  return state_->choice.storage == Storage::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+  return state_->choice.execution.storage == Storage::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT
+                                                           : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
 Result<Graph> Stack::graph(const BuildContext& context) {
@@ -109,7 +112,7 @@ Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
   AFTERGLOW_TRY(const Graph graph, this->graph(context));
   const bool reference = state_->options.reference;
   const std::uint64_t bytes_per_pixel = state_->options.precision == Precision::fp16 && !reference ? 8 : 16;
-  const Plan plan = make_plan(graph, {.join = !reference});
+  const Plan plan = make_plan(graph, {.joining = reference ? Joining::none : Joining::all});
   std::vector<Block> blocks;
   for (std::size_t i = 0; i < plan.transient.size(); ++i) {
     const auto pixels = static_cast<std::uint64_t>(graph.images[plan.transient[i]].size.area());
@@ -124,7 +127,7 @@ Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
 void Stack::use(Device& device, bool own_images) {
   state_->device = &device;
   state_->own_images = own_images;
-  state_->choice = choose(device, state_->options, state_->choice.max_error);
+  state_->choice = choose(device, state_->options, state_->calibration, state_->choice.max_error);
   if (const auto& cache = state_->options.cache_folder; !cache.empty())
     device.use_pipeline_cache((cache / "pipelines").string());
 }
@@ -143,13 +146,9 @@ Result<void> Stack::prepare(const BuildContext& context, const std::optional<Dis
   state_->program.reset();
   if (!runs()) return {};
   const auto start = Clock::now();
-  ProgramOptions options;
-  options.storage = state_->choice.storage;
+  ProgramOptions options = program_options(state_->choice.execution);
   options.reference = state_->options.reference;
-  options.hardware_filter = state_->choice.hardware_filter;
-  options.storage_reads = state_->choice.storage_reads;
   options.source_is_storage = state_->own_images;
-  options.rows = state_->choice.rows;
   options.result_by_rows = state_->own_images;
   options.codes = encoded;
   options.max_memory = state_->options.max_memory;

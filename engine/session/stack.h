@@ -11,6 +11,7 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
+#include "exec/choice.h"
 #include "exec/program.h"
 #include "gpu/device.h"
 #include "script/preset.h"
@@ -26,6 +27,8 @@ struct StackOptions {
   bool reference = false;                 ///< every pass on its own in fp32 with computed weights: the slow truth
   std::uint64_t max_memory = 6ull << 30;  ///< bytes of device memory for images
   std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
+  std::optional<Choice> choice;           ///< execute so, whatever calibration and precision say
+  std::filesystem::path calibration;      ///< a table of `afterglow calibrate`; empty: the shipped one
 };
 
 /// 8-bit display codes as the last kernel's work: sRGB-encoded, as a display file holds them.
@@ -35,19 +38,17 @@ struct DisplayEncoding {
   friend bool operator==(const DisplayEncoding&, const DisplayEncoding&) = default;
 };
 
-/// How a stack is executed; decided from the device, E and --precision.
+/// How a stack is executed, and why so.
 struct StackChoice {
-  Storage storage = Storage::fp32;
-  bool hardware_filter = false;
-  bool storage_reads = false;  ///< see ProgramOptions
-  int rows = 1;                ///< see ProgramOptions
+  Choice execution;
+  std::string from;  ///< "calibration/devices.json, any gpu", "given", "--reference"
   double max_error = 2e-3;
 };
 
 /// Bound to one device, which must outlive it. Not thread-safe.
 class Stack {
  public:
-  /// Runs the preset's script; touches no device. Errors: script, usage (override).
+  /// Runs the preset's script; touches no device. Errors: script, usage (override), io (calibration).
   static Result<std::unique_ptr<Stack>> load(const std::filesystem::path& preset, const StackOptions& options,
                                              Diagnostics& diagnostics);
   ~Stack();
@@ -59,7 +60,7 @@ class Stack {
   /// device.
   Result<std::uint64_t> memory_needed(const BuildContext& context);
 
-  /// Decides storage and filtering for a device. Call before `prepare`. `own_images`: source and result will be a
+  /// Looks up how to execute on a device. Call before `prepare`. `own_images`: source and result will be a
   /// FrameRunner's, made as the program likes them best (ProgramOptions::source_is_storage, result_by_rows).
   void use(Device& device, bool own_images = false);
   const StackChoice& choice() const;

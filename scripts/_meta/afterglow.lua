@@ -9,6 +9,13 @@
 ---@field required? boolean  true: a missing input (depth, normal) is an error, default false
 ---@field name? string       how messages and --set call it, default: the effect's name
 
+---Long horizontal flares from bright lights, as of an anamorphic lens.
+---@class afterglow.settings.anamorphic_streaks : afterglow.EntryKeys
+---@field threshold? number  Brightness (largest channel) from which light streaks; linear. 0…1000000, default 2
+---@field stretch? number  Length of the streaks: the share that each level takes from the coarser one. 0…1, default 0.75
+---@field intensity? number  Factor of the streaks. 0: none. 0…100, default 0.4
+---@field tint? number[]|string  Colour of the streaks. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.55, 0.55, 1}
+
 ---Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.
 ---@class afterglow.settings.bloom : afterglow.EntryKeys
 ---@field mode? "additive"|"scattering"  additive: glow is added, the picture gets brighter. scattering: light is spread as in a lens, its sum stays. default "additive"
@@ -21,12 +28,36 @@
 ---@field bicubic_upsampling? boolean  Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow. default true
 ---@field fade_fireflies? boolean  Weigh down isolated very bright pixels before the pyramid, so that they do not flicker. default false
 
+---Blurs the picture as a lens out of focus: bright points become discs or polygons.
+---@class afterglow.settings.bokeh_blur : afterglow.EntryKeys
+---@field radius? number  Radius of the iris. 0: none. 0…64 px, default 8
+---@field blades? integer  Sides of the iris, 3 or more; fewer: round. integer 0…12, default 0
+---@field rotation? number  Turns the iris. -180…180 degrees, default 0
+---@field highlights? number  Makes bright points count for more, where the picture lost their true light (8 bits); HDR pictures need none. 0…50, default 0
+
 ---A simple, punchy glow: hard linear threshold, four-sample blur down and up, added to the picture.
 ---@class afterglow.settings.box_bloom : afterglow.EntryKeys
 ---@field threshold? number  Brightness from which light glows; linear, without a knee. 0…3, default 0.8
 ---@field blur_iterations? integer  Levels of blur; each doubles the reach. 0 and 1 add the thresholded light unblurred. integer 0…7, default 5
 ---@field pattern? "plus"|"box"  Where the four samples lie: beside, above and below, or at the corners. default "plus"
 ---@field brightness? "max"|"luma"  What the threshold compares: the largest channel, or 0.3 R + 0.59 G + 0.11 B. default "max"
+
+---Mixes red, green and blue into new channels; what would be negative is black.
+---@class afterglow.settings.channel_mixer : afterglow.EntryKeys
+---@field red_out_red_in? number  How much of red goes into red. -200…200 %, default 100
+---@field red_out_green_in? number  How much of green goes into red. -200…200 %, default 0
+---@field red_out_blue_in? number  How much of blue goes into red. -200…200 %, default 0
+---@field green_out_red_in? number  How much of red goes into green. -200…200 %, default 0
+---@field green_out_green_in? number  How much of green goes into green. -200…200 %, default 100
+---@field green_out_blue_in? number  How much of blue goes into green. -200…200 %, default 0
+---@field blue_out_red_in? number  How much of red goes into blue. -200…200 %, default 0
+---@field blue_out_green_in? number  How much of green goes into blue. -200…200 %, default 0
+---@field blue_out_blue_in? number  How much of blue goes into blue. -200…200 %, default 100
+
+---Colour fringes that grow towards the corners.
+---@class afterglow.settings.chromatic_aberration : afterglow.EntryKeys
+---@field intensity? number  Length of the fringes; 1 is a thirtieth of the picture at the middle of its sides. 0: none. 0…1, default 0.3
+---@field samples? integer  Reads along a fringe: 3 are three sharp pictures, more blend into a spectrum. integer 3…24, default 6
 
 ---Exposure, contrast, colour filter, hue and saturation.
 ---@class afterglow.settings.color_adjustments : afterglow.EntryKeys
@@ -39,6 +70,87 @@
 ---Leaves green light alone, scaled; a test of the pipeline, like a night-vision tube.
 ---@class afterglow.settings.color_blit : afterglow.EntryKeys
 ---@field intensity? number  Factor of green; 0: the effect does not run. 0…2, default 0
+
+---Blurs what is out of focus, by depth, as a camera with this lens does.
+---@class afterglow.settings.depth_of_field : afterglow.EntryKeys
+---@field focus_distance? number  Distance of what is sharp. 0.01…1000000 m, default 10
+---@field aperture? number  The smaller, the more blur. 0.1…64 f-number, default 5.6
+---@field focal_length? number  The longer, the more blur. 1…1000 mm, default 50
+---@field sensor_height? number  Height of the sensor or film: 24 is full frame. 1…200 mm, default 24
+---@field max_radius? number  No blur gets wider than this. 1…64 px, default 16
+---@field samples? integer  Reads for each pixel: more are smoother, and dearer. integer 8…512, default 96
+---@field depth_space? "linear"|"device"  What the depth input holds: distance along the viewing axis in m, or device depth 0-1, made linear with near, far and reversed_z. default "linear"
+---@field near? number  Near plane, for device depth. ≥ 1e-06 m, default 0.3
+---@field far? number  Far plane, for device depth. ≥ 1e-06 m, default 1000
+---@field reversed_z? boolean  Device depth is 1 at the near plane. default true
+
+---Smears the picture along one direction, as a moving camera does.
+---@class afterglow.settings.directional_blur : afterglow.EntryKeys
+---@field distance? number  Length of the smear. 0: none. 0…1000 px, default 24
+---@field angle? number  Direction: 0 across, 90 up and down, 45 rising to the right. -180…180 degrees, default 0
+
+---A wide, smooth, cheap blur of the whole picture.
+---@class afterglow.settings.dual_kawase : afterglow.EntryKeys
+---@field iterations? integer  Halvings of the picture; each doubles the blur. 0: none. integer 0…12, default 3
+---@field offset? number  Distance of the reads: widens the blur smoothly between two counts of iterations; large ones show a pattern. 0…3, default 1
+
+---Draws lines where brightness changes: Sobel, Scharr or Roberts.
+---@class afterglow.settings.edge_detection : afterglow.EntryKeys
+---@field operator? "sobel"|"scharr"|"roberts"  sobel: 3x3, the usual one. scharr: 3x3, treats all directions alike. roberts: 2x2, thin lines. default "sobel"
+---@field intensity? number  Factor of the gradient. 0: no lines. 0…100, default 2
+---@field threshold? number  Gradients up to this draw nothing. 0…1, default 0.05
+---@field color? number[]|string  Colour of the lines. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
+---@field background? number[]|string  Colour between the lines. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field background_opacity? number  0: lines over the picture. 1: lines over the background alone. 0…1, default 0
+
+---Grain of film: fine noise, new in each frame; best after tone mapping.
+---@class afterglow.settings.film_grain : afterglow.EntryKeys
+---@field intensity? number  Strength; at 1 the grain of blacks is a quarter of their light. 0: none. 0…1, default 0.3
+---@field response? number  How much less grain there is in bright places: 0 equally much, 1 none in white. 0…1, default 0.8
+---@field size? number  Size of a grain. 1…16 px, default 1
+---@field colored? number  0: grey grain as of black-and-white film. 1: each channel has its own. 0…1, default 0
+---@field seed? integer  Another number, other grain. integer ≥ 0, default 0
+
+---Fast approximate anti-aliasing: smooths jagged edges; after tone mapping.
+---@class afterglow.settings.fxaa : afterglow.EntryKeys
+---@field fixed_threshold? number  Contrast of luma below which nothing is done. 0.0312…0.0833, default 0.0833
+---@field relative_threshold? number  The same as a share of the brightest neighbour. 0.063…0.333, default 0.166
+---@field subpixel_blending? number  How much single pixels and thin lines are smoothed; softens the picture. 0…1, default 0.75
+---@field quality? "low"|"medium"|"high"  How far the ends of an edge are looked for: low 6.5 pixels, medium and high 18.5, high with finer steps. default "high"
+
+---Scan lines that jump, a shaking picture, colours that part.
+---@class afterglow.settings.glitch : afterglow.EntryKeys
+---@field scan_line_jitter? number  How many scan lines jump sideways, and how far. 0…1, default 0.3
+---@field line_height? integer  Height of a scan line. integer 1…1024 px, default 2
+---@field horizontal_shake? number  How far the whole picture jumps sideways in each frame; 1: up to a tenth of it. 0…1, default 0
+---@field rgb_split? number  How far red and blue part; 1: up to a twenty-fifth of the picture each way. 0…1, default 0.1
+---@field vertical_roll? number  Speed at which the picture rolls; above 0 upwards. -30…30 pictures/s, default 0
+---@field seed? integer  Another number, another pattern. integer ≥ 0, default 0
+
+---Dust on the lens that lights up around bright lights.
+---@class afterglow.settings.lens_dirt : afterglow.EntryKeys
+---@field intensity? number  Factor of the light that the dirt scatters. 0: none. 0…100, default 1
+---@field threshold? number  Brightness (largest channel) from which light shows the dirt; linear. 0…1000000, default 1
+---@field density? number  How much dirt there is. 0: none. 0…1, default 0.4
+---@field size? number  Diameter of the largest spots, as a share of the picture's height. 0.005…0.5, default 0.06
+---@field seed? integer  Another number, another lens. integer ≥ 0, default 0
+
+---Bends the picture as a wide lens (barrel) or a long one (pincushion) does.
+---@class afterglow.settings.lens_distortion : afterglow.EntryKeys
+---@field intensity? number  Above 0 a barrel, below 0 a pincushion. 0: none, but for the scale. -1…1, default 0.2
+---@field x_multiplier? number  How much of it happens across. 0…1, default 1
+---@field y_multiplier? number  How much of it happens down. 0…1, default 1
+---@field center? number[]  The point that stays: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
+---@field scale? number  Enlarges the result, to hide edges that were drawn in. 0.01…5, default 1
+
+---The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.
+---@class afterglow.settings.lift_gamma_gain : afterglow.EntryKeys
+---@field lift? number[]|string  Colour of lift; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field lift_offset? number  Light added everywhere; shows most in the darks. -1…1, default 0
+---@field gamma? number[]|string  Colour of gamma; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field gamma_offset? number  Above 0 lightens the middle, below 0 darkens it; black stays. -1…1, default 0
+---@field gain? number[]|string  Colour of gain; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field gain_offset? number  Light times 1 + this; shows most in the brights. -1…1, default 0
 
 ---Ink lines along edges of depth, of normals, or of both.
 ---@class afterglow.settings.outline : afterglow.EntryKeys
@@ -59,14 +171,82 @@
 ---@field color? number[]|string  Ink. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
 ---@field blend? "lerp"|"add"  lerp: ink covers the picture. add: ink is light that is added. default "lerp"
 
+---Large square pixels, each the mean of what it covers.
+---@class afterglow.settings.pixelate : afterglow.EntryKeys
+---@field size? integer  Side of a square. 1: the picture as it is. integer 1…1024 px, default 8
+
+---Streaks towards a centre, as of a zoom or of speed.
+---@class afterglow.settings.radial_blur : afterglow.EntryKeys
+---@field intensity? number  Share of the way to the centre that is smeared. 0: none. 0…1, default 0.15
+---@field samples? integer  Reads on the way; few show as copies of bright spots. integer 2…128, default 16
+---@field center? number[]  The point that stays sharp: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
+
+---Colours and brightens shadows, midtones and highlights, each by itself.
+---@class afterglow.settings.shadows_midtones_highlights : afterglow.EntryKeys
+---@field shadows? number[]|string  Colour by which shadows are multiplied. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field shadows_offset? number  Added to the factor of shadows; four times as much above 0, so that 1 is plenty of light and -1 black. -1…1, default 0
+---@field midtones? number[]|string  Colour by which midtones are multiplied. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field midtones_offset? number  Added to the factor of midtones; four times as much above 0, so that 1 is plenty of light and -1 black. -1…1, default 0
+---@field highlights? number[]|string  Colour by which highlights are multiplied. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field highlights_offset? number  Added to the factor of highlights; four times as much above 0, so that 1 is plenty of light and -1 black. -1…1, default 0
+---@field shadows_start? number  Luminance from which shadows fade into midtones. 0…100, default 0
+---@field shadows_end? number  Luminance from which nothing counts as shadow. 0…100, default 0.3
+---@field highlights_start? number  Luminance from which midtones fade into highlights. 0…100, default 0.55
+---@field highlights_end? number  Luminance from which all is highlight. 0…100, default 1
+
+---Contrast-adaptive sharpening of fine detail; best after tone mapping.
+---@class afterglow.settings.sharpen : afterglow.EntryKeys
+---@field intensity? number  Share of the sharpened picture. 0: none. 0…1, default 0.6
+---@field contrast? number  How much is sharpened: 0 CAS at its softest, 1 at its strongest. 0…1, default 0
+
+---Tints shadows and highlights in colours of their own.
+---@class afterglow.settings.split_toning : afterglow.EntryKeys
+---@field shadows? number[]|string  Tint of the shadows; #808080 leaves them alone. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.21404114, 0.21404114, 0.21404114}
+---@field highlights? number[]|string  Tint of the highlights; #808080 leaves them alone. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.21404114, 0.21404114, 0.21404114}
+---@field balance? number  Above 0 more of the picture counts as highlights, below 0 as shadows. -100…100 %, default 0
+
 ---Brings scene-linear light into display range.
 ---@class afterglow.settings.tone_mapping : afterglow.EntryKeys
 ---@field mode? "none"|"aces"|"neutral"|"reinhard"  Curve. aces: filmic contrast, bright colours turn white. neutral: Hable's curve, white at 4, hues kept. reinhard: x/(1+x), soft and flat. default "aces"
 
+---Darkens or colours the picture towards its corners.
+---@class afterglow.settings.vignette : afterglow.EntryKeys
+---@field intensity? number  How far the darkness comes in. 0: none. 0…1, default 0.4
+---@field smoothness? number  How gently the darkness begins. 0.01…1, default 0.4
+---@field color? number[]|string  What the picture is multiplied by where the vignette is full. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
+---@field center? number[]  The brightest point: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
+---@field rounded? boolean  A circle, whatever the shape of the picture; else it is as wide and high as the picture. default false
+
+---Takes a colour cast away or adds one: temperature and tint.
+---@class afterglow.settings.white_balance : afterglow.EntryKeys
+---@field temperature? number  Above 0 warmer (yellow), below 0 colder (blue). -100…100, default 0
+---@field tint? number  Above 0 towards magenta, below 0 towards green. -100…100, default 0
+
 ---@class afterglow
+---@field anamorphic_streaks fun(settings: afterglow.settings.anamorphic_streaks): afterglow.Entry  Long horizontal flares from bright lights, as of an anamorphic lens.
 ---@field bloom fun(settings: afterglow.settings.bloom): afterglow.Entry  Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.
+---@field bokeh_blur fun(settings: afterglow.settings.bokeh_blur): afterglow.Entry  Blurs the picture as a lens out of focus: bright points become discs or polygons.
 ---@field box_bloom fun(settings: afterglow.settings.box_bloom): afterglow.Entry  A simple, punchy glow: hard linear threshold, four-sample blur down and up, added to the picture.
+---@field channel_mixer fun(settings: afterglow.settings.channel_mixer): afterglow.Entry  Mixes red, green and blue into new channels; what would be negative is black.
+---@field chromatic_aberration fun(settings: afterglow.settings.chromatic_aberration): afterglow.Entry  Colour fringes that grow towards the corners.
 ---@field color_adjustments fun(settings: afterglow.settings.color_adjustments): afterglow.Entry  Exposure, contrast, colour filter, hue and saturation.
 ---@field color_blit fun(settings: afterglow.settings.color_blit): afterglow.Entry  Leaves green light alone, scaled; a test of the pipeline, like a night-vision tube.
+---@field depth_of_field fun(settings: afterglow.settings.depth_of_field): afterglow.Entry  Blurs what is out of focus, by depth, as a camera with this lens does.
+---@field directional_blur fun(settings: afterglow.settings.directional_blur): afterglow.Entry  Smears the picture along one direction, as a moving camera does.
+---@field dual_kawase fun(settings: afterglow.settings.dual_kawase): afterglow.Entry  A wide, smooth, cheap blur of the whole picture.
+---@field edge_detection fun(settings: afterglow.settings.edge_detection): afterglow.Entry  Draws lines where brightness changes: Sobel, Scharr or Roberts.
+---@field film_grain fun(settings: afterglow.settings.film_grain): afterglow.Entry  Grain of film: fine noise, new in each frame; best after tone mapping.
+---@field fxaa fun(settings: afterglow.settings.fxaa): afterglow.Entry  Fast approximate anti-aliasing: smooths jagged edges; after tone mapping.
+---@field glitch fun(settings: afterglow.settings.glitch): afterglow.Entry  Scan lines that jump, a shaking picture, colours that part.
+---@field lens_dirt fun(settings: afterglow.settings.lens_dirt): afterglow.Entry  Dust on the lens that lights up around bright lights.
+---@field lens_distortion fun(settings: afterglow.settings.lens_distortion): afterglow.Entry  Bends the picture as a wide lens (barrel) or a long one (pincushion) does.
+---@field lift_gamma_gain fun(settings: afterglow.settings.lift_gamma_gain): afterglow.Entry  The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.
 ---@field outline fun(settings: afterglow.settings.outline): afterglow.Entry  Ink lines along edges of depth, of normals, or of both.
+---@field pixelate fun(settings: afterglow.settings.pixelate): afterglow.Entry  Large square pixels, each the mean of what it covers.
+---@field radial_blur fun(settings: afterglow.settings.radial_blur): afterglow.Entry  Streaks towards a centre, as of a zoom or of speed.
+---@field shadows_midtones_highlights fun(settings: afterglow.settings.shadows_midtones_highlights): afterglow.Entry  Colours and brightens shadows, midtones and highlights, each by itself.
+---@field sharpen fun(settings: afterglow.settings.sharpen): afterglow.Entry  Contrast-adaptive sharpening of fine detail; best after tone mapping.
+---@field split_toning fun(settings: afterglow.settings.split_toning): afterglow.Entry  Tints shadows and highlights in colours of their own.
 ---@field tone_mapping fun(settings: afterglow.settings.tone_mapping): afterglow.Entry  Brings scene-linear light into display range.
+---@field vignette fun(settings: afterglow.settings.vignette): afterglow.Entry  Darkens or colours the picture towards its corners.
+---@field white_balance fun(settings: afterglow.settings.white_balance): afterglow.Entry  Takes a colour cast away or adds one: temperature and tint.

@@ -12,3 +12,6 @@ float brightest(vec3 c) { return max(c.r, max(c.g, c.b)); }
 
 /// Exact at both ends and without the cancellation of a + t(b − a).
 vec3 lerp(vec3 a, vec3 b, float t) { return a * (1.0 - t) + b * t; }
+
+/// Brightness as the eye counts it, 0…1: the square root of luminance (gamma 2). Light above 1 counts as 1.
+float perceived(vec3 c) { return sqrt(luminance(clamp(c, 0.0, 1.0))); }

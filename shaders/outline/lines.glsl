@@ -1,6 +1,7 @@
 // How strongly a line is drawn at each pixel, 0…1, from differences of depth, of normals, or of both.
 // One-sided differences to the right and below: a line sits on the left or upper pixel of an edge. Differences are taken before they
 // are scaled, so that far surfaces keep their digits.
+#include "lib/depth.glsl"
 
 layout(constant_id = 0) const bool use_depth = false;    // compare depth
 layout(constant_id = 1) const bool use_normal = false;   // compare normals
@@ -25,18 +26,13 @@ const float kMaxEdge = 1e30;  // whatever the scales are, sums and weights stay 
 
 float depth_at(ivec2 pixel) { return fetch(depth, pixel).r; }
 
-// Distance along the viewing axis. 1/near and 1/far are mixed by d and 1 − d, both exact, instead of (1/far − 1/near)·d + 1/near, which
-// cancels at the far plane.
-float view_distance(float device_depth) {
-  float d = clamp(reversed_z ? device_depth : 1.0 - device_depth, 0.0, 1.0);
-  return 1.0 / (d * inverse_clip.x + (1.0 - d) * inverse_clip.y);
-}
+float distance_of(float device_depth) { return view_distance(device_depth, inverse_clip, reversed_z); }
 
 // |z(a) − z(b)|; between device depths by 1/u − 1/v = (v − u)/(uv).
 float depth_change(float a, float b) {
   float change = abs(a - b);
   if (device_input && !raw_depth)
-    change = change * abs(inverse_clip.x - inverse_clip.y) * view_distance(a) * view_distance(b);
+    change = change * abs(inverse_clip.x - inverse_clip.y) * distance_of(a) * distance_of(b);
   return min(change * depth_scale, kMaxEdge);
 }
 
@@ -47,7 +43,7 @@ int reach(ivec2 pixel) {
   float w = width;
   if (fade) {
     float z = depth_at(pixel);
-    if (device_input) z = view_distance(z);
+    if (device_input) z = distance_of(z);
     w *= clamp(1.0 - z / fade_distance, 0.0, 1.0);
   }
   return int(floor(w + 0.5));

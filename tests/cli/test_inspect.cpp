@@ -122,6 +122,24 @@ TEST_F(Inspect, EffectsAreListedWithTheirSettings) {
                          {"bloom", "box_bloom", "tone_mapping", "color_adjustments", "color_blit", "outline"}));
 }
 
+TEST_F(Inspect, EffectsAsMarkdown) {
+  const Outcome page = run({"effects", "bloom", "--markdown"});
+  EXPECT_EQ(page.exit_code, kDone) << page.err;
+  EXPECT_THAT(page.out, ::testing::StartsWith("## bloom\n\n"));
+  EXPECT_THAT(page.out, HasSubstr("\nAfter Catlike Coding,"));  // the comment at the head of the script
+  EXPECT_THAT(page.out, HasSubstr("| `scatter` | float | 0.05 to 0.95 | `0.7` | "));
+}
+
+TEST_F(Inspect, TheDocumentOfEffectsIsUpToDate) {
+  const Outcome pages = run({"effects", "--json"});
+  const std::string document = read(AFTERGLOW_PROJECT_FOLDER "/docs/effects.md");
+  for (const auto& effect : json::parse(pages.out)) {
+    const std::string name = effect.at("name");
+    EXPECT_THAT(document, HasSubstr(run({"effects", name, "--markdown"}).out)) << "run docs/effects/make.sh";
+    EXPECT_THAT(document, HasSubstr("images/effects/" + name + ".jpg")) << "run docs/effects/make.sh";
+  }
+}
+
 TEST_F(Inspect, EffectsOfAPathAreListedToo) {
   write("mine/effects/halve.lua",
         "local fx = require \"afterglow\"\n"

@@ -41,6 +41,8 @@ struct Lab {
 BuildContext context_of(const Scene& scene) {
   BuildContext context;
   context.size = scene.source.size();
+  context.frame = scene.frame;
+  context.time = (scene.frame - 1) / context.fps;
   if (scene.depth) context.auxiliary["depth"] = scene.depth->size();
   if (scene.normal) context.auxiliary["normal"] = scene.normal->size();
   return context;
@@ -80,6 +82,7 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
                                .worth = {0, 0},
                                .result_by_rows = way != Way::plain};
   auto program = need(Program::create(*lab.device, shaders, lab.compiler, graph, options));
+  made.kernels = program->plan().kernels.size();
   auto runner = need(FrameRunner::create(*lab.device, options.max_memory));
 
   std::map<std::string, HostImage> inputs{{"source", {source.data(), made.size, 4}}};

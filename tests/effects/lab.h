@@ -24,6 +24,7 @@ struct Made {
   std::map<std::string, std::vector<float>>
       images;  ///< RGBA by pass ("bloom.up[0]"); only of runs with every pass on its own
   std::uint64_t clamped = 0;
+  std::size_t kernels = 0;  ///< how many the passes were joined into
 
   bool ran() const { return graph.result != graph.source; }
   bool has(const std::string& pass) const { return images.count(pass) != 0; }

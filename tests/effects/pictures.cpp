@@ -51,13 +51,13 @@ Scene random_scene(Size size, unsigned seed, bool spikes) {
   std::normal_distribution<double> normal(0, 1);
   Scene scene;
   scene.name = fmt::format("random {}x{} seed {}{}", size.width, size.height, seed, spikes ? " with spikes" : "");
-  scene.source = reference::generate(size, [&](int, int) {
+  scene.source = DoubleImage(size);
+  for (auto& p : scene.source.pixels) {
     const double light = std::min(std::exp(-1.2 + 1.4 * normal(generator)), 43.0);
-    Rgba p(0, 0, 0, uniform(generator));
+    p = Rgba(0, 0, 0, uniform(generator));
     for (int c = 0; c < 3; ++c) p[c] = light * (0.15 + 0.85 * uniform(generator));
     if (spikes && uniform(generator) < 0.005) p[static_cast<int>(3 * uniform(generator))] = 1e4;
-    return p;
-  });
+  }
   round_all(scene.source, to_half);
 
   // Blocks of one surface each, so that there are edges and insides.

@@ -14,6 +14,7 @@ struct Scene {
   std::string name;
   reference::DoubleImage source;
   std::optional<reference::DoubleImage> depth, normal;
+  double frame = 1;  ///< number in a sequence
 };
 
 /// Every value rounded to a float.

@@ -51,6 +51,40 @@ const char* const kExtremes[] = {
     "fx.outline { source = \"depth\", depth_space = \"device\", near = 1e-6, far = 1e30, fade_distance = 1e-6 }",
     "fx.outline { source = \"mixed\", depth_space = \"device\", near = 5, far = 5, reversed_z = false, fade_distance = "
     "1e30 }",
+    "fx.white_balance { temperature = 100, tint = -100 }",
+    "fx.white_balance { temperature = -100, tint = 100 }",
+    "fx.channel_mixer { red_out_green_in = 200, red_out_blue_in = 200, green_out_red_in = -200, blue_out_blue_in = "
+    "-200 }",
+    "fx.split_toning { shadows = { 0, 1e30, 0.5 }, highlights = { 1e30, 0, 0 }, balance = -100 }",
+    "fx.split_toning { shadows = { 0, 0, 0 }, highlights = { 0, 0, 0 }, balance = 100 }",
+    "fx.shadows_midtones_highlights { shadows = { 1e300, 0, 1 }, midtones_offset = 1, highlights_offset = -1, "
+    "shadows_start "
+    "= 100, shadows_end = 0, highlights_start = 0, highlights_end = 0 }",
+    "fx.shadows_midtones_highlights { highlights = { 1e300, 1e300, 1e300 } }",
+    "fx.lift_gamma_gain { lift = { 1e300, 0, 0 }, gamma = { 0, 1e300, 0 }, gain = { 0, 0, 1e300 }, lift_offset = 1 }",
+    "fx.lift_gamma_gain { lift_offset = -1, gamma_offset = -1, gain_offset = -1 }",
+    "fx.lift_gamma_gain { gamma_offset = 1, gain_offset = 1 }",
+    "fx.vignette { intensity = 1, smoothness = 0.01, color = { 1e30, 0, 1e-30 }, center = { 0, 1 }, rounded = true }",
+    "fx.chromatic_aberration { intensity = 1, samples = 24 }",
+    "fx.lens_distortion { intensity = 1, scale = 0.01, center = { 1, 1 } }",
+    "fx.lens_distortion { intensity = -1, x_multiplier = 0, scale = 5, center = { 0, 0 } }",
+    "fx.film_grain { intensity = 1, response = 0, size = 16, colored = 1, seed = 2147483647 }",
+    "fx.sharpen { intensity = 1, contrast = 1 }",
+    "fx.fxaa { fixed_threshold = 0.0312, relative_threshold = 0.063, subpixel_blending = 1 }",
+    "fx.pixelate { size = 1024 }",
+    "fx.edge_detection { operator = \"scharr\", intensity = 100, threshold = 0, color = { 1e30, 0, 0 }, "
+    "background_opacity = "
+    "1 }",
+    "fx.dual_kawase { iterations = 12, offset = 3 }",
+    "fx.radial_blur { intensity = 1, samples = 128, center = { 1, 0 } }",
+    "fx.directional_blur { distance = 1000, angle = 77 }",
+    "fx.bokeh_blur { radius = 64, blades = 3, highlights = 50 }",
+    "fx.anamorphic_streaks { threshold = 0, stretch = 1, intensity = 100, tint = { 1e30, 1e30, 1e30 } }",
+    "fx.lens_dirt { threshold = 0, intensity = 100, density = 1, size = 0.5 }",
+    "fx.lens_dirt { size = 0.005, seed = 2147483647 }",
+    "fx.glitch { scan_line_jitter = 1, line_height = 1024, horizontal_shake = 1, rgb_split = 1, vertical_roll = 30 }",
+    "fx.depth_of_field { aperture = 0.1, focal_length = 1000, max_radius = 64, samples = 16 }",
+    "fx.depth_of_field { focus_distance = 1e6, depth_space = \"device\", near = 1e-6, far = 1e30, sensor_height = 1 }",
     "fx.bloom { threshold = 0, intensity = 1e12 }, fx.tone_mapping {}, fx.color_adjustments { post_exposure = 20, "
     "contrast = 90, hue_shift = 77, saturation = 100 }",
 };

@@ -27,7 +27,7 @@ TEST(Plan, DropsPassesNobodyReads) {
   const ImageId lost = b.filter("lost", a, {4, 4});
   b.filter("lost_too", lost, {2, 2});
   b.pixel("z", a);
-  const Plan plan = make_plan(b.graph, {.join = false});
+  const Plan plan = make_plan(b.graph, {.joining = Joining::none});
   EXPECT_EQ(names(plan), (Names{"test.a", "test.z"}));
   ASSERT_EQ(plan.skipped.size(), 2u);
   EXPECT_EQ(plan.skipped[0].name, "test.lost");
@@ -40,7 +40,7 @@ TEST(Plan, JoinsPixelPassesWithWhatFeedsThem) {
   const ImageId up = b.filter("up", half, {16, 8});
   b.pixel("tone", b.pixel("add", up, {{"high", b.graph.source, true}}));
   EXPECT_EQ(names(make_plan(b.graph, {})), (Names{"test.down+test.threshold", "test.up+test.add+test.tone"}));
-  EXPECT_EQ(make_plan(b.graph, {.join = false}).kernels.size(), 5u);
+  EXPECT_EQ(make_plan(b.graph, {.joining = Joining::none}).kernels.size(), 5u);
 }
 
 TEST(Plan, KeepsTheBoundaryWhereAnImageHasTwoReaders) {
@@ -71,6 +71,32 @@ TEST(Plan, JoinedKernelsRunWhereTheirLastPassStood) {
   const ImageId side = b.sample("side", {{"source", b.graph.source}}, {16, 8});
   b.pixel("mix", head, {{"other", side, true}});
   EXPECT_EQ(names(make_plan(b.graph, {})), (Names{"test.side", "test.head+test.mix"}));
+}
+
+TEST(Plan, HeadsAreAFilterAndThePixelPassOfItsEffectThatFollows) {
+  Builder b;
+  const ImageId half = b.pixel("threshold", b.filter("down", b.graph.source, {8, 4}));
+  const ImageId up = b.pixel("add", b.filter("up", half, {16, 8}), {{"high", b.graph.source, true}});
+  b.pixel("tone", up);  // a second pixel pass stays apart
+  EXPECT_EQ(names(make_plan(b.graph, {.joining = Joining::heads})),
+            (Names{"test.down+test.threshold", "test.up+test.add", "test.tone"}));
+}
+
+TEST(Plan, HeadsOfAnotherEffectStayApart) {
+  Builder b;
+  b.pixel("tone", b.filter("blur", b.graph.source, {16, 8}));
+  b.graph.passes.back().effect = "another";
+  EXPECT_EQ(make_plan(b.graph, {.joining = Joining::heads}).kernels.size(), 2u);
+  EXPECT_EQ(make_plan(b.graph, {}).kernels.size(), 1u);
+}
+
+TEST(Plan, HeadsAreFiltersAlone) {
+  Builder b;
+  b.pixel("b", b.pixel("a", b.graph.source));
+  EXPECT_EQ(make_plan(b.graph, {.joining = Joining::heads}).kernels.size(), 2u);
+  Builder c;
+  c.pixel("ink", c.sample("edges", {{"source", c.graph.source}}, {16, 8}));
+  EXPECT_EQ(make_plan(c.graph, {.joining = Joining::heads}).kernels.size(), 2u);
 }
 
 TEST(Plan, StopsBeforeTooManyImages) {
@@ -106,8 +132,8 @@ TEST(Plan, HoldsOnRandomGraphs) {
       }
     }
     ASSERT_TRUE(validate(b.graph));
-    for (const bool join : {false, true}) {
-      const Plan plan = make_plan(b.graph, {.join = join});
+    for (const Joining joining : {Joining::none, Joining::heads, Joining::all}) {
+      const Plan plan = make_plan(b.graph, {.joining = joining});
       std::vector<int> made_by(b.graph.images.size(), -1);
       std::vector<int> runs(b.graph.passes.size(), 0);
       for (std::size_t k = 0; k < plan.kernels.size(); ++k) {

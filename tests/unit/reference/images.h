@@ -12,10 +12,12 @@ namespace afterglow::reference {
 inline DoubleImage random_light(Size size, unsigned seed) {
   std::mt19937 generator(seed);
   std::uniform_real_distribution<double> uniform(0, 1);
-  return generate(size, [&](int, int) {
+  DoubleImage image(size);
+  for (auto& p : image.pixels) {
     const double gain = uniform(generator) < 0.1 ? 43 : 1;
-    return Rgba(uniform(generator) * gain, uniform(generator) * gain, uniform(generator) * gain, uniform(generator));
-  });
+    p = Rgba(uniform(generator) * gain, uniform(generator) * gain, uniform(generator) * gain, uniform(generator));
+  }
+  return image;
 }
 
 inline double largest_difference(const DoubleImage& a, const DoubleImage& b) {

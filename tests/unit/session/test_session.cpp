@@ -189,7 +189,7 @@ TEST_F(SessionTest, HalfStorageStaysWithinItsTolerance) {
   options.stack.precision = Precision::fp16;
   auto session = open(options);
   ASSERT_TRUE(session) << session.error().text();
-  EXPECT_EQ((*session)->report().storage, "fp16");
+  EXPECT_EQ((*session)->report().choice.execution.storage, Storage::fp16);
   Picture p = picture(9, 9);
   const auto before = p.color.pixels;
   ASSERT_TRUE((*session)->process(p));
@@ -202,8 +202,8 @@ TEST_F(SessionTest, SmallErrorsMeanFullFloats) {
   options.stack.max_error = 1e-4;
   auto session = open(options);
   ASSERT_TRUE(session) << session.error().text();
-  EXPECT_EQ((*session)->report().storage, "fp32");
-  EXPECT_FALSE((*session)->report().hardware_filter);
+  EXPECT_EQ((*session)->report().choice.execution.storage, Storage::fp32);
+  EXPECT_FALSE((*session)->report().choice.execution.hardware_filter);
 }
 
 TEST_F(SessionTest, MemoryIsForeseenWithoutADevice) {

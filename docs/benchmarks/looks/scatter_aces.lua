@@ -1,0 +1,7 @@
+-- The look that the first goals are about.
+local fx = require "afterglow"
+return fx.stack {
+  name = "Scatter bloom and ACES",
+  fx.bloom { mode = "scattering" },
+  fx.tone_mapping { mode = "aces" },
+}

@@ -1,0 +1,7 @@
+-- What the examples of the effects start from.
+local fx = require "afterglow"
+
+return fx.stack {
+  fx.tone_mapping { mode = "neutral" },
+  fx.color_adjustments { post_exposure = 1.5 },
+}

@@ -1,0 +1,7 @@
+local fx = require "afterglow"
+
+return fx.stack {
+  fx.bokeh_blur { radius = 7, blades = 6 },
+  fx.tone_mapping { mode = "neutral" },
+  fx.color_adjustments { post_exposure = 1.5 },
+}

@@ -1,0 +1,7 @@
+local fx = require "afterglow"
+
+return fx.stack {
+  fx.chromatic_aberration { intensity = 0.6, samples = 12 },
+  fx.tone_mapping { mode = "neutral" },
+  fx.color_adjustments { post_exposure = 1.5 },
+}

@@ -1,0 +1,7 @@
+local fx = require "afterglow"
+
+return fx.stack {
+  fx.split_toning { shadows = "#2a5a80", highlights = "#c89050" },
+  fx.tone_mapping { mode = "neutral" },
+  fx.color_adjustments { post_exposure = 1.5 },
+}

@@ -1,0 +1,48 @@
+#include "apps/effect_page.h"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "apps/setting_text.h"
+#include "core/file.h"
+
+namespace afterglow {
+namespace {
+
+/// The lines of comment that a script begins with, without their dashes.
+std::string head_comment(const std::filesystem::path& file) {
+  const auto text = read_file(file);
+  if (!text.ok()) return {};
+  std::istringstream lines(*text);
+  std::string comment;
+  for (std::string line; std::getline(lines, line) && line.starts_with("--");)
+    comment += line.substr(line.starts_with("-- ") ? 3 : 2) + "\n";
+  return comment;
+}
+
+/// Text for a cell of a table.
+std::string cell(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '|') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string effect_page(const EffectSchema& effect) {
+  std::string out = fmt::format("## {}\n\n{}\n\n", effect.name, effect.doc);
+  if (const auto notes = head_comment(effect.file); !notes.empty()) out += notes + "\n";
+  out += fmt::format("Runs at `{}`, order {}.\n\n", effect.at, effect.order);
+  if (effect.settings.empty()) return out;
+  out += "| setting | type | allowed | default | what it does |\n|---|---|---|---|---|\n";
+  for (const auto& setting : effect.settings)
+    out += fmt::format("| `{}` | {} | {} | `{}` | {} |\n", setting.name, type_text(setting.type),
+                       cell(allowed_text(setting)), setting.default_value.text(), cell(setting.doc));
+  return out + "\n";
+}
+
+}  // namespace afterglow

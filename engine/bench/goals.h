@@ -1,0 +1,58 @@
+// Ratios that the project wants to reach, described as data and measured.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/cell.h"
+#include "bench/results.h"
+
+namespace afterglow::bench {
+
+/// One time in a sum: `times` · the median of what it describes.
+struct GoalTerm {
+  double times = 1;
+  bool copy = false;           ///< one RGBA32F copy pass of the picture
+  std::filesystem::path look;  ///< else: a preset
+  std::vector<Override> overrides;
+  std::optional<Choice> choice;  ///< empty: as `run` would choose
+  bool frame = false;            ///< a whole frame as `run` makes it, not only what was recorded
+  double light = 1;              ///< factor of the picture
+  std::optional<Size> size;      ///< another than the goal's
+};
+
+/// A whole command: reading, executing, writing.
+struct GoalCommand {
+  std::filesystem::path look;
+  int frames = 1;
+  bool cold = false;  ///< with empty caches
+};
+
+struct Goal {
+  std::string name;
+  Size size;
+  std::vector<GoalTerm> over, under;   ///< the ratio of their sums
+  std::optional<GoalCommand> command;  ///< instead of both: seconds
+  double goal = 0;
+  std::optional<double> next;
+  bool at_least = false;
+  int repeat = 9;
+};
+
+/// Reads a file of goals (docs/benchmarks/goals.json is one); looks are relative to it. A goal with several sizes
+/// becomes several. Errors (io): no such file, no such goals; they name the goal.
+Result<std::vector<Goal>> load_goals(const std::filesystem::path& file);
+
+/// What commands need: this program and a folder for pictures and caches.
+struct GoalTools {
+  std::filesystem::path program, folder;
+};
+
+/// Measures one. A goal that fails because of a look, or because memory does not suffice, is a result with a note;
+/// errors of the device and of `step` end the work.
+Result<GoalResult> measure_goal(Device& device, const StackOptions& base, const Goal& goal, const GoalTools& tools,
+                                Diagnostics& diagnostics, const Step& step);
+
+}  // namespace afterglow::bench

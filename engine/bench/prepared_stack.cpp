@@ -1,0 +1,96 @@
+#include "bench/prepared_stack.h"
+
+#include <algorithm>
+
+#include "exec/frame.h"
+
+namespace afterglow::bench {
+namespace {
+
+constexpr int kPassRuns = 3;
+
+std::vector<float> rgb_of(const std::vector<float>& rgba) {
+  std::vector<float> out;
+  out.reserve(rgba.size() / 4 * 3);
+  for (std::size_t i = 0; i + 3 < rgba.size(); i += 4) out.insert(out.end(), {rgba[i], rgba[i + 1], rgba[i + 2]});
+  return out;
+}
+
+/// Medians of the times of each kernel over several runs.
+std::vector<KernelTime> medians(const std::vector<FrameTimes>& runs) {
+  std::vector<KernelTime> out = runs.front().kernels;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    std::vector<double> samples;
+    for (const auto& run : runs) samples.push_back(run.kernels[k].milliseconds);
+    out[k].milliseconds = Spread::of(std::move(samples)).median;
+  }
+  return out;
+}
+
+}  // namespace
+
+BuildContext context_of(const Picture& picture) {
+  BuildContext context;
+  context.size = picture.color.size();
+  for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
+  return context;
+}
+
+Result<PreparedStack> PreparedStack::create(Device& device, const std::filesystem::path& preset,
+                                            const StackOptions& base, const Variant& variant, const Picture& picture,
+                                            Diagnostics& diagnostics) {
+  PreparedStack out;
+  out.variant_ = variant;
+  StackOptions options = base;
+  options.choice = variant.choice;
+  options.preset.overrides.insert(options.preset.overrides.end(), variant.overrides.begin(), variant.overrides.end());
+  AFTERGLOW_TRY(out.stack_, Stack::load(preset, options, diagnostics));
+  out.stack_->use(device, true);
+  AFTERGLOW_CHECK(out.stack_->prepare(context_of(picture)));
+  return out;
+}
+
+Result<Point> PreparedStack::try_out(Device& device, const Picture& picture, bool passes, std::vector<float>& rgb) {
+  Point point{
+      .choice = choice_name(stack_->choice().execution), .label = variant_.label, .settings = variant_.settings};
+  if (!runs()) {
+    rgb = rgb_of(picture.color.pixels);
+    return point;
+  }
+  Program& program = *stack_->program();
+  point.kernels = static_cast<int>(program.plan().kernels.size());
+  point.image_memory = program.memory().arena;
+  AFTERGLOW_TRY(const auto runner, FrameRunner::create(device, 64ull << 30));
+  std::map<std::string, HostImage> inputs{
+      {"source", {picture.color.pixels.data(), picture.color.size(), picture.color.channels}}};
+  for (const auto& [name, image] : picture.auxiliary)
+    inputs[name] = {image.pixels.data(), image.size(), image.channels};
+
+  HostResult result;
+  std::vector<FrameTimes> runs;
+  const KernelTiming timing = !passes                          ? KernelTiming::none
+                              : device.timestamps_mean_draws() ? KernelTiming::timestamps
+                                                               : KernelTiming::submissions;
+  for (int i = 0; i <= (passes ? kPassRuns : 1); ++i) {
+    AFTERGLOW_TRY(FrameTimes times, runner->run(program, inputs, result, timing));
+    if (i > 0) runs.push_back(std::move(times));  // the first one also makes memory and finishes shaders
+  }
+  point.upload = runs.back().upload;
+  point.read_back = runs.back().readback;
+  point.passes = medians(runs);
+  rgb = rgb_of(result.pixels);
+  return point;
+}
+
+Result<void> PreparedStack::record(const Device& device, const DevicePicture& picture) {
+  AFTERGLOW_CHECK(stack_->bind(picture.inputs(), picture.result()));
+  const VkImageLayout layout = runs() ? stack_->program()->source_layout() : VK_IMAGE_LAYOUT_GENERAL;
+  AFTERGLOW_TRY(work_, TimedWork::create(device, [&](VkCommandBuffer commands) {
+                  picture.before(commands, layout);
+                  stack_->record(commands);
+                  picture.after(commands, layout);
+                }));
+  return {};
+}
+
+}  // namespace afterglow::bench

@@ -1,0 +1,53 @@
+// A preset made ready to be measured under one choice of execution.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "bench/device_picture.h"
+#include "bench/results.h"
+#include "bench/timed_work.h"
+#include "session/stack.h"
+
+namespace afterglow::bench {
+
+/// What to measure.
+struct Variant {
+  std::string label;             ///< "plain16f"
+  std::optional<Choice> choice;  ///< empty: as `run` would choose
+  std::string settings;          ///< for reports: what `overrides` add to the preset
+  std::vector<Override> overrides;
+};
+
+class PreparedStack {
+ public:
+  /// Runs the script and makes the program. `base` says everything but the choice and the variant's overrides. Errors:
+  /// script, usage, device, io.
+  static Result<PreparedStack> create(Device& device, const std::filesystem::path& preset, const StackOptions& base,
+                                      const Variant& variant, const Picture& picture, Diagnostics& diagnostics);
+  PreparedStack() = default;
+
+  /// Runs it on the picture as frames of `run` are; `rgb` gets R, G and B of the result. With `passes`, times each
+  /// kernel too (median of a few runs). Fills all of a Point that can be known before measuring in turns.
+  Result<Point> try_out(Device& device, const Picture& picture, bool passes, std::vector<float>& rgb);
+
+  /// Records it on the device's picture, which must outlive it. Errors: device.
+  Result<void> record(const Device& device, const DevicePicture& picture);
+  TimedWork& work() { return work_; }
+
+  Stack& stack() { return *stack_; }
+  bool runs() const { return stack_->runs(); }
+  VkFormat format() const { return stack_->result_format(); }
+  /// Program::result_rows
+  int result_rows() const { return stack_->program() ? stack_->program()->result_rows() : 1; }
+
+ private:
+  Variant variant_;
+  std::unique_ptr<Stack> stack_;
+  TimedWork work_;
+};
+
+/// The picture's size and auxiliary inputs, for `build`.
+BuildContext context_of(const Picture& picture);
+
+}  // namespace afterglow::bench

@@ -1,0 +1,46 @@
+#include "bench/quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "image/visible_difference.h"
+
+namespace afterglow::bench {
+namespace {
+
+/// Yee's measure takes seconds for larger pictures and says the same.
+constexpr long long kMostPixelsForYee = 1 << 21;
+
+double display(double linear) {
+  if (!(linear > 0)) return 0;
+  if (linear >= 1) return 1;
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+}  // namespace
+
+double display_psnr(std::span<const float> result, std::span<const double> truth) {
+  double sum = 0;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const double difference = display(static_cast<double>(result[i])) - display(truth[i]);
+    sum += difference * difference;
+  }
+  if (sum == 0) return std::numeric_limits<double>::infinity();
+  return 10 * std::log10(static_cast<double>(result.size()) / sum);
+}
+
+Quality compare_pictures(std::span<const float> result, std::span<const double> truth, Size size) {
+  Quality out{.error = measure_error(result, truth), .psnr = display_psnr(result, truth), .visible = {}};
+  if (size.area() > kMostPixelsForYee) return out;
+  const auto as_displayed = [&](const auto& values) {
+    Image image(size.width, size.height, 3);
+    std::ranges::transform(values, image.pixels.begin(),
+                           [](auto v) { return std::clamp(static_cast<float>(v), 0.0f, 1.0f); });
+    return image;
+  };
+  if (const auto visible = visible_difference(as_displayed(result), as_displayed(truth))) out.visible = *visible;
+  return out;
+}
+
+}  // namespace afterglow::bench

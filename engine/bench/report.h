@@ -1,0 +1,36 @@
+// A report as files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bench/results.h"
+#include "core/result.h"
+
+namespace afterglow::bench {
+
+/// Everything, with every sample; see docs/benchmarks/README.md for its parts.
+std::string report_json(const Report& report);
+/// One line a point.
+std::string report_csv(const Report& report);
+/// One page that needs no other file and no network: run time against error, cost per pass, scaling, goals.
+std::string report_html(const Report& report);
+/// Run time against error of one cell, with the front drawn.
+std::string front_svg(const Report& report, const Cell& cell);
+
+/// bench.json, bench.csv, bench.html and front.svg (of the cell with most points) in `folder`, which is made. Errors:
+/// io.
+Result<void> write_report(const Report& report, const std::filesystem::path& folder);
+
+/// One point of two reports, medians in milliseconds.
+struct Comparison {
+  std::string what;  ///< "neon_night 1920×1080 joined fp32"
+  double before = 0, now = 0;
+  double ratio() const { return now / before; }
+};
+/// Points that are in both. Errors: io (`old_json` is no report).
+Result<std::vector<Comparison>> compare_reports(const std::string& old_json, const std::string& file,
+                                                const Report& now);
+
+}  // namespace afterglow::bench

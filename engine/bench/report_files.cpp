@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/page.h"
+#include "bench/report.h"
+#include "core/file.h"
+
+namespace afterglow::bench {
+namespace {
+
+/// The first `mark` of `text` replaced.
+std::string filled(std::string text, const std::string& mark, const std::string& content) {
+  const auto at = text.find(mark);
+  return at == std::string::npos ? text : text.replace(at, mark.size(), content);
+}
+
+/// JSON that may stand in a <script>: nothing in it ends the element.
+std::string for_script(std::string json) {
+  for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3) json.replace(at, 2, "<\\/");
+  return json;
+}
+
+}  // namespace
+
+std::string report_html(const Report& report) {
+  // The library last: it may hold anything, marks too.
+  std::string page = filled(kPageHtml, "@script@", kPageScript);
+  page = filled(std::move(page), "@data@", for_script(report_json(report)));
+  return filled(std::move(page), "@chart@", kPageChart);
+}
+
+Result<void> write_report(const Report& report, const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem)
+    return Error{ErrorKind::io, fmt::format("cannot make the folder: {}", problem.message()), folder.string()};
+  AFTERGLOW_CHECK(write_file_atomically(folder / "bench.json", report_json(report)));
+  AFTERGLOW_CHECK(write_file_atomically(folder / "bench.csv", report_csv(report)));
+  AFTERGLOW_CHECK(write_file_atomically(folder / "bench.html", report_html(report)));
+  const auto largest = std::ranges::max_element(report.cells, {}, [](const Cell& cell) {
+    return std::ranges::count_if(cell.points, [](const Point& p) { return p.quality.has_value(); });
+  });
+  if (largest == report.cells.end()) return {};
+  return write_file_atomically(folder / "front.svg", front_svg(report, *largest));
+}
+
+}  // namespace afterglow::bench

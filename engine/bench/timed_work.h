@@ -1,0 +1,38 @@
+// Work for the device that is recorded once and submitted again and again.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "bench/statistics.h"
+#include "gpu/device.h"
+#include "gpu/handle.h"
+
+namespace afterglow::bench {
+
+class TimedWork {
+ public:
+  /// What is recorded must be right to run any number of times. Errors: device.
+  static Result<TimedWork> create(const Device& device, const std::function<void(VkCommandBuffer)>& record);
+  TimedWork() = default;
+
+  /// Submits and waits; milliseconds from one to the other. Errors: device.
+  Result<double> run();
+
+ private:
+  const Device* device_ = nullptr;
+  CommandPoolHandle pool_;
+  FenceHandle fence_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+};
+
+/// Something that can be run again and again, and how many milliseconds that took.
+using Measured = std::function<Result<double>()>;
+
+/// Runs each once to warm up, then all of them in turns, `repeat` rounds, each round beginning with another one, so
+/// that what disturbs the machine for a while disturbs all alike. `step` is called before each round (the warm-up is
+/// round 0) and may end it with an error. Returns one spread each.
+Result<std::vector<Spread>> run_in_turns(const std::vector<Measured>& all, int repeat,
+                                         const std::function<Result<void>(int round)>& step);
+
+}  // namespace afterglow::bench

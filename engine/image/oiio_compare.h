@@ -1,0 +1,11 @@
+// Part of the OpenImageIO module: see oiio_module.h and visible_difference.h.
+#pragma once
+
+#include "core/result.h"
+#include "image/image.h"
+
+namespace afterglow {
+
+Result<double> visible_difference_with_oiio(const Image& a, const Image& b);
+
+}  // namespace afterglow

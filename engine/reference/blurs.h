@@ -1,0 +1,34 @@
+// Blurs of the whole picture, in linear light; alpha kept.
+#pragma once
+
+#include "reference/double_image.h"
+#include "reference/lens.h"
+
+namespace afterglow::reference {
+
+/// Dual Kawase (M. Bjørge, SIGGRAPH 2015): `iterations` halvings of five reads, then as many doublings of eight.
+DoubleImage dual_kawase(const DoubleImage& source, int iterations, double offset);
+
+/// Mean of `samples` reads from the pixel to `intensity` of its way to the centre.
+DoubleImage radial_blur(const DoubleImage& source, double intensity, int samples, Point center);
+
+/// `distance` pixels long; degrees, 0 across, 90 up and down.
+DoubleImage directional_blur(const DoubleImage& source, double distance, double angle);
+
+struct BokehBlur {
+  double radius = 8;
+  int blades = 0;
+  double rotation = 0, highlights = 0;
+};
+DoubleImage bokeh_blur(const DoubleImage& source, const BokehBlur& settings);
+
+struct DepthOfField {
+  double focus_distance = 10, aperture = 5.6, focal_length = 50, sensor_height = 24;
+  double max_radius = 16;
+  int samples = 96;
+};
+/// Radius of the circle of confusion of each pixel, held to ±max_radius; below 0 in front of the focus.
+DoubleImage circles_of_confusion(const DoubleImage& depth, const DepthOfField& settings);
+DoubleImage depth_of_field(const DoubleImage& source, const DoubleImage& depth, const DepthOfField& settings);
+
+}  // namespace afterglow::reference

@@ -1,0 +1,24 @@
+// Light where the lens should have none: anamorphic streaks and lit dirt.
+#pragma once
+
+#include <cstdint>
+
+#include "reference/double_image.h"
+
+namespace afterglow::reference {
+
+struct AnamorphicStreaks {
+  double threshold = 2, stretch = 0.75, intensity = 0.4;
+  Rgb tint{0.55, 0.55, 1};
+};
+DoubleImage anamorphic_streaks(const DoubleImage& source, const AnamorphicStreaks& settings);
+
+struct LensDirt {
+  double intensity = 1, threshold = 1, density = 0.4, size = 0.06;
+  std::uint32_t seed = 0;
+};
+/// Opacity of the dirt, 0…1, in all channels.
+DoubleImage lens_dirt_spots(Size size, const LensDirt& settings);
+DoubleImage lens_dirt(const DoubleImage& source, const LensDirt& settings);
+
+}  // namespace afterglow::reference

@@ -1,0 +1,100 @@
+#include "reference/grading.h"
+
+#include <cmath>
+#include <glm/matrix.hpp>
+
+#include "reference/color.h"
+
+namespace afterglow::reference {
+
+namespace {
+
+double saturate(double x) { return glm::clamp(x, 0.0, 1.0); }
+
+double smoothstep(double from, double to, double x) {
+  const double t = saturate((x - from) / (to - from));
+  return t * t * (3 - 2 * t);
+}
+
+/// Matrix from its rows.
+glm::dmat3 rows(const Rgb& a, const Rgb& b, const Rgb& c) { return glm::transpose(glm::dmat3(a, b, c)); }
+
+/// Cones of CAT02 for the colour of chromaticity (x, y) and Y = 1.
+Rgb cones_of(double x, double y) {
+  const Rgb xyz(x / y, 1, (1 - x - y) / y);
+  return rows({0.7328, 0.4296, -0.1624}, {-0.7036, 1.6975, 0.0061}, {0.0030, 0.0136, 0.9834}) * xyz;
+}
+
+double soft_light(double base, double blend) {
+  if (blend < 0.5) return 2 * base * blend + base * base * (1 - 2 * blend);
+  return std::sqrt(base) * (2 * blend - 1) + 2 * base * (1 - blend);
+}
+
+Rgb factor(const Rgb& color, double offset) { return glm::max(color + offset * (offset < 0 ? 1.0 : 4.0), Rgb(0)); }
+
+/// A wheel's colour without its luminance.
+Rgb chroma(const Rgb& color, double scale) {
+  return scale * (color - (0.2126729 * color.r + 0.7151522 * color.g + 0.0721750 * color.b) / 1.0000001);
+}
+
+}  // namespace
+
+DoubleImage white_balance(const DoubleImage& source, double temperature, double tint) {
+  const double t1 = temperature / 65, t2 = tint / 65;
+  const double x = 0.31271 - t1 * (t1 < 0 ? 0.1 : 0.05);
+  const double y = 2.87 * x - 3 * x * x - 0.27509507 + t2 * 0.05;
+  const Rgb balance = Rgb(0.949237, 1.03542, 1.08728) / cones_of(x, y);
+  const auto to_cones = rows({3.90405e-1, 5.49941e-1, 8.92632e-3}, {7.08416e-2, 9.63172e-1, 1.35775e-3},
+                             {2.31082e-2, 1.28021e-1, 9.36245e-1});
+  const auto from_cones = rows({2.85847e+0, -1.62879e+0, -2.48910e-2}, {-2.10182e-1, 1.15820e+0, 3.24281e-4},
+                               {-4.18120e-2, -1.18169e-1, 1.06867e+0});
+  return map_color(source, [&](const Rgb& c) { return glm::max(from_cones * (balance * (to_cones * c)), Rgb(0)); });
+}
+
+DoubleImage channel_mixer(const DoubleImage& source, const ChannelMix& mix) {
+  return map_color(source, [&](const Rgb& c) {
+    Rgb out;
+    for (int i = 0; i < 3; ++i) out[i] = glm::max(0.0, (mix[i][0] * c.r + mix[i][1] * c.g + mix[i][2] * c.b) / 100);
+    return out;
+  });
+}
+
+DoubleImage split_toning(const DoubleImage& source, const SplitToning& s) {
+  return map_color(source, [&](const Rgb& c) {
+    Rgb out;
+    for (int i = 0; i < 3; ++i) out[i] = std::pow(c[i], 1 / 2.2);
+    const double bright = saturate(luminance(glm::min(out, Rgb(1))) + s.balance / 100);
+    for (int i = 0; i < 3; ++i) {
+      out[i] = soft_light(out[i], s.shadows[i] + (0.5 - s.shadows[i]) * bright);
+      out[i] = soft_light(out[i], 0.5 + (s.highlights[i] - 0.5) * bright);
+      out[i] = std::pow(out[i], 2.2);
+    }
+    return out;
+  });
+}
+
+DoubleImage shadows_midtones_highlights(const DoubleImage& source, const ShadowsMidtonesHighlights& s) {
+  const Rgb shadows = factor(s.shadows, s.shadows_offset), midtones = factor(s.midtones, s.midtones_offset),
+            highlights = factor(s.highlights, s.highlights_offset);
+  return map_color(source, [&](const Rgb& c) {
+    const double y = luminance(c);
+    const double in_shadows = 1 - smoothstep(s.shadows_start, s.shadows_end, y);
+    const double in_highlights = smoothstep(s.highlights_start, s.highlights_end, y);
+    const double in_midtones = 1 - in_shadows - in_highlights;
+    return glm::max(c * shadows * in_shadows + c * midtones * in_midtones + c * highlights * in_highlights, Rgb(0));
+  });
+}
+
+DoubleImage lift_gamma_gain(const DoubleImage& source, const LiftGammaGain& s) {
+  const Rgb lift = chroma(s.lift, 0.15) + s.lift_offset;
+  const Rgb power = 1.0 / glm::max(chroma(s.gamma, 0.8) + 1.0 + s.gamma_offset, Rgb(1e-3));
+  const Rgb gain = chroma(s.gain, 0.8) + 1.0 + s.gain_offset;
+  return map_color(source, [&](const Rgb& c) {
+    const Rgb scaled = c * gain + lift;
+    Rgb out;
+    for (int i = 0; i < 3; ++i) out[i] = scaled[i] > 0 ? std::pow(scaled[i], power[i]) : 0;
+    return out;
+  });
+}
+
+}  // namespace afterglow::reference

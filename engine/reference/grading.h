@@ -1,0 +1,37 @@
+// Colour grading in the published steps of Unity's URP (LutBuilderHdr.shader, ColorUtils.cs): white balance, channel
+// mixer, split toning, shadows/midtones/highlights, lift/gamma/gain. Colours given as settings are linear.
+#pragma once
+
+#include <array>
+
+#include "reference/double_image.h"
+
+namespace afterglow::reference {
+
+/// Temperature and tint −100…100. What gets negative becomes 0.
+DoubleImage white_balance(const DoubleImage& source, double temperature, double tint);
+
+/// Percent; row i makes channel i.
+using ChannelMix = std::array<std::array<double, 3>, 3>;
+DoubleImage channel_mixer(const DoubleImage& source, const ChannelMix& mix);
+
+struct SplitToning {
+  Rgb shadows{0.5}, highlights{0.5};  ///< display values (sRGB-encoded)
+  double balance = 0;                 ///< −100…100
+};
+DoubleImage split_toning(const DoubleImage& source, const SplitToning& settings);
+
+struct ShadowsMidtonesHighlights {
+  Rgb shadows{1}, midtones{1}, highlights{1};
+  double shadows_offset = 0, midtones_offset = 0, highlights_offset = 0;
+  double shadows_start = 0, shadows_end = 0.3, highlights_start = 0.55, highlights_end = 1;
+};
+DoubleImage shadows_midtones_highlights(const DoubleImage& source, const ShadowsMidtonesHighlights& settings);
+
+struct LiftGammaGain {
+  Rgb lift{1}, gamma{1}, gain{1};
+  double lift_offset = 0, gamma_offset = 0, gain_offset = 0;
+};
+DoubleImage lift_gamma_gain(const DoubleImage& source, const LiftGammaGain& settings);
+
+}  // namespace afterglow::reference

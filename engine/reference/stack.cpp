@@ -1,0 +1,138 @@
+#include "reference/stack.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "reference/bloom.h"
+#include "reference/box_bloom.h"
+#include "reference/color_adjustments.h"
+#include "reference/color_blit.h"
+#include "reference/outline.h"
+#include "reference/tone_mapping.h"
+
+namespace afterglow::reference {
+namespace {
+
+/// Settings as the oracles want them. A name that is not there is a mistake of this file: std::out_of_range.
+class Settings {
+ public:
+  explicit Settings(const Entry& entry) : values_(entry.settings) {}
+  double number(const char* name) const { return values_.at(name).number[0]; }
+  int integer(const char* name) const { return static_cast<int>(number(name)); }
+  bool flag(const char* name) const { return number(name) != 0; }
+  Rgb color(const char* name) const {
+    const auto& v = values_.at(name).number;
+    return {v[0], v[1], v[2]};
+  }
+  bool is(const char* name, const char* choice) const { return values_.at(name).choice == choice; }
+  /// The value whose name was chosen.
+  template <class T>
+  T choice(const char* name, std::initializer_list<std::pair<const char*, T>> all) const {
+    for (const auto& [text, value] : all)
+      if (is(name, text)) return value;
+    throw std::out_of_range(name);
+  }
+
+ private:
+  const std::map<std::string, Value>& values_;
+};
+
+DoubleImage run_bloom(const DoubleImage& source, const Inputs&, const Settings& s) {
+  return bloom(source, {.mode = s.is("mode", "additive") ? BloomMode::additive : BloomMode::scattering,
+                        .max_iterations = s.integer("max_iterations"),
+                        .downscale_limit = s.integer("downscale_limit"),
+                        .threshold = s.number("threshold"),
+                        .knee = s.number("knee"),
+                        .intensity = s.number("intensity"),
+                        .scatter = s.number("scatter"),
+                        .bicubic_upsampling = s.flag("bicubic_upsampling"),
+                        .fade_fireflies = s.flag("fade_fireflies")})
+      .result;
+}
+
+DoubleImage run_box_bloom(const DoubleImage& source, const Inputs&, const Settings& s) {
+  return box_bloom(source, {.threshold = s.number("threshold"),
+                            .blur_iterations = s.integer("blur_iterations"),
+                            .pattern = s.is("pattern", "plus") ? BoxPattern::plus : BoxPattern::box,
+                            .brightness = s.is("brightness", "max") ? BoxBrightness::max : BoxBrightness::luma})
+      .result;
+}
+
+DoubleImage run_tone_mapping(const DoubleImage& source, const Inputs&, const Settings& s) {
+  return tone_mapping(source, s.choice<ToneMode>("mode", {{"none", ToneMode::none},
+                                                          {"aces", ToneMode::aces},
+                                                          {"neutral", ToneMode::neutral},
+                                                          {"reinhard", ToneMode::reinhard}}));
+}
+
+DoubleImage run_color_adjustments(const DoubleImage& source, const Inputs&, const Settings& s) {
+  return color_adjustments(source, {.post_exposure = s.number("post_exposure"),
+                                    .contrast = s.number("contrast"),
+                                    .color_filter = s.color("color_filter"),
+                                    .hue_shift = s.number("hue_shift"),
+                                    .saturation = s.number("saturation")});
+}
+
+DoubleImage run_color_blit(const DoubleImage& source, const Inputs&, const Settings& s) {
+  return color_blit(source, s.number("intensity"));
+}
+
+DoubleImage run_outline(const DoubleImage& source, const Inputs& inputs, const Settings& s) {
+  const OutlineSettings settings{
+      .source = s.choice<OutlineSource>("source", {{"depth", OutlineSource::depth},
+                                                   {"device_depth", OutlineSource::device_depth},
+                                                   {"normals", OutlineSource::normals},
+                                                   {"mixed", OutlineSource::mixed}}),
+      .difference = s.is("difference", "offset") ? OutlineDifference::offset : OutlineDifference::derivative,
+      .device_depth_input = s.is("depth_space", "device"),
+      .near = s.number("near"),
+      .far = s.number("far"),
+      .reversed_z = s.flag("reversed_z"),
+      .combine = s.is("combine", "max") ? OutlineCombine::max : OutlineCombine::weighted,
+      .normal_factor = s.number("normal_factor"),
+      .width = s.number("width"),
+      .fade_distance = s.number("fade_distance"),
+      .depth_scale = s.number("depth_scale"),
+      .normal_scale = s.number("normal_scale"),
+      .divide_factor = s.number("divide_factor"),
+      .contrast = s.number("contrast"),
+      .color = s.color("color"),
+      .blend = s.is("blend", "add") ? OutlineBlend::add : OutlineBlend::lerp};
+  return outline(source, inputs.depth, inputs.normal, settings);
+}
+
+struct Oracle {
+  const char* effect;
+  DoubleImage (*run)(const DoubleImage& source, const Inputs& inputs, const Settings& settings);
+};
+
+constexpr Oracle kOracles[] = {
+    {"bloom", run_bloom},
+    {"box_bloom", run_box_bloom},
+    {"color_adjustments", run_color_adjustments},
+    {"color_blit", run_color_blit},
+    {"outline", run_outline},
+    {"tone_mapping", run_tone_mapping},
+};
+
+const Oracle* oracle_of(const Entry& entry) {
+  const auto found = std::ranges::find(kOracles, entry.effect, &Oracle::effect);
+  return found == std::end(kOracles) ? nullptr : found;
+}
+
+}  // namespace
+
+std::string effect_without_oracle(std::span<const Entry> entries) {
+  for (const auto& entry : entries)
+    if (!oracle_of(entry)) return entry.effect;
+  return {};
+}
+
+DoubleImage evaluate(const DoubleImage& source, const Inputs& inputs, std::span<const Entry> entries) {
+  DoubleImage image = source;
+  for (const auto& entry : entries) image = oracle_of(entry)->run(image, inputs, Settings(entry));
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i].a = source.pixels[i].a;
+  return image;
+}
+
+}  // namespace afterglow::reference

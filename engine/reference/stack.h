@@ -1,0 +1,38 @@
+// A whole stack in double precision: effects by name, one after the other, as a preset resolves them.
+#pragma once
+
+#include <array>
+#include <map>
+#include <span>
+#include <string>
+
+#include "reference/double_image.h"
+
+namespace afterglow::reference {
+
+/// A setting's value, whatever its type: numbers (flags as 0/1, colours scene-linear), or a choice by name.
+struct Value {
+  std::array<double, 3> number{};
+  std::string choice;
+};
+
+/// An effect that runs, with all its settings.
+struct Entry {
+  std::string effect;
+  std::map<std::string, Value> settings;
+};
+
+/// Auxiliary inputs; null: the picture has none.
+struct Inputs {
+  const DoubleImage* depth = nullptr;
+  const DoubleImage* normal = nullptr;
+};
+
+/// The first effect that no oracle knows; empty when all are known.
+std::string effect_without_oracle(std::span<const Entry> entries);
+
+/// The result of the stack, alpha that of the source. `entries` are those that run, in order; every effect is known, has
+/// all the settings that its schema names, and the inputs that it needs.
+DoubleImage evaluate(const DoubleImage& source, const Inputs& inputs, std::span<const Entry> entries);
+
+}  // namespace afterglow::reference

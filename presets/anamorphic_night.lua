@@ -1,0 +1,15 @@
+-- Night exteriors and neon, shot on an old anamorphic lens: flat blue flares, fringes towards the corners, light that falls off, teal
+-- shadows against warm highlights, and fine grain that is new in every frame.
+local fx = require "afterglow"
+
+return fx.stack {
+  name = "Anamorphic night",
+  fx.bloom { mode = "scattering", threshold = 1, knee = 0.6, intensity = 0.18, scatter = 0.65, fade_fireflies = true },
+  fx.anamorphic_streaks { threshold = 8, stretch = 0.7, intensity = 0.2, tint = { 0.35, 0.5, 1 } },
+  fx.chromatic_aberration { intensity = 0.2, samples = 8 },
+  fx.vignette { intensity = 0.25, smoothness = 0.5 },
+  fx.split_toning { shadows = "#5a7f8c", highlights = "#94826c", balance = 10 },
+  fx.tone_mapping { mode = "aces" },
+  fx.color_adjustments { post_exposure = 1.6, contrast = 6, saturation = -8 },
+  fx.film_grain { intensity = 0.3, size = 1.3, colored = 0.3 },
+}

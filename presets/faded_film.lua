@@ -1,0 +1,16 @@
+-- Family albums and flashbacks: a print that has lain in the sun. Blacks are lifted and blue, whites are yellow, colour has gone thin; the
+-- grain is coarse.
+local fx = require "afterglow"
+
+return fx.stack {
+  name = "Faded film",
+  fx.bloom { mode = "scattering", threshold = 0.4, knee = 1, intensity = 0.15, scatter = 0.6, fade_fireflies = true },
+  fx.vignette { intensity = 0.3, smoothness = 0.6, color = { 0.25, 0.16, 0.1 } },
+  fx.white_balance { temperature = 18, tint = -6 },
+  fx.channel_mixer { red_out_red_in = 90, red_out_green_in = 10, green_out_green_in = 92, green_out_red_in = 8,
+                     blue_out_blue_in = 80, blue_out_green_in = 20 },
+  fx.lift_gamma_gain { lift = { 0.95, 1, 1.06 }, lift_offset = 0.008, gamma_offset = 0.12, gain = { 1.08, 1, 0.88 } },
+  fx.tone_mapping { mode = "neutral" },
+  fx.color_adjustments { post_exposure = 0.8, contrast = -12, saturation = -22 },
+  fx.film_grain { intensity = 0.45, response = 0.6, size = 2 },
+}

@@ -1,0 +1,15 @@
+-- Product and portrait shots of a scene with depth: a fast lens a few metres away, everything behind falls apart into discs, dust on the glass
+-- catches the lights. Set the distance with `--set depth_of_field.focus_distance=3`; without depth the blur is skipped with a warning.
+local fx = require "afterglow"
+
+return fx.stack {
+  name = "Shallow focus",
+  fx.depth_of_field { focus_distance = 5, aperture = 1.2, focal_length = 85, max_radius = 12, samples = 256 },
+  fx.bloom { mode = "scattering", threshold = 0.8, knee = 0.8, intensity = 0.14, scatter = 0.6, fade_fireflies = true },
+  fx.lens_dirt { threshold = 2, intensity = 0.1, density = 0.35, size = 0.09 },
+  fx.vignette { intensity = 0.25, smoothness = 0.5 },
+  fx.shadows_midtones_highlights { shadows = { 0.9, 0.98, 1.1 }, highlights = { 1.04, 1, 0.94 } },
+  fx.tone_mapping { mode = "aces" },
+  fx.color_adjustments { post_exposure = 1.7, contrast = 4, saturation = 5 },
+  fx.sharpen { intensity = 0.4 },
+}

@@ -1,0 +1,40 @@
+-- Anamorphic streaks: the horizontal flares of an anamorphic lens. A pyramid that is halved across alone; on the way up each level takes a
+-- share of the coarser one (after K. Takahashi's Kino/Streak for Unity, whose settings and tint these are).
+local fx = require "afterglow"
+
+local kHalving = { x = { { -1.5, 1 / 8 }, { -0.5, 3 / 8 }, { 0.5, 3 / 8 }, { 1.5, 1 / 8 } } }
+
+return fx.effect {
+  name = "anamorphic_streaks",
+  doc = "Long horizontal flares from bright lights, as of an anamorphic lens.",
+  at = "post_process", order = 110,
+  settings = {
+    threshold = fx.float { min = 0, max = 1e6, default = 2, doc = "Brightness (largest channel) from which light streaks; linear." },
+    stretch = fx.float { min = 0, max = 1, default = 0.75, doc = "Length of the streaks: the share that each level takes from the coarser one." },
+    intensity = fx.float { min = 0, max = 100, default = 0.4, doc = "Factor of the streaks. 0: none." },
+    tint = fx.color { default = { 0.55, 0.55, 1 }, doc = "Colour of the streaks." },
+  },
+  active = function(s)
+    if s.intensity <= 0 then return false, "intensity is 0" end
+    return s.tint[1] > 0 or s.tint[2] > 0 or s.tint[3] > 0, "tint is black"
+  end,
+
+  build = function(g, s, source)
+    local image = g:filter { source = source, size = { math.max(source.width // 2, 1), math.max(source.height // 2, 1) },
+                             filter = fx.filters.bilinear(), name = "half" }
+    image = g:pass { shader = "box_bloom/threshold", source = image, threshold = s.threshold, luma = false, name = "threshold" }
+    local levels = { image }
+    while image.width >= 8 do
+      image = g:filter { source = image, size = { image.width // 2, image.height }, filter = kHalving, name = ("down[%d]"):format(#levels) }
+      levels[#levels + 1] = image
+    end
+    for i = #levels - 1, 1, -1 do
+      image = g:filter { source = image, size = levels[i], filter = fx.filters.bilinear(), name = ("up[%d]"):format(i) }
+      image = g:pass { shader = "bloom/scatter", source = image, high = levels[i], amount = s.stretch, name = ("combine[%d]"):format(i) }
+    end
+    image = g:filter { source = image, size = source, filter = fx.filters.bilinear(), name = "up" }
+    local tint = {}
+    for i = 1, 3 do tint[i] = math.min(s.tint[i] * s.intensity, 1e6) end
+    return g:pass { shader = "anamorphic_streaks/add", source = image, high = source, tint = tint, name = "final" }
+  end,
+}

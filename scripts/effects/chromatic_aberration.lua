@@ -1,0 +1,18 @@
+-- Chromatic aberration: a lens that magnifies colours differently. Along a line towards the centre red is read first and blue last; length
+-- and growth with the cube of the distance are Unity's (UberPost, URP), whose three reads are `samples = 3`. More make a spectrum of it,
+-- as HDRP does with a lookup table.
+local fx = require "afterglow"
+
+return fx.effect {
+  name = "chromatic_aberration",
+  doc = "Colour fringes that grow towards the corners.",
+  at = "post_process", order = 140,
+  settings = {
+    intensity = fx.float { min = 0, max = 1, default = 0.3, doc = "Length of the fringes; 1 is a thirtieth of the picture at the middle of its sides. 0: none." },
+    samples = fx.int { min = 3, max = 24, default = 6, doc = "Reads along a fringe: 3 are three sharp pictures, more blend into a spectrum." },
+  },
+  active = function(s) return s.intensity > 0, "intensity is 0" end,
+  build = function(g, s, source)
+    return g:pass { shader = "chromatic_aberration/spectrum", source = source, amount = s.intensity * 0.05 * 2 / 3, samples = s.samples }
+  end,
+}

@@ -1,0 +1,33 @@
+-- Directional blur: a camera that moves while the shutter is open. n² equally spaced reads on a line are n reads close together of an image
+-- that has been blurred by n reads far apart, so that 32 reads twice do for a thousand pixels.
+local fx = require "afterglow"
+
+-- n reads on a line, `spacing` apart.
+local function line(n, spacing, x, y)
+  local taps = {}
+  for i = 1, n do
+    local at = (i - (n + 1) / 2) * spacing
+    taps[i] = { at * x, at * y, 1 / n }
+  end
+  return { taps = taps }
+end
+
+return fx.effect {
+  name = "directional_blur",
+  doc = "Smears the picture along one direction, as a moving camera does.",
+  at = "post_process", order = 84,
+  settings = {
+    distance = fx.float { min = 0, max = 1000, default = 24, unit = "px", doc = "Length of the smear. 0: none." },
+    angle = fx.float { min = -180, max = 180, default = 0, unit = "degrees", doc = "Direction: 0 across, 90 up and down, 45 rising to the right." },
+  },
+  active = function(s) return s.distance > 0, "distance is 0" end,
+  build = function(g, s, source)
+    local radians = s.angle * math.pi / 180
+    local x, y = math.cos(radians), -math.sin(radians)
+    local n = math.max(2, math.ceil(math.sqrt(s.distance + 1)))
+    local spacing = s.distance / (n * n - 1)
+    local image = g:filter { source = source, filter = line(n, n * spacing, x, y), name = "far" }
+    image = g:filter { source = image, filter = line(n, spacing, x, y), name = "near" }
+    return g:pass { shader = "bloom/scatter", source = image, high = source, amount = 1, name = "final" }  -- alpha of the picture
+  end,
+}

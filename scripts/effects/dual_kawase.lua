@@ -1,0 +1,34 @@
+-- Dual Kawase blur: the cheapest wide blur there is, five reads a level down and eight up. After M. Bjørge, "Bandwidth-Efficient Rendering",
+-- SIGGRAPH 2015 (ARM). Frosted glass behind titles and menus, dreamy overlays.
+local fx = require "afterglow"
+
+return fx.effect {
+  name = "dual_kawase",
+  doc = "A wide, smooth, cheap blur of the whole picture.",
+  at = "post_process", order = 80,
+  settings = {
+    iterations = fx.int { min = 0, max = 12, default = 3, doc = "Halvings of the picture; each doubles the blur. 0: none." },
+    offset = fx.float { min = 0, max = 3, default = 1, doc = "Distance of the reads: widens the blur smoothly between two counts of iterations; large ones show a pattern." },
+  },
+  active = function(s) return s.iterations > 0, "iterations is 0" end,
+
+  build = function(g, s, source)
+    local o = s.offset
+    local down = { taps = { { 0, 0, 1 / 2 }, { -o, -o, 1 / 8 }, { o, -o, 1 / 8 }, { -o, o, 1 / 8 }, { o, o, 1 / 8 } } }
+    local h = o / 2
+    local up = { taps = { { -o, 0, 1 / 12 }, { o, 0, 1 / 12 }, { 0, -o, 1 / 12 }, { 0, o, 1 / 12 },
+                          { -h, -h, 1 / 6 }, { h, -h, 1 / 6 }, { -h, h, 1 / 6 }, { h, h, 1 / 6 } } }
+
+    local image, sizes = source, {}
+    while #sizes < s.iterations and image.width > 1 and image.height > 1 do
+      sizes[#sizes + 1] = { image.width, image.height }
+      image = g:filter { source = image, size = { image.width // 2, image.height // 2 }, filter = down, name = ("down[%d]"):format(#sizes - 1) }
+    end
+    if #sizes == 0 then
+      g:skip("the picture is a single row or column")
+      return source
+    end
+    for i = #sizes, 1, -1 do image = g:filter { source = image, size = sizes[i], filter = up, name = ("up[%d]"):format(i - 1) } end
+    return g:pass { shader = "bloom/scatter", source = image, high = source, amount = 1, name = "final" }  -- alpha of the picture
+  end,
+}

@@ -1,0 +1,23 @@
+-- Edge detection on perceived brightness, by the gradient operators of Sobel, Scharr and Roberts. Each is scaled so that a straight step
+-- from black to white is 1. For lines of objects instead of brightness see `outline`.
+local fx = require "afterglow"
+
+return fx.effect {
+  name = "edge_detection",
+  doc = "Draws lines where brightness changes: Sobel, Scharr or Roberts.",
+  at = "after_post_process", order = 105,
+  settings = {
+    operator = fx.enum { "sobel", "scharr", "roberts", default = "sobel",
+      doc = "sobel: 3x3, the usual one. scharr: 3x3, treats all directions alike. roberts: 2x2, thin lines." },
+    intensity = fx.float { min = 0, max = 100, default = 2, doc = "Factor of the gradient. 0: no lines." },
+    threshold = fx.float { min = 0, max = 1, default = 0.05, doc = "Gradients up to this draw nothing." },
+    color = fx.color { default = { 0, 0, 0 }, doc = "Colour of the lines." },
+    background = fx.color { default = { 1, 1, 1 }, doc = "Colour between the lines." },
+    background_opacity = fx.float { min = 0, max = 1, default = 0, doc = "0: lines over the picture. 1: lines over the background alone." },
+  },
+  active = function(s) return s.intensity > 0 or s.background_opacity > 0, "intensity and background_opacity are 0" end,
+  build = function(g, s, source)
+    return g:pass { shader = "edge_detection/lines", source = source, operator = ({ sobel = 0, scharr = 1, roberts = 2 })[s.operator],
+                    intensity = s.intensity, threshold = s.threshold, ink = s.color, paper = s.background, opacity = s.background_opacity }
+  end,
+}

@@ -1,0 +1,21 @@
+-- Film grain: noise that is strongest in the darks, another pattern for each frame and the same one whenever that frame is made. Response to
+-- luminance as in Unity (HDRP and URP); the noise is computed instead of read from scans.
+local fx = require "afterglow"
+
+return fx.effect {
+  name = "film_grain",
+  doc = "Grain of film: fine noise, new in each frame; best after tone mapping.",
+  at = "after_post_process", order = 140,
+  settings = {
+    intensity = fx.float { min = 0, max = 1, default = 0.3, doc = "Strength; at 1 the grain of blacks is a quarter of their light. 0: none." },
+    response = fx.float { min = 0, max = 1, default = 0.8, doc = "How much less grain there is in bright places: 0 equally much, 1 none in white." },
+    size = fx.float { min = 1, max = 16, default = 1, unit = "px", doc = "Size of a grain." },
+    colored = fx.float { min = 0, max = 1, default = 0, doc = "0: grey grain as of black-and-white film. 1: each channel has its own." },
+    seed = fx.int { min = 0, default = 0, doc = "Another number, other grain." },
+  },
+  active = function(s) return s.intensity > 0, "intensity is 0" end,
+  build = function(g, s, source)
+    return g:pass { shader = "film_grain/grain", source = source, strength = 0.25 * s.intensity, response = s.response,
+                    size_of_grain = s.size, colored = s.colored, frame = math.floor(g.frame) & 0x7fffffff, seed = s.seed, fine = s.size == 1 }
+  end,
+}

@@ -1,0 +1,34 @@
+-- Lens dirt: dust and smudges on the front glass, seen where bright light falls through them. The light is a wide blur of what exceeds a
+-- threshold; the dirt is made of discs at random places instead of read from a picture.
+local fx = require "afterglow"
+
+return fx.effect {
+  name = "lens_dirt",
+  doc = "Dust on the lens that lights up around bright lights.",
+  at = "post_process", order = 120,
+  settings = {
+    intensity = fx.float { min = 0, max = 100, default = 1, doc = "Factor of the light that the dirt scatters. 0: none." },
+    threshold = fx.float { min = 0, max = 1e6, default = 1, doc = "Brightness (largest channel) from which light shows the dirt; linear." },
+    density = fx.float { min = 0, max = 1, default = 0.4, doc = "How much dirt there is. 0: none." },
+    size = fx.float { min = 0.005, max = 0.5, default = 0.06, doc = "Diameter of the largest spots, as a share of the picture's height." },
+    seed = fx.int { min = 0, default = 0, doc = "Another number, another lens." },
+  },
+  active = function(s)
+    if s.intensity <= 0 then return false, "intensity is 0" end
+    return s.density > 0, "density is 0"
+  end,
+  build = function(g, s, source)
+    local image = g:filter { source = source, size = { math.max(source.width // 2, 1), math.max(source.height // 2, 1) },
+                             filter = fx.filters.bilinear(), name = "half" }
+    image = g:pass { shader = "box_bloom/threshold", source = image, threshold = s.threshold, luma = false, name = "threshold" }
+    local level = 1
+    while math.min(image.width, image.height) >= 16 do
+      image = g:filter { source = image, size = { image.width // 2, image.height // 2 }, filter = fx.filters.tent(), name = ("down[%d]"):format(level) }
+      level = level + 1
+    end
+    local light = g:filter { source = image, size = source, filter = fx.filters.bspline(), name = "light" }
+    local dirt = g:pass { shader = "lens_dirt/spots", size = source, cell = math.max(s.size * source.height, 2), density = s.density,
+                          seed = s.seed, name = "spots" }
+    return g:pass { shader = "lens_dirt/add", source = light, high = source, dirt = dirt, intensity = s.intensity, name = "final" }
+  end,
+}

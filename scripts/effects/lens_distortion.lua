@@ -1,0 +1,29 @@
+-- Lens distortion: barrel and pincushion. Unity's model (URP, UberPost: DistortUV): a point at distance r of the centre is read at
+-- tan(θr)/σ for a barrel and atan(σr)/θ for a pincushion, θ = min(1.6·100·|intensity|, 160) degrees, σ = 2 tan(θ/2).
+local fx = require "afterglow"
+
+return fx.effect {
+  name = "lens_distortion",
+  doc = "Bends the picture as a wide lens (barrel) or a long one (pincushion) does.",
+  at = "post_process", order = 130,
+  settings = {
+    intensity = fx.float { min = -1, max = 1, default = 0.2, doc = "Above 0 a barrel, below 0 a pincushion. 0: none, but for the scale." },
+    x_multiplier = fx.float { min = 0, max = 1, default = 1, doc = "How much of it happens across." },
+    y_multiplier = fx.float { min = 0, max = 1, default = 1, doc = "How much of it happens down." },
+    center = fx.vec2 { min = 0, max = 1, default = { 0.5, 0.5 }, doc = "The point that stays: {0, 0} is the upper left corner, {1, 1} the lower right." },
+    scale = fx.float { min = 0.01, max = 5, default = 1, doc = "Enlarges the result, to hide edges that were drawn in." },
+  },
+  active = function(s)
+    local bends = s.intensity ~= 0 and (s.x_multiplier > 0 or s.y_multiplier > 0)
+    return bends or s.scale ~= 1, "nothing bends and scale is 1"
+  end,
+  build = function(g, s, source)
+    local theta = math.min(1.6 * math.max(math.abs(s.intensity) * 100, 1), 160) * math.pi / 180
+    return g:pass {
+      shader = "lens_distortion/bend", source = source, barrel = s.intensity >= 0,
+      theta = theta, sigma = 2 * math.tan(theta / 2), bend = s.intensity ~= 0 and 1 or 0,
+      center = { 2 * s.center[1] - 1, 2 * s.center[2] - 1 },
+      axes = { math.max(s.x_multiplier, 1e-4), math.max(s.y_multiplier, 1e-4) }, inverse_scale = 1 / s.scale,
+    }
+  end,
+}

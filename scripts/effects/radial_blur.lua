@@ -1,0 +1,17 @@
+-- Radial blur: a zoom while the shutter is open. Each pixel is the mean of reads on its way to the centre.
+local fx = require "afterglow"
+
+return fx.effect {
+  name = "radial_blur",
+  doc = "Streaks towards a centre, as of a zoom or of speed.",
+  at = "post_process", order = 82,
+  settings = {
+    intensity = fx.float { min = 0, max = 1, default = 0.15, doc = "Share of the way to the centre that is smeared. 0: none." },
+    samples = fx.int { min = 2, max = 128, default = 16, doc = "Reads on the way; few show as copies of bright spots." },
+    center = fx.vec2 { min = 0, max = 1, default = { 0.5, 0.5 }, doc = "The point that stays sharp: {0, 0} is the upper left corner, {1, 1} the lower right." },
+  },
+  active = function(s) return s.intensity > 0, "intensity is 0" end,
+  build = function(g, s, source)
+    return g:pass { shader = "radial_blur/zoom", source = source, amount = s.intensity, samples = s.samples, center = s.center }
+  end,
+}

@@ -1,0 +1,17 @@
+-- Sharpening that adapts to contrast: AMD FidelityFX CAS (T. Lottes, 2019), with the two knobs that ReShade's version gives it. Edges that
+-- are strong already get little, so that neither halos nor clipping appear; light above display white gets none.
+local fx = require "afterglow"
+
+return fx.effect {
+  name = "sharpen",
+  doc = "Contrast-adaptive sharpening of fine detail; best after tone mapping.",
+  at = "after_post_process", order = 120,
+  settings = {
+    intensity = fx.float { min = 0, max = 1, default = 0.6, doc = "Share of the sharpened picture. 0: none." },
+    contrast = fx.float { min = 0, max = 1, default = 0, doc = "How much is sharpened: 0 CAS at its softest, 1 at its strongest." },
+  },
+  active = function(s) return s.intensity > 0, "intensity is 0" end,
+  build = function(g, s, source)
+    return g:pass { shader = "sharpen/contrast_adaptive", source = source, amount = s.intensity, peak = 1 / (8 - 3 * s.contrast) }
+  end,
+}

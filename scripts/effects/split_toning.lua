@@ -1,0 +1,34 @@
+-- Split toning: one tint for the shadows and another for the highlights, by soft light in gamma space, as Unity and photographers' programs
+-- do it. Middle grey (#808080) is neutral.
+local fx = require "afterglow"
+
+local kGrey = 0.21404114  -- linear value of the display value 0.5
+
+-- Display value 0…1 of linear light.
+local function encoded(c)
+  local out = {}
+  for i = 1, 3 do
+    local v = math.min(c[i], 1)
+    v = v <= 0.0031308 and 12.92 * v or 1.055 * v ^ (1 / 2.4) - 0.055
+    out[i] = math.abs(v - 0.5) < 0.003 and 0.5 or v  -- 0x80 of 8 bits is 0.502: it is meant to be the middle
+  end
+  return out
+end
+
+local function is_grey(c) return c[1] == 0.5 and c[2] == 0.5 and c[3] == 0.5 end
+
+return fx.effect {
+  name = "split_toning",
+  doc = "Tints shadows and highlights in colours of their own.",
+  at = "post_process", order = 155,
+  settings = {
+    shadows = fx.color { default = { kGrey, kGrey, kGrey }, doc = "Tint of the shadows; #808080 leaves them alone." },
+    highlights = fx.color { default = { kGrey, kGrey, kGrey }, doc = "Tint of the highlights; #808080 leaves them alone." },
+    balance = fx.float { min = -100, max = 100, default = 0, unit = "%", doc = "Above 0 more of the picture counts as highlights, below 0 as shadows." },
+  },
+  active = function(s) return not (is_grey(encoded(s.shadows)) and is_grey(encoded(s.highlights))), "both tints are grey" end,
+  build = function(g, s, source)
+    return g:pass { shader = "split_toning/tint", source = source,
+                    shadows = encoded(s.shadows), highlights = encoded(s.highlights), balance = s.balance / 100 }
+  end,
+}

@@ -1,0 +1,31 @@
+// c·(1 + strength·noise·response curve): grain scales with light, so black stays black and colours keep their hue where it is grey.
+#include "lib/color.glsl"
+#include "lib/noise.glsl"
+
+layout(constant_id = 0) const bool fine = true;  // one grain a pixel
+
+uniform sampler2D source;
+uniform float strength;
+uniform float response;
+uniform float size_of_grain;  // pixels, ≥ 1
+uniform float colored;
+uniform int frame, seed;
+
+vec3 grain(ivec2 cell) { return normal_of(pcg3d(uvec3(cell, frame) + uvec3(0u, uint(seed) << 16u, uint(seed)))); }
+
+// Between cells it is interpolated; divided by the root of the sum of squared weights the deviation stays 1.
+vec3 coarse_grain(ivec2 pixel) {
+  vec2 p = (vec2(pixel) + 0.5) / size_of_grain;
+  ivec2 cell = ivec2(floor(p));
+  vec2 f = p - floor(p), g = 1.0 - f;
+  vec3 n = (grain(cell) * g.x + grain(cell + ivec2(1, 0)) * f.x) * g.y + (grain(cell + ivec2(0, 1)) * g.x + grain(cell + 1) * f.x) * f.y;
+  return n * inversesqrt((f.x * f.x + g.x * g.x) * (f.y * f.y + g.y * g.y));
+}
+
+vec4 sample_at(ivec2 pixel) {
+  vec4 color = fetch(source, pixel);
+  vec3 n = fine ? grain(pixel) : coarse_grain(pixel);
+  n = lerp(n.ggg, n, colored);
+  float less = 1.0 - response * sqrt(clamp(luminance(color.rgb), 0.0, 1.0));
+  return vec4(clamp(color.rgb * (1.0 + strength * less * n), 0.0, kMaxLight), color.a);
+}

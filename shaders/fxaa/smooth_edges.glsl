@@ -1,0 +1,61 @@
+// Along each edge the way to its two ends tells how the edge slants; the pixel is then read from between itself and the other side.
+layout(constant_id = 0) const int quality = 2;
+
+uniform sampler2D source;
+uniform sampler2D luma;
+uniform float fixed_threshold;
+uniform float relative_threshold;
+uniform float subpixel_blending;
+
+// How far each step goes along the edge, in pixels. Behind the last step the end is guessed to be 8 further.
+const int kCounts[3] = int[](3, 8, 10);
+const float kSteps[30] = float[](1.5, 2.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,  //
+                                 1.5, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 4.0, 0.0, 0.0,  //
+                                 1.0, 1.0, 1.0, 1.0, 1.5, 2.0, 2.0, 2.0, 2.0, 4.0);
+const float kGuess = 8.0;
+
+float at(ivec2 pixel) { return fetch(luma, pixel).r; }
+
+/// Way along `direction` until luma leaves that of the edge by `enough`; `change` is by how much it did.
+float way_to_end(vec2 position, vec2 direction, float edge, float enough, out float change) {
+  float way = 1.0;
+  change = fetch_linear(luma, position + direction).r - edge;
+  for (int i = 0; i < kCounts[quality] && abs(change) < enough; ++i) {
+    way += kSteps[10 * quality + i];
+    change = fetch_linear(luma, position + way * direction).r - edge;
+  }
+  return abs(change) < enough ? way + kGuess : way;
+}
+
+vec4 sample_at(ivec2 pixel) {
+  vec4 color = fetch(source, pixel);
+  float m = at(pixel);
+  float n = at(pixel + ivec2(0, -1)), s = at(pixel + ivec2(0, 1)), e = at(pixel + ivec2(1, 0)), w = at(pixel + ivec2(-1, 0));
+  float highest = max(max(max(n, s), max(e, w)), m);
+  float range = highest - min(min(min(n, s), min(e, w)), m);
+  if (range < max(fixed_threshold, relative_threshold * highest)) return color;
+
+  float ne = at(pixel + ivec2(1, -1)), nw = at(pixel + ivec2(-1, -1)), se = at(pixel + ivec2(1, 1)), sw = at(pixel + ivec2(-1, 1));
+  float lone = clamp(abs((2.0 * (n + s + e + w) + ne + nw + se + sw) * (1.0 / 12.0) - m) / range, 0.0, 1.0);
+  lone = lone * lone * (3.0 - 2.0 * lone);
+  float subpixel = lone * lone * subpixel_blending;
+
+  float change_down = 2.0 * abs(n + s - 2.0 * m) + abs(ne + se - 2.0 * e) + abs(nw + sw - 2.0 * w);
+  float change_across = 2.0 * abs(e + w - 2.0 * m) + abs(ne + nw - 2.0 * n) + abs(se + sw - 2.0 * s);
+  // Where all terms have one sign both sums are the same, but for rounding, which must not decide.
+  bool horizontal = change_down >= change_across - 1e-5;
+  float ahead = horizontal ? s : e, behind = horizontal ? n : w;
+  bool forward = abs(ahead - m) > abs(behind - m);
+  float other = forward ? ahead : behind;
+  vec2 across = (horizontal ? vec2(0.0, 1.0) : vec2(1.0, 0.0)) * (forward ? 1.0 : -1.0);
+  vec2 along = horizontal ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
+
+  vec2 centre = vec2(pixel) + 0.5;
+  float edge = 0.5 * (m + other), enough = 0.25 * abs(other - m), change_p, change_n;
+  float way_p = way_to_end(centre + 0.5 * across, along, edge, enough, change_p);
+  float way_n = way_to_end(centre + 0.5 * across, -along, edge, enough, change_n);
+  bool rising = (way_p <= way_n ? change_p : change_n) >= 0.0;
+  float slant = rising == (m >= edge) ? 0.0 : 0.5 - min(way_p, way_n) / (way_p + way_n);
+
+  return vec4(fetch_linear(source, centre + max(subpixel, slant) * across).rgb, color.a);
+}

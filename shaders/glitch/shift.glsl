@@ -1,0 +1,27 @@
+// Reads each channel from another place of the same or a rolled line.
+#include "lib/noise.glsl"
+
+uniform sampler2D source;
+uniform int line_height;
+uniform int frame, seed;
+uniform float quiet;  // lines whose number in 0…1 is below it stay
+uniform float jump;   // the rest in widths of the picture: how far a line jumps,
+uniform float shake;  // the picture,
+uniform float split;  // red and blue
+uniform int roll;     // rows
+
+int pixels(float widths) { return int(floor(widths * float(target_size().x) + 0.5)); }
+
+float channel(ivec2 pixel, int shift, int which) {
+  int width = target_size().x;
+  return fetch(source, ivec2((pixel.x + shift + width) % width, pixel.y))[which];
+}
+
+vec4 sample_at(ivec2 pixel) {
+  vec3 of_frame = unit_of(pcg3d(uvec3(0xffffffffu, uint(seed), uint(frame))));
+  float of_line = 2.0 * unit_of(pcg3d(uvec3(uint(pixel.y / line_height), uint(seed), uint(frame)))).x - 1.0;
+  int shift = pixels((of_frame.x - 0.5) * shake) + (abs(of_line) >= quiet ? pixels(of_line * jump) : 0);
+  int apart = pixels((0.5 + 0.5 * of_frame.y) * split);
+  ivec2 from = ivec2(pixel.x, (pixel.y + roll) % target_size().y);
+  return vec4(channel(from, shift + apart, 0), channel(from, shift, 1), channel(from, shift - apart, 2), fetch(source, pixel).a);
+}

@@ -1,0 +1,109 @@
+// Blurs of the whole picture: dual Kawase, radial, directional, bokeh.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cases.h"
+#include "reference/blurs.h"
+
+namespace afterglow {
+namespace {
+
+using namespace reference;
+
+EffectCase kawase(int iterations, double offset) {
+  return {fmt::format("fx.dual_kawase {{ iterations = {}, offset = {} }}", iterations, offset),
+          [=](const Scene& s) { return dual_kawase(s.source, iterations, offset); }};
+}
+
+EffectCase zoomed(double intensity, int samples, Point center) {
+  return {fmt::format("fx.radial_blur {{ intensity = {}, samples = {}, center = {{ {}, {} }} }}", intensity, samples,
+                      center.x, center.y),
+          [=](const Scene& s) { return radial_blur(s.source, intensity, samples, center); }};
+}
+
+EffectCase smeared(double distance, double angle) {
+  return {fmt::format("fx.directional_blur {{ distance = {}, angle = {} }}", distance, angle),
+          [=](const Scene& s) { return directional_blur(s.source, distance, angle); }};
+}
+
+EffectCase defocused(const BokehBlur& v) {
+  return {fmt::format("fx.bokeh_blur {{ radius = {}, blades = {}, rotation = {}, highlights = {} }}", v.radius,
+                      v.blades, v.rotation, v.highlights),
+          [=](const Scene& s) { return bokeh_blur(s.source, v); }};
+}
+
+Scene point(Size size) {
+  Scene scene{"point", DoubleImage(size), {}, {}};
+  scene.source.at(size.width / 2, size.height / 2) = Rgba(1000, 1000, 1000, 1);
+  return scene;
+}
+
+TEST_F(Effects, DualKawaseAgrees) {
+  // 1x1 has no half; every other size has.
+  for (const Size size : kSizes)
+    if (size.width > 1)
+      for (const auto& one : {kawase(1, 1), kawase(3, 1.4), kawase(12, 0.3)}) {
+        const auto scene = random_scene(size, 63, true);
+        EXPECT_TRUE(agrees(run_stack(one.entries, scene, Way::plain).result, one.oracle(scene), kFullFloat, kRgba))
+            << one.entries << scene.name;
+      }
+  const auto scene = neon_scene({160, 90}, 560, 330);
+  const auto one = kawase(4, 1);
+  EXPECT_TRUE(agrees(run_stack(one.entries, scene, Way::joined).result, one.oracle(scene), kFullFloat, kRgba));
+  EXPECT_TRUE(agrees(run_stack(one.entries, scene, Way::joined_half).result, one.oracle(scene), kHalfFloat, kRgba));
+  expect_skipped("fx.dual_kawase { iterations = 0 }", "iterations is 0");
+  const Made tiny = run_stack("fx.dual_kawase {}", random_scene({1, 1}, 64), Way::plain);
+  EXPECT_EQ(tiny.graph.skipped.at(0).reason, "the picture is a single row or column");
+}
+
+TEST_F(Effects, RadialBlurAgrees) {
+  agree_everywhere({zoomed(0.15, 16, {0.5, 0.5}), zoomed(1, 33, {0.2, 0.9}), zoomed(0.4, 2, {1, 0})}, kBetweenPixels);
+  expect_skipped("fx.radial_blur { intensity = 0 }", "intensity is 0");
+}
+
+TEST_F(Effects, DirectionalBlurAgrees) {
+  agree_everywhere({smeared(24, 0), smeared(7.5, 90), smeared(100, -33), smeared(0.4, 45)});
+  expect_skipped("fx.directional_blur { distance = 0 }", "distance is 0");
+}
+
+TEST_F(Effects, DirectionalBlurIsAsLongAsItSays) {
+  const auto made = run_stack("fx.directional_blur { distance = 24 }", point({65, 9}), Way::plain).result;
+  const auto at = [&](int x, int y) { return made[4 * static_cast<std::size_t>(65 * y + x)]; };
+  for (int x = 32 - 11; x <= 32 + 11; ++x) EXPECT_NEAR(at(x, 4), 1000.0 / 25, 1) << x;
+  EXPECT_EQ(at(32 - 14, 4), 0);
+  EXPECT_EQ(at(32 + 14, 4), 0);
+  EXPECT_EQ(at(32, 3), 0);
+}
+
+TEST_F(Effects, BokehBlurAgrees) {
+  agree_everywhere({defocused({}), defocused({.radius = 3, .blades = 6, .rotation = 20, .highlights = 10}),
+                    defocused({.radius = 40, .blades = 5}), defocused({.radius = 0.5, .highlights = 50})});
+  expect_skipped("fx.bokeh_blur { radius = 0 }", "radius is 0");
+}
+
+TEST_F(Effects, BokehOfAPointIsADiscOfItsLight) {
+  const auto made = run_stack("fx.bokeh_blur { radius = 9 }", point({41, 41}), Way::plain).result;
+  double sum = 0, outside = 0;
+  int inside = 0;
+  for (int y = 0; y < 41; ++y)
+    for (int x = 0; x < 41; ++x) {
+      const double v = made[4 * static_cast<std::size_t>(41 * y + x)], r = std::hypot(x - 20, y - 20);
+      sum += v;
+      if (r > 11) outside += v;
+      if (r < 7 && v > 1) ++inside;
+    }
+  EXPECT_NEAR(sum, 1000, 1);
+  EXPECT_EQ(outside, 0);
+  EXPECT_GT(inside, 140);  // of 149: no holes between the rings
+}
+
+TEST_F(Effects, BlursKeepOneColour) {
+  const Scene scene{"constant", DoubleImage(37, 22, Rgba(0.25, 0.75, 0.5, 1)), {}, {}};
+  for (const char* entries : {"fx.dual_kawase {}", "fx.radial_blur {}", "fx.directional_blur { angle = 30 }",
+                              "fx.bokeh_blur {}", "fx.bokeh_blur { blades = 6, highlights = 8 }"})
+    EXPECT_TRUE(agrees(run_stack(entries, scene, Way::plain).result, scene.source, 2e-6, kRgba)) << entries;
+}
+
+}  // namespace
+}  // namespace afterglow

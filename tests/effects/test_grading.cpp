@@ -1,0 +1,116 @@
+// Colour grading: white balance, channel mixer, split toning, shadows/midtones/highlights, lift/gamma/gain.
+#include <fmt/format.h>
+
+#include "cases.h"
+#include "reference/color.h"
+#include "reference/grading.h"
+#include "reference/tone_mapping.h"
+
+namespace afterglow {
+namespace {
+
+using namespace reference;
+
+std::string text(const Rgb& c) { return fmt::format("{{ {}, {}, {} }}", c.r, c.g, c.b); }
+
+EffectCase balanced(double temperature, double tint) {
+  return {fmt::format("fx.white_balance {{ temperature = {}, tint = {} }}", temperature, tint),
+          [=](const Scene& s) { return white_balance(s.source, temperature, tint); }};
+}
+
+EffectCase mixed(const ChannelMix& m) {
+  static constexpr const char* kNames[] = {"red", "green", "blue"};
+  std::string settings;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) settings += fmt::format("{}_out_{}_in = {}, ", kNames[i], kNames[j], m[i][j]);
+  return {"fx.channel_mixer { " + settings + "}", [=](const Scene& s) { return channel_mixer(s.source, m); }};
+}
+
+EffectCase toned(const SplitToning& t) {
+  const auto linear = [](const Rgb& c) { return Rgb(srgb_to_linear(c.r), srgb_to_linear(c.g), srgb_to_linear(c.b)); };
+  return {fmt::format("fx.split_toning {{ shadows = {}, highlights = {}, balance = {} }}", text(linear(t.shadows)),
+                      text(linear(t.highlights)), t.balance),
+          [=](const Scene& s) { return split_toning(s.source, t); }};
+}
+
+EffectCase scaled(const ShadowsMidtonesHighlights& v) {
+  return {fmt::format("fx.shadows_midtones_highlights {{ shadows = {}, shadows_offset = {}, midtones = {}, "
+                      "midtones_offset = {}, highlights = {}, highlights_offset = {}, shadows_start = {}, shadows_end "
+                      "= {}, highlights_start = {}, highlights_end = {} }}",
+                      text(v.shadows), v.shadows_offset, text(v.midtones), v.midtones_offset, text(v.highlights),
+                      v.highlights_offset, v.shadows_start, v.shadows_end, v.highlights_start, v.highlights_end),
+          [=](const Scene& s) { return shadows_midtones_highlights(s.source, v); }};
+}
+
+EffectCase graded(const LiftGammaGain& v) {
+  return {fmt::format("fx.lift_gamma_gain {{ lift = {}, lift_offset = {}, gamma = {}, gamma_offset = {}, gain = {}, "
+                      "gain_offset = {} }}",
+                      text(v.lift), v.lift_offset, text(v.gamma), v.gamma_offset, text(v.gain), v.gain_offset),
+          [=](const Scene& s) { return lift_gamma_gain(s.source, v); }};
+}
+
+TEST_F(Effects, WhiteBalanceAgrees) {
+  agree_everywhere({balanced(30, 0), balanced(-100, 0), balanced(100, 100), balanced(12, -60)});
+  expect_skipped("fx.white_balance {}", "all settings are neutral");
+}
+
+TEST_F(Effects, WarmWhiteBalanceIsWarm) {
+  const Scene grey{"grey", DoubleImage(1, 1, Rgba(0.5, 0.5, 0.5, 1)), {}, {}};
+  const auto warm = run_stack("fx.white_balance { temperature = 50 }", grey, Way::plain).result;
+  EXPECT_GT(warm[0], warm[1]);
+  EXPECT_GT(warm[1], warm[2]);
+  const auto green = run_stack("fx.white_balance { tint = -50 }", grey, Way::plain).result;
+  EXPECT_GT(green[1], green[0]);
+}
+
+TEST_F(Effects, ChannelMixerAgrees) {
+  agree_everywhere({mixed({{{0, 100, 0}, {0, 0, 100}, {100, 0, 0}}}),
+                    mixed({{{30, 59, 11}, {30, 59, 11}, {30, 59, 11}}}),
+                    mixed({{{140, -20, -20}, {0, 100, 0}, {-50, 0, 200}}})});
+  expect_skipped("fx.channel_mixer {}", "all settings are neutral");
+}
+
+TEST_F(Effects, SplitToningAgrees) {
+  agree_everywhere({toned({.shadows = {0.2, 0.4, 0.7}, .highlights = {0.8, 0.6, 0.3}}),
+                    toned({.shadows = {0.5, 0.5, 0.8}, .balance = 60}),
+                    toned({.highlights = {1, 0, 0.4}, .balance = -30})});
+  expect_skipped("fx.split_toning {}", "both tints are grey");
+  expect_skipped("fx.split_toning { shadows = \"#808080\", highlights = \"#808080\" }", "both tints are grey");
+}
+
+TEST_F(Effects, ShadowsMidtonesHighlightsAgree) {
+  agree_everywhere({scaled({.shadows = {0.7, 0.9, 1.3}, .highlights = {1.2, 1.05, 0.8}}),
+                    scaled({.shadows_offset = 0.2, .midtones_offset = -0.3, .highlights_offset = -1}),
+                    scaled({.midtones = {0, 2, 1},
+                            .shadows_start = 0.1,
+                            .shadows_end = 0.9,
+                            .highlights_start = 0.4,
+                            .highlights_end = 8})});
+  expect_skipped("fx.shadows_midtones_highlights {}", "all factors are 1");
+  expect_skipped("fx.shadows_midtones_highlights { shadows_end = 0.5 }", "all factors are 1");
+}
+
+TEST_F(Effects, LiftGammaGainAgree) {
+  agree_everywhere({graded({.lift = {0.9, 1, 1.3}, .gamma = {1.1, 1, 0.9}, .gain = {1.2, 1, 0.7}}),
+                    graded({.lift_offset = 0.05}), graded({.gamma_offset = 0.4, .gain_offset = -0.3}),
+                    graded({.gamma_offset = -0.5, .gain_offset = 0.8})});
+  expect_skipped("fx.lift_gamma_gain {}", "all settings are neutral");
+  expect_skipped("fx.lift_gamma_gain { gain = { 0.5, 0.5, 0.5 } }",
+                 "all settings are neutral");  // a grey is the middle
+}
+
+TEST_F(Effects, AWholeGradeIsOneKernel) {
+  const char* entries =
+      "fx.white_balance { temperature = 20 }, fx.split_toning { shadows = \"#305080\" }, "
+      "fx.channel_mixer { red_out_green_in = 10 }, fx.shadows_midtones_highlights { shadows_offset = 0.05 }, "
+      "fx.lift_gamma_gain { gamma_offset = 0.1 }, fx.tone_mapping { mode = \"neutral\" }, "
+      "fx.color_adjustments { contrast = 10, saturation = 10 }";
+  const auto scene = neon_scene({160, 90}, 560, 330);
+  const Made plain = run_stack(entries, scene, Way::plain), joined = run_stack(entries, scene, Way::joined);
+  EXPECT_EQ(plain.kernels, 7u);
+  EXPECT_EQ(joined.kernels, 1u);
+  EXPECT_TRUE(agrees(joined.result, from_floats(plain.result.data(), plain.size, 4), kJoined, kRgba));
+}
+
+}  // namespace
+}  // namespace afterglow

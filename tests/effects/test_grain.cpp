@@ -1,0 +1,64 @@
+// Film grain: the oracle to the bit of its noise, and what makes it grain.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cases.h"
+#include "reference/grain.h"
+
+namespace afterglow {
+namespace {
+
+using namespace reference;
+
+EffectCase grained(const FilmGrain& v) {
+  return {fmt::format("fx.film_grain {{ intensity = {}, response = {}, size = {}, colored = {}, seed = {} }}",
+                      v.intensity, v.response, v.size, v.colored, v.seed),
+          [=](const Scene& s) {
+            auto settings = v;
+            settings.frame = static_cast<std::uint32_t>(s.frame);
+            return film_grain(s.source, settings);
+          }};
+}
+
+/// A picture of one grey, frame by frame.
+std::vector<float> grain_of(double frame, const char* entries = "fx.film_grain { intensity = 1, response = 0 }") {
+  return run_stack(entries, {"grey", DoubleImage(128, 128, Rgba(0.25, 0.25, 0.25, 1)), {}, {}, frame}, Way::plain)
+      .result;
+}
+
+TEST_F(Effects, FilmGrainAgrees) {
+  agree_everywhere({grained({}), grained({.intensity = 1, .response = 0, .colored = 1, .seed = 7}),
+                    grained({.intensity = 0.7, .response = 1, .size = 2.3, .colored = 0.4}),
+                    grained({.size = 1.5, .seed = 2147483647})});
+  expect_skipped("fx.film_grain { intensity = 0 }", "intensity is 0");
+}
+
+TEST_F(Effects, FilmGrainDependsOnTheFrameAlone) {
+  const auto first = grain_of(1), second = grain_of(2);
+  EXPECT_NE(first, second);
+  EXPECT_EQ(first, grain_of(1));
+  EXPECT_NE(first, grain_of(1, "fx.film_grain { intensity = 1, response = 0, seed = 1 }"));
+}
+
+TEST_F(Effects, FilmGrainHasMeanOneAndItsDeviationAtEverySize) {
+  for (const char* entries :
+       {"fx.film_grain { intensity = 1, response = 0 }", "fx.film_grain { intensity = 1, response = 0, size = 1.7 }"}) {
+    double sum = 0, squares = 0;
+    constexpr int kFrames = 8;
+    for (int frame = 1; frame <= kFrames; ++frame) {
+      const auto pixels = grain_of(frame, entries);
+      for (std::size_t i = 0; i < pixels.size(); i += 4) {
+        const double noise = pixels[i] / 0.25 - 1;
+        sum += noise;
+        squares += noise * noise;
+      }
+    }
+    constexpr double kCount = 128.0 * 128 * kFrames;
+    EXPECT_NEAR(sum / kCount, 0, 0.005) << entries;
+    EXPECT_NEAR(std::sqrt(squares / kCount), 0.25, 0.005) << entries;
+  }
+}
+
+}  // namespace
+}  // namespace afterglow
