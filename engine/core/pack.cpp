@@ -148,17 +148,18 @@ Result<fs::path> open_zip(const fs::path& path, const fs::path& cache, const Pac
   if (!zip) return refused(path, "it is no zip");
   AFTERGLOW_TRY(const std::vector<Entry> entries, list_entries(zip.get(), path, limits));
 
-  const fs::path home = cache / "packs" / hash_text(*bytes).hex();
   // The zip's own name comes last, so that messages about its files read like NAME.zip/effects/….lua.
-  const fs::path folder = home / path.filename();
+  const std::string name = path.filename().string();
+  const fs::path home = cache / "packs" / Hasher().add(name).add(*bytes).finish().hex();
+  const fs::path folder = home / name;
   if (is_whole(folder, entries)) return folder;
   const fs::path temporary = temporary_beside(home);
   std::error_code ec;
-  fs::create_directories(temporary / path.filename(), ec);
-  auto done = unpack_all(zip.get(), path, entries, temporary / path.filename());
+  fs::create_directories(temporary / name, ec);
+  auto done = unpack_all(zip.get(), path, entries, temporary / name);
   if (done) {
     fs::rename(temporary, home, ec);
-    if (ec && !is_whole(folder, entries)) {  // left damaged, or unpacked before under another name
+    if (ec && !is_whole(folder, entries)) {  // left damaged
       fs::remove_all(home, ec);
       fs::rename(temporary, home, ec);
     }

@@ -11,216 +11,216 @@
 
 ---Long horizontal flares from bright lights, as of an anamorphic lens.
 ---@class afterglow.settings.anamorphic_streaks : afterglow.EntryKeys
----@field threshold? number  Brightness (largest channel) from which light streaks; linear. 0…1000000, default 2
----@field stretch? number  Length of the streaks: the share that each level takes from the coarser one. 0…1, default 0.75
----@field intensity? number  Factor of the streaks. 0: none. 0…100, default 0.4
----@field tint? number[]|string  Colour of the streaks. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.55, 0.55, 1}
+---@field threshold? number|afterglow.Moving  Brightness (largest channel) from which light streaks; linear. 0…1000000, default 2
+---@field stretch? number|afterglow.Moving  Length of the streaks: the share that each level takes from the coarser one. 0…1, default 0.75
+---@field intensity? number|afterglow.Moving  Factor of the streaks. 0: none. 0…100, default 0.4
+---@field tint? number[]|string|afterglow.Moving  Colour of the streaks. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.55, 0.55, 1}
 
 ---Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.
 ---@class afterglow.settings.bloom : afterglow.EntryKeys
----@field mode? "additive"|"scattering"  additive: glow is added, the picture gets brighter. scattering: light is spread as in a lens, its sum stays. default "additive"
----@field max_iterations? integer  Most levels of the pyramid; each doubles the reach. 0: no bloom. integer 0…16, default 16
----@field downscale_limit? integer  No level gets smaller than this on either side; pictures below four times this get no bloom. integer ≥ 1 px, default 2
----@field threshold? number  Brightness (largest channel) from which light blooms, as a display (gamma) value: 1 is white, 2 is linear 4.59. ≥ 0, default 1
----@field knee? number  Softness of the threshold: blooming begins at (1 - knee) of the linear threshold and is full from (1 + knee) on. 0…1, default 0.5
----@field intensity? number  Strength. additive: factor of the glow. scattering: share of the spread light, held to 0.95. 0: no bloom. ≥ 0, default 0.2
----@field scatter? number  Scattering mode: how far light spreads, as the share that each level takes from the coarser ones. 0.05…0.95, default 0.7
----@field bicubic_upsampling? boolean  Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow. default true
----@field fade_fireflies? boolean  Weigh down isolated very bright pixels before the pyramid, so that they do not flicker. default false
+---@field mode? "additive"|"scattering"|afterglow.OfTime  additive: glow is added, the picture gets brighter. scattering: light is spread as in a lens, its sum stays. default "additive"
+---@field max_iterations? integer|afterglow.Moving  Most levels of the pyramid; each doubles the reach. 0: no bloom. integer 0…16, default 16
+---@field downscale_limit? integer|afterglow.Moving  No level gets smaller than this on either side; pictures below four times this get no bloom. integer ≥ 1 px, default 2
+---@field threshold? number|afterglow.Moving  Brightness (largest channel) from which light blooms, as a display (gamma) value: 1 is white, 2 is linear 4.59. ≥ 0, default 1
+---@field knee? number|afterglow.Moving  Softness of the threshold: blooming begins at (1 - knee) of the linear threshold and is full from (1 + knee) on. 0…1, default 0.5
+---@field intensity? number|afterglow.Moving  Strength. additive: factor of the glow. scattering: share of the spread light, held to 0.95. 0: no bloom. ≥ 0, default 0.2
+---@field scatter? number|afterglow.Moving  Scattering mode: how far light spreads, as the share that each level takes from the coarser ones. 0.05…0.95, default 0.7
+---@field bicubic_upsampling? boolean|afterglow.OfTime  Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow. default true
+---@field fade_fireflies? boolean|afterglow.OfTime  Weigh down isolated very bright pixels before the pyramid, so that they do not flicker. default false
 
 ---Blurs the picture as a lens out of focus: bright points become discs or polygons.
 ---@class afterglow.settings.bokeh_blur : afterglow.EntryKeys
----@field radius? number  Radius of the iris. 0: none. 0…64 px, default 8
----@field blades? integer  Sides of the iris, 3 or more; fewer: round. integer 0…12, default 0
----@field rotation? number  Turns the iris. -180…180 degrees, default 0
----@field highlights? number  Makes bright points count for more, where the picture lost their true light (8 bits); HDR pictures need none. 0…50, default 0
+---@field radius? number|afterglow.Moving  Radius of the iris. 0: none. 0…64 px, default 8
+---@field blades? integer|afterglow.Moving  Sides of the iris, 3 or more; fewer: round. integer 0…12, default 0
+---@field rotation? number|afterglow.Moving  Turns the iris. -180…180 degrees, default 0
+---@field highlights? number|afterglow.Moving  Makes bright points count for more, where the picture lost their true light (8 bits); HDR pictures need none. 0…50, default 0
 
 ---A simple, punchy glow: hard linear threshold, four-sample blur down and up, added to the picture.
 ---@class afterglow.settings.box_bloom : afterglow.EntryKeys
----@field threshold? number  Brightness from which light glows; linear, without a knee. 0…3, default 0.8
----@field blur_iterations? integer  Levels of blur; each doubles the reach. 0 and 1 add the thresholded light unblurred. integer 0…7, default 5
----@field pattern? "plus"|"box"  Where the four samples lie: beside, above and below, or at the corners. default "plus"
----@field brightness? "max"|"luma"  What the threshold compares: the largest channel, or 0.3 R + 0.59 G + 0.11 B. default "max"
+---@field threshold? number|afterglow.Moving  Brightness from which light glows; linear, without a knee. 0…3, default 0.8
+---@field blur_iterations? integer|afterglow.Moving  Levels of blur; each doubles the reach. 0 and 1 add the thresholded light unblurred. integer 0…7, default 5
+---@field pattern? "plus"|"box"|afterglow.OfTime  Where the four samples lie: beside, above and below, or at the corners. default "plus"
+---@field brightness? "max"|"luma"|afterglow.OfTime  What the threshold compares: the largest channel, or 0.3 R + 0.59 G + 0.11 B. default "max"
 
 ---Mixes red, green and blue into new channels; what would be negative is black.
 ---@class afterglow.settings.channel_mixer : afterglow.EntryKeys
----@field red_out_red_in? number  How much of red goes into red. -200…200 %, default 100
----@field red_out_green_in? number  How much of green goes into red. -200…200 %, default 0
----@field red_out_blue_in? number  How much of blue goes into red. -200…200 %, default 0
----@field green_out_red_in? number  How much of red goes into green. -200…200 %, default 0
----@field green_out_green_in? number  How much of green goes into green. -200…200 %, default 100
----@field green_out_blue_in? number  How much of blue goes into green. -200…200 %, default 0
----@field blue_out_red_in? number  How much of red goes into blue. -200…200 %, default 0
----@field blue_out_green_in? number  How much of green goes into blue. -200…200 %, default 0
----@field blue_out_blue_in? number  How much of blue goes into blue. -200…200 %, default 100
+---@field red_out_red_in? number|afterglow.Moving  How much of red goes into red. -200…200 %, default 100
+---@field red_out_green_in? number|afterglow.Moving  How much of green goes into red. -200…200 %, default 0
+---@field red_out_blue_in? number|afterglow.Moving  How much of blue goes into red. -200…200 %, default 0
+---@field green_out_red_in? number|afterglow.Moving  How much of red goes into green. -200…200 %, default 0
+---@field green_out_green_in? number|afterglow.Moving  How much of green goes into green. -200…200 %, default 100
+---@field green_out_blue_in? number|afterglow.Moving  How much of blue goes into green. -200…200 %, default 0
+---@field blue_out_red_in? number|afterglow.Moving  How much of red goes into blue. -200…200 %, default 0
+---@field blue_out_green_in? number|afterglow.Moving  How much of green goes into blue. -200…200 %, default 0
+---@field blue_out_blue_in? number|afterglow.Moving  How much of blue goes into blue. -200…200 %, default 100
 
 ---Colour fringes that grow towards the corners.
 ---@class afterglow.settings.chromatic_aberration : afterglow.EntryKeys
----@field intensity? number  Length of the fringes; 1 is a thirtieth of the picture at the middle of its sides. 0: none. 0…1, default 0.3
----@field samples? integer  Reads along a fringe: 3 are three sharp pictures, more blend into a spectrum. integer 3…24, default 6
+---@field intensity? number|afterglow.Moving  Length of the fringes; 1 is a thirtieth of the picture at the middle of its sides. 0: none. 0…1, default 0.3
+---@field samples? integer|afterglow.Moving  Reads along a fringe: 3 are three sharp pictures, more blend into a spectrum. integer 3…24, default 6
 
 ---Exposure, contrast, colour filter, hue and saturation.
 ---@class afterglow.settings.color_adjustments : afterglow.EntryKeys
----@field post_exposure? number  Brightness in stops: light times 2^EV. EV, default 0
----@field contrast? number  Contrast around middle grey (linear 0.22), in Alexa LogC space. -100 leaves that grey alone. -100…100 %, default 0
----@field color_filter? number[]|string  Light is multiplied by this; may exceed 1. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
----@field hue_shift? number  Turns every hue; 120 takes red to green. -180…180 degrees, default 0
----@field saturation? number  -100 leaves luminance (Rec.709) alone, 100 doubles the distance from it. -100…100 %, default 0
+---@field post_exposure? number|afterglow.Moving  Brightness in stops: light times 2^EV. EV, default 0
+---@field contrast? number|afterglow.Moving  Contrast around middle grey (linear 0.22), in Alexa LogC space. -100 leaves that grey alone. -100…100 %, default 0
+---@field color_filter? number[]|string|afterglow.Moving  Light is multiplied by this; may exceed 1. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field hue_shift? number|afterglow.Moving  Turns every hue; 120 takes red to green. -180…180 degrees, default 0
+---@field saturation? number|afterglow.Moving  -100 leaves luminance (Rec.709) alone, 100 doubles the distance from it. -100…100 %, default 0
 
 ---Leaves green light alone, scaled; a test of the pipeline, like a night-vision tube.
 ---@class afterglow.settings.color_blit : afterglow.EntryKeys
----@field intensity? number  Factor of green; 0: the effect does not run. 0…2, default 0
+---@field intensity? number|afterglow.Moving  Factor of green; 0: the effect does not run. 0…2, default 0
 
 ---Blurs what is out of focus, by depth, as a camera with this lens does.
 ---@class afterglow.settings.depth_of_field : afterglow.EntryKeys
----@field focus_distance? number  Distance of what is sharp. 0.01…1000000 m, default 10
----@field aperture? number  The smaller, the more blur. 0.1…64 f-number, default 5.6
----@field focal_length? number  The longer, the more blur. 1…1000 mm, default 50
----@field sensor_height? number  Height of the sensor or film: 24 is full frame. 1…200 mm, default 24
----@field max_radius? number  No blur gets wider than this. 1…64 px, default 16
----@field samples? integer  Reads for each pixel: more are smoother, and dearer. integer 8…512, default 96
----@field depth_space? "linear"|"device"  What the depth input holds: distance along the viewing axis in m, or device depth 0-1, made linear with near, far and reversed_z. default "linear"
----@field near? number  Near plane, for device depth. ≥ 1e-06 m, default 0.3
----@field far? number  Far plane, for device depth. ≥ 1e-06 m, default 1000
----@field reversed_z? boolean  Device depth is 1 at the near plane. default true
+---@field focus_distance? number|afterglow.Moving  Distance of what is sharp. 0.01…1000000 m, default 10
+---@field aperture? number|afterglow.Moving  The smaller, the more blur. 0.1…64 f-number, default 5.6
+---@field focal_length? number|afterglow.Moving  The longer, the more blur. 1…1000 mm, default 50
+---@field sensor_height? number|afterglow.Moving  Height of the sensor or film: 24 is full frame. 1…200 mm, default 24
+---@field max_radius? number|afterglow.Moving  No blur gets wider than this. 1…64 px, default 16
+---@field samples? integer|afterglow.Moving  Reads for each pixel: more are smoother, and dearer. integer 8…512, default 96
+---@field depth_space? "linear"|"device"|afterglow.OfTime  What the depth input holds: distance along the viewing axis in m, or device depth 0-1, made linear with near, far and reversed_z. default "linear"
+---@field near? number|afterglow.Moving  Near plane, for device depth. ≥ 1e-06 m, default 0.3
+---@field far? number|afterglow.Moving  Far plane, for device depth. ≥ 1e-06 m, default 1000
+---@field reversed_z? boolean|afterglow.OfTime  Device depth is 1 at the near plane. default true
 
 ---Smears the picture along one direction, as a moving camera does.
 ---@class afterglow.settings.directional_blur : afterglow.EntryKeys
----@field distance? number  Length of the smear. 0: none. 0…1000 px, default 24
----@field angle? number  Direction: 0 across, 90 up and down, 45 rising to the right. -180…180 degrees, default 0
+---@field distance? number|afterglow.Moving  Length of the smear. 0: none. 0…1000 px, default 24
+---@field angle? number|afterglow.Moving  Direction: 0 across, 90 up and down, 45 rising to the right. -180…180 degrees, default 0
 
 ---A wide, smooth, cheap blur of the whole picture.
 ---@class afterglow.settings.dual_kawase : afterglow.EntryKeys
----@field iterations? integer  Halvings of the picture; each doubles the blur. 0: none. integer 0…12, default 3
----@field offset? number  Distance of the reads: widens the blur smoothly between two counts of iterations; large ones show a pattern. 0…3, default 1
+---@field iterations? integer|afterglow.Moving  Halvings of the picture; each doubles the blur. 0: none. integer 0…12, default 3
+---@field offset? number|afterglow.Moving  Distance of the reads: widens the blur smoothly between two counts of iterations; large ones show a pattern. 0…3, default 1
 
 ---Draws lines where brightness changes: Sobel, Scharr or Roberts.
 ---@class afterglow.settings.edge_detection : afterglow.EntryKeys
----@field operator? "sobel"|"scharr"|"roberts"  sobel: 3x3, the usual one. scharr: 3x3, treats all directions alike. roberts: 2x2, thin lines. default "sobel"
----@field intensity? number  Factor of the gradient. 0: no lines. 0…100, default 2
----@field threshold? number  Gradients up to this draw nothing. 0…1, default 0.05
----@field color? number[]|string  Colour of the lines. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
----@field background? number[]|string  Colour between the lines. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
----@field background_opacity? number  0: lines over the picture. 1: lines over the background alone. 0…1, default 0
+---@field operator? "sobel"|"scharr"|"roberts"|afterglow.OfTime  sobel: 3x3, the usual one. scharr: 3x3, treats all directions alike. roberts: 2x2, thin lines. default "sobel"
+---@field intensity? number|afterglow.Moving  Factor of the gradient. 0: no lines. 0…100, default 2
+---@field threshold? number|afterglow.Moving  Gradients up to this draw nothing. 0…1, default 0.05
+---@field color? number[]|string|afterglow.Moving  Colour of the lines. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
+---@field background? number[]|string|afterglow.Moving  Colour between the lines. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field background_opacity? number|afterglow.Moving  0: lines over the picture. 1: lines over the background alone. 0…1, default 0
 
 ---Grain of film: fine noise, new in each frame; best after tone mapping.
 ---@class afterglow.settings.film_grain : afterglow.EntryKeys
----@field intensity? number  Strength; at 1 the grain of blacks is a quarter of their light. 0: none. 0…1, default 0.3
----@field response? number  How much less grain there is in bright places: 0 equally much, 1 none in white. 0…1, default 0.8
----@field size? number  Size of a grain. 1…16 px, default 1
----@field colored? number  0: grey grain as of black-and-white film. 1: each channel has its own. 0…1, default 0
----@field seed? integer  Another number, other grain. integer ≥ 0, default 0
+---@field intensity? number|afterglow.Moving  Strength; at 1 the grain of blacks is a quarter of their light. 0: none. 0…1, default 0.3
+---@field response? number|afterglow.Moving  How much less grain there is in bright places: 0 equally much, 1 none in white. 0…1, default 0.8
+---@field size? number|afterglow.Moving  Size of a grain. 1…16 px, default 1
+---@field colored? number|afterglow.Moving  0: grey grain as of black-and-white film. 1: each channel has its own. 0…1, default 0
+---@field seed? integer|afterglow.Moving  Another number, other grain. integer ≥ 0, default 0
 
 ---Fast approximate anti-aliasing: smooths jagged edges; after tone mapping.
 ---@class afterglow.settings.fxaa : afterglow.EntryKeys
----@field fixed_threshold? number  Contrast of luma below which nothing is done. 0.0312…0.0833, default 0.0833
----@field relative_threshold? number  The same as a share of the brightest neighbour. 0.063…0.333, default 0.166
----@field subpixel_blending? number  How much single pixels and thin lines are smoothed; softens the picture. 0…1, default 0.75
----@field quality? "low"|"medium"|"high"  How far the ends of an edge are looked for: low 6.5 pixels, medium and high 18.5, high with finer steps. default "high"
+---@field fixed_threshold? number|afterglow.Moving  Contrast of luma below which nothing is done. 0.0312…0.0833, default 0.0833
+---@field relative_threshold? number|afterglow.Moving  The same as a share of the brightest neighbour. 0.063…0.333, default 0.166
+---@field subpixel_blending? number|afterglow.Moving  How much single pixels and thin lines are smoothed; softens the picture. 0…1, default 0.75
+---@field quality? "low"|"medium"|"high"|afterglow.OfTime  How far the ends of an edge are looked for: low 6.5 pixels, medium and high 18.5, high with finer steps. default "high"
 
 ---Scan lines that jump, a shaking picture, colours that part.
 ---@class afterglow.settings.glitch : afterglow.EntryKeys
----@field scan_line_jitter? number  How many scan lines jump sideways, and how far. 0…1, default 0.3
----@field line_height? integer  Height of a scan line. integer 1…1024 px, default 2
----@field horizontal_shake? number  How far the whole picture jumps sideways in each frame; 1: up to a tenth of it. 0…1, default 0
----@field rgb_split? number  How far red and blue part; 1: up to a twenty-fifth of the picture each way. 0…1, default 0.1
----@field vertical_roll? number  Speed at which the picture rolls; above 0 upwards. -30…30 pictures/s, default 0
----@field seed? integer  Another number, another pattern. integer ≥ 0, default 0
+---@field scan_line_jitter? number|afterglow.Moving  How many scan lines jump sideways, and how far. 0…1, default 0.3
+---@field line_height? integer|afterglow.Moving  Height of a scan line. integer 1…1024 px, default 2
+---@field horizontal_shake? number|afterglow.Moving  How far the whole picture jumps sideways in each frame; 1: up to a tenth of it. 0…1, default 0
+---@field rgb_split? number|afterglow.Moving  How far red and blue part; 1: up to a twenty-fifth of the picture each way. 0…1, default 0.1
+---@field vertical_roll? number|afterglow.Moving  Speed at which the picture rolls; above 0 upwards. -30…30 pictures/s, default 0
+---@field seed? integer|afterglow.Moving  Another number, another pattern. integer ≥ 0, default 0
 
 ---Dust on the lens that lights up around bright lights.
 ---@class afterglow.settings.lens_dirt : afterglow.EntryKeys
----@field intensity? number  Factor of the light that the dirt scatters. 0: none. 0…100, default 1
----@field threshold? number  Brightness (largest channel) from which light shows the dirt; linear. 0…1000000, default 1
----@field density? number  How much dirt there is. 0: none. 0…1, default 0.4
----@field size? number  Diameter of the largest spots, as a share of the picture's height. 0.005…0.5, default 0.06
----@field seed? integer  Another number, another lens. integer ≥ 0, default 0
+---@field intensity? number|afterglow.Moving  Factor of the light that the dirt scatters. 0: none. 0…100, default 1
+---@field threshold? number|afterglow.Moving  Brightness (largest channel) from which light shows the dirt; linear. 0…1000000, default 1
+---@field density? number|afterglow.Moving  How much dirt there is. 0: none. 0…1, default 0.4
+---@field size? number|afterglow.Moving  Diameter of the largest spots, as a share of the picture's height. 0.005…0.5, default 0.06
+---@field seed? integer|afterglow.Moving  Another number, another lens. integer ≥ 0, default 0
 
 ---Bends the picture as a wide lens (barrel) or a long one (pincushion) does.
 ---@class afterglow.settings.lens_distortion : afterglow.EntryKeys
----@field intensity? number  Above 0 a barrel, below 0 a pincushion. 0: none, but for the scale. -1…1, default 0.2
----@field x_multiplier? number  How much of it happens across. 0…1, default 1
----@field y_multiplier? number  How much of it happens down. 0…1, default 1
----@field center? number[]  The point that stays: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
----@field scale? number  Enlarges the result, to hide edges that were drawn in. 0.01…5, default 1
+---@field intensity? number|afterglow.Moving  Above 0 a barrel, below 0 a pincushion. 0: none, but for the scale. -1…1, default 0.2
+---@field x_multiplier? number|afterglow.Moving  How much of it happens across. 0…1, default 1
+---@field y_multiplier? number|afterglow.Moving  How much of it happens down. 0…1, default 1
+---@field center? number[]|afterglow.Moving  The point that stays: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
+---@field scale? number|afterglow.Moving  Enlarges the result, to hide edges that were drawn in. 0.01…5, default 1
 
 ---The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.
 ---@class afterglow.settings.lift_gamma_gain : afterglow.EntryKeys
----@field lift? number[]|string  Colour of lift; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
----@field lift_offset? number  Light added everywhere; shows most in the darks. -1…1, default 0
----@field gamma? number[]|string  Colour of gamma; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
----@field gamma_offset? number  Above 0 lightens the middle, below 0 darkens it; black stays. -1…1, default 0
----@field gain? number[]|string  Colour of gain; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
----@field gain_offset? number  Light times 1 + this; shows most in the brights. -1…1, default 0
+---@field lift? number[]|string|afterglow.Moving  Colour of lift; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field lift_offset? number|afterglow.Moving  Light added everywhere; shows most in the darks. -1…1, default 0
+---@field gamma? number[]|string|afterglow.Moving  Colour of gamma; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field gamma_offset? number|afterglow.Moving  Above 0 lightens the middle, below 0 darkens it; black stays. -1…1, default 0
+---@field gain? number[]|string|afterglow.Moving  Colour of gain; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field gain_offset? number|afterglow.Moving  Light times 1 + this; shows most in the brights. -1…1, default 0
 
 ---Ink lines along edges of depth, of normals, or of both.
 ---@class afterglow.settings.outline : afterglow.EntryKeys
----@field source? "depth"|"device_depth"|"normals"|"mixed"  What is compared: distance, stored device depth as it is, normals, or distance and normals. default "mixed"
----@field difference? "offset"|"derivative"  offset: with the pixels `width` to the right and below. derivative: within 2x2 quads, as GPU derivatives do; lines are dashed. default "offset"
----@field depth_space? "linear"|"device"  What the depth input holds: distance along the viewing axis, or device depth 0-1, made linear with near, far and reversed_z. default "linear"
----@field near? number  Near plane, for device depth. ≥ 1e-06 scene units, default 0.3
----@field far? number  Far plane, for device depth. ≥ 1e-06 scene units, default 1000
----@field reversed_z? boolean  Device depth is 1 at the near plane. default true
----@field combine? "weighted"|"max"  mixed: weighted sum of both edges, or the stronger one. default "weighted"
----@field normal_factor? number  mixed, weighted: share of normals; the rest is depth. 0…1, default 0.5
----@field width? number  offset: distance of the compared pixels; rounded to whole pixels after fading. ≥ 0 px, default 1
----@field fade_distance? number  offset: where the width has shrunk to 0. Without a depth input lines don't fade. ≥ 1e-06 scene units, default 1000
----@field depth_scale? number  Factor of depth differences: edges per scene unit. default 1
----@field normal_scale? number  Factor of normal differences; a right angle differs by 1.41. default 1
----@field divide_factor? number  The edge is divided by this. ≥ 1e-06, default 1
----@field contrast? number  Steepness around an edge of one half: 1 leaves it, high values make lines hard and drop weak ones. ≥ 0, default 1
----@field color? number[]|string  Ink. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
----@field blend? "lerp"|"add"  lerp: ink covers the picture. add: ink is light that is added. default "lerp"
+---@field source? "depth"|"device_depth"|"normals"|"mixed"|afterglow.OfTime  What is compared: distance, stored device depth as it is, normals, or distance and normals. default "mixed"
+---@field difference? "offset"|"derivative"|afterglow.OfTime  offset: with the pixels `width` to the right and below. derivative: within 2x2 quads, as GPU derivatives do; lines are dashed. default "offset"
+---@field depth_space? "linear"|"device"|afterglow.OfTime  What the depth input holds: distance along the viewing axis, or device depth 0-1, made linear with near, far and reversed_z. default "linear"
+---@field near? number|afterglow.Moving  Near plane, for device depth. ≥ 1e-06 scene units, default 0.3
+---@field far? number|afterglow.Moving  Far plane, for device depth. ≥ 1e-06 scene units, default 1000
+---@field reversed_z? boolean|afterglow.OfTime  Device depth is 1 at the near plane. default true
+---@field combine? "weighted"|"max"|afterglow.OfTime  mixed: weighted sum of both edges, or the stronger one. default "weighted"
+---@field normal_factor? number|afterglow.Moving  mixed, weighted: share of normals; the rest is depth. 0…1, default 0.5
+---@field width? number|afterglow.Moving  offset: distance of the compared pixels; rounded to whole pixels after fading. ≥ 0 px, default 1
+---@field fade_distance? number|afterglow.Moving  offset: where the width has shrunk to 0. Without a depth input lines don't fade. ≥ 1e-06 scene units, default 1000
+---@field depth_scale? number|afterglow.Moving  Factor of depth differences: edges per scene unit. default 1
+---@field normal_scale? number|afterglow.Moving  Factor of normal differences; a right angle differs by 1.41. default 1
+---@field divide_factor? number|afterglow.Moving  The edge is divided by this. ≥ 1e-06, default 1
+---@field contrast? number|afterglow.Moving  Steepness around an edge of one half: 1 leaves it, high values make lines hard and drop weak ones. ≥ 0, default 1
+---@field color? number[]|string|afterglow.Moving  Ink. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
+---@field blend? "lerp"|"add"|afterglow.OfTime  lerp: ink covers the picture. add: ink is light that is added. default "lerp"
 
 ---Large square pixels, each the mean of what it covers.
 ---@class afterglow.settings.pixelate : afterglow.EntryKeys
----@field size? integer  Side of a square. 1: the picture as it is. integer 1…1024 px, default 8
+---@field size? integer|afterglow.Moving  Side of a square. 1: the picture as it is. integer 1…1024 px, default 8
 
 ---Streaks towards a centre, as of a zoom or of speed.
 ---@class afterglow.settings.radial_blur : afterglow.EntryKeys
----@field intensity? number  Share of the way to the centre that is smeared. 0: none. 0…1, default 0.15
----@field samples? integer  Reads on the way; few show as copies of bright spots. integer 2…128, default 16
----@field center? number[]  The point that stays sharp: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
+---@field intensity? number|afterglow.Moving  Share of the way to the centre that is smeared. 0: none. 0…1, default 0.15
+---@field samples? integer|afterglow.Moving  Reads on the way; few show as copies of bright spots. integer 2…128, default 16
+---@field center? number[]|afterglow.Moving  The point that stays sharp: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
 
 ---Colours and brightens shadows, midtones and highlights, each by itself.
 ---@class afterglow.settings.shadows_midtones_highlights : afterglow.EntryKeys
----@field shadows? number[]|string  Colour by which shadows are multiplied. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
----@field shadows_offset? number  Added to the factor of shadows; four times as much above 0, so that 1 is plenty of light and -1 black. -1…1, default 0
----@field midtones? number[]|string  Colour by which midtones are multiplied. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
----@field midtones_offset? number  Added to the factor of midtones; four times as much above 0, so that 1 is plenty of light and -1 black. -1…1, default 0
----@field highlights? number[]|string  Colour by which highlights are multiplied. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
----@field highlights_offset? number  Added to the factor of highlights; four times as much above 0, so that 1 is plenty of light and -1 black. -1…1, default 0
----@field shadows_start? number  Luminance from which shadows fade into midtones. 0…100, default 0
----@field shadows_end? number  Luminance from which nothing counts as shadow. 0…100, default 0.3
----@field highlights_start? number  Luminance from which midtones fade into highlights. 0…100, default 0.55
----@field highlights_end? number  Luminance from which all is highlight. 0…100, default 1
+---@field shadows? number[]|string|afterglow.Moving  Colour by which shadows are multiplied. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field shadows_offset? number|afterglow.Moving  Added to the factor of shadows; four times as much above 0, so that 1 is plenty of light and -1 black. -1…1, default 0
+---@field midtones? number[]|string|afterglow.Moving  Colour by which midtones are multiplied. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field midtones_offset? number|afterglow.Moving  Added to the factor of midtones; four times as much above 0, so that 1 is plenty of light and -1 black. -1…1, default 0
+---@field highlights? number[]|string|afterglow.Moving  Colour by which highlights are multiplied. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field highlights_offset? number|afterglow.Moving  Added to the factor of highlights; four times as much above 0, so that 1 is plenty of light and -1 black. -1…1, default 0
+---@field shadows_start? number|afterglow.Moving  Luminance from which shadows fade into midtones. 0…100, default 0
+---@field shadows_end? number|afterglow.Moving  Luminance from which nothing counts as shadow. 0…100, default 0.3
+---@field highlights_start? number|afterglow.Moving  Luminance from which midtones fade into highlights. 0…100, default 0.55
+---@field highlights_end? number|afterglow.Moving  Luminance from which all is highlight. 0…100, default 1
 
 ---Contrast-adaptive sharpening of fine detail; best after tone mapping.
 ---@class afterglow.settings.sharpen : afterglow.EntryKeys
----@field intensity? number  Share of the sharpened picture. 0: none. 0…1, default 0.6
----@field contrast? number  How much is sharpened: 0 CAS at its softest, 1 at its strongest. 0…1, default 0
+---@field intensity? number|afterglow.Moving  Share of the sharpened picture. 0: none. 0…1, default 0.6
+---@field contrast? number|afterglow.Moving  How much is sharpened: 0 CAS at its softest, 1 at its strongest. 0…1, default 0
 
 ---Tints shadows and highlights in colours of their own.
 ---@class afterglow.settings.split_toning : afterglow.EntryKeys
----@field shadows? number[]|string  Tint of the shadows; #808080 leaves them alone. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.21404114, 0.21404114, 0.21404114}
----@field highlights? number[]|string  Tint of the highlights; #808080 leaves them alone. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.21404114, 0.21404114, 0.21404114}
----@field balance? number  Above 0 more of the picture counts as highlights, below 0 as shadows. -100…100 %, default 0
+---@field shadows? number[]|string|afterglow.Moving  Tint of the shadows; #808080 leaves them alone. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.21404114, 0.21404114, 0.21404114}
+---@field highlights? number[]|string|afterglow.Moving  Tint of the highlights; #808080 leaves them alone. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.21404114, 0.21404114, 0.21404114}
+---@field balance? number|afterglow.Moving  Above 0 more of the picture counts as highlights, below 0 as shadows. -100…100 %, default 0
 
 ---Brings scene-linear light into display range.
 ---@class afterglow.settings.tone_mapping : afterglow.EntryKeys
----@field mode? "none"|"aces"|"neutral"|"reinhard"  Curve. aces: filmic contrast, bright colours turn white. neutral: Hable's curve, white at 4, hues kept. reinhard: x/(1+x), soft and flat. default "aces"
+---@field mode? "none"|"aces"|"neutral"|"reinhard"|afterglow.OfTime  Curve. aces: filmic contrast, bright colours turn white. neutral: Hable's curve, white at 4, hues kept. reinhard: x/(1+x), soft and flat. default "aces"
 
 ---Darkens or colours the picture towards its corners.
 ---@class afterglow.settings.vignette : afterglow.EntryKeys
----@field intensity? number  How far the darkness comes in. 0: none. 0…1, default 0.4
----@field smoothness? number  How gently the darkness begins. 0.01…1, default 0.4
----@field color? number[]|string  What the picture is multiplied by where the vignette is full. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
----@field center? number[]  The brightest point: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
----@field rounded? boolean  A circle, whatever the shape of the picture; else it is as wide and high as the picture. default false
+---@field intensity? number|afterglow.Moving  How far the darkness comes in. 0: none. 0…1, default 0.4
+---@field smoothness? number|afterglow.Moving  How gently the darkness begins. 0.01…1, default 0.4
+---@field color? number[]|string|afterglow.Moving  What the picture is multiplied by where the vignette is full. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
+---@field center? number[]|afterglow.Moving  The brightest point: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
+---@field rounded? boolean|afterglow.OfTime  A circle, whatever the shape of the picture; else it is as wide and high as the picture. default false
 
 ---Takes a colour cast away or adds one: temperature and tint.
 ---@class afterglow.settings.white_balance : afterglow.EntryKeys
----@field temperature? number  Above 0 warmer (yellow), below 0 colder (blue). -100…100, default 0
----@field tint? number  Above 0 towards magenta, below 0 towards green. -100…100, default 0
+---@field temperature? number|afterglow.Moving  Above 0 warmer (yellow), below 0 colder (blue). -100…100, default 0
+---@field tint? number|afterglow.Moving  Above 0 towards magenta, below 0 towards green. -100…100, default 0
 
 ---@class afterglow
 ---@field anamorphic_streaks fun(settings: afterglow.settings.anamorphic_streaks): afterglow.Entry  Long horizontal flares from bright lights, as of an anamorphic lens.
