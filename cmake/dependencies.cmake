@@ -16,6 +16,7 @@ set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRE
 pkg_check_modules(LUA REQUIRED IMPORTED_TARGET lua5.4-c++)  # built as C++: errors run destructors
 pkg_check_modules(SPIRV_CROSS REQUIRED IMPORTED_TARGET spirv-cross-c-shared)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(MINIZIP REQUIRED IMPORTED_TARGET minizip)
 # OpenEXR beside OpenImageIO: see engine/image/exr_file.h.
 find_package(OpenEXR REQUIRED)
 find_package(ZLIB REQUIRED)

@@ -18,6 +18,10 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@class afterglow.Entry        one effect of a stack, with its settings
 ---@class afterglow.Effect       what the file of an effect returns
 ---@class afterglow.SettingType  what a setting may be
+---@class afterglow.Volume       settings for a part of the scene
+---@class afterglow.Curve        a value over time
+---@alias afterglow.OfTime fun(t: { frame: number, time: number, fps: number }): any  a value as a function of time
+---@alias afterglow.Moving afterglow.Curve|afterglow.OfTime  a value over time
 
 ---An image of the pass graph. Images are never changed: a pass makes a new one.
 ---@class afterglow.Image
@@ -62,9 +66,35 @@ local fx = {}
 
 ---Makes the stack that a preset returns. Effects run by injection point, then `order`, then position in the list.
 ---`max_error` is the error that the executor may make for the sake of speed, by |x − exact| / (|exact| + 0.01).
----Errors: keys other than `name` and `max_error`, positions that hold no effect, two entries of one name.
----@type fun(stack: { name?: string, max_error?: number, [integer]: afterglow.Entry }): afterglow.Stack
+---`position` says where the picture is seen from, for volumes; `--at` goes before it.
+---Errors: other keys, positions that hold neither an effect nor a volume, two entries of one name.
+---@type fun(stack: { name?: string, max_error?: number, position?: number[]|afterglow.Moving, [integer]: afterglow.Entry|afterglow.Volume }): afterglow.Stack
 fx.stack = core.stack
+
+---The stack of another preset, found by name (beside this one, in `--path`, `AFTERGLOW_PATH`, the installation), with some of it
+---changed: `ENTRY = { SETTING = VALUE, … }` by an entry's name, or by an effect's for all its entries; `enabled = false` leaves one
+---out. Items without a name are added behind the others. What that preset brings along (effects/, shaders/) is found too.
+---Errors: unknown presets, entries and settings; values that a setting does not allow; a preset that extends itself.
+---@type fun(preset: string, changes?: table): afterglow.Stack
+fx.extend = core.extend
+
+---Settings that hold in a part of the scene, or everywhere. Volumes are blended in by ascending `priority` (default 0), equal ones
+---in the order of the list, with factor = clamp01(weight), times 1 − d²/B² at the distance d from the shape with blend distance B
+---(beyond it, and outside when B is 0: nothing). Numbers, vectors and colours go from what was there towards the volume's value by
+---that factor, integers are rounded, booleans and choices change where the factor reaches `snap_at` (default 0.5). Settings that
+---it does not name stay. `settings` go by an entry's name, or by an effect's for all its entries.
+---Rotation is in degrees, about z first, then x, then y.
+---Errors: unknown keys, entries, settings, shapes; values that a setting does not allow.
+---@type fun(volume: { name?: string, priority?: number, weight?: number|afterglow.Moving, shape?: "global"|{ [1]: "box", center?: number[], size?: number[], rotation?: number[] }|{ [1]: "sphere", center?: number[], radius?: number }, blend_distance?: number, snap_at?: number, settings: table<string, table<string, any>> }): afterglow.Volume
+fx.volume = core.volume
+
+---A value that changes over the frames, in place of a number, a vector or a colour: { frame, value } keys in ascending order, held
+---before the first and after the last. `ease` says how it goes between them: "linear" (default), "smooth" (from rest to rest) or
+---"step" (jumps). With `unit = "seconds"` keys are times. A function of `t` (`t.frame`, `t.time` in seconds, `t.fps`) may stand in
+---place of any setting too; it must depend on `t` alone.
+---Errors: keys that are no { frame, value } or do not ascend, unknown words.
+---@type fun(curve: { ease?: "linear"|"smooth"|"step", unit?: "frames"|"seconds", [integer]: any[] }): afterglow.Curve
+fx.curve = core.curve
 
 ---Declares an effect; its file effects/NAME.lua returns it.
 --- - `at` injection point: "after_opaque_and_sky", "before_post_process", "post_process" (default), "after_post_process"
@@ -102,6 +132,10 @@ fx.color = core.color
 ---Two finite numbers {x, y}, each from `min` to `max`.
 ---@type fun(setting: { default: number[], min?: number, max?: number, doc?: string, unit?: string }): afterglow.SettingType
 fx.vec2 = core.vec2
+
+---Three finite numbers {x, y, z}, each from `min` to `max`.
+---@type fun(setting: { default: number[], min?: number, max?: number, doc?: string, unit?: string }): afterglow.SettingType
+fx.vec3 = core.vec3
 
 ---Makers of filters for `g:filter`. Each returns a new table, which may be changed.
 ---@class afterglow.Filters

@@ -1,7 +1,6 @@
 // `afterglow check`: is the preset right, and what would run in which order with which settings? No device needed.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "apps/look.h"
 #include "apps/setting_text.h"
 #include "apps/table.h"
+#include "script/explanation.h"
 
 namespace afterglow {
 namespace {
@@ -23,14 +23,18 @@ struct Arguments {
   bool json = false;
 };
 
-bool is_changed(const StackEntry& entry, const std::string& setting) {
-  return std::find(entry.changed.begin(), entry.changed.end(), setting) != entry.changed.end();
-}
-
 const std::string* skip_reason(const Look& look, const StackEntry& entry) {
   for (const auto& skipped : look.graph.skipped)
     if (skipped.name == entry.name) return &skipped.reason;
   return nullptr;
+}
+
+// Where a value comes from, unless the preset just says it.
+std::string origin_text(const SettingHistory& setting) {
+  if (setting.overridden) return "(--set)";
+  if (!setting.volumes.empty()) return "(volumes)";
+  if (!setting.preset) return "(default)";
+  return setting.kind == "fixed" ? "" : "(" + setting.kind + ")";
 }
 
 std::string entry_text(const Look& look, const StackEntry& entry, std::size_t place) {
@@ -38,8 +42,8 @@ std::string entry_text(const Look& look, const StackEntry& entry, std::size_t pl
                                 entry.required ? ", required" : "", entry.enabled ? "" : ", not enabled");
   if (const auto* reason = skip_reason(look, entry)) out += fmt::format("   skipped: {}\n", *reason);
   Table table;
-  for (const auto& [name, value] : entry.settings)
-    table.add({name, value.text(), is_changed(entry, name) ? "" : "(default)"});
+  for (const auto& setting : look.preset->explanation().entries[place - 1].settings)
+    table.add({setting.name, setting.value.text(), origin_text(setting)});
   return out + table.text("   ");
 }
 

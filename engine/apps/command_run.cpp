@@ -113,7 +113,7 @@ SampleType sample_type(const std::string& text) {
 
 /// Every option that changes pixels, for the hash that --resume compares.
 std::string pixel_options(const Arguments& a, const StackChoice& choice) {
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", join(a.preset.overrides, "|"),
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", join(a.preset.overrides, "|"), a.preset.at,
                      choice_name(choice.execution), a.execution.precision, a.execution.max_error.value_or(0),
                      a.execution.reference, a.layer, a.depth, a.normal, a.size, a.fps, a.type, a.compression,
                      a.png_level, a.jpeg_quality, a.dither, a.keep_layers);
@@ -166,9 +166,7 @@ Result<void> prepare_resume(Run& run) {
   Preset& preset = run.session->preset();
   AFTERGLOW_TRY(const BuildContext context, assumed.context(preset));
   AFTERGLOW_TRY(const Graph graph, run.session->stack().graph(context));
-  AFTERGLOW_TRY(const PresetOptions options, a.preset.options());
-  AFTERGLOW_TRY(const Hash look, look_hash(preset, graph, search_path_for(a.preset.file, options.paths),
-                                           pixel_options(a, run.session->stack().choice())));
+  AFTERGLOW_TRY(const Hash look, look_hash(preset, graph, pixel_options(a, run.session->stack().choice())));
   run.loop.record_look = look;
   if (!a.resume) return {};
   for (auto& frame : run.report.frames)
@@ -205,7 +203,8 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
                    "afterglow run"};
   }
   AFTERGLOW_CHECK(check_outputs(run));
-  AFTERGLOW_TRY(run.session, Session::open(a.preset.file, options, run.console.diagnostics()));
+  AFTERGLOW_TRY(const std::filesystem::path preset, a.preset.preset_file());
+  AFTERGLOW_TRY(run.session, Session::open(preset, options, run.console.diagnostics()));
   run.loop.read.auxiliary = run.session->preset().needs();
   AFTERGLOW_CHECK(prepare_resume(run));
   run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);

@@ -9,6 +9,8 @@
 #include "apps/options.h"
 #include "apps/resume.h"
 #include "apps/scale.h"
+#include "image/camera.h"
+#include "image/facts.h"
 
 namespace afterglow {
 namespace {
@@ -127,6 +129,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(FrameRecord& frame)
   context.frame = frame.job.frame;
   context.fps = options_.fps;
   context.time = frame.job.frame / options_.fps;
+  context.position = camera_position(header->facts->metadata);
   if (const auto codes = display_codes(frame.job.output, options_.write, header->has_alpha, header->facts.get()))
     reading->encoding = DisplayEncoding{codes->straight_alpha, codes->dither};
   const auto need = need_of(*header, context, frame.job);

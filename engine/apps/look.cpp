@@ -10,9 +10,10 @@ namespace afterglow {
 
 Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& assumed, Console& console) {
   AFTERGLOW_TRY(const PresetOptions options, arguments.options());
+  AFTERGLOW_TRY(const std::filesystem::path file, arguments.preset_file());
   Look look;
-  look.shaders = std::make_unique<ShaderLibrary>(search_path_for(arguments.file, options.paths));
-  AFTERGLOW_TRY(Preset preset, Preset::load(arguments.file, options, *look.shaders, console.diagnostics()));
+  look.shaders = std::make_unique<ShaderLibrary>(search_path_for(file, options.paths));
+  AFTERGLOW_TRY(Preset preset, Preset::load(file, options, *look.shaders, console.diagnostics()));
   look.preset = std::make_unique<Preset>(std::move(preset));
   AFTERGLOW_TRY(const BuildContext context, assumed.context(*look.preset));
   AFTERGLOW_TRY(look.graph, look.preset->build(context, console.diagnostics()));

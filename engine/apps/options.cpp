@@ -24,12 +24,18 @@ void MessageArguments::apply(Console& console) const {
 }
 
 void PresetArguments::add(CLI::App& command) {
-  command.add_option("PRESET", file, "Look to apply: a Lua file that returns a stack")->required();
+  command
+      .add_option("PRESET", file, "Look to apply: a Lua file that returns a stack, its name, or a pack that holds it")
+      ->required();
   command
       .add_option("--set", overrides, "Overrides one setting, as if the preset said so: glow.strength=0.4 (repeatable)")
       ->type_name("EFFECT.SETTING=VALUE")
       ->expected(1)
       ->take_all()
+      ->group("Preset");
+  command
+      .add_option("--at", at, "Where the picture is seen from, for volumes (default: the preset's, else the file's)")
+      ->type_name("X,Y,Z")
       ->group("Preset");
   add_paths(command);
 }
@@ -37,7 +43,8 @@ void PresetArguments::add(CLI::App& command) {
 void PresetArguments::add_paths(CLI::App& command) {
   command
       .add_option("--path", paths,
-                  "Folder with effects/ and shaders/ of yours, before AFTERGLOW_PATH and the installation (repeatable)")
+                  "Folder or zip with presets/, effects/ and shaders/ of yours, before AFTERGLOW_PATH and the "
+                  "installation (repeatable)")
       ->type_name("FOLDER")
       ->expected(1)
       ->take_all()
@@ -51,7 +58,14 @@ Result<PresetOptions> PresetArguments::options() const {
     AFTERGLOW_TRY(Override parsed, parse_override(text));
     options.overrides.push_back(std::move(parsed));
   }
+  if (!at.empty()) {
+    AFTERGLOW_TRY(options.at, parse_position(at));
+  }
   return options;
+}
+
+Result<std::filesystem::path> PresetArguments::preset_file() const {
+  return find_preset_file(file, {paths.begin(), paths.end()});
 }
 
 void DeviceArguments::add(CLI::App& command) {
@@ -122,6 +136,19 @@ Result<Size> parse_size(const std::string& text) {
   return size;
 }
 
+Result<Position> parse_position(const std::string& text) {
+  Position position{};
+  const auto parts = split(text, ',');
+  bool good = parts.size() == 3;
+  for (std::size_t i = 0; good && i < 3; ++i) {
+    const std::string part = trim(parts[i]);
+    const auto [end, ec] = std::from_chars(part.data(), part.data() + part.size(), position[i]);
+    good = ec == std::errc() && end == part.data() + part.size() && std::isfinite(position[i]);
+  }
+  if (good) return position;
+  return Error{ErrorKind::usage, fmt::format("'{}' is no position", text), "--at", 0, "X,Y,Z, three numbers"};
+}
+
 Result<std::uint64_t> parse_memory(const std::string& text) {
   const Error wrong{ErrorKind::usage, fmt::format("'{}' is no amount of memory", text), "--max-memory", 0,
                     "a number above 0 with K, M, G or T, as in 512M or 6G"};
@@ -154,6 +181,14 @@ void AssumedPicture::add(CLI::App& command) {
   command.add_option("--size", size, "Size of the assumed picture (default 1920x1080)")
       ->type_name("WxH")
       ->group("Picture");
+  command.add_option("--frame", frame, "Number of the assumed picture in its sequence (default 1)")
+      ->check(CLI::Number)
+      ->type_name("N")
+      ->group("Picture");
+  command.add_option("--fps", fps, "Frames a second, for animated presets (default 24)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N")
+      ->group("Picture");
   command
       .add_option("--without", without, "Auxiliary input that the assumed picture lacks: depth, normal (repeatable)")
       ->type_name("INPUT")
@@ -165,6 +200,9 @@ void AssumedPicture::add(CLI::App& command) {
 Result<BuildContext> AssumedPicture::context(const Preset& preset) const {
   BuildContext context;
   AFTERGLOW_TRY(context.size, parse_size(size));
+  context.frame = frame;
+  context.fps = fps;
+  context.time = frame / fps;
   for (const auto& name : preset.needs())
     if (std::find(without.begin(), without.end(), name) == without.end()) context.auxiliary[name] = context.size;
   return context;

@@ -22,14 +22,17 @@ struct MessageArguments {
   void apply(Console& console) const;
 };
 
-/// PRESET, --set, --path.
+/// PRESET, --set, --at, --path.
 struct PresetArguments {
   std::string file;
   std::vector<std::string> overrides;
+  std::string at;
   std::vector<std::string> paths;
   void add(CLI::App& command);
   void add_paths(CLI::App& command);  ///< --path alone
   Result<PresetOptions> options() const;
+  /// The file that PRESET means: see find_preset_file. Errors: script.
+  Result<std::filesystem::path> preset_file() const;
 };
 
 /// --device, --validate (or AFTERGLOW_VALIDATE=1).
@@ -59,9 +62,14 @@ Result<std::uint64_t> parse_memory(const std::string& text);
 /// "6.0 GiB", "512 MiB".
 std::string memory_text(std::uint64_t bytes);
 
-/// The picture that `check` and `graph` assume: --size, with every auxiliary input that the stack asks for.
+/// "1,-2.5,3". Errors: usage.
+Result<Position> parse_position(const std::string& text);
+
+/// The picture that `check`, `graph` and `explain` assume: --size, --frame, --fps, with every auxiliary input that the
+/// stack asks for.
 struct AssumedPicture {
   std::string size = "1920x1080";
+  double frame = 1, fps = 24;
   std::vector<std::string> without;  ///< --without depth
   void add(CLI::App& command);
   Result<BuildContext> context(const Preset& preset) const;

@@ -19,19 +19,22 @@ fs::path record_file(const fs::path& output) {
 
 }  // namespace
 
-Result<Hash> look_hash(const Preset& preset, const Graph& graph, const SearchPath& path, const std::string& options) {
+Result<Hash> look_hash(const Preset& preset, const Graph& graph, const std::string& options) {
   Hasher hasher;
   hasher.add(AFTERGLOW_VERSION).add(options);
   for (const auto& file : preset.files()) {
     AFTERGLOW_TRY(const std::string text, read_file(file));
     hasher.add(text);
   }
-  ShaderLibrary shaders(path);
+  ShaderLibrary shaders(preset.path());
   for (const auto& pass : graph.passes) {
     if (pass.shader.empty()) continue;
     AFTERGLOW_TRY(const auto shader, shaders.find(pass.shader));
     hasher.add(shader->hash.hex());
   }
+  if (preset.may_change())
+    for (const auto& name : shaders.names())
+      if (const auto shader = shaders.find(name)) hasher.add((*shader)->hash.hex());
   return hasher.finish();
 }
 

@@ -10,16 +10,15 @@
 
 #include "apps/frame_list.h"
 #include "core/hash.h"
-#include "core/paths.h"
 #include "core/result.h"
 #include "graph/graph.h"
 #include "script/preset.h"
 
 namespace afterglow {
 
-/// Hash of the scripts, the shaders of `graph`, and `options` (a text with every option that changes pixels). Errors:
-/// script, io.
-Result<Hash> look_hash(const Preset& preset, const Graph& graph, const SearchPath& path, const std::string& options);
+/// Hash of the scripts, the shaders of `graph`, and `options` (a text with every option that changes pixels). When
+/// other frames may have other passes, all shaders that can be found count. Errors: script, io.
+Result<Hash> look_hash(const Preset& preset, const Graph& graph, const std::string& options);
 
 /// True when the output exists, was made by the look with this hash, and is newer than its inputs.
 bool is_up_to_date(const FrameJob& job, const Hash& look);

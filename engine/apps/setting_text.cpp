@@ -22,6 +22,8 @@ const char* type_text(SettingType type) {
       return "color";
     case SettingType::vec2:
       return "vec2";
+    case SettingType::vec3:
+      return "vec3";
   }
   return "?";
 }
@@ -50,6 +52,7 @@ nlohmann::json value_json(const SettingValue& value) {
     case SettingType::vec2:
       return {value.number[0], value.number[1]};
     case SettingType::color:
+    case SettingType::vec3:
       return {value.number[0], value.number[1], value.number[2]};
   }
   return nullptr;

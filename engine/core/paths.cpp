@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cstdlib>
+#include <set>
 #include <system_error>
 
+#include "core/pack.h"
 #include "core/text.h"
 
 namespace afterglow {
@@ -20,6 +24,41 @@ std::string environment(const char* name) {
 bool is_file(const fs::path& path) {
   std::error_code ec;
   return fs::is_regular_file(path, ec);
+}
+
+bool is_preset_name(const std::string& name) {
+  return !name.empty() && name.size() <= 100 &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+}
+
+void add_pack(SearchPath& path, const fs::path& pack) {
+  if (!is_zip(pack)) {
+    path.user.push_back(pack);
+    return;
+  }
+  auto opened = open_zip(pack, cache_folder());
+  if (opened)
+    path.user.push_back(std::move(opened).value());
+  else if (!path.error)
+    path.error = std::move(opened).error();
+}
+
+// The packs in a folder's packs/, in the order of their names.
+void add_packs(SearchPath& path, const fs::path& folder) {
+  std::vector<fs::path> packs;
+  std::error_code ec;
+  for (fs::directory_iterator it(folder / "packs", ec), end; !ec && it != end; it.increment(ec)) {
+    std::error_code ignored;
+    if (is_zip(it->path()) || fs::is_directory(it->path(), ignored)) packs.push_back(it->path());
+  }
+  std::sort(packs.begin(), packs.end());
+  for (const auto& pack : packs) add_pack(path, pack);
+}
+
+// A folder and the packs in it; packs in packs are not looked for.
+void add_folder(SearchPath& path, const fs::path& folder) {
+  add_pack(path, folder);
+  if (!is_zip(folder)) add_packs(path, folder);
 }
 
 bool is_installation(const fs::path& folder) { return is_file(folder / "scripts" / "afterglow.lua"); }
@@ -49,6 +88,38 @@ std::vector<fs::path> SearchPath::effect_folders() const {
   return folders;
 }
 
+std::vector<fs::path> SearchPath::preset_folders() const {
+  std::vector<fs::path> folders;
+  for (const auto& root : user) {
+    folders.push_back(root);
+    folders.push_back(root / "presets");
+  }
+  if (!installation.empty()) folders.push_back(installation / "presets");
+  return folders;
+}
+
+std::vector<fs::path> SearchPath::find_preset(const std::string& name) const {
+  if (!is_preset_name(name)) return {};
+  std::vector<fs::path> hits;
+  for (const auto& folder : preset_folders())
+    for (const auto& file : {folder / (name + ".lua"), folder / name / (name + ".lua")})
+      if (is_file(file)) hits.push_back(file);
+  return hits;
+}
+
+std::vector<std::string> SearchPath::preset_names() const {
+  std::set<std::string> names;
+  for (const auto& folder : preset_folders()) {
+    std::error_code ec;
+    for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+      const std::string name = it->path().stem().string();
+      if (!is_preset_name(name)) continue;
+      if (it->path().extension() == ".lua" || is_file(it->path() / (name + ".lua"))) names.insert(name);
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
 fs::path find_installation() {
   if (const auto home = environment("AFTERGLOW_HOME"); !home.empty()) return home;
   std::error_code ec;
@@ -63,15 +134,48 @@ fs::path find_installation() {
   return {};
 }
 
+std::vector<fs::path> folders_of_preset(const fs::path& preset) {
+  std::vector<fs::path> folders{preset.has_parent_path() ? preset.parent_path() : fs::path(".")};
+  const fs::path above = folders[0].parent_path();
+  std::error_code ec;
+  if (folders[0].filename() == "presets" && fs::is_directory(above / "effects", ec)) folders.push_back(above);
+  return folders;
+}
+
 SearchPath search_path_for(const fs::path& preset, const std::vector<fs::path>& extra) {
   SearchPath path;
-  if (!preset.empty()) path.user.push_back(preset.has_parent_path() ? preset.parent_path() : fs::path("."));
-  path.user.insert(path.user.end(), extra.begin(), extra.end());
+  path.installation = find_installation();
+  if (!preset.empty())
+    for (const auto& folder : folders_of_preset(preset)) add_folder(path, folder);
+  for (const auto& folder : extra) add_folder(path, folder);
   if (const auto list = environment("AFTERGLOW_PATH"); !list.empty())
     for (const auto& entry : split(list, ':'))
-      if (!entry.empty()) path.user.emplace_back(entry);
-  path.installation = find_installation();
+      if (!entry.empty()) add_folder(path, entry);
+  if (!path.installation.empty()) add_packs(path, path.installation);
   return path;
+}
+
+Result<fs::path> find_preset_file(const std::string& given, const std::vector<fs::path>& extra) {
+  std::error_code ec;
+  SearchPath path;
+  std::string name = given;
+  const bool is_pack = is_zip(given) || fs::is_directory(given, ec);
+  if (is_pack) {
+    add_pack(path, given);
+    name = fs::path(given).lexically_normal().stem().string();
+  } else {
+    if (fs::exists(given, ec) || !is_preset_name(given)) return fs::path(given);
+    path = search_path_for({}, extra);
+  }
+  if (path.error) return *path.error;
+  if (const auto hits = path.find_preset(name); !hits.empty()) return hits.front();
+  const auto names = path.preset_names();
+  if (is_pack && names.size() == 1) return path.find_preset(names[0]).front();
+  if (is_pack)
+    return Error{ErrorKind::script, names.empty() ? "the pack holds no preset" : "the pack holds several presets",
+                 given, 0, names.empty() ? "" : "--path " + given + " and one of: " + join(names)};
+  return Error{ErrorKind::script,         fmt::format("there is no preset '{}'", given), "", 0, join(names),
+               nearest_name(given, names)};
 }
 
 fs::path cache_folder() {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/result.h"
+
 namespace afterglow {
 
 /// The folders in which a name is looked up, in order: beside the preset, each --path, each entry of AFTERGLOW_PATH,
@@ -14,21 +16,40 @@ namespace afterglow {
 struct SearchPath {
   std::vector<std::filesystem::path> user;  ///< in order of precedence
   std::filesystem::path installation;       ///< folder that holds scripts/, shaders/, presets/
+  std::optional<Error> error = {};          ///< of a pack that cannot be used: loading a preset fails with it
 
   /// `effects/NAME.lua` or the installation's `scripts/effects/NAME.lua`; all hits, the winner first.
   std::vector<std::filesystem::path> find_effect(const std::string& name) const;
   /// `shaders/NAME` (with extension, e.g. "glow/threshold.glsl"); all hits, the winner first.
   std::vector<std::filesystem::path> find_shader(const std::string& name) const;
+  /// The preset of that name: `NAME.lua` or `NAME/NAME.lua`, in each folder itself and in its `presets/`; all hits, the
+  /// winner first. Names are letters, digits, '_' and '-'.
+  std::vector<std::filesystem::path> find_preset(const std::string& name) const;
+  /// Names that `find_preset` knows, sorted.
+  std::vector<std::string> preset_names() const;
   /// Folders that may hold effect scripts, in order.
   std::vector<std::filesystem::path> effect_folders() const;
+  /// Folders that may hold presets, in order.
+  std::vector<std::filesystem::path> preset_folders() const;
 };
 
 /// The folder with scripts/, shaders/ and presets/: AFTERGLOW_HOME, else found from the running binary
 /// (`BIN/../share/afterglow`, or the source tree the binary was built from). Empty when there is none.
 std::filesystem::path find_installation();
 
-/// Search path for a preset file; `extra` are the --path options. AFTERGLOW_PATH is split at ':'.
+/// The folders that belong to a preset: its own; of a preset in `presets/`, also the one above when that holds
+/// `effects/`.
+std::vector<std::filesystem::path> folders_of_preset(const std::filesystem::path& preset);
+
+/// Search path for a preset file; `extra` are the --path options. AFTERGLOW_PATH is split at ':'. Both may name zips.
+/// Behind each folder come the packs (folders and zips) in its `packs/`, by name; those of the installation come last.
 SearchPath search_path_for(const std::filesystem::path& preset, const std::vector<std::filesystem::path>& extra);
+
+/// The preset that a user means: a file as it is; a pack (folder or zip) that holds one preset or one of its own name;
+/// the name of a preset in `extra`, AFTERGLOW_PATH or the installation. A file that does not exist comes back as it is.
+/// Errors: script (unknown name, with the nearest; a pack with several presets or none, or one that is refused).
+Result<std::filesystem::path> find_preset_file(const std::string& given,
+                                               const std::vector<std::filesystem::path>& extra);
 
 /// Folder for disk caches: AFTERGLOW_CACHE, else XDG_CACHE_HOME/afterglow, else HOME/.cache/afterglow, else a
 /// folder of the user's under the system's temporary folder. Not created.

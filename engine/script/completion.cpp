@@ -12,21 +12,22 @@ namespace {
 std::string lua_type(const SettingSchema& setting) {
   switch (setting.type) {
     case SettingType::integer:
-      return "integer";
+      return "integer|afterglow.Moving";
     case SettingType::number:
-      return "number";
+      return "number|afterglow.Moving";
     case SettingType::boolean:
-      return "boolean";
+      return "boolean|afterglow.OfTime";
     case SettingType::color:
-      return "number[]|string";
+      return "number[]|string|afterglow.Moving";
     case SettingType::vec2:
-      return "number[]";
+    case SettingType::vec3:
+      return "number[]|afterglow.Moving";
     case SettingType::enumeration:
       break;
   }
   std::string out;
   for (const auto& choice : setting.choices) out += (out.empty() ? "\"" : "|\"") + choice + '"';
-  return out;
+  return out + "|afterglow.OfTime";
 }
 
 // Docs are one line each in the file.

@@ -15,20 +15,14 @@ namespace {
 
 constexpr std::size_t kMaxDeclared = 4096;  // settings, effects, entries of one state
 
-// What `fx` itself holds; an effect of such a name could never be reached.
-const std::vector<std::string>& library_names() {
-  static const std::vector<std::string> names{"bool",  "color", "effect", "enum", "filters",
-                                              "float", "int",   "stack",  "vec2"};
-  return names;
-}
-
-constexpr const char* kMakers[] = {"int", "float", "bool", "enum", "color", "vec2"};
+constexpr const char* kMakers[] = {"int", "float", "bool", "enum", "color", "vec2", "vec3"};
 
 std::vector<std::string> known_keys(SettingType type) {
   switch (type) {
     case SettingType::integer:
     case SettingType::number:
     case SettingType::vec2:
+    case SettingType::vec3:
       return {"default", "doc", "max", "min", "unit"};
     default:
       return {"default", "doc"};
@@ -119,7 +113,7 @@ void read_settings(lua_State* lua, TableReader& table, EffectSchema& schema) {
                          place));
     else if (!handle)
       table.fail(failure(fmt::format("{}: setting '{}' = {} is not a setting type", table.what(), key.name, shown),
-                         place, "fx.int, fx.float, fx.bool, fx.enum, fx.color, fx.vec2"));
+                         place, "fx.int, fx.float, fx.bool, fx.enum, fx.color, fx.vec2, fx.vec3"));
     else
       found.emplace_back(handle->index, runtime.settings[static_cast<std::size_t>(handle->index)].schema).second.name =
           key.name;
@@ -170,6 +164,7 @@ template int declare_setting<SettingType::boolean>(lua_State*);
 template int declare_setting<SettingType::enumeration>(lua_State*);
 template int declare_setting<SettingType::color>(lua_State*);
 template int declare_setting<SettingType::vec2>(lua_State*);
+template int declare_setting<SettingType::vec3>(lua_State*);
 
 std::vector<std::string> pop_input_names(lua_State* lua, const std::string& what) {
   if (!lua_istable(lua, -1))

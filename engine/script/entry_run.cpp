@@ -30,11 +30,7 @@ int unknown_setting(lua_State* lua) {
 [[noreturn]] void fail_in(lua_State* lua, const FunctionRef& function, const std::string& message,
                           const ScriptError* from = nullptr) {
   ScriptError error = from ? *from : failure(message);
-  lua_rawgeti(lua, LUA_REGISTRYINDEX, function.ref);
-  lua_Debug info{};
-  lua_getinfo(lua, ">S", &info);
-  const Sandbox& box = Sandbox::of(lua);
-  box.locate(error.error, box.location(info.source, info.linedefined));
+  locate_function(lua, function, error.error);
   throw error;
 }
 
@@ -78,19 +74,21 @@ std::vector<std::string> input_names(lua_State* lua, const EntryRun& run, const 
 
 }  // namespace
 
-int make_settings(lua_State* lua, const StackEntry& entry, int effect) {
-  lua_createtable(lua, 0, static_cast<int>(entry.settings.size()));
-  for (const auto& [name, value] : entry.settings) {
+void make_settings(lua_State* lua, EntryRun& run) {
+  luaL_unref(lua, LUA_REGISTRYINDEX, run.settings_ref);
+  run.settings_ref = LUA_NOREF;
+  lua_createtable(lua, 0, static_cast<int>(run.entry.settings.size()));
+  for (const auto& [name, value] : run.entry.settings) {
     push_setting(lua, value);
     lua_setfield(lua, -2, name.c_str());
   }
   lua_createtable(lua, 0, 1);
-  lua_pushinteger(lua, effect);
+  lua_pushinteger(lua, run.effect);
   lua_pushcclosure(lua, (&native<unknown_setting, "">), 1);
   lua_setfield(lua, -2, "__index");
   lua_setmetatable(lua, -2);
   make_read_only(lua);
-  return luaL_ref(lua, LUA_REGISTRYINDEX);
+  run.settings_ref = luaL_ref(lua, LUA_REGISTRYINDEX);
 }
 
 std::optional<std::string> inactive_reason(lua_State* lua, const EntryRun& run) {

@@ -14,12 +14,13 @@ namespace afterglow::script {
 struct EntryRun {
   StackEntry entry;
   int effect = 0;
-  int settings_ref = LUA_NOREF;  ///< read-only table in the registry
+  std::vector<SettingSource> sources;  ///< as DeclaredEntry::sources
+  int settings_ref = LUA_NOREF;        ///< read-only table in the registry
 };
 
 /// All throw ScriptError.
-/// Makes the table `s`: reading a setting that does not exist is an error.
-int make_settings(lua_State* lua, const StackEntry& entry, int effect);
+/// Makes the table `s` anew from the entry's settings: reading a setting that does not exist is an error.
+void make_settings(lua_State* lua, EntryRun& run);
 /// Why the effect has nothing to do with these settings; empty when it is active.
 std::optional<std::string> inactive_reason(lua_State* lua, const EntryRun& run);
 std::vector<std::string> needed_inputs(lua_State* lua, const EntryRun& run);

@@ -1,4 +1,4 @@
-// Injection points and auxiliary inputs: the words that presets and effects may use.
+// Injection points, auxiliary inputs, names that are taken: the words that presets and effects may use.
 #pragma once
 
 #include <string>
@@ -23,6 +23,13 @@ inline const std::vector<std::string>& auxiliary_inputs() {
 inline const std::vector<std::string>& entry_keys() {
   static const std::vector<std::string> keys{"at", "enabled", "name", "order", "required"};
   return keys;
+}
+
+/// What `fx` itself holds; an effect of such a name could never be reached.
+inline const std::vector<std::string>& library_names() {
+  static const std::vector<std::string> names{"bool",  "color", "curve", "effect", "enum", "extend", "filters",
+                                              "float", "int",   "stack", "vec2",   "vec3", "volume"};
+  return names;
 }
 
 }  // namespace afterglow::script

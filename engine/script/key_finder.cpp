@@ -134,6 +134,7 @@ class Finder {
     if (function.empty()) return tokens_[i].line == line;
     std::size_t open = i;
     if (i > 0 && is(i - 1, "(")) open = i - 1;
+    if (i > 2 && is(i - 1, ",") && is(i - 3, "(")) open = i - 3;  // a name before the table
     return tokens_[open].line == line && open > 0 && tokens_[open - 1].kind != TokenKind::symbol &&
            tokens_[open - 1].text == function;
   }

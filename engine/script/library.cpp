@@ -65,6 +65,10 @@ void push_core(lua_State* lua) {
       {"enum", &native<declare_setting<SettingType::enumeration>, "enum">},
       {"color", &native<declare_setting<SettingType::color>, "color">},
       {"vec2", &native<declare_setting<SettingType::vec2>, "vec2">},
+      {"vec3", &native<declare_setting<SettingType::vec3>, "vec3">},
+      {"curve", &native<declare_curve, "curve">},
+      {"extend", &native<declare_extend, "extend">},
+      {"volume", &native<declare_volume, "volume">},
       {"fail", &native<fail, "fail">},
       {"show", &native<show, "show">},
       {"read_only", &native<read_only, "read_only">},
@@ -93,6 +97,7 @@ void push_library(lua_State* lua) {
 
 Result<std::unique_ptr<Runtime>> Runtime::create(SearchPath path, const ScriptLimits& limits,
                                                  Diagnostics& diagnostics) {
+  if (path.error) return *path.error;
   if (path.installation.empty())
     return Error{ErrorKind::script,
                  "the installation with scripts/afterglow.lua was not found (AFTERGLOW_HOME names its folder)"};

@@ -94,6 +94,50 @@ int do_require(lua_State* lua) {
 
 }  // namespace
 
+DeclaredStack load_stack(lua_State* lua, const fs::path& file) {
+  Runtime& runtime = Runtime::of(lua);
+  std::error_code ec;
+  const Loading loading(runtime, "preset " + fs::weakly_canonical(file, ec).string());
+  load_chunk(lua, file);
+  call(lua, 0, 1);
+  const Handle* handle = to_object<Handle>(lua, -1, kStackKind);
+  if (!handle)
+    throw ScriptError{{ErrorKind::script,
+                       fmt::format("a preset must return fx.stack {{ … }}, not {}", read_value(lua, -1).shown()),
+                       file.string()}};
+  DeclaredStack stack = runtime.stacks[static_cast<std::size_t>(handle->index)];
+  lua_pop(lua, 1);
+  return stack;
+}
+
+DeclaredStack load_named_stack(lua_State* lua, const std::string& name) {
+  Runtime& runtime = Runtime::of(lua);
+  runtime.box->charge(kFileCost);
+  std::vector<fs::path> hits;
+  {
+    const Sandbox::Pause pause(*runtime.box);
+    hits = runtime.path.find_preset(name);
+  }
+  if (hits.empty()) {
+    const auto names = runtime.path.preset_names();
+    throw failure(fmt::format("there is no preset '{}'", tidy_message(name, 60)), {}, join(names),
+                  nearest_name(name, names));
+  }
+  // A preset may extend the one that it hides: those that are being loaded are passed over.
+  const auto file = std::find_if(hits.begin(), hits.end(), [&](const fs::path& hit) {
+    std::error_code ec;
+    return !runtime.loading.contains("preset " + fs::weakly_canonical(hit, ec).string());
+  });
+  if (file == hits.end()) throw failure(fmt::format("preset '{}' extends itself", name));
+  for (const auto& root : runtime.path.user)
+    if (file->string().starts_with((root / "").string()) && !lies_in(*file, root))
+      throw failure(fmt::format("preset '{}' is a link that leads out of {}", name, root.string()));
+  auto& user = runtime.path.user;
+  for (const auto& folder : folders_of_preset(*file))
+    if (std::find(user.begin(), user.end(), folder) == user.end()) user.push_back(folder);
+  return load_stack(lua, *file);
+}
+
 bool is_identifier(const std::string& name) {
   if (name.empty() || name.size() > 64 || std::isdigit(static_cast<unsigned char>(name[0]))) return false;
   return std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });

@@ -2,6 +2,7 @@
 
 #include <cctype>
 
+#include "script/function_ref.h"
 #include "script/key_finder.h"
 
 namespace afterglow::script {
@@ -26,9 +27,21 @@ void locate_blame(const Sandbox& box, const Blame& blame, Error& error) {
          (std::isalnum(static_cast<unsigned char>(error.message[end])) || error.message[end] == '_'))
     ++end;
   if (end == 0) return;
+  error.line = line_of_key(box, blame.file, blame.line, blame.function, {error.message.substr(0, end)});
+}
+
+int line_of_key(const Sandbox& box, const std::string& file, int line, std::string_view function, const KeyPath& key) {
   for (const Source& source : box.sources())
-    if (source.path == blame.file)
-      error.line = line_of_key(source.text, blame.line, blame.function, {error.message.substr(0, end)});
+    if (source.path == file) return line_of_key(source.text, line, function, key);
+  return line;
+}
+
+void locate_function(lua_State* lua, const FunctionRef& function, Error& error) {
+  lua_rawgeti(lua, LUA_REGISTRYINDEX, function.ref);
+  lua_Debug info{};
+  lua_getinfo(lua, ">S", &info);
+  const Sandbox& box = Sandbox::of(lua);
+  box.locate(error, box.location(info.source, info.linedefined));
 }
 
 }  // namespace afterglow::script

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
+#include <string_view>
 
 #include "script/sandbox.h"
 
@@ -17,6 +19,9 @@ struct Literal {
 
 /// Fills in file and line of a failure: those of its key in the call's table, else of the call.
 void locate_failure(lua_State* lua, ScriptError& failure, const char* function);
+
+/// Line of `key` in the call of `function` that begins at this line of a script; `line` when it is not found.
+int line_of_key(const Sandbox& box, const std::string& file, int line, std::string_view function, const KeyPath& key);
 
 /// Points `error` at the blamed call, or at the key of it with which the message begins.
 void locate_blame(const Sandbox& box, const Blame& blame, Error& error);

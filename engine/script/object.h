@@ -11,6 +11,8 @@ inline constexpr const char* kSettingKind = "setting type";
 inline constexpr const char* kEffectKind = "effect";
 inline constexpr const char* kEntryKind = "effect entry";
 inline constexpr const char* kStackKind = "stack";
+inline constexpr const char* kCurveKind = "curve";
+inline constexpr const char* kVolumeKind = "volume";
 inline constexpr const char* kImageKind = "image";
 inline constexpr const char* kGraphKind = "graph";
 

@@ -58,14 +58,7 @@ Result<void> apply(DeclaredEntry& declared, const Override& given, const EffectS
                                   [&](const auto& s) { return s.name == given.setting; });
   if (found != schema.settings.end()) {
     AFTERGLOW_TRY(SettingValue value, checked(given, *found));
-    entry.settings[static_cast<std::size_t>(found - schema.settings.begin())].second = value;
-    // `changed` keeps the schema's order.
-    std::vector<std::string> changed;
-    for (const auto& setting : schema.settings)
-      if (setting.name == given.setting ||
-          std::find(entry.changed.begin(), entry.changed.end(), setting.name) != entry.changed.end())
-        changed.push_back(setting.name);
-    entry.changed = std::move(changed);
+    declared.sources[static_cast<std::size_t>(found - schema.settings.begin())].overridden = std::move(value);
     return {};
   }
   if (given.setting == "enabled" || given.setting == "order" || given.setting == "at") {

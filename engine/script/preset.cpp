@@ -11,6 +11,7 @@
 #include "script/native.h"
 #include "script/object.h"
 #include "script/overrides.h"
+#include "script/resolve.h"
 
 namespace afterglow {
 
@@ -24,10 +25,13 @@ struct Preset::State {
   std::vector<EntryRun> runs;       // in the order of execution
   std::vector<StackEntry> entries;  // the same
   std::vector<std::string> needs;
+  Surroundings surroundings;
+  Explanation explanation;
+  bool may_change = false;
   std::uint64_t builds = 0;
 
-  void load(lua_State* lua, const std::vector<Override>& overrides);
-  DeclaredStack run_script(lua_State* lua);
+  void load(lua_State* lua, const PresetOptions& options);
+  void resolve(lua_State* lua, const BuildContext& context);
   void note_needs(lua_State* lua, const StackEntry*& current);
   ImageRef build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
                        Diagnostics& diagnostics);
@@ -47,6 +51,16 @@ void sort_entries(std::vector<DeclaredEntry>& entries) {
   });
 }
 
+void warn_without_position(const Explanation& explanation, Diagnostics& diagnostics) {
+  if (explanation.position) return;
+  for (const auto& volume : explanation.volumes)
+    if (!volume.reason.empty() && volume.weight > 0)
+      diagnostics.warn_once("no position",
+                            fmt::format("volume '{}' and others like it do not count: no position is "
+                                        "known (--at, position in the preset, worldToCamera in the file)",
+                                        volume.name));
+}
+
 // Errors in an effect's own file say which entry ran it.
 Error with_entry(Error error, const StackEntry* entry) {
   if (entry && error.file != entry->file && error.kind == ErrorKind::script)
@@ -56,42 +70,54 @@ Error with_entry(Error error, const StackEntry* entry) {
 
 }  // namespace
 
-DeclaredStack Preset::State::run_script(lua_State* lua) {
-  load_chunk(lua, file);
-  call(lua, 0, 1);
-  const Handle* handle = to_object<Handle>(lua, -1, kStackKind);
-  if (!handle)
-    throw ScriptError{{ErrorKind::script,
-                       fmt::format("a preset must return fx.stack {{ … }}, not {}", read_value(lua, -1).shown()),
-                       file}};
-  DeclaredStack stack = runtime->stacks[static_cast<std::size_t>(handle->index)];
-  lua_pop(lua, 1);
-  return stack;
-}
-
-void Preset::State::load(lua_State* lua, const std::vector<Override>& overrides) {
+void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   open_graph_binding(lua);
-  DeclaredStack stack = run_script(lua);
+  DeclaredStack stack = load_stack(lua, file);
   runtime->declaring = false;
-  if (auto applied = apply_overrides(stack.entries, overrides, runtime->effects); !applied)
+  shaders->search(runtime->path);
+  if (auto applied = apply_overrides(stack.entries, options.overrides, runtime->effects); !applied)
     throw ScriptError{applied.error()};
   sort_entries(stack.entries);
   name = stack.name.empty() ? std::filesystem::path(file).stem().string() : stack.name;
   max_error = stack.max_error;
   for (auto& declared : stack.entries) {
-    const int settings = make_settings(lua, declared.entry, declared.effect);
+    const auto& schema = runtime->effects[static_cast<std::size_t>(declared.effect)].schema;
+    for (std::size_t i = 0; i < schema.settings.size(); ++i)
+      if (declared.sources[i].preset || declared.sources[i].overridden)
+        declared.entry.changed.push_back(schema.settings[i].name);
     entries.push_back(declared.entry);
-    runs.push_back({std::move(declared.entry), declared.effect, settings});
+    runs.push_back({std::move(declared.entry), declared.effect, std::move(declared.sources)});
+  }
+  surroundings = {std::move(stack.volumes), std::move(stack.position), options.at};
+  std::stable_sort(surroundings.volumes.begin(), surroundings.volumes.end(),
+                   [](const auto& a, const auto& b) { return a.priority < b.priority; });
+  may_change = script::may_change(runs, surroundings);
+  resolve(lua, {});
+}
+
+void Preset::State::resolve(lua_State* lua, const BuildContext& context) {
+  explanation = resolve_settings(lua, runs, surroundings, context);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].settings_ref != LUA_NOREF && entries[i].settings == runs[i].entry.settings) continue;
+    entries[i].settings = runs[i].entry.settings;
+    make_settings(lua, runs[i]);
   }
 }
 
 void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
+  const auto note = [&](const std::vector<std::string>& names) {
+    for (const auto& input : names)
+      if (std::find(needs.begin(), needs.end(), input) == needs.end()) needs.push_back(input);
+  };
   for (const auto& run : runs) {
     current = &run.entry;
-    if (!run.entry.enabled || inactive_reason(lua, run)) continue;
-    for (const auto& names : {needed_inputs(lua, run), optional_inputs(lua, run)})
-      for (const auto& input : names)
-        if (std::find(needs.begin(), needs.end(), input) == needs.end()) needs.push_back(input);
+    const bool changes = script::may_change(run, surroundings);
+    if (!run.entry.enabled || (!changes && inactive_reason(lua, run))) continue;
+    note(needed_inputs(lua, run));
+    note(optional_inputs(lua, run));
+    // Other settings may ask for other inputs: what an effect asks for by a function cannot be known before.
+    const Effect& effect = runtime->effects[static_cast<std::size_t>(run.effect)];
+    if (changes && (effect.needs.function.set() || effect.optional.function.set())) note(auxiliary_inputs());
   }
 }
 
@@ -109,7 +135,7 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
   Sandbox& box = *state->runtime->box;
   const StackEntry* current = nullptr;
   auto error = box.run(state->file, [&](lua_State* lua) {
-    state->load(lua, options.overrides);
+    state->load(lua, options);
     state->note_needs(lua, current);
   });
   box.diagnostics = nullptr;
@@ -120,7 +146,10 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
 const std::string& Preset::name() const { return state_->name; }
 std::optional<double> Preset::max_error() const { return state_->max_error; }
 const std::vector<StackEntry>& Preset::entries() const { return state_->entries; }
+bool Preset::may_change() const { return state_->may_change; }
+const Explanation& Preset::explanation() const { return state_->explanation; }
 std::vector<std::string> Preset::needs() const { return state_->needs; }
+const SearchPath& Preset::path() const { return state_->runtime->path; }
 const std::vector<std::filesystem::path>& Preset::files() const { return state_->runtime->files; }
 
 const EffectSchema& Preset::schema(const std::string& effect) const {
@@ -177,6 +206,8 @@ Result<Graph> Preset::build(const BuildContext& context, Diagnostics& diagnostic
   state.runtime->graph = &graph;
   box.diagnostics = &diagnostics;
   auto error = box.run(state.file, [&](lua_State* lua) {
+    if (state.may_change) state.resolve(lua, context);
+    warn_without_position(state.explanation, diagnostics);
     for (const auto& run : state.runs) {
       current = &run.entry;
       image = state.build_entry(lua, run, graph, image, diagnostics);

@@ -18,13 +18,16 @@
 
 namespace afterglow {
 
-enum class SettingType { integer, number, boolean, enumeration, color, vec2 };
+enum class SettingType { integer, number, boolean, enumeration, color, vec2, vec3 };
+
+/// In the scene: x, y, z in its units.
+using Position = std::array<double, 3>;
 
 /// A value of a setting; colours are scene-linear.
 struct SettingValue {
   SettingType type = SettingType::number;
   std::array<double, 3>
-      number{};        ///< integer and number in [0]; boolean as 0/1 in [0]; vec2 in [0..1]; colour in [0..2]
+      number{};        ///< integer and number in [0]; boolean as 0/1 in [0]; vec2 in [0..1]; colour, vec3 in [0..2]
   std::string choice;  ///< enumeration
   friend bool operator==(const SettingValue&, const SettingValue&) = default;
   std::string text() const;  ///< as one would write it in Lua
@@ -55,10 +58,11 @@ struct StackEntry {
   std::string at;  ///< injection point
   int order = 0;
   bool enabled = true;
-  bool required = false;                                       ///< a missing auxiliary input is an error
-  std::vector<std::pair<std::string, SettingValue>> settings;  ///< all of them, in the schema's order
-  std::vector<std::string> changed;                            ///< names of those that the preset or an override set
-  std::string file;                                            ///< where the preset names the effect
+  bool required = false;  ///< a missing auxiliary input is an error
+  /// All of them, in the schema's order; their values are those of the last build.
+  std::vector<std::pair<std::string, SettingValue>> settings;
+  std::vector<std::string> changed;  ///< names of those that the preset or an override set
+  std::string file;                  ///< where the preset names the effect
   int line = 0;
 };
 
@@ -78,6 +82,7 @@ struct ScriptLimits {
 struct PresetOptions {
   std::vector<std::filesystem::path> paths;  ///< --path
   std::vector<Override> overrides;
+  std::optional<Position> at;  ///< --at: where the picture is seen from, for volumes
   ScriptLimits limits;
 };
 
@@ -85,8 +90,11 @@ struct PresetOptions {
 struct BuildContext {
   Size size;                              ///< of the source
   std::map<std::string, Size> auxiliary;  ///< inputs that the picture has: "depth", "normal"
-  double frame = 1, time = 0, fps = 24;
+  double frame = 1, time = 0, fps = 24;   ///< number in its sequence, seconds, pictures a second
+  std::optional<Position> position = {};  ///< of its camera, when the picture says it
 };
+
+struct Explanation;  // script/explanation.h
 
 /// Owns one Lua state. Not thread-safe; may move between threads. Errors of all functions: script.
 class Preset {
@@ -101,14 +109,22 @@ class Preset {
   std::optional<double> max_error() const;                      ///< `max_error` of the stack
   const std::vector<StackEntry>& entries() const;               ///< in the order of execution
   const EffectSchema& schema(const std::string& effect) const;  ///< of an effect that the stack uses
-  /// Names of auxiliary inputs that enabled, active effects ask for.
+  /// May settings differ from frame to frame or from place to place (curves, functions, volumes)?
+  bool may_change() const;
+  /// How the settings of the last build came about.
+  const Explanation& explanation() const;
+  /// Names of auxiliary inputs that enabled, active effects ask for; where settings may change, those that they could
+  /// ask for.
   std::vector<std::string> needs() const;
+  /// Where names are looked up; a preset that extends another has that one's folder in it too.
+  const SearchPath& path() const;
   const std::vector<std::filesystem::path>& files() const;  ///< every script read: preset, library, effects
 
   /// Bytes that the script's state holds, after a collection.
   std::size_t memory_used() const;
 
-  /// Runs `active` and `build` of each enabled entry, in order.
+  /// Settles the settings of this frame, then runs `active` and `build` of each enabled entry, in order. The same
+  /// context gives the same graph, whatever was built before.
   Result<Graph> build(const BuildContext& context, Diagnostics& diagnostics);
 
  private:
@@ -116,6 +132,9 @@ class Preset {
   explicit Preset(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
+
+/// May a new effect be called so? Errors (usage): no identifier, a word of Lua or of the library, taken.
+Result<void> check_new_effect_name(const std::string& name, const SearchPath& path);
 
 /// Every effect on the search path, by name. Scripts that fail to load are warned about and left out.
 Result<std::vector<EffectSchema>> list_effects(const SearchPath& path, Diagnostics& diagnostics);

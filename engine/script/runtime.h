@@ -12,18 +12,15 @@
 #include <vector>
 
 #include "core/paths.h"
+#include "script/animated.h"
+#include "script/function_ref.h"
 #include "script/preset.h"
 #include "script/sandbox.h"
+#include "script/volume.h"
 
 namespace afterglow::script {
 
 class GraphBuilder;
-
-/// A function of an effect in Lua's registry, or none.
-struct FunctionRef {
-  int ref = LUA_NOREF;
-  bool set() const { return ref != LUA_NOREF; }
-};
 
 /// Auxiliary inputs that an effect names: a fixed list, or a function of its settings.
 struct InputList {
@@ -37,17 +34,26 @@ struct Effect {
   InputList needs, optional;
 };
 
+/// What the preset and the command line say about one setting.
+struct SettingSource {
+  std::optional<Animated> preset;
+  std::optional<SettingValue> overridden;
+};
+
 /// An entry as `fx.NAME{…}` made it; what it leaves open is decided when the stack is complete.
 struct DeclaredEntry {
   int effect = 0;  ///< index in Runtime::effects
   std::optional<std::string> name;
-  StackEntry entry;
+  StackEntry entry;                    ///< its settings are filled in when they are resolved
+  std::vector<SettingSource> sources;  ///< parallel to the schema's settings
 };
 
 struct DeclaredStack {
   std::string name;
   std::optional<double> max_error;
-  std::vector<DeclaredEntry> entries;  ///< in the preset's order
+  std::optional<Animated> position;
+  std::vector<DeclaredEntry> entries;   ///< in the preset's order
+  std::vector<DeclaredVolume> volumes;  ///< the same
 };
 
 /// A setting as `fx.float{…}` made it, before it has a name; its index is the order of declaration.
@@ -69,12 +75,20 @@ struct Runtime {
   std::vector<DeclaredSetting> settings;
   std::vector<DeclaredEntry> entries;
   std::vector<DeclaredStack> stacks;
-  bool declaring = true;          ///< false once the preset is loaded
-  GraphBuilder* graph = nullptr;  ///< while `build` runs
+  std::vector<DeclaredCurve> curves;
+  std::vector<DeclaredVolume> volumes;
+  std::size_t curve_keys = 0, wanted = 0;  ///< of all curves; settings of all volumes: limited
+  bool declaring = true;                   ///< false once the preset is loaded
+  GraphBuilder* graph = nullptr;           ///< while `build` runs
 };
 
 /// Names a file of an effect that declares `name`; finds, loads and remembers it. Errors: throws ScriptError.
 int find_effect(lua_State* lua, const std::string& name);
+
+/// Runs a preset's file; the stack that it returns. Errors: throws ScriptError.
+DeclaredStack load_stack(lua_State* lua, const std::filesystem::path& file);
+/// The same for a preset on the search path. Its folder joins the path: what it brings along is found.
+DeclaredStack load_named_stack(lua_State* lua, const std::string& name);
 
 /// Reads the file as a text chunk with an environment of its own and pushes it as a function. Errors: throws
 /// ScriptError.

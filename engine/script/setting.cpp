@@ -32,6 +32,8 @@ std::string SettingValue::text() const {
       return list_text(*this, 3);
     case SettingType::vec2:
       return list_text(*this, 2);
+    case SettingType::vec3:
+      return list_text(*this, 3);
   }
   return {};
 }
@@ -66,7 +68,7 @@ bool parse_hex_color(const std::string& text, SettingValue& value) {
 }  // namespace
 
 const char* type_name(SettingType type) {
-  static constexpr const char* kNames[] = {"integer", "number", "boolean", "choice", "colour", "vec2"};
+  static constexpr const char* kNames[] = {"integer", "number", "boolean", "choice", "colour", "vec2", "vec3"};
   return kNames[static_cast<int>(type)];
 }
 
@@ -85,6 +87,8 @@ std::string allowed_text(const SettingSchema& schema) {
       return "{r, g, b} with numbers ≥ 0, \"#rrggbb\"";
     case SettingType::vec2:
       return range.empty() ? "{x, y}" : "{x, y}, each " + range;
+    case SettingType::vec3:
+      return range.empty() ? "{x, y, z}" : "{x, y, z}, each " + range;
   }
   return {};
 }
@@ -123,11 +127,12 @@ Result<SettingValue> check_setting(const std::string& full_name, const SettingSc
         }
       return fail("not a choice", nearest_name(given.text, schema.choices));
     case SettingType::color:
-    case SettingType::vec2: {
+    case SettingType::vec2:
+    case SettingType::vec3: {
       const bool color = schema.type == SettingType::color;
       if (color && given.kind == Kind::text && parse_hex_color(given.text, value)) return value;
-      if (given.kind != Kind::list || given.count != (color ? 3 : 2))
-        return fail(color ? "not a colour" : "not a vec2");
+      if (given.kind != Kind::list || given.count != (schema.type == SettingType::vec2 ? 2 : 3))
+        return fail(color ? "not a colour" : schema.type == SettingType::vec2 ? "not a vec2" : "not a vec3");
       for (int i = 0; i < given.count; ++i) {
         const double c = given.list[static_cast<std::size_t>(i)];
         if (!std::isfinite(c)) return fail("not finite");
@@ -156,9 +161,10 @@ void push_setting(lua_State* lua, const SettingValue& value) {
       return;
     case SettingType::color:
     case SettingType::vec2:
+    case SettingType::vec3:
       break;
   }
-  const int count = value.type == SettingType::color ? 3 : 2;
+  const int count = value.type == SettingType::vec2 ? 2 : 3;
   lua_createtable(lua, count, 0);
   for (int i = 0; i < count; ++i) {
     lua_pushnumber(lua, value.number[static_cast<std::size_t>(i)]);

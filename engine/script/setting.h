@@ -16,7 +16,7 @@ std::string allowed_text(const SettingSchema& schema);
 /// `full_name` is what the message calls it: "glow.knee".
 Result<SettingValue> check_setting(const std::string& full_name, const SettingSchema& schema, const Value& value);
 
-/// "integer", "number", "boolean", "choice", "colour", "vec2".
+/// "integer", "number", "boolean", "choice", "colour", "vec2", "vec3".
 const char* type_name(SettingType type);
 
 /// Pushes the value as scripts read it (`s.NAME`); colours and vec2 are read-only tables.

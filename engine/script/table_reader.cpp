@@ -20,6 +20,31 @@ TableReader::TableReader(lua_State* lua, int index, std::string what)
   if (!lua_istable(lua, index_))
     throw failure(fmt::format("{} takes a table, not {}", what_, read_value(lua, index_).shown()), {},
                   what_ + " { … }");
+  read_keys();
+}
+
+TableReader::TableReader(lua_State* lua, int index, std::string what, TableReader& parent, KeyPath place)
+    : lua_(lua), index_(lua_absindex(lua, index)), what_(std::move(what)), parent_(&parent), place_(std::move(place)) {
+  luaL_checkstack(lua, 10, nullptr);
+  if (lua_istable(lua, index_)) {
+    read_keys();
+    return;
+  }
+  fail(failure(fmt::format("{}: {} = {} is not a table", parent.what(), what_, read_value(lua, index_).shown())));
+  index_ = 0;
+}
+
+void TableReader::fail(ScriptError error) {
+  if (parent_) {
+    error.key.insert(error.key.begin(), place_.begin(), place_.end());
+    parent_->fail(std::move(error));
+  } else if (failures_.size() < kMaxFailures) {
+    failures_.push_back(std::move(error));
+  }
+}
+
+void TableReader::read_keys() {
+  lua_State* const lua = lua_;
   lua_pushnil(lua);
   while (lua_next(lua, index_)) {
     lua_pop(lua, 1);
@@ -50,6 +75,7 @@ void TableReader::push(const Key& key) const {
 }
 
 void TableReader::push(const char* name) const {
+  if (index_ == 0) return lua_pushnil(lua_);
   lua_pushstring(lua_, name);
   lua_rawget(lua_, index_);
 }
@@ -101,7 +127,7 @@ std::optional<bool> TableReader::boolean(const char* name) {
 
 void TableReader::allow(const std::vector<std::string>& known, bool positions) {
   for (const Key& key : keys_) {
-    if (failures_.size() == kMaxFailures) return;
+    if (failures_.size() == kMaxFailures) return;  // what follows would not be kept
     if (key.position > 0 ? positions : std::find(known.begin(), known.end(), key.name) != known.end()) continue;
     if (key.position > 0)
       fail(failure(fmt::format("{} has a value without a name at position {}", what_, key.position), {key.name},

@@ -16,6 +16,10 @@ class TableReader {
   /// `index` of the table; `what` names the call in messages: "fx.stack". Throws when it is not a table.
   TableReader(lua_State* lua, int index, std::string what);
 
+  /// A table inside another's: failures go to `parent`, which must outlive it, with `place` before their own key. Empty
+  /// when it is not a table, which is a failure.
+  TableReader(lua_State* lua, int index, std::string what, TableReader& parent, KeyPath place);
+
   struct Key {
     std::string name;          ///< "#2" for position 2
     lua_Integer position = 0;  ///< of positional items; else 0
@@ -39,10 +43,8 @@ class TableReader {
   void allow(const std::vector<std::string>& known, bool positions);
 
   /// Notes a failure; `finish` throws the one that stands first in the source.
-  void fail(ScriptError error) {
-    if (failures_.size() < kMaxFailures) failures_.push_back(std::move(error));
-  }
-  bool failed() const { return !failures_.empty(); }
+  void fail(ScriptError error);
+  bool failed() const { return parent_ ? parent_->failed() : !failures_.empty(); }
   void finish(const char* function);
 
   const std::string& what() const { return what_; }
@@ -50,9 +52,13 @@ class TableReader {
  private:
   static constexpr std::size_t kMaxFailures = 32;  // each one costs a search of the source
 
+  void read_keys();
+
   lua_State* lua_;
-  int index_;
+  int index_;  // 0: no table
   std::string what_;
+  TableReader* parent_ = nullptr;
+  KeyPath place_;  // in the parent
   std::vector<Key> keys_;
   std::vector<ScriptError> failures_;
 };

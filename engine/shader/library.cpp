@@ -75,6 +75,11 @@ void ShaderLibrary::reload() {
   sources_.clear();
 }
 
+void ShaderLibrary::search(SearchPath path) {
+  const std::lock_guard lock(mutex_);
+  path_ = std::move(path);
+}
+
 std::vector<std::string> ShaderLibrary::names() const {
   std::vector<std::string> list;
   const auto add = [&](const fs::path& root) {

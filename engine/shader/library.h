@@ -47,7 +47,8 @@ class ShaderLibrary {
   /// include cycle, neither or both of apply/sample_at; file and line are those of the offending text.
   Result<std::shared_ptr<const ShaderSource>> find(const std::string& name);
 
-  void reload();  ///< forget everything read so far
+  void reload();                 ///< forget everything read so far
+  void search(SearchPath path);  ///< from now on; what was read stays. Not while others use the library
   const SearchPath& path() const { return path_; }
 
   /// Names that `find` knows, sorted: every .glsl file below a shaders/ folder but those in lib/. Reads folders, not

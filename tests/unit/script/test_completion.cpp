@@ -54,12 +54,12 @@ TEST(Completion, EachTypeHasItsForm) {
   EXPECT_NE(text.find(R"(
 ---Makes light spread.
 ---@class afterglow.settings.glow : afterglow.EntryKeys
----@field mode? "soft"|"hard"  About mode. default "hard"
----@field levels? integer  About levels. integer ≥ 1, default 4
----@field gain? number  About gain. 0…2 EV, default 0.5
----@field fade? boolean  About fade. default true
----@field tint? number[]|string  About tint. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
----@field shift? number[]  About shift. px, default {0, 0}
+---@field mode? "soft"|"hard"|afterglow.OfTime  About mode. default "hard"
+---@field levels? integer|afterglow.Moving  About levels. integer ≥ 1, default 4
+---@field gain? number|afterglow.Moving  About gain. 0…2 EV, default 0.5
+---@field fade? boolean|afterglow.OfTime  About fade. default true
+---@field tint? number[]|string|afterglow.Moving  About tint. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+---@field shift? number[]|afterglow.Moving  About shift. px, default {0, 0}
 
 ---@class afterglow
 ---@field glow fun(settings: afterglow.settings.glow): afterglow.Entry  Makes light spread.

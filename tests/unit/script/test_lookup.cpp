@@ -146,7 +146,7 @@ TEST(ListEffects, NamesOfTheLibraryAreReserved) {
     print(table.concat(names, " "))
     return fx.stack {})");
   ASSERT_EQ(scene.load_error(), "");
-  EXPECT_THAT(scene.notes, ElementsAre("preset.lua:4: bool color effect enum filters float int stack vec2"));
+  EXPECT_THAT(scene.notes, ElementsAre("preset.lua:4: bool color curve effect enum extend filters float int stack vec2 vec3 volume"));
 }
 
 // Every effect of the installation, as the design's table has it, can be listed without a complaint.

@@ -1,0 +1,71 @@
+// `afterglow explain`: where each setting of a frame comes from, and what becomes of each effect and pass. No device
+// needed.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "apps/command.h"
+#include "apps/explain_view.h"
+#include "core/text.h"
+
+namespace afterglow {
+namespace {
+
+struct Arguments {
+  PresetArguments preset;
+  AssumedPicture picture;
+  std::string setting, format = "text";
+};
+
+/// "ENTRY.SETTING" or "ENTRY" of the stack into the view.
+Result<void> choose(const std::string& text, ExplainView& view) {
+  const auto wrong = [](std::string message, const std::string& name, const std::vector<std::string>& names) {
+    return Error{ErrorKind::usage, std::move(message), "afterglow explain", 0, join(names), nearest_name(name, names)};
+  };
+  const std::size_t dot = text.find('.');
+  view.entry = text.substr(0, dot);
+  std::vector<std::string> names;
+  const StackEntry* entry = nullptr;
+  for (const auto& candidate : view.look.preset->entries()) {
+    names.push_back(candidate.name);
+    if (candidate.name == view.entry) entry = &candidate;
+  }
+  if (!entry) return wrong(fmt::format("the stack has no entry '{}'", view.entry), view.entry, names);
+  if (dot == std::string::npos) return {};
+  view.setting = text.substr(dot + 1);
+  names.clear();
+  for (const auto& [name, value] : entry->settings) names.push_back(name);
+  if (std::ranges::find(names, view.setting) == names.end())
+    return wrong(fmt::format("'{}' has no setting '{}'", view.entry, view.setting), view.setting, names);
+  return {};
+}
+
+Result<void> run(const Arguments& arguments, Console& console) {
+  AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
+  AFTERGLOW_TRY(const BuildContext context, arguments.picture.context(*look.preset));
+  ExplainView view{look, arguments.preset.file, context, "", ""};
+  if (!arguments.setting.empty()) AFTERGLOW_CHECK(choose(arguments.setting, view));
+  fmt::print("{}", arguments.format == "json" ? explain_json(view) : explain_text(view));
+  return {};
+}
+
+}  // namespace
+
+Command add_explain_command(CLI::App& program) {
+  auto* app = program.add_subcommand("explain", "Tell where each setting comes from, and what runs and what does not");
+  auto arguments = std::make_shared<Arguments>();
+  arguments->preset.add(*app);
+  app->add_option("SETTING", arguments->setting, "Show this alone: an entry, or one of its settings (glow.intensity)");
+  arguments->picture.add(*app);
+  app->add_option("--format", arguments->format, "text or json (default text)")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->type_name("FORMAT");
+  app->footer(
+      "Needs no Vulkan device.\n"
+      "Example: afterglow explain cave.lua glow.intensity --frame 12 --at 4,0,0");
+  return {app, [arguments](Console& console) { return run(*arguments, console); }};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,110 @@
+// `afterglow new effect NAME`: a working effect to start from.
+//
+// The templates are a tree of files in the installation that work by themselves; in names and texts, the word my_effect
+// becomes the new name.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "apps/command.h"
+#include "core/file.h"
+#include "core/paths.h"
+#include "script/preset.h"
+
+namespace afterglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPlaceholder = "my_effect";
+
+struct Arguments {
+  std::string kind, name, folder = ".";
+};
+
+struct NewFile {
+  fs::path path;  ///< relative
+  std::string text;
+  bool executable = false;
+};
+
+std::string renamed(std::string text, const std::string& name) {
+  for (std::size_t at = 0; (at = text.find(kPlaceholder, at)) != std::string::npos; at += name.size())
+    text.replace(at, kPlaceholder.size(), name);
+  return text;
+}
+
+Result<std::vector<NewFile>> files_of(const fs::path& templates, const std::string& name) {
+  std::vector<NewFile> files;
+  std::error_code ec;
+  for (fs::recursive_directory_iterator it(templates, ec), end; !ec && it != end; it.increment(ec)) {
+    if (!it->is_regular_file()) continue;
+    AFTERGLOW_TRY(std::string text, read_file(it->path()));
+    const bool executable = (it->status().permissions() & fs::perms::owner_exec) != fs::perms::none;
+    files.push_back(
+        {renamed(fs::relative(it->path(), templates).string(), name), renamed(std::move(text), name), executable});
+  }
+  if (files.empty())
+    return Error{ErrorKind::io, "the installation has no templates (AFTERGLOW_HOME names its folder)",
+                 templates.string()};
+  std::sort(files.begin(), files.end(), [](const NewFile& a, const NewFile& b) { return a.path < b.path; });
+  return files;
+}
+
+/// Writes a file that must not exist. Errors: io.
+Result<void> write_new(const fs::path& path, const NewFile& file) {
+  std::error_code ec;
+  fs::create_directories(path.parent_path(), ec);
+  const auto failed = [&] {
+    return Error{ErrorKind::io, fmt::format("cannot be written: {}", std::strerror(errno)), path.string()};
+  };
+  const int out = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, file.executable ? 0777 : 0666);
+  if (out < 0) return failed();
+  const bool whole = write(out, file.text.data(), file.text.size()) == static_cast<ssize_t>(file.text.size());
+  if ((close(out) == 0) & whole) return {};
+  const Error error = failed();
+  fs::remove(path, ec);
+  return error;
+}
+
+Result<void> run(const Arguments& arguments) {
+  const fs::path folder = arguments.folder;
+  AFTERGLOW_CHECK(check_new_effect_name(arguments.name, search_path_for(folder / "preset.lua", {})));
+  AFTERGLOW_TRY(const auto files, files_of(find_installation() / "templates" / arguments.kind, arguments.name));
+  for (const auto& file : files)
+    if (fs::exists(fs::symlink_status(folder / file.path)))
+      return Error{ErrorKind::io, "exists already; nothing was written", (folder / file.path).string()};
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto written = write_new(folder / files[i].path, files[i]);
+    if (written) continue;
+    std::error_code ignored;
+    for (std::size_t done = 0; done < i; ++done) fs::remove(folder / files[done].path, ignored);
+    return written;
+  }
+  for (const auto& file : files) fmt::print("{}\n", (folder / file.path).lexically_normal().string());
+  fmt::print("Try it:  afterglow run {}.lua PICTURE -o out.png\nTest it: tests/{}.sh\n", arguments.name,
+             arguments.name);
+  return {};
+}
+
+}  // namespace
+
+Command add_new_command(CLI::App& program) {
+  auto* app = program.add_subcommand("new", "Write a working effect to start from: script, shader, example, test");
+  auto arguments = std::make_shared<Arguments>();
+  app->add_option("KIND", arguments->kind, "What to write: effect")->required()->check(CLI::IsMember({"effect"}));
+  app->add_option("NAME", arguments->name, "Its name: letters, digits and '_'")->required();
+  app->add_option("--in", arguments->folder, "Folder to write into (default: this one)")->type_name("FOLDER");
+  app->footer("Never overwrites a file.\nExample: afterglow new effect haze");
+  return {app, [arguments](Console&) { return run(*arguments); }};
+}
+
+}  // namespace afterglow

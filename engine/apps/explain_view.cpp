@@ -1,0 +1,171 @@
+#include "apps/explain_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "apps/graph_view.h"
+#include "apps/setting_text.h"
+#include "apps/table.h"
+#include "core/text.h"
+
+namespace afterglow {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string position_text(const Position& p) {
+  return fmt::format("{{{}, {}, {}}}", number_text(p[0]), number_text(p[1]), number_text(p[2]));
+}
+
+bool shown(const std::string& wanted, const std::string& name) { return wanted.empty() || wanted == name; }
+
+const std::string* skip_reason(const Look& look, const std::string& entry) {
+  const auto found = std::ranges::find(look.graph.skipped, entry, &Skipped::name);
+  return found == look.graph.skipped.end() ? nullptr : &found->reason;
+}
+
+// What became of a pass.
+struct PassFate {
+  const Pass* pass;
+  const char* state;  ///< "runs", "joined", "skipped"
+  std::string kernel, reason;
+};
+
+std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
+  std::vector<PassFate> fates;
+  for (std::size_t i = 0; i < look.graph.passes.size(); ++i) {
+    const Pass& pass = look.graph.passes[i];
+    if (pass.effect != entry) continue;
+    const int kernel = kernel_of(look.plan, static_cast<int>(i));
+    if (kernel < 0) {
+      const auto skipped = std::ranges::find(look.plan.skipped, pass.name, &Skipped::name);
+      fates.push_back({&pass, "skipped", "", skipped == look.plan.skipped.end() ? "" : skipped->reason});
+      continue;
+    }
+    const PlanKernel& runs = look.plan.kernels[static_cast<std::size_t>(kernel)];
+    const bool first = runs.passes.front() == static_cast<int>(i);
+    fates.push_back({&pass, first ? "runs" : "joined", runs.name, first ? "" : kJoinReason});
+  }
+  return fates;
+}
+
+std::string fate_text(const Look& look, const PassFate& fate) {
+  if (fate.kernel.empty()) return "skipped: " + fate.reason;
+  const std::string what = fmt::format("{} {}", kind_text(fate.pass->kind), size_text(look.graph, *fate.pass));
+  if (*fate.state == 'j') return fmt::format("{}, joined into {}", what, fate.kernel);
+  return fate.kernel == fate.pass->name ? what + ", runs" : fmt::format("{}, runs as {}", what, fate.kernel);
+}
+
+std::string volume_steps(const SettingHistory& setting) {
+  std::string out;
+  for (const auto& step : setting.volumes)
+    out += fmt::format("{}{}: {} × {} → {}", out.empty() ? "" : "; ", step.volume, step.value.text(),
+                       number_text(step.factor), step.result.text());
+  return out;
+}
+
+std::string preset_text(const SettingHistory& setting) {
+  if (!setting.preset) return "";
+  return setting.preset->text() + (setting.kind == "fixed" ? "" : " (" + setting.kind + ")");
+}
+
+std::string entry_text(const ExplainView& view, const StackEntry& entry, const EntryHistory& history,
+                       std::size_t place) {
+  const auto* reason = skip_reason(view.look, entry.name);
+  std::string out = fmt::format("\n{}. {}  at {}, order {}: {}\n", place, entry.name, entry.at, entry.order,
+                                reason ? "skipped, " + *reason : "runs");
+  Table settings({"setting", "default", "preset", "volumes", "--set", "final"});
+  bool any = false;
+  for (const auto& setting : history.settings) {
+    if (!shown(view.setting, setting.name)) continue;
+    any = true;
+    settings.add({setting.name, setting.default_value.text(), preset_text(setting), volume_steps(setting),
+                  setting.overridden ? setting.overridden->text() : "", setting.value.text()});
+  }
+  if (any) out += settings.text("   ");
+  Table passes({"pass", ""});
+  const auto fates = fates_of(view.look, entry.name);
+  for (const auto& fate : fates) passes.add({fate.pass->name, fate_text(view.look, fate)});
+  return fates.empty() || !view.setting.empty() ? out : out + passes.text("   ");
+}
+
+Json setting_json(const SettingHistory& setting) {
+  Json out{{"name", setting.name}, {"default", value_json(setting.default_value)}};
+  if (setting.preset) out["preset"] = {{"value", value_json(*setting.preset)}, {"kind", setting.kind}};
+  out["volumes"] = Json::array();
+  for (const auto& step : setting.volumes)
+    out["volumes"].push_back({{"volume", step.volume},
+                              {"factor", step.factor},
+                              {"value", value_json(step.value)},
+                              {"result", value_json(step.result)}});
+  if (setting.overridden) out["override"] = value_json(*setting.overridden);
+  out["final"] = value_json(setting.value);
+  return out;
+}
+
+Json volume_json(const VolumeState& volume) {
+  Json out{{"name", volume.name},         {"file", volume.file},     {"line", volume.line},
+           {"priority", volume.priority}, {"weight", volume.weight}, {"factor", volume.factor}};
+  if (volume.distance) out["distance"] = *volume.distance;
+  if (!volume.reason.empty()) out["reason"] = volume.reason;
+  return out;
+}
+
+}  // namespace
+
+std::string explain_text(const ExplainView& view) {
+  const Explanation& explanation = view.look.preset->explanation();
+  std::string out = fmt::format("{}: {}, frame {} ({} s)", view.file, view.look.preset->name(),
+                                number_text(view.context.frame), number_text(view.context.time));
+  if (explanation.position)
+    out += fmt::format(", seen from {} ({})", position_text(*explanation.position), explanation.position_from);
+  out += "\n";
+  if (!explanation.volumes.empty()) {
+    Table table({"volume", "priority", "weight", "distance", "factor", ""});
+    for (const auto& volume : explanation.volumes)
+      table.add({volume.name, number_text(volume.priority), number_text(volume.weight),
+                 volume.distance ? number_text(*volume.distance) : "", number_text(volume.factor), volume.reason});
+    out += "\n" + table.text();
+  }
+  const auto& entries = view.look.preset->entries();
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    if (shown(view.entry, entries[i].name)) out += entry_text(view, entries[i], explanation.entries[i], i + 1);
+  return out;
+}
+
+std::string explain_json(const ExplainView& view) {
+  const Explanation& explanation = view.look.preset->explanation();
+  Json out{{"file", view.file},
+           {"name", view.look.preset->name()},
+           {"frame", view.context.frame},
+           {"time", view.context.time},
+           {"fps", view.context.fps}};
+  if (explanation.position) out["position"] = {{"at", *explanation.position}, {"from", explanation.position_from}};
+  out["volumes"] = Json::array();
+  for (const auto& volume : explanation.volumes) out["volumes"].push_back(volume_json(volume));
+  out["entries"] = Json::array();
+  const auto& entries = view.look.preset->entries();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (!shown(view.entry, entries[i].name)) continue;
+    Json item{{"name", entries[i].name}, {"effect", entries[i].effect}};
+    const auto* reason = skip_reason(view.look, entries[i].name);
+    item["state"] = reason ? "skipped" : "runs";
+    if (reason) item["reason"] = *reason;
+    item["settings"] = Json::array();
+    for (const auto& setting : explanation.entries[i].settings)
+      if (shown(view.setting, setting.name)) item["settings"].push_back(setting_json(setting));
+    item["passes"] = Json::array();
+    for (const auto& fate : fates_of(view.look, entries[i].name)) {
+      Json pass{{"name", fate.pass->name}, {"state", fate.state}};
+      if (!fate.kernel.empty()) pass["kernel"] = fate.kernel;
+      if (!fate.reason.empty()) pass["reason"] = fate.reason;
+      item["passes"].push_back(std::move(pass));
+    }
+    out["entries"].push_back(std::move(item));
+  }
+  return out.dump(2) + "\n";
+}
+
+}  // namespace afterglow

@@ -1,0 +1,172 @@
+#include "core/pack.h"
+
+#include <fmt/format.h>
+#include <minizip/unzip.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <memory>
+#include <set>
+#include <system_error>
+#include <vector>
+
+#include "core/file.h"
+#include "core/hash.h"
+#include "core/text.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::uint64_t kSmall = 1u << 20;  // below this, a high ratio harms nobody
+
+struct Entry {
+  std::string name;
+  std::uint64_t bytes = 0;  ///< unpacked
+  unz64_file_pos place{};
+};
+
+struct CloseZip {
+  void operator()(void* zip) const { unzClose(zip); }
+};
+using Zip = std::unique_ptr<void, CloseZip>;
+
+Error refused(const fs::path& zip, const std::string& why) {
+  return {ErrorKind::script, "the pack is refused: " + why, zip.string()};
+}
+
+// Names in messages: they may hold anything.
+std::string in_quotes(const std::string& name) {
+  std::string out = name.substr(0, 80);
+  for (char& c : out)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  return "'" + out + "'";
+}
+
+// Why the entry may not be unpacked; empty when it may.
+std::string fault_of(const unz_file_info64& info, const std::string& name, const PackLimits& limits) {
+  if (!is_safe_entry(name, limits.depth)) return in_quotes(name) + " is not the name of a file inside it";
+  const auto mode = static_cast<mode_t>(info.external_fa >> 16) & S_IFMT;
+  if (mode != 0 && mode != S_IFREG && mode != S_IFDIR) return in_quotes(name) + " is a link or a device";
+  if ((info.flag & 1) != 0) return in_quotes(name) + " is encrypted";
+  if (info.uncompressed_size > limits.file_bytes)
+    return fmt::format("{} is larger than {} MiB", in_quotes(name), limits.file_bytes >> 20);
+  if (info.uncompressed_size > kSmall && info.uncompressed_size / limits.ratio > info.compressed_size)
+    return fmt::format("{} grows more than {} times", in_quotes(name), limits.ratio);
+  return {};
+}
+
+// Everything that the zip says it holds, checked; nothing is unpacked.
+Result<std::vector<Entry>> list_entries(unzFile zip, const fs::path& path, const PackLimits& limits) {
+  std::vector<Entry> entries;
+  std::set<std::string> names;  // without case: not every file system tells case apart
+  std::uint64_t total = 0;
+  std::size_t count = 0;
+  for (int status = unzGoToFirstFile(zip); status != UNZ_END_OF_LIST_OF_FILE; status = unzGoToNextFile(zip)) {
+    std::array<char, 1024> name{};
+    unz_file_info64 info{};
+    if (status != UNZ_OK ||
+        unzGetCurrentFileInfo64(zip, &info, name.data(), name.size() - 1, nullptr, 0, nullptr, 0) != UNZ_OK)
+      return refused(path, "it is damaged");
+    if (++count > limits.files) return refused(path, fmt::format("it holds more than {} files", limits.files));
+    if (info.size_filename >= name.size() - 1) return refused(path, "a name in it is too long");
+    Entry entry{std::string(name.data(), info.size_filename), info.uncompressed_size, {}};
+    if (auto fault = fault_of(info, entry.name, limits); !fault.empty()) return refused(path, fault);
+    if (!names.insert(lower(entry.name)).second) return refused(path, in_quotes(entry.name) + " is there twice");
+    total += entry.bytes;
+    if (total > limits.total_bytes)
+      return refused(path, fmt::format("it unpacks to more than {} MiB", limits.total_bytes >> 20));
+    if (entry.name.ends_with('/')) continue;
+    if (unzGetFilePos64(zip, &entry.place) != UNZ_OK) return refused(path, "it is damaged");
+    entries.push_back(std::move(entry));
+  }
+  if (entries.empty()) return refused(path, "it holds no files");
+  return entries;
+}
+
+Result<std::string> unpack(unzFile zip, const fs::path& path, const Entry& entry) {
+  const Error damaged = refused(path, in_quotes(entry.name) + " is damaged");
+  if (unzGoToFilePos64(zip, &entry.place) != UNZ_OK || unzOpenCurrentFile(zip) != UNZ_OK) return damaged;
+  std::string content;
+  std::array<char, 65536> buffer;
+  int got = 0;
+  // Headers lie: what comes out is counted, not believed.
+  while ((got = unzReadCurrentFile(zip, buffer.data(), buffer.size())) > 0 && content.size() <= entry.bytes)
+    content.append(buffer.data(), static_cast<std::size_t>(got));
+  const bool whole = unzCloseCurrentFile(zip) == UNZ_OK && got == 0 && content.size() == entry.bytes;
+  if (!whole) return damaged;
+  return content;
+}
+
+bool is_whole(const fs::path& folder, const std::vector<Entry>& entries) {
+  return std::ranges::all_of(entries, [&](const Entry& entry) {
+    std::error_code ec;
+    return fs::file_size(folder / entry.name, ec) == entry.bytes && !ec;
+  });
+}
+
+Result<void> unpack_all(unzFile zip, const fs::path& path, const std::vector<Entry>& entries, const fs::path& folder) {
+  for (const auto& entry : entries) {
+    AFTERGLOW_TRY(const std::string content, unpack(zip, path, entry));
+    const fs::path file = folder / entry.name;
+    std::error_code ec;
+    fs::create_directories(file.parent_path(), ec);
+    std::ofstream out(file, std::ios::binary);
+    out.write(content.data(), static_cast<std::streamsize>(content.size()));
+    out.close();
+    if (!out) return Error{ErrorKind::io, "cannot be written", file.string()};
+  }
+  return {};
+}
+
+}  // namespace
+
+bool is_safe_entry(const std::string& name, std::size_t depth) {
+  if (name.empty() || name.size() > 400 || name.front() == '/') return false;
+  for (const unsigned char c : name)
+    if (c < 0x20 || c == 0x7F || c == '\\' || c == ':' || c == '*' || c == '?' || c == '"' || c == '<' || c == '>' ||
+        c == '|')
+      return false;
+  auto parts = split(name, '/');
+  if (parts.back().empty()) parts.pop_back();  // a folder
+  return parts.size() <= depth + 1 && std::ranges::none_of(parts, [](const std::string& part) {
+           return part.empty() || part == "." || part == ".." || part.size() > 200;
+         });
+}
+
+bool is_zip(const fs::path& path) {
+  std::error_code ec;
+  return lower(path.extension().string()) == ".zip" && fs::is_regular_file(path, ec);
+}
+
+Result<fs::path> open_zip(const fs::path& path, const fs::path& cache, const PackLimits& limits) {
+  auto bytes = read_file(path, limits.zip_bytes);
+  if (!bytes) return Error{ErrorKind::script, bytes.error().message, path.string()};
+  const Zip zip(unzOpen64(path.c_str()));
+  if (!zip) return refused(path, "it is no zip");
+  AFTERGLOW_TRY(const std::vector<Entry> entries, list_entries(zip.get(), path, limits));
+
+  const fs::path home = cache / "packs" / hash_text(*bytes).hex();
+  // The zip's own name comes last, so that messages about its files read like NAME.zip/effects/….lua.
+  const fs::path folder = home / path.filename();
+  if (is_whole(folder, entries)) return folder;
+  const fs::path temporary = temporary_beside(home);
+  std::error_code ec;
+  fs::create_directories(temporary / path.filename(), ec);
+  auto done = unpack_all(zip.get(), path, entries, temporary / path.filename());
+  if (done) {
+    fs::rename(temporary, home, ec);
+    if (ec && !is_whole(folder, entries)) {  // left damaged, or unpacked before under another name
+      fs::remove_all(home, ec);
+      fs::rename(temporary, home, ec);
+    }
+  }
+  fs::remove_all(temporary, ec);
+  if (!done) return std::move(done).error();
+  if (!is_whole(folder, entries)) return Error{ErrorKind::io, "cannot be written", folder.string()};
+  return folder;
+}
+
+}  // namespace afterglow

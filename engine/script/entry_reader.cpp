@@ -1,0 +1,83 @@
+#include "script/entry_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/text.h"
+#include "script/injection.h"
+
+namespace afterglow::script {
+namespace {
+
+bool is_entry_name(const std::string& name) {
+  if (name.empty() || name.size() > 64) return false;
+  return std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+}
+
+// Keys that every entry has.
+void read_entry_keys(TableReader& table, DeclaredEntry& declared) {
+  StackEntry& entry = declared.entry;
+  entry.at = table.text("at").value_or(entry.at);
+  if (std::find(injection_points().begin(), injection_points().end(), entry.at) == injection_points().end())
+    table.fail(failure(fmt::format("unknown injection point '{}'", tidy_message(entry.at, 60)), {"at"},
+                       join(injection_points()), nearest_name(entry.at, injection_points())));
+  entry.order = table.integer("order").value_or(entry.order);
+  entry.enabled = table.boolean("enabled").value_or(entry.enabled);
+  entry.required = table.boolean("required").value_or(entry.required);
+  const auto name = table.text("name");
+  if (!name) return;
+  declared.name = name;
+  if (!is_entry_name(*name))
+    table.fail(failure(fmt::format("'{}' cannot be the name of an entry", tidy_message(*name, 60)), {"name"},
+                       "1 to 64 letters, digits, '_' and '-'"));
+}
+
+void fail_unknown(TableReader& table, const EffectSchema& schema, const TableReader::Key& key) {
+  std::vector<std::string> names;
+  for (const auto& setting : schema.settings) names.push_back(setting.name);
+  if (key.position > 0) {
+    table.fail(failure(fmt::format("effect '{}' has a value without a name at position {}", schema.name, key.position),
+                       {key.name}, join(names)));
+    return;
+  }
+  std::vector<std::string> near = names;
+  near.insert(near.end(), entry_keys().begin(), entry_keys().end());
+  table.fail(failure(fmt::format("effect '{}' has no setting '{}'", schema.name, tidy_message(key.name, 60)),
+                     {key.name}, join(names), nearest_name(key.name, near)));
+}
+
+}  // namespace
+
+DeclaredEntry new_entry(const Runtime& runtime, int effect) {
+  const EffectSchema& schema = runtime.effects[static_cast<std::size_t>(effect)].schema;
+  DeclaredEntry declared;
+  declared.effect = effect;
+  declared.entry.effect = schema.name;
+  declared.entry.at = schema.at;
+  declared.entry.order = schema.order;
+  declared.sources.resize(schema.settings.size());
+  return declared;
+}
+
+void read_entry(lua_State* lua, TableReader& table, const EffectSchema& schema, DeclaredEntry& declared) {
+  read_entry_keys(table, declared);
+  for (const auto& key : table.keys()) {
+    if (std::find(entry_keys().begin(), entry_keys().end(), key.name) != entry_keys().end()) continue;
+    const auto found =
+        std::find_if(schema.settings.begin(), schema.settings.end(), [&](const auto& s) { return s.name == key.name; });
+    if (found == schema.settings.end()) {
+      fail_unknown(table, schema, key);
+      continue;
+    }
+    table.push(key);
+    auto checked = check_animated(lua, schema.name + "." + key.name, *found, read_given(lua, -1));
+    lua_pop(lua, 1);
+    if (checked)
+      declared.sources[static_cast<std::size_t>(found - schema.settings.begin())].preset = std::move(*checked);
+    else
+      table.fail({checked.error(), {key.name}, {}});
+  }
+}
+
+}  // namespace afterglow::script

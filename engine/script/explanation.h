@@ -1,0 +1,54 @@
+// How the settings of a frame came about: what `afterglow explain` prints.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "script/preset.h"
+
+namespace afterglow {
+
+/// Where a volume stands in a frame.
+struct VolumeState {
+  std::string name, file;
+  int line = 0;
+  double priority = 0, weight = 1;
+  std::optional<double> distance = {};  ///< from its shape; empty: global, or no position is known
+  double factor = 0;                    ///< 0…1: how much of its settings counts
+  std::string reason = {};              ///< why the factor is 0
+};
+
+/// What one volume did to one setting.
+struct VolumeStep {
+  std::string volume;
+  double factor = 0;
+  SettingValue value = {};   ///< the volume's
+  SettingValue result = {};  ///< after blending it in
+};
+
+/// A setting on its way from the default to the value that runs.
+struct SettingHistory {
+  std::string name;
+  SettingValue default_value = {};
+  std::optional<SettingValue> preset = {};      ///< at this frame
+  std::string kind = {};                        ///< of the preset's value: "fixed", "curve", "function"; empty: none
+  std::vector<VolumeStep> volumes = {};         ///< those that name the setting, in the order of blending
+  std::optional<SettingValue> overridden = {};  ///< --set
+  SettingValue value = {};                      ///< final
+};
+
+struct EntryHistory {
+  std::string name;
+  std::vector<SettingHistory> settings;  ///< in the schema's order
+};
+
+struct Explanation {
+  std::optional<Position> position;
+  std::string position_from;          ///< "--at", "the preset", "the picture"; empty: no position
+  std::vector<VolumeState> volumes;   ///< in the order of blending
+  std::vector<EntryHistory> entries;  ///< in the order of execution
+};
+
+}  // namespace afterglow

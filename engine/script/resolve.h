@@ -1,0 +1,28 @@
+// The settings of a frame: defaults, what the preset says, volumes, overrides, in this order.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "script/entry_run.h"
+#include "script/explanation.h"
+#include "script/volume.h"
+
+namespace afterglow::script {
+
+/// What decides the settings besides the entries themselves.
+struct Surroundings {
+  std::vector<DeclaredVolume> volumes;  ///< by ascending priority
+  std::optional<Animated> position;     ///< the preset's
+  std::optional<Position> at;           ///< --at: before the preset's, which is before the picture's
+};
+
+/// May the settings differ from frame to frame or from place to place?
+bool may_change(const EntryRun& run, const Surroundings& surroundings);
+bool may_change(const std::vector<EntryRun>& runs, const Surroundings& surroundings);
+
+/// Sets `entry.settings` of every run. Throws ScriptError: functions that fail or give what a setting does not allow.
+Explanation resolve_settings(lua_State* lua, std::vector<EntryRun>& runs, const Surroundings& surroundings,
+                             const BuildContext& context);
+
+}  // namespace afterglow::script

@@ -1,0 +1,84 @@
+// new effect: what it writes works at once and passes its own test.
+#include <cstdlib>
+
+#include "cli_test.h"
+
+namespace afterglow::test {
+namespace {
+
+class New : public CliTest {
+ protected:
+  // Exit status of the effect's own test; its messages in test.log.
+  int own_test(const std::string& name) const {
+    const std::string command = "AFTERGLOW='" AFTERGLOW_PROGRAM "' AFTERGLOW_CACHE='" AFTERGLOW_BUILD_FOLDER
+                                "/test-cache' AFTERGLOW_PATH= sh '" +
+                                text("tests/" + name + ".sh") + "' >'" + text("test.log") + "' 2>&1";
+    return std::system(command.c_str());
+  }
+};
+
+TEST_F(New, AnEffectRunsAtOnceAndPassesItsOwnTest) {
+  const Outcome made = run({"new", "effect", "haze"});
+  ASSERT_EQ(made.exit_code, kDone) << made.err;
+  EXPECT_THAT(files(),
+              ::testing::IsSupersetOf({"effects/haze.lua", "haze.lua", "shaders/haze/haze.glsl", "tests/haze.sh"}));
+  for (const auto& name : files())
+    if (name.ends_with("haze.lua") || name.ends_with(".glsl") || name.ends_with(".sh"))
+      EXPECT_THAT(read(name), Not(HasSubstr("my_effect"))) << name;
+  make_exr("a.exr");
+  const Outcome ran = run({"run", "haze.lua", "a.exr", "-o", "a.png", "--device", "llvmpipe"});
+  EXPECT_EQ(ran.exit_code, kDone) << ran.err;
+  EXPECT_EQ(own_test("haze"), 0) << read("test.log");
+  EXPECT_THAT(read("test.log"), HasSubstr("haze: passed"));
+}
+
+TEST_F(New, ItsTestFindsMistakes) {
+  ASSERT_EQ(run({"new", "effect", "haze"}).exit_code, kDone);
+  const std::string shader = read("shaders/haze/haze.glsl");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string changed = shader;
+    changed.replace(changed.find(from), from.size(), to);
+    write("shaders/haze/haze.glsl", changed);
+    EXPECT_NE(own_test("haze"), 0);
+    return read("test.log");
+  };
+  EXPECT_THAT(with("strength), color.a", "0.0), color.a"), HasSubstr("FAILED: strength = 0.5 does not change"));
+  EXPECT_THAT(with("strength), color.a", "0.7), color.a"), HasSubstr("FAILED: strength does not matter"));
+  EXPECT_THAT(with("tint *", "tnt *"), HasSubstr("FAILED: check finds an error"));
+}
+
+TEST_F(New, NeverOverwrites) {
+  write("haze.lua", "mine");
+  const Outcome outcome = run({"new", "effect", "haze"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_TRUE(is_one_error_line(outcome.err));
+  EXPECT_THAT(outcome.err, HasSubstr("haze.lua: error: exists already; nothing was written"));
+  EXPECT_EQ(read("haze.lua"), "mine");
+  EXPECT_THAT(files(), ::testing::ElementsAre("haze.lua"));
+}
+
+TEST_F(New, IntoAnotherFolder) {
+  EXPECT_EQ(run({"new", "effect", "haze", "--in", "mine"}).exit_code, kDone);
+  EXPECT_EQ(run({"check", "mine/haze.lua"}).exit_code, kDone);
+}
+
+TEST_F(New, Names) {
+  const auto error = [&](const std::string& name) {
+    const Outcome outcome = run({"new", "effect", name});
+    EXPECT_EQ(outcome.exit_code, kUsage);
+    return outcome.err;
+  };
+  EXPECT_THAT(error("../haze"),
+              HasSubstr("'../haze' cannot be the name of an effect; allowed: 1 to 64 letters, digits and "
+                        "'_', no digit first"));
+  EXPECT_THAT(error("2d"), HasSubstr("cannot be the name"));
+  EXPECT_THAT(error("end"), HasSubstr("'end' is a word of Lua; fx.end could not be written"));
+  EXPECT_THAT(error("stack"), HasSubstr("'stack' is a name of the library: fx.stack"));
+  EXPECT_THAT(error("bloom"), HasSubstr("'bloom' is an effect already: "));
+  EXPECT_THAT(files(), IsEmpty());
+  const Outcome kind = run({"new", "preset", "haze"});
+  EXPECT_EQ(kind.exit_code, kUsage);
+}
+
+}  // namespace
+}  // namespace afterglow::test

@@ -1,0 +1,117 @@
+// Presets and effects used by name, from folders and zips.
+#include <cstdlib>
+
+#include "cli_test.h"
+
+namespace afterglow::test {
+namespace {
+
+class Packs : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    write("kit/presets/warm.lua",
+          "local fx = require \"afterglow\"\nreturn fx.stack { name = \"Warm\", fx.warmth {} }\n");
+    write("kit/effects/warmth.lua",
+          "local fx = require \"afterglow\"\nreturn fx.effect { name = \"warmth\", doc = \"Red.\",\n"
+          "  settings = { gain = fx.float { min = 0, default = 1.5 } },\n"
+          "  build = function(g, s, source) return g:pass { shader = \"warmth/red\", source = source, gain = s.gain } "
+          "end }\n");
+    write("kit/shaders/warmth/red.glsl",
+          "uniform float gain;\nvec4 apply(vec4 color) { return vec4(color.r * gain, color.gba); }\n");
+    make_exr("a.exr");
+  }
+  // The kit as a zip, with CMake's own archiver.
+  void zip(const std::string& name, const std::string& from = "kit") const {
+    fs::create_directories(path(name).parent_path());
+    const std::string command =
+        "cd '" + text(from) + "' && '" AFTERGLOW_CMAKE "' -E tar cf '" + text(name) + "' --format=zip . >/dev/null";
+    ASSERT_EQ(std::system(command.c_str()), 0);
+  }
+  Outcome run_here(const std::vector<std::string>& arguments, const std::string& search = "") const {
+    RunOptions options;
+    options.environment["AFTERGLOW_CACHE"] = text("cache");
+    options.environment["AFTERGLOW_PATH"] = search;
+    return run(arguments, options);
+  }
+  std::string picture(const std::vector<std::string>& preset, const std::string& search = "") const {
+    std::vector<std::string> arguments{"run"};
+    arguments.insert(arguments.end(), preset.begin(), preset.end());
+    for (const char* more : {"a.exr", "-o", "a.png", "--device", "llvmpipe"}) arguments.emplace_back(more);
+    const Outcome outcome = run_here(arguments, search);
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return read("a.png");
+  }
+};
+
+TEST_F(Packs, APresetByItsName) {
+  const Outcome installed = run_here({"check", "neon_night"});
+  EXPECT_EQ(installed.exit_code, kDone) << installed.err;
+  EXPECT_THAT(installed.out, HasSubstr("Neon night"));
+  const Outcome wrong = run_here({"check", "neon_nigth"});
+  EXPECT_EQ(wrong.exit_code, kScript);
+  EXPECT_THAT(wrong.err, HasSubstr("there is no preset 'neon_nigth'; allowed: "));
+  EXPECT_THAT(wrong.err, HasSubstr("did you mean 'neon_night'?"));
+}
+
+TEST_F(Packs, TheSamePictureFromAFolderAndAZip) {
+  zip("kit.zip");
+  const std::string expected = picture({"kit/presets/warm.lua"});
+  EXPECT_EQ(picture({"kit"}), expected);
+  EXPECT_EQ(picture({"kit.zip"}), expected);
+  EXPECT_EQ(picture({"warm", "--path", "kit"}), expected);
+  EXPECT_EQ(picture({"warm", "--path", "kit.zip"}), expected);
+  EXPECT_EQ(picture({"warm"}, text("kit.zip")), expected);
+  fs::create_directory(path("looks"));
+  zip("looks/packs/some.zip");
+  EXPECT_EQ(picture({"warm"}, text("looks")), expected);
+}
+
+TEST_F(Packs, EffectsOfAPackBesideAPreset) {
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.warmth { gain = 3 } }\n");
+  EXPECT_EQ(run_here({"check", "look.lua"}).exit_code, kScript);
+  zip("packs/kit.zip");
+  const Outcome outcome = run_here({"check", "look.lua"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(run_here({"effects", "--path", "."}).out, HasSubstr("warmth"));
+}
+
+TEST_F(Packs, MessagesNameThePackAndTheLine) {
+  write("kit/effects/warmth.lua", "local fx = require \"afterglow\"\nreturn fx.efect {}\n");
+  zip("kit.zip");
+  const Outcome outcome = run_here({"check", "kit.zip"});
+  EXPECT_EQ(outcome.exit_code, kScript);
+  EXPECT_THAT(outcome.err, HasSubstr("kit.zip/effects/warmth.lua:2: error: "));
+}
+
+TEST_F(Packs, SeveralPresetsNeedAName) {
+  write("kit/presets/cold.lua", "return require(\"afterglow\").stack {}\n");
+  zip("kit.zip");
+  const Outcome outcome = run_here({"check", "kit.zip"});
+  EXPECT_EQ(outcome.exit_code, kScript);
+  EXPECT_THAT(
+      outcome.err,
+      HasSubstr("kit.zip: error: the pack holds several presets; allowed: --path kit.zip and one of: cold, warm"));
+  EXPECT_EQ(run_here({"check", "cold", "--path", "kit.zip"}).exit_code, kDone);
+}
+
+TEST_F(Packs, ABrokenPackIsAnErrorThatNamesIt) {
+  write("bad.zip", "no zip");
+  write("look.lua", "return require(\"afterglow\").stack {}\n");
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"check", "bad.zip"}, {"check", "look.lua", "--path", "bad.zip"}, {"effects", "--path", "bad.zip"}}) {
+    const Outcome outcome = run_here(arguments);
+    EXPECT_EQ(outcome.exit_code, kScript);
+    EXPECT_TRUE(is_one_error_line(outcome.err));
+    EXPECT_THAT(outcome.err, HasSubstr("bad.zip: error: the pack is refused: it is no zip"));
+  }
+}
+
+TEST_F(Packs, ExtendingAPresetOfAPack) {
+  zip("packs/kit.zip");
+  write("look.lua", "return require(\"afterglow\").extend(\"warm\", { warmth = { gain = 1.5 } })\n");
+  EXPECT_EQ(picture({"look.lua"}), picture({"kit"}));
+}
+
+}  // namespace
+}  // namespace afterglow::test
