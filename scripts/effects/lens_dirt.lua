@@ -27,7 +27,8 @@ return fx.effect {
       level = level + 1
     end
     local light = g:filter { source = image, size = source, filter = fx.filters.bspline(), name = "light" }
-    return g:pass { shader = "lens_dirt/spots", source = light, high = source, intensity = s.intensity,
-                    cell = math.max(s.size * source.height, 2), density = s.density, seed = s.seed, name = "final" }
+    local dirt = g:pass { shader = "lens_dirt/spots", size = source, cell = math.max(s.size * source.height, 2), density = s.density,
+                          seed = s.seed, name = "spots" }
+    return g:pass { shader = "lens_dirt/add", source = light, high = source, dirt = dirt, intensity = s.intensity, name = "final" }
   end,
 }

@@ -1,9 +1,6 @@
-// high + intensity · dirt · color. The dirt's opacity, 0…1, comes from two layers of cells, large spots and specks, in each cell at most one
-// disc with an edge of its own softness. Alpha of `high`.
-#include "lib/color.glsl"
+// Opacity of the dirt, 0…1: two layers of cells, large spots and specks, in each cell at most one disc with an edge of its own softness.
 #include "lib/noise.glsl"
 
-uniform float intensity;
 uniform float cell;  // side of the larger cells, pixels
 uniform float density;
 uniform int seed;
@@ -23,8 +20,7 @@ float layer(vec2 p, uint number) {
   return sum;
 }
 
-vec4 apply(vec4 color, vec4 high, ivec2 pixel) {
+vec4 sample_at(ivec2 pixel) {
   vec2 p = (vec2(pixel) + 0.5) / cell;
-  float dirt = min(0.6 * layer(p, 0u) + 0.4 * layer(p * 4.0, 1u), 1.0);
-  return vec4(min(high.rgb + intensity * dirt * color.rgb, vec3(kMaxLight)), high.a);
+  return vec4(min(0.6 * layer(p, 0u) + 0.4 * layer(p * 4.0, 1u), 1.0));
 }
