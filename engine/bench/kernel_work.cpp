@@ -18,10 +18,8 @@ VkImageMemoryBarrier2 again(const ImageBinding& target) {
 Result<KernelWork> KernelWork::create(const Device& device, KernelCompiler& compiler, const KernelDesc& kernel,
                                       const ImageBinding& source, const ImageBinding& target, const std::string& name) {
   KernelWork out;
-  KernelDesc desc = kernel;
-  desc.target = target.format == VK_FORMAT_R16G16B16A16_SFLOAT ? KernelTarget::float16 : KernelTarget::float32;
-  AFTERGLOW_TRY(out.compiled_, compiler.compile(desc));
-  AFTERGLOW_TRY(out.pipelines_, KernelPipelines::create(device, {out.compiled_}, {name}));
+  AFTERGLOW_TRY(out.compiled_, compiler.compile(kernel));
+  AFTERGLOW_TRY(out.pipelines_, KernelPipelines::create(device, {out.compiled_}, {name}, target.format));
   AFTERGLOW_TRY(out.sampler_, create_sampler(device, kernel.hardware_filter ? VK_FILTER_LINEAR : VK_FILTER_NEAREST));
   const DrawLayout& layout = out.pipelines_.layout(out.compiled_);
   AFTERGLOW_TRY(out.descriptors_,

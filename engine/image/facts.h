@@ -1,7 +1,7 @@
 // What is remembered of a picture's file for the writer.
 #pragma once
 
-#include <OpenEXR/ImfForward.h>
+#include <OpenEXR/ImfHeader.h>
 
 #include <array>
 #include <filesystem>
