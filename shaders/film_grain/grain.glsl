@@ -4,7 +4,6 @@
 
 layout(constant_id = 0) const bool fine = true;  // one grain a pixel
 
-uniform sampler2D source;
 uniform float strength;
 uniform float response;
 uniform float size_of_grain;  // pixels, ≥ 1
@@ -22,8 +21,7 @@ vec3 coarse_grain(ivec2 pixel) {
   return n * inversesqrt((f.x * f.x + g.x * g.x) * (f.y * f.y + g.y * g.y));
 }
 
-vec4 sample_at(ivec2 pixel) {
-  vec4 color = fetch(source, pixel);
+vec4 apply(vec4 color, ivec2 pixel) {
   vec3 n = fine ? grain(pixel) : coarse_grain(pixel);
   n = lerp(n.ggg, n, colored);
   float less = 1.0 - response * sqrt(clamp(luminance(color.rgb), 0.0, 1.0));

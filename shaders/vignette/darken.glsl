@@ -1,14 +1,12 @@
 // c · lerp(corner, 1, max(1 − d², 0)^power), d the distance from the centre in pictures, times `reach`.
 #include "lib/color.glsl"
 
-uniform sampler2D source;
 uniform vec2 center;  // 0…1
 uniform vec2 reach;
 uniform float power;
 uniform vec3 corner;
 
-vec4 sample_at(ivec2 pixel) {
-  vec4 color = fetch(source, pixel);
+vec4 apply(vec4 color, ivec2 pixel) {
   vec2 d = ((vec2(pixel) + 0.5) / vec2(target_size()) - center) * reach;
   float kept = pow(clamp(1.0 - dot(d, d), 0.0, 1.0), power);
   return vec4(min(color.rgb * lerp(corner, vec3(1.0), kept), kMaxLight), color.a);

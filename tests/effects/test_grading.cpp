@@ -101,13 +101,13 @@ TEST_F(Effects, LiftGammaGainAgree) {
 
 TEST_F(Effects, AWholeGradeIsOneKernel) {
   const char* entries =
-      "fx.white_balance { temperature = 20 }, fx.split_toning { shadows = \"#305080\" }, "
+      "fx.vignette {}, fx.white_balance { temperature = 20 }, fx.split_toning { shadows = \"#305080\" }, "
       "fx.channel_mixer { red_out_green_in = 10 }, fx.shadows_midtones_highlights { shadows_offset = 0.05 }, "
       "fx.lift_gamma_gain { gamma_offset = 0.1 }, fx.tone_mapping { mode = \"neutral\" }, "
-      "fx.color_adjustments { contrast = 10, saturation = 10 }";
+      "fx.color_adjustments { contrast = 10, saturation = 10 }, fx.film_grain { size = 1.5 }";
   const auto scene = neon_scene({160, 90}, 560, 330);
   const Made plain = run_stack(entries, scene, Way::plain), joined = run_stack(entries, scene, Way::joined);
-  EXPECT_EQ(plain.kernels, 7u);
+  EXPECT_EQ(plain.kernels, 9u);
   EXPECT_EQ(joined.kernels, 1u);
   EXPECT_TRUE(agrees(joined.result, from_floats(plain.result.data(), plain.size, 4), kJoined, kRgba));
 }
