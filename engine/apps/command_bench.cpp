@@ -203,7 +203,7 @@ Result<void> run_command(const Arguments& a, Console& console) {
 
 void add_options(CLI::App& app, Arguments& a) {
   const auto list = [&](const char* name, std::vector<std::string>& into, const char* help, const char* type) {
-    app.add_option(name, into, help)->type_name(type)->expected(1)->take_all();
+    app.add_option(name, into, help)->type_name(type)->expected(1)->allow_extra_args(false)->take_all();
   };
   app.add_option("PRESET", a.presets, "Looks to measure");
   app.add_option("--sizes", a.sizes, "Sizes of the picture (default 1920x1080,3840x2160)")->type_name("WxH,…");

@@ -6,6 +6,7 @@
 #include "core/paths.h"
 #include "exec/describe.h"
 #include "graph/region.h"
+#include "session/display_encoding.h"
 #include "shader/kernel.h"
 
 namespace afterglow {
@@ -35,31 +36,56 @@ namespace {
 // As `run` chooses on a CPU device, the one that is always there.
 constexpr DescribeOptions kAssumed{.storage_reads = true, .source_is_storage = true, .rows = kMaxRows};
 
+/// Compiles each distinct kernel once and gathers what is wrong.
+class ShaderCheck {
+ public:
+  explicit ShaderCheck(ShaderLibrary& shaders) : shaders_(shaders) {}
+
+  void run(const Graph& graph, const Plan& plan, const DescribeOptions& options) {
+    for (const auto& kernel : plan.kernels) {
+      const auto desc = describe_kernel(shaders_, graph, kernel, options);
+      if (!desc) {
+        keep(desc.error());
+        continue;
+      }
+      const auto assembled = assemble(*desc);
+      if (!assembled) {
+        keep(assembled.error());
+        continue;
+      }
+      if (!compiled_.insert(assembled->hash).second) continue;
+      if (const auto result = compiler_.compile(*desc); !result) keep(result.error());
+    }
+  }
+
+  std::vector<Error> errors;
+
+ private:
+  void keep(const Error& error) {
+    if (seen_.insert(error.text()).second) errors.push_back(error);
+  }
+
+  ShaderLibrary& shaders_;
+  KernelCompiler compiler_{cache_folder() / "shaders"};  // the folder that Stack uses, so that `run` starts warm
+  std::set<std::string> seen_;
+  std::set<Hash> compiled_;
+};
+
 }  // namespace
 
 std::vector<Error> shader_errors(const Look& look) {
-  KernelCompiler compiler(cache_folder() / "shaders");  // the folder that Stack uses, so that `run` starts warm
-  std::vector<Error> errors;
-  std::set<std::string> seen;
-  std::set<Hash> compiled;
-  const auto keep = [&](const Error& error) {
-    if (seen.insert(error.text()).second) errors.push_back(error);
-  };
-  for (const auto& kernel : look.plan.kernels) {
-    const auto desc = describe_kernel(*look.shaders, look.graph, kernel, kAssumed);
-    if (!desc) {
-      keep(desc.error());
-      continue;
-    }
-    const auto assembled = assemble(*desc);
-    if (!assembled) {
-      keep(assembled.error());
-      continue;
-    }
-    if (!compiled.insert(assembled->hash).second) continue;
-    if (const auto result = compiler.compile(*desc); !result) keep(result.error());
+  ShaderCheck check(*look.shaders);
+  check.run(look.graph, look.plan, kAssumed);
+  if (!check.errors.empty() || look.graph.result == look.graph.source) return check.errors;
+  // The last kernel once more, as it is for display files without and with transparency.
+  for (const bool straight : {false, true}) {
+    Graph graph = look.graph;
+    encode_for_display(graph, {.straight_alpha = straight});
+    DescribeOptions options = kAssumed;
+    options.codes = true;
+    check.run(graph, make_plan(graph, {}), options);
   }
-  return errors;
+  return check.errors;
 }
 
 }  // namespace afterglow

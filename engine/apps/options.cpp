@@ -32,6 +32,7 @@ void PresetArguments::add(CLI::App& command) {
       .add_option("--set", overrides, "Overrides one setting, as if the preset said so: glow.strength=0.4 (repeatable)")
       ->type_name("EFFECT.SETTING=VALUE")
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all()
       ->group("Preset");
   command
@@ -48,6 +49,7 @@ void PresetArguments::add_paths(CLI::App& command) {
                   "installation (repeatable)")
       ->type_name("FOLDER")
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all()
       ->group("Preset");
 }
@@ -212,6 +214,7 @@ void AssumedPicture::add(CLI::App& command) {
       .add_option("--without", without, "Auxiliary input that the assumed picture lacks: depth, normal (repeatable)")
       ->type_name("INPUT")
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all()
       ->group("Picture");
 }

@@ -52,8 +52,9 @@ Result<KernelPipelines> KernelPipelines::create(const Device& device, const std:
       made[i].emplace(std::move(fragment).error());
       return;
     }
-    made[i].emplace(create_draw_pipeline(device, out.layout(kernels[i]), vertex.get(), fragment->get(),
-                                         {format != VK_FORMAT_UNDEFINED ? format : format_of(kernels[i].target), kernels[i].rows}, names[i]));
+    made[i].emplace(create_draw_pipeline(
+        device, out.layout(kernels[i]), vertex.get(), fragment->get(),
+        {format != VK_FORMAT_UNDEFINED ? format : format_of(kernels[i].target), kernels[i].rows}, names[i]));
   });
   for (auto& pipeline : made) {
     if (!*pipeline) return std::move(*pipeline).error();

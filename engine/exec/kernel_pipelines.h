@@ -18,8 +18,7 @@ class KernelPipelines {
   /// Made over threads through the device's pipeline cache. `names` is parallel to `kernels`, for messages and
   /// debuggers. `format`: of the targets, in place of what the kernels are made for. Errors: device.
   static Result<KernelPipelines> create(const Device& device, const std::vector<CompiledKernel>& kernels,
-                                        const std::vector<std::string>& names,
-                                        VkFormat format = VK_FORMAT_UNDEFINED);
+                                        const std::vector<std::string>& names, VkFormat format = VK_FORMAT_UNDEFINED);
   KernelPipelines() = default;
 
   VkPipeline pipeline(int kernel) const { return pipelines_[static_cast<std::size_t>(kernel)].get(); }

@@ -6,6 +6,6 @@
 
 extern "C" __attribute__((visibility("default"))) const afterglow::OiioModule* afterglow_oiio_module() {
   static constexpr afterglow::OiioModule module{&afterglow::open_with_oiio, &afterglow::write_with_oiio,
-                                               &afterglow::visible_difference_with_oiio};
+                                                &afterglow::visible_difference_with_oiio};
   return &module;
 }

@@ -107,12 +107,8 @@ struct Oracle {
 };
 
 constexpr Oracle kOracles[] = {
-    {"bloom", run_bloom},
-    {"box_bloom", run_box_bloom},
-    {"color_adjustments", run_color_adjustments},
-    {"color_blit", run_color_blit},
-    {"outline", run_outline},
-    {"tone_mapping", run_tone_mapping},
+    {"bloom", run_bloom},           {"box_bloom", run_box_bloom}, {"color_adjustments", run_color_adjustments},
+    {"color_blit", run_color_blit}, {"outline", run_outline},     {"tone_mapping", run_tone_mapping},
 };
 
 const Oracle* oracle_of(const Entry& entry) {

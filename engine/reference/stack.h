@@ -31,8 +31,8 @@ struct Inputs {
 /// The first effect that no oracle knows; empty when all are known.
 std::string effect_without_oracle(std::span<const Entry> entries);
 
-/// The result of the stack, alpha that of the source. `entries` are those that run, in order; every effect is known, has
-/// all the settings that its schema names, and the inputs that it needs.
+/// The result of the stack, alpha that of the source. `entries` are those that run, in order; every effect is known,
+/// has all the settings that its schema names, and the inputs that it needs.
 DoubleImage evaluate(const DoubleImage& source, const Inputs& inputs, std::span<const Entry> entries);
 
 }  // namespace afterglow::reference

@@ -9,9 +9,9 @@
 
 namespace afterglow::script {
 
-/// Line of `key` in the table constructor of the call `function{…}`, `function({…})` or `function("…", {…})` whose bracket opens on
-/// `call_line` (any constructor that opens there when the function goes by another name). Falls back to the deepest
-/// part of the path that was found, then to `call_line`.
+/// Line of `key` in the table constructor of the call `function{…}`, `function({…})` or `function("…", {…})` whose
+/// bracket opens on `call_line` (any constructor that opens there when the function goes by another name). Falls back
+/// to the deepest part of the path that was found, then to `call_line`.
 int line_of_key(std::string_view text, int call_line, std::string_view function, const KeyPath& key);
 
 }  // namespace afterglow::script

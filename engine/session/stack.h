@@ -16,6 +16,7 @@
 #include "exec/program.h"
 #include "gpu/device.h"
 #include "script/preset.h"
+#include "session/display_encoding.h"
 
 namespace afterglow {
 
@@ -32,13 +33,6 @@ struct StackOptions {
   std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
   std::optional<Choice> choice;           ///< execute so, whatever calibration and precision say
   std::filesystem::path calibration;      ///< a table of `afterglow calibrate`; empty: the shipped one
-};
-
-/// 8-bit display codes as the last kernel's work: sRGB-encoded, as a display file holds them.
-struct DisplayEncoding {
-  bool straight_alpha = false;  ///< colours are divided by the source's alpha, which becomes the codes' alpha
-  bool dither = false;          ///< ±½ step of ordered noise
-  friend bool operator==(const DisplayEncoding&, const DisplayEncoding&) = default;
 };
 
 /// How a stack is executed, and why so.

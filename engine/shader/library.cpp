@@ -36,6 +36,10 @@ Result<void> check_expansion(const ShaderSource& source, const ShaderScan& scann
   return check_macros(files);
 }
 
+bool has_loop(const std::vector<Token>& tokens) {
+  return std::ranges::any_of(tokens, [](const Token& t) { return t.is("for") || t.is("while") || t.is("do"); });
+}
+
 Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const std::string& name,
                                                  const fs::path& path) {
   auto source = std::make_shared<ShaderSource>();
@@ -51,6 +55,11 @@ Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const
   hasher.add(source->text);
   for (const auto& include : source->includes) hasher.add(include.text);
   source->hash = hasher.finish();
+  source->loops = has_loop(scanned.tokens);
+  for (const auto& include : source->includes) {
+    AFTERGLOW_TRY(const std::vector<Token> tokens, tokenize(include.text, include.path.string()));
+    source->loops = source->loops || has_loop(tokens);
+  }
   return std::shared_ptr<const ShaderSource>(std::move(source));
 }
 

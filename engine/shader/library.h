@@ -32,8 +32,9 @@ struct ShaderSource {
   };
   std::vector<Include> includes;
   std::vector<std::string>
-      global_names;  ///< identifiers and macros that the file defines at file scope (renamed when shaders are joined)
-  Hash hash;         ///< of text and includes
+      global_names;    ///< identifiers and macros that the file defines at file scope (renamed when shaders are joined)
+  Hash hash;           ///< of text and includes
+  bool loops = false;  ///< it or a library of it has a loop
 
   std::vector<std::filesystem::path> files() const;  ///< path and those of the includes
 };

@@ -18,7 +18,7 @@ return fx.effect {
   end,
   build = function(g, s, source)
     local aspect = s.rounded and source.width / source.height or 1
-    return g:pass { shader = "vignette/darken", source = source, center = s.center, reach = { 3 * s.intensity * aspect, 3 * s.intensity },
+    return g:pass { shader = "vignette/darken", source = source, center = s.center, extent = { 3 * s.intensity * aspect, 3 * s.intensity },
                     power = 5 * s.smoothness, corner = s.color }
   end,
 }

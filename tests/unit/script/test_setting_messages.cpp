@@ -143,9 +143,11 @@ TEST_F(SettingMessages, Stacks) {
   EXPECT_EQ(error("nmae = \"x\""),
             "preset.lua:3: error: fx.stack has no 'nmae'; allowed: max_error, name, position; did you mean 'name'?");
   EXPECT_EQ(error("fx.glow {},\n5"),
-            "preset.lua:4: error: fx.stack: position 2 is 5, not an effect or a volume; allowed: fx.NAME { … }, fx.volume { … }");
+            "preset.lua:4: error: fx.stack: position 2 is 5, not an effect or a volume; allowed: fx.NAME { … }, "
+            "fx.volume { … }");
   EXPECT_EQ(error("fx.glow"),
-            "preset.lua:3: error: fx.stack: position 1 is an effect without settings; allowed: fx.NAME { … }, fx.volume { … }");
+            "preset.lua:3: error: fx.stack: position 1 is an effect without settings; allowed: fx.NAME { … }, "
+            "fx.volume { … }");
   EXPECT_EQ(error("fx.glow { name = \"a\" },\nfx.glow { name = \"a\" }"),
             "preset.lua:4: error: fx.stack: two entries are named 'a'");
   EXPECT_EQ(error("max_error = -1"), "preset.lua:3: error: fx.stack: max_error = -1 is out of range; allowed: > 0");

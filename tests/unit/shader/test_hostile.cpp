@@ -202,7 +202,7 @@ TEST(Hostile, RandomEditsOfRealShaders) {
           text.erase(at, random() % 12);
           break;
         case 2:
-          text.insert(at, text.substr(random() % text.size(), random() % 60));
+          text.insert(at, text.substr(random() % (text.size() + 1), random() % 60));
           break;
         default:
           text.resize(std::max<std::size_t>(at, 1));

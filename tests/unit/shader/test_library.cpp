@@ -35,6 +35,16 @@ TEST(ShaderLibrary, FindsOnceAndForgetsOnReload) {
   EXPECT_NE((*second)->hash, (*first)->hash);
 }
 
+TEST(ShaderLibrary, KnowsWhichShadersLoop) {
+  ShaderFiles files;
+  files.write("lib/sum.glsl",
+              "float sum(vec4 v) { float s = 0.0; for (int i = 0; i < 4; ++i) s += v[i]; return s; }\n");
+  const std::string do_not = "// for once, while we do it\n";
+  EXPECT_FALSE((*files.find("straight", do_not + kApply))->loops);
+  EXPECT_TRUE((*files.find("own", "vec4 apply(vec4 c) { while (c.r > 1.0) c *= 0.5; return c; }"))->loops);
+  EXPECT_TRUE((*files.find("included", std::string("#include \"lib/sum.glsl\"\n") + kApply))->loops);
+}
+
 TEST(ShaderLibrary, AnErrorIsNotRemembered) {
   ShaderFiles files;
   files.write("a.glsl", "oops");
