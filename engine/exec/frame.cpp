@@ -68,6 +68,16 @@ struct FrameRunner::State {
   std::map<std::uint64_t, std::map<std::string, std::uint64_t>> ran_with;  ///< program → versions of its inputs
   Staging staging;
   KernelTimer timer;
+  /// What the command buffer holds and what it needs to be so again.
+  struct Recorded {
+    std::uint64_t program = 0;
+    std::vector<bool> run;
+    std::vector<VkImage> images;
+    std::vector<VkImageLayout> layouts;  ///< of the inputs, before and after
+    int bindings = 0;
+    friend bool operator==(const Recorded&, const Recorded&) = default;
+  };
+  std::optional<Recorded> recorded;
   Submitter submitter;  // last: it waits before the images go
   int images = 0;
 
@@ -106,6 +116,7 @@ Result<void> FrameRunner::State::make_image(FrameImage& image, const ImageDesc& 
   if (image.fits(desc, rows)) return {};
   image = {};  // before the new one is made: the two need not exist at once
   AFTERGLOW_TRY(image, FrameImage::create(device, desc, direct ? access : HostAccess::none, rows));
+  recorded.reset();  // a new image may have the handle of one that is gone
   ++images;
   return {};
 }
@@ -327,13 +338,30 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
     AFTERGLOW_TRY(queries, timer.queries(kernels.size() + 1));
   }
 
+  Recorded wanted{.program = program.id(), .run = run, .images = result_images(), .layouts = {}, .bindings = {}};
+  for (const auto& [name, image] : inputs) {
+    wanted.images.push_back(image.image.get());
+    wanted.layouts.push_back(image.layout);
+  }
+  wanted.bindings = program.bindings();
+  const bool known = timing == KernelTiming::none && recorded == wanted;
+  if (!known) {
+    AFTERGLOW_CHECK(bind(program));
+    wanted.bindings = program.bindings();
+  }
+
   const auto start = Clock::now();
-  auto done = submitter.submit([&](VkCommandBuffer commands) {
+  auto done = known ? submitter.submit_again() : submitter.submit([&](VkCommandBuffer commands) {
     before(program, commands);
     program.record(commands, -1, queries, run);
     if (!separate) after(commands);
   });
   if (done) done = submitter.wait();
+  // Layouts are where they were when the frame ends as it began.
+  std::vector<VkImageLayout> layouts;
+  for (const auto& [name, image] : inputs) layouts.push_back(image.layout);
+  recorded.reset();
+  if (done && timing == KernelTiming::none && layouts == wanted.layouts) recorded = std::move(wanted);
   if (!done) return KernelTimer::blame(std::move(done).error(), program.plan());
   times.execute = milliseconds_since(start);
   if (stamps) {
@@ -391,7 +419,6 @@ Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string
   if (times.kernels_run > 0) {
     s.result.writer = 0;
     s.ran_with.erase(chosen->id());  // until it has run
-    AFTERGLOW_CHECK(s.bind(*chosen));
     AFTERGLOW_CHECK(s.execute(*chosen, run, timing, times));
     s.has_run(*chosen);
   }
@@ -425,7 +452,9 @@ Result<HostResult> FrameRunner::read_image(Program& program, ImageId image) {
 }
 
 FrameRunner::Counters FrameRunner::counters() const {
-  return {.images = state_->images, .buffers = state_->staging.buffers() + state_->timer.pools()};
+  return {.images = state_->images,
+          .buffers = state_->staging.buffers() + state_->timer.pools(),
+          .recordings = state_->submitter.recordings()};
 }
 
 }  // namespace afterglow

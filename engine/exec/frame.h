@@ -64,9 +64,9 @@ class FrameRunner {
   Result<HostResult> read_image(Program& program, ImageId image);
 
   struct Counters {
-    int images = 0, buffers = 0;
+    int images = 0, buffers = 0, recordings = 0;
   };
-  Counters counters() const;  ///< objects made so far; steady frames leave them alone
+  Counters counters() const;  ///< objects made and commands recorded so far; steady frames leave them alone
 
  private:
   struct State;

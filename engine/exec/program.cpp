@@ -46,7 +46,7 @@ struct Program::State {
   int result_rows = 1;
   bool storage_reads = false;
   bool linear = false;  ///< images between kernels stay in GENERAL
-  bool bound = false;
+  int bindings = 0;
 
   /// Images between kernels; one layout for both ways of reading.
   VkImageLayout read_layout() const {
@@ -358,13 +358,13 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
     }
   }
   s.result = s.result_rows > 1 ? result.rows : std::vector{result.view};
-  s.bound = true;
+  ++s.bindings;
   return {};
 }
 
 void Program::record(VkCommandBuffer commands, int only, VkQueryPool timestamps, const std::vector<bool>& run) const {
   const State& s = *state_;
-  if (!s.bound) return;
+  if (s.bindings == 0) return;
   if (only >= 0) {
     if (static_cast<std::size_t>(only) < s.kernels.size()) record_kernel(s.device, commands, s.kernels[only], s.result);
     return;
@@ -391,6 +391,7 @@ void Program::record(VkCommandBuffer commands, int only, VkQueryPool timestamps,
 const Plan& Program::plan() const { return state_->plan; }
 const Graph& Program::graph() const { return state_->graph; }
 ProgramMemory Program::memory() const { return state_->arena.memory(); }
+int Program::bindings() const { return state_->bindings; }
 VkFormat Program::storage_format() const { return state_->format; }
 VkFormat Program::result_format() const { return state_->result_format(); }
 int Program::result_rows() const { return state_->result_rows; }

@@ -96,6 +96,9 @@ class Program {
   Result<void> bind(const std::map<std::string, ImageBinding>& inputs /* "source", "depth", … */,
                     const ImageBinding& result);
 
+  /// How often images were bound so far. Commands that were recorded before the last time must not be submitted again.
+  int bindings() const;
+
   /// Records all kernels with their barriers. Inputs must be in SHADER_READ_ONLY_OPTIMAL with their writes made visible
   /// to fragment shader reads; the result must be in COLOR_ATTACHMENT_OPTIMAL (with
   /// `result_rows` above 1, it and its targets in GENERAL) and is left so. `only` ≥ 0 records that

@@ -34,16 +34,22 @@ Submitter& Submitter::operator=(Submitter&& other) noexcept {
   std::swap(fence_, other.fence_);
   std::swap(commands_, other.commands_);
   std::swap(pending_, other.pending_);
+  std::swap(recordings_, other.recordings_);
   return *this;
 }
 
 Result<void> Submitter::submit(const std::function<void(VkCommandBuffer)>& record) {
   AFTERGLOW_CHECK(wait());
-  const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+  const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   AFTERGLOW_VK(vkBeginCommandBuffer(commands_, &begin), "cannot record commands");
   record(commands_);
   AFTERGLOW_VK(vkEndCommandBuffer(commands_), "cannot record commands");
+  ++recordings_;
+  return submit_again();
+}
+
+Result<void> Submitter::submit_again() {
+  AFTERGLOW_CHECK(wait());
   const VkCommandBufferSubmitInfo buffer{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                          .commandBuffer = commands_};
   const VkSubmitInfo2 info{

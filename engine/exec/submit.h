@@ -1,4 +1,5 @@
-// One command buffer that is recorded, submitted and waited for, again and again.
+// One command buffer that is recorded, submitted and waited for, again and again; the same commands need not be
+// recorded twice.
 #pragma once
 
 #include <functional>
@@ -20,8 +21,11 @@ class Submitter {
   /// Records anew with `record` and submits. Waits for the submission before, if it is still on its way. Errors:
   /// device.
   Result<void> submit(const std::function<void(VkCommandBuffer)>& record);
+  /// What was recorded last once more: nothing that it uses may have changed. Errors: device.
+  Result<void> submit_again();
   /// Until the last submission is done; at once when there is none. Errors: device (lost).
   Result<void> wait();
+  int recordings() const { return recordings_; }  ///< so far
 
  private:
   const Device* device_ = nullptr;
@@ -29,6 +33,7 @@ class Submitter {
   FenceHandle fence_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   bool pending_ = false;
+  int recordings_ = 0;
 };
 
 }  // namespace afterglow

@@ -56,6 +56,19 @@ TEST_F(FrameTest, SteadyFramesMakeNoObjectsAndGiveTheSameBits) {
     EXPECT_EQ(made->counters().pipelines, program_objects.pipelines);
     EXPECT_EQ(made->counters().images, program_objects.images);
     EXPECT_EQ(made->counters().allocations, program_objects.allocations);
+    EXPECT_LE(frames->counters().recordings, objects.recordings + 1) << "the second frame finds other layouts";
+
+    // Commands that were recorded before read what is there now.
+    const auto other = noise(size, 22);
+    const std::map<std::string, HostImage> others{{"source", {other.data(), size, 4}}};
+    HostResult again, fresh;
+    ASSERT_TRUE(frames->run(*made, others, again, KernelTiming::none));
+    EXPECT_LE(frames->counters().recordings, objects.recordings + 1);
+    ASSERT_TRUE(runner(direct)->run(*made, others, fresh, KernelTiming::none));
+    EXPECT_EQ(again.pixels, fresh.pixels);
+    // Another runner has bound its own images meanwhile: these must be recorded anew.
+    ASSERT_TRUE(frames->run(*made, inputs, again, KernelTiming::none));
+    EXPECT_EQ(again.pixels, first.pixels);
   }
 }
 

@@ -1,0 +1,1 @@
+vec4 apply(vec4 color) { return color; }
