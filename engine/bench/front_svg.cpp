@@ -8,7 +8,7 @@
 namespace afterglow::bench {
 namespace {
 
-constexpr double kWidth = 900, kHeight = 420, kLeft = 70, kRight = 300, kTop = 44, kBottom = 56;
+constexpr double kWidth = 960, kHeight = 420, kLeft = 70, kRight = 360, kTop = 44, kBottom = 56;
 constexpr double kLeastError = 1e-8;  ///< what is exact stands here on a logarithmic axis
 
 std::string escaped(const std::string& text) {
