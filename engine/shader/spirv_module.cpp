@@ -54,7 +54,7 @@ Instruction Instruction::of_ids(spv::Op op, std::uint32_t type, std::uint32_t re
   out.words = {0, type, result};
   out.words.insert(out.words.end(), operands.begin(), operands.end());
   out.words[0] = static_cast<std::uint32_t>(out.words.size()) << spv::WordCountShift | static_cast<std::uint32_t>(op);
-  for (std::uint16_t word = 1; word < out.words.size(); ++word) out.ids.push_back(word);
+  for (std::size_t word = 1; word < out.words.size(); ++word) out.ids.push_back(static_cast<std::uint16_t>(word));
   return out;
 }
 

@@ -103,7 +103,7 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::read, "staging"));
   const auto uniforms = need(Buffer::create(*device_, std::max<std::size_t>(block.size(), 16),
                                             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, HostAccess::write, "block"));
-  std::memcpy(uniforms.data(), block.data(), block.size());
+  if (!block.empty()) std::memcpy(uniforms.data(), block.data(), block.size());
   uniforms.memory().flush();
 
   const auto& [layout, vertex, fragment, pipeline] = this->pipeline(kernel, format);
