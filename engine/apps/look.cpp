@@ -83,7 +83,10 @@ std::vector<Error> shader_errors(const Look& look) {
     encode_for_display(graph, {.straight_alpha = straight});
     DescribeOptions options = kAssumed;
     options.codes = true;
-    check.run(graph, make_plan(graph, {}), options);
+    const Plan plan = make_plan(graph, {});
+    Plan last;
+    last.kernels = {plan.kernels.back()};
+    check.run(graph, last, options);
   }
   return check.errors;
 }

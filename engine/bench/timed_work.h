@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "bench/statistics.h"
-#include "gpu/device.h"
-#include "gpu/handle.h"
+#include "exec/submit.h"
 
 namespace afterglow::bench {
 
@@ -20,10 +19,7 @@ class TimedWork {
   Result<double> run();
 
  private:
-  const Device* device_ = nullptr;
-  CommandPoolHandle pool_;
-  FenceHandle fence_;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  Submitter submitter_;
 };
 
 /// Something that can be run again and again, and how many milliseconds that took.

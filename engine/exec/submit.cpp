@@ -39,13 +39,18 @@ Submitter& Submitter::operator=(Submitter&& other) noexcept {
 }
 
 Result<void> Submitter::submit(const std::function<void(VkCommandBuffer)>& record) {
+  AFTERGLOW_CHECK(this->record(record));
+  return submit_again();
+}
+
+Result<void> Submitter::record(const std::function<void(VkCommandBuffer)>& record) {
   AFTERGLOW_CHECK(wait());
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   AFTERGLOW_VK(vkBeginCommandBuffer(commands_, &begin), "cannot record commands");
   record(commands_);
   AFTERGLOW_VK(vkEndCommandBuffer(commands_), "cannot record commands");
   ++recordings_;
-  return submit_again();
+  return {};
 }
 
 Result<void> Submitter::submit_again() {

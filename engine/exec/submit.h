@@ -21,7 +21,9 @@ class Submitter {
   /// Records anew with `record` and submits. Waits for the submission before, if it is still on its way. Errors:
   /// device.
   Result<void> submit(const std::function<void(VkCommandBuffer)>& record);
-  /// What was recorded last once more: nothing that it uses may have changed. Errors: device.
+  /// Records without submitting. Waits like `submit`. Errors: device.
+  Result<void> record(const std::function<void(VkCommandBuffer)>& record);
+  /// What was recorded last, once more or for the first time: nothing that it uses may have changed. Errors: device.
   Result<void> submit_again();
   /// Until the last submission is done; at once when there is none. Errors: device (lost).
   Result<void> wait();
