@@ -84,7 +84,7 @@ class LiveStack {
   void set_overrides(std::vector<Override> overrides);
   const std::vector<Override>& overrides() const;
   /// The image that takes the result's place: "" for the result itself, "source", or the name of an image of the graph
-  /// ("bloom.down[2]"). While the graph has no such image the result is shown and `status().warnings` says so.
+  /// ("glow.down[2]"). While the graph has no such image the result is shown and `status().warnings` says so.
   void show(const std::string& image);
   const std::string& shown() const;
   /// What `show` knows in the frame that was prepared last: "source", then the images of all passes in their order.
