@@ -16,7 +16,7 @@ namespace {
 using Kind = FileLook::Kind;
 
 constexpr std::uint64_t kNothing = 1, kFile = 2, kFolder = 3, kOther = 4, kUnreadable = 5;  // first word of a Hash
-constexpr std::size_t kLargest = 64u << 20;  // bytes that are read to compare contents; larger files by their stamps
+constexpr std::size_t kLargest = 64u << 20;     // bytes that are read to compare contents; larger files by their stamps
 constexpr std::int64_t kYoung = 2'000'000'000;  // ns; FAT counts in steps of two seconds
 
 thread_local FileTrace* innermost = nullptr;

@@ -176,10 +176,11 @@ void Watcher::State::run() {
     const bool signs = gathering.due() && now >= *gathering.due();
     const bool polls = !why_polling.empty() && now >= next_poll;
     if (!signs && !polls) continue;
-    const auto since = gathering.due() ? gathering.take() : now;
+    const bool polled = !gathering.due();
+    const auto since = polled ? now : gathering.take();
     refresh();
     lock.unlock();
-    look(since);
+    look(since, polled);
     lock.lock();
     next_poll = Clock::now() + options.interval;
   }

@@ -64,11 +64,10 @@ std::string why_unnoticed(const std::string& folder) {
     unsigned long type;
     const char* name;
   };
-  static constexpr Kind kKinds[] = {{0x6969, "NFS"},     {0xFF534D42, "CIFS"},  {0xFE534D42, "SMB"},
-                                    {0x517B, "SMB"},     {0x65735546, "FUSE"},  {0x01021997, "9P"},
-                                    {0x00C36400, "Ceph"}, {0x5346414F, "AFS"},  {0x6B414653, "AFS"},
-                                    {0x0BD00BD0, "Lustre"}, {0x47504653, "GPFS"}, {0x7461636F, "OCFS2"},
-                                    {0x01161970, "GFS2"}, {0x73757245, "Coda"}, {0x786F4256, "vboxsf"}};
+  static constexpr Kind kKinds[] = {
+      {0x6969, "NFS"},      {0xFF534D42, "CIFS"},  {0xFE534D42, "SMB"},  {0x517B, "SMB"},      {0x65735546, "FUSE"},
+      {0x01021997, "9P"},   {0x00C36400, "Ceph"},  {0x5346414F, "AFS"},  {0x6B414653, "AFS"},  {0x0BD00BD0, "Lustre"},
+      {0x47504653, "GPFS"}, {0x7461636F, "OCFS2"}, {0x01161970, "GFS2"}, {0x73757245, "Coda"}, {0x786F4256, "vboxsf"}};
   struct statfs system {};
   if (statfs(folder.c_str(), &system) != 0) return {};
   const auto type = static_cast<unsigned long>(system.f_type) & 0xFFFFFFFFUL;

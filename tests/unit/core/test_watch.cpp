@@ -73,7 +73,7 @@ class Watch : public testing::Test {
   }
 
   void watch(const std::vector<fs::path>& paths, const WatchOptions& options = {}) {
-    watcher_ = std::make_unique<Watcher>(options, [this](auto) {
+    watcher_ = std::make_unique<Watcher>(options, [this](auto, bool) {
       const std::lock_guard lock(mutex_);
       ++looks_;
       changed_.notify_all();
@@ -225,7 +225,7 @@ TEST_F(Watch, LooksAgainWhenEventsWereLost) {
   std::condition_variable opened;
   bool held = false, open_now = false;
   int looks = 0;
-  Watcher watcher({}, [&](auto) {
+  Watcher watcher({}, [&](auto, bool) {
     std::unique_lock lock(gate);
     ++looks;
     held = true;
