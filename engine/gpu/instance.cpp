@@ -122,7 +122,8 @@ Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log, const std:
   }
   if (created == VK_ERROR_EXTENSION_NOT_PRESENT && !extensions.empty()) {
     return Error{ErrorKind::device, fmt::format("the Vulkan loader cannot show pictures in windows of this system "
-                                                "(it needs {})", join(extensions))};
+                                                "(it needs {})",
+                                                join(extensions))};
   }
   AFTERGLOW_VK(created, "cannot create a Vulkan instance");
   keep_libraries_loaded();

@@ -6,10 +6,14 @@
 namespace afterglow {
 
 std::optional<VkSurfaceFormatKHR> choose_surface_format(std::span<const VkSurfaceFormatKHR> formats) {
-  constexpr VkFormat kOrder[] = {VK_FORMAT_B8G8R8A8_UNORM,           VK_FORMAT_R8G8B8A8_UNORM,
-                                 VK_FORMAT_A8B8G8R8_UNORM_PACK32,    VK_FORMAT_A2B10G10R10_UNORM_PACK32,
-                                 VK_FORMAT_A2R10G10B10_UNORM_PACK32, VK_FORMAT_B8G8R8A8_SRGB,
-                                 VK_FORMAT_R8G8B8A8_SRGB,            VK_FORMAT_A8B8G8R8_SRGB_PACK32};
+  constexpr VkFormat kOrder[] = {VK_FORMAT_B8G8R8A8_UNORM,
+                                 VK_FORMAT_R8G8B8A8_UNORM,
+                                 VK_FORMAT_A8B8G8R8_UNORM_PACK32,
+                                 VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+                                 VK_FORMAT_A2R10G10B10_UNORM_PACK32,
+                                 VK_FORMAT_B8G8R8A8_SRGB,
+                                 VK_FORMAT_R8G8B8A8_SRGB,
+                                 VK_FORMAT_A8B8G8R8_SRGB_PACK32};
   for (const VkFormat wanted : kOrder) {
     for (const auto& format : formats) {
       if (format.format == wanted && format.colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR) return format;
