@@ -33,7 +33,7 @@ class LiveSession {
 
   /// Of the last `process`. See FrameRunner::images.
   DeviceImages images() const;
-  /// Reads the result back. See FrameRunner::read_result.
+  /// Reads the result back; an error when nothing had to run (`images().ran`). See FrameRunner::read_result.
   Result<void> read_result(HostResult& out, const std::optional<Rect>& part = {});
 
   const FrameTimes& times() const;  ///< of the last frame
