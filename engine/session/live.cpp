@@ -114,6 +114,10 @@ std::vector<std::string> LiveStack::images() const {
   return state_->stack.stack ? state_->stack.stack->images() : std::vector<std::string>{};
 }
 
+void LiveStack::also_follow(FileLooks looks) {
+  if (!looks.empty()) state_->builder.also_follow(std::move(looks));
+}
+
 void LiveStack::reload() { state_->builder.look(); }
 void LiveStack::settle() { state_->builder.settle(); }
 LiveStack::Counters LiveStack::counters() const { return state_->builder.counters(); }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/diagnostics.h"
+#include "core/file_trace.h"
 #include "core/result.h"
 #include "core/watch.h"
 #include "gpu/device.h"
@@ -91,6 +92,10 @@ class LiveStack {
   std::vector<std::string> images() const;
   /// Looks at the files now, whatever the watcher says (for a reload key, and where `follow` is false).
   void reload();
+
+  /// What `Stack::prepare` has looked at for a frame (core/file_trace.h) is followed as well: at another time a preset
+  /// may use shaders that the build has not met.
+  void also_follow(FileLooks looks);
 
   /// Any thread.
   LiveStatus status() const;

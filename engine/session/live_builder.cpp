@@ -91,7 +91,7 @@ void LiveBuilder::look() { files_may_differ(Clock::now(), true); }
 void LiveBuilder::settle() {
   look();
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return !building_ && !wanted_.any(); });
+  changed_.wait(lock, [&] { return !busy_ && !wanted_.any() && dead_.empty(); });
 }
 
 bool LiveBuilder::overtaken() const {
@@ -113,13 +113,13 @@ void LiveBuilder::run() {
     std::vector<BuiltStack> dead = std::move(dead_);
     dead_.clear();
     const Wanted why = std::exchange(wanted_, {});
-    building_ = why.any();
+    busy_ = true;
     const LiveRequest request = request_;
     lock.unlock();
     if (why.any()) work(why, request);
     dead.clear();
     lock.lock();
-    building_ = false;
+    busy_ = false;
     const bool was = std::exchange(status_.building, wanted_.request);
     changed_.notify_all();
     if (was != status_.building) {
@@ -131,7 +131,8 @@ void LiveBuilder::run() {
 }
 
 void LiveBuilder::work(const Wanted& why, const LiveRequest& request) {
-  if (!why.request && !first_changed(looks_, options_.watch.poll)) return;
+  take_new_looks();
+  if (!why.request && !first_changed(looks_, options_.watch.poll) && !first_changed(later_looks_)) return;
   BuildTimes times;
   times.notice = milliseconds_between(why.since.value_or(Clock::now()), Clock::now());
   {
@@ -224,6 +225,32 @@ Result<void> LiveBuilder::build(const LiveRequest& request, BuildTimes& times) {
   return {};
 }
 
+/// Frames may read what the build did not: other passes at another time.
+void LiveBuilder::also_follow(FileLooks looks) {
+  const std::lock_guard lock(mutex_);
+  new_looks_.merge(looks);
+  wanted_.files = true;
+  wanted_.note(Clock::now());
+  changed_.notify_all();
+}
+
+void LiveBuilder::take_new_looks() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (new_looks_.empty()) return;
+    later_looks_.merge(new_looks_);
+    new_looks_.clear();
+  }
+  watch();
+}
+
+void LiveBuilder::watch() {
+  if (!watcher_) return;
+  std::vector<std::filesystem::path> paths = paths_to_watch(looks_);
+  for (auto& path : paths_to_watch(later_looks_)) paths.push_back(std::move(path));
+  watcher_->watch(paths);
+}
+
 /// Watches what the build has looked at; what changed before it was watched is looked at again.
 void LiveBuilder::follow(FileLooks looks) {
   const auto same_path = [](const auto& a, const auto& b) {
@@ -232,7 +259,9 @@ void LiveBuilder::follow(FileLooks looks) {
   };
   const bool same = std::ranges::equal(looks_, looks, same_path);
   looks_ = std::move(looks);
-  if (watcher_ && !same) watcher_->watch(paths_to_watch(looks_));
+  const bool had_more = !later_looks_.empty();
+  later_looks_.clear();  // frames of the new stack read them again
+  if (!same || had_more) watch();
   if (!first_changed(looks_)) return;
   const std::lock_guard lock(mutex_);
   wanted_.files = true;

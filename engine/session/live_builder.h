@@ -56,6 +56,7 @@ class LiveBuilder {
   void change(const std::function<void(LiveRequest&)>& apply, bool build);
   void look();  ///< at the files
   void settle();
+  void also_follow(FileLooks looks);
   BuiltParts take();
   void release(BuiltStack stack);  ///< destroys it on the builder's thread
   void forward(const std::function<void(LiveStatus&, LiveStack::Counters&)>& apply);
@@ -85,6 +86,8 @@ class LiveBuilder {
   void give_up();
   bool overtaken() const;
   void follow(FileLooks looks);
+  void take_new_looks();
+  void watch();
   void notify() const;
 
   const std::shared_ptr<const int> token_ = std::make_shared<const int>();  // every BuiltStack holds it
@@ -95,6 +98,7 @@ class LiveBuilder {
 
   // Of the builder's thread alone.
   FileLooks looks_;                 ///< of the last build
+  FileLooks later_looks_;           ///< of frames since
   std::optional<StackWork> basis_;  ///< of the newest stack that was built
   Clock::time_point published_at_{};
 
@@ -102,7 +106,8 @@ class LiveBuilder {
   std::condition_variable changed_;
   LiveRequest request_;
   Wanted wanted_;
-  bool building_ = false, ends_ = false;
+  bool busy_ = false, ends_ = false;
+  FileLooks new_looks_;           ///< of frames
   std::shared_ptr<Until> until_;  ///< when the script that is running ends at the latest
   Clock::time_point script_began_{};
   BuiltParts parts_;

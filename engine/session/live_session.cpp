@@ -43,7 +43,11 @@ Result<void> LiveSession::State::prepare(const BuildContext& next) {
   if (new_shape) live->settle();
   if (live->update()) ran = nullptr;
   Stack* stack = live->stack();
-  return stack ? stack->prepare(next) : Result<void>{};
+  if (!stack) return {};
+  const FileTrace trace;
+  auto prepared = stack->prepare(next);
+  live->also_follow(trace.looks());
+  return prepared;
 }
 
 /// Frames whose content makes effects idle run without them.

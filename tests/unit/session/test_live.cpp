@@ -49,6 +49,7 @@ TEST_F(Live, AShaderEditMakesTheChangedKernelAlone) {
   const auto before = live().counters();
   write("shaders/t/lib.glsl", "vec3 tinted(vec3 c, float gain) { return c * gain + 1.0; }\n");
   EXPECT_EQ(settled(), 2.f);
+  live().settle();  // the old stack is released
   const auto after = live().counters();
   EXPECT_EQ(after.compiled, before.compiled + 1);
   EXPECT_EQ(after.pipelines, before.pipelines + 1);
@@ -291,6 +292,30 @@ TEST_F(Live, FollowsEachWayOfSaving) {
   write("shaders/t/lib.glsl", "vec3 tinted(vec3 c, float gain) { return c * gain + 1.0; }\n");
   save(2);
   EXPECT_TRUE(comes(3.f)) << "several files at once";
+}
+
+TEST_F(Live, FollowsShadersThatOnlyLaterFramesUse) {
+  write("shaders/t/late.glsl", "vec4 apply(vec4 color) { return color; }\n");
+  std::string late = effect("t");
+  late.replace(late.find("return g:pass"), 13,
+               "if g.frame > 5 then source = g:pass { shader = \"t/late\", source = blur, "
+               "name = \"late\" } return source end return g:pass");
+  write("effects/t.lua", late);
+  open();
+  EXPECT_EQ(shown(), 1.f);
+  const auto at_frame = [&](double frame) {
+    Picture p = picture();
+    BuildContext context;
+    context.frame = frame;
+    EXPECT_TRUE(session_->process(p, context));
+    HostResult out;
+    EXPECT_TRUE(session_->read_result(out));
+    return out.pixels[0];
+  };
+  EXPECT_EQ(at_frame(9), 0.5f);
+  live().settle();
+  write("shaders/t/late.glsl", "vec4 apply(vec4 color) { return color * 8.0; }\n");
+  EXPECT_TRUE(wait_for([&] { return at_frame(9) == 4.f; }));
 }
 
 TEST_F(Live, PollingFollowsToo) {
