@@ -18,8 +18,9 @@ WindowOptions window_options(const PlayWindowOptions& options) {
 
 }  // namespace
 
-Result<void> play_in_window(PlayerOptions player_options, DeviceOptions device_options, const PlayWindowOptions& options,
-                            Console& console, const std::function<void(const Device&, Player&)>& at_end) {
+Result<void> play_in_window(PlayerOptions player_options, DeviceOptions device_options,
+                            const PlayWindowOptions& options, Console& console,
+                            const std::function<void(const Device&, Player&)>& at_end) {
   install_interrupt_handler();
   AFTERGLOW_TRY(const auto window, DesktopWindow::create("Afterglow", options.size));
   device_options.presentation = window->presentation();

@@ -19,7 +19,8 @@ void draw_stats_overlay(const Player& player, const Ui& ui, const OverlayArea& a
     colored(color, fmt::format("{:>24}", value));
   };
   row("fps", fmt::format("{:.1f}", stats.fps));
-  row("interval", fmt::format("{:.1f} / {:.1f} / {:.1f} ms", stats.interval.median, stats.interval.p95, stats.interval.p99));
+  row("interval",
+      fmt::format("{:.1f} / {:.1f} / {:.1f} ms", stats.interval.median, stats.interval.p95, stats.interval.p99));
   row("work", fmt::format("{:.1f} / {:.1f} / {:.1f} ms", stats.work.median, stats.work.p95, stats.work.p99));
   row("shown", fmt::format("{}", stats.shown));
   row("dropped", fmt::format("{}", stats.dropped), stats.dropped > 0 ? ui_color::kWarning : ui_color::kText);
@@ -50,7 +51,8 @@ void draw_histogram_overlay(const Histogram& histogram, const Ui& ui, const Over
   // The ends hold all that is beyond them: they do not set the height.
   std::uint32_t most = 1;
   for (std::size_t c = 0; c < 3; ++c) {
-    for (int i = 1; i + 1 < Histogram::kCodes; ++i) most = std::max(most, histogram.display[c][static_cast<std::size_t>(i)]);
+    for (int i = 1; i + 1 < Histogram::kCodes; ++i)
+      most = std::max(most, histogram.display[c][static_cast<std::size_t>(i)]);
   }
   const ImU32 colors[] = {IM_COL32(235, 80, 70, 120), IM_COL32(90, 200, 90, 120), IM_COL32(80, 130, 250, 120)};
   for (std::size_t c = 0; c < 3; ++c) {

@@ -1,5 +1,5 @@
-// The mouse over the picture: wheel zooms at the pointer, a drag moves the picture or the wipe, a double click goes between
-// fit and 1:1.
+// The mouse over the picture: wheel zooms at the pointer, a drag moves the picture or the wipe, a double click goes
+// between fit and 1:1.
 #include <cmath>
 
 #include "window/window_app.h"

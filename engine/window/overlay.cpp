@@ -40,9 +40,9 @@ Message message_of(std::string headline, const Error& error, const std::string& 
 std::optional<Message> current(const Player& player) {
   const LiveStatus status = const_cast<Player&>(player).live().status();
   if (status.error) {
-    return message_of(status.generation > 0 ? "The preset has an error; this is the last good version"
-                                            : "The preset has an error",
-                      *status.error, status.source_line, status.error_text());
+    return message_of(
+        status.generation > 0 ? "The preset has an error; this is the last good version" : "The preset has an error",
+        *status.error, status.source_line, status.error_text());
   }
   const ShownFrame& shown = player.shown();
   if (shown.unreadable) {
@@ -148,7 +148,8 @@ void draw_probe_overlay(const Probe& probe, const Ui& ui, const OverlayArea& are
 
 void draw_message_overlay(const Ui& ui, const OverlayArea& area) {
   if (ui.message.empty() || ui.now >= ui.message_until) return;
-  begin_sheet("message", {area.at.x + area.size.x / 2, area.at.y + ui.px(14)}, {0.5f, 0}, ui, ImGuiWindowFlags_NoInputs);
+  begin_sheet("message", {area.at.x + area.size.x / 2, area.at.y + ui.px(14)}, {0.5f, 0}, ui,
+              ImGuiWindowFlags_NoInputs);
   ImGui::PushTextWrapPos(area.size.x * 0.7f);
   ImGui::TextUnformatted(ui.message.c_str());
   ImGui::PopTextWrapPos();

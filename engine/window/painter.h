@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "gpu/swapchain.h"
-#include "window/view_pass.h"
 #include "window/ui_renderer.h"
+#include "window/view_pass.h"
 
 namespace afterglow {
 

@@ -18,23 +18,23 @@ namespace afterglow {
 struct WindowOptions {
   std::optional<float> scale;  ///< of the interface; none: the desktop's
   bool full_screen = false;
-  bool stats = false;           ///< shown from the start
-  bool tearing = false;         ///< see SwapchainOptions
+  bool stats = false;                    ///< shown from the start
+  bool tearing = false;                  ///< see SwapchainOptions
   std::filesystem::path captures = ".";  ///< folder for screenshots by key
   /// A part of the interface: draws widgets into the ImGui window that it is called in. Without one, its place is the
   /// picture's.
   using Part = std::function<void(Player&, Ui&)>;
-  Part panel;      ///< at the right
-  Part transport;  ///< at the bottom
-  Part help;       ///< a sheet over everything
-  std::function<void(Player&, Ui&)> save;  ///< Ctrl+S; empty: there is no such thing
+  Part panel;                                                ///< at the right
+  Part transport;                                            ///< at the bottom
+  Part help;                                                 ///< a sheet over everything
+  std::function<void(Player&, Ui&)> save;                    ///< Ctrl+S; empty: there is no such thing
   std::function<bool()> interrupted = [] { return false; };  ///< true: close as by key
 };
 
 /// Shows what the player plays until the window is closed. `player` must have been opened on `device`, that with the
-/// window's presentation, and with DesktopWindow::wake as its wake. Main thread. Does nothing, and uses no processor time,
-/// while nothing changes. Notes each picture that it shows as "shown …" and each build as "reload …" in `diagnostics`.
-/// Errors: device (lost, display gone).
+/// window's presentation, and with DesktopWindow::wake as its wake. Main thread. Does nothing, and uses no processor
+/// time, while nothing changes. Notes each picture that it shows as "shown …" and each build as "reload …" in
+/// `diagnostics`. Errors: device (lost, display gone).
 Result<void> run_window(DesktopWindow& window, Device& device, Player& player, const WindowOptions& options,
                         Diagnostics& diagnostics);
 

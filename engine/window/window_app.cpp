@@ -11,11 +11,11 @@ namespace afterglow {
 namespace {
 
 constexpr float kPanelWidth = 340, kTransportHeight = 78;
-constexpr int kSettle = 3;                      // ImGui needs a frame to see an event and one to answer it
-constexpr double kLeastPause = 1.0 / 120;       // between frames that show no new picture
+constexpr int kSettle = 3;                 // ImGui needs a frame to see an event and one to answer it
+constexpr double kLeastPause = 1.0 / 120;  // between frames that show no new picture
 constexpr double kBlink = 0.5, kHistogramPause = 0.1;
-constexpr double kLongest = 0.25;               // a signal wakes nobody: look for one this often
-constexpr double kRetry = 0.02;                 // when the window could not be drawn to
+constexpr double kLongest = 0.25;  // a signal wakes nobody: look for one this often
+constexpr double kRetry = 0.02;    // when the window could not be drawn to
 
 ViewImage view_image(const DeviceImage& image) { return {image.binding.view, image.layout, image.binding.size}; }
 
@@ -238,8 +238,9 @@ Result<void> WindowApp::draw_overlays() {
   AFTERGLOW_CHECK(look_under_cursor());
   AFTERGLOW_CHECK(look_at_histogram());
   const Ui& ui = interface_->ui();
-  const OverlayArea area{ImVec2(0, 0), ImVec2(static_cast<float>(area_.width) / ImGui::GetIO().DisplayFramebufferScale.x,
-                                              static_cast<float>(area_.height) / ImGui::GetIO().DisplayFramebufferScale.y)};
+  const OverlayArea area{ImVec2(0, 0),
+                         ImVec2(static_cast<float>(area_.width) / ImGui::GetIO().DisplayFramebufferScale.x,
+                                static_cast<float>(area_.height) / ImGui::GetIO().DisplayFramebufferScale.y)};
   draw_state_overlay(player_, ui, area);
   if (ui.show_stats) draw_stats_overlay(player_, ui, area);
   if (ui.show_histogram && spread_.histogram) draw_histogram_overlay(*spread_.histogram, ui, area);

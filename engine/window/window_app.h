@@ -1,4 +1,5 @@
-// State of a window that plays, for window_app.cpp (loop and frame), window_actions.cpp (keys) and navigation.cpp (mouse).
+// State of a window that plays, for window_app.cpp (loop and frame), window_actions.cpp (keys) and navigation.cpp
+// (mouse).
 #pragma once
 
 #include <memory>
@@ -66,7 +67,7 @@ class WindowApp {
   Rect area_;  ///< of the frame buffer that the picture has
   ViewBackground background_ = ViewBackground::none;
   enum class Drag { none, pan, wipe } drag_ = Drag::none;
-  int redraw_ = 3;        ///< frames to draw though nothing new is there: interfaces settle in a few
+  int redraw_ = 3;  ///< frames to draw though nothing new is there: interfaces settle in a few
   double last_draw_ = -1;
   bool quit_ = false, minimised_ = false, resume_ = false;
   bool step_shown_ = true;  ///< the last changed turn was presented

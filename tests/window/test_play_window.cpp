@@ -45,9 +45,10 @@ class PlayWindow : public testing::Test {
 
   /// A look that keeps of each channel what `filter` says.
   void write_preset(const std::string& filter, const std::string& name = "look.lua") {
-    std::ofstream(folder_ / name) << "local fx = require \"afterglow\"\n\n"
-                                  << "return fx.stack {\n  name = \"test look\",\n  fx.color_adjustments { color_filter = "
-                                  << filter << " },\n}\n";
+    std::ofstream(folder_ / name)
+        << "local fx = require \"afterglow\"\n\n"
+        << "return fx.stack {\n  name = \"test look\",\n  fx.color_adjustments { color_filter = " << filter
+        << " },\n}\n";
   }
 
   void play(std::vector<std::string> arguments) {
@@ -63,7 +64,8 @@ class PlayWindow : public testing::Test {
   }
   static bool has_color(const Screen& screen, double x, double y, const Color& color) {
     if (screen.rgb.empty()) return false;
-    const std::uint8_t* rgb = screen.at(static_cast<int>(x * screen.size.width), static_cast<int>(y * screen.size.height));
+    const std::uint8_t* rgb =
+        screen.at(static_cast<int>(x * screen.size.width), static_cast<int>(y * screen.size.height));
     for (std::size_t i = 0; i < 3; ++i) {
       if (std::abs(rgb[i] - color[i]) > 2) return false;
     }
@@ -103,8 +105,9 @@ TEST_F(PlayWindow, EditsOnDiskAreSeenAndErrorsKeepTheLastGoodPicture) {
   write_preset("{ 0, 1, 0 }");
   EXPECT_TRUE(until_color(kX, kY, kGreen));
 
-  std::ofstream(folder_ / "look.lua") << "local fx = require \"afterglow\"\nreturn fx.stack {\n  fx.color_adjustmentz { "
-                                         "saturation = 1 },\n}\n";
+  std::ofstream(folder_ / "look.lua")
+      << "local fx = require \"afterglow\"\nreturn fx.stack {\n  fx.color_adjustmentz { "
+         "saturation = 1 },\n}\n";
   ASSERT_TRUE(program_->wait_for("look.lua:3"));
   EXPECT_TRUE(until([&] { return window_title(xvfb_.display()).find("(error)") != std::string::npos; }));
   const Color mark{255, 107, 97};  // the sheet's edge

@@ -9,7 +9,8 @@ namespace afterglow {
 /// Sends WM_DELETE_WINDOW to the program's window. False: there is no such window.
 bool ask_to_close(const std::string& display);
 
-/// Drags a file onto the middle of the program's window (XDND 5) and drops it. False: no window, or it does not want it.
+/// Drags a file onto the middle of the program's window (XDND 5) and drops it. False: no window, or it does not want
+/// it.
 bool drop_file(const std::string& display, const std::filesystem::path& file);
 
 /// The title of the program's window.
