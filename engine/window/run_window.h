@@ -21,12 +21,12 @@ struct WindowOptions {
   bool stats = false;                    ///< shown from the start
   bool tearing = false;                  ///< see SwapchainOptions
   std::filesystem::path captures = ".";  ///< folder for screenshots by key
-  /// A part of the interface: draws widgets into the ImGui window that it is called in. Without one, its place is the
-  /// picture's.
-  using Part = std::function<void(Player&, Ui&)>;
+  /// A part of the interface, drawn as an ImGui window at `place`. Without one, its place is the picture's.
+  using Part = std::function<void(Player&, Ui&, ImVec2 place, ImVec2 size)>;
   Part panel;                                                ///< at the right
   Part transport;                                            ///< at the bottom
-  Part help;                                                 ///< a sheet over everything
+  std::function<float(const Ui&)> transport_height;          ///< that it wants
+  Part help;                                                 ///< over everything
   std::function<void(Player&, Ui&)> save;                    ///< Ctrl+S; empty: there is no such thing
   std::function<bool()> interrupted = [] { return false; };  ///< true: close as by key
 };

@@ -19,17 +19,6 @@ constexpr double kRetry = 0.02;    // when the window could not be drawn to
 
 ViewImage view_image(const DeviceImage& image) { return {image.binding.view, image.layout, image.binding.size}; }
 
-constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                                    ImGuiWindowFlags_NoBringToFrontOnFocus;
-
-void part(const char* name, ImVec2 at, ImVec2 size, Player& player, Ui& ui, const WindowOptions::Part& draw) {
-  ImGui::SetNextWindowPos(at);
-  ImGui::SetNextWindowSize(size);
-  if (ImGui::Begin(name, nullptr, kFixed)) draw(player, ui);
-  ImGui::End();
-}
-
 }  // namespace
 
 Result<void> run_window(DesktopWindow& window, Device& device, Player& player, const WindowOptions& options,
@@ -185,7 +174,7 @@ Result<void> WindowApp::draw() {
   draw_parts(window);
   navigate();
   AFTERGLOW_CHECK(draw_overlays());
-  if (options_.help && ui.show_help) options_.help(player_, ui);
+  if (options_.help && ui.show_help) options_.help(player_, ui, {0, 0}, ImGui::GetIO().DisplaySize);
   const ImDrawData& data = interface_->end();
   AFTERGLOW_TRY(const auto drawn, painter_->paint(window, view_frame(), data));
   last_draw_ = player_.now();
@@ -211,9 +200,10 @@ void WindowApp::draw_parts(Size window) {
   const ImGuiIO& io = ImGui::GetIO();
   const float width = io.DisplaySize.x, height = io.DisplaySize.y;
   const float panel = options_.panel && ui.show_panel ? std::min(ui.px(kPanelWidth), width * 0.6f) : 0;
-  const float bar = options_.transport && ui.show_transport ? std::min(ui.px(kTransportHeight), height * 0.5f) : 0;
-  if (panel > 0) part("panel", {width - panel, 0}, {panel, height}, player_, ui, options_.panel);
-  if (bar > 0) part("transport", {0, height - bar}, {width - panel, bar}, player_, ui, options_.transport);
+  const float wanted = options_.transport_height ? options_.transport_height(ui) : ui.px(kTransportHeight);
+  const float bar = options_.transport && ui.show_transport ? std::min(wanted, height * 0.5f) : 0;
+  if (panel > 0) options_.panel(player_, ui, {width - panel, 0}, {panel, height});
+  if (bar > 0) options_.transport(player_, ui, {0, height - bar}, {width - panel, bar});
   const float sx = io.DisplayFramebufferScale.x, sy = io.DisplayFramebufferScale.y;
   area_ = {0, 0, std::max(window.width - static_cast<int>(std::lround(panel * sx)), 1),
            std::max(window.height - static_cast<int>(std::lround(bar * sy)), 1)};
