@@ -66,8 +66,10 @@ float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
   ImGui::SetNextWindowSizeConstraints({width, 0}, {width, area.size.y * 0.6f});
   begin_sheet("error", {area.at.x + margin, area.at.y + area.size.y - margin}, {0, 1}, ui, 0);
   const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  ImGui::PushClipRect(at, {at.x + size.x, at.y + size.y}, false);  // over the sheet's padding
   ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + ui.px(4), at.y + size.y}, ui_color::kError, ui.px(5),
                                             ImDrawFlags_RoundCornersLeft);
+  ImGui::PopClipRect();
   ImGui::Indent(ui.px(6));
   const float wrap = width - ui.px(16);
   colored(ui_color::kDim, message->headline);

@@ -70,7 +70,7 @@ bool await(Display* display, Atom message, const std::string& uri) {
       XSendEvent(display, request.requestor, False, NoEventMask, &answer);
       XFlush(display);
     }
-    if (event.type == ClientMessage && event.xclient.message_type == message) return (event.xclient.data.l[1] & 1) != 0;
+    if (event.type == ClientMessage && event.xclient.message_type == message) return event.xclient.data.l[1] != 0;
   }
 }
 
