@@ -121,6 +121,8 @@ void WindowApp::open_dropped(const std::filesystem::path& path) {
   Ui& ui = interface_->ui();
   const auto extension = path.extension();
   const bool preset = extension == ".lua" || extension == ".zip";
+  // What is closed for it may still be on its way to the screen. A lost device shows up in the next turn.
+  (void)painter_->finish();
   const Result<void> opened = preset ? player_.open_preset(path) : player_.open_footage({path.string()});
   ui.say(opened ? fmt::format("opened {}", path.filename().string()) : opened.error().text());
   diagnostics_.note(opened ? fmt::format("opened {}", path.string()) : opened.error().text());
