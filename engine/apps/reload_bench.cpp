@@ -51,7 +51,7 @@ class Workplace {
     AFTERGLOW_CHECK(write_file_atomically(path("effects/edited.lua"), R"(local fx = require "afterglow"
 return fx.effect {
   name = "edited", doc = "What is edited.", at = "after_post_process", order = 1000,
-  settings = { gain = fx.number { min = 0, default = 1, doc = "Factor." } },
+  settings = { gain = fx.float { min = 0, default = 1, doc = "Factor." } },
   build = function(g, s, source) return g:pass { shader = "edited/edited", source = source, gain = s.gain } end,
 }
 )"));

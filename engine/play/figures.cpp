@@ -29,7 +29,7 @@ Percentiles Percentiles::of(std::vector<double> values) {
 
 void Figures::frame_shown(double now, double work, bool playing) {
   ++shown_;
-  add(work_, work, kMostFrames);
+  if (playing) add(work_, work, kMostFrames);
   if (playing && last_ >= 0) add(intervals_, (now - last_) * 1000, kMostFrames);
   last_ = playing ? now : -1;
 }

@@ -30,7 +30,7 @@ struct ReloadLatency {
 
 struct PlayerStats {
   Percentiles interval;          ///< between frames while playing
-  Percentiles work;              ///< for a frame on the drawing thread: upload and passes
+  Percentiles work;              ///< for a frame while playing, on the drawing thread: upload and passes
   double fps = 0;                ///< of the last frames; 0 while paused
   std::uint64_t shown = 0;       ///< frames put on screen
   std::uint64_t dropped = 0;     ///< due and never shown

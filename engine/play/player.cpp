@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "image/camera.h"
 #include "image/facts.h"
@@ -102,14 +103,13 @@ void Player::State::follow_needs() {
   }
 }
 
-bool Player::State::take_builds() {
+void Player::State::take_builds() {
   bool changed = first->live().update();
   if (second && second->live().update()) changed = true;
   if (changed) {
-    dirty = true;
+    dirty = reloaded = true;
     follow_needs();
   }
-  return changed;
 }
 
 BuildContext Player::State::context(const Transport::Due& due) const {
@@ -197,7 +197,8 @@ Result<Step> Player::step() {
     s.awake = false;
   }
   Step step;
-  step.reloaded = s.take_builds();
+  s.take_builds();
+  step.reloaded = std::exchange(s.reloaded, false);
   if (!s.transport.playing()) s.figures.stop();
   AFTERGLOW_TRY(step.changed, s.show_due(now));
   step.next = s.transport.next_due();

@@ -35,6 +35,7 @@ struct Player::State {
   ShownFrame shown;
   HostResult result;         ///< what was read back of the first's
   bool dirty = true;         ///< the picture on screen has to be run again
+  bool reloaded = false;     ///< builds were taken since the last turn
   bool second_runs = false;  ///< B was run for what is on screen
   double turn_ended = 0;
   std::vector<int> wanted_for;       ///< position, heading and speed that the wishes were made for
@@ -46,7 +47,7 @@ struct Player::State {
   LiveOptions live_options(const std::vector<Override>& overrides);
   void begin_reading();
   void want_pictures();
-  bool take_builds();
+  void take_builds();
   void follow_needs();
   Result<bool> show_due(double now);
   Result<bool> run(const std::shared_ptr<const ReadPicture>& read, const Transport::Due& due);

@@ -101,13 +101,15 @@ TEST_F(Play, WrongRequestsSayWhatIsWrong) {
     const char* says;
   } kCases[] = {
       {{"look.lua", "none.exr", "--headless"}, kFiles, "none.exr: error: no such file"},
-      {{"look.lua", "in/shot.####.exr", "--headless", "--loop", "pong"}, kUsage, "did you mean 'loop'?"},
+      {{"look.lua", "in/shot.####.exr", "--headless", "--loop", "pong"}, kUsage, "allowed: once, loop, ping-pong"},
       {{"look.lua", "in/shot.####.exr", "--headless", "--loop", "loop"}, kUsage, "--count N"},
       {{"look.lua", "in/shot.####.exr", "--headless", "--cache", "much"}, kUsage, "--cache: error: 'much'"},
       {{"look.lua", "in/shot.####.exr", "--headless", "--speed", "9"}, kUsage, "0.1 to 8"},
       {{"look.lua", "in/shot.####.exr", "--headless", "--fast", "--real-time"}, kUsage, "excludes"},
       {{"look.lua", "in/shot.####.exr", "--headless", "--frames", "4-1"}, kUsage, "bad frame list"},
-      {{"look.lua", "in/shot.####.exr", "--headless", "--show", "tone_maping"}, kUsage, "did you mean 'tone_mapping'?"},
+      {{"look.lua", "in/shot.####.exr", "--headless", "--show", "tone_maping"},
+       kUsage,
+       "did you mean 'tone_mapping.aces'?"},
       {{"look.lua", "in/shot.####.exr", "--headless", "--screenshot", "a.xyz"}, kUsage, ".xyz"},
       {{"look.lua", "in/shot.####.exr", "--count", "3"}, kUsage, "go with --headless"},
       {{"broken.lua", "in/shot.####.exr", "--headless"}, kScript, "broken.lua"}};
