@@ -1,6 +1,7 @@
 #include "apps/play_window.h"
 
 #include "apps/interrupt.h"
+#include "window/play_parts.h"
 #include "window/run_window.h"
 
 namespace afterglow {
@@ -31,7 +32,10 @@ Result<void> play_in_window(PlayerOptions player_options, DeviceOptions device_o
     AFTERGLOW_TRY(const auto player, Player::open(*device, player_options, console.diagnostics()));
     player->transport().set_speed(options.speed, player->now());
     if (!options.paused && player->footage().frames() > 1) player->transport().play(player->now());
-    done = run_window(*window, *device, *player, window_options(options), console.diagnostics());
+    WindowOptions shown = window_options(options);
+    PlayParts parts(*player, player_options.preset, player_options.live.stack.preset);
+    parts.add_to(shown);
+    done = run_window(*window, *device, *player, shown, console.diagnostics());
     if (at_end) at_end(*device, *player);
   }
   // Validation goes first: it says what a failure comes from.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <string_view>
 #include <vector>
 
 #include "script/runtime.h"
@@ -12,5 +13,11 @@ namespace afterglow::script {
 /// `left_out` they are its warnings, and what they are about is left out.
 Result<void> apply_overrides(std::vector<DeclaredEntry>& entries, const std::vector<Override>& overrides,
                              const std::deque<Effect>& effects, Diagnostics* left_out = nullptr);
+
+/// What `enabled`, `order` and `at` of an entry may be.
+SettingSchema entry_key_schema(const std::string& name);
+
+/// The value of `ENTRY.SETTING=VALUE`. Errors (usage): what the setting does not allow; `where` stands before the name.
+Result<SettingValue> parse_setting(const Override& given, const SettingSchema& schema, std::string_view where);
 
 }  // namespace afterglow::script

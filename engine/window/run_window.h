@@ -23,11 +23,14 @@ struct WindowOptions {
   std::filesystem::path captures = ".";  ///< folder for screenshots by key
   /// A part of the interface, drawn as an ImGui window at `place`. Without one, its place is the picture's.
   using Part = std::function<void(Player&, Ui&, ImVec2 place, ImVec2 size)>;
-  Part panel;                                                ///< at the right
-  Part transport;                                            ///< at the bottom
-  std::function<float(const Ui&)> transport_height;          ///< that it wants
-  Part help;                                                 ///< over everything
-  std::function<void(Player&, Ui&)> save;                    ///< Ctrl+S; empty: there is no such thing
+  Part panel;                                        ///< at the right
+  Part transport;                                    ///< at the bottom
+  std::function<float(const Ui&)> transport_height;  ///< that it wants
+  Part help;                                         ///< over everything
+  std::function<void(Player&, Ui&)> save;            ///< Ctrl+S; empty: there is no such thing
+  std::function<void(Player&, Ui&)> hidden_panel;    ///< called in place of `panel` while that is hidden
+  /// Another preset is being played from here on.
+  std::function<void(const std::filesystem::path&)> preset_opened;
   std::function<bool()> interrupted = [] { return false; };  ///< true: close as by key
 };
 

@@ -124,6 +124,7 @@ void WindowApp::open_dropped(const std::filesystem::path& path) {
   // What is closed for it may still be on its way to the screen. A lost device shows up in the next turn.
   (void)painter_->finish();
   const Result<void> opened = preset ? player_.open_preset(path) : player_.open_footage({path.string()});
+  if (opened && preset && options_.preset_opened) options_.preset_opened(path);
   ui.say(opened ? fmt::format("opened {}", path.filename().string()) : opened.error().text());
   diagnostics_.note(opened ? fmt::format("opened {}", path.string()) : opened.error().text());
   redraw_ = kSettle;
@@ -204,7 +205,11 @@ void WindowApp::draw_parts(Size window) {
   const float panel = options_.panel && ui.show_panel ? std::min(ui.px(kPanelWidth), width * 0.6f) : 0;
   const float wanted = options_.transport_height ? options_.transport_height(ui) : ui.px(kTransportHeight);
   const float bar = options_.transport && ui.show_transport ? std::min(wanted, height * 0.5f) : 0;
-  if (panel > 0) options_.panel(player_, ui, {width - panel, 0}, {panel, height});
+  if (panel > 0) {
+    options_.panel(player_, ui, {width - panel, 0}, {panel, height});
+  } else if (options_.hidden_panel) {
+    options_.hidden_panel(player_, ui);
+  }
   if (bar > 0) options_.transport(player_, ui, {0, height - bar}, {width - panel, bar});
   const float sx = io.DisplayFramebufferScale.x, sy = io.DisplayFramebufferScale.y;
   area_ = {0, 0, std::max(window.width - static_cast<int>(std::lround(panel * sx)), 1),
