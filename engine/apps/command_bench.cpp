@@ -11,6 +11,7 @@
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
+#include "apps/reload_bench.h"
 #include "apps/scale.h"
 #include "apps/table.h"
 #include "bench/cell.h"
@@ -33,12 +34,13 @@ struct Arguments {
   std::string calibration, sizes, variants, picture, out = "bench", goals, compare;
   int repeat = 9, scaling = 0;
   double threshold = 1.15;
-  bool quick = false;
+  bool quick = false, reload = false;
 };
 
 /// --quick: enough to see that everything works.
 constexpr const char* kQuickSizes = "320x180";
 constexpr const char* kSizes = "1920x1080,3840x2160";
+constexpr const char* kReloadSizes = "1280x720";
 constexpr const char* kQuickVariants = "plain16f,chosen";
 constexpr int kQuickRepeat = 3;
 
@@ -169,7 +171,42 @@ Result<void> compare(const Bench& bench) {
                                              comparisons.size(), a.threshold, a.compare)};
 }
 
+/// --reload: edits instead of frames.
+Result<void> measure_all_reloads(Bench& bench) {
+  constexpr int kEdits = 50, kQuickEdits = 3;
+  const Arguments& a = bench.arguments;
+  AFTERGLOW_TRY(const auto sizes, parse_sizes(!a.sizes.empty() ? a.sizes : a.quick ? kQuickSizes : kReloadSizes));
+  const int edits = a.quick ? kQuickEdits : kEdits;
+  bench.total = a.presets.size() * sizes.size() * static_cast<std::size_t>(2 * edits);
+  for (const auto& name : a.presets) {
+    AFTERGLOW_TRY(const fs::path preset, find_preset_file(name, {a.paths.begin(), a.paths.end()}));
+    for (const Size size : sizes) {
+      std::size_t done = 0;
+      const ReloadBenchOptions options{
+          .preset = fs::absolute(preset), .stack = bench.base, .size = size, .edits = edits};
+      auto measured = measure_reloads(
+          *bench.device, options, bench.console.diagnostics(), [&](const std::string& what) -> Result<void> {
+            if (interrupted()) return interrupt_error();
+            const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - bench.start;
+            bench.console.progress(done++, bench.total, what, seconds.count());
+            return {};
+          });
+      bench.console.end_progress();
+      if (!measured) return std::move(measured).error();
+      fmt::print("{}: {}", preset.filename().string(), reload_bench_text(*measured));
+      std::error_code problem;
+      fs::create_directories(a.out, problem);
+      AFTERGLOW_CHECK(write_file_atomically(
+          fs::path(a.out) / fmt::format("reload-{}-{}x{}.json", preset.stem().string(), size.width, size.height),
+          reload_bench_json(*measured, bench.device->info().name)));
+    }
+  }
+  return {};
+}
+
 Result<void> run_command(const Arguments& a, Console& console) {
+  if (a.reload && a.presets.empty())
+    return Error{ErrorKind::usage, "--reload needs a look to edit", "afterglow bench", 0, "one or more PRESETs"};
   if (a.presets.empty() && a.goals.empty())
     return Error{ErrorKind::usage, "nothing to measure", "afterglow bench", 0, "one or more PRESETs, --goals FILE"};
   Bench bench{.arguments = a, .console = console, .device = nullptr, .base = {}, .report = {}};
@@ -191,6 +228,7 @@ Result<void> run_command(const Arguments& a, Console& console) {
                   .cells = {},
                   .goals = {}};
 
+  if (a.reload) return measure_all_reloads(bench);
   if (!a.presets.empty()) AFTERGLOW_CHECK(measure_matrix(bench));
   if (!a.goals.empty()) AFTERGLOW_CHECK(measure_goals(bench));
   console.end_progress();
@@ -221,6 +259,9 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--repeat", a.repeat, "Rounds; medians are of as many (default 9)")->check(CLI::Range(1, 1000));
   app.add_option("--picture", a.picture, "Picture to measure on, scaled (default: a made scene)")->type_name("FILE");
   app.add_option("--goals", a.goals, "Measure the ratios that a file of goals names")->type_name("FILE.json");
+  app.add_flag("--reload", a.reload,
+               "How long edits take from the save to the new picture: medians of 50 of a value and 50 of a shader, at "
+               "1280x720 unless --sizes says otherwise");
   app.add_flag("--quick", a.quick, "320x180, 3 rounds, two variants: to see that it works");
   app.add_option("-o,--out", a.out, "Folder for bench.json, bench.csv, bench.html, front.svg (default: bench)")
       ->type_name("FOLDER");

@@ -9,10 +9,19 @@
 #include <fstream>
 #include <system_error>
 
+#include "core/file_trace.h"
+
 namespace afterglow {
 namespace fs = std::filesystem;
 
+bool is_file(const fs::path& path) {
+  FileTrace::note(path, FileLook::Kind::existence);
+  std::error_code ec;
+  return fs::is_regular_file(path, ec);
+}
+
 Result<std::string> read_file(const fs::path& path, std::size_t limit) {
+  FileTrace::Reading reading(path);
   std::error_code ec;
   const auto status = fs::status(path, ec);
   if (!fs::exists(status)) return Error{ErrorKind::io, "no such file", path.string()};
@@ -27,6 +36,7 @@ Result<std::string> read_file(const fs::path& path, std::size_t limit) {
       return Error{ErrorKind::io, fmt::format("is larger than {} bytes", limit), path.string()};
   }
   if (in.bad()) return Error{ErrorKind::io, "read error", path.string()};
+  reading.done(content);
   return content;
 }
 

@@ -1,4 +1,5 @@
-// Files, whole: read, and written so that they appear whole or not at all.
+// Files, whole: read, and written so that they appear whole or not at all. What is looked at is noted on the thread's
+// FileTrace (core/file_trace.h), if it has one.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +13,9 @@ namespace afterglow {
 
 /// The whole file. Errors: io (missing, folder, unreadable, larger than `limit` bytes).
 Result<std::string> read_file(const std::filesystem::path& path, std::size_t limit = 64u << 20);
+
+/// Is there a file (links are followed)?
+bool is_file(const std::filesystem::path& path);
 
 /// A name in the same folder that no other process or thread uses, hidden and ending in the same extension
 /// (image libraries choose the format by it).

@@ -9,6 +9,8 @@
 #include <set>
 #include <system_error>
 
+#include "core/file.h"
+#include "core/file_trace.h"
 #include "core/pack.h"
 #include "core/text.h"
 
@@ -21,11 +23,6 @@ std::string environment(const char* name) {
   return value ? value : "";
 }
 
-bool is_file(const fs::path& path) {
-  std::error_code ec;
-  return fs::is_regular_file(path, ec);
-}
-
 bool is_preset_name(const std::string& name) {
   return !name.empty() && name.size() <= 100 &&
          std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
@@ -36,6 +33,7 @@ void add_pack(SearchPath& path, const fs::path& pack) {
     path.user.push_back(pack);
     return;
   }
+  FileTrace::note(pack, FileLook::Kind::stamp);
   auto opened = open_zip(pack, cache_folder());
   if (opened)
     path.user.push_back(std::move(opened).value());
@@ -47,6 +45,7 @@ void add_pack(SearchPath& path, const fs::path& pack) {
 void add_packs(SearchPath& path, const fs::path& folder) {
   std::vector<fs::path> packs;
   std::error_code ec;
+  FileTrace::note(folder / "packs", FileLook::Kind::listing);
   for (fs::directory_iterator it(folder / "packs", ec), end; !ec && it != end; it.increment(ec)) {
     std::error_code ignored;
     if (is_zip(it->path()) || fs::is_directory(it->path(), ignored)) packs.push_back(it->path());
@@ -137,8 +136,10 @@ fs::path find_installation() {
 std::vector<fs::path> folders_of_preset(const fs::path& preset) {
   std::vector<fs::path> folders{preset.has_parent_path() ? preset.parent_path() : fs::path(".")};
   const fs::path above = folders[0].parent_path();
+  if (folders[0].filename() != "presets") return folders;
+  FileTrace::note(above / "effects", FileLook::Kind::existence);
   std::error_code ec;
-  if (folders[0].filename() == "presets" && fs::is_directory(above / "effects", ec)) folders.push_back(above);
+  if (fs::is_directory(above / "effects", ec)) folders.push_back(above);
   return folders;
 }
 

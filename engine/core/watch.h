@@ -22,9 +22,9 @@ class Watcher {
  public:
   /// When the first sign of a change is some milliseconds old (5; 100 while a file is still being written), and at
   /// least every `interval` where changes do not tell of themselves: polling, network file systems, no inotify or too
-  /// few watches. `since`: when the first sign was seen. Called on the watcher's own thread; a call says "look again",
-  /// not that something differs.
-  using Look = std::function<void(std::chrono::steady_clock::time_point since)>;
+  /// few watches. `since`: when the first sign was seen. `polled`: there was no sign, it is only time. Called on the
+  /// watcher's own thread; a call says "look again", not that something differs.
+  using Look = std::function<void(std::chrono::steady_clock::time_point since, bool polled)>;
   Watcher(const WatchOptions& options, Look look);
   ~Watcher();  ///< no call comes after it
   Watcher(const Watcher&) = delete;

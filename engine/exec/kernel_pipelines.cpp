@@ -1,5 +1,6 @@
 #include "exec/kernel_pipelines.h"
 
+#include <chrono>
 #include <optional>
 
 #include "exec/parallel.h"
@@ -32,39 +33,56 @@ DrawInterface interface_of(const CompiledKernel& kernel) {
   return {.block = kernel.block_size > 0, .images = descriptor_types(kernel), .push_bytes = kPushConstantBytes};
 }
 
+VkFormat format_of(const CompiledKernel& kernel, VkFormat given) {
+  return given != VK_FORMAT_UNDEFINED ? given : format_of(kernel.target);
+}
+
+Result<PipelineHandle> make(const Device& device, const CompiledKernel& kernel, const DrawLayout& layout,
+                            VkShaderModule vertex, VkFormat format, const std::string& name) {
+  AFTERGLOW_TRY(const ShaderModuleHandle fragment, create_shader_module(device, kernel.spirv, name));
+  return create_draw_pipeline(device, layout, vertex, fragment.get(), {format, kernel.rows}, name);
+}
+
 }  // namespace
 
 Result<KernelPipelines> KernelPipelines::create(const Device& device, const std::vector<CompiledKernel>& kernels,
-                                                const std::vector<std::string>& names, VkFormat format) {
+                                                const std::vector<std::string>& names, VkFormat format,
+                                                PipelinePool* pool) {
+  PipelinePool own;
+  if (!pool) pool = &own;
+  const auto start = std::chrono::steady_clock::now();
   KernelPipelines out;
-  for (const auto& kernel : kernels) {
-    const DrawInterface interface = interface_of(kernel);
-    if (out.layouts_.contains(interface)) continue;
-    AFTERGLOW_TRY(DrawLayout layout, create_draw_layout(device, interface));
-    out.layouts_.emplace(interface, std::move(layout));
+  out.pipelines_.resize(kernels.size());
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < kernels.size(); ++i) {
+    const DrawInterface interface = interface_of(kernels[i]);
+    if (!out.layouts_.contains(interface)) {
+      AFTERGLOW_TRY(out.layouts_[interface], pool->layout(device, interface));
+    }
+    out.pipelines_[i] = pool->find(kernels[i], format_of(kernels[i], format));
+    if (!out.pipelines_[i]) missing.push_back(i);
   }
+  if (missing.empty()) return out;
   AFTERGLOW_TRY(const ShaderModuleHandle vertex,
                 create_shader_module(device, kFullscreenVertex, "full-screen triangle"));
-  std::vector<std::optional<Result<PipelineHandle>>> made(kernels.size());
-  parallel_for(made.size(), [&](std::size_t i) {
-    auto fragment = create_shader_module(device, kernels[i].spirv, names[i]);
-    if (!fragment) {
-      made[i].emplace(std::move(fragment).error());
-      return;
-    }
-    made[i].emplace(create_draw_pipeline(
-        device, out.layout(kernels[i]), vertex.get(), fragment->get(),
-        {format != VK_FORMAT_UNDEFINED ? format : format_of(kernels[i].target), kernels[i].rows}, names[i]));
+  std::vector<std::optional<Result<PipelineHandle>>> made(missing.size());
+  parallel_for(made.size(), [&](std::size_t k) {
+    const std::size_t i = missing[k];
+    made[k].emplace(
+        make(device, kernels[i], out.layout(kernels[i]), vertex.get(), format_of(kernels[i], format), names[i]));
   });
-  for (auto& pipeline : made) {
-    if (!*pipeline) return std::move(*pipeline).error();
-    out.pipelines_.push_back(std::move(*pipeline).value());
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    if (!*made[k]) return std::move(*made[k]).error();
+    const CompiledKernel& kernel = kernels[missing[k]];
+    out.pipelines_[missing[k]] = pool->add(kernel, format_of(kernel, format),
+                                           {out.layouts_.at(interface_of(kernel)), std::move(*made[k]).value()});
   }
+  pool->add_time(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   return out;
 }
 
 const DrawLayout& KernelPipelines::layout(const CompiledKernel& kernel) const {
-  return layouts_.at(interface_of(kernel));
+  return *layouts_.at(interface_of(kernel));
 }
 
 }  // namespace afterglow

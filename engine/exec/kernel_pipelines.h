@@ -2,9 +2,11 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "exec/pipeline_pool.h"
 #include "gpu/pipeline.h"
 #include "shader/kernel.h"
 
@@ -16,18 +18,20 @@ std::vector<VkDescriptorType> descriptor_types(const CompiledKernel& kernel);
 class KernelPipelines {
  public:
   /// Made over threads through the device's pipeline cache. `names` is parallel to `kernels`, for messages and
-  /// debuggers. `format`: of the targets, in place of what the kernels are made for. Errors: device.
+  /// debuggers. `format`: of the targets, in place of what the kernels are made for. `pool`: those that it has are
+  /// taken from it, the others added; null: nothing is shared. Errors: device.
   static Result<KernelPipelines> create(const Device& device, const std::vector<CompiledKernel>& kernels,
-                                        const std::vector<std::string>& names, VkFormat format = VK_FORMAT_UNDEFINED);
+                                        const std::vector<std::string>& names, VkFormat format = VK_FORMAT_UNDEFINED,
+                                        PipelinePool* pool = nullptr);
   KernelPipelines() = default;
 
-  VkPipeline pipeline(int kernel) const { return pipelines_[static_cast<std::size_t>(kernel)].get(); }
+  VkPipeline pipeline(int kernel) const { return pipelines_[static_cast<std::size_t>(kernel)]->pipeline.get(); }
   const DrawLayout& layout(const CompiledKernel& kernel) const;
   int size() const { return static_cast<int>(pipelines_.size()); }
 
  private:
-  std::map<DrawInterface, DrawLayout> layouts_;  // kernels that read alike share one
-  std::vector<PipelineHandle> pipelines_;
+  std::map<DrawInterface, std::shared_ptr<const DrawLayout>> layouts_;  // kernels that read alike share one
+  std::vector<std::shared_ptr<const SharedPipeline>> pipelines_;
 };
 
 }  // namespace afterglow

@@ -175,7 +175,7 @@ Result<void> Program::State::compile(KernelCompiler& compiler, const std::vector
 Result<void> Program::State::make_pipelines() {
   std::vector<std::string> names(compiled.unique.size());
   for (std::size_t i = plan.kernels.size(); i-- > 0;) names[compiled.index[i]] = plan.kernels[i].name;
-  AFTERGLOW_TRY(pipelines, KernelPipelines::create(device, compiled.unique, names));
+  AFTERGLOW_TRY(pipelines, KernelPipelines::create(device, compiled.unique, names, VK_FORMAT_UNDEFINED, options.pipelines));
   return {};
 }
 

@@ -20,6 +20,8 @@
 
 namespace afterglow {
 
+class PipelinePool;  // exec/pipeline_pool.h
+
 enum class Storage { fp32, fp16 };
 
 /// Pixels of a target from which it is worth a kernel of its own: on smaller ones little is won, and each kernel must
@@ -49,7 +51,8 @@ struct ProgramOptions {
   /// Images between kernels keep their pixels from run to run (they share no memory), so that `record` can run the
   /// kernels alone for which something has changed.
   bool keep_images = false;
-  bool share_memory = true;  ///< images whose lifetimes do not overlap share bytes (never with `reference`)
+  PipelinePool* pipelines = nullptr;  ///< shared with other programs of the device; null: the program's own
+  bool share_memory = true;           ///< images whose lifetimes do not overlap share bytes (never with `reference`)
   std::uint64_t max_memory = 6ull << 30;
 };
 

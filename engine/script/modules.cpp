@@ -21,11 +21,6 @@ constexpr std::uint64_t kFileCost = 100'000;  // instructions that a look at the
 constexpr std::size_t kMaxScript = 1u << 20;  // bytes; presets are a page long
 const char kModules = 0;                      // registry key of the cache of modules
 
-bool is_file(const fs::path& path) {
-  std::error_code ec;
-  return fs::is_regular_file(path, ec);
-}
-
 // Marks a name as being loaded, for the life of the object.
 class Loading {
  public:

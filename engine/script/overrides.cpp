@@ -80,28 +80,40 @@ Result<void> apply(DeclaredEntry& declared, const Override& given, const EffectS
                nearest_name(given.setting, names)};
 }
 
+Result<void> apply_everywhere(std::vector<DeclaredEntry>& entries, const Override& given,
+                              const std::deque<Effect>& effects) {
+  const auto named = [&](const DeclaredEntry& e) { return e.entry.name == given.entry; };
+  const bool by_name = std::any_of(entries.begin(), entries.end(), named);
+  bool found = false;
+  std::vector<std::string> names;
+  for (auto& declared : entries) {
+    names.push_back(declared.entry.name);
+    if (by_name ? !named(declared) : declared.entry.effect != given.entry) continue;
+    found = true;
+    AFTERGLOW_CHECK(apply(declared, given, effects[static_cast<std::size_t>(declared.effect)].schema));
+  }
+  if (found) return {};
+  return Error{ErrorKind::usage,
+               fmt::format("--set {}.{}: the stack has no entry '{}'", given.entry, given.setting, given.entry),
+               "",
+               0,
+               join(names),
+               nearest_name(given.entry, names)};
+}
+
 }  // namespace
 
 Result<void> apply_overrides(std::vector<DeclaredEntry>& entries, const std::vector<Override>& overrides,
-                             const std::deque<Effect>& effects) {
+                             const std::deque<Effect>& effects, Diagnostics* left_out) {
   for (const auto& given : overrides) {
-    const auto named = [&](const DeclaredEntry& e) { return e.entry.name == given.entry; };
-    const bool by_name = std::any_of(entries.begin(), entries.end(), named);
-    bool found = false;
-    std::vector<std::string> names;
-    for (auto& declared : entries) {
-      names.push_back(declared.entry.name);
-      if (by_name ? !named(declared) : declared.entry.effect != given.entry) continue;
-      found = true;
-      AFTERGLOW_CHECK(apply(declared, given, effects[static_cast<std::size_t>(declared.effect)].schema));
-    }
-    if (!found)
-      return Error{ErrorKind::usage,
-                   fmt::format("--set {}.{}: the stack has no entry '{}'", given.entry, given.setting, given.entry),
-                   "",
-                   0,
-                   join(names),
-                   nearest_name(given.entry, names)};
+    auto applied = apply_everywhere(entries, given, effects);
+    if (applied) continue;
+    if (!left_out) return applied;
+    Error error = std::move(applied).error();
+    error.message += "; it is left out";
+    std::string text = error.text();
+    if (text.starts_with("error: ")) text.erase(0, 7);
+    left_out->warn(text);
   }
   return {};
 }

@@ -9,9 +9,10 @@
 
 namespace afterglow::script {
 
-/// Errors (usage): unknown entry or setting (with the nearest), values that the setting does not allow.
+/// Errors (usage): unknown entry or setting (with the nearest), values that the setting does not allow. With
+/// `left_out` they are its warnings, and what they are about is left out.
 Result<void> apply_overrides(std::vector<DeclaredEntry>& entries, const std::vector<Override>& overrides,
-                             const std::deque<Effect>& effects);
+                             const std::deque<Effect>& effects, Diagnostics* left_out = nullptr);
 
 /// What `enabled`, `order` and `at` of an entry may be.
 SettingSchema entry_key_schema(const std::string& name);

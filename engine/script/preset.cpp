@@ -75,7 +75,8 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   DeclaredStack stack = load_stack(lua, file, options.text);
   runtime->declaring = false;
   shaders->search(runtime->path);
-  if (auto applied = apply_overrides(stack.entries, options.overrides, runtime->effects); !applied)
+  Diagnostics* left_out = options.leave_out_unfit ? runtime->box->diagnostics : nullptr;
+  if (auto applied = apply_overrides(stack.entries, options.overrides, runtime->effects, left_out); !applied)
     throw ScriptError{applied.error()};
   sort_entries(stack.entries);
   name = stack.name.empty() ? std::filesystem::path(file).stem().string() : stack.name;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -77,12 +79,16 @@ struct ScriptLimits {
   std::size_t memory = 64u << 20;           ///< bytes
   std::uint64_t instructions = 50'000'000;  ///< per load or build
   double seconds = 2.0;                     ///< per load or build
+  /// Ends a script that is running from another thread: it fails with ErrorKind::interrupted once the steady clock has
+  /// come so far. Null: never.
+  std::shared_ptr<const std::atomic<std::chrono::steady_clock::rep>> until;
 };
 
 struct PresetOptions {
   std::vector<std::filesystem::path> paths;  ///< --path
   std::vector<Override> overrides;
-  std::optional<Position> at;  ///< --at: where the picture is seen from, for volumes
+  bool leave_out_unfit = false;  ///< overrides that do not fit the stack are warned about, and are no errors
+  std::optional<Position> at;    ///< --at: where the picture is seen from, for volumes
   std::optional<std::string> text = {};  ///< of the preset, instead of what its file holds; the file need not exist
   ScriptLimits limits;
 };

@@ -81,7 +81,15 @@ void Sandbox::arm() {
   lua_sethook(lua_, &on_count, LUA_MASKCOUNT, kStep);
 }
 
-bool Sandbox::spent() { return exhausted_ || instructions_ > limits_.instructions || Clock::now() > deadline_; }
+bool Sandbox::spent() {
+  return exhausted_ || instructions_ > limits_.instructions || Clock::now() > deadline_ || interrupted();
+}
+
+Error Sandbox::spent_error() const {
+  if (interrupted()) return {ErrorKind::interrupted, "the script was interrupted"};
+  return {ErrorKind::script, fmt::format("instruction budget spent: more than {} instructions or {} s",
+                                         limits_.instructions, limits_.seconds)};
+}
 
 void Sandbox::exhaust(Error error) {
   if (!exhausted_) exhausted_ = std::move(error);
@@ -107,8 +115,7 @@ void Sandbox::on_count(lua_State* lua, lua_Debug* info) {
     box.raise(std::move(error));
   }
   if (!box.exhausted_) {
-    Error error{ErrorKind::script, fmt::format("instruction budget spent: more than {} instructions or {} s",
-                                               box.limits_.instructions, box.limits_.seconds)};
+    Error error = box.spent_error();
     place(error);
     box.exhaust(std::move(error));
   }
@@ -119,8 +126,7 @@ void Sandbox::charge(std::uint64_t instructions) {
   instructions_ += instructions;
   if (!spent()) return;
   if (exhausted_) raise(*exhausted_);
-  Error error{ErrorKind::script, fmt::format("instruction budget spent: more than {} instructions or {} s",
-                                             limits_.instructions, limits_.seconds)};
+  Error error = spent_error();
   locate(error, caller(lua_));
   exhaust(error);
   raise(std::move(error));

@@ -124,6 +124,10 @@ class Sandbox {
   std::optional<Error> run_protected(const std::string& file, lua_CFunction call, void* work);
   void arm();
   bool spent();
+  bool interrupted() const {
+    return limits_.until && Clock::now().time_since_epoch().count() >= limits_.until->load(std::memory_order_relaxed);
+  }
+  Error spent_error() const;
   void exhaust(Error error);
   Error error_of(int status, const std::string& file);
   const void* keep(Error error);

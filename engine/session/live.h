@@ -39,8 +39,8 @@ struct BuildTimes {
   Kind kind = Kind::none;
   double notice = 0;    ///< from the change on disk (or the call) until the build began
   double script = 0;    ///< the preset, its effects and the graph
-  double shader = 0;    ///< GLSL to SPIR-V
-  double pipeline = 0;  ///< pipelines, memory, descriptors
+  double shader = 0;    ///< GLSL to SPIR-V, and memory for images
+  double pipeline = 0;  ///< pipelines
   double wait = 0;      ///< until `update` took it
   int kernels_compiled = 0, pipelines_made = 0;
 };
@@ -105,8 +105,9 @@ class LiveStack {
     std::uint64_t values = 0;      ///< taken that touched no shader, pipeline or memory
     std::uint64_t structures = 0;  ///< taken that did
     std::uint64_t compiled = 0;    ///< kernels that the compiler made: neither memory nor disk had them
-    std::uint64_t pipelines = 0;   ///< made so far
-    std::uint64_t stacks = 0;      ///< alive now: shown, built, not yet released
+    std::uint64_t pipelines_alive = 0;
+    std::uint64_t pipelines = 0;  ///< made so far
+    std::uint64_t stacks = 0;     ///< alive now: shown, built, not yet released
   };
   Counters counters() const;  ///< any thread
 

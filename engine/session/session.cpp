@@ -1,9 +1,9 @@
 #include "session/session.h"
 
-#include <fmt/format.h>
-
 #include <chrono>
 #include <future>
+
+#include "session/picture_inputs.h"
 
 namespace afterglow {
 namespace {
@@ -19,20 +19,6 @@ OpenedDevice open_device(const DeviceOptions& options, Diagnostics& diagnostics)
   const auto start = Clock::now();
   auto device = Device::create(options, diagnostics);
   return {std::move(device), std::chrono::duration<double, std::milli>(Clock::now() - start).count()};
-}
-
-HostImage host_image(const Picture& picture, const std::string& name, const Image& image) {
-  HostImage out{image.pixels.data(), image.size(), image.channels};
-  if (const auto known = picture.content.find(name); known != picture.content.end()) out.content = known->second;
-  return out;
-}
-
-/// What a frame did not do because it was done before.
-std::vector<Skipped> kept_of(const FrameTimes& times) {
-  if (times.kernels_kept == 0) return {};
-  if (times.kernels_run == 0) return {{"frame", "its picture and settings are those of an earlier frame"}};
-  return {{fmt::format("{} of {} kernels", times.kernels_kept, times.kernels_kept + times.kernels_run),
-           "nothing that they read has changed"}};
 }
 
 }  // namespace
@@ -88,10 +74,7 @@ Result<void> Session::prepare(const BuildContext& context, const std::optional<D
 
 Result<void> Session::process(Picture& picture, const BuildContext& frame,
                               const std::optional<DisplayEncoding>& encoding, const std::optional<Rect>& region) {
-  BuildContext context = frame;
-  context.size = picture.color.size();
-  context.auxiliary.clear();
-  for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
+  const BuildContext context = context_of(picture, frame);
   AFTERGLOW_CHECK(prepare(context, encoding, region));
   state_->times.frame = {};
   state_->result.clamped = 0;
@@ -101,9 +84,7 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame,
   // The result replaces the source in its own memory. Effects never change alpha: the source's own values stay where
   // they are, exact whatever the storage format.
   HostResult& result = state_->result;
-  std::map<std::string, HostImage> inputs{{"source", host_image(picture, "source", picture.color)}};
-  for (const auto& [name, id] : state_->stack->prepared_graph().auxiliary)
-    inputs[name] = host_image(picture, name, picture.auxiliary.at(name));
+  const auto inputs = picture_inputs(picture, state_->stack->prepared_graph());
   result.pixels = std::move(picture.color.pixels);
   result.keep_alpha = true;
   picture.content.erase("source");

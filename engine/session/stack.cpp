@@ -1,5 +1,7 @@
 #include "session/stack.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -37,15 +39,23 @@ StackChoice choose(const Device& device, const StackOptions& options, const Cali
 
 struct Stack::State {
   StackOptions options;
-  Diagnostics* diagnostics = nullptr;
-  std::unique_ptr<ShaderLibrary> shaders;
-  std::unique_ptr<KernelCompiler> compiler;
-  std::optional<Preset> preset;
+  std::shared_ptr<StackShared> shared;
+  /// What comes from scripts; `adopt` replaces it whole.
+  struct Scripts {
+    Diagnostics* diagnostics = nullptr;
+    std::unique_ptr<ShaderLibrary> shaders;
+    std::optional<Preset> preset;
+    std::string shown;
+  } scripts;
+  std::vector<std::string> images;  ///< of the last graph
+  bool shows = true;
   Device* device = nullptr;
   Calibration calibration;
   StackChoice choice;
   bool own_images = false;
   Graph graph;
+  std::optional<Hash> texts;   ///< of the shaders of `graph`, once they have been asked for
+  bool adopted = false;        ///< the texts may not be those that `program` was made of
   std::optional<Rect> region;  ///< that `program` was made for
   bool encoded = false;        ///< its result holds display codes
   bool prepared = false;
@@ -62,8 +72,14 @@ struct Stack::State {
     out.region = region;
     out.keep_images = options.keep_images;
     out.max_memory = options.max_memory;
+    out.pipelines = &shared->pipelines;
     return out;
   }
+
+  Result<Graph> build(const BuildContext& context, const std::optional<DisplayEncoding>& encoding);
+  Result<void> make();
+  void cut(Graph& built);
+  Result<Hash> texts_of(const Graph& built);
 };
 
 Stack::Stack(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -74,20 +90,22 @@ Result<std::unique_ptr<Stack>> Stack::load(const std::filesystem::path& preset, 
   const auto start = Clock::now();
   auto state = std::make_unique<State>();
   state->options = options;
-  state->diagnostics = &diagnostics;
-  state->shaders = std::make_unique<ShaderLibrary>(search_path_for(preset, options.preset.paths));
+  state->scripts.diagnostics = &diagnostics;
+  state->scripts.shaders = std::make_unique<ShaderLibrary>(search_path_for(preset, options.preset.paths));
   const auto& cache = options.cache_folder;
-  state->compiler = std::make_unique<KernelCompiler>(cache.empty() ? cache : cache / "shaders");
-  AFTERGLOW_TRY(Preset loaded, Preset::load(preset, options.preset, *state->shaders, diagnostics));
-  state->preset.emplace(std::move(loaded));
+  state->shared = options.shared;
+  if (!state->shared) state->shared = std::make_shared<StackShared>(cache.empty() ? cache : cache / "shaders");
+  AFTERGLOW_TRY(Preset loaded, Preset::load(preset, options.preset, *state->scripts.shaders, diagnostics));
+  state->scripts.preset.emplace(std::move(loaded));
   AFTERGLOW_TRY(state->calibration,
                 options.calibration.empty() ? Calibration::shipped() : Calibration::load(options.calibration));
-  state->choice.max_error = options.max_error.value_or(state->preset->max_error().value_or(state->choice.max_error));
+  state->choice.max_error =
+      options.max_error.value_or(state->scripts.preset->max_error().value_or(state->choice.max_error));
   state->script_ms = milliseconds_since(start);
   return std::unique_ptr<Stack>(new Stack(std::move(state)));
 }
 
-Preset& Stack::preset() { return *state_->preset; }
+Preset& Stack::preset() { return *state_->scripts.preset; }
 bool Stack::runs() const { return state_->prepared && state_->graph.result != state_->graph.source; }
 Program* Stack::program() { return state_->program.get(); }
 const Graph& Stack::prepared_graph() const { return state_->graph; }
@@ -101,12 +119,75 @@ VkFormat Stack::result_format() const {
                                                            : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
-Result<Graph> Stack::graph(const BuildContext& context) {
+Result<Graph> Stack::graph(const BuildContext& context) { return state_->build(context, {}); }
+
+void Stack::show(const std::string& image) { state_->scripts.shown = image; }
+bool Stack::shows() const { return state_->shows; }
+const std::vector<std::string>& Stack::images() const { return state_->images; }
+
+/// Ends the graph at the image that is shown. Passes behind it are dropped as nobody reads them.
+void Stack::State::cut(Graph& built) {
+  images.assign(1, built.images[built.source].name);
+  for (const auto& pass : built.passes) images.push_back(built.images[pass.output].name);
+  if (scripts.shown.empty()) {
+    shows = true;
+    return;
+  }
+  const auto found = std::ranges::find(images, scripts.shown);
+  shows = found != images.end();
+  if (!shows) {
+    scripts.diagnostics->warn_once(
+        "show " + scripts.shown,
+        fmt::format("the graph has no image '{}': the result is shown in its place", scripts.shown));
+    return;
+  }
+  built.result = found == images.begin() ? built.source : built.passes[found - images.begin() - 1].output;
+}
+
+Result<Graph> Stack::State::build(const BuildContext& context, const std::optional<DisplayEncoding>& encoding) {
   const auto start = Clock::now();
-  AFTERGLOW_TRY(Graph graph, state_->preset->build(context, *state_->diagnostics));
-  AFTERGLOW_CHECK(validate(graph));
-  state_->script_ms += milliseconds_since(start);
-  return graph;
+  AFTERGLOW_TRY(Graph built, scripts.preset->build(context, *scripts.diagnostics));
+  cut(built);
+  AFTERGLOW_CHECK(validate(built));
+  if (encoding && !options.reference && built.result != built.source) encode_for_display(built, *encoding);
+  script_ms += milliseconds_since(start);
+  return built;
+}
+
+/// Of all shaders of the graph, with what they include.
+Result<Hash> Stack::State::texts_of(const Graph& built) {
+  Hasher hasher;
+  for (const auto& pass : built.passes) {
+    if (pass.shader.empty()) continue;
+    AFTERGLOW_TRY(const auto source, scripts.shaders->find(pass.shader));
+    hasher.add(source->hash.high).add(source->hash.low);
+  }
+  return hasher.finish();
+}
+
+Result<StackWork> Stack::build(const BuildContext& context, const std::optional<DisplayEncoding>& encoding) {
+  AFTERGLOW_TRY(state_->graph, state_->build(context, encoding));
+  AFTERGLOW_TRY(state_->texts, state_->texts_of(state_->graph));
+  state_->prepared = false;
+  return StackWork{state_->graph, *state_->texts, state_->choice};
+}
+
+bool same_work(const StackWork& a, const StackWork& b) {
+  return a.texts == b.texts && a.choice.execution == b.choice.execution && a.choice.max_error == b.choice.max_error &&
+         same_structure(a.graph, b.graph);
+}
+
+Result<void> Stack::prepare_built(const std::optional<DisplayEncoding>& encoding) {
+  state_->prepared = true;
+  state_->region.reset();
+  state_->encoded = encoding && !state_->options.reference && runs();
+  return state_->make();
+}
+
+void Stack::adopt(Stack& later) {
+  std::swap(state_->scripts, later.state_->scripts);
+  std::swap(state_->options.preset, later.state_->options.preset);
+  state_->adopted = true;
 }
 
 Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
@@ -129,17 +210,22 @@ void Stack::use(Device& device, bool own_images) {
   state_->device = &device;
   state_->own_images = own_images;
   state_->choice = choose(device, state_->options, state_->calibration, state_->choice.max_error);
-  if (const auto& cache = state_->options.cache_folder; !cache.empty())
+  if (const auto& cache = state_->options.cache_folder; !cache.empty() && !state_->options.shared)
     device.use_pipeline_cache((cache / "pipelines").string());
 }
 
 Result<void> Stack::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding,
                             const std::optional<Rect>& region) {
-  AFTERGLOW_TRY(Graph graph, this->graph(context));
+  AFTERGLOW_TRY(Graph graph, state_->build(context, encoding));
   const bool encoded = encoding && !state_->options.reference && graph.result != graph.source;
-  if (encoded) encode_for_display(graph, *encoding);
   const bool same_region = state_->region == region && (!region || same_reach(state_->graph, graph));
-  const bool reusable = state_->prepared && same_region && same_structure(state_->graph, graph);
+  bool reusable = state_->prepared && same_region && same_structure(state_->graph, graph);
+  if (state_->options.shared && (state_->adopted || !reusable)) {
+    AFTERGLOW_TRY(const Hash texts, state_->texts_of(graph));
+    reusable = reusable && state_->texts == texts;
+    state_->texts = texts;
+    state_->adopted = false;
+  }
   state_->region = region;
   state_->encoded = encoded;
   state_->graph = std::move(graph);
@@ -149,19 +235,21 @@ Result<void> Stack::prepare(const BuildContext& context, const std::optional<Dis
     state_->idle.set_parameters(state_->graph);
     return {};
   }
-  state_->program.reset();
-  state_->idle = {};
-  if (!runs()) return {};
+  return state_->make();
+}
+
+/// The program of `graph`.
+Result<void> Stack::State::make() {
+  program.reset();
+  idle = {};
+  if (graph.result == graph.source) return {};
   const auto start = Clock::now();
-  const ProgramOptions options = state_->options_of_programs();
-  auto program = Program::create(*state_->device, *state_->shaders, *state_->compiler, state_->graph, options);
-  if (!program) {
-    state_->prepared = false;
-    return std::move(program).error();
-  }
-  state_->program = std::move(program).value();
-  state_->device->save_pipeline_cache();
-  state_->compile_ms += milliseconds_since(start);
+  auto made = Program::create(*device, *scripts.shaders, shared->compiler, graph, options_of_programs());
+  prepared = made.ok();
+  if (!made) return std::move(made).error();
+  program = std::move(made).value();
+  device->save_pipeline_cache();
+  compile_ms += milliseconds_since(start);
   return {};
 }
 
@@ -175,8 +263,8 @@ Result<IdlePrograms::Choice> Stack::program_for(float brightest) {
   const int before = state_->idle.size();
   ProgramOptions options = state_->options_of_programs();
   options.max_memory -= std::min(options.max_memory, state_->program->memory().arena);
-  auto choice = state_->idle.choose(*state_->device, *state_->shaders, *state_->compiler, *state_->program,
-                                    state_->graph, options, brightest);
+  auto choice = state_->idle.choose(*state_->device, *state_->scripts.shaders, state_->shared->compiler,
+                                    *state_->program, state_->graph, options, brightest);
   if (state_->idle.size() > before) {
     state_->device->save_pipeline_cache();
     state_->compile_ms += milliseconds_since(start);

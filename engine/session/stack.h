@@ -13,6 +13,7 @@
 #include "core/result.h"
 #include "exec/choice.h"
 #include "exec/idle_programs.h"
+#include "exec/pipeline_pool.h"
 #include "exec/program.h"
 #include "gpu/device.h"
 #include "script/preset.h"
@@ -21,6 +22,13 @@
 namespace afterglow {
 
 enum class Precision { automatic, fp32, fp16 };
+
+/// What stacks of one device may share: kernels and pipelines that one has made, the others need not make again.
+struct StackShared {
+  explicit StackShared(std::filesystem::path cache_folder) : compiler(std::move(cache_folder)) {}
+  KernelCompiler compiler;
+  PipelinePool pipelines;
+};
 
 struct StackOptions {
   PresetOptions preset;
@@ -33,6 +41,8 @@ struct StackOptions {
   std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
   std::optional<Choice> choice;           ///< execute so, whatever calibration and precision say
   std::filesystem::path calibration;      ///< a table of `afterglow calibrate`; empty: the shipped one
+  /// Null: the stack's own. Its cache folder counts, and whoever made it calls Device::use_pipeline_cache.
+  std::shared_ptr<StackShared> shared;
 };
 
 /// How a stack is executed, and why so.
@@ -41,6 +51,16 @@ struct StackChoice {
   std::string from;  ///< "calibration/devices.json, any gpu", "given", "--reference"
   double max_error = 2e-3;
 };
+
+/// What the programs of a stack are made for.
+struct StackWork {
+  Graph graph;
+  Hash texts;  ///< of the shaders
+  StackChoice choice;
+};
+/// Would programs that are made for one do for the other, with other values: the same passes, texts of shaders, images
+/// and way of execution?
+bool same_work(const StackWork& a, const StackWork& b);
 
 /// Bound to one device, which must outlive it. Not thread-safe.
 class Stack {
@@ -51,6 +71,14 @@ class Stack {
   ~Stack();
 
   Preset& preset();
+  /// The image that takes the result's place from the next `graph` or `prepare` on: "" for the result itself, "source",
+  /// or the name of an image that a pass makes ("glow.down[2]"). While the graph has none of that name, the result
+  /// stays and `shows` is false.
+  void show(const std::string& image);
+  bool shows() const;  ///< the image that was asked for last, in the last graph
+  /// Names that `show` knew in the last graph: "source", then those that passes make, in their order.
+  const std::vector<std::string>& images() const;
+
   /// What runs for a picture of this size: passes, and what was skipped and why. Needs no device.
   Result<Graph> graph(const BuildContext& context);
   /// Bytes of device memory that the stack's images take for such a picture, with the source and the result. Needs no
@@ -69,6 +97,13 @@ class Stack {
   /// and within it, only that part of the result is made.
   Result<void> prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {},
                        const std::optional<Rect>& region = {});
+  /// The first half of `prepare`: builds the graph and makes nothing yet. Touches no device.
+  Result<StackWork> build(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {});
+  /// The second half: makes what the last `build` has found.
+  Result<void> prepare_built(const std::optional<DisplayEncoding>& encoding = {});
+  /// Takes over the scripts of a stack that was loaded later with the same StackShared, with all that they say, and
+  /// gives it its own. Programs stay, and the next `prepare` keeps those that still do. Touches no device.
+  void adopt(Stack& later);
   /// False when no effect has anything to do: the result *is* the source, and `record` records nothing.
   bool runs() const;
   /// The program of the last `prepare`; null before it, and when nothing runs.

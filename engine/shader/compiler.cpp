@@ -1,6 +1,7 @@
 // KernelCompiler: memory cache, disk cache, compiler, in this order.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <map>
@@ -22,11 +23,14 @@ struct KernelCompiler::State {
   struct Entry {
     std::mutex mutex;
     std::shared_ptr<const KernelFile> made;
+    std::uint64_t used = 0;  ///< when, counted in kernels asked for
   };
+  static constexpr std::size_t kMostEntries = 512;  ///< beyond, half of them go: those that were not wanted for longest
 
   fs::path folder;
   std::mutex mutex;
   std::map<Hash, std::shared_ptr<Entry>> entries;
+  std::uint64_t asked = 0;
   std::atomic<int> compiled = 0, from_disk = 0, from_memory = 0;
 
   fs::path file_for(const Hash& text) const {
@@ -37,9 +41,19 @@ struct KernelCompiler::State {
 
   std::shared_ptr<Entry> entry(const Hash& text) {
     const std::lock_guard lock(mutex);
+    if (entries.size() >= kMostEntries && !entries.contains(text)) forget_old();
     auto& entry = entries[text];
     if (!entry) entry = std::make_shared<Entry>();
+    entry->used = ++asked;
     return entry;
+  }
+
+  void forget_old() {
+    std::vector<std::uint64_t> used;
+    for (const auto& [text, entry] : entries) used.push_back(entry->used);
+    const auto middle = used.begin() + static_cast<std::ptrdiff_t>(used.size() / 2);
+    std::nth_element(used.begin(), middle, used.end());
+    std::erase_if(entries, [limit = *middle](const auto& entry) { return entry.second->used < limit; });
   }
 
   std::shared_ptr<const KernelFile> load(const AssembledKernel& assembled) const {

@@ -14,11 +14,6 @@ namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
-bool is_file(const fs::path& path) {
-  std::error_code ec;
-  return fs::is_regular_file(path, ec);
-}
-
 class Resolver {
  public:
   Resolver(const SearchPath& search, const fs::path& root) : search_(search), root_(root.lexically_normal()) {}

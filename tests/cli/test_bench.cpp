@@ -51,6 +51,21 @@ TEST_F(Bench, VariantsAndVariedSettingsMakeTheMatrix) {
   EXPECT_EQ(points.at(1).at("choice"), "apart fp32 unshared");
 }
 
+TEST_F(Bench, ReloadsAreMeasuredOfBothKinds) {
+  const Outcome outcome = run({"bench", "look.lua", "--reload", "--quick", "--sizes", "48x27", "-o", "out"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("from the save to the new picture at 48×27"));
+  const json all = report("out/reload-look-48x27.json");
+  ASSERT_EQ(all.at("edits").size(), 2u);
+  for (const std::size_t kind : {0u, 1u}) {
+    const json& edits = all.at("edits").at(kind);
+    EXPECT_EQ(edits.at("kind"), kind == 0 ? "value" : "shader");
+    EXPECT_EQ(edits.at("samples").size(), 3u);
+    EXPECT_GT(edits.at("medians").at("script").get<double>(), 0);
+    EXPECT_EQ(edits.at("medians").at("shader").get<double>() > 0, kind == 1) << "a value touches no shader";
+  }
+}
+
 TEST_F(Bench, CompareFailsBeyondTheThresholdAlone) {
   ASSERT_EQ(quick({"-o", "old"}).exit_code, kDone);
   const Outcome fine = quick({"-o", "new", "--compare", "old/bench.json", "--threshold", "1e6"});

@@ -1,0 +1,55 @@
+#include "apps/play_headless.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "apps/interrupt.h"
+
+namespace afterglow {
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+std::uint64_t frames_had(const Player& player) {
+  const PlayerStats stats = player.stats();
+  return stats.shown + stats.unreadable;
+}
+
+/// The first picture and a good build, before the clock runs.
+Result<void> show_first(Player& player) {
+  player.settle();
+  if (const auto first = player.step(); !first) return first.error();
+  if (player.live().stack() == nullptr)
+    return player.live().status().error.value_or(Error{ErrorKind::script, "the preset has no good build"});
+  if (player.shown().failed) return *player.shown().failed;
+  // Builds are complete from here on: that of the first frame has made what it needs.
+  player.live().settle();
+  return {};
+}
+
+}  // namespace
+
+Result<void> play_headless(Player& player, const HeadlessOptions& options) {
+  Transport& transport = player.transport();
+  transport.set_pacing(options.fast ? Pacing::every_frame : Pacing::real_time, player.now());
+  if (!options.count) transport.set_loop(LoopMode::once, player.now());
+  AFTERGLOW_CHECK(show_first(player));
+  if (!options.count || *options.count > 1) transport.play(player.now());
+  while (transport.playing()) {
+    if (interrupted()) return interrupt_error();
+    AFTERGLOW_TRY(const Step step, player.step());
+    if (player.shown().failed) return *player.shown().failed;
+    if (options.count && frames_had(player) >= *options.count) break;
+    if (!step.changed) player.wait(options.fast && transport.playing() ? kForever : step.next);
+  }
+  transport.pause(player.now());
+  if (interrupted()) return interrupt_error();
+  const PlayerStats stats = player.stats();
+  if (stats.shown == 0 && player.shown().unreadable) return *player.shown().unreadable;
+  if (stats.unreadable > 0)
+    return Error{ErrorKind::io, fmt::format("{} of {} frames could not be read", stats.unreadable, frames_had(player))};
+  return {};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,106 @@
+#include "apps/play_report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/options.h"
+#include "apps/run_report.h"
+#include "apps/table.h"
+
+namespace afterglow {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* kind_name(BuildTimes::Kind kind) {
+  switch (kind) {
+    case BuildTimes::Kind::values:
+      return "values";
+    case BuildTimes::Kind::structure:
+      return "structure";
+    case BuildTimes::Kind::none:
+      break;
+  }
+  return "none";
+}
+
+Json json_of(const Percentiles& p) {
+  return {{"median", p.median}, {"p95", p.p95}, {"p99", p.p99}, {"max", p.most}, {"count", p.count}};
+}
+
+Json json_of(const ReloadLatency& latency) {
+  return {{"kind", kind_name(latency.build.kind)},
+          {"notice", latency.build.notice},
+          {"script", latency.build.script},
+          {"shader", latency.build.shader},
+          {"pipeline", latency.build.pipeline},
+          {"wait", latency.build.wait},
+          {"execute", latency.execute},
+          {"present", latency.present},
+          {"total", latency.total()}};
+}
+
+std::string line_of(const Percentiles& p) {
+  return fmt::format("median {:.1f}, p95 {:.1f}, p99 {:.1f}, longest {:.1f} ms", p.median, p.p95, p.p99, p.most);
+}
+
+}  // namespace
+
+std::string play_report_text(const PlayReport& report, Player& player) {
+  const PlayerStats stats = player.stats();
+  const Transport& transport = player.transport();
+  std::string out = fmt::format("{} on {}\n", report.preset, report.device);
+  out +=
+      fmt::format("frames: {} shown ({} needed no pass), {} dropped, {} unreadable; {} at {} fps × {}\n", stats.shown,
+                  stats.kept, stats.dropped, stats.unreadable, report.mode, transport.fps(), transport.speed());
+  out += fmt::format("between frames: {}\n", line_of(stats.interval));
+  out += fmt::format("work a frame:   {}\n", line_of(stats.work));
+  out += fmt::format("cache: {} of {} in {} pictures, {:.1f} ms to read one; {} turns came before their picture\n",
+                     memory_text(stats.cache.bytes), memory_text(stats.cache.max_bytes), stats.cache.pictures,
+                     stats.cache.milliseconds, stats.late);
+  if (!stats.latencies.empty()) {
+    const ReloadLatency& last = stats.latencies.back();
+    out += fmt::format(
+        "reloads: {}; the last ({}) took {:.1f} ms: notice {:.1f}, script {:.1f}, shader {:.1f}, pipeline {:.1f}, wait "
+        "{:.1f}, execute {:.1f}, present {:.1f}\n",
+        stats.reloads, kind_name(last.build.kind), last.total(), last.build.notice, last.build.script,
+        last.build.shader, last.build.pipeline, last.build.wait, last.execute, last.present);
+  }
+  return out;
+}
+
+std::string play_report_json(const PlayReport& report, Player& player) {
+  const PlayerStats stats = player.stats();
+  const Transport& transport = player.transport();
+  const Footage& footage = player.footage();
+  Json out{
+      {"afterglow", AFTERGLOW_VERSION},
+      {"preset", report.preset},
+      {"device", report.device},
+      {"driver", report.driver},
+      {"footage", Json{{"frames", footage.frames()}, {"pictures", footage.pictures()}, {"missing", footage.missing()}}},
+      {"playing", Json{{"mode", report.mode},
+                       {"fps", transport.fps()},
+                       {"speed", transport.speed()},
+                       {"loop", loop_mode_name(transport.loop())}}}};
+  out["frames"] = Json{{"shown", stats.shown},           {"dropped", stats.dropped}, {"late", stats.late},
+                       {"unreadable", stats.unreadable}, {"kept", stats.kept},       {"last", player.shown().number}};
+  out["milliseconds"] = Json{{"startup", report.startup},
+                             {"wall", report.wall},
+                             {"interval", json_of(stats.interval)},
+                             {"work", json_of(stats.work)},
+                             {"read", stats.cache.milliseconds}};
+  out["cache"] = Json{{"bytes", stats.cache.bytes},         {"most_bytes", stats.cache.most_bytes},
+                      {"max_bytes", stats.cache.max_bytes}, {"pictures", stats.cache.pictures},
+                      {"read", stats.cache.read},           {"evicted", stats.cache.evicted}};
+  out["reloads"] = Json::array();
+  for (const ReloadLatency& latency : stats.latencies) out["reloads"].push_back(json_of(latency));
+  const LiveStatus status = player.live().status();
+  if (status.error) out["preset_error"] = status.error->text();
+  if (report.error) out["error"] = report.error->text();
+  out["memory"] = Json{{"peak", peak_memory()}};
+  return out.dump(2) + "\n";
+}
+
+}  // namespace afterglow

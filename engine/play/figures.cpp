@@ -1,0 +1,68 @@
+#include "play/figures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace afterglow {
+namespace {
+
+constexpr std::size_t kMostFrames = 100'000, kMostLatencies = 1000, kFpsFrames = 24;
+
+template <class T>
+void add(std::deque<T>& row, const T& value, std::size_t most) {
+  row.push_back(value);
+  if (row.size() > most) row.pop_front();
+}
+
+}  // namespace
+
+Percentiles Percentiles::of(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::ranges::sort(values);
+  // The smallest value that so many of a hundred do not exceed.
+  const auto at = [&](double part) {
+    const auto rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(values.size())));
+    return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
+  };
+  return {at(0.5), at(0.95), at(0.99), values.back(), values.size()};
+}
+
+void Figures::frame_shown(double now, double work, bool playing) {
+  ++shown_;
+  if (playing) add(work_, work, kMostFrames);
+  if (playing && last_ >= 0) add(intervals_, (now - last_) * 1000, kMostFrames);
+  last_ = playing ? now : -1;
+}
+
+void Figures::reloaded(const ReloadLatency& latency) {
+  ++reloads_;
+  add(latencies_, latency, kMostLatencies);
+  awaiting_present_ = true;
+}
+
+void Figures::presented(double milliseconds) {
+  if (!awaiting_present_) return;
+  awaiting_present_ = false;
+  latencies_.back().present = milliseconds;
+}
+
+PlayerStats Figures::stats() const {
+  PlayerStats stats;
+  stats.interval = Percentiles::of({intervals_.begin(), intervals_.end()});
+  stats.work = Percentiles::of({work_.begin(), work_.end()});
+  if (last_ >= 0 && !intervals_.empty()) {
+    const std::size_t frames = std::min(kFpsFrames, intervals_.size());
+    double sum = 0;
+    for (std::size_t i = intervals_.size() - frames; i < intervals_.size(); ++i) sum += intervals_[i];
+    if (sum > 0) stats.fps = 1000 * static_cast<double>(frames) / sum;
+  }
+  stats.shown = shown_;
+  stats.late = late;
+  stats.unreadable = unreadable;
+  stats.kept = kept;
+  stats.reloads = reloads_;
+  stats.latencies.assign(latencies_.begin(), latencies_.end());
+  return stats;
+}
+
+}  // namespace afterglow

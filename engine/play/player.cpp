@@ -1,0 +1,260 @@
+#include "play/player.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "image/camera.h"
+#include "image/facts.h"
+#include "play/player_state.h"
+
+namespace afterglow {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double steady_seconds() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
+
+/// A file or a script that fails spoils its frame; the device that fails spoils them all.
+bool ends_playing(const Error& error) { return error.kind == ErrorKind::device; }
+
+}  // namespace
+
+void Player::State::wake() {
+  {
+    const std::lock_guard lock(mutex);
+    awake = true;
+  }
+  woken.notify_all();
+  if (options.wake) options.wake();
+}
+
+LiveOptions Player::State::live_options(const std::vector<Override>& overrides) {
+  LiveOptions live = options.live;
+  live.stack.preset.overrides = overrides;
+  live.stack.keep_images = true;  // after an edit only what it changes runs again
+  live.notify = [this, given = options.live.notify] {
+    wake();
+    if (given) given();
+  };
+  return live;
+}
+
+void Player::State::begin_reading() {
+  ahead.reset();  // waits for what is being read of the footage before
+  wanted_for.clear();
+  ahead = std::make_unique<ReadAhead>(
+      [this, footage = footage](int key) {
+        std::vector<std::string> needs;
+        {
+          const std::lock_guard lock(mutex);
+          needs = auxiliary;
+        }
+        return footage->read(key, needs, diagnostics);
+      },
+      options.read_ahead, [this] { wake(); });
+}
+
+/// The due picture, then those that will be, as many as may fit.
+void Player::State::want_pictures() {
+  constexpr int kMostAhead = 256;
+  // Where frames are dropped anyway, not all of them need to be read.
+  const bool real_time = transport.pacing() == Pacing::real_time;
+  const int stride = real_time ? std::max(1, static_cast<int>(std::abs(transport.speed()) / 2)) : 1;
+  const std::vector<int> made_for{transport.position(), transport.heading(), stride, static_cast<int>(transport.loop()),
+                                  transport.first(),    transport.last()};
+  if (made_for == wanted_for) return;
+  wanted_for = made_for;
+  std::vector<int> keys;
+  std::set<int> seen;
+  const auto add = [&](int position) {
+    const int key = footage->frame(position).picture;
+    if (seen.insert(key).second) keys.push_back(key);
+  };
+  add(transport.position());
+  for (const int position : transport.upcoming(kMostAhead, stride)) add(position);
+  // Decoders of videos go forwards: what is wanted backwards is read in runs that do.
+  if (footage->is_video() && transport.heading() < 0) {
+    constexpr std::ptrdiff_t kRun = 12;
+    for (auto run = keys.begin() + 1; keys.end() - run > 1; run += std::min(kRun, keys.end() - run))
+      std::sort(run, run + std::min(kRun, keys.end() - run));
+  }
+  ahead->want(keys);
+}
+
+/// Auxiliary inputs that the present stacks ask for: when there are new ones, pictures are read again with them.
+void Player::State::follow_needs() {
+  std::set<std::string> needs;
+  for (LiveSession* session : {first.get(), second.get()})
+    if (Stack* stack = session ? session->live().stack() : nullptr)
+      for (const auto& name : stack->preset().needs()) needs.insert(name);
+  bool more = false;
+  {
+    const std::lock_guard lock(mutex);
+    needs.insert(auxiliary.begin(), auxiliary.end());
+    more = needs.size() > auxiliary.size();
+    auxiliary.assign(needs.begin(), needs.end());
+  }
+  if (more && ahead) {
+    ahead->forget();
+    picture.reset();
+  }
+}
+
+void Player::State::take_builds() {
+  bool changed = first->live().update();
+  if (second && second->live().update()) changed = true;
+  if (changed) {
+    dirty = reloaded = true;
+    follow_needs();
+  }
+}
+
+BuildContext Player::State::context(const Transport::Due& due) const {
+  const FootageFrame& frame = footage->frame(due.position);
+  BuildContext context;
+  context.frame = frame.number;
+  context.fps = transport.fps();
+  context.time = frame.number / context.fps;
+  return context;
+}
+
+/// Runs a picture through what it is compared with; true when the images are others now.
+Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, const Transport::Due& due) {
+  const auto start = Clock::now();
+  const bool compare = second && view.compare == Compare::other;
+  BuildContext frame = context(due);
+  if (read->picture.facts) frame.position = camera_position(read->picture.facts->metadata);
+  auto done = first->process(read->picture, frame, options.timing);
+  if (done && compare) done = second->process(read->picture, frame);
+  shown.failed.reset();
+  if (!done) {
+    if (ends_playing(done.error())) return std::move(done).error();
+    shown.failed = std::move(done).error();
+    dirty = false;  // until something changes, it would fail again
+    return true;
+  }
+  picture = read;
+  second_runs = compare;
+  dirty = false;
+  shown.size = read->picture.color.size();
+  const double work = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  if (first->times().kernels_run == 0) ++figures.kept;
+  figures.frame_shown(now(), work, transport.playing());
+  // The first build is no reload. `process` takes builds too: the generation says what is on screen.
+  if (const LiveStatus status = first->live().status(); status.generation != measured) {
+    if (measured > 0) figures.reloaded({.build = status.times, .execute = work, .present = 0});
+    measured = status.generation;
+  }
+  return true;
+}
+
+/// Puts the frame that is due on screen, when its picture is there and it is another one than before.
+Result<bool> Player::State::show_due(double now) {
+  const Transport::Due due = transport.due(now);
+  want_pictures();
+  const bool compare_missing = second && view.compare == Compare::other && !second_runs;
+  if (!due.moved && !dirty && !compare_missing && shown.position == due.position) return false;
+  const FootageFrame& frame = footage->frame(due.position);
+  const auto read = ahead->find(frame.picture);
+  if (!read) {
+    if (transport.playing() && due.moved) ++figures.late;
+    // An edit need not wait for the next picture: the one on screen shows it.
+    if (dirty && picture && shown.position >= 0) return run(picture, {shown.position, due.tick, false});
+    return false;
+  }
+  const bool same_picture = picture && read == picture && !dirty && !compare_missing;
+  shown.position = due.position;
+  shown.number = frame.number;
+  shown.held = frame.held;
+  shown.name = footage->picture_name(frame.picture);
+  shown.unreadable = read->error;
+  transport.shown(due);
+  if (read->error) {
+    ++figures.unreadable;
+    return true;
+  }
+  const auto may_change = [](LiveSession* session) {
+    Stack* stack = session ? session->live().stack() : nullptr;
+    return stack && stack->preset().may_change();
+  };
+  const bool moves = may_change(first.get()) || may_change(second.get());
+  if (same_picture && !moves) {
+    ++figures.kept;
+    figures.frame_shown(now, 0, transport.playing());
+    return true;
+  }
+  return run(read, due);
+}
+
+Result<Step> Player::step() {
+  State& s = *state_;
+  const double now = s.now();
+  {
+    const std::lock_guard lock(s.mutex);
+    s.awake = false;
+  }
+  Step step;
+  s.take_builds();
+  step.reloaded = std::exchange(s.reloaded, false);
+  if (!s.transport.playing()) s.figures.stop();
+  AFTERGLOW_TRY(step.changed, s.show_due(now));
+  step.next = s.transport.next_due();
+  s.turn_ended = s.now();
+  return step;
+}
+
+void Player::wait(double until) {
+  State& s = *state_;
+  std::unique_lock lock(s.mutex);
+  constexpr double kLongest = 0.25;  // seconds: whoever waits looks at signals too
+  const double seconds = std::clamp(until - s.now(), 0.0, kLongest);
+  s.woken.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return s.awake; });
+}
+
+void Player::settle() {
+  State& s = *state_;
+  s.first->live().settle();
+  if (s.second) s.second->live().settle();
+  s.take_builds();
+  const Transport::Due due = s.transport.due(s.now());
+  s.want_pictures();
+  s.ahead->wait(s.footage->frame(due.position).picture);
+}
+
+Result<std::unique_ptr<Player>> Player::open(Device& device, const PlayerOptions& options, Diagnostics& diagnostics) {
+  auto state = std::make_unique<State>(device, options, diagnostics);
+  State& s = *state;
+  if (!s.options.clock) s.options.clock = steady_seconds;
+  AFTERGLOW_TRY(s.footage, Footage::open(options.footage, diagnostics));
+  const std::vector<Override> overrides = options.live.stack.preset.overrides;
+  AFTERGLOW_TRY(s.first, LiveSession::open(device, options.preset, s.live_options(overrides), diagnostics));
+  if (!options.other_preset.empty()) {
+    AFTERGLOW_TRY(s.second, LiveSession::open(device, options.other_preset, s.live_options(overrides), diagnostics));
+  }
+  s.transport = Transport(s.footage->frames(), options.fps.value_or(s.footage->fps().value_or(24)));
+  s.transport.set_loop(options.loop, s.now());
+  s.transport.set_pacing(options.pacing, s.now());
+  if (!options.show.empty()) s.first->live().show(options.show);
+  s.follow_needs();
+  s.begin_reading();
+  s.want_pictures();
+  return std::unique_ptr<Player>(new Player(std::move(state)));
+}
+
+Player::Player(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Player::~Player() = default;
+
+double Player::now() const { return state_->now(); }
+Transport& Player::transport() { return state_->transport; }
+View& Player::view() { return state_->view; }
+const Footage& Player::footage() const { return *state_->footage; }
+LiveStack& Player::live() { return state_->first->live(); }
+LiveStack* Player::other() { return state_->second ? &state_->second->live() : nullptr; }
+const ShownFrame& Player::shown() const { return state_->shown; }
+const FrameTimes& Player::last_times() const { return state_->first->times(); }
+const LiveSession& Player::session() const { return *state_->first; }
+
+}  // namespace afterglow

@@ -1,0 +1,140 @@
+// Plays footage through a preset that is being edited. One turn after the other is asked for by whoever draws: a
+// window, or a command without one.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exec/frame.h"
+#include "play/figures.h"
+#include "play/footage.h"
+#include "play/histogram.h"
+#include "play/read_ahead.h"
+#include "play/setting_edits.h"
+#include "play/transport.h"
+#include "play/view.h"
+#include "session/live_session.h"
+
+namespace afterglow {
+
+struct PlayerOptions {
+  std::filesystem::path preset;
+  std::filesystem::path other_preset;  ///< B of A/B; empty: none
+  LiveOptions live;                    ///< of both; its `notify` is called besides the player's own
+  FootageOptions footage;
+  ReadAheadOptions read_ahead;
+  std::optional<double> fps;  ///< else the footage's own, else 24
+  LoopMode loop = LoopMode::loop;
+  Pacing pacing = Pacing::real_time;
+  KernelTiming timing = KernelTiming::none;
+  std::string show;               ///< image between passes to show; empty: the result
+  std::function<double()> clock;  ///< seconds, never backwards; empty: the system's steady clock
+  std::function<void()> wake;     ///< called on any thread when `step` has something to do before `Step::next`
+};
+
+/// What a turn came to.
+struct Step {
+  bool changed = false;   ///< `images` or `shown` are others than before: draw
+  bool reloaded = false;  ///< a new build was taken
+  double next = 0;        ///< when the next frame is due, by the player's clock; infinity: not before a `wake`
+};
+
+/// What is on screen.
+struct ShownFrame {
+  int position = -1;  ///< in the footage; −1: nothing yet
+  int number = 0;     ///< in its sequence
+  bool held = false;  ///< its file is missing; it shows the one before
+  std::string name;   ///< of the picture
+  Size size;
+  std::optional<Error> unreadable;  ///< why it could not be read: the picture before stays
+  std::optional<Error> failed;      ///< why the stack could not be run on it: the picture before stays
+};
+
+/// For shaders that show them; see DeviceImages. Null images until there is a picture.
+struct PlayerImages {
+  DeviceImage source, result;
+  std::optional<DeviceImage> other;  ///< B's result
+  Size picture;                      ///< of the footage; an image between passes may be smaller
+};
+
+/// Values under the cursor, linear.
+struct Probe {
+  Pixel pixel;
+  std::array<float, 4> source{}, result{};
+  std::optional<std::array<float, 4>> other;
+};
+
+/// Drawing thread alone, but for `wake`'s callers. The device must outlive it.
+class Player {
+ public:
+  /// A preset that is broken is no error: see LiveStack. Errors: usage, io (footage), device.
+  static Result<std::unique_ptr<Player>> open(Device& device, const PlayerOptions& options, Diagnostics& diagnostics);
+  ~Player();
+
+  /// One turn: takes what was built, looks which frame is due, runs it when anything about it has changed. Does not
+  /// wait for pictures that are being read: the frame before stays, and what was due meanwhile counts as dropped.
+  /// Nothing that draws `images` may be in flight. Errors: device.
+  Result<Step> step();
+  /// Blocks until `step` has something to do or `until` (of the clock that is the system's) has come.
+  void wait(double until);
+  /// Blocks until the picture that is due has been read and everything that was changed is built. For tests and for
+  /// programs that show a fixed number of frames.
+  void settle();
+  double now() const;
+
+  Transport& transport();
+  View& view();
+  const Footage& footage() const;
+  LiveStack& live();
+  LiveStack* other();  ///< null without a second preset
+  const ShownFrame& shown() const;
+  PlayerImages images() const;
+  const FrameTimes& last_times() const;
+  /// What runs the first preset: its kernels, memory, what the last frame left out.
+  const LiveSession& session() const;
+
+  // Settings over those of the preset (and over --set); they apply with the next turns, through LiveStack.
+  void set(const std::string& entry, const std::string& setting, const SettingValue& value);
+  void reset(const std::string& entry, const std::string& setting);
+  void reset_all();
+  bool undo();
+  bool redo();
+  const SettingEdits& edits() const;
+  void end_gesture();
+  /// Forgets the edits and their history: they have been written into the preset.
+  void edits_saved();
+
+  /// See LiveStack::show.
+  void show(const std::string& image);
+  /// Reads the pictures again.
+  void reload_pictures();
+  /// Plays something else; zoom and settings stay. Errors: usage, io; then everything stays as it is.
+  Result<void> open_footage(const std::vector<std::string>& inputs);
+  /// Another preset in place of the first; its panel edits are forgotten. Errors: io.
+  Result<void> open_preset(const std::filesystem::path& preset);
+  Result<void> open_other(const std::filesystem::path& preset);
+
+  /// None outside of the picture or without one. Reads one pixel of the result from the device. Errors: device.
+  Result<std::optional<Probe>> probe(Pixel pixel);
+  enum class Of { source, result, other };
+  /// Reads the whole result from the device: only when it is looked at. Errors: device.
+  Result<Histogram> histogram(Of of = Of::result);
+  /// The frame that is shown, as `afterglow run` would make it, for writing. Errors: other (nothing is shown), device.
+  Result<Picture> screenshot();
+
+  /// The window has handed the frame of the last turn to the screen.
+  void presented();
+  PlayerStats stats() const;
+
+ private:
+  struct State;
+  explicit Player(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,204 @@
+// What one asks a player about the frame on screen, and what one tells it to play.
+#include <algorithm>
+#include <cstring>
+
+#include "image/facts.h"
+#include "play/player.h"
+#include "play/player_state.h"
+
+namespace afterglow {
+namespace {
+
+/// The pixel of an image of another size that lies under the same place.
+Pixel scaled(Pixel pixel, Size from, Size to) {
+  if (from == to) return pixel;
+  const auto along = [](int at, int length, int other) {
+    return std::min(static_cast<int>((at + 0.5) * other / length), other - 1);
+  };
+  return {along(pixel.x, from.width, to.width), along(pixel.y, from.height, to.height)};
+}
+
+std::array<float, 4> value_at(const Image& image, Pixel pixel) {
+  std::array<float, 4> out{};
+  std::copy_n(image.at(pixel.x, pixel.y), 4, out.begin());
+  return out;
+}
+
+/// One pixel of what a preset made of the picture.
+Result<std::array<float, 4>> result_at(LiveSession& session, HostResult& result, const Picture& picture, Pixel pixel) {
+  const DeviceImages images = session.images();
+  if (!images.ran) return value_at(picture.color, pixel);
+  const Size size = images.result.binding.size;
+  const Pixel at = scaled(pixel, picture.color.size(), size);
+  AFTERGLOW_CHECK(session.read_result(result, Rect{at.x, at.y, 1, 1}));
+  std::array<float, 4> out{};
+  const std::size_t first =
+      (static_cast<std::size_t>(at.y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(at.x)) * 4;
+  std::copy_n(result.pixels.begin() + static_cast<std::ptrdiff_t>(first), 4, out.begin());
+  return out;
+}
+
+}  // namespace
+
+PlayerImages Player::images() const {
+  const State& s = *state_;
+  if (!s.picture) return {};
+  const DeviceImages images = s.first->images();
+  PlayerImages out{.source = images.source,
+                   .result = images.ran ? images.result : images.source,
+                   .other = {},
+                   .picture = s.shown.size};
+  if (s.second && s.second_runs) {
+    const DeviceImages other = s.second->images();
+    out.other = other.ran ? other.result : other.source;
+  }
+  return out;
+}
+
+Result<std::optional<Probe>> Player::probe(Pixel pixel) {
+  State& s = *state_;
+  if (!s.picture || pixel.x < 0 || pixel.y < 0 || pixel.x >= s.shown.size.width || pixel.y >= s.shown.size.height)
+    return std::optional<Probe>();
+  const Picture& picture = s.picture->picture;
+  Probe probe{.pixel = pixel, .source = value_at(picture.color, pixel), .result = {}, .other = {}};
+  AFTERGLOW_TRY(probe.result, result_at(*s.first, s.result, picture, pixel));
+  if (s.second && s.second_runs) {
+    AFTERGLOW_TRY(probe.other, result_at(*s.second, s.result, picture, pixel));
+  }
+  return std::optional<Probe>(probe);
+}
+
+Result<Histogram> Player::histogram(Of of) {
+  State& s = *state_;
+  if (!s.picture) return Histogram{};
+  const Image& source = s.picture->picture.color;
+  if (of == Of::other && !(s.second && s.second_runs)) return Histogram{};
+  LiveSession& session = of == Of::other ? *s.second : *s.first;
+  const DeviceImages images = session.images();
+  if (of == Of::source || !images.ran) return histogram_of(source.pixels, source.size());
+  AFTERGLOW_CHECK(session.read_result(s.result));
+  return histogram_of(s.result.pixels, images.result.binding.size);
+}
+
+Result<Picture> Player::screenshot() {
+  State& s = *state_;
+  if (!s.picture) return Error{ErrorKind::other, "no picture is shown"};
+  Picture out = s.picture->picture;
+  out.content.clear();
+  const DeviceImages images = s.first->images();
+  if (!images.ran) return out;
+  AFTERGLOW_CHECK(s.first->read_result(s.result));
+  const Size size = images.result.binding.size;
+  if (size != out.color.size()) {  // an image between passes
+    out.color = Image(size.width, size.height, 4);
+    out.color.pixels = s.result.pixels;
+    out.data_window = out.display_window = {0, 0, size.width, size.height};
+    out.auxiliary.clear();
+    return out;
+  }
+  // Effects never change alpha: the source's own values stay, exact whatever the storage format.
+  const std::size_t pixels = out.color.pixels.size() / 4;
+  for (std::size_t i = 0; i < pixels; ++i)
+    std::copy_n(s.result.pixels.begin() + static_cast<std::ptrdiff_t>(i * 4), 3,
+                out.color.pixels.begin() + static_cast<std::ptrdiff_t>(i * 4));
+  return out;
+}
+
+void Player::State::apply_edits() { first->live().set_overrides(edits.overrides(options.live.stack.preset.overrides)); }
+
+void Player::set(const std::string& entry, const std::string& setting, const SettingValue& value) {
+  state_->edits.set(entry, setting, value);
+  state_->apply_edits();
+}
+
+void Player::reset(const std::string& entry, const std::string& setting) {
+  if (state_->edits.reset(entry, setting)) state_->apply_edits();
+}
+
+void Player::reset_all() {
+  if (state_->edits.reset_all()) state_->apply_edits();
+}
+
+bool Player::undo() {
+  const bool done = state_->edits.undo();
+  if (done) state_->apply_edits();
+  return done;
+}
+
+bool Player::redo() {
+  const bool done = state_->edits.redo();
+  if (done) state_->apply_edits();
+  return done;
+}
+
+const SettingEdits& Player::edits() const { return state_->edits; }
+void Player::end_gesture() { state_->edits.end_gesture(); }
+
+void Player::edits_saved() {
+  state_->edits = {};
+  state_->apply_edits();
+}
+
+void Player::show(const std::string& image) { state_->first->live().show(image); }
+
+void Player::reload_pictures() {
+  State& s = *state_;
+  s.ahead->forget();
+  s.dirty = true;
+}
+
+Result<void> Player::open_footage(const std::vector<std::string>& inputs) {
+  State& s = *state_;
+  FootageOptions wanted = s.options.footage;
+  wanted.inputs = inputs;
+  wanted.frames.clear();
+  AFTERGLOW_TRY(s.footage, Footage::open(wanted, s.diagnostics));
+  s.options.footage = std::move(wanted);
+  const bool was_playing = s.transport.playing();
+  s.transport.set_frames(s.footage->frames());
+  if (!s.options.fps && s.footage->fps()) s.transport.set_fps(*s.footage->fps(), s.now());
+  s.begin_reading();
+  s.want_pictures();
+  s.shown.position = -1;
+  s.dirty = true;
+  if (was_playing) s.transport.play(s.now());
+  return {};
+}
+
+Result<void> Player::open_preset(const std::filesystem::path& preset) {
+  State& s = *state_;
+  AFTERGLOW_TRY(auto opened, LiveSession::open(s.device, preset, s.live_options(s.options.live.stack.preset.overrides),
+                                               s.diagnostics));
+  s.first = std::move(opened);
+  s.options.preset = preset;
+  s.measured = 0;
+  s.edits = {};
+  s.dirty = true;
+  s.follow_needs();
+  return {};
+}
+
+Result<void> Player::open_other(const std::filesystem::path& preset) {
+  State& s = *state_;
+  AFTERGLOW_TRY(auto opened, LiveSession::open(s.device, preset, s.live_options(s.options.live.stack.preset.overrides),
+                                               s.diagnostics));
+  s.second = std::move(opened);
+  s.second_runs = false;
+  s.options.other_preset = preset;
+  s.follow_needs();
+  return {};
+}
+
+void Player::presented() {
+  State& s = *state_;
+  s.figures.presented((s.now() - s.turn_ended) * 1000);
+}
+
+PlayerStats Player::stats() const {
+  PlayerStats stats = state_->figures.stats();
+  stats.dropped = state_->transport.dropped();
+  stats.cache = state_->ahead->stats();
+  return stats;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,58 @@
+// What a Player holds; private to this room.
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <set>
+
+#include "play/player.h"
+#include "session/live_session.h"
+
+namespace afterglow {
+
+struct Player::State {
+  State(Device& device_in, PlayerOptions options_in, Diagnostics& diagnostics_in)
+      : device(device_in), options(std::move(options_in)), diagnostics(diagnostics_in) {}
+
+  Device& device;
+  PlayerOptions options;
+  Diagnostics& diagnostics;
+
+  // Told by other threads.
+  std::mutex mutex;
+  std::condition_variable woken;
+  bool awake = false;
+  std::vector<std::string> auxiliary;  ///< what readers read besides the colour
+
+  std::shared_ptr<const Footage> footage;
+  Transport transport{1};
+  View view;
+  SettingEdits edits;
+  Figures figures;
+
+  std::unique_ptr<LiveSession> first, second;
+  std::shared_ptr<const ReadPicture> picture;  ///< that the images on the device were made of
+  ShownFrame shown;
+  HostResult result;         ///< what was read back of the first's
+  bool dirty = true;         ///< the picture on screen has to be run again
+  bool reloaded = false;     ///< builds were taken since the last turn
+  bool second_runs = false;  ///< B was run for what is on screen
+  double turn_ended = 0;
+  std::vector<int> wanted_for;       ///< position, heading and speed that the wishes were made for
+  std::uint64_t measured = 0;        ///< generation of the stack whose first frame was measured
+  std::unique_ptr<ReadAhead> ahead;  // last: its threads use the rest
+
+  double now() const { return options.clock(); }
+  void wake();
+  LiveOptions live_options(const std::vector<Override>& overrides);
+  void begin_reading();
+  void want_pictures();
+  void take_builds();
+  void follow_needs();
+  Result<bool> show_due(double now);
+  Result<bool> run(const std::shared_ptr<const ReadPicture>& read, const Transport::Due& due);
+  BuildContext context(const Transport::Due& due) const;
+  void apply_edits();
+};
+
+}  // namespace afterglow

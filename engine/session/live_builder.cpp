@@ -1,0 +1,330 @@
+#include "session/live_builder.h"
+
+#include <algorithm>
+
+#include "core/file.h"
+#include "core/text.h"
+
+namespace afterglow {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kPatience{100};  // with a script whose files have changed meanwhile
+constexpr std::chrono::milliseconds kStarving{250};  // without a new stack: a build is finished, overtaken or not
+
+constexpr Clock::rep kNever = Clock::time_point::max().time_since_epoch().count();
+
+double milliseconds_between(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double, std::milli>(to - from).count();
+}
+
+/// The line that an error is about, without the space around it.
+std::string line_of(const Error& error) {
+  if (error.file.empty() || error.line < 1) return {};
+  const auto text = read_file(error.file);
+  if (!text) return {};
+  const auto lines = split(*text, '\n');
+  return error.line <= static_cast<int>(lines.size()) ? trim(lines[static_cast<std::size_t>(error.line) - 1]) : "";
+}
+
+}  // namespace
+
+LiveBuilder::LiveBuilder(Device& device, std::filesystem::path preset, const LiveOptions& options,
+                         Diagnostics& diagnostics)
+    : device_(device), preset_(std::move(preset)), options_(options), diagnostics_(diagnostics) {
+  request_.overrides = options.stack.preset.overrides;
+  wanted_.request = true;
+  wanted_.note(Clock::now());
+  status_.building = true;
+  if (options.follow)
+    watcher_ = std::make_unique<Watcher>(
+        options.watch, [this](Clock::time_point since, bool polled) { files_may_differ(since, polled); });
+  thread_ = std::thread([this] { run(); });
+}
+
+LiveBuilder::~LiveBuilder() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+    if (until_) until_->store(0);
+  }
+  changed_.notify_all();
+  thread_.join();
+  watcher_.reset();
+}
+
+void LiveBuilder::notify() const {
+  if (options_.notify) options_.notify();
+}
+
+// ---- what is wanted
+
+/// A script that runs on for something that is no longer wanted comes to an end.
+void LiveBuilder::overtake() {
+  if (until_) until_->store(std::min(until_->load(), (script_began_ + kPatience).time_since_epoch().count()));
+  changed_.notify_all();
+}
+
+void LiveBuilder::files_may_differ(Clock::time_point since, bool polled) {
+  const std::lock_guard lock(mutex_);
+  wanted_.files = true;
+  wanted_.note(since);
+  if (polled)
+    changed_.notify_all();
+  else
+    overtake();
+}
+
+void LiveBuilder::change(const std::function<void(LiveRequest&)>& apply, bool build) {
+  const std::lock_guard lock(mutex_);
+  apply(request_);
+  if (!build) return;
+  wanted_.request = true;
+  wanted_.note(Clock::now());
+  status_.building = true;
+  overtake();
+}
+
+void LiveBuilder::look() { files_may_differ(Clock::now(), true); }
+
+void LiveBuilder::settle() {
+  look();
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return !building_ && !wanted_.any(); });
+}
+
+bool LiveBuilder::overtaken() const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (ends_ || wanted_.request) return true;
+    if (!wanted_.files) return false;
+  }
+  return first_changed(looks_, options_.watch.poll).has_value();
+}
+
+// ---- the thread
+
+void LiveBuilder::run() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [&] { return ends_ || wanted_.any() || !dead_.empty(); });
+    if (ends_) return;
+    std::vector<BuiltStack> dead = std::move(dead_);
+    dead_.clear();
+    const Wanted why = std::exchange(wanted_, {});
+    building_ = why.any();
+    const LiveRequest request = request_;
+    lock.unlock();
+    if (why.any()) work(why, request);
+    dead.clear();
+    lock.lock();
+    building_ = false;
+    const bool was = std::exchange(status_.building, wanted_.request);
+    changed_.notify_all();
+    if (was != status_.building) {
+      lock.unlock();
+      notify();
+      lock.lock();
+    }
+  }
+}
+
+void LiveBuilder::work(const Wanted& why, const LiveRequest& request) {
+  if (!why.request && !first_changed(looks_, options_.watch.poll)) return;
+  BuildTimes times;
+  times.notice = milliseconds_between(why.since.value_or(Clock::now()), Clock::now());
+  {
+    const std::lock_guard lock(mutex_);
+    ++counters_.builds;
+    status_.building = true;
+  }
+  auto built = build(request, times);
+  if (!built) fail(std::move(built).error());
+}
+
+BuiltStack LiveBuilder::new_stack() {
+  auto heard = std::make_shared<Heard>();
+  auto diagnostics = std::make_unique<Diagnostics>([this, heard](Severity severity, const std::string& message) {
+    {
+      const std::lock_guard lock(heard->mutex);
+      if (severity == Severity::warning) heard->messages.push_back(message);
+    }
+    {
+      const std::lock_guard lock(said_mutex_);
+      if (!said_.insert(message).second) return;
+    }
+    severity == Severity::warning ? diagnostics_.warn(message) : diagnostics_.note(message);
+  });
+  return {token_, std::move(heard), std::move(diagnostics), nullptr};
+}
+
+/// Everything that reads files.
+Result<BuiltStack> LiveBuilder::load(const LiveRequest& request, std::optional<StackWork>& work) {
+  BuiltStack built = new_stack();
+  StackOptions options = options_.stack;
+  options.preset.overrides = request.overrides;
+  options.preset.leave_out_unfit = true;
+  {
+    const std::lock_guard lock(mutex_);
+    script_began_ = Clock::now();
+    until_ = std::make_shared<Until>(ends_ ? 0 : kNever);
+    options.preset.limits.until = until_;
+  }
+  AFTERGLOW_TRY(built.stack, Stack::load(preset_, options, *built.diagnostics));
+  built.stack->show(request.shown);
+  built.stack->use(device_, options_.own_images);
+  if (request.context) {
+    AFTERGLOW_TRY(work, built.stack->build(*request.context, request.encoding));
+  }
+  return built;
+}
+
+Result<void> LiveBuilder::build(const LiveRequest& request, BuildTimes& times) {
+  const auto start = Clock::now();
+  std::optional<StackWork> work;
+  Result<BuiltStack> built = Error{};
+  FileLooks looks;
+  {
+    const FileTrace trace;
+    built = load(request, work);
+    looks = trace.looks();
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    until_->store(kNever);  // from now on the script is the stack's, and nobody interrupts it
+    until_.reset();
+  }
+  follow(std::move(looks));
+  times.script = milliseconds_between(start, Clock::now());
+  if (!built) return std::move(built).error();
+  if (work && basis_ && same_work(*basis_, *work)) {
+    times.kind = BuildTimes::Kind::values;
+    publish(std::move(*built), times);
+    return {};
+  }
+  times.kind = BuildTimes::Kind::structure;
+  if (work) {
+    if (overtaken() && Clock::now() - published_at_ < kStarving) {
+      give_up();
+      return {};
+    }
+    StackShared& shared = *options_.stack.shared;
+    const auto pipelines = shared.pipelines.counters();
+    const int compiled = shared.compiler.counters().compiled;
+    AFTERGLOW_CHECK(built->stack->prepare_built(request.encoding));
+    const auto after = shared.pipelines.counters();
+    times.pipeline = after.milliseconds - pipelines.milliseconds;
+    times.shader = std::max(0.0, built->stack->compile_milliseconds() - times.pipeline);
+    times.kernels_compiled = shared.compiler.counters().compiled - compiled;
+    times.pipelines_made = static_cast<int>(after.made - pipelines.made);
+    basis_ = std::move(work);
+  }
+  publish(std::move(*built), times);
+  return {};
+}
+
+/// Watches what the build has looked at; what changed before it was watched is looked at again.
+void LiveBuilder::follow(FileLooks looks) {
+  const auto same_path = [](const auto& a, const auto& b) {
+    return a.first == b.first &&
+           (a.second.kind == FileLook::Kind::listing) == (b.second.kind == FileLook::Kind::listing);
+  };
+  const bool same = std::ranges::equal(looks_, looks, same_path);
+  looks_ = std::move(looks);
+  if (watcher_ && !same) watcher_->watch(paths_to_watch(looks_));
+  if (!first_changed(looks_)) return;
+  const std::lock_guard lock(mutex_);
+  wanted_.files = true;
+  wanted_.note(Clock::now());
+}
+
+// ---- what comes of a build
+
+void LiveBuilder::publish(BuiltStack built, const BuildTimes& times) {
+  {
+    const std::lock_guard lock(said_mutex_);
+    const std::lock_guard heard_lock(built.heard->mutex);
+    said_ = {built.heard->messages.begin(), built.heard->messages.end()};
+  }
+  BuiltParts old;
+  {
+    const std::lock_guard lock(mutex_);
+    if (times.kind == BuildTimes::Kind::structure) {
+      std::swap(old.structure, parts_.structure);
+      parts_.structure = std::move(built);
+    }
+    std::swap(old.values, parts_.values);
+    if (times.kind == BuildTimes::Kind::values) parts_.values = std::move(built);
+    // Untaken: the later build has done the work of both.
+    const bool both = parts_.structure && times.kind == BuildTimes::Kind::values;
+    if (!both) parts_.times = times;
+    parts_.done = published_at_ = Clock::now();
+    status_.error.reset();
+    status_.source_line.clear();
+  }
+  notify();
+}
+
+void LiveBuilder::give_up() {
+  const std::lock_guard lock(mutex_);
+  ++counters_.given_up;
+  wanted_.request = true;
+}
+
+void LiveBuilder::fail(Error error) {
+  const bool interrupted = error.kind == ErrorKind::interrupted;
+  // A file that was caught half written: the build that follows says what is wrong.
+  if (interrupted || overtaken()) return give_up();
+  std::string line = line_of(error);
+  {
+    const std::lock_guard lock(mutex_);
+    ++counters_.failed;
+    status_.error = std::move(error);
+    status_.source_line = std::move(line);
+  }
+  notify();
+}
+
+BuiltParts LiveBuilder::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(parts_, {});
+}
+
+void LiveBuilder::release(BuiltStack stack) {
+  const std::lock_guard lock(mutex_);
+  dead_.push_back(std::move(stack));
+  changed_.notify_all();
+}
+
+void LiveBuilder::forward(const std::function<void(LiveStatus&, LiveStack::Counters&)>& apply) {
+  const std::lock_guard lock(mutex_);
+  apply(status_, counters_);
+}
+
+LiveStatus LiveBuilder::status() const {
+  LiveStatus status;
+  {
+    const std::lock_guard lock(mutex_);
+    status = status_;
+  }
+  if (watcher_) status.watching = watcher_->method();
+  return status;
+}
+
+LiveStack::Counters LiveBuilder::counters() const {
+  LiveStack::Counters counters;
+  {
+    const std::lock_guard lock(mutex_);
+    counters = counters_;
+    counters.stacks = static_cast<std::uint64_t>(token_.use_count()) - 1;
+  }
+  const StackShared& shared = *options_.stack.shared;
+  counters.compiled = static_cast<std::uint64_t>(shared.compiler.counters().compiled);
+  const auto pipelines = shared.pipelines.counters();
+  counters.pipelines = pipelines.made;
+  counters.pipelines_alive = pipelines.alive;
+  return counters;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,120 @@
+// The thread on which a LiveStack's builds happen. Internal to the room.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "core/file_trace.h"
+#include "session/live.h"
+
+namespace afterglow {
+
+/// What stacks are built for.
+struct LiveRequest {
+  std::optional<BuildContext> context;  ///< none: scripts alone
+  std::optional<DisplayEncoding> encoding;
+  std::vector<Override> overrides;
+  std::string shown;
+};
+
+/// What the scripts of one build have said.
+struct Heard {
+  std::mutex mutex;
+  std::vector<std::string> messages;
+};
+
+/// A stack with what it needs to live.
+struct BuiltStack {
+  std::shared_ptr<const int> token;  ///< counts them
+  std::shared_ptr<Heard> heard;
+  std::unique_ptr<Diagnostics> diagnostics;
+  std::unique_ptr<Stack> stack;
+};
+
+/// Builds that have not been taken yet: a stack, and newer scripts for it or for the one that is shown.
+struct BuiltParts {
+  std::optional<BuiltStack> structure, values;
+  BuildTimes times;
+  std::chrono::steady_clock::time_point done;
+  bool any() const { return structure || values; }
+};
+
+class LiveBuilder {
+ public:
+  LiveBuilder(Device& device, std::filesystem::path preset, const LiveOptions& options, Diagnostics& diagnostics);
+  ~LiveBuilder();
+
+  // All of these are thread-safe.
+  /// Changes what is wanted; with `build` it is built.
+  void change(const std::function<void(LiveRequest&)>& apply, bool build);
+  void look();  ///< at the files
+  void settle();
+  BuiltParts take();
+  void release(BuiltStack stack);  ///< destroys it on the builder's thread
+  void forward(const std::function<void(LiveStatus&, LiveStack::Counters&)>& apply);
+  LiveStatus status() const;
+  LiveStack::Counters counters() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  /// Why a build is wanted.
+  struct Wanted {
+    bool files = false, request = false;
+    std::optional<Clock::time_point> since;
+    bool any() const { return files || request; }
+    void note(Clock::time_point when) { since = std::min(since.value_or(when), when); }
+  };
+  using Until = std::atomic<Clock::rep>;
+
+  void run();
+  void files_may_differ(Clock::time_point since, bool polled);
+  void overtake();
+  void work(const Wanted& why, const LiveRequest& request);
+  Result<void> build(const LiveRequest& request, BuildTimes& times);
+  Result<BuiltStack> load(const LiveRequest& request, std::optional<StackWork>& work);
+  BuiltStack new_stack();
+  void publish(BuiltStack built, const BuildTimes& times);
+  void fail(Error error);
+  void give_up();
+  bool overtaken() const;
+  void follow(FileLooks looks);
+  void notify() const;
+
+  const std::shared_ptr<const int> token_ = std::make_shared<const int>();  // every BuiltStack holds it
+  Device& device_;
+  const std::filesystem::path preset_;
+  LiveOptions options_;
+  Diagnostics& diagnostics_;
+
+  // Of the builder's thread alone.
+  FileLooks looks_;                 ///< of the last build
+  std::optional<StackWork> basis_;  ///< of the newest stack that was built
+  Clock::time_point published_at_{};
+
+  mutable std::mutex mutex_;  // for all below
+  std::condition_variable changed_;
+  LiveRequest request_;
+  Wanted wanted_;
+  bool building_ = false, ends_ = false;
+  std::shared_ptr<Until> until_;  ///< when the script that is running ends at the latest
+  Clock::time_point script_began_{};
+  BuiltParts parts_;
+  std::vector<BuiltStack> dead_;
+  LiveStatus status_;
+  LiveStack::Counters counters_;
+
+  std::mutex said_mutex_;
+  std::set<std::string> said_;  ///< messages that were passed on, while each build says them again
+
+  std::unique_ptr<Watcher> watcher_;
+  std::thread thread_;
+};
+
+}  // namespace afterglow

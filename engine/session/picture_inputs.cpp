@@ -1,0 +1,37 @@
+#include "session/picture_inputs.h"
+
+#include <fmt/format.h>
+
+namespace afterglow {
+namespace {
+
+HostImage host_image(const Picture& picture, const std::string& name, const Image& image) {
+  HostImage out{image.pixels.data(), image.size(), image.channels};
+  if (const auto known = picture.content.find(name); known != picture.content.end()) out.content = known->second;
+  return out;
+}
+
+}  // namespace
+
+std::map<std::string, HostImage> picture_inputs(const Picture& picture, const Graph& graph) {
+  std::map<std::string, HostImage> inputs{{"source", host_image(picture, "source", picture.color)}};
+  for (const auto& [name, id] : graph.auxiliary) inputs[name] = host_image(picture, name, picture.auxiliary.at(name));
+  return inputs;
+}
+
+BuildContext context_of(const Picture& picture, const BuildContext& frame) {
+  BuildContext context = frame;
+  context.size = picture.color.size();
+  context.auxiliary.clear();
+  for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
+  return context;
+}
+
+std::vector<Skipped> kept_of(const FrameTimes& times) {
+  if (times.kernels_kept == 0) return {};
+  if (times.kernels_run == 0) return {{"frame", "its picture and settings are those of an earlier frame"}};
+  return {{fmt::format("{} of {} kernels", times.kernels_kept, times.kernels_kept + times.kernels_run),
+           "nothing that they read has changed"}};
+}
+
+}  // namespace afterglow
