@@ -8,10 +8,8 @@ const Preset* PlayerPort::preset() {
 }
 
 const std::vector<Skipped>& PlayerPort::skipped() {
-  static const std::vector<Skipped> kNone;
-  Stack* stack = player_.live().stack();
-  const Program* program = stack ? stack->program() : nullptr;
-  return program ? program->graph().skipped : kNone;
+  skipped_ = player_.session().skipped();
+  return skipped_;
 }
 
 }  // namespace afterglow

@@ -14,7 +14,6 @@ class PlayerPort final : public PanelPort {
   const Preset* preset() override;
   LiveStatus status() override { return player_.live().status(); }
   const std::vector<Skipped>& skipped() override;
-  const std::vector<Skipped>& skipped_now() override { return player_.skipped_now(); }
   const FrameTimes& times() override { return player_.last_times(); }
 
   const SettingEdits& edits() override { return player_.edits(); }
@@ -36,6 +35,7 @@ class PlayerPort final : public PanelPort {
 
  private:
   Player& player_;
+  std::vector<Skipped> skipped_;
 };
 
 }  // namespace afterglow
