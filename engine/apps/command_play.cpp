@@ -10,6 +10,7 @@
 #include "apps/options.h"
 #include "apps/play_headless.h"
 #include "apps/play_report.h"
+#include "apps/play_window.h"
 #include "core/file.h"
 #include "core/paths.h"
 #include "core/text.h"
@@ -32,6 +33,8 @@ struct Arguments {
   double speed = 1;
   int readers = 2;
   std::uint64_t count = 0;
+  bool full_screen = false, paused = false;
+  std::optional<double> ui_scale;
   bool headless = false, fast = false, real_time = false, stats = false, poll = false;
 };
 
@@ -73,6 +76,13 @@ void add_playing(CLI::App& app, Arguments& a) {
       ->group(group);
   app.add_flag("--poll", a.poll, "Look at files regularly instead of waiting for the system to tell of changes")
       ->group(group);
+  const std::string window = "Window";
+  app.add_flag("--full-screen", a.full_screen, "Fill the screen")->group(window);
+  app.add_flag("--paused", a.paused, "Begin with the first frame, standing still")->group(window);
+  app.add_option("--ui-scale", a.ui_scale, "Size of the interface, 0.5 to 4 (default: the desktop's)")
+      ->check(CLI::Range(0.5, 4.0))
+      ->type_name("X")
+      ->group(window);
   app.add_flag("--headless", a.headless, "Play without a window, and end")->group(headless);
   app.add_option("--count", a.count, "Frames to play, looping as --loop says (default: each once)")
       ->check(CLI::PositiveNumber)
@@ -179,12 +189,28 @@ Result<void> play_without_window(const Arguments& a, const PlayerOptions& option
   return done;
 }
 
+Result<void> play_with_window(const Arguments& a, const PlayerOptions& options, Console& console) {
+  const PlayWindowOptions window{
+      .scale = a.ui_scale, .full_screen = a.full_screen, .paused = a.paused, .stats = a.stats, .speed = a.speed};
+  Result<void> reported;
+  const auto report = [&](const Device& device, Player& player) {
+    const PlayReport figures{.preset = options.preset.string(),
+                             .device = device.info().name,
+                             .driver = device.info().driver,
+                             .mode = "window",
+                             .error = {}};
+    if (a.stats) fmt::print("{}", play_report_text(figures, player));
+    if (!a.report.empty()) reported = write_file_atomically(a.report, play_report_json(figures, player));
+  };
+  AFTERGLOW_CHECK(play_in_window(options, a.device.options(), window, console, report));
+  return reported;
+}
+
 Result<void> play_command(const Arguments& a, Console& console) {
   AFTERGLOW_TRY(const PlayerOptions options, player_options(a));
   AFTERGLOW_CHECK(check_screenshot(a));
   if (a.headless) return play_without_window(a, options, console);
-  return Error{ErrorKind::device, "this build has no window to play in; --headless plays without one",
-               "afterglow play"};
+  return play_with_window(a, options, console);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "gpu/swapchain.h"
-#include "window/view_pass.h"
 #include "window/ui_renderer.h"
+#include "window/view_pass.h"
 
 namespace afterglow {
 
@@ -19,6 +19,8 @@ class Painter {
 
   /// After the interface's fonts have changed; waits for the frames before. Errors: device.
   Result<void> take_fonts();
+  /// Waits until the frames drawn so far are done: what they read may be written then. Errors: device.
+  Result<void> finish() { return swapchain_->finish(); }
   /// One frame: the picture (none: background alone), then the interface over it. `window`: size of the frame buffer.
   /// Images of `view` must be readable by fragment shaders in what is submitted from here on. Errors: device.
   Result<Swapchain::Drawn> paint(Size window, const std::optional<ViewFrame>& view, const ImDrawData& interface);

@@ -184,7 +184,6 @@ void Panel::draw_entry(Ui& ui, PanelPort& port, std::size_t index) {
 
   ImGui::PushID(entry.name.c_str());
   const std::string* skipped = reason_of(port.skipped(), entry.name);
-  if (!skipped) skipped = reason_of(port.skipped_now(), entry.name);
   if (search_[0] != '\0') ImGui::SetNextItemOpen(true);
   if (draw_entry_head(ui, port, entry, skipped)) {
     if (skipped) ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kDim);

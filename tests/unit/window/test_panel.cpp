@@ -47,7 +47,6 @@ class Port : public PanelPort {
   const Preset* preset() override { return preset_.get(); }
   LiveStatus status() override { return {}; }
   const std::vector<Skipped>& skipped() override { return skips; }
-  const std::vector<Skipped>& skipped_now() override { return skips_now; }
   const FrameTimes& times() override { return frame_times; }
   const SettingEdits& edits() override { return changes; }
   void set(const std::string& entry, const std::string& setting, const SettingValue& value) override {
@@ -67,7 +66,7 @@ class Port : public PanelPort {
   bool has_other() override { return false; }
 
   SettingEdits changes;
-  std::vector<Skipped> skips, skips_now;
+  std::vector<Skipped> skips;
   FrameTimes frame_times;
   View look;
   std::string image;

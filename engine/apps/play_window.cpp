@@ -1,0 +1,49 @@
+#include "apps/play_window.h"
+
+#include "apps/interrupt.h"
+#include "window/play_parts.h"
+#include "window/run_window.h"
+
+namespace afterglow {
+
+namespace {
+
+WindowOptions window_options(const PlayWindowOptions& options) {
+  WindowOptions out;
+  if (options.scale) out.scale = static_cast<float>(*options.scale);
+  out.full_screen = options.full_screen;
+  out.stats = options.stats;
+  out.interrupted = [] { return interrupted(); };
+  return out;
+}
+
+}  // namespace
+
+Result<void> play_in_window(PlayerOptions player_options, DeviceOptions device_options,
+                            const PlayWindowOptions& options, Console& console,
+                            const std::function<void(const Device&, Player&)>& at_end) {
+  install_interrupt_handler();
+  AFTERGLOW_TRY(const auto window, DesktopWindow::create("Afterglow", options.size));
+  device_options.presentation = window->presentation();
+  AFTERGLOW_TRY(const auto device, Device::create(device_options, console.diagnostics()));
+  player_options.wake = &DesktopWindow::wake;
+  Result<void> done;
+  {
+    AFTERGLOW_TRY(const auto player, Player::open(*device, player_options, console.diagnostics()));
+    player->transport().set_speed(options.speed, player->now());
+    if (!options.paused && player->footage().frames() > 1) player->transport().play(player->now());
+    WindowOptions shown = window_options(options);
+    PlayParts parts(*player, player_options.preset, player_options.live.stack.preset);
+    parts.add_to(shown);
+    done = run_window(*window, *device, *player, shown, console.diagnostics());
+    if (at_end) at_end(*device, *player);
+  }
+  // Validation goes first: it says what a failure comes from.
+  if (device->validation_errors() > 0) {
+    return Error{ErrorKind::device, "Vulkan validation: " + device->validation_messages().front()};
+  }
+  if (done && interrupted()) return interrupt_error();
+  return done;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,28 @@
+// Playing in a window.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "apps/console.h"
+#include "gpu/device.h"
+#include "play/player.h"
+
+namespace afterglow {
+
+struct PlayWindowOptions {
+  Size size{1440, 900};
+  std::optional<double> scale;  ///< of the interface; none: the desktop's
+  bool full_screen = false;
+  bool paused = false;
+  bool stats = false;
+  double speed = 1;
+};
+
+/// Until the window is closed. `at_end` sees the player before it goes, whatever came of it. Errors: usage, io
+/// (footage), device (no display, none that can show pictures in it, lost), interrupted.
+Result<void> play_in_window(PlayerOptions player, DeviceOptions device, const PlayWindowOptions& options,
+                            Console& console, const std::function<void(const Device&, Player&)>& at_end);
+
+}  // namespace afterglow

@@ -1,0 +1,161 @@
+#include "window/overlay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "window/sheet.h"
+#include "window/view_pass.h"
+
+namespace afterglow {
+
+namespace {
+
+void wrapped(ImU32 color, const std::string& text, float width) {
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::PushTextWrapPos(width);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+/// The error that counts most: one of the preset hides what its last good stack makes of the picture.
+struct Message {
+  std::string headline, where, what, line, allowed, nearest, full;
+};
+
+Message message_of(std::string headline, const Error& error, const std::string& line, std::string full) {
+  Message out;
+  out.headline = std::move(headline);
+  out.where = error.line > 0 ? fmt::format("{}:{}", error.file, error.line) : error.file;
+  out.what = error.message;
+  out.line = line;
+  out.allowed = error.allowed;
+  out.nearest = error.nearest;
+  out.full = std::move(full);
+  return out;
+}
+
+std::optional<Message> current(const Player& player) {
+  const LiveStatus status = const_cast<Player&>(player).live().status();
+  if (status.error) {
+    return message_of(
+        status.generation > 0 ? "The preset has an error; this is the last good version" : "The preset has an error",
+        *status.error, status.source_line, status.error_text());
+  }
+  const ShownFrame& shown = player.shown();
+  if (shown.unreadable) {
+    return message_of("A picture cannot be read", *shown.unreadable, "", shown.unreadable->text());
+  }
+  if (shown.failed) return message_of("The stack cannot be run", *shown.failed, "", shown.failed->text());
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string current_message(const Player& player) {
+  const auto message = current(player);
+  return message ? message->full : "";
+}
+
+float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
+  const auto message = current(player);
+  if (!message) return 0;
+  const float margin = ui.px(14), width = std::min(area.size.x - 2 * margin, ui.px(900));
+  ImGui::SetNextWindowSizeConstraints({width, 0}, {width, area.size.y * 0.6f});
+  begin_sheet("error", {area.at.x + margin, area.at.y + area.size.y - margin}, {0, 1}, ui, 0);
+  const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  ImGui::PushClipRect(at, {at.x + size.x, at.y + size.y}, false);  // over the sheet's padding
+  ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + ui.px(4), at.y + size.y}, ui_color::kError, ui.px(5),
+                                            ImDrawFlags_RoundCornersLeft);
+  ImGui::PopClipRect();
+  ImGui::Indent(ui.px(6));
+  const float wrap = width - ui.px(16);
+  colored(ui_color::kDim, message->headline);
+  ImGui::SameLine(width - ui.px(70));
+  if (ImGui::SmallButton("Copy")) {
+    ui.copy(message->full);
+    ui.say("message copied");
+    ui.again();
+  }
+  if (!message->where.empty()) {
+    ImGui::PushFont(ui.bold);
+    wrapped(ui_color::kError, message->where, wrap);
+    ImGui::PopFont();
+  }
+  wrapped(ui_color::kText, message->what, wrap);
+  if (!message->line.empty()) {
+    ImGui::PushFont(ui.mono);
+    wrapped(ui_color::kWarning, "    " + message->line, wrap);
+    ImGui::PopFont();
+  }
+  if (!message->nearest.empty()) wrapped(ui_color::kGood, fmt::format("did you mean '{}'?", message->nearest), wrap);
+  if (!message->allowed.empty()) wrapped(ui_color::kDim, "allowed: " + message->allowed, wrap);
+  const float height = ImGui::GetWindowSize().y;
+  end_sheet();
+  return height + margin;
+}
+
+void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area) {
+  const View& view = player.view();
+  std::vector<std::pair<ImU32, std::string>> lines;
+  if (const std::string& image = player.live().shown(); !image.empty()) {
+    lines.emplace_back(ui_color::kAccent, "image: " + image);
+  }
+  if (view.channel != ViewChannel::color) lines.emplace_back(ui_color::kText, view_channel_name(view.channel));
+  if (view.exposure != 0) lines.emplace_back(ui_color::kText, fmt::format("view {:+.2f} EV", view.exposure));
+  if (view.compare == Compare::source) lines.emplace_back(ui_color::kText, "before | after");
+  if (view.compare == Compare::other) lines.emplace_back(ui_color::kText, "other preset | this one");
+  const bool building = player.live().status().building;
+  if (lines.empty() && !view.false_color && !building) return;
+
+  begin_sheet("state", {area.at.x + ui.px(14), area.at.y + ui.px(14)}, {0, 0}, ui, ImGuiWindowFlags_NoInputs);
+  for (const auto& [color, text] : lines) colored(color, text);
+  if (view.false_color) {
+    const auto legend = [&](const ViewColor& c, const char* text) {
+      const float side = ImGui::GetTextLineHeight() * 0.7f;
+      ImGui::ColorButton(text, {c[0], c[1], c[2], 1}, ImGuiColorEditFlags_NoTooltip, {side, side});
+      ImGui::SameLine();
+      ImGui::TextUnformatted(text);
+    };
+    legend(kMarkBelow, "below 0");
+    legend(kMarkAbove, "above 1");
+    legend(kMarkNotFinite, "not finite");
+  }
+  if (building) colored(ui_color::kAccent, "building …");
+  end_sheet();
+}
+
+void draw_probe_overlay(const Probe& probe, const Ui& ui, const OverlayArea& area, float above) {
+  begin_sheet("probe", {area.at.x + ui.px(14), area.at.y + area.size.y - ui.px(14) - above}, {0, 1}, ui,
+              ImGuiWindowFlags_NoInputs);
+  ImGui::PushFont(ui.mono);
+  const auto line = [&](const char* name, const std::array<float, 4>& c) {
+    colored(ui_color::kDim, fmt::format("{:7}", name));
+    const ImU32 colors[] = {IM_COL32(255, 128, 120, 255), IM_COL32(130, 220, 130, 255), IM_COL32(130, 170, 255, 255),
+                            ui_color::kDim};
+    for (int i = 0; i < 4; ++i) {
+      ImGui::SameLine();
+      colored(colors[i], fmt::format("{:>10.5g}", c[static_cast<std::size_t>(i)]));
+    }
+  };
+  colored(ui_color::kText, fmt::format("{}, {}", probe.pixel.x, probe.pixel.y));
+  line("source", probe.source);
+  line("result", probe.result);
+  if (probe.other) line("other", *probe.other);
+  ImGui::PopFont();
+  end_sheet();
+}
+
+void draw_message_overlay(const Ui& ui, const OverlayArea& area) {
+  if (ui.message.empty() || ui.now >= ui.message_until) return;
+  begin_sheet("message", {area.at.x + area.size.x / 2, area.at.y + ui.px(14)}, {0.5f, 0}, ui,
+              ImGuiWindowFlags_NoInputs);
+  ImGui::PushTextWrapPos(area.size.x * 0.7f);
+  ImGui::TextUnformatted(ui.message.c_str());
+  ImGui::PopTextWrapPos();
+  end_sheet();
+}
+
+}  // namespace afterglow

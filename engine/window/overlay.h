@@ -1,0 +1,35 @@
+// What is drawn over the picture. Each talks to the Player and ImGui alone.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+
+#include "play/player.h"
+#include "window/ui.h"
+
+namespace afterglow {
+
+/// The picture's part of the window, in ImGui's coordinates.
+struct OverlayArea {
+  ImVec2 at, size;
+};
+
+/// What is wrong at the moment, as one would mail it to somebody; empty: nothing.
+std::string current_message(const Player& player);
+
+/// The message of a preset, picture or frame that fails, over the last good picture, with a button that copies it.
+/// Returns its height, 0 without a message.
+float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area);
+/// Upper left: what makes the picture look other than the result: image between passes, channel, exposure, marks.
+void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area);
+/// Upper right: frame rate, frame times, drops, and where the time of the last reload went.
+void draw_stats_overlay(const Player& player, const Ui& ui, const OverlayArea& area);
+/// Lower right: red, green and blue by display code, and what does not fit.
+void draw_histogram_overlay(const Histogram& histogram, const Ui& ui, const OverlayArea& area);
+/// Lower left: values of source and result. `above`: free this much below it.
+void draw_probe_overlay(const Probe& probe, const Ui& ui, const OverlayArea& area, float above);
+/// Ui::message, while it lasts.
+void draw_message_overlay(const Ui& ui, const OverlayArea& area);
+
+}  // namespace afterglow

@@ -1,0 +1,15 @@
+#include "window/player_port.h"
+
+namespace afterglow {
+
+const Preset* PlayerPort::preset() {
+  Stack* stack = player_.live().stack();
+  return stack ? &stack->preset() : nullptr;
+}
+
+const std::vector<Skipped>& PlayerPort::skipped() {
+  skipped_ = player_.session().skipped();
+  return skipped_;
+}
+
+}  // namespace afterglow

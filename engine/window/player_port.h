@@ -1,0 +1,41 @@
+// The player as the panel sees it.
+#pragma once
+
+#include "play/player.h"
+#include "window/panel_port.h"
+
+namespace afterglow {
+
+/// Drawing thread alone. The player must outlive it.
+class PlayerPort final : public PanelPort {
+ public:
+  explicit PlayerPort(Player& player) : player_(player) {}
+
+  const Preset* preset() override;
+  LiveStatus status() override { return player_.live().status(); }
+  const std::vector<Skipped>& skipped() override;
+  const FrameTimes& times() override { return player_.last_times(); }
+
+  const SettingEdits& edits() override { return player_.edits(); }
+  void set(const std::string& entry, const std::string& setting, const SettingValue& value) override {
+    player_.set(entry, setting, value);
+  }
+  void reset(const std::string& entry, const std::string& setting) override { player_.reset(entry, setting); }
+  void reset_all() override { player_.reset_all(); }
+  bool undo() override { return player_.undo(); }
+  bool redo() override { return player_.redo(); }
+  void end_gesture() override { player_.end_gesture(); }
+  void edits_saved() override { player_.edits_saved(); }
+
+  View& view() override { return player_.view(); }
+  std::vector<std::string> images() override { return player_.live().images(); }
+  std::string shown_image() override { return player_.live().shown(); }
+  void show(const std::string& image) override { player_.show(image); }
+  bool has_other() override { return player_.other() != nullptr; }
+
+ private:
+  Player& player_;
+  std::vector<Skipped> skipped_;
+};
+
+}  // namespace afterglow

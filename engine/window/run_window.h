@@ -1,0 +1,44 @@
+// The main loop of a window that plays.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/diagnostics.h"
+#include "core/geometry.h"
+#include "gpu/device.h"
+#include "play/player.h"
+#include "window/desktop_window.h"
+#include "window/ui.h"
+
+namespace afterglow {
+
+struct WindowOptions {
+  std::optional<float> scale;  ///< of the interface; none: the desktop's
+  bool full_screen = false;
+  bool stats = false;                    ///< shown from the start
+  bool tearing = false;                  ///< see SwapchainOptions
+  std::filesystem::path captures = ".";  ///< folder for screenshots by key
+  /// A part of the interface, drawn as an ImGui window at `place`. Without one, its place is the picture's.
+  using Part = std::function<void(Player&, Ui&, ImVec2 place, ImVec2 size)>;
+  Part panel;                                        ///< at the right
+  Part transport;                                    ///< at the bottom
+  std::function<float(const Ui&)> transport_height;  ///< that it wants
+  Part help;                                         ///< over everything
+  std::function<void(Player&, Ui&)> save;            ///< Ctrl+S; empty: there is no such thing
+  std::function<void(Player&, Ui&)> hidden_panel;    ///< called in place of `panel` while that is hidden
+  /// Another preset is being played from here on.
+  std::function<void(const std::filesystem::path&)> preset_opened;
+  std::function<bool()> interrupted = [] { return false; };  ///< true: close as by key
+};
+
+/// Shows what the player plays until the window is closed. `player` must have been opened on `device`, that with the
+/// window's presentation, and with DesktopWindow::wake as its wake. Main thread. Does nothing, and uses no processor
+/// time, while nothing changes. Notes each picture that it shows as "shown …" and each build as "reload …" in
+/// `diagnostics`. Errors: device (lost, display gone).
+Result<void> run_window(DesktopWindow& window, Device& device, Player& player, const WindowOptions& options,
+                        Diagnostics& diagnostics);
+
+}  // namespace afterglow

@@ -1,0 +1,276 @@
+// What keys do.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "window/window_app.h"
+
+namespace afterglow {
+
+namespace {
+
+constexpr double kExposureStep = 0.25, kMostExposure = 16;
+
+/// A name that is free, by date and time.
+std::filesystem::path capture_name(const std::filesystem::path& folder) {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm local{};
+  localtime_r(&now, &local);
+  char stamp[32];
+  std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &local);
+  std::error_code ec;
+  for (int i = 0;; ++i) {
+    const auto file = folder / fmt::format("afterglow-{}{}.png", stamp, i == 0 ? "" : fmt::format("-{}", i));
+    if (!std::filesystem::exists(file, ec)) return file;
+  }
+}
+
+}  // namespace
+
+void WindowApp::act(Action action) {
+  redraw_ = 3;
+  (void)(act_on_transport(action) || act_on_view(action) || act_on_picture(action) || act_on_preset(action) ||
+         act_on_window(action));
+}
+
+bool WindowApp::act_on_transport(Action action) {
+  Transport& t = player_.transport();
+  const double now = player_.now();
+  Ui& ui = interface_->ui();
+  const auto faster = [&](double factor) {
+    t.set_speed(t.speed() * factor, now);
+    ui.say(fmt::format("speed {:g}×", t.speed()));
+  };
+  switch (action) {
+    case Action::play:
+      t.toggle(now);
+      return true;
+    case Action::step_forward:
+      t.step(1, now);
+      return true;
+    case Action::step_back:
+      t.step(-1, now);
+      return true;
+    case Action::jump_forward:
+      t.step(10, now);
+      return true;
+    case Action::jump_back:
+      t.step(-10, now);
+      return true;
+    case Action::go_to_first:
+      t.go_to_first(now);
+      return true;
+    case Action::go_to_last:
+      t.go_to_last(now);
+      return true;
+    case Action::loop_mode:
+      t.set_loop(static_cast<LoopMode>((static_cast<int>(t.loop()) + 1) % 3), now);
+      ui.say(loop_mode_name(t.loop()));
+      return true;
+    case Action::range_begin:
+      t.set_range(t.position(), std::max(t.last(), t.position()), now);
+      return true;
+    case Action::range_end:
+      t.set_range(std::min(t.first(), t.position()), t.position(), now);
+      return true;
+    case Action::range_clear:
+      t.clear_range(now);
+      return true;
+    case Action::slower:
+      faster(0.5);
+      return true;
+    case Action::faster:
+      faster(2);
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool WindowApp::act_on_view(Action action) {
+  View& view = player_.view();
+  const Size picture = player_.images().picture, window = area_.size();
+  const Point middle{window.width / 2.0, window.height / 2.0};
+  Ui& ui = interface_->ui();
+  switch (action) {
+    case Action::fit:
+      fit(view);
+      return true;
+    case Action::one_to_one:
+      one_to_one(view, picture, window);
+      return true;
+    case Action::zoom_in:
+      zoom_at(view, picture, window, cursor().value_or(middle), 1.25);
+      return true;
+    case Action::zoom_out:
+      zoom_at(view, picture, window, cursor().value_or(middle), 1 / 1.25);
+      return true;
+    case Action::compare:
+      next_compare();
+      return true;
+    case Action::turn_wipe:
+      view.wipe_vertical = !view.wipe_vertical;
+      if (view.compare == Compare::none) ui.say("nothing is compared: W does");
+      return true;
+    default:
+      return false;
+  }
+}
+
+void WindowApp::next_compare() {
+  View& view = player_.view();
+  const bool has_other = player_.images().other.has_value();
+  switch (view.compare) {
+    case Compare::none:
+      view.compare = Compare::source;
+      interface_->ui().say("before | after");
+      break;
+    case Compare::source:
+      view.compare = has_other ? Compare::other : Compare::none;
+      interface_->ui().say(has_other ? "other preset | this one" : "result");
+      break;
+    case Compare::other:
+      view.compare = Compare::none;
+      interface_->ui().say("result");
+      break;
+  }
+}
+
+bool WindowApp::act_on_picture(Action action) {
+  View& view = player_.view();
+  Ui& ui = interface_->ui();
+  // A second press takes all channels again.
+  const auto channel = [&](ViewChannel wanted) {
+    view.channel = view.channel == wanted ? ViewChannel::color : wanted;
+    return true;
+  };
+  const auto expose = [&](double value) {
+    view.exposure = std::clamp(value, -kMostExposure, kMostExposure);
+    return true;
+  };
+  switch (action) {
+    case Action::color:
+      view.channel = ViewChannel::color;
+      return true;
+    case Action::red:
+      return channel(ViewChannel::red);
+    case Action::green:
+      return channel(ViewChannel::green);
+    case Action::blue:
+      return channel(ViewChannel::blue);
+    case Action::alpha:
+      return channel(ViewChannel::alpha);
+    case Action::luminance:
+      return channel(ViewChannel::luminance);
+    case Action::exposure_up:
+      return expose(view.exposure + kExposureStep);
+    case Action::exposure_down:
+      return expose(view.exposure - kExposureStep);
+    case Action::exposure_reset:
+      return expose(0);
+    case Action::false_color:
+      view.false_color = !view.false_color;
+      return true;
+    case Action::background:
+      background_ = static_cast<ViewBackground>((static_cast<int>(background_) + 1) % 3);
+      return true;
+    case Action::next_image:
+      show_neighbour(1);
+      return true;
+    case Action::previous_image:
+      show_neighbour(-1);
+      return true;
+    case Action::result_image:
+      player_.show("");
+      return true;
+    case Action::histogram:
+      ui.show_histogram = !ui.show_histogram;
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// The result comes behind the last image between passes, and before the first.
+void WindowApp::show_neighbour(int by) {
+  std::vector<std::string> images = player_.live().images();
+  images.emplace_back();
+  const auto at = std::ranges::find(images, player_.live().shown());
+  const auto count = static_cast<int>(images.size());
+  const int index = at == images.end() ? count - 1 : static_cast<int>(at - images.begin());
+  player_.show(images[static_cast<std::size_t>((index + by + count) % count)]);
+}
+
+bool WindowApp::act_on_preset(Action action) {
+  Ui& ui = interface_->ui();
+  switch (action) {
+    case Action::reload:
+      player_.live().reload();
+      if (LiveStack* other = player_.other()) other->reload();
+      player_.reload_pictures();
+      return true;
+    case Action::copy_message: {
+      const std::string text = current_message(player_);
+      if (!text.empty()) {
+        ui.copy(text);
+        ui.say("message copied");
+      }
+      return true;
+    }
+    case Action::undo:
+      ui.say(player_.undo() ? "undone" : "nothing to undo");
+      return true;
+    case Action::redo:
+      ui.say(player_.redo() ? "done again" : "nothing to do again");
+      return true;
+    case Action::save:
+      if (options_.save) options_.save(player_, ui);
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool WindowApp::act_on_window(Action action) {
+  Ui& ui = interface_->ui();
+  switch (action) {
+    case Action::panel:
+      ui.show_panel = !ui.show_panel;
+      return true;
+    case Action::transport:
+      ui.show_transport = !ui.show_transport;
+      return true;
+    case Action::stats:
+      ui.show_stats = !ui.show_stats;
+      return true;
+    case Action::full_screen:
+      window_.set_full_screen(!window_.full_screen());
+      return true;
+    case Action::screenshot: {
+      const auto file = capture_name(options_.captures);
+      painter_->capture(file);
+      ui.say("written: " + file.string());
+      diagnostics_.note("window written to " + file.string());
+      return true;
+    }
+    case Action::help:
+      ui.show_help = !ui.show_help;
+      return true;
+    case Action::escape:
+      if (ui.show_help) {
+        ui.show_help = false;
+      } else {
+        window_.set_full_screen(false);
+      }
+      return true;
+    case Action::quit:
+      quit_ = true;
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace afterglow

@@ -1,0 +1,272 @@
+#include "window/window_app.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace afterglow {
+
+namespace {
+
+constexpr float kPanelWidth = 340, kTransportHeight = 78;
+constexpr int kSettle = 3;                 // ImGui needs a frame to see an event and one to answer it
+constexpr double kLeastPause = 1.0 / 120;  // between frames that show no new picture
+constexpr double kBlink = 0.5, kHistogramPause = 0.1;
+constexpr double kLongest = 0.25;  // a signal wakes nobody: look for one this often
+constexpr double kRetry = 0.02;    // when the window could not be drawn to
+
+ViewImage view_image(const DeviceImage& image) { return {image.binding.view, image.layout, image.binding.size}; }
+
+}  // namespace
+
+Result<void> run_window(DesktopWindow& window, Device& device, Player& player, const WindowOptions& options,
+                        Diagnostics& diagnostics) {
+  AFTERGLOW_TRY(const auto app, WindowApp::create(window, device, player, options, diagnostics));
+  return app->run();
+}
+
+Result<std::unique_ptr<WindowApp>> WindowApp::create(DesktopWindow& window, Device& device, Player& player,
+                                                     const WindowOptions& options, Diagnostics& diagnostics) {
+  std::unique_ptr<WindowApp> app(new WindowApp(window, player, options, diagnostics));
+  app->interface_ = std::make_unique<Interface>(window.handle());
+  app->interface_->set_scale(options.scale.value_or(window.content_scale()));
+  AFTERGLOW_TRY(app->painter_, Painter::create(device, {.tearing = options.tearing, .readback = true}));
+  Ui& ui = app->interface_->ui();
+  ui.show_stats = options.stats;
+  ui.copy = [&window](const std::string& text) { window.set_clipboard(text); };
+  ui.open = [raw = app.get()](const std::string& path) { raw->open_dropped(path); };
+  ui.again = [raw = app.get()] { raw->redraw_ = std::max(raw->redraw_, 2); };
+  return app;
+}
+
+Result<void> WindowApp::run() {
+  window_.show();
+  if (options_.full_screen) window_.set_full_screen(true);
+  while (!quit_) {
+    AFTERGLOW_TRY(const Step turn, step());
+    note_step(turn);
+    if (!minimised_ && (redraw_ > 0 || !step_shown_)) AFTERGLOW_CHECK(draw());
+    wait(turn);
+    take_events();
+    quit_ = quit_ || options_.interrupted();
+  }
+  return {};
+}
+
+Result<Step> WindowApp::step() {
+  minimise_or_restore(window_.framebuffer().area() == 0);
+  if (minimised_) return Step{.next = std::numeric_limits<double>::infinity()};
+  // The player may write what the last frame reads.
+  AFTERGLOW_CHECK(painter_->finish());
+  AFTERGLOW_TRY(const Step turn, player_.step());
+  if (turn.changed) {
+    ++turn_;
+    step_shown_ = false;
+    redraw_ = std::max(redraw_, 1);
+  }
+  return turn;
+}
+
+/// A hidden window plays nothing, and drops nothing either.
+void WindowApp::minimise_or_restore(bool minimised) {
+  if (minimised == minimised_) return;
+  minimised_ = minimised;
+  Transport& transport = player_.transport();
+  if (minimised) {
+    resume_ = transport.playing();
+    transport.pause(player_.now());
+  } else {
+    if (resume_) transport.play(player_.now());
+    redraw_ = kSettle;
+  }
+}
+
+void WindowApp::wait(const Step& turn) {
+  const double now = player_.now();
+  double until = turn.next;
+  if (minimised_) {
+    until = std::numeric_limits<double>::infinity();
+  } else if (redraw_ > 0 || !step_shown_) {
+    until = std::min(until, last_draw_ + kLeastPause);
+  } else {
+    const Ui& ui = interface_->ui();
+    if (ui.message_until > now) until = std::min(until, ui.message_until);
+    if (interface_->wants_keyboard()) until = std::min(until, now + kBlink);
+    if (ui.show_histogram && spread_.turn != turn_) until = std::min(until, spread_.when + kHistogramPause);
+  }
+  window_.wait(std::clamp(until - now, 0.0, kLongest));
+  const double later = player_.now();
+  const Ui& ui = interface_->ui();
+  const bool faded = !ui.message.empty() && ui.message_until <= later;
+  if (faded || interface_->wants_keyboard() || (ui.show_histogram && spread_.turn != turn_)) {
+    redraw_ = std::max(redraw_, 1);
+  }
+}
+
+void WindowApp::take_events() {
+  const WindowEvents events = window_.take_events();
+  if (events.any) redraw_ = kSettle;
+  if (events.close) quit_ = true;
+  for (const KeyPress& press : events.keys) {
+    if (interface_->wants_keyboard()) continue;
+    if (const auto action = action_of(press)) act(*action);
+  }
+  for (const auto& path : events.dropped) open_dropped(path);
+}
+
+/// A preset takes the preset's place, anything else the footage's.
+void WindowApp::open_dropped(const std::filesystem::path& path) {
+  Ui& ui = interface_->ui();
+  const auto extension = path.extension();
+  const bool preset = extension == ".lua" || extension == ".zip";
+  // What is closed for it may still be on its way to the screen. A lost device shows up in the next turn.
+  (void)painter_->finish();
+  const Result<void> opened = preset ? player_.open_preset(path) : player_.open_footage({path.string()});
+  if (opened && preset && options_.preset_opened) options_.preset_opened(path);
+  ui.say(opened ? fmt::format("opened {}", path.filename().string()) : opened.error().text());
+  diagnostics_.note(opened ? fmt::format("opened {}", path.string()) : opened.error().text());
+  redraw_ = kSettle;
+}
+
+/// What scripts and tests that watch us want to know.
+void WindowApp::note_step(const Step& turn) {
+  if (turn.reloaded || turn.changed) redraw_ = std::max(redraw_, 1);
+  const LiveStatus status = player_.live().status();
+  const std::string error = status.error ? status.error->text() : "";
+  if (status.generation != noted_generation_) {
+    noted_generation_ = status.generation;
+    diagnostics_.note(fmt::format("reload {}: taken", status.generation));
+    redraw_ = kSettle;
+  }
+  if (error != noted_error_) {
+    noted_error_ = error;
+    diagnostics_.note(error.empty() ? "reload: good again" : "reload: " + status.error_text());
+    redraw_ = kSettle;
+  }
+  update_title();
+}
+
+void WindowApp::update_title() {
+  const ShownFrame& shown = player_.shown();
+  Stack* stack = player_.live().stack();
+  const std::string preset = stack ? stack->preset().name() : "no preset yet";
+  std::string title = shown.name.empty() ? preset : fmt::format("{} – {}", shown.name, preset);
+  if (!noted_error_.empty()) title += " (error)";
+  title += " – Afterglow";
+  if (title == title_) return;
+  title_ = title;
+  window_.set_title(title);
+}
+
+Result<void> WindowApp::follow_scale() {
+  if (interface_->set_scale(options_.scale.value_or(window_.content_scale()))) {
+    AFTERGLOW_CHECK(painter_->take_fonts());
+  }
+  return {};
+}
+
+Result<void> WindowApp::draw() {
+  AFTERGLOW_CHECK(follow_scale());
+  const Size window = window_.framebuffer();
+  if (window.area() == 0) return {};
+  Ui& ui = interface_->ui();
+  ui.now = player_.now();
+  interface_->begin();
+  draw_parts(window);
+  navigate();
+  AFTERGLOW_CHECK(draw_overlays());
+  if (options_.help && ui.show_help) options_.help(player_, ui, {0, 0}, ImGui::GetIO().DisplaySize);
+  const ImDrawData& data = interface_->end();
+  AFTERGLOW_TRY(const auto drawn, painter_->paint(window, view_frame(), data));
+  last_draw_ = player_.now();
+  if (drawn != Swapchain::Drawn::yes) {
+    last_draw_ += kRetry;
+    return {};
+  }
+  if (redraw_ > 0) --redraw_;
+  if (!step_shown_) {
+    step_shown_ = true;
+    player_.presented();
+    const ShownFrame& shown = player_.shown();
+    diagnostics_.note(fmt::format("shown {}: position {}, generation {}, window {}x{}",
+                                  shown.name.empty() ? "nothing" : shown.name, shown.position, noted_generation_,
+                                  window.width, window.height));
+  }
+  return {};
+}
+
+/// The panel at the right, the transport at the bottom, the rest is the picture's.
+void WindowApp::draw_parts(Size window) {
+  Ui& ui = interface_->ui();
+  const ImGuiIO& io = ImGui::GetIO();
+  const float width = io.DisplaySize.x, height = io.DisplaySize.y;
+  const float panel = options_.panel && ui.show_panel ? std::min(ui.px(kPanelWidth), width * 0.6f) : 0;
+  const float wanted = options_.transport_height ? options_.transport_height(ui) : ui.px(kTransportHeight);
+  const float bar = options_.transport && ui.show_transport ? std::min(wanted, height * 0.5f) : 0;
+  if (panel > 0) {
+    options_.panel(player_, ui, {width - panel, 0}, {panel, height});
+  } else if (options_.hidden_panel) {
+    options_.hidden_panel(player_, ui);
+  }
+  if (bar > 0) options_.transport(player_, ui, {0, height - bar}, {width - panel, bar});
+  const float sx = io.DisplayFramebufferScale.x, sy = io.DisplayFramebufferScale.y;
+  area_ = {0, 0, std::max(window.width - static_cast<int>(std::lround(panel * sx)), 1),
+           std::max(window.height - static_cast<int>(std::lround(bar * sy)), 1)};
+}
+
+std::optional<ViewFrame> WindowApp::view_frame() const {
+  const PlayerImages images = player_.images();
+  if (images.result.binding.view == VK_NULL_HANDLE) return std::nullopt;
+  ViewFrame frame;
+  frame.shown = view_image(images.result);
+  frame.view = player_.view();
+  if (frame.view.compare == Compare::source && images.source.binding.view) frame.compared = view_image(images.source);
+  if (frame.view.compare == Compare::other && images.other) frame.compared = view_image(*images.other);
+  frame.picture = images.picture;
+  frame.area = area_;
+  frame.background = background_;
+  frame.pixel_scale = interface_->ui().scale;
+  return frame;
+}
+
+Result<void> WindowApp::draw_overlays() {
+  AFTERGLOW_CHECK(look_under_cursor());
+  AFTERGLOW_CHECK(look_at_histogram());
+  const Ui& ui = interface_->ui();
+  const OverlayArea area{ImVec2(0, 0),
+                         ImVec2(static_cast<float>(area_.width) / ImGui::GetIO().DisplayFramebufferScale.x,
+                                static_cast<float>(area_.height) / ImGui::GetIO().DisplayFramebufferScale.y)};
+  draw_state_overlay(player_, ui, area);
+  if (ui.show_stats) draw_stats_overlay(player_, ui, area);
+  if (ui.show_histogram && spread_.histogram) draw_histogram_overlay(*spread_.histogram, ui, area);
+  const float below = draw_error_overlay(player_, interface_->ui(), area);
+  if (under_cursor_.probe) draw_probe_overlay(*under_cursor_.probe, ui, area, below);
+  draw_message_overlay(ui, area);
+  return {};
+}
+
+Result<void> WindowApp::look_under_cursor() {
+  const auto at = cursor();
+  const Size picture = player_.images().picture;
+  const auto pixel = at && picture.area() > 0 ? pixel_at(player_.view(), picture, area_.size(), *at) : std::nullopt;
+  if (pixel == under_cursor_.pixel && under_cursor_.turn == turn_) return {};
+  under_cursor_ = {pixel, turn_, std::nullopt};
+  if (!pixel) return {};
+  AFTERGLOW_TRY(under_cursor_.probe, player_.probe(*pixel));
+  return {};
+}
+
+/// Reads the whole picture back: not for each frame while playing.
+Result<void> WindowApp::look_at_histogram() {
+  const double now = player_.now();
+  if (!interface_->ui().show_histogram || spread_.turn == turn_ || now < spread_.when + kHistogramPause) return {};
+  if (player_.images().result.binding.view == VK_NULL_HANDLE) return {};
+  AFTERGLOW_TRY(spread_.histogram, player_.histogram());
+  spread_.turn = turn_;
+  spread_.when = now;
+  return {};
+}
+
+}  // namespace afterglow

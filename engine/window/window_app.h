@@ -1,0 +1,90 @@
+// State of a window that plays, for window_app.cpp (loop and frame), window_actions.cpp (keys) and navigation.cpp
+// (mouse).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "window/interface.h"
+#include "window/overlay.h"
+#include "window/painter.h"
+#include "window/run_window.h"
+#include "window/shortcuts.h"
+
+namespace afterglow {
+
+class WindowApp {
+ public:
+  static Result<std::unique_ptr<WindowApp>> create(DesktopWindow& window, Device& device, Player& player,
+                                                   const WindowOptions& options, Diagnostics& diagnostics);
+  Result<void> run();
+
+ private:
+  WindowApp(DesktopWindow& window, Player& player, const WindowOptions& options, Diagnostics& diagnostics)
+      : window_(window), player_(player), options_(options), diagnostics_(diagnostics) {}
+
+  // One turn of the loop.
+  Result<Step> step();
+  Result<void> draw();
+  void wait(const Step& step);
+  void take_events();
+  void open_dropped(const std::filesystem::path& path);
+  void note_step(const Step& step);
+  void update_title();
+
+  // A frame.
+  Result<void> follow_scale();
+  void draw_parts(Size window);
+  Result<void> draw_overlays();
+  Result<void> look_under_cursor();
+  Result<void> look_at_histogram();
+  std::optional<ViewFrame> view_frame() const;
+
+  // Keys. Each group returns whether the action was one of its own.
+  void act(Action action);
+  bool act_on_transport(Action action);
+  bool act_on_view(Action action);
+  bool act_on_picture(Action action);
+  bool act_on_preset(Action action);
+  bool act_on_window(Action action);
+  void show_neighbour(int by);
+  void next_compare();
+  void minimise_or_restore(bool minimised);
+
+  // Mouse over the picture.
+  void navigate();
+  std::optional<Point> cursor() const;  ///< in pixels of the area; none: not over the picture
+  bool over_wipe(Point at) const;
+
+  DesktopWindow& window_;
+  Player& player_;
+  const WindowOptions& options_;
+  Diagnostics& diagnostics_;
+  std::unique_ptr<Interface> interface_;
+  std::unique_ptr<Painter> painter_;
+
+  Rect area_;  ///< of the frame buffer that the picture has
+  ViewBackground background_ = ViewBackground::none;
+  enum class Drag { none, pan, wipe } drag_ = Drag::none;
+  int redraw_ = 3;  ///< frames to draw though nothing new is there: interfaces settle in a few
+  double last_draw_ = -1;
+  bool quit_ = false, minimised_ = false, resume_ = false;
+  bool step_shown_ = true;  ///< the last changed turn was presented
+  std::uint64_t noted_generation_ = 0;
+  std::string noted_error_, noted_picture_, title_;
+
+  std::uint64_t turn_ = 0;  ///< grows with each changed picture
+  struct {
+    std::optional<Pixel> pixel;
+    std::uint64_t turn = 0;
+    std::optional<Probe> probe;
+  } under_cursor_;
+  struct {
+    std::optional<Histogram> histogram;
+    std::uint64_t turn = 0;
+    double when = -1;
+  } spread_;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,218 @@
+// `afterglow play` in a real window: Xvfb, lavapipe, validation, and a user made of xdotool.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/file.h"
+#include "image/writer.h"
+#include "played_window.h"
+#include "x_client.h"
+#include "xvfb.h"
+
+namespace afterglow {
+namespace {
+namespace fs = std::filesystem;
+
+using Color = std::array<int, 3>;
+constexpr Color kGray{188, 188, 188};  // sRGB code of 0.5
+constexpr Color kRed{188, 0, 0}, kGreen{0, 188, 0}, kBlue{0, 0, 188};
+
+class PlayWindow : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(xvfb_.runs()) << "Xvfb does not run";
+    folder_ = fs::temp_directory_path() / ("afterglow_window" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    for (int frame = 1; frame <= 3; ++frame) write_picture_file("shot.000" + std::to_string(frame) + ".exr", 0.5f);
+  }
+  void TearDown() override {
+    if (HasFailure() && program_) ADD_FAILURE() << program_->printed();
+    program_.reset();
+    std::error_code ec;
+    fs::remove_all(folder_, ec);
+  }
+
+  void write_picture_file(const std::string& name, float level) {
+    Picture picture;
+    picture.color = Image(64, 40, 4);
+    for (std::size_t i = 0; i < picture.color.pixels.size(); ++i) picture.color.pixels[i] = i % 4 == 3 ? 1 : level;
+    picture.data_window = picture.display_window = {0, 0, 64, 40};
+    Diagnostics nowhere;
+    const auto written = write_picture(picture, folder_ / name, {}, nowhere);
+    ASSERT_TRUE(written) << written.error().text();
+  }
+
+  /// A look that keeps of each channel what `filter` says.
+  void write_preset(const std::string& filter, const std::string& name = "look.lua") {
+    std::ofstream(folder_ / name)
+        << "local fx = require \"afterglow\"\n\n"
+        << "return fx.stack {\n  name = \"test look\",\n  fx.color_adjustments { color_filter = " << filter
+        << " },\n}\n";
+  }
+
+  void play(std::vector<std::string> arguments) {
+    program_ = std::make_unique<PlayedWindow>(xvfb_.display(), folder_, std::move(arguments));
+  }
+
+  Screen shot() { return screenshot(xvfb_.display(), (folder_ / "screen.ppm").string()); }
+  bool user(const std::string& what) { return run_on(xvfb_.display(), "xdotool " + what) == 0; }
+
+  /// Until the pixel at a point of the screen (parts of its size) has that colour.
+  bool until_color(double x, double y, const Color& color) {
+    return until([&] { return has_color(shot(), x, y, color); });
+  }
+  static bool has_color(const Screen& screen, double x, double y, const Color& color) {
+    if (screen.rgb.empty()) return false;
+    const std::uint8_t* rgb =
+        screen.at(static_cast<int>(x * screen.size.width), static_cast<int>(y * screen.size.height));
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (std::abs(rgb[i] - color[i]) > 2) return false;
+    }
+    return true;
+  }
+  static int count_color(const Screen& screen, const Color& color) {
+    int count = 0;
+    for (int y = 0; y < screen.size.height; ++y) {
+      for (int x = 0; x < screen.size.width; ++x) {
+        const std::uint8_t* rgb = screen.at(x, y);
+        count += rgb[0] == color[0] && rgb[1] == color[1] && rgb[2] == color[2];
+      }
+    }
+    return count;
+  }
+
+  void expect_clean_end() {
+    EXPECT_EQ(program_->finish(), 0);
+    EXPECT_EQ(program_->printed().find("alidation"), std::string::npos);
+  }
+
+  Xvfb xvfb_;
+  fs::path folder_;
+  std::unique_ptr<PlayedWindow> program_;
+};
+
+/// The middle of the picture, clear of panel, transport and overlays.
+constexpr double kX = 0.36, kY = 0.4;
+
+TEST_F(PlayWindow, EditsOnDiskAreSeenAndErrorsKeepTheLastGoodPicture) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.####.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  EXPECT_NE(window_title(xvfb_.display()).find("test look"), std::string::npos);
+
+  write_preset("{ 0, 1, 0 }");
+  EXPECT_TRUE(until_color(kX, kY, kGreen));
+
+  std::ofstream(folder_ / "look.lua")
+      << "local fx = require \"afterglow\"\nreturn fx.stack {\n  fx.color_adjustmentz { "
+         "saturation = 1 },\n}\n";
+  ASSERT_TRUE(program_->wait_for("look.lua:3"));
+  EXPECT_TRUE(until([&] { return window_title(xvfb_.display()).find("(error)") != std::string::npos; }));
+  const Color mark{255, 107, 97};  // the sheet's edge
+  EXPECT_TRUE(until([&] { return count_color(shot(), mark) > 100; }));
+  EXPECT_TRUE(has_color(shot(), kX, 0.2, kGreen));  // the last good picture
+
+  write_preset("{ 0, 0, 1 }");
+  EXPECT_TRUE(until_color(kX, kY, kBlue));
+  EXPECT_TRUE(until([&] { return count_color(shot(), mark) == 0; }));
+  EXPECT_EQ(window_title(xvfb_.display()).find("(error)"), std::string::npos);
+
+  ASSERT_TRUE(user("mousemove 400 300 key q"));
+  expect_clean_end();
+}
+
+TEST_F(PlayWindow, KeysStepPauseZoomAndWipe) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.####.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("position 0"));
+  ASSERT_TRUE(user("mousemove 400 300 key Right"));
+  EXPECT_TRUE(program_->wait_for("position 1"));
+  ASSERT_TRUE(user("key End"));
+  EXPECT_TRUE(program_->wait_for("position 2"));
+  ASSERT_TRUE(user("key Home"));
+  EXPECT_TRUE(program_->wait_for("position 0"));
+
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  ASSERT_TRUE(user("key w"));  // left of the middle lies what went in
+  EXPECT_TRUE(until_color(0.1, kY, kGray));
+  ASSERT_TRUE(user("key w"));
+  EXPECT_TRUE(until_color(0.1, kY, kRed));
+
+  const Screen fitted = shot();
+  ASSERT_TRUE(user("key 1"));  // 64×40 pixels in the middle, the surroundings beside it
+  EXPECT_TRUE(until_color(0.1, kY, {26, 26, 26}));
+  EXPECT_TRUE(until([&] { return count_color(shot(), {188, 0, 0}) == 64 * 40; }));
+  ASSERT_TRUE(user("key f"));
+  EXPECT_TRUE(until_color(0.1, kY, kRed));
+
+  ASSERT_TRUE(user("key y"));  // luminance of red: 0.2126 · 0.5
+  EXPECT_TRUE(until([&] {
+    const Screen s = shot();
+    return has_color(s, kX, kY, {92, 92, 92});
+  }));
+  ASSERT_TRUE(user("key c key space"));
+  EXPECT_TRUE(program_->wait_for("position 1"));  // it plays
+  EXPECT_TRUE(program_->wait_for("position 2"));
+  EXPECT_TRUE(program_->wait_for("position 0"));  // and loops
+  ASSERT_TRUE(user("key ctrl+q"));
+  expect_clean_end();
+}
+
+TEST_F(PlayWindow, FollowsItsSizeAndTheDesktopsWishToClose) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.0001.exr"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  for (const char* size : {"600 400", "1100 700", "480 320", "1280 800"}) {
+    ASSERT_TRUE(user(std::string("search --class afterglow windowsize ") + size));
+  }
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  ASSERT_TRUE(ask_to_close(xvfb_.display()));
+  expect_clean_end();
+}
+
+TEST_F(PlayWindow, TakesWhatIsDroppedOnIt) {
+  write_preset("{ 1, 0, 0 }");
+  write_preset("{ 0, 1, 0 }", "second.lua");
+  write_picture_file("dark.exr", 0.0f);
+  play({"look.lua", "shot.0001.exr"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  ASSERT_TRUE(drop_file(xvfb_.display(), folder_ / "second.lua"));
+  EXPECT_TRUE(program_->wait_for("opened " + (folder_ / "second.lua").string()));
+  EXPECT_TRUE(until_color(kX, kY, kGreen));
+  ASSERT_TRUE(drop_file(xvfb_.display(), folder_ / "dark.exr"));
+  EXPECT_TRUE(program_->wait_for("shown dark.exr"));
+  EXPECT_TRUE(until_color(kX, kY, {0, 0, 0}));
+  ASSERT_TRUE(ask_to_close(xvfb_.display()));
+  expect_clean_end();
+}
+
+TEST_F(PlayWindow, APresetThatAppearsLater) {
+  play({"./look.lua", "shot.0001.exr"});
+  ASSERT_TRUE(program_->wait_for("look.lua"));
+  write_preset("{ 0, 0, 1 }");
+  EXPECT_TRUE(until_color(kX, kY, kBlue));
+  ASSERT_TRUE(ask_to_close(xvfb_.display()));
+  expect_clean_end();
+}
+
+TEST_F(PlayWindow, LosingTheDisplayEndsWithACleanError) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.0001.exr"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  xvfb_.kill();
+  EXPECT_EQ(program_->finish(), 5);
+  EXPECT_NE(program_->printed().find("error: the connection to the display was lost"), std::string::npos);
+}
+
+TEST_F(PlayWindow, WithoutADisplayItNamesHeadless) {
+  write_preset("{ 1, 0, 0 }");
+  program_ = std::make_unique<PlayedWindow>(":65000", folder_, std::vector<std::string>{"look.lua", "shot.0001.exr"});
+  EXPECT_EQ(program_->finish(), 5);
+  EXPECT_NE(program_->printed().find("--headless"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace afterglow
