@@ -10,6 +10,26 @@
 namespace afterglow {
 namespace {
 
+bool makes(const Graph& graph, const std::string& effect, ImageId image) {
+  const int producer = graph.images[image].producer;
+  return producer >= 0 && graph.passes[producer].effect == effect;
+}
+
+/// The passes of the history's effect that its images are made by, parallel to the graph's.
+std::vector<bool> passes_of_part(const Graph& graph, const History& history) {
+  std::vector<bool> part(graph.passes.size(), false);
+  std::vector<ImageId> wanted{history.next};
+  if (history.first != kNoImage) wanted.push_back(history.first);
+  while (!wanted.empty()) {
+    const ImageId image = wanted.back();
+    wanted.pop_back();
+    if (!makes(graph, history.effect, image) || part[graph.images[image].producer]) continue;
+    part[graph.images[image].producer] = true;
+    for (const auto& input : graph.passes[graph.images[image].producer].inputs) wanted.push_back(input.image);
+  }
+  return part;
+}
+
 /// The passes that make these images and what they read. A `previous` that is read needs its `next` in the frame before.
 std::vector<bool> passes_for(const Graph& graph, std::vector<ImageId> wanted) {
   std::vector<bool> read(graph.images.size(), false), needed(graph.passes.size(), false);
@@ -44,6 +64,12 @@ const History* history_of_previous(const Graph& graph, ImageId image) {
 const History* history_of_next(const Graph& graph, ImageId image) {
   const auto found = std::ranges::find(graph.histories, image, &History::next);
   return found == graph.histories.end() ? nullptr : &*found;
+}
+
+bool is_precise(const Graph& graph, ImageId image) {
+  return std::ranges::any_of(graph.histories, [&](const History& history) {
+    return history.precise && (history.previous == image || history.next == image);
+  });
 }
 
 std::vector<ImageId> images_read(const Graph& graph, const Pass& pass) {
@@ -109,7 +135,7 @@ Hash history_part(const Graph& graph, const History& history) {
   Hasher hasher;
   const auto add_image = [&](ImageId id) {
     const GraphImage& image = graph.images[id];
-    const bool own = image.producer >= 0 && graph.passes[image.producer].effect == history.effect;
+    const bool own = makes(graph, history.effect, id);
     // Effects before this one may change: their pictures flow through the same images.
     hasher.add(own || history_of_previous(graph, id) ? image.name : "from outside");
     hasher.add(static_cast<std::uint64_t>(image.size.width)).add(static_cast<std::uint64_t>(image.size.height));
@@ -118,8 +144,10 @@ Hash history_part(const Graph& graph, const History& history) {
   add_image(history.previous);
   add_image(history.next);
   if (history.first != kNoImage) add_image(history.first);
-  for (const auto& pass : graph.passes) {
-    if (pass.effect != history.effect) continue;
+  const std::vector<bool> part = passes_of_part(graph, history);
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (!part[i]) continue;
+    const Pass& pass = graph.passes[i];
     hasher.add(pass.name).add(pass.shader).add(pass.kind == PassKind::filter ? pass.filter.text() : "");
     for (const auto& [name, value] : pass.constants) hasher.add(name).add(fmt::format("{}", value));
     for (const auto& input : pass.inputs) hasher.add(input.name), add_image(input.image);

@@ -17,6 +17,9 @@ const History* history_of_previous(const Graph& graph, ImageId image);
 /// The history whose `next` this image is, or null.
 const History* history_of_next(const Graph& graph, ImageId image);
 
+/// Whether the image belongs to a history that is kept in full floats.
+bool is_precise(const Graph& graph, ImageId image);
+
 /// The images that a pass may read: its inputs, and the `first` of each history among them.
 std::vector<ImageId> images_read(const Graph& graph, const Pass& pass);
 
@@ -32,8 +35,8 @@ void separate_result(Graph& graph);
 /// histories of other effects ask for, because one may work on what another made. 0 without histories.
 int pre_roll(const Graph& graph);
 
-/// Equal where the part of the graph that the history belongs to, the passes of its effect, is the same but for
-/// parameters: its pixels then mean the same.
+/// Equal where the part of the graph that makes the history, of the passes of its effect, is the same but for parameters:
+/// its pixels then mean the same.
 Hash history_part(const Graph& graph, const History& history);
 
 }  // namespace afterglow
