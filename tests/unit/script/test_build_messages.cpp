@@ -177,8 +177,8 @@ TEST_F(BuildMessages, Histories) {
   EXPECT_EQ(error("g:history { name = \"old\" }"),
             at + "its size is not known; allowed: size = an image, {width, height}; first = an image");
   EXPECT_EQ(error("g:history { name = \"old\", size = source,\n first = \"black\" }"),
-            "effects/probe.lua:5: error: effect 'probe': g:history: first = \"black\" is neither an image nor numbers; "
-            "allowed: an image, a number, 1 to 4 numbers");
+            "effects/probe.lua:5: error: pass 'glow.old' of effect 'probe': first = \"black\" is neither an image nor "
+            "numbers; allowed: an image, a number, 1 to 4 numbers");
   EXPECT_EQ(error("g:history { name = \"old\", size = source,\n pre_roll = -1 }"),
             "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': pre_roll = -1 is out of range; allowed: "
             "0…10000 frames");
@@ -186,7 +186,7 @@ TEST_F(BuildMessages, Histories) {
             "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': 'first' is 64×32, the history 4×4; "
             "allowed: 4×4");
   EXPECT_EQ(error("g:history { size = source, frist = 1 }"),
-            "effects/probe.lua:4: error: effect 'probe': g:history has no key 'frist'; allowed: first, name, pre_roll, "
+            "effects/probe.lua:4: error: effect 'probe': g:history has no 'frist'; allowed: first, name, pre_roll, "
             "precise, size; did you mean 'first'?");
   EXPECT_EQ(error("g:keep(source, source)"),
             "effects/probe.lua:4: error: effect 'probe': g:keep: the first image is no history of this effect; "
