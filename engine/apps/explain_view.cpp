@@ -97,8 +97,8 @@ std::string entry_text(const ExplainView& view, const StackEntry& entry, const E
   }
   if (any) out += settings.text("   ");
   if (view.setting.empty())
-    for (const auto& history : view.look.graph.histories)
-      if (history.effect == entry.name) out += history_text(view.look.graph, history);
+    for (const auto& kept : view.look.graph.histories)
+      if (kept.effect == entry.name) out += history_text(view.look.graph, kept);
   Table passes({"pass", ""});
   const auto fates = fates_of(view.look, entry.name);
   for (const auto& fate : fates) passes.add({fate.pass->name, fate_text(view.look, fate)});

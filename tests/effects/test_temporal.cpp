@@ -1,58 +1,17 @@
 // Effects that look back: each frame of synthetic sequences against the oracle, and what makes them what they are.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <fstream>
 #include <random>
 
 #include "cases.h"
 #include "reference/temporal.h"
-#include "session/session.h"
+#include "temporal_player.h"
 
 namespace afterglow {
 namespace {
 
 using namespace reference;
-namespace fs = std::filesystem;
-
-/// Plays frames through one stack.
-class Player {
- public:
-  explicit Player(const std::string& entries, bool reference = false) {
-    const fs::path file = fs::temp_directory_path() / fmt::format("afterglow_temporal_{}.lua", getpid());
-    std::ofstream(file) << "local fx = require \"afterglow\"\nreturn fx.stack { " << entries << " }\n";
-    SessionOptions options;
-    options.device.validate = true;
-    options.stack.reference = reference;
-    auto opened = Session::open(file, options, diagnostics_);
-    EXPECT_TRUE(opened) << opened.error().text();
-    session_ = std::move(*opened);
-    fs::remove(file);
-  }
-  ~Player() { EXPECT_EQ(session_->device().validation_errors(), 0); }
-  Player(const Player&) = delete;
-  Player& operator=(const Player&) = delete;
-
-  std::vector<float> play(const DoubleImage& source, int frame, double fps = 24) {
-    Picture picture;
-    picture.color = Image(source.width, source.height, 4);
-    for (std::size_t i = 0; i < source.pixels.size(); ++i)
-      for (int c = 0; c < 4; ++c)
-        picture.color.pixels[i * 4 + static_cast<std::size_t>(c)] = static_cast<float>(source.pixels[i][c]);
-    BuildContext context;
-    context.frame = frame;
-    context.fps = fps;
-    context.time = frame / fps;
-    const auto done = session_->process(picture, context);
-    EXPECT_TRUE(done) << done.error().text();
-    return picture.color.pixels;
-  }
-
- private:
-  Diagnostics diagnostics_;
-  std::unique_ptr<Session> session_;
-};
 
 DoubleImage grey(double light, Size size = {48, 27}) { return DoubleImage(size, Rgba(light, light, light, 1)); }
 
@@ -92,7 +51,7 @@ TEST_F(Effects, AutoExposureOfOnePictureAgrees) {
 TEST_F(Effects, AutoExposureFollowsAsTheOracleDoes) {
   const AutoExposure v{.compensation = 0.5, .speed_up = 6, .speed_down = 3};
   for (const bool every_pass_alone : {false, true}) {
-    Player player(auto_exposure_entry(v), every_pass_alone);
+    TemporalPlayer player(auto_exposure_entry(v), every_pass_alone);
     double exposure = 0;
     std::mt19937 random(3);
     std::uniform_real_distribution<double> stops(-5, 5);
@@ -110,14 +69,14 @@ TEST_F(Effects, AutoExposureFollowsAsTheOracleDoes) {
 }
 
 TEST_F(Effects, AutoExposureBringsGreyToMiddleGreyAtOnce) {
-  Player player("fx.auto_exposure {}");
+  TemporalPlayer player("fx.auto_exposure {}");
   EXPECT_NEAR(player.play(grey(1.44), 1)[0], 0.18, 1e-5);
   EXPECT_NEAR(player.play(grey(0.0225), 10)[0], 0.18, 1e-5) << "after a cut that is a seek";
   EXPECT_NEAR(player.play(grey(0.18 * 1024), 20)[0], 0.18 * 16, 1e-3) << "not beyond max_ev";
 }
 
 TEST_F(Effects, AutoExposureMovesByItsSpeeds) {
-  Player player("fx.auto_exposure { speed_up = 6, speed_down = 3, min_ev = -16, max_ev = 16 }");
+  TemporalPlayer player("fx.auto_exposure { speed_up = 6, speed_down = 3, min_ev = -16, max_ev = 16 }");
   EXPECT_NEAR(player.play(grey(0.18), 1)[0], 0.18, 1e-5);
   const auto exposure = [&](double light, int frame) {
     return std::log2(light / player.play(grey(light), frame)[0]);
@@ -128,7 +87,7 @@ TEST_F(Effects, AutoExposureMovesByItsSpeeds) {
 }
 
 TEST_F(Effects, AutoExposureDoesNotDependOnTheFrameRate) {
-  Player slow("fx.auto_exposure {}"), fast("fx.auto_exposure {}");
+  TemporalPlayer slow("fx.auto_exposure {}"), fast("fx.auto_exposure {}");
   EXPECT_EQ(slow.play(grey(0.18), 0, 12), fast.play(grey(0.18), 0, 48));
   for (int frame = 1; frame <= 12; ++frame) {
     std::vector<float> last;
@@ -176,7 +135,7 @@ TEST_F(Effects, FireflyStabilisationFollowsAsTheOracleDoes) {
   for (const FireflyStabilisation& v :
        {FireflyStabilisation{}, FireflyStabilisation{.threshold = 0.5, .tolerance = 1.5, .search = 1, .frames = 4},
         FireflyStabilisation{.search = 0, .frames = 3, .clamp_first = true}}) {
-    Player player(firefly_entry(v));
+    TemporalPlayer player(firefly_entry(v));
     std::vector<DoubleImage> past;
     for (int frame = 1; frame <= 7; ++frame) {
       const DoubleImage source = sparkling(frame);
@@ -188,7 +147,7 @@ TEST_F(Effects, FireflyStabilisationFollowsAsTheOracleDoes) {
 }
 
 TEST_F(Effects, FirefliesGoAndTheirSurroundingsStay) {
-  Player player("fx.firefly_stabilisation {}");
+  TemporalPlayer player("fx.firefly_stabilisation {}");
   const DoubleImage calm = grey(0.5, {32, 20});
   DoubleImage flash = calm;
   flash.at(11, 7) = Rgba(1000, 500, 250, 1);
@@ -203,7 +162,7 @@ TEST_F(Effects, FirefliesGoAndTheirSurroundingsStay) {
 }
 
 TEST_F(Effects, MovingHighlightsAreNotTouched) {
-  Player player("fx.firefly_stabilisation {}");
+  TemporalPlayer player("fx.firefly_stabilisation {}");
   for (int frame = 1; frame <= 9; ++frame) {
     DoubleImage picture = grey(0.2, {64, 24});
     picture.at(5 + 3 * frame, 12 - frame) = Rgba(300, 300, 200, 1);  // a spark, one pixel
@@ -219,7 +178,7 @@ TEST_F(Effects, MovingHighlightsAreNotTouched) {
 }
 
 TEST_F(Effects, ANewLightIsThereAfterItsFrames) {
-  Player player("fx.firefly_stabilisation { frames = 2 }");
+  TemporalPlayer player("fx.firefly_stabilisation { frames = 2 }");
   const DoubleImage dark = grey(0.2, {16, 16});
   DoubleImage lit = dark;
   lit.at(8, 8) = Rgba(50, 50, 50, 1);
