@@ -20,7 +20,7 @@ double ev_of(const Rgba& c) { return std::max(std::log2(luminance(c) / 0.18), kF
 
 double wanted_exposure(const DoubleImage& source, const AutoExposure& settings) {
   const int columns = std::min(source.width, 128), rows = std::min(source.height, 72);
-  std::array<double, kBins> bins{};
+  std::array<double, kBins> bins{}, sums{};  // weight, weight · EV
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
       const int x0 = i * source.width / columns, x1 = (i + 1) * source.width / columns;
@@ -33,8 +33,11 @@ double wanted_exposure(const DoubleImage& source, const AutoExposure& settings) 
       const double weight = count * (settings.center ? std::exp(-2 * (u * u + v * v)) : 1);
       const double at = (std::clamp(sum / count, kFirst, kLast) - kFirst) * (kBins - 1) / (kLast - kFirst);
       const int low = std::min(static_cast<int>(at), kBins - 2);
-      bins[static_cast<std::size_t>(low)] += weight * (low + 1 - at);
-      bins[static_cast<std::size_t>(low) + 1] += weight * (at - low);
+      for (const int bin : {low, low + 1}) {
+        const double share = weight * (1 - std::abs(bin - at));
+        bins[static_cast<std::size_t>(bin)] += share;
+        sums[static_cast<std::size_t>(bin)] += share * sum / count;
+      }
     }
   double total = 0;
   for (const double bin : bins) total += bin;
@@ -44,7 +47,7 @@ double wanted_exposure(const DoubleImage& source, const AutoExposure& settings) 
   for (int i = 0; i < kBins; ++i) {
     const double above = below + bins[static_cast<std::size_t>(i)];
     const double counted = std::max(std::min(above, to) - std::max(below, from), 0.0);
-    sum += counted * (kFirst + i * (kLast - kFirst) / (kBins - 1));
+    if (counted > 0) sum += counted * sums[static_cast<std::size_t>(i)] / bins[static_cast<std::size_t>(i)];
     count += counted;
     below = above;
   }
@@ -83,8 +86,9 @@ DoubleImage firefly_stabilisation(const DoubleImage& source, const std::vector<D
     for (int frame = 0; frame < settings.frames; ++frame) {
       double most = 0;
       const auto known = static_cast<std::size_t>(frame) < past.size();
-      for (int dy = -settings.search; known && dy <= settings.search; ++dy)
-        for (int dx = -settings.search; dx <= settings.search; ++dx)
+      const int reach = settings.search * (frame + 1);
+      for (int dy = -reach; known && dy <= reach; ++dy)
+        for (int dx = -reach; dx <= reach; ++dx)
           most = std::max(most, brightest(past[static_cast<std::size_t>(frame)].clamped(x + dx, y + dy)));
       if (!known && !settings.clamp_first) most = std::numeric_limits<double>::infinity();
       least = std::min(least, most);

@@ -3,7 +3,7 @@
 -- the end, and the same whatever the frame rate. The first frame of a sequence is exposed at once.
 local fx = require "afterglow"
 
-local kBins = 64         -- four of them a texel
+local kBins = 64         -- two of them a texel
 local kNear = 1.5        -- stops from which adaptation slows down
 local kForgotten = 0.01  -- stops: what is left of an earlier difference of four stops after the pre-roll
 local kLongest = 10      -- seconds of pre-roll at most
@@ -35,7 +35,7 @@ return fx.effect {
     if s.max_ev < s.min_ev then error("max_ev must not be below min_ev", 0) end
     local grid = { math.min(source.width, 128), math.min(source.height, 72) }
     local meter = g:pass { shader = "auto_exposure/meter", source = source, size = grid, center = s.metering == "center" }
-    local rows = g:pass { shader = "auto_exposure/count", grid = meter, size = { kBins // 4, grid[2] } }
+    local rows = g:pass { shader = "auto_exposure/count", grid = meter, size = { kBins // 2, grid[2] } }
     local wanted = g:pass { shader = "auto_exposure/wanted", rows = rows, size = { 1, 1 }, limits = { s.min_ev, s.max_ev },
                             percentiles = { s.low_percentile / 100, s.high_percentile / 100 } }
     local before = g:history { name = "before", first = wanted, pre_roll = pre_roll(g, s) }

@@ -11,7 +11,7 @@ return fx.effect {
   settings = {
     threshold = fx.float { min = 0, max = 1e6, default = 1, doc = "Brightness (largest channel) up to which a pixel is left alone; linear." },
     tolerance = fx.float { min = 1, max = 1000, default = 2, doc = "How many times as bright as its surroundings or its past a pixel may be." },
-    search = fx.int { min = 0, max = 16, default = 3, unit = "px", doc = "How far a small light may move from frame to frame and still be known." },
+    search = fx.int { min = 0, max = 8, default = 3, unit = "px", doc = "How far a small light may move from frame to frame and still be known." },
     frames = fx.int { min = 1, max = 4, default = 2, doc = "How many earlier frames must have had the light: more take down fireflies that come twice." },
     first_frame = fx.enum { "keep", "clamp", default = "keep",
       doc = "Where there are no earlier frames. keep: everything stays. clamp: single bright pixels go, small lights too." },
@@ -23,6 +23,6 @@ return fx.effect {
     local before = g:history { name = "before", size = source, first = { unknown, unknown, unknown, unknown }, pre_roll = s.frames }
     g:keep(before, g:pass { shader = "firefly_stabilisation/remember", source = source, before = before })
     return g:pass { shader = "firefly_stabilisation/clamp", source = source, before = before, threshold = s.threshold,
-                    tolerance = s.tolerance, search = s.search, frames = s.frames, reach = math.max(s.search, 2) }
+                    tolerance = s.tolerance, search = s.search, frames = s.frames, reach = math.max(s.search * s.frames, 2) }
   end,
 }

@@ -5,6 +5,7 @@ uniform sampler2D rows;
 uniform vec2 percentiles;  // 0…1
 uniform vec2 limits;       // EV
 
+// Weight and weight·EV of two bins.
 vec4 bins_of(int texel) {
   vec4 sum = vec4(0.0);
   int height = image_size(rows).y;
@@ -13,20 +14,20 @@ vec4 bins_of(int texel) {
 }
 
 vec4 sample_at(ivec2 pixel) {
-  vec4 bins[kBins / 4];
+  vec4 bins[kBins / 2];
   float total = 0.0;
-  for (int i = 0; i < kBins / 4; ++i) {
+  for (int i = 0; i < kBins / 2; ++i) {
     bins[i] = bins_of(i);
-    total += dot(bins[i], vec4(1.0));
+    total += bins[i].x + bins[i].z;
   }
   float skip = total * percentiles.x, rest = total * (percentiles.y - percentiles.x), sum = 0.0, count = 0.0;
   for (int i = 0; i < kBins; ++i) {
-    float bin = bins[i / 4][i % 4];
-    float dark = min(bin, skip);
+    vec2 bin = i % 2 == 0 ? bins[i / 2].xy : bins[i / 2].zw;
+    float dark = min(bin.x, skip);
     skip -= dark;
-    float counted = min(bin - dark, rest);
+    float counted = min(bin.x - dark, rest);
     rest -= counted;
-    sum += counted * ev_of_bin(i);
+    if (counted > 0.0) sum += counted * (bin.y / bin.x);
     count += counted;
   }
   return vec4(clamp(sum / max(count, 1e-20), limits.x, limits.y), 0.0, 0.0, 1.0);

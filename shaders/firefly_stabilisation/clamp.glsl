@@ -20,11 +20,16 @@ float surroundings(ivec2 pixel) {
   return second;
 }
 
-// The brightness that each of the last frames had nearby.
+// The brightness that each of the last frames had nearby: the longer ago, the further a light may have come.
 float past(ivec2 pixel) {
+  int reach = search * frames;
   vec4 seen = vec4(0.0);
-  for (int y = -search; y <= search; ++y)
-    for (int x = -search; x <= search; ++x) seen = max(seen, fetch(before, pixel + ivec2(x, y)));
+  for (int y = -reach; y <= reach; ++y)
+    for (int x = -reach; x <= reach; ++x) {
+      ivec4 way = ivec4(max(abs(x), abs(y)));
+      vec4 b = fetch(before, pixel + ivec2(x, y));
+      seen = max(seen, mix(vec4(0.0), b, lessThanEqual(way, search * ivec4(1, 2, 3, 4))));
+    }
   float least = seen.x;
   for (int i = 1; i < frames; ++i) least = min(least, seen[i]);
   return least;

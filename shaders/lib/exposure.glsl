@@ -2,5 +2,4 @@
 const int kBins = 64;
 const float kFirstBin = -16.0, kLastBin = 16.0;
 
-float ev_of_bin(int bin) { return kFirstBin + float(bin) * ((kLastBin - kFirstBin) / float(kBins - 1)); }
 float bin_of_ev(float ev) { return (clamp(ev, kFirstBin, kLastBin) - kFirstBin) * (float(kBins - 1) / (kLastBin - kFirstBin)); }

@@ -168,7 +168,7 @@ TEST_F(Effects, MovingHighlightsAreNotTouched) {
     picture.at(5 + 3 * frame, 12 - frame) = Rgba(300, 300, 200, 1);  // a spark, one pixel
     for (int y = 0; y < 4; ++y)
       for (int x = 0; x < 4; ++x) picture.at(60 - 6 * frame + x, 16 + y) = Rgba(40, 50, 60, 1);  // a lamp, faster
-    for (int x = 0; x < 64; ++x) picture.at(x, 2 * frame) = Rgba(80, 0, 0, 1);                   // a line that jumps
+    for (int x = 0; x < 64; ++x) picture.at(x, 23 - 3 * (frame % 2)) = Rgba(80, 0, 0, 1);        // a line that jumps
     const auto made = player.play(picture, frame);
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
       for (int c = 0; c < 3; ++c)
