@@ -1,6 +1,7 @@
 // Checks values against what an effect declares. The one place that knows what each setting type allows.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/result.h"
@@ -15,6 +16,9 @@ std::string allowed_text(const SettingSchema& schema);
 /// Errors (script, without file and line): wrong type, out of range, not finite, unknown choice (with the nearest).
 /// `full_name` is what the message calls it: "glow.knee".
 Result<SettingValue> check_setting(const std::string& full_name, const SettingSchema& schema, const Value& value);
+
+/// "#rrggbb" for a colour that can be written so: what it is read as is the same colour in 32-bit floats.
+std::optional<std::string> hex_color(const SettingValue& color);
 
 /// "integer", "number", "boolean", "choice", "colour", "vec2", "vec3".
 const char* type_name(SettingType type);
