@@ -33,9 +33,12 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field frame number  number of the picture in its sequence, from 1
 ---@field time number   seconds
 ---@field fps number    pictures per second
+---@field frame_time number  seconds since the frame before, which histories hold
 ---@field pass fun(self: afterglow.Graph, pass: afterglow.Pass): afterglow.Image          runs a shader
 ---@field filter fun(self: afterglow.Graph, pass: afterglow.FilterPass): afterglow.Image  resamples an image
 ---@field input fun(self: afterglow.Graph, name: string): afterglow.Image?                an auxiliary image that `needs` or `optional` names; nil when the picture lacks it
+---@field history fun(self: afterglow.Graph, history: afterglow.History): afterglow.Image     what the frame before kept; must be given its next image by `keep`
+---@field keep fun(self: afterglow.Graph, history: afterglow.Image, next: afterglow.Image)    the next frame gets this image as that history; of its size
 ---@field skip fun(self: afterglow.Graph, reason: string)                                 records why the effect does nothing; then `return source`
 
 ---A pass with a shader. Further keys are the inputs and parameters that the shader declares, by name: images, numbers,
@@ -53,6 +56,15 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field filter afterglow.Filter
 ---@field size? afterglow.Image|integer[]  of the new image; default: that of `source`
 ---@field name? string                     default: "filter"
+
+---An image that one frame makes for the next. A frame that follows none (the first, after a seek, after a change of the effect)
+---finds `first` instead. Pixels are four full floats.
+---@class afterglow.History
+---@field name? string                     default: "history"
+---@field size? afterglow.Image|integer[]  default: that of `first`
+---@field first? afterglow.Image|number|number[]  an image of this frame, or what every pixel is (numbers that are missing are 0); default: 0
+---@field pre_roll? integer                earlier frames that `run` runs before the first one asked for; default: 1, or 24 when the history is made from itself
+---@field precise? boolean                 false: may be kept in half floats where other images are; default: true
 
 ---A linear resampling as data: out(X, Y) = Σ weight · I(p + offset), p = (X + ½) · n_source / n_target in texels. Reads outside
 ---are clamped to the edge; weights are used as given.

@@ -15,8 +15,10 @@
 #include "apps/options.h"
 #include "apps/resume.h"
 #include "apps/run_report.h"
+#include "apps/schedule.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "graph/history.h"
 #include "image/reader.h"
 #include "image/writer.h"
 
@@ -35,6 +37,7 @@ struct Arguments {
   int png_level = 1, jpeg_quality = 95;
   bool dither = false, keep_layers = false, resume = false, fail_fast = false;
   double fps = 24;
+  std::optional<int> pre_roll;
   std::string stats, report, lock, locked;
 };
 
@@ -65,6 +68,12 @@ void add_files(CLI::App& app, Arguments& a) {
       ->group(sequence);
   app.add_option("--fps", a.fps, "Frames a second, for animated presets (default 24)")
       ->check(CLI::PositiveNumber)
+      ->type_name("N")
+      ->group(sequence);
+  app.add_option("--pre-roll", a.pre_roll,
+                 "Earlier frames to run first, without writing them, for effects that look back (default: what they ask "
+                 "for; 0: none)")
+      ->check(CLI::Range(0, 100000))
       ->type_name("N")
       ->group(sequence);
   app.add_flag("--resume", a.resume, "Skip outputs that are newer than their inputs and made by the same look")
@@ -138,6 +147,7 @@ PixelOptions pixel_options(const Arguments& a) {
           {"--size", a.size},
           {"--region", a.region},
           {"--fps", number(a.fps)},
+          {"--pre-roll", a.pre_roll ? fmt::format("{}", *a.pre_roll) : ""},
           {"--type", a.type},
           {"--compression", a.compression},
           {"--png-level", fmt::format("{}", a.png_level)},
@@ -185,11 +195,30 @@ WriteOptions write_options(const Arguments& a) {
   return options;
 }
 
-Result<std::vector<FrameJob>> jobs_of(const Arguments& a) {
+FrameListRequest files_of(const Arguments& a) {
   FrameListRequest request = a.files;
   if (!a.depth.empty()) request.depth = parse_layer_choice(a.depth);
   if (!a.normal.empty()) request.normal = parse_layer_choice(a.normal);
-  return list_frames(request);
+  return request;
+}
+
+/// How many earlier frames the frames of this run need; empty when none depends on another. Where settings change from
+/// frame to frame some frames are asked.
+Result<std::optional<int>> pre_roll_of(Run& run) {
+  constexpr std::size_t kMostAsked = 64;
+  const auto& frames = run.report.frames;
+  Preset& preset = run.session->preset();
+  const std::size_t asked = preset.may_change() ? std::min(frames.size(), kMostAsked) : 1;
+  std::optional<int> most;
+  for (std::size_t i = 0; i < asked; ++i) {
+    AssumedPicture assumed;
+    assumed.frame = frames[i * frames.size() / asked].job.frame;
+    assumed.fps = run.arguments.fps;
+    AFTERGLOW_TRY(const BuildContext context, assumed.context(preset));
+    AFTERGLOW_TRY(const Graph graph, run.session->stack().graph(context));
+    if (!graph.histories.empty()) most = std::max(most.value_or(0), run.arguments.pre_roll.value_or(pre_roll(graph)));
+  }
+  return most;
 }
 
 /// The graph of frames as they usually are.
@@ -266,10 +295,16 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   AFTERGLOW_TRY(run.session, Session::open(preset, options, run.console.diagnostics()));
   run.loop.read.auxiliary = run.session->preset().needs();
   AFTERGLOW_CHECK(prepare_lock(run));
+  AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run));
+  run.loop.histories = earlier.has_value();
+  if (earlier && a.resume) note_earlier_files(run.report.frames, files_of(a), *earlier);
   AFTERGLOW_CHECK(prepare_resume(run));
+  Schedule schedule = earlier ? schedule_with_histories(run.report.frames, files_of(a), *earlier)
+                              : plain_schedule(run.report.frames);
+  run.report.pre_roll = schedule.earlier.size();
   run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
   FrameLoop loop(*run.session, run.loop, run.console);
-  auto done = loop.run(run.report.frames);
+  auto done = loop.run(schedule);
   run.report.memory_needed = loop.largest_need();
   return done;
 }
@@ -277,7 +312,7 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
 Result<void> run_command(const Arguments& a, Console& console) {
   Run run{a, console};
   AFTERGLOW_TRY(const SessionOptions options, session_options(a));
-  AFTERGLOW_TRY(const auto jobs, jobs_of(a));
+  AFTERGLOW_TRY(const auto jobs, list_frames(files_of(a)));
   for (const auto& job : jobs) run.report.frames.push_back({.job = job});
   auto done = run_frames(run, options);
   if (done && !a.lock.empty()) done = write_file_atomically(a.lock, lock_text(*run.lock));

@@ -71,6 +71,17 @@ std::string preset_text(const SettingHistory& setting) {
   return setting.preset->text() + (setting.kind == "fixed" ? "" : " (" + setting.kind + ")");
 }
 
+std::string history_text(const Graph& graph, const History& history) {
+  const Size size = graph.images[static_cast<std::size_t>(history.previous)].size;
+  const std::string first = history.first != kNoImage
+                                ? graph.images[static_cast<std::size_t>(history.first)].name
+                                : fmt::format("{{{}, {}, {}, {}}}", history.initial[0], history.initial[1],
+                                              history.initial[2], history.initial[3]);
+  return fmt::format("   history {}: {}×{}, keeps {}; without a frame before it: {}; pre-roll {} frames\n", history.name,
+                     size.width, size.height, graph.images[static_cast<std::size_t>(history.next)].name, first,
+                     history.pre_roll);
+}
+
 std::string entry_text(const ExplainView& view, const StackEntry& entry, const EntryHistory& history,
                        std::size_t place) {
   const auto* reason = skip_reason(view.look, entry.name);
@@ -85,6 +96,9 @@ std::string entry_text(const ExplainView& view, const StackEntry& entry, const E
                   setting.overridden ? setting.overridden->text() : "", setting.value.text()});
   }
   if (any) out += settings.text("   ");
+  if (view.setting.empty())
+    for (const auto& kept : view.look.graph.histories)
+      if (kept.effect == entry.name) out += history_text(view.look.graph, kept);
   Table passes({"pass", ""});
   const auto fates = fates_of(view.look, entry.name);
   for (const auto& fate : fates) passes.add({fate.pass->name, fate_text(view.look, fate)});
@@ -163,6 +177,9 @@ std::string explain_json(const ExplainView& view) {
       if (!fate.reason.empty()) pass["reason"] = fate.reason;
       item["passes"].push_back(std::move(pass));
     }
+    for (const auto& history : view.look.graph.histories)
+      if (history.effect == entries[i].name)
+        item["histories"].push_back({{"name", history.name}, {"pre_roll", history.pre_roll}});
     out["entries"].push_back(std::move(item));
   }
   return out.dump(2) + "\n";

@@ -23,6 +23,13 @@ Result<LayerChoice> resolve(const LayerChoice& choice, int frame) {
   return LayerChoice{pattern.file(frame), choice.name};
 }
 
+/// What files that a shell has listed have in common when they are frames of one sequence. No pattern that exists.
+std::string name_without_number(const fs::path& file) {
+  std::string stem = file.stem().string();
+  while (!stem.empty() && stem.back() >= '0' && stem.back() <= '9') stem.pop_back();
+  return (file.parent_path() / stem).string() + "*" + file.extension().string();
+}
+
 /// Turns an input into its output's name.
 class OutputNames {
  public:
@@ -79,6 +86,13 @@ Result<void> check_outputs(const std::vector<FrameJob>& jobs) {
 
 }  // namespace
 
+Result<FrameJob> job_of(const FrameListRequest& request, const std::string& sequence, const FrameFile& file) {
+  FrameJob job{.frame = file.frame, .input = file.file, .output = {}, .depth = {}, .normal = {}, .sequence = sequence};
+  AFTERGLOW_TRY(job.depth, resolve(request.depth, file.frame));
+  AFTERGLOW_TRY(job.normal, resolve(request.normal, file.frame));
+  return job;
+}
+
 std::vector<fs::path> FrameJob::sources() const {
   std::vector<fs::path> files{input};
   if (!depth.file.empty()) files.push_back(depth.file);
@@ -99,9 +113,8 @@ Result<std::vector<FrameJob>> list_frames(const FrameListRequest& request) {
       return usage(fmt::format("--frames needs a numbered input like shot.####.exr, not {}", input));
     AFTERGLOW_TRY(const auto files, find_frames(pattern, frames));
     for (const auto& [frame, file] : files) {
-      FrameJob job{frame, file, names.name(file, frame), {}, {}};
-      AFTERGLOW_TRY(job.depth, resolve(request.depth, frame));
-      AFTERGLOW_TRY(job.normal, resolve(request.normal, frame));
+      AFTERGLOW_TRY(FrameJob job, job_of(request, pattern.numbered ? input : name_without_number(file), {frame, file}));
+      job.output = names.name(file, frame);
       jobs.push_back(std::move(job));
     }
   }

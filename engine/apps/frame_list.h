@@ -7,6 +7,7 @@
 
 #include "core/result.h"
 #include "image/reader.h"
+#include "image/sequence.h"
 
 namespace afterglow {
 
@@ -14,6 +15,9 @@ struct FrameJob {
   int frame = 1;
   std::filesystem::path input, output;
   LayerChoice depth, normal;  ///< patterns resolved for this frame
+  /// Frames of one sequence have the same: the pattern, or a file's name without its number.
+  std::string sequence{};
+  std::vector<std::filesystem::path> earlier{};  ///< files of earlier frames that the output depends on
 
   /// Every file that the output is made from.
   std::vector<std::filesystem::path> sources() const;
@@ -26,6 +30,9 @@ struct FrameListRequest {
   std::string frames;               ///< "1-24x2"; empty: all that exist
   LayerChoice depth, normal;
 };
+
+/// A frame of a sequence, without an output. Errors: usage (a pattern for depth or normal that is none).
+Result<FrameJob> job_of(const FrameListRequest& request, const std::string& sequence, const FrameFile& file);
 
 /// Errors: usage (a plain output for several frames, two inputs for one output, an output that is an input), io
 /// (nothing matches).

@@ -34,6 +34,7 @@ Error named(Error error, const FrameJob& job) {
 
 struct FrameLoop::Reading {
   FrameRecord* frame = nullptr;
+  bool pre_roll = false, restart = false;
   std::optional<Error> refused;  ///< by the header; nothing was read
   BuildContext context;
   std::optional<Rect> part;  ///< of the picture, when there is a region
@@ -51,18 +52,20 @@ FrameLoop::FrameLoop(Session& session, FrameLoopOptions options, Console& consol
 
 FrameLoop::~FrameLoop() = default;
 
-Result<void> FrameLoop::run(std::vector<FrameRecord>& frames) {
-  std::vector<FrameRecord*> waiting;
-  for (auto& frame : frames)
-    if (frame.state == FrameRecord::State::waiting) waiting.push_back(&frame);
-  total_ = waiting.size();
+Result<void> FrameLoop::run(Schedule& schedule) {
+  const auto& frames = schedule.frames;
+  pre_roll_ = schedule.earlier.size();
+  total_ = frames.size() - pre_roll_;
   const auto start = Clock::now();
   std::unique_ptr<Reading> next;
-  for (std::size_t i = 0; i < waiting.size(); ++i) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
     if (interrupted()) return close(interrupt_error());
-    if (total_ > 1)
-      console_.progress(i, total_, waiting[i]->job.output.filename().string(), milliseconds_since(start) / 1000);
-    auto reading = next ? std::move(next) : begin_reading(*waiting[i]);
+    if (frames.size() > 1)
+      console_.progress(i, frames.size(),
+                        frames[i].pre_roll ? "before " + frames[i].record->job.output.filename().string()
+                                           : frames[i].record->job.output.filename().string(),
+                        milliseconds_since(start) / 1000);
+    auto reading = next ? std::move(next) : begin_reading(frames[i]);
     // Shaders, pipelines and memory are made while the first picture is read.
     if (i == 0 && !reading->refused) {
       if (auto prepared = session_.prepare(reading->context, reading->encoding, reading->part);
@@ -70,7 +73,7 @@ Result<void> FrameLoop::run(std::vector<FrameRecord>& frames) {
         return close(fail(*reading->frame, std::move(prepared).error()));
     }
     if (reading->picture.valid()) reading->picture.wait();
-    if (overlap_ && i + 1 < waiting.size()) next = begin_reading(*waiting[i + 1]);
+    if (overlap_ && i + 1 < frames.size()) next = begin_reading(frames[i + 1]);
     if (auto done = process(*reading); !done) return close(done.error());
     if (!overlap_)
       if (auto done = finish_writing(); !done) return close(done.error());
@@ -110,9 +113,20 @@ Result<FrameLoop::Need> FrameLoop::need_of(const PictureHeader& header, const Bu
   return need;
 }
 
-std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(FrameRecord& frame) {
+/// Which frame this one follows: the last of its sequence that was made.
+void FrameLoop::place_in_time(Reading& reading) {
+  if (!options_.histories) return;
+  if (reading.restart) last_.reset();
+  reading.context.restart = !last_;
+  reading.context.step = last_ ? reading.frame->job.frame - *last_ : 1;
+}
+
+std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFrame& scheduled) {
   auto reading = std::make_unique<Reading>();
+  FrameRecord& frame = *scheduled.record;
   reading->frame = &frame;
+  reading->pre_roll = scheduled.pre_roll;
+  reading->restart = scheduled.restart;
   ReadOptions options = options_.read;
   options.depth = frame.job.depth;
   options.normal = frame.job.normal;
@@ -152,12 +166,12 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(FrameRecord& frame)
     reading->refused = need.error();
     return reading;
   }
-  overlap_ = total_ > 1 && need->three_frames() <= options_.max_memory;
+  overlap_ = total_ + pre_roll_ > 1 && need->three_frames() <= options_.max_memory;
   reading->picture = std::async(std::launch::async, [this, &frame, options]() -> Result<Picture> {
     const auto start = Clock::now();
     auto picture = read_picture(frame.job.input, options, console_.diagnostics());
     if (picture && options_.size) scale_picture(*picture, *options_.size);
-    if (picture && options_.reuse && total_ > 1) note_content(*picture);
+    if (picture && options_.reuse && total_ + pre_roll_ > 1) note_content(*picture);
     frame.read = milliseconds_since(start);
     return picture;
   });
@@ -167,16 +181,22 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(FrameRecord& frame)
 /// From the picture that has been read to one that is being written.
 Result<void> FrameLoop::process(Reading& reading) {
   FrameRecord& frame = *reading.frame;
-  if (reading.refused) return fail(frame, *reading.refused);
+  place_in_time(reading);
+  if (reading.refused) return fail(frame, *reading.refused, reading.pre_roll);
   auto picture = reading.picture.get();
-  if (!picture) return fail(frame, named(std::move(picture).error(), frame.job));
+  if (!picture) return fail(frame, named(std::move(picture).error(), frame.job), reading.pre_roll);
   if (interrupted()) return interrupt_error();
   frame.size = picture->color.size();
   const auto processed = session_.process(*picture, reading.context, reading.encoding, reading.part);
   // Validation goes first: it says what a failure comes from.
   if (session_.device().validation_errors() > 0)
     return fail(frame, {ErrorKind::device, "Vulkan validation: " + session_.device().validation_messages().front()});
-  if (!processed) return fail(frame, named(processed.error(), frame.job));
+  if (!processed) return fail(frame, named(processed.error(), frame.job), reading.pre_roll);
+  last_ = frame.job.frame;
+  if (reading.pre_roll) {
+    frame.state = FrameRecord::State::done;
+    return {};
+  }
   const SessionReport report = session_.report();
   frame.times = report.times.frame;
   frame.skipped = report.skipped_now;
@@ -214,9 +234,13 @@ Result<void> FrameLoop::finish_writing() {
 }
 
 /// Notes the failure; returns it when the run ends with it.
-Result<void> FrameLoop::fail(FrameRecord& frame, Error error) {
+Result<void> FrameLoop::fail(FrameRecord& frame, Error error, bool pre_roll) {
   frame.state = FrameRecord::State::failed;
   frame.error = error;
+  if (pre_roll && !ends_run(error)) {
+    console_.diagnostics().warn("left out of the pre-roll: " + error.text());
+    return {};
+  }
   if (total_ == 1 || options_.fail_fast || ends_run(error)) return error;
   ++failed_;
   console_.error(error);

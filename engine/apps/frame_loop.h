@@ -9,6 +9,7 @@
 
 #include "apps/console.h"
 #include "apps/run_report.h"
+#include "apps/schedule.h"
 #include "core/hash.h"
 #include "image/reader.h"
 #include "image/writer.h"
@@ -26,6 +27,7 @@ struct FrameLoopOptions {
   std::uint64_t max_memory = 6ull << 30;
   std::optional<Hash> record_look;  ///< leave notes for --resume
   bool fail_fast = false;
+  bool histories = false;  ///< pictures depend on the frames before them
 };
 
 class FrameLoop {
@@ -33,10 +35,11 @@ class FrameLoop {
   FrameLoop(Session& session, FrameLoopOptions options, Console& console);
   ~FrameLoop();
 
-  /// Runs the frames that are `waiting` and notes in each what became of it. A frame whose files fail is reported and
-  /// the rest go on; errors of the script or the device end the run. Errors: that of the only frame, or one that counts
+  /// Runs the frames of the schedule and notes in each what became of it. A frame whose files fail is reported and
+  /// the rest go on; errors of the script or the device end the run. A frame of the pre-roll that fails is warned about and
+  /// left out, as if it was not there. Errors: that of the only frame, or one that counts
   /// the failed ones.
-  Result<void> run(std::vector<FrameRecord>& frames);
+  Result<void> run(Schedule& schedule);
 
   std::uint64_t largest_need() const { return largest_need_; }
 
@@ -52,20 +55,22 @@ class FrameLoop {
   };
 
   Result<Need> need_of(const PictureHeader& header, const BuildContext& context, const FrameJob& job);
-  std::unique_ptr<Reading> begin_reading(FrameRecord& frame);
+  std::unique_ptr<Reading> begin_reading(const ScheduledFrame& scheduled);
+  void place_in_time(Reading& reading);
   Result<void> process(Reading& reading);
   void begin_writing(FrameRecord& frame, Picture picture);
   Result<void> finish_writing();
-  Result<void> fail(FrameRecord& frame, Error error);
+  Result<void> fail(FrameRecord& frame, Error error, bool pre_roll = false);
   Result<void> close(Result<void> result);
 
   Session& session_;
   FrameLoopOptions options_;
   Console& console_;
   std::unique_ptr<Writing> writing_;
-  std::size_t total_ = 0, done_ = 0, failed_ = 0;
+  std::size_t total_ = 0, pre_roll_ = 0, done_ = 0, failed_ = 0;
   std::uint64_t largest_need_ = 0;
   bool overlap_ = false;
+  std::optional<int> last_;  ///< number of the frame that the next one follows
 };
 
 }  // namespace afterglow

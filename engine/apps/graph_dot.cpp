@@ -5,6 +5,7 @@
 
 #include "apps/graph_view.h"
 #include "graph/condition.h"
+#include "graph/history.h"
 
 namespace afterglow {
 namespace {
@@ -69,7 +70,10 @@ std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& t
       "digraph {} {{\n  rankdir=TB;\n  node [shape=box, style=rounded, fontname=\"sans-serif\"];\n", quoted(title));
   for (std::size_t i = 0; i < graph.images.size(); ++i)
     if (graph.images[i].producer < 0)
-      out += fmt::format("  image{} [label={}, shape=ellipse];\n", i, quoted(graph.images[i].name));
+      out += fmt::format("  image{} [label={}, shape=ellipse];\n", i,
+                         quoted(graph.images[i].name + (history_of_previous(graph, static_cast<ImageId>(i))
+                                                            ? "\nof the frame before"
+                                                            : "")));
   for (std::size_t k = 0; k < plan.kernels.size(); ++k) {
     const auto& kernel = plan.kernels[k];
     const bool joined = kernel.passes.size() > 1;
@@ -84,6 +88,13 @@ std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& t
     for (const auto& input : graph.passes[p].inputs)
       out += fmt::format("  {} -> pass{} [label={}];\n", node(graph, input.image), p,
                          quoted(input.name == "source" ? "" : input.name));
+  }
+  for (const auto& history : graph.histories) {
+    out += fmt::format("  {} -> image{} [style=dashed, label=\"next frame\", constraint=false];\n",
+                       node(graph, history.next), history.previous);
+    if (history.first != kNoImage)
+      out += fmt::format("  {} -> image{} [style=dotted, label=\"first frame\"];\n", node(graph, history.first),
+                         history.previous);
   }
   out += fmt::format("  result [shape=ellipse];\n  {} -> result;\n", node(graph, graph.result));
   const auto skipped = all_skipped(graph, plan);

@@ -42,7 +42,9 @@ bool is_up_to_date(const FrameJob& job, const Hash& look) {
   std::error_code ec;
   const auto made = fs::last_write_time(job.output, ec);
   if (ec) return false;
-  for (const auto& source : job.sources()) {
+  std::vector<fs::path> sources = job.sources();
+  sources.insert(sources.end(), job.earlier.begin(), job.earlier.end());
+  for (const auto& source : sources) {
     const auto changed = fs::last_write_time(source, ec);
     if (ec || changed >= made) return false;
   }

@@ -121,7 +121,7 @@ Json session_json(const SessionReport& session) {
       {"kernels", session.kernels},
       {"skipped", Json::array()},
       {"image_memory",
-       Json{{"shared", session.memory.arena}, {"unshared", session.memory.sum}, {"least", session.memory.lower_bound}}},
+       Json{{"shared", session.memory.arena}, {"unshared", session.memory.sum}, {"least", session.memory.lower_bound},{"histories", session.memory.histories}}},
       {"clamped_samples", session.clamped}};
   for (const auto& skipped : session.skipped)
     out["skipped"].push_back(Json{{"name", skipped.name}, {"reason", skipped.reason}});
@@ -144,6 +144,7 @@ std::string report_text(const RunReport& report, bool passes) {
   const std::size_t done = count(report, FrameRecord::State::done);
   out += fmt::format("frames: {} done, {} up to date, {} failed\n", done, count(report, FrameRecord::State::up_to_date),
                      count(report, FrameRecord::State::failed));
+  if (report.pre_roll > 0) out += fmt::format("pre-roll: {} earlier frames, not written\n", report.pre_roll);
   Table table({"step", "ms", ""});
   for (const auto& step : steps(report))
     table.add({step.name, fmt::format("{:.1f}", step.milliseconds), done > 1 || *step.note != 'a' ? step.note : ""});
@@ -172,6 +173,7 @@ std::string report_json(const RunReport& report) {
   for (const auto& step : steps(report)) out["milliseconds"][step.name] = step.milliseconds;
   out["milliseconds"]["wall"] = report.wall;
   out["memory"] = Json{{"peak", peak_memory()}, {"estimated", report.memory_needed}};
+  out["pre_roll"] = report.pre_roll;
   out["frames"] = Json::array();
   for (const auto& frame : report.frames) out["frames"].push_back(frame_json(frame));
   return out.dump(2) + "\n";

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "gpu/error.h"
+#include "graph/history.h"
 
 namespace afterglow {
 
@@ -44,7 +45,7 @@ Result<Arena> Arena::create(const Device& device, const Graph& graph, const Plan
   out.linear_ = !options.rows.empty();
   for (std::size_t i = 0; i < plan.transient.size(); ++i) {
     const ImageId id = plan.transient[i];
-    if (id == graph.result) continue;
+    if (id == graph.result || history_of_next(graph, id)) continue;
     const VkImageUsageFlags more =
         (options.readable ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0) | (options.storage ? VK_IMAGE_USAGE_STORAGE_BIT : 0);
     const ImageDesc desc{.name = graph.images[id].name,

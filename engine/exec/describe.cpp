@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "exec/parallel.h"
+#include "graph/history.h"
 
 namespace afterglow {
 
@@ -35,16 +36,26 @@ const PassInput* find_input(const Pass& pass, const std::string& name) {
   return found == pass.inputs.end() ? nullptr : &*found;
 }
 
+/// How an image is best read: as a storage image where it is one.
+ImageRead read_of(const Graph& graph, ImageId image, const DescribeOptions& options) {
+  const History* history = history_of_previous(graph, image);
+  const bool between = history || graph.images[image].producer >= 0;
+  if (!between && !(image == graph.source && options.source_is_storage)) return ImageRead::sampled;
+  const ImageRead read = options.half_storage && !is_precise(graph, image) ? ImageRead::storage_rgba16f
+                                                                           : ImageRead::storage_rgba32f;
+  // In a first frame another image stands in the same place.
+  if (history && history->first != kNoImage && read_of(graph, history->first, options) != read)
+    return ImageRead::sampled;
+  return read;
+}
+
 /// One wish for each image slot, in the order that AssembledKernel::images has.
 std::vector<ImageRead> reads_of(const Graph& graph, const PlanKernel& kernel, const KernelDesc& desc,
                                 const DescribeOptions& options) {
-  const ImageRead storage = options.half_storage ? ImageRead::storage_rgba16f : ImageRead::storage_rgba32f;
   std::vector<ImageRead> reads;
   const auto add = [&](int stage, const std::string& name) {
     const PassInput* input = find_input(pass_of_stage(graph, kernel, stage), name);
-    const bool between = input && graph.images[input->image].producer >= 0;
-    const bool source = input && input->image == graph.source && options.source_is_storage;
-    reads.push_back(between || source ? storage : ImageRead::sampled);
+    reads.push_back(input ? read_of(graph, input->image, options) : ImageRead::sampled);
   };
   if (desc.filter && desc.hardware_filter)
     reads.push_back(ImageRead::sampled);  // the sampler interpolates
@@ -83,7 +94,8 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
                                    const DescribeOptions& options) {
   KernelDesc desc;
   desc.hardware_filter = options.hardware_filter;
-  desc.target = options.half_storage ? KernelTarget::float16 : KernelTarget::float32;
+  const bool half = options.half_storage && !is_precise(graph, kernel.output);
+  desc.target = half ? KernelTarget::float16 : KernelTarget::float32;
   if (options.codes && kernel.output == graph.result) desc.target = KernelTarget::codes8;
   const long long pixels = graph.images[kernel.output].size.area();
   const Pass& head = graph.passes[kernel.passes.front()];

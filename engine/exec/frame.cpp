@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
 #include "exec/convert.h"
@@ -58,7 +59,16 @@ struct FrameRunner::State {
     int bindings = 0;
     friend bool operator==(const Recorded&, const Recorded&) = default;
   };
-  std::optional<Recorded> recorded;
+  static constexpr int kOneOff = 2;  ///< buffer of the Submitter for what is submitted once
+  std::array<std::optional<Recorded>, kOneOff> recorded;  ///< by Program::recording
+  /// What a program is bound to: the images, and its own count then.
+  struct Bound {
+    std::uint64_t program = 0;
+    std::vector<VkImage> images;
+    int bindings = 0;
+    friend bool operator==(const Bound&, const Bound&) = default;
+  };
+  std::optional<Bound> bound;
   Submitter submitter;  // last: it waits before the images go
 
   Result<void> check_memory(const std::map<std::string, ImageDesc>& descs, std::uint64_t other_bytes) const;
@@ -97,13 +107,13 @@ Result<void> FrameRunner::State::check_memory(const std::map<std::string, ImageD
 
 Result<void> FrameRunner::State::prepare_inputs(const std::map<std::string, ImageDesc>& descs) {
   AFTERGLOW_TRY(const bool fresh, inputs.prepare(descs));
-  if (fresh) recorded.reset();  // a new image may have the handle of one that is gone
+  if (fresh) recorded = {}, bound.reset();  // a new image may have the handle of one that is gone
   return {};
 }
 
 Result<void> FrameRunner::State::take_result(const Program& program) {
   AFTERGLOW_TRY(const bool fresh, result.take(FrameResult::wanted_by(program), program.result_rows()));
-  if (fresh) recorded.reset();
+  if (fresh) recorded = {}, bound.reset();
   return {};
 }
 
@@ -111,7 +121,7 @@ Result<void> FrameRunner::State::take_result(const Program& program) {
 Result<void> FrameRunner::State::prepare(const Program& program, const std::map<std::string, HostImage>& host) {
   AFTERGLOW_TRY(const auto descs, FrameInputs::wanted_by(program, host));
   const ImageDesc result_desc = FrameResult::wanted_by(program);
-  std::uint64_t bytes = program.memory().arena + image_bytes(result_desc);
+  std::uint64_t bytes = program.memory().arena + program.memory().histories + image_bytes(result_desc);
   if (!direct) bytes += 2 * Staging::bytes({VK_NULL_HANDLE, result_desc.format, result_desc.size});
   AFTERGLOW_CHECK(check_memory(descs, bytes));
   AFTERGLOW_CHECK(prepare_inputs(descs));
@@ -150,8 +160,7 @@ Result<void> FrameRunner::State::bring_source(const std::map<std::string, HostIm
 /// What is otherwise done after the kernels, when none has run.
 Result<void> FrameRunner::State::leave_readable() {
   if (inputs.readable()) return {};
-  recorded.reset();
-  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) { inputs.after(commands); }));
+  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) { inputs.after(commands); }, kOneOff));
   return submitter.wait();
 }
 
@@ -197,9 +206,15 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
                   .layouts = input_layouts(),
                   .bindings = program.bindings()};
   for (const auto& [name, image] : inputs.images()) wanted.images.push_back(image.image.get());
-  const bool known = timing == KernelTiming::none && recorded == wanted;
+  const bool unlike = program.recording() == Program::kUnlikeOthers;
+  const int which = unlike ? kOneOff : program.recording();
+  std::optional<Recorded> none;
+  std::optional<Recorded>& last = unlike ? none : recorded[static_cast<std::size_t>(which)];
+  const bool known = timing == KernelTiming::none && last == wanted;
   if (!known) {
-    AFTERGLOW_CHECK(program.bind(inputs.bindings(), binding_of(result.image())));
+    if (bound != Bound{program.id(), wanted.images, program.bindings()})
+      AFTERGLOW_CHECK(program.bind(inputs.bindings(), binding_of(result.image())));
+    bound = {program.id(), wanted.images, program.bindings()};
     wanted.bindings = program.bindings();
   }
 
@@ -208,16 +223,16 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
     result.after(commands);
   };
   const auto start = Clock::now();
-  auto done = known ? submitter.submit_again() : submitter.submit([&](VkCommandBuffer commands) {
+  auto done = known ? submitter.submit_again(which) : submitter.submit([&](VkCommandBuffer commands) {
     inputs.before(program, commands);
     result.before(commands);
     program.record(commands, -1, queries, run);
     if (!separate) after(commands);
-  });
+  }, which);
   if (done) done = submitter.wait();
   // Layouts are where they were when the frame ends as it began.
-  recorded.reset();
-  if (done && timing == KernelTiming::none && input_layouts() == wanted.layouts) recorded = std::move(wanted);
+  last.reset();
+  if (done && timing == KernelTiming::none && input_layouts() == wanted.layouts) last = std::move(wanted);
   if (!done) return KernelTimer::blame(std::move(done).error(), program.plan());
   times.execute = milliseconds_since(start);
   if (stamps) {

@@ -43,4 +43,10 @@ void IdlePrograms::set_parameters(const Graph& graph) {
   }
 }
 
+Result<void> IdlePrograms::use(const std::shared_ptr<Histories>& histories) {
+  for (auto& [idle, variant] : variants_)
+    if (variant.program) AFTERGLOW_CHECK(variant.program->use(histories));
+  return {};
+}
+
 }  // namespace afterglow

@@ -23,6 +23,8 @@ class IdlePrograms {
                         const Graph& graph, const ProgramOptions& options, float brightest);
   /// See Program::set_parameters. Limits of `graph` count from here on.
   void set_parameters(const Graph& graph);
+  /// See Program::use.
+  Result<void> use(const std::shared_ptr<Histories>& histories);
   /// Programs made so far.
   int size() const { return static_cast<int>(variants_.size()); }
 

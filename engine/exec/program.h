@@ -20,6 +20,7 @@
 
 namespace afterglow {
 
+class Histories;     // exec/histories.h
 class PipelinePool;  // exec/pipeline_pool.h
 
 enum class Storage { fp32, fp16 };
@@ -52,12 +53,15 @@ struct ProgramOptions {
   /// kernels alone for which something has changed.
   bool keep_images = false;
   PipelinePool* pipelines = nullptr;  ///< shared with other programs of the device; null: the program's own
-  bool share_memory = true;           ///< images whose lifetimes do not overlap share bytes (never with `reference`)
+  /// Images of the graph's histories, shared with other programs; null: the program makes its own.
+  std::shared_ptr<Histories> histories;
+  bool share_memory = true;  ///< images whose lifetimes do not overlap share bytes (never with `reference`)
   std::uint64_t max_memory = 6ull << 30;
 };
 
 struct ProgramMemory {
   std::uint64_t arena = 0, sum = 0, lower_bound = 0;  ///< bytes of transient images: shared, unshared, least possible
+  std::uint64_t histories = 0;                        ///< of what frames hand on
 };
 
 /// An image of the caller's or of a Frame that a program reads or writes. Reads happen in SHADER_READ_ONLY_OPTIMAL, the
@@ -74,6 +78,8 @@ struct ImageBinding {
 /// Immutable structure; parameters may be rewritten between frames. Not thread-safe.
 class Program {
  public:
+  static constexpr int kUnlikeOthers = -1;
+
   /// Errors: script (shader, a parameter or input that is not given), device (limits, memory), io (over `max_memory`).
   static Result<std::unique_ptr<Program>> create(Device& device, ShaderLibrary& shaders, KernelCompiler& compiler,
                                                  const Graph& graph, const ProgramOptions& options);
@@ -88,8 +94,19 @@ class Program {
   /// for what `set_parameters` has changed since then. Parallel to the plan's kernels. Without `keep_images` all or
   /// none. `result_lost`: the result image does not hold what this program last wrote.
   std::vector<bool> kernels_to_run(const std::vector<ImageId>& changed_inputs, bool result_lost) const;
-  /// Notes that everything that had to run has run.
+  /// Notes that everything that had to run has run, in the frame that its histories began.
   void up_to_date();
+  /// What frames hand on to the next; null when the graph has no histories. `Histories::begin` says which frame `record`
+  /// records.
+  Histories* histories() const;
+  /// Other histories, which must have been fitted to this graph (or to one that it was reduced from). Commands recorded
+  /// before must not be submitted again; none may be in flight. Errors: other (they do not fit).
+  Result<void> use(std::shared_ptr<Histories> histories);
+  /// Frames with the same number are recorded alike, but for what `bindings` tells: 0 and 1 take turns where there are
+  /// histories. kUnlikeOthers: the frame has none before it; its commands are good for it alone, and `record` must not
+  /// be called for another one of these until it is done.
+  int recording() const;
+
   /// Tells programs apart for as long as the process lives.
   std::uint64_t id() const;
 

@@ -44,6 +44,7 @@ void record_kernel(const Device& device, VkCommandBuffer commands, const KernelC
   vkCmdPushConstants(commands, kernel.layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof sizes, sizes.data());
   vkCmdDraw(commands, 3, 1, 0, 0);
   vkCmdEndRendering(commands);
+  record_barriers(commands, kernel.after);
   device.end_label(commands);
 }
 

@@ -23,6 +23,7 @@ struct KernelCommands {
   Rect part;  ///< what is drawn of the target; whole groups of rows
   VkImageLayout target_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   KernelBarriers barriers;  ///< that must come before it
+  KernelBarriers after;     ///< and behind it
 };
 
 /// `result`: the targets that the program is bound to.

@@ -18,8 +18,8 @@ Result<Submitter> Submitter::create(const Device& device) {
   const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                              .commandPool = pool,
                                              .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                             .commandBufferCount = 1};
-  AFTERGLOW_VK(vkAllocateCommandBuffers(device.handle(), &allocate, &out.commands_),
+                                             .commandBufferCount = kBuffers};
+  AFTERGLOW_VK(vkAllocateCommandBuffers(device.handle(), &allocate, out.commands_.data()),
                "cannot allocate a command buffer");
   const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
   VkFence fence = VK_NULL_HANDLE;
@@ -38,25 +38,26 @@ Submitter& Submitter::operator=(Submitter&& other) noexcept {
   return *this;
 }
 
-Result<void> Submitter::submit(const std::function<void(VkCommandBuffer)>& record) {
-  AFTERGLOW_CHECK(this->record(record));
-  return submit_again();
+Result<void> Submitter::submit(const std::function<void(VkCommandBuffer)>& record, int which) {
+  AFTERGLOW_CHECK(this->record(record, which));
+  return submit_again(which);
 }
 
-Result<void> Submitter::record(const std::function<void(VkCommandBuffer)>& record) {
+Result<void> Submitter::record(const std::function<void(VkCommandBuffer)>& record, int which) {
+  VkCommandBuffer commands = commands_[static_cast<std::size_t>(which)];
   AFTERGLOW_CHECK(wait());
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  AFTERGLOW_VK(vkBeginCommandBuffer(commands_, &begin), "cannot record commands");
-  record(commands_);
-  AFTERGLOW_VK(vkEndCommandBuffer(commands_), "cannot record commands");
+  AFTERGLOW_VK(vkBeginCommandBuffer(commands, &begin), "cannot record commands");
+  record(commands);
+  AFTERGLOW_VK(vkEndCommandBuffer(commands), "cannot record commands");
   ++recordings_;
   return {};
 }
 
-Result<void> Submitter::submit_again() {
+Result<void> Submitter::submit_again(int which) {
   AFTERGLOW_CHECK(wait());
   const VkCommandBufferSubmitInfo buffer{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
-                                         .commandBuffer = commands_};
+                                         .commandBuffer = commands_[static_cast<std::size_t>(which)]};
   const VkSubmitInfo2 info{
       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &buffer};
   AFTERGLOW_VK(vkQueueSubmit2(device_->queue(), 1, &info, fence_.get()), "cannot submit");

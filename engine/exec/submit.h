@@ -1,7 +1,8 @@
-// One command buffer that is recorded, submitted and waited for, again and again; the same commands need not be
-// recorded twice.
+// Command buffers that are recorded, submitted and waited for, again and again, one at a time; the same commands need
+// not be recorded twice.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <utility>
 
@@ -12,6 +13,7 @@ namespace afterglow {
 
 class Submitter {
  public:
+  static constexpr int kBuffers = 3;  ///< `which` counts from 0
   static Result<Submitter> create(const Device& device);
   Submitter() = default;
   Submitter(Submitter&& other) noexcept { *this = std::move(other); }
@@ -20,11 +22,11 @@ class Submitter {
 
   /// Records anew with `record` and submits. Waits for the submission before, if it is still on its way. Errors:
   /// device.
-  Result<void> submit(const std::function<void(VkCommandBuffer)>& record);
+  Result<void> submit(const std::function<void(VkCommandBuffer)>& record, int which = 0);
   /// Records without submitting. Waits like `submit`. Errors: device.
-  Result<void> record(const std::function<void(VkCommandBuffer)>& record);
-  /// What was recorded last, once more or for the first time: nothing that it uses may have changed. Errors: device.
-  Result<void> submit_again();
+  Result<void> record(const std::function<void(VkCommandBuffer)>& record, int which = 0);
+  /// What was recorded last into this buffer, once more or for the first time: nothing that it uses may have changed. Errors: device.
+  Result<void> submit_again(int which = 0);
   /// Until the last submission is done; at once when there is none. Errors: device (lost).
   Result<void> wait();
   int recordings() const { return recordings_; }  ///< so far
@@ -33,7 +35,7 @@ class Submitter {
   const Device* device_ = nullptr;
   CommandPoolHandle pool_;
   FenceHandle fence_;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  std::array<VkCommandBuffer, kBuffers> commands_{};
   bool pending_ = false;
   int recordings_ = 0;
 };

@@ -1,5 +1,7 @@
 #include "graph/changes.h"
 
+#include "graph/history.h"
+
 namespace afterglow {
 
 std::vector<bool> kernels_to_run(const Graph& graph, const Plan& plan, const std::vector<bool>& changed_kernels,
@@ -8,7 +10,7 @@ std::vector<bool> kernels_to_run(const Graph& graph, const Plan& plan, const std
   for (const ImageId image : changed_images) changed[image] = true;
   for (std::size_t k = 0; k < plan.kernels.size(); ++k) {
     for (const int pass : plan.kernels[k].passes)
-      for (const auto& input : graph.passes[pass].inputs) run[k] = run[k] || changed[input.image];
+      for (const ImageId image : images_read(graph, graph.passes[pass])) run[k] = run[k] || changed[image];
     if (run[k]) changed[plan.kernels[k].output] = true;
   }
   return run;

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "graph/history.h"
+#include "graph/remove.h"
+
 namespace afterglow {
 namespace {
 
@@ -20,10 +23,11 @@ std::vector<ImageId> stand_ins(const Graph& graph, const std::vector<bool>& idle
 std::vector<bool> read_passes(const Graph& graph) {
   std::vector<bool> read(graph.images.size(), false), out(graph.passes.size(), false);
   read[graph.result] = true;
+  for (const auto& history : graph.histories) read[history.next] = true;
   for (std::size_t i = graph.passes.size(); i-- > 0;) {
     if (!read[graph.passes[i].output]) continue;
     out[i] = true;
-    for (const auto& input : graph.passes[i].inputs) read[input.image] = true;
+    for (const ImageId image : images_read(graph, graph.passes[i])) read[image] = true;
   }
   return out;
 }
@@ -33,34 +37,6 @@ void replace_images(Graph& graph, const std::vector<ImageId>& by) {
     for (auto& input : pass.inputs) input.image = by[input.image];
   for (auto& condition : graph.idle) condition.image = by[condition.image];
   graph.result = by[graph.result];
-}
-
-/// Takes passes out, with the images they make, and numbers the rest anew.
-void remove_passes(Graph& graph, const std::vector<bool>& remove) {
-  std::vector<ImageId> image_number(graph.images.size(), kNoImage);
-  std::vector<int> pass_number(graph.passes.size(), -1);
-  int passes = 0;
-  for (std::size_t i = 0; i < graph.passes.size(); ++i)
-    if (!remove[i]) pass_number[i] = passes++;
-  std::vector<GraphImage> images;
-  for (std::size_t i = 0; i < graph.images.size(); ++i) {
-    GraphImage& image = graph.images[i];
-    if (image.producer >= 0 && (image.producer = pass_number[image.producer]) < 0) continue;
-    image_number[i] = static_cast<ImageId>(images.size());
-    images.push_back(std::move(image));
-  }
-  graph.images = std::move(images);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < remove.size(); ++i)
-    if (!remove[i]) std::swap(graph.passes[kept++], graph.passes[i]);
-  graph.passes.resize(kept);
-
-  for (auto& pass : graph.passes) pass.output = image_number[pass.output];
-  for (auto& [name, id] : graph.auxiliary) id = image_number[id];
-  graph.source = image_number[graph.source];
-  for (auto& condition : graph.idle) condition.output = image_number[condition.output];
-  std::erase_if(graph.idle, [](const IdleCondition& condition) { return condition.output == kNoImage; });
-  replace_images(graph, image_number);
 }
 
 }  // namespace
@@ -85,13 +61,14 @@ Graph without_idle(const Graph& graph, const std::vector<bool>& idle) {
   const std::vector<bool> after = read_passes(out);
   std::vector<bool> gone(after.size());
   // Passes that nobody read before stay where they can: the plan drops and reports them.
-  const auto is_gone = [&](const PassInput& input) {
-    const int producer = graph.images[input.image].producer;
+  const auto is_gone = [&](ImageId image) {
+    const int producer = graph.images[image].producer;
     return producer >= 0 && gone[producer];
   };
   for (std::size_t i = 0; i < gone.size(); ++i)
-    gone[i] = !after[i] && (before[i] || std::ranges::any_of(out.passes[i].inputs, is_gone));
+    gone[i] = !after[i] && (before[i] || std::ranges::any_of(images_read(out, out.passes[i]), is_gone));
   remove_passes(out, gone);
+  separate_result(out);
   return out;
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "graph/history.h"
+
 namespace afterglow {
 namespace {
 
@@ -60,6 +62,60 @@ Result<void> validate_conditions(const Graph& graph) {
   return {};
 }
 
+/// Which pass makes each history's next image, which reads its previous one.
+Result<void> validate_history(const Graph& graph, const History& history) {
+  const auto wrong = [&](const std::string& what) {
+    return Error{ErrorKind::script,
+                 fmt::format("history '{}' of effect '{}': {}", history.name, history.effect, what)};
+  };
+  if (!is_image(graph, history.previous) || !is_image(graph, history.next))
+    return wrong("it is about no image of this graph");
+  const GraphImage &previous = graph.images[history.previous], &next = graph.images[history.next];
+  if (previous.producer >= 0 || history.previous == graph.source || history.previous == graph.result)
+    return wrong(fmt::format("'{}' cannot be what the frame before made", previous.name));
+  if (next.producer < 0) return wrong(fmt::format("no pass makes '{}' for the next frame", next.name));
+  if (history.next == graph.result) return wrong("the result cannot be kept for the next frame");
+  if (next.size != previous.size)
+    return wrong(fmt::format("it is {}×{}, but the next frame gets {}×{}", previous.size.width, previous.size.height,
+                             next.size.width, next.size.height));
+  if (history.pre_roll < 0) return wrong("its pre-roll is negative");
+  for (const double value : history.initial)
+    if (!std::isfinite(static_cast<float>(value))) return wrong("its first value is not finite");
+  if (history.first == kNoImage) return {};
+  if (!is_image(graph, history.first)) return wrong("its first image is no image of this graph");
+  const GraphImage& first = graph.images[history.first];
+  if (first.size != previous.size)
+    return wrong(fmt::format("it is {}×{}, but its first image is {}×{}", previous.size.width, previous.size.height,
+                             first.size.width, first.size.height));
+  if (history_of_previous(graph, history.first)) return wrong("its first image is itself of an earlier frame");
+  for (int pass = 0; pass <= first.producer; ++pass)
+    for (const auto& input : graph.passes[pass].inputs)
+      if (input.image == history.previous)
+        return wrong(fmt::format("'{}' is read before its first image is made", previous.name));
+  return {};
+}
+
+Result<void> validate_histories(const Graph& graph) {
+  std::set<std::string> names;
+  std::set<ImageId> images;
+  for (const auto& history : graph.histories) {
+    AFTERGLOW_CHECK(validate_history(graph, history));
+    if (!names.insert(history.name).second || !images.insert(history.previous).second ||
+        !images.insert(history.next).second)
+      return Error{ErrorKind::script, fmt::format("history '{}' of effect '{}': another one has its name or an image "
+                                                  "of it",
+                                                  history.name, history.effect)};
+  }
+  return {};
+}
+
+bool same_histories(const Graph& a, const Graph& b) {
+  return std::ranges::equal(a.histories, b.histories, [](const History& x, const History& y) {
+    return x.name == y.name && x.effect == y.effect && x.previous == y.previous && x.next == y.next &&
+           x.first == y.first && x.precise == y.precise;
+  });
+}
+
 bool same_conditions(const Graph& a, const Graph& b) {
   return std::ranges::equal(a.idle, b.idle, [](const IdleCondition& x, const IdleCondition& y) {
     return x.image == y.image && x.output == y.output;
@@ -88,13 +144,14 @@ Result<void> validate(const Graph& graph) {
   if (graph.images[graph.result].size != graph.images[graph.source].size)
     return Error{ErrorKind::script,
                  fmt::format("the result '{}' has another size than the source", graph.images[graph.result].name)};
-  return validate_conditions(graph);
+  AFTERGLOW_CHECK(validate_conditions(graph));
+  return validate_histories(graph);
 }
 
 bool same_structure(const Graph& a, const Graph& b) {
   if (a.images.size() != b.images.size() || a.passes.size() != b.passes.size()) return false;
   if (a.source != b.source || a.result != b.result || a.auxiliary != b.auxiliary) return false;
-  if (!same_conditions(a, b)) return false;
+  if (!same_conditions(a, b) || !same_histories(a, b)) return false;
   for (std::size_t i = 0; i < a.images.size(); ++i)
     if (a.images[i].size != b.images[i].size || a.images[i].producer != b.images[i].producer) return false;
   for (std::size_t i = 0; i < a.passes.size(); ++i) {

@@ -21,7 +21,7 @@ inline constexpr ImageId kNoImage = -1;
 struct GraphImage {
   std::string name;  ///< "source", "depth", or the name of the pass that makes it
   Size size;
-  int producer = -1;  ///< index of the pass that makes it; -1: an input of the graph
+  int producer = -1;  ///< index of the pass that makes it; -1: an input of the graph, or what a history holds
 };
 
 /// `copy`-free kinds of pass. `filter` is data; `pixel` and `sample` name a shader.
@@ -73,6 +73,20 @@ struct IdleCondition {
   double limit = 0;           ///< rounded to a 32-bit float, as parameters of shaders are
 };
 
+/// An image that one frame makes for the next. Both images have the same size. See graph/history.h.
+struct History {
+  std::string name;    ///< unique: "auto_exposure.exposure"
+  std::string effect;  ///< name of the effect's entry
+  ImageId previous = kNoImage;  ///< read: what `next` was in the frame before; no pass makes it
+  ImageId next = kNoImage;      ///< made by a pass; not the result
+  /// Read in place of `previous` when there is no frame before; made before anything reads `previous`. kNoImage: every
+  /// pixel is `initial` then.
+  ImageId first = kNoImage;
+  std::array<double, 4> initial{};  ///< rounded to 32-bit floats; may change without a rebuild
+  bool precise = true;              ///< in full floats, whatever the storage of the other images
+  int pre_roll = 1;  ///< earlier frames after which it hardly matters that there was none before them
+};
+
 struct Graph {
   std::vector<GraphImage> images;
   std::vector<Pass> passes;
@@ -81,11 +95,12 @@ struct Graph {
   ImageId result = kNoImage;                 ///< == source when nothing runs
   std::vector<Skipped> skipped;
   std::vector<IdleCondition> idle;  ///< in the order of the stack; limits may change without a rebuild
+  std::vector<History> histories;   ///< in the order in which effects ask for them
 };
 
 /// Checks what the script binding cannot break but a program might: ids in range, producers before readers, no image
 /// written twice, sizes ≥ 1, unique names, pixel-wise inputs as large as the target, conditions between images of one
-/// size. Errors (script) name effect and pass.
+/// size, histories whose images exist and fit. Errors (script) name effect and pass.
 Result<void> validate(const Graph& graph);
 
 /// True when b differs from a in dynamic parameter values alone, so that a program made for a can run b.

@@ -44,6 +44,20 @@ Json pass_json(const Graph& graph, const Pass& pass) {
   return out;
 }
 
+Json history_json(const Graph& graph, const History& history) {
+  Json out{{"name", history.name},
+           {"effect", history.effect},
+           {"previous", graph.images[history.previous].name},
+           {"next", graph.images[history.next].name}};
+  if (history.first != kNoImage)
+    out["first"] = graph.images[history.first].name;
+  else
+    out["first"] = history.initial;
+  out["precise"] = history.precise;
+  out["pre_roll"] = history.pre_roll;
+  return out;
+}
+
 }  // namespace
 
 std::string to_json(const Graph& graph) {
@@ -63,6 +77,7 @@ std::string to_json(const Graph& graph) {
                            {"looks_at", graph.images[condition.image].name},
                            {"brightest", condition.limit},
                            {"skipped_when", idle_reason(condition)}});
+  for (const auto& history : graph.histories) out["histories"].push_back(history_json(graph, history));
   return out.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

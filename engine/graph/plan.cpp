@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "graph/history.h"
+
 namespace afterglow {
 namespace {
 
@@ -12,10 +14,11 @@ constexpr std::size_t kMaxImagesPerKernel = 16;
 std::vector<bool> passes_that_matter(const Graph& graph) {
   std::vector<bool> read(graph.images.size(), false), keep(graph.passes.size(), false);
   read[graph.result] = true;
+  for (const auto& history : graph.histories) read[history.next] = true;
   for (int i = static_cast<int>(graph.passes.size()) - 1; i >= 0; --i) {
     if (!read[graph.passes[i].output]) continue;
     keep[i] = true;
-    for (const auto& input : graph.passes[i].inputs) read[input.image] = true;
+    for (const ImageId image : images_read(graph, graph.passes[i])) read[image] = true;
   }
   return keep;
 }
@@ -23,9 +26,10 @@ std::vector<bool> passes_that_matter(const Graph& graph) {
 std::vector<int> count_readers(const Graph& graph, const std::vector<bool>& keep) {
   std::vector<int> readers(graph.images.size(), 0);
   ++readers[graph.result];  // whoever runs the graph
+  for (const auto& history : graph.histories) ++readers[history.next];  // the next frame
   for (std::size_t i = 0; i < graph.passes.size(); ++i)
     if (keep[i])
-      for (const auto& input : graph.passes[i].inputs) ++readers[input.image];
+      for (const ImageId image : images_read(graph, graph.passes[i])) ++readers[image];
   return readers;
 }
 
@@ -89,14 +93,16 @@ void find_lifetimes(const Graph& graph, Plan& plan) {
   for (std::size_t k = 0; k < plan.kernels.size(); ++k) {
     const int now = static_cast<int>(k);
     for (const int pass : plan.kernels[k].passes)
-      for (const auto& input : graph.passes[pass].inputs)
-        if (const auto it = place_of.find(input.image); it != place_of.end()) plan.lifetimes[it->second].last = now;
+      for (const ImageId image : images_read(graph, graph.passes[pass]))
+        if (const auto it = place_of.find(image); it != place_of.end()) plan.lifetimes[it->second].last = now;
     place_of[plan.kernels[k].output] = plan.transient.size();
     plan.transient.push_back(plan.kernels[k].output);
     plan.lifetimes.push_back({now, now});
   }
-  if (const auto it = place_of.find(graph.result); it != place_of.end())
-    plan.lifetimes[it->second].last = static_cast<int>(plan.kernels.size()) - 1;
+  const int end = static_cast<int>(plan.kernels.size()) - 1;
+  if (const auto it = place_of.find(graph.result); it != place_of.end()) plan.lifetimes[it->second].last = end;
+  for (const auto& history : graph.histories)
+    if (const auto it = place_of.find(history.next); it != place_of.end()) plan.lifetimes[it->second].last = end;
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ struct Plan {
   struct Lifetime {
     int first = 0, last = 0;
   };                                ///< kernel indices, inclusive
-  std::vector<Lifetime> lifetimes;  ///< parallel to `transient`; the result lives to the end
+  std::vector<Lifetime> lifetimes;  ///< parallel to `transient`; the result and what histories keep live to the end
 };
 
 Plan make_plan(const Graph& graph, const PlanOptions& options);

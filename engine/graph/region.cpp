@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "graph/history.h"
+
 namespace afterglow {
 namespace {
 
@@ -70,7 +72,6 @@ Rect input_rect(const Graph& graph, const Pass& pass, const PassInput& input, co
   if (input.pixelwise) return target;
   const Size source = graph.images[input.image].size, made = graph.images[pass.output].size;
   if (pass.kind == PassKind::filter) return filter_rect(pass.filter, target, source, made);
-  if (pass.kind == PassKind::pixel) return target;
   if (!pass.reach) return {0, 0, source.width, source.height};
   const Reach reach{*pass.reach, *pass.reach};
   return source_rect(target, source, made, reach, reach, 1);
@@ -90,6 +91,11 @@ Regions regions(const Graph& graph, const Plan& plan, const Rect& wanted, int ro
   out.kernels.resize(plan.kernels.size());
   out.images.resize(graph.images.size());
   out.images[graph.result] = wanted;
+  // Later frames may read any pixel of what is kept for them, and another region may be wanted then.
+  for (const auto& history : graph.histories) {
+    const Size size = graph.images[history.next].size;
+    out.images[history.next] = {0, 0, size.width, size.height};
+  }
   for (std::size_t k = plan.kernels.size(); k-- > 0;) {
     const PlanKernel& kernel = plan.kernels[k];
     if (is_empty(out.images[kernel.output])) continue;
@@ -99,8 +105,13 @@ Regions regions(const Graph& graph, const Plan& plan, const Rect& wanted, int ro
       const Pass& pass = graph.passes[index];
       // All passes of a kernel make images of one size, at the same pixels. What flows from one to the next is no
       // image: its entry is set all the same, and no kernel draws it.
-      for (const auto& input : pass.inputs)
-        out.images[input.image] = united(out.images[input.image], input_rect(graph, pass, input, target));
+      for (const auto& input : pass.inputs) {
+        const Rect part = input_rect(graph, pass, input, target);
+        out.images[input.image] = united(out.images[input.image], part);
+        const History* history = history_of_previous(graph, input.image);
+        if (history && history->first != kNoImage)
+          out.images[history->first] = united(out.images[history->first], part);
+      }
     }
   }
   return out;

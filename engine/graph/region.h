@@ -15,7 +15,8 @@ struct Regions {
 
 /// What `wanted` of the result (within it, not empty) needs, found backwards through the plan: the same part of images
 /// that are read pixel by pixel; of a filter's source the corresponding part and the reach of its taps; of an image
-/// that a sample pass reads the corresponding part and the pass's reach, or all of it when the pass states none. Parts
+/// that a sample pass reads the corresponding part and the pass's reach, or all of it when the pass states none; all of
+/// what histories keep. Parts
 /// of kernels begin and end at multiples of `rows` (or at the image's edge): kernels may make so many at a time.
 Regions regions(const Graph& graph, const Plan& plan, const Rect& wanted, int rows = 1);
 

@@ -117,6 +117,48 @@ int graph_filter(lua_State* lua) {
   return 1;
 }
 
+/// `first` of a history: an image, or what every pixel is: up to four numbers, those that are missing 0.
+void read_first(lua_State* lua, TableReader& table, HistoryRequest& request) {
+  table.push("first");
+  const Value value = read_value(lua, -1);
+  if (const ImageRef* image = to_image(lua, -1))
+    request.first = *image;
+  else if (value.kind == Value::Kind::number)
+    request.initial[0] = value.number;
+  else if (value.kind == Value::Kind::list)
+    request.initial = value.list;
+  else if (value.kind != Value::Kind::nothing)
+    table.fail(failure(fmt::format("{}: first = {} is neither an image nor numbers", table.what(), value.shown()),
+                       {"first"}, "an image, a number, 1 to 4 numbers"));
+  lua_pop(lua, 1);
+}
+
+int graph_history(lua_State* lua) {
+  GraphBuilder& graph = graph_of(lua, "g:history { … }");
+  TableReader table(lua, 2, call_name(lua, graph, "g:history"));
+  table.allow({"first", "name", "pre_roll", "precise", "size"}, false);
+  HistoryRequest request;
+  request.name = table.text("name", 80);
+  request.size = read_size(table, lua);
+  request.precise = table.boolean("precise").value_or(true);
+  request.pre_roll = table.integer("pre_roll");
+  read_first(lua, table, request);
+  table.finish("history");
+  push_image(lua, graph.history(request, place_of(lua)));
+  return 1;
+}
+
+int graph_keep(lua_State* lua) {
+  GraphBuilder& graph = graph_of(lua, "g:keep(history, image)");
+  const ImageRef *history = to_image(lua, 2), *next = to_image(lua, 3);
+  if (!history || !next)
+    throw failure(fmt::format("effect '{}': g:keep: {} is not an image", graph.entry().effect,
+                              read_value(lua, history ? 3 : 2).shown()),
+                  {}, "g:keep(history, image)");
+  graph.keep(*history, *next, place_of(lua));
+  return 0;
+}
+
 int graph_input(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:input(\"depth\")");
   const Value name = read_value(lua, 2);
@@ -152,8 +194,11 @@ int graph_index(lua_State* lua) {
     lua_pushnumber(lua, context.time);
   else if (name == "fps")
     lua_pushnumber(lua, context.fps);
+  else if (name == "frame_time")
+    lua_pushnumber(lua, context.step / context.fps);
   else {
-    const std::vector<std::string> names{"filter", "fps", "frame", "input", "pass", "skip", "time"};
+    const std::vector<std::string> names{"filter", "fps",  "frame", "frame_time", "history",
+                                         "input",  "keep", "pass",  "skip",       "time"};
     throw failure(fmt::format("the graph has no {}", key.shown()), {}, join(names), nearest_name(name, names));
   }
   return 1;
@@ -185,9 +230,11 @@ void open_graph_binding(lua_State* lua) {
   push_kind(lua, kGraphKind);
   const luaL_Reg methods[] = {{"pass", &native<graph_pass, "pass">},
                               {"filter", &native<graph_filter, "filter">},
+                              {"history", &native<graph_history, "history">},
+                              {"keep", &native<graph_keep, "keep">},
                               {"input", &native<graph_input, "input">},
                               {"skip", &native<graph_skip, "skip">}};
-  lua_createtable(lua, 0, 4);
+  lua_createtable(lua, 0, 6);
   for (const auto& [name, function] : methods) {
     lua_pushcfunction(lua, function);
     lua_setfield(lua, -2, name);

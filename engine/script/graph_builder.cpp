@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "graph/history.h"
 
 namespace afterglow::script {
 namespace {
@@ -57,10 +58,13 @@ void GraphBuilder::begin(const StackEntry& entry, std::vector<std::string> input
   entry_ = &entry;
   inputs_ = std::move(inputs);
   skip_reason_.reset();
+  open_histories_.clear();
 }
 
 Graph GraphBuilder::finish(ImageId result) {
   graph_.result = result;
+  drop_unread_histories(graph_);
+  separate_result(graph_);
   return std::move(graph_);
 }
 

@@ -2,6 +2,7 @@
 // into a PassRequest. Failures carry the key of the request they are about, so that the binding can point at its line.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -46,6 +47,15 @@ struct FilterRequest {
   Filter filter;
 };
 
+struct HistoryRequest {
+  std::optional<std::string> name;
+  std::optional<Size> size;             ///< default: that of `first`
+  std::optional<ImageRef> first;        ///< else `initial`
+  std::array<double, 4> initial{};
+  bool precise = true;
+  std::optional<int> pre_roll;
+};
+
 /// Where a script asks for a pass.
 struct CallPlace {
   std::string file;
@@ -67,6 +77,12 @@ class GraphBuilder {
 
   ImageRef pass(const PassRequest& request, const CallPlace& place);
   ImageRef filter(FilterRequest request, const CallPlace& place);
+  /// What the frame before kept. Must be given its next image by `keep`, once, while the same entry is built.
+  ImageRef history(const HistoryRequest& request, const CallPlace& place);
+  void keep(const ImageRef& history, const ImageRef& next, const CallPlace& place);
+  /// The present entry has been built. Throws for histories that were not kept.
+  void end();
+
   /// Empty when the picture has no such image.
   std::optional<ImageRef> input(const std::string& name);
   void skip(std::string reason) { skip_reason_ = std::move(reason); }
@@ -89,6 +105,11 @@ class GraphBuilder {
   ImageRef add(Pass pass, Size size);
   void check_image(const Pass& pass, const std::string& key, const ImageRef& image) const;
   void check_size(const Pass& pass, const Size& size) const;
+  History* history_of(const ImageRef& image);
+  bool depends_on_history(const History& history) const;
+  ImageId copy_of(ImageId image, const CallPlace& place);
+  [[noreturn]] void fail_history(const History& history, const std::string& message, KeyPath key = {},
+                                 std::string allowed = {}) const;
   [[noreturn]] void fail(const Pass& pass, const std::string& message, KeyPath key = {}, std::string allowed = {},
                          std::string nearest = {}) const;
   void bind(Pass& pass, const PassRequest& request, const ShaderInterface& interface) const;
@@ -103,6 +124,8 @@ class GraphBuilder {
   Graph graph_;
   const StackEntry* entry_ = nullptr;
   std::vector<std::string> inputs_;
+  /// Of the present entry: histories that wait for `keep`, and the places that asked for them.
+  std::vector<std::pair<std::string, CallPlace>> open_histories_;
   std::map<std::string, int> names_;  // taken names; how often each was wanted
   std::optional<std::string> skip_reason_;
 };

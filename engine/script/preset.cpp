@@ -194,6 +194,7 @@ ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBu
   for (auto& input : optional_inputs(lua, run)) inputs.push_back(std::move(input));
   graph.begin(entry, std::move(inputs));
   const ImageRef image = run_build(lua, run, graph, source);
+  graph.end();
   if (image.id == source.id)
     graph.add_skipped(entry.name, graph.skip_reason().value_or("returned its source"));
   else if (const auto limit = idle_limit(lua, run, source))

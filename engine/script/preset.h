@@ -98,6 +98,8 @@ struct BuildContext {
   Size size;                              ///< of the source
   std::map<std::string, Size> auxiliary;  ///< inputs that the picture has: "depth", "normal"
   double frame = 1, time = 0, fps = 24;   ///< number in its sequence, seconds, pictures a second
+  double step = 1;       ///< frames since the one before it, whose images its histories hold (graph/history.h)
+  bool restart = false;  ///< no frame is before it: histories begin anew
   std::optional<Position> position = {};  ///< of its camera, when the picture says it
 };
 

@@ -60,6 +60,9 @@ bool LiveStack::update() {
   BuiltParts parts = s.builder.take();
   if (!parts.any()) return false;
   if (parts.structure) {
+    // Effects that look back go on where they were.
+    if (s.stack.stack && parts.structure->stack && !parts.structure->stack->take_histories(*s.stack.stack))
+      parts.structure->stack->reset_histories();
     std::swap(s.stack, *parts.structure);
     if (parts.structure->stack) s.builder.release(std::move(*parts.structure));
   }

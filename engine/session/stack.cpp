@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "exec/histories.h"
+#include "graph/history.h"
 #include "graph/plan.h"
 #include "graph/region.h"
 #include "session/calibration.h"
@@ -59,9 +61,17 @@ struct Stack::State {
   std::optional<Rect> region;  ///< that `program` was made for
   bool encoded = false;        ///< its result holds display codes
   bool prepared = false;
+  std::shared_ptr<Histories> histories = std::make_shared<Histories>();
   std::unique_ptr<Program> program;
   IdlePrograms idle;
   double script_ms = 0, compile_ms = 0;
+
+  /// Before the programs are made: what earlier frames handed on stays where it still means the same.
+  Result<void> fit_histories() {
+    const bool half = choice.execution.storage == Storage::fp16 && !options.reference;
+    return histories->fit(*device, graph,
+                          {.half = half, .storage = choice.execution.storage_reads, .max_memory = options.max_memory});
+  }
 
   ProgramOptions options_of_programs() const {
     ProgramOptions out = program_options(choice.execution);
@@ -73,6 +83,7 @@ struct Stack::State {
     out.keep_images = options.keep_images;
     out.max_memory = options.max_memory;
     out.pipelines = &shared->pipelines;
+    out.histories = histories;
     return out;
   }
 
@@ -196,11 +207,17 @@ Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
   const std::uint64_t bytes_per_pixel = state_->options.precision == Precision::fp16 && !reference ? 8 : 16;
   const Plan plan = make_plan(graph, {.joining = reference ? Joining::none : Joining::all});
   std::vector<Block> blocks;
+  std::uint64_t kept = 0;
   for (std::size_t i = 0; i < plan.transient.size(); ++i) {
     const auto pixels = static_cast<std::uint64_t>(graph.images[plan.transient[i]].size.area());
+    // Both images of a history have memory of their own; one of them counts among the inputs below.
+    if (history_of_next(graph, plan.transient[i])) {
+      kept += pixels * (is_precise(graph, plan.transient[i]) ? 32 - bytes_per_pixel : bytes_per_pixel);
+      continue;
+    }
     blocks.push_back({pixels * bytes_per_pixel, 1, plan.lifetimes[i].first, plan.lifetimes[i].last});
   }
-  std::uint64_t total = place(blocks, !reference && !state_->options.keep_images).total;
+  std::uint64_t total = kept + place(blocks, !reference && !state_->options.keep_images).total;
   for (const auto& image : graph.images)
     if (image.producer < 0) total += static_cast<std::uint64_t>(image.size.area()) * bytes_per_pixel;
   return total;
@@ -230,12 +247,17 @@ Result<void> Stack::prepare(const BuildContext& context, const std::optional<Dis
   state_->encoded = encoded;
   state_->graph = std::move(graph);
   state_->prepared = true;
-  if (reusable) {
+  if (!reusable) {
+    AFTERGLOW_CHECK(state_->make());
+  } else {
     if (state_->program) state_->program->set_parameters(state_->graph);
     state_->idle.set_parameters(state_->graph);
-    return {};
   }
-  return state_->make();
+  if (runs())
+    state_->histories->begin(context.frame, context.step, context.restart);
+  else
+    state_->histories->reset();
+  return {};
 }
 
 /// The program of `graph`.
@@ -244,6 +266,7 @@ Result<void> Stack::State::make() {
   idle = {};
   if (graph.result == graph.source) return {};
   const auto start = Clock::now();
+  AFTERGLOW_CHECK(fit_histories());
   auto made = Program::create(*device, *scripts.shaders, shared->compiler, graph, options_of_programs());
   prepared = made.ok();
   if (!made) return std::move(made).error();
@@ -280,8 +303,19 @@ Result<void> Stack::bind(const std::map<std::string, ImageBinding>& inputs, cons
   return state_->program->bind(inputs, result);
 }
 
-void Stack::record(VkCommandBuffer commands) const {
-  if (state_->program) state_->program->record(commands);
+void Stack::record(VkCommandBuffer commands) {
+  if (!state_->program) return;
+  state_->program->record(commands);
+  state_->histories->made();
+}
+
+void Stack::reset_histories() { state_->histories->reset(); }
+
+Result<void> Stack::take_histories(Stack& other) {
+  if (!state_->program) return {};
+  state_->histories->take(*other.state_->histories);
+  AFTERGLOW_CHECK(state_->program->use(state_->histories));
+  return state_->idle.use(state_->histories);
 }
 
 }  // namespace afterglow

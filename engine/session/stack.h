@@ -124,9 +124,17 @@ class Stack {
   /// Format that the result image must have: VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT, or with a
   /// display encoding VK_FORMAT_R8G8B8A8_UNORM.
   VkFormat result_format() const;
-  /// See Program::bind and Program::record for layouts and barriers.
+  /// What earlier frames handed on is forgotten: the next `prepare` begins anew, as BuildContext::restart does.
+  void reset_histories();
+  /// Goes on where `other` is in its frames, with the images of its histories that mean the same here. `other` is left
+  /// without them and must not be used any more; no submission of either may be in flight. Errors: other.
+  Result<void> take_histories(Stack& other);
+
+  /// See Program::bind and Program::record for layouts and barriers. Where effects have histories, the frame that is
+  /// recorded is the one that `prepare` was given last (BuildContext::frame, step, restart): count frames, and submit
+  /// in the order of recording. Preparing a number once more makes that frame once more, from the same frame before it.
   Result<void> bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result);
-  void record(VkCommandBuffer commands) const;
+  void record(VkCommandBuffer commands);
 
   double script_milliseconds() const;   ///< loading and building so far
   double compile_milliseconds() const;  ///< shaders and pipelines so far

@@ -16,6 +16,17 @@
 ---@field intensity? number|afterglow.Moving  Factor of the streaks. 0: none. 0…100, default 0.4
 ---@field tint? number[]|string|afterglow.Moving  Colour of the streaks. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.55, 0.55, 1}
 
+---Exposes for middle grey by a histogram of the picture, and adapts to changes over time.
+---@class afterglow.settings.auto_exposure : afterglow.EntryKeys
+---@field compensation? number|afterglow.Moving  Brighter or darker than middle grey, in stops. -16…16 EV, default 0
+---@field min_ev? number|afterglow.Moving  Scenes darker than this are not brightened further. 0: an average of middle grey (0.18). -16…16 EV, default -6
+---@field max_ev? number|afterglow.Moving  Scenes brighter than this are not darkened further. -16…16 EV, default 6
+---@field low_percentile? number|afterglow.Moving  This share of the picture, its darkest part, does not count. 0…99 %, default 40
+---@field high_percentile? number|afterglow.Moving  What is brighter than this share of the picture does not count. 1…100 %, default 90
+---@field metering? "average"|"center"|afterglow.OfTime  average: the whole picture alike. center: its middle counts most. default "average"
+---@field speed_up? number|afterglow.Moving  How fast the exposure follows when the scene gets brighter. 0.01…1000 EV/s, default 4
+---@field speed_down? number|afterglow.Moving  How fast it follows when the scene gets darker. 0.01…1000 EV/s, default 2
+
 ---Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.
 ---@class afterglow.settings.bloom : afterglow.EntryKeys
 ---@field mode? "additive"|"scattering"|afterglow.OfTime  additive: glow is added, the picture gets brighter. scattering: light is spread as in a lens, its sum stays. default "additive"
@@ -110,6 +121,14 @@
 ---@field size? number|afterglow.Moving  Size of a grain. 1…16 px, default 1
 ---@field colored? number|afterglow.Moving  0: grey grain as of black-and-white film. 1: each channel has its own. 0…1, default 0
 ---@field seed? integer|afterglow.Moving  Another number, other grain. integer ≥ 0, default 0
+
+---Takes down single bright pixels that flash up in one frame of a sequence.
+---@class afterglow.settings.firefly_stabilisation : afterglow.EntryKeys
+---@field threshold? number|afterglow.Moving  Brightness (largest channel) up to which a pixel is left alone; linear. 0…1000000, default 1
+---@field tolerance? number|afterglow.Moving  How many times as bright as its surroundings or its past a pixel may be. 1…1000, default 2
+---@field search? integer|afterglow.Moving  How far a small light may move from frame to frame and still be known. integer 0…16 px, default 3
+---@field frames? integer|afterglow.Moving  How many earlier frames must have had the light: more take down fireflies that come twice. integer 1…4, default 2
+---@field first_frame? "keep"|"clamp"|afterglow.OfTime  Where there are no earlier frames. keep: everything stays. clamp: single bright pixels go, small lights too. default "keep"
 
 ---Fast approximate anti-aliasing: smooths jagged edges; after tone mapping.
 ---@class afterglow.settings.fxaa : afterglow.EntryKeys
@@ -224,6 +243,7 @@
 
 ---@class afterglow
 ---@field anamorphic_streaks fun(settings: afterglow.settings.anamorphic_streaks): afterglow.Entry  Long horizontal flares from bright lights, as of an anamorphic lens.
+---@field auto_exposure fun(settings: afterglow.settings.auto_exposure): afterglow.Entry  Exposes for middle grey by a histogram of the picture, and adapts to changes over time.
 ---@field bloom fun(settings: afterglow.settings.bloom): afterglow.Entry  Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.
 ---@field bokeh_blur fun(settings: afterglow.settings.bokeh_blur): afterglow.Entry  Blurs the picture as a lens out of focus: bright points become discs or polygons.
 ---@field box_bloom fun(settings: afterglow.settings.box_bloom): afterglow.Entry  A simple, punchy glow: hard linear threshold, four-sample blur down and up, added to the picture.
@@ -236,6 +256,7 @@
 ---@field dual_kawase fun(settings: afterglow.settings.dual_kawase): afterglow.Entry  A wide, smooth, cheap blur of the whole picture.
 ---@field edge_detection fun(settings: afterglow.settings.edge_detection): afterglow.Entry  Draws lines where brightness changes: Sobel, Scharr or Roberts.
 ---@field film_grain fun(settings: afterglow.settings.film_grain): afterglow.Entry  Grain of film: fine noise, new in each frame; best after tone mapping.
+---@field firefly_stabilisation fun(settings: afterglow.settings.firefly_stabilisation): afterglow.Entry  Takes down single bright pixels that flash up in one frame of a sequence.
 ---@field fxaa fun(settings: afterglow.settings.fxaa): afterglow.Entry  Fast approximate anti-aliasing: smooths jagged edges; after tone mapping.
 ---@field glitch fun(settings: afterglow.settings.glitch): afterglow.Entry  Scan lines that jump, a shaking picture, colours that part.
 ---@field lens_dirt fun(settings: afterglow.settings.lens_dirt): afterglow.Entry  Dust on the lens that lights up around bright lights.

@@ -152,8 +152,8 @@ TEST_F(BuildMessages, TheGraphAndImages) {
   EXPECT_EQ(error("g.pass { shader = \"plain\" }"),
             "effects/probe.lua:4: error: the first argument is a table, not the graph; allowed: g:pass { … }");
   EXPECT_EQ(error("g:pas {}"),
-            "effects/probe.lua:4: error: the graph has no \"pas\"; allowed: filter, fps, frame, input, pass, skip, "
-            "time; did you mean 'pass'?");
+            "effects/probe.lua:4: error: the graph has no \"pas\"; allowed: filter, fps, frame, "
+            "frame_time, history, input, keep, pass, skip, time; did you mean 'pass'?");
   EXPECT_EQ(error("local w = source.widht"),
             "effects/probe.lua:4: error: an image has no \"widht\"; allowed: width, height; did you mean 'width'?");
   EXPECT_EQ(error("source.width = 5"), "effects/probe.lua:4: error: attempt to index a image value (local 'source')");
@@ -166,6 +166,36 @@ TEST_F(BuildMessages, TheGraphAndImages) {
   EXPECT_EQ(error("g:skip()"), "effects/probe.lua:4: error: g:skip: nil is not a reason; allowed: a text");
   EXPECT_EQ(error("g:skip(\"why\") return g:pass { shader = \"plain\", source = source }"),
             "effects/probe.lua:3: error: build of effect 'probe' called g:skip, but did not return its source");
+}
+
+TEST_F(BuildMessages, Histories) {
+  const std::string at = "effects/probe.lua:4: error: history 'glow.old' of effect 'probe': ";
+  const std::string old = "local h = g:history { name = \"old\", size = source } ";
+  EXPECT_EQ(error(old + "return source"),
+            "effects/probe.lua:4: error: history 'glow.old' of effect 'probe' is given nothing to keep for the next "
+            "frame; allowed: g:keep(history, image)");
+  EXPECT_EQ(error("g:history { name = \"old\" }"),
+            at + "its size is not known; allowed: size = an image, {width, height}; first = an image");
+  EXPECT_EQ(error("g:history { name = \"old\", size = source,\n first = \"black\" }"),
+            "effects/probe.lua:5: error: pass 'glow.old' of effect 'probe': first = \"black\" is neither an image nor "
+            "numbers; allowed: an image, a number, 1 to 4 numbers");
+  EXPECT_EQ(error("g:history { name = \"old\", size = source,\n pre_roll = -1 }"),
+            "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': pre_roll = -1 is out of range; allowed: "
+            "0…10000 frames");
+  EXPECT_EQ(error("g:history { name = \"old\", size = { 4, 4 },\n first = source }"),
+            "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': 'first' is 64×32, the history 4×4; "
+            "allowed: 4×4");
+  EXPECT_EQ(error("g:history { size = source, frist = 1 }"),
+            "effects/probe.lua:4: error: effect 'probe': g:history has no 'frist'; allowed: first, name, pre_roll, "
+            "precise, size; did you mean 'first'?");
+  EXPECT_EQ(error("g:keep(source, source)"),
+            "effects/probe.lua:4: error: effect 'probe': g:keep: the first image is no history of this effect; "
+            "allowed: what g:history returned");
+  EXPECT_EQ(error("g:keep(source, 5)"),
+            "effects/probe.lua:4: error: effect 'probe': g:keep: 5 is not an image; allowed: g:keep(history, image)");
+  EXPECT_EQ(error(old + "g:keep(h, source) g:keep(h, source)"), at + "g:keep was called for it before");
+  EXPECT_EQ(error("local h = g:history { name = \"old\", size = { 4, 4 } } g:keep(h, source)"),
+            at + "it is 4×4, but is to keep 64×32; allowed: 4×4");
 }
 
 TEST_F(BuildMessages, WhatBuildReturns) {

@@ -1,0 +1,6 @@
+local fx = require "afterglow"
+
+return fx.stack {
+  fx.auto_exposure { compensation = 0.5, metering = "center" },
+  fx.tone_mapping { mode = "neutral" },
+}

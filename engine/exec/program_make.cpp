@@ -1,0 +1,180 @@
+// Makes what a Program is made of.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "exec/program_state.h"
+#include "gpu/error.h"
+#include "gpu/pipeline.h"
+#include "graph/history.h"
+
+namespace afterglow {
+
+bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted) {
+  VkFormatProperties properties{};
+  vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
+  return (properties.optimalTilingFeatures & wanted) == wanted;
+}
+
+bool Program::State::hardware_filter() const {
+  const auto filters = [&](VkFormat of) { return supports(device, of, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT); };
+  return options.hardware_filter && !options.reference && filters(format) &&
+         (graph.histories.empty() || filters(VK_FORMAT_R32G32B32A32_SFLOAT));
+}
+
+/// The linear image that a result by rows is.
+ImageDesc Program::State::result_desc() const {
+  return {.name = "result",
+          .size = graph.images[graph.result].size,
+          .format = result_format(),
+          .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
+          .tiling = VK_IMAGE_TILING_LINEAR};
+}
+
+VkImageLayout Program::State::target_layout(ImageId output) const {
+  if (history_of_next(graph, output)) return VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  const bool general = output == graph.result ? result_rows > 1 : linear;
+  return general ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+}
+
+VkFormat Program::State::image_format(ImageId image) const {
+  if (image == graph.result) return result_format();
+  return is_precise(graph, image) ? VK_FORMAT_R32G32B32A32_SFLOAT : format;
+}
+
+/// What the device must be able to do, before anything is made.
+Result<void> Program::State::check() {
+  if (graph.result != graph.source && graph.images[graph.result].producer < 0) {
+    return Error{ErrorKind::other, fmt::format("the result '{}' is an input", graph.images[graph.result].name)};
+  }
+  for (const auto& kernel : plan.kernels) {
+    const GraphImage& image = graph.images[kernel.output];
+    AFTERGLOW_CHECK(check_image(device, {.name = image.name,
+                                         .size = image.size,
+                                         .format = image_format(kernel.output),
+                                         .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}));
+  }
+  return {};
+}
+
+Result<std::vector<KernelDesc>> Program::State::describe(ShaderLibrary& shaders) {
+  const DescribeOptions describe{.hardware_filter = hardware_filter(),
+                                 .half_storage = options.storage == Storage::fp16,
+                                 .codes = options.codes,
+                                 .storage_reads = storage_reads,
+                                 .source_is_storage = options.source_is_storage,
+                                 .rows = options.reference ? 1 : options.rows,
+                                 .worth = options.worth};
+  std::vector<KernelDesc> descs;
+  for (const auto& kernel : plan.kernels) {
+    AFTERGLOW_TRY(KernelDesc desc, describe_kernel(shaders, graph, kernel, describe));
+    descs.push_back(std::move(desc));
+  }
+  return descs;
+}
+
+/// The images between kernels, and how many rows their kernels and the last one really make at a time.
+Result<void> Program::State::make_images(std::vector<KernelDesc>& descs) {
+  ArenaOptions wanted{.format = format,
+                      .share = options.share_memory && !options.reference && !options.keep_images,
+                      .readable = options.reference,
+                      .storage = storage_reads,
+                      .rows = {},
+                      .max_memory = options.max_memory};
+  for (std::size_t i = 0; i < descs.size(); ++i)
+    if (history_of_next(graph, plan.kernels[i].output)) descs[i].rows = 1;
+  linear = std::ranges::any_of(descs, [](const KernelDesc& desc) { return desc.rows > 1; });
+  if (linear)
+    for (const auto& desc : descs) wanted.rows.push_back(desc.rows);
+  AFTERGLOW_TRY(arena, Arena::create(device, graph, plan, wanted));
+  for (std::size_t i = 0; i < descs.size(); ++i) {
+    const ImageId output = plan.kernels[i].output;
+    const RowTargets* targets = arena.row_targets(output);
+    if (output == graph.result) {
+      descs[i].rows = options.result_by_rows ? RowTargets::possible(device, result_desc(), descs[i].rows) : 1;
+      result_rows = descs[i].rows;
+    } else {
+      descs[i].rows = targets ? targets->rows() : 1;
+    }
+  }
+  return {};
+}
+
+/// What a kernel that binds these images may read besides histories, which are ready to be read as soon as they are made.
+std::vector<ImageId> Program::State::reads_of(const std::vector<ImageId>& bound) const {
+  std::vector<ImageId> out;
+  for (const ImageId image : bound) {
+    const History* history = history_of_previous(graph, image);
+    const ImageId read = history ? history->first : image;
+    if (read != kNoImage && !history_of_next(graph, read)) out.push_back(read);
+  }
+  return out;
+}
+
+Result<void> Program::State::compile(KernelCompiler& compiler, const std::vector<KernelDesc>& descs) {
+  AFTERGLOW_TRY(compiled, compile_kernels(compiler, descs));
+  std::vector<const CompiledKernel*> pointers;
+  for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
+    AFTERGLOW_TRY(std::vector<ImageId> bind, images_of_slots(graph, plan.kernels[i], compiled_of(i)));
+    reads.push_back(reads_of(bind));
+    images.push_back(std::move(bind));
+    pointers.push_back(&compiled_of(i));
+  }
+  AFTERGLOW_TRY(sampler, create_sampler(device, hardware_filter() ? VK_FILTER_LINEAR : VK_FILTER_NEAREST));
+  AFTERGLOW_TRY(parameters, ParameterBuffer::create(device, graph, plan, pointers));
+  return {};
+}
+
+Result<void> Program::State::make_pipelines() {
+  std::vector<std::string> names(compiled.unique.size());
+  for (std::size_t i = plan.kernels.size(); i-- > 0;) names[compiled.index[i]] = plan.kernels[i].name;
+  AFTERGLOW_TRY(pipelines, KernelPipelines::create(device, compiled.unique, names, VK_FORMAT_UNDEFINED, options.pipelines));
+  return {};
+}
+
+/// Uniform blocks and transient images stay for good; inputs are written by `bind`, histories by `use`.
+Result<void> Program::State::make_descriptors() {
+  std::vector<SetNeeds> needs;
+  for (int which = 0; which < sets(); ++which)
+    for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
+      const CompiledKernel& kernel = compiled_of(i);
+      needs.push_back({.layout = pipelines.layout(kernel).set.get(),
+                       .block = {parameters.buffer(), parameters.offset(i), kernel.block_size},
+                       .images = descriptor_types(kernel)});
+    }
+  AFTERGLOW_TRY(descriptors, Descriptors::create(device, needs));
+  for (int which = 0; which < sets(); ++which) write_set(which, [this](ImageId id) { return look_between(id); });
+  return {};
+}
+
+/// Those given, or the program's own.
+Result<void> Program::State::make_histories() {
+  if (graph.histories.empty()) return {};
+  histories = options.histories;
+  if (histories) return {};
+  histories = std::make_shared<Histories>();
+  return histories->fit(device, graph,
+                        {.half = options.storage == Storage::fp16,
+                         .storage = storage_reads,
+                         .max_memory = options.max_memory - std::min(options.max_memory, arena.memory().arena)});
+}
+
+/// What each kernel draws.
+Result<void> Program::State::find_parts() {
+  const auto whole = [this](ImageId id) {
+    return Rect{0, 0, graph.images[id].size.width, graph.images[id].size.height};
+  };
+  if (options.region) {
+    const Rect &part = *options.region, all = whole(graph.result);
+    if (part.width < 1 || part.height < 1 || part.x < 0 || part.y < 0 || part.x + part.width > all.width ||
+        part.y + part.height > all.height)
+      return Error{ErrorKind::other, "the region is not within the picture"};
+    parts = regions(graph, plan, part, options.rows);
+    return {};
+  }
+  for (const auto& kernel : plan.kernels) parts.kernels.push_back(whole(kernel.output));
+  for (std::size_t i = 0; i < graph.images.size(); ++i) parts.images.push_back(whole(static_cast<ImageId>(i)));
+  return {};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,137 @@
+// Records the kernels of a Program with their barriers.
+#include <algorithm>
+#include <set>
+
+#include "exec/program_state.h"
+#include "graph/history.h"
+
+namespace afterglow {
+namespace {
+
+/// An image that is filled with one value and read from here on. Frames before this one may have drawn and read it.
+VkImageMemoryBarrier2 before_filling(VkImage image) {
+  return image_barrier(image,
+                       VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT |
+                           VK_PIPELINE_STAGE_2_TRANSFER_BIT,
+                       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                       VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+}
+
+VkImageMemoryBarrier2 after_filling(VkImage image, VkImageLayout layout) {
+  return image_barrier(image, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                       reading_access(layout), layout);
+}
+
+}  // namespace
+
+/// The image that barriers name for this one, or null.
+VkImage Program::State::barrier_image(ImageId id, int parity) const {
+  if (const GpuImage* history = history_image(id, parity)) return history->get();
+  const UnboundImage* image = linear ? nullptr : arena.image(id);
+  return image ? image->get() : VkImage{VK_NULL_HANDLE};
+}
+
+/// Targets, sizes and barriers: fixed until other histories are used.
+void Program::State::make_commands() {
+  begin.images.clear();
+  for (const VkImage image : arena.linear_images()) begin.images.push_back(into_general(image));
+  for (const int parity : {kEven, kOdd}) {
+    auto barriers = kernel_barriers(
+        plan, reads, [&](ImageId id) { return barrier_image(id, parity); }, read_layout());
+    auto& commands = kernels[static_cast<std::size_t>(parity)];
+    commands.clear();
+    for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
+      const ImageId output = plan.kernels[i].output;
+      const UnboundImage* target = arena.image(output);
+      const RowTargets* by_rows = arena.row_targets(output);
+      const GpuImage* history = history_image(output, parity);
+      std::vector<VkImageView> targets;
+      if (history)
+        targets = {history->view()};
+      else if (by_rows)
+        targets = by_rows->views();
+      else if (target)
+        targets = {target->view()};
+      barriers[i].memory = linear && i > 0;
+      KernelBarriers after;
+      if (history) after.images = {before_reading(history->get(), history_layout())};
+      commands.push_back({.name = plan.kernels[i].name,
+                          .pipeline = pipelines.pipeline(compiled.index[i]),
+                          .layout = pipelines.layout(compiled_of(i)).pipeline.get(),
+                          .set = descriptors.set(set_index(histories ? parity : kEven, i)),
+                          .targets = std::move(targets),
+                          .rows = compiled_of(i).rows,
+                          .target_size = graph.images[output].size,
+                          .first_image_size = images[i].empty() ? Size{} : graph.images[images[i].front()].size,
+                          .part = parts.kernels[i],
+                          .target_layout = target_layout(output),
+                          .barriers = std::move(barriers[i]),
+                          .after = std::move(after)});
+    }
+  }
+}
+
+/// Fills the previous images that have neither a frame before them nor a first image.
+void Program::State::record_initial(VkCommandBuffer commands) const {
+  for (const auto& history : graph.histories) {
+    if (history.first != kNoImage || !lacks_previous(history)) continue;
+    const VkImage image = histories->image(history.name, parity())->get();
+    const VkImageMemoryBarrier2 before = before_filling(image), after = after_filling(image, history_layout());
+    VkClearColorValue value{};
+    for (std::size_t i = 0; i < 4; ++i) value.float32[i] = static_cast<float>(history.initial[i]);
+    const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    afterglow::record_barriers(commands, &before, 1);
+    vkCmdClearColorImage(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &all);
+    afterglow::record_barriers(commands, &after, 1);
+  }
+}
+
+void Program::State::record_one(VkCommandBuffer commands, std::size_t kernel, KernelBarriers barriers) const {
+  KernelCommands one = kernels[static_cast<std::size_t>(parity())][kernel];
+  if (begins_anew()) one.set = descriptors.set(set_index(kFirst, kernel));
+  one.barriers = std::move(barriers);
+  record_kernel(device, commands, one, result);
+}
+
+void Program::State::record_all(VkCommandBuffer commands, const std::function<void(std::size_t)>& stamp) const {
+  const auto& all = kernels[static_cast<std::size_t>(parity())];
+  const bool anew = begins_anew();
+  afterglow::record_barriers(commands, begin);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (anew)
+      record_one(commands, i, all[i].barriers);
+    else
+      record_kernel(device, commands, all[i], result);
+    stamp(i + 1);
+  }
+}
+
+/// Some kernels: images that the others have made are in the layout for reading already and stay so.
+void Program::State::record_some(VkCommandBuffer commands, const std::vector<bool>& run,
+                                 const std::function<void(std::size_t)>& stamp) const {
+  Plan some;
+  std::vector<std::vector<ImageId>> read;
+  std::set<ImageId> made;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    if (!run[i]) continue;
+    some.kernels.push_back(plan.kernels[i]);
+    read.push_back(reads[i]);
+    made.insert(plan.kernels[i].output);
+  }
+  const auto image_of = [&](ImageId id) {
+    return made.contains(id) ? barrier_image(id, parity()) : VkImage{VK_NULL_HANDLE};
+  };
+  auto barriers = kernel_barriers(some, read, image_of, read_layout());
+  for (std::size_t i = 0, next = 0; i < run.size(); ++i) {
+    if (run[i]) {
+      KernelBarriers before = std::move(barriers[next++]);
+      before.memory = linear;
+      record_one(commands, i, std::move(before));
+    }
+    stamp(i + 1);
+  }
+}
+
+}  // namespace afterglow

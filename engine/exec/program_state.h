@@ -1,0 +1,122 @@
+// What a Program is made of. For program.cpp and the files that make and record it.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "exec/arena.h"
+#include "exec/barriers.h"
+#include "exec/describe.h"
+#include "exec/descriptors.h"
+#include "exec/histories.h"
+#include "exec/kernel_pipelines.h"
+#include "exec/parameters.h"
+#include "exec/program.h"
+#include "exec/record.h"
+
+namespace afterglow {
+
+/// Whether optimally tiled images of the format can be used so.
+bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted);
+
+struct Program::State {
+  State(Device& device_in, const Graph& graph_in, const ProgramOptions& options_in)
+      : device(device_in), graph(graph_in), options(options_in) {}
+
+  Device& device;
+  Graph graph;
+  ProgramOptions options;
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  Plan plan;
+  Regions parts;
+  std::vector<bool> changed;  ///< kernels with new parameters since the last run; all before the first
+  std::uint64_t serial = 0;  ///< Program::id
+
+  CompiledKernels compiled;
+  std::vector<std::vector<ImageId>> images;  ///< to bind, parallel to the plan's kernels
+  std::vector<std::vector<ImageId>> reads;   ///< what must be ready to be read before each kernel
+  ParameterBuffer parameters;
+  Arena arena;
+  KernelPipelines pipelines;  ///< of compiled.unique
+  SamplerHandle sampler;
+  Descriptors descriptors;
+  /// By which of a history's two images is the previous one; alike without histories.
+  std::array<std::vector<KernelCommands>, 2> kernels;
+  KernelBarriers begin;  ///< before the first kernel
+  std::map<ImageId, ImageBinding> inputs;
+  std::vector<VkImageView> result;
+  int result_rows = 1;
+  bool storage_reads = false;
+  bool linear = false;  ///< images between kernels stay in GENERAL
+  int bindings = 0, uses = 0;  ///< of inputs and result; of histories
+  std::shared_ptr<Histories> histories;  ///< null when the graph has none
+  std::uint64_t ran_turn = 0;            ///< Histories::turn of the last run
+
+  /// Sets of descriptors for each kernel: one for each image that a history's previous one may be, and one for frames
+  /// that have none before them.
+  enum SetOf { kEven = 0, kOdd = 1, kFirst = 2, kSets = 3 };
+  std::size_t set_index(int which, std::size_t kernel) const {
+    return static_cast<std::size_t>(which) * plan.kernels.size() + kernel;
+  }
+  int sets() const { return histories ? kSets : 1; }
+  int parity() const { return histories ? histories->previous() : 0; }
+
+  /// Images between kernels; one layout for both ways of reading.
+  VkImageLayout read_layout() const {
+    return storage_reads || linear ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  }
+  /// Histories are never linear: kernels that make them write one row at a time.
+  VkImageLayout history_layout() const {
+    return storage_reads ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  }
+  VkImageLayout source_layout() const {
+    return options.source_is_storage && storage_reads ? VK_IMAGE_LAYOUT_GENERAL
+                                                      : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  }
+  VkImageLayout target_layout(ImageId output) const;
+  VkFormat result_format() const { return options.codes ? VK_FORMAT_R8G8B8A8_UNORM : format; }
+  VkFormat image_format(ImageId image) const;
+  bool hardware_filter() const;
+  ImageDesc result_desc() const;
+  const CompiledKernel& compiled_of(std::size_t kernel) const { return compiled.unique[compiled.index[kernel]]; }
+
+  // program_make.cpp
+  Result<void> check();
+  Result<void> find_parts();
+  Result<std::vector<KernelDesc>> describe(ShaderLibrary& shaders);
+  Result<void> make_images(std::vector<KernelDesc>& descs);
+  std::vector<ImageId> reads_of(const std::vector<ImageId>& bound) const;
+  Result<void> compile(KernelCompiler& compiler, const std::vector<KernelDesc>& descs);
+  Result<void> make_pipelines();
+  Result<void> make_descriptors();
+  Result<void> make_histories();
+
+  // program_images.cpp
+  /// An image as kernels find it.
+  struct Seen {
+    VkImageView view = VK_NULL_HANDLE;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  };
+  using Look = std::function<Seen(ImageId)>;
+  void write_set(int which, const Look& look) const;
+  Seen look_between(ImageId image) const;
+  Seen look_at_input(ImageId image) const;
+  Seen look_at_history(ImageId image, int parity) const;
+  Seen look_in_first_frame(ImageId image) const;
+  const GpuImage* history_image(ImageId image, int parity) const;
+  bool lacks_previous(const History& history) const { return !histories->has_previous(history.name); }
+  bool begins_anew() const;
+  Result<void> use(std::shared_ptr<Histories> given);
+
+  // program_record.cpp
+  VkImage barrier_image(ImageId id, int parity) const;
+  void make_commands();
+  void record_initial(VkCommandBuffer commands) const;
+  void record_one(VkCommandBuffer commands, std::size_t kernel, KernelBarriers barriers) const;
+  void record_all(VkCommandBuffer commands, const std::function<void(std::size_t)>& stamp) const;
+  void record_some(VkCommandBuffer commands, const std::vector<bool>& run,
+                   const std::function<void(std::size_t)>& stamp) const;
+};
+
+}  // namespace afterglow

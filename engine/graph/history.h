@@ -1,0 +1,42 @@
+// Images that are handed from frame to frame: what follows from a graph's histories. Pure functions.
+//
+// A frame that follows another reads, as `previous`, what that one made as `next`. A frame that follows none (the first
+// one, after a seek, after a change of the effect) reads `first` or `initial` instead. Nothing else of earlier frames
+// reaches a picture.
+#pragma once
+
+#include <vector>
+
+#include "core/hash.h"
+#include "graph/graph.h"
+
+namespace afterglow {
+
+/// The history whose `previous` this image is, or null.
+const History* history_of_previous(const Graph& graph, ImageId image);
+/// The history whose `next` this image is, or null.
+const History* history_of_next(const Graph& graph, ImageId image);
+
+/// Whether the image belongs to a history that is kept in full floats.
+bool is_precise(const Graph& graph, ImageId image);
+
+/// The images that a pass may read: its inputs, and the `first` of each history among them.
+std::vector<ImageId> images_read(const Graph& graph, const Pass& pass);
+
+/// Leaves out histories that never reach the result, with the passes that only served them; each is among `skipped`.
+/// Run once, on the whole graph: what is left has to be made in every frame, since a later one needs it.
+void drop_unread_histories(Graph& graph);
+
+/// Makes sure that the result is an image of its own: where a history keeps it, or where it is the source although
+/// histories have to be made, a pass that copies it is added.
+void separate_result(Graph& graph);
+
+/// How many earlier frames a frame needs: that of the effect with the longest history, and as many more as the
+/// histories of other effects ask for, because one may work on what another made. 0 without histories.
+int pre_roll(const Graph& graph);
+
+/// Equal where the part of the graph that makes the history, of the passes of its effect, is the same but for parameters:
+/// its pixels then mean the same.
+Hash history_part(const Graph& graph, const History& history);
+
+}  // namespace afterglow

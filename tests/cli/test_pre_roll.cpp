@@ -1,0 +1,130 @@
+// Effects that look back, over ranges of frames: a frame has the same pixels whichever others are asked for.
+#include <nlohmann/json.hpp>
+
+#include "cli_test.h"
+
+namespace afterglow::test {
+namespace {
+
+/// The picture shows the numbers of the three frames before it, which are handed on from frame to frame.
+class PreRoll : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    for (int frame = 1; frame <= 8; ++frame) make_exr("in/shot.000" + std::to_string(frame) + ".exr");
+    write("effects/back.lua", R"(
+local fx = require "afterglow"
+return fx.effect { name = "back", settings = {}, build = function(g, s, source)
+  local before = g:history { size = { 1, 1 }, pre_roll = 3 }
+  g:keep(before, g:pass { shader = "back/hand_on", before = before, size = { 1, 1 }, frame = g.frame, time = g.frame_time * g.fps })
+  return g:pass { shader = "back/show", source = source, before = before }
+end })");
+    write("shaders/back/hand_on.glsl",
+          "uniform sampler2D before;\nuniform float frame, time;\n"
+          "vec4 sample_at(ivec2 p) { return vec4(frame, fetch(before, p).rg, time); }\n");
+    write("shaders/back/show.glsl",
+          "uniform sampler2D before;\nvec4 apply(vec4 color) { vec4 b = fetch(before, ivec2(0));\n"
+          "  return vec4((b.r + 16.0 * b.g + 256.0 * b.b) / 4096.0, b.a / 16.0, color.b, color.a); }\n");
+    write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.back {} }\n");
+    fs::create_directory(path("all"));
+    fs::create_directory(path("out"));
+  }
+
+  Outcome run_into(const std::string& folder, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{"run",           "look.lua", "in/shot.####.exr", "-o", folder + "/shot.####.exr",
+                                       "--compression", "none"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  /// Numbers of the frames in a folder, and which of them are as in all/.
+  void expect_as_in_all(const std::vector<int>& frames) const {
+    std::vector<std::string> expected, found;
+    for (const int frame : frames) expected.push_back("shot.000" + std::to_string(frame) + ".exr");
+    for (const auto& entry : fs::directory_iterator(path("out")))
+      if (entry.is_regular_file()) found.push_back(entry.path().filename().string());
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, expected);
+    for (const auto& name : found) EXPECT_TRUE(read("out/" + name) == read("all/" + name)) << name;
+  }
+};
+
+TEST_F(PreRoll, ARangeIsAsInTheWhole) {
+  ASSERT_EQ(run_into("all").exit_code, kDone);
+  EXPECT_FALSE(read("all/shot.0005.exr") == read("all/shot.0006.exr")) << "the test shows something";
+  const Outcome outcome = run_into("out", {"--frames", "5-6", "--report", "report.json", "--stats"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  expect_as_in_all({5, 6});
+  EXPECT_EQ(nlohmann::json::parse(read("report.json")).at("pre_roll"), 3);
+  EXPECT_THAT(outcome.out, HasSubstr("pre-roll: 3 earlier frames, not written"));
+}
+
+TEST_F(PreRoll, IsAsLongAsAsked) {
+  ASSERT_EQ(run_into("all").exit_code, kDone);
+  EXPECT_EQ(run_into("out", {"--frames", "5", "--pre-roll", "2", "--report", "report.json"}).exit_code, kDone);
+  EXPECT_EQ(nlohmann::json::parse(read("report.json")).at("pre_roll"), 2);
+  EXPECT_FALSE(read("out/shot.0005.exr") == read("all/shot.0005.exr"));
+  EXPECT_EQ(run_into("out", {"--frames", "5", "--pre-roll", "9"}).exit_code, kDone);
+  expect_as_in_all({5});
+  EXPECT_EQ(run_into("out", {"--pre-roll", "-1"}).exit_code, kUsage);
+}
+
+TEST_F(PreRoll, OrderAndStepDoNotMatter) {
+  ASSERT_EQ(run_into("all").exit_code, kDone);
+  EXPECT_EQ(run_into("out", {"--frames", "8,7,6,5,4,3,2,1"}).exit_code, kDone);
+  expect_as_in_all({1, 2, 3, 4, 5, 6, 7, 8});
+  fs::remove_all(path("out"));
+  fs::create_directory(path("out"));
+  EXPECT_EQ(run_into("out", {"--frames", "8,1-7x2", "--report", "report.json"}).exit_code, kDone);
+  expect_as_in_all({1, 3, 5, 7, 8});
+  EXPECT_EQ(nlohmann::json::parse(read("report.json")).at("pre_roll"), 3) << "2, 4 and 6";
+}
+
+TEST_F(PreRoll, AHoleIsPassedOver) {
+  fs::remove(path("in/shot.0004.exr"));
+  ASSERT_EQ(run_into("all").exit_code, kDone);
+  EXPECT_EQ(run_into("out", {"--frames", "5-6"}).exit_code, kDone);
+  expect_as_in_all({5, 6});
+}
+
+TEST_F(PreRoll, AFrameThatFailsIsPassedOver) {
+  make_truncated_exr("in/shot.0004.exr");
+  ASSERT_EQ(run_into("all").exit_code, kFiles);
+  // One frame more, since the one that fails does not count.
+  const Outcome outcome = run_into("out", {"--frames", "5-6", "--pre-roll", "4"});
+  EXPECT_EQ(outcome.exit_code, kDone) << "nothing that was asked for failed";
+  EXPECT_THAT(outcome.err, HasSubstr("left out of the pre-roll"));
+  expect_as_in_all({5, 6});
+}
+
+TEST_F(PreRoll, ResumeMakesAgainWhatDependsOnAChange) {
+  ASSERT_EQ(run_into("all").exit_code, kDone);
+  ASSERT_EQ(run_into("out").exit_code, kDone);
+  const auto newer = fs::last_write_time(path("out/shot.0008.exr")) + std::chrono::seconds(10);
+  fs::last_write_time(path("in/shot.0003.exr"), newer);
+  EXPECT_EQ(run_into("out", {"--resume", "--report", "report.json"}).exit_code, kDone);
+  std::vector<std::string> states;
+  const auto parsed = nlohmann::json::parse(read("report.json"));
+  for (const auto& frame : parsed.at("frames")) states.push_back(frame.at("state"));
+  const std::string kOld = "up to date", kNew = "done";
+  EXPECT_EQ(states, (std::vector<std::string>{kOld, kOld, kNew, kNew, kNew, kNew, kOld, kOld}));
+  EXPECT_EQ(parsed.at("pre_roll"), 2) << "1 and 2";
+  expect_as_in_all({1, 2, 3, 4, 5, 6, 7, 8});
+}
+
+TEST_F(PreRoll, StillsBeginEachByThemselves) {
+  fs::copy(path("in/shot.0001.exr"), path("a.exr"));
+  fs::copy(path("in/shot.0001.exr"), path("b.exr"));
+  EXPECT_EQ(run({"run", "look.lua", "a.exr", "b.exr", "-o", "out/", "--compression", "none"}).exit_code, kDone);
+  EXPECT_TRUE(read("out/a.exr") == read("out/b.exr"));
+}
+
+TEST_F(PreRoll, IsExplainedAndDrawn) {
+  const Outcome explained = run({"explain", "look.lua"});
+  EXPECT_THAT(explained.out, HasSubstr("history back.history: 1×1, keeps back.hand_on; without a frame before it: {0, "
+                                       "0, 0, 0}; pre-roll 3 frames"));
+  const Outcome dot = run({"graph", "look.lua", "--format", "dot"});
+  EXPECT_THAT(dot.out, HasSubstr("[style=dashed, label=\"next frame\""));
+}
+
+}  // namespace
+}  // namespace afterglow::test
