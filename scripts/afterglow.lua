@@ -36,7 +36,14 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field pass fun(self: afterglow.Graph, pass: afterglow.Pass): afterglow.Image          runs a shader
 ---@field filter fun(self: afterglow.Graph, pass: afterglow.FilterPass): afterglow.Image  resamples an image
 ---@field input fun(self: afterglow.Graph, name: string): afterglow.Image?                an auxiliary image that `needs` or `optional` names; nil when the picture lacks it
+---@field lookup fun(self: afterglow.Graph, lookup: { file: string }): afterglow.Lut            reads a look-up table (.cube, …), for the shader lut/apply
+---@field image fun(self: afterglow.Graph, image: { file: string }): afterglow.Image       reads a picture: scene-linear, associated alpha
 ---@field skip fun(self: afterglow.Graph, reason: string)                                 records why the effect does nothing; then `return source`
+
+---A look-up table taken apart into steps, see engine/image/lut_file.h. scripts/effects/lut.lua shows what to do with it.
+---@class afterglow.Lut
+---@field table afterglow.Image  the numbers of all steps
+---@field steps { kind: integer, row: integer, size: integer }[]
 
 ---A pass with a shader. Further keys are the inputs and parameters that the shader declares, by name: images, numbers,
 ---booleans, arrays of numbers. Every input and every `uniform` must be given; a `layout(constant_id = …)` constant may be.
@@ -139,6 +146,12 @@ fx.vec2 = core.vec2
 ---Three finite numbers {x, y, z}, each from `min` to `max`.
 ---@type fun(setting: { default: number[], min?: number, max?: number, doc?: string, unit?: string }): afterglow.SettingType
 fx.vec3 = core.vec3
+
+---The name of a file with one of these extensions, or "" for none (the default): beside the preset, then along the search path, in
+---packs too. For `g:lookup` and `g:image`. Names are relative and never lead out of those folders; on the command line any path may
+---be given.
+---@type fun(setting: { extensions: string[], default?: string, doc?: string }): afterglow.SettingType
+fx.file = core.file
 
 ---Makers of filters for `g:filter`. Each returns a new table, which may be changed.
 ---@class afterglow.Filters

@@ -43,6 +43,10 @@ std::vector<ImageRead> reads_of(const Graph& graph, const PlanKernel& kernel, co
   const auto add = [&](int stage, const std::string& name) {
     const PassInput* input = find_input(pass_of_stage(graph, kernel, stage), name);
     const bool between = input && graph.images[input->image].producer >= 0;
+    if (input && graph.images[input->image].data) {  // full floats, whatever the stack's own images are
+      reads.push_back(ImageRead::storage_rgba32f);
+      return;
+    }
     const bool source = input && input->image == graph.source && options.source_is_storage;
     reads.push_back(between || source ? storage : ImageRead::sampled);
   };

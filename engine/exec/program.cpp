@@ -9,6 +9,7 @@
 
 #include "exec/arena.h"
 #include "exec/barriers.h"
+#include "exec/data_images.h"
 #include "exec/describe.h"
 #include "exec/descriptors.h"
 #include "exec/kernel_pipelines.h"
@@ -37,6 +38,7 @@ struct Program::State {
   std::vector<std::vector<ImageId>> images;  ///< to bind, parallel to the plan's kernels
   ParameterBuffer parameters;
   Arena arena;
+  DataImages data;
   KernelPipelines pipelines;  ///< of compiled.unique
   SamplerHandle sampler;
   Descriptors descriptors;
@@ -167,6 +169,7 @@ Result<void> Program::State::compile(KernelCompiler& compiler, const std::vector
     images.push_back(std::move(bind));
     pointers.push_back(&compiled_of(i));
   }
+  AFTERGLOW_TRY(data, DataImages::create(device, graph, storage_reads));
   AFTERGLOW_TRY(sampler, create_sampler(device, hardware_filter() ? VK_FILTER_LINEAR : VK_FILTER_NEAREST));
   AFTERGLOW_TRY(parameters, ParameterBuffer::create(device, graph, plan, pointers));
   return {};
@@ -193,6 +196,8 @@ Result<void> Program::State::make_descriptors() {
     for (std::size_t slot = 0; slot < images[i].size(); ++slot) {
       const UnboundImage* image = arena.image(images[i][slot]);
       if (image) descriptors.write_image(i, slot, image->view(), read_layout(), sampler.get());
+      if (const GpuImage* own = data.image(images[i][slot]))
+        descriptors.write_image(i, slot, own->view(), data.layout(), sampler.get());
     }
   }
   return {};
@@ -408,7 +413,7 @@ std::optional<Program::Transient> Program::transient(ImageId image) const {
 Program::Counters Program::counters() const {
   const State& s = *state_;
   return {.pipelines = s.pipelines.size(),
-          .images = s.arena.images(),
+          .images = s.arena.images() + s.data.size(),
           .allocations = s.arena.allocations() + (s.parameters.buffer() != VK_NULL_HANDLE ? 1 : 0)};
 }
 

@@ -70,7 +70,6 @@ Rect input_rect(const Graph& graph, const Pass& pass, const PassInput& input, co
   if (input.pixelwise) return target;
   const Size source = graph.images[input.image].size, made = graph.images[pass.output].size;
   if (pass.kind == PassKind::filter) return filter_rect(pass.filter, target, source, made);
-  if (pass.kind == PassKind::pixel) return target;
   if (!pass.reach) return {0, 0, source.width, source.height};
   const Reach reach{*pass.reach, *pass.reach};
   return source_rect(target, source, made, reach, reach, 1);

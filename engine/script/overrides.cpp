@@ -38,10 +38,23 @@ SettingSchema entry_key_schema(const std::string& name) {
   return schema;
 }
 
+// Whoever gives commands may name any file; names of scripts go along the search path.
+std::optional<SettingValue> named_file(const Override& given, const SettingSchema& schema) {
+  std::error_code ec;
+  const std::filesystem::path file(parse_value(given.value).text);
+  if (file.empty() || !has_extension(schema, file.string()) || !std::filesystem::is_regular_file(file, ec)) return {};
+  return SettingValue{SettingType::file, {1}, std::filesystem::absolute(file, ec).string()};
+}
+
 Result<SettingValue> checked(const Override& given, const SettingSchema& schema) {
   Value value = parse_value(given.value);
   // A choice may look like something else: `mode=2d`, `mode=true`.
   if (schema.type == SettingType::enumeration && value.kind != Value::Kind::text) {
+    value.kind = Value::Kind::text;
+    value.text = trim(given.value);
+  }
+  if (schema.type == SettingType::file) {
+    if (auto file = named_file(given, schema)) return *file;
     value.kind = Value::Kind::text;
     value.text = trim(given.value);
   }

@@ -18,7 +18,7 @@
 
 namespace afterglow {
 
-enum class SettingType { integer, number, boolean, enumeration, color, vec2, vec3 };
+enum class SettingType { integer, number, boolean, enumeration, color, vec2, vec3, file };
 
 /// In the scene: x, y, z in its units.
 using Position = std::array<double, 3>;
@@ -28,7 +28,9 @@ struct SettingValue {
   SettingType type = SettingType::number;
   std::array<double, 3>
       number{};        ///< integer and number in [0]; boolean as 0/1 in [0]; vec2 in [0..1]; colour, vec3 in [0..2]
-  std::string choice;  ///< enumeration
+  /// enumeration: the choice. file: its name, as `find_asset` takes it, or an absolute path when [0] of `number` is 1
+  /// (the command line's, which may name any file); empty: none.
+  std::string choice;
   friend bool operator==(const SettingValue&, const SettingValue&) = default;
   std::string text() const;  ///< as one would write it in Lua
 };
@@ -39,7 +41,7 @@ struct SettingSchema {
   SettingType type = SettingType::number;
   SettingValue default_value;
   std::optional<double> min, max;
-  std::vector<std::string> choices;
+  std::vector<std::string> choices;  ///< enumeration; file: the extensions it may have, without the point
   std::string unit;
 };
 
@@ -118,7 +120,9 @@ class Preset {
   std::vector<std::string> needs() const;
   /// Where names are looked up; a preset that extends another has that one's folder in it too.
   const SearchPath& path() const;
-  const std::vector<std::filesystem::path>& files() const;  ///< every script read: preset, library, effects
+  /// Every file read so far: preset, library, effects; from the first `build` on also tables and pictures that effects
+  /// read (and where those that were not found would be).
+  const std::vector<std::filesystem::path>& files() const;
 
   /// Bytes that the script's state holds, after a collection.
   std::size_t memory_used() const;

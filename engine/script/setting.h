@@ -16,7 +16,10 @@ std::string allowed_text(const SettingSchema& schema);
 /// `full_name` is what the message calls it: "glow.knee".
 Result<SettingValue> check_setting(const std::string& full_name, const SettingSchema& schema, const Value& value);
 
-/// "integer", "number", "boolean", "choice", "colour", "vec2", "vec3".
+/// Has the file one of the extensions that the setting allows?
+bool has_extension(const SettingSchema& schema, const std::string& file);
+
+/// "integer", "number", "boolean", "choice", "colour", "vec2", "vec3", "file".
 const char* type_name(SettingType type);
 
 /// Pushes the value as scripts read it (`s.NAME`); colours and vec2 are read-only tables.

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "exec/frame.h"
+#include "files.h"
 #include "image/metrics.h"
 #include "shader/kernel.h"
 #include "shader/library.h"
@@ -54,9 +55,7 @@ std::vector<float> floats(const reference::DoubleImage& image) {
 }
 
 std::string write_stack(const std::string& entries) {
-  const std::string file = fmt::format("{}/afterglow_effects_{}.lua", testing::TempDir(), getpid());
-  std::ofstream(file) << "local fx = require \"afterglow\"\nreturn fx.stack {\n" << entries << "\n}\n";
-  return file;
+  return write_test_file("stack.lua", "local fx = require \"afterglow\"\nreturn fx.stack {\n" + entries + "\n}\n").string();
 }
 
 /// Throws std::runtime_error with the error's text, so that a failing step ends the test with its reason.
