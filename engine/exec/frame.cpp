@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 
-#include "exec/barriers.h"
-#include "exec/brightest.h"
 #include "exec/convert.h"
-#include "exec/frame_image.h"
+#include "exec/frame_inputs.h"
+#include "exec/frame_result.h"
 #include "exec/host_input.h"
 #include "exec/kernel_timer.h"
 #include "exec/staging.h"
@@ -26,45 +24,28 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// The layout in which the program reads an input.
-VkImageLayout input_layout(const Program& program, const std::string& name) {
-  return name == "source" ? program.source_layout() : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-}
-
-ImageDesc result_desc_of(const Program& program) {
-  return {.name = "result",
-          .size = program.graph().images[program.graph().result].size,
-          .format = program.result_format(),
-          .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
-}
-
-StagedImage staged(const FrameImage& image) {
-  return {image.image.get(), image.image.desc().format, image.image.desc().size};
+std::uint64_t image_bytes(const ImageDesc& desc) {
+  return static_cast<std::uint64_t>(desc.size.area()) * bytes_per_pixel(desc.format);
 }
 
 }  // namespace
 
 struct FrameRunner::State {
   State(Device& device_in, std::uint64_t max_memory_in, bool direct_in)
-      : device(device_in), max_memory(max_memory_in), direct(direct_in), staging(device_in), timer(device_in) {}
+      : device(device_in),
+        max_memory(max_memory_in),
+        direct(direct_in),
+        inputs(device_in, direct_in),
+        result(device_in, direct_in),
+        staging(device_in),
+        timer(device_in) {}
 
   Device& device;
   std::uint64_t max_memory;
   bool direct;
-  std::map<std::string, FrameImage> inputs;
-  FrameImage result;
-  std::map<int, FrameImage> other_results;  ///< by rows: programs that take turns may write different numbers of them
-
-  /// What an input holds.
-  struct Held {
-    std::optional<Hash> content;
-    Rect part;
-    std::uint64_t version = 0;  ///< another one for other pixels
-    std::uint64_t clamped = 0;
-    std::optional<float> brightest;
-  };
-  std::map<std::string, Held> held;
-  std::uint64_t versions = 0;
+  FrameInputs inputs;
+  FrameResult result;
+  std::optional<Rect> shown;  ///< the part of the result that the last run made; none: the result is the source
   std::map<std::uint64_t, std::map<std::string, std::uint64_t>> ran_with;  ///< program → versions of its inputs
   Staging staging;
   KernelTimer timer;
@@ -79,28 +60,20 @@ struct FrameRunner::State {
   };
   std::optional<Recorded> recorded;
   Submitter submitter;  // last: it waits before the images go
-  int images = 0;
 
+  Result<void> check_memory(const std::map<std::string, ImageDesc>& descs, std::uint64_t other_bytes) const;
+  Result<void> prepare_inputs(const std::map<std::string, ImageDesc>& descs);
+  Result<void> take_result(const Program& program);
   Result<void> prepare(const Program& program, const std::map<std::string, HostImage>& host);
-  Result<void> make_image(FrameImage& image, const ImageDesc& desc, HostAccess access, int rows = 1);
-  Result<std::uint64_t> upload(FrameImage& image, const HostImage& host, const Rect& part, Brightest* brightest);
-  Result<void> upload_changed(const Program& program, const std::map<std::string, HostImage>& host, bool look,
-                              HostResult& out);
-  Result<void> take_result(const ImageDesc& desc, int rows);
+  Result<void> upload(const Program& program, const std::map<std::string, HostImage>& host, bool look);
+  Result<void> bring_source(const std::map<std::string, HostImage>& host, FrameTimes& times);
+  Result<void> leave_readable();
   std::vector<bool> kernels_to_run(const Program& program) const;
   void has_run(Program& program);
-  Result<std::uint64_t> download(const Rect& part, HostResult& out);
-  Result<std::uint64_t> over_result_rows(const Rect& part,
-                                         const std::function<std::uint64_t(int y, const std::byte* from)>& row);
-  Result<void> bind(Program& program);
-  /// The layout in which the result is drawn, and every VkImage of it: itself and its targets by rows.
-  VkImageLayout result_layout() const {
-    return result.rows.rows() > 1 ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  }
-  std::vector<VkImage> result_images() const;
-  void before(const Program& program, VkCommandBuffer commands);
-  void after(VkCommandBuffer commands);
+  Result<Program*> run(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
+                       const Choose& choose, FrameTimes& times);
   Result<void> execute(Program& program, const std::vector<bool>& run, KernelTiming timing, FrameTimes& times);
+  std::vector<VkImageLayout> input_layouts() const;
 };
 
 FrameRunner::FrameRunner(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -112,105 +85,74 @@ Result<std::unique_ptr<FrameRunner>> FrameRunner::create(Device& device, std::ui
   return std::unique_ptr<FrameRunner>(new FrameRunner(std::move(state)));
 }
 
-Result<void> FrameRunner::State::make_image(FrameImage& image, const ImageDesc& desc, HostAccess access, int rows) {
-  if (image.fits(desc, rows)) return {};
-  image = {};  // before the new one is made: the two need not exist at once
-  AFTERGLOW_TRY(image, FrameImage::create(device, desc, direct ? access : HostAccess::none, rows));
-  recorded.reset();  // a new image may have the handle of one that is gone
-  ++images;
+Result<void> FrameRunner::State::check_memory(const std::map<std::string, ImageDesc>& descs,
+                                              std::uint64_t other_bytes) const {
+  std::uint64_t total = other_bytes;
+  for (const auto& [name, desc] : descs) total += image_bytes(desc);
+  if (total <= max_memory) return {};
+  return Error{ErrorKind::io,
+               fmt::format("the frame needs {} of device memory, more than the {} allowed (--max-memory)",
+                           bytes_text(total), bytes_text(max_memory))};
+}
+
+Result<void> FrameRunner::State::prepare_inputs(const std::map<std::string, ImageDesc>& descs) {
+  AFTERGLOW_TRY(const bool fresh, inputs.prepare(descs));
+  if (fresh) recorded.reset();  // a new image may have the handle of one that is gone
+  return {};
+}
+
+Result<void> FrameRunner::State::take_result(const Program& program) {
+  AFTERGLOW_TRY(const bool fresh, result.take(FrameResult::wanted_by(program), program.result_rows()));
+  if (fresh) recorded.reset();
   return {};
 }
 
 /// Images for this program and these inputs; those that are there and fit stay.
 Result<void> FrameRunner::State::prepare(const Program& program, const std::map<std::string, HostImage>& host) {
-  const Graph& graph = program.graph();
-  const auto wanted = inputs_of(graph);
-  std::map<std::string, ImageDesc> descs;
-  for (const auto& [name, id] : wanted) {
-    AFTERGLOW_CHECK(check_input(graph, name, id, host));
-    descs[name] = {.name = name,
-                   .size = graph.images[id].size,
-                   .format = input_format(name, host.at(name), program.storage_format()),
-                   .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
-    if (input_layout(program, name) == VK_IMAGE_LAYOUT_GENERAL) descs[name].usage |= VK_IMAGE_USAGE_STORAGE_BIT;
-  }
-  const ImageDesc result_desc = result_desc_of(program);
-
-  const auto bytes = [](const ImageDesc& d) {
-    return static_cast<std::uint64_t>(d.size.area()) * bytes_per_pixel(d.format);
-  };
-  std::uint64_t total = program.memory().arena + bytes(result_desc);
-  for (const auto& [name, desc] : descs) total += bytes(desc);
-  if (!direct) {
-    total += 2 * Staging::bytes({VK_NULL_HANDLE, result_desc.format, result_desc.size});
-  }
-  if (total > max_memory) {
-    return Error{ErrorKind::io,
-                 fmt::format("the frame needs {} of device memory, more than the {} allowed (--max-memory)",
-                             bytes_text(total), bytes_text(max_memory))};
-  }
-  std::erase_if(inputs, [&](const auto& entry) { return !wanted.contains(entry.first); });
-  std::erase_if(held, [&](const auto& entry) { return !wanted.contains(entry.first); });
-  for (const auto& [name, desc] : descs) {
-    if (!inputs[name].fits(desc)) held.erase(name);
-    AFTERGLOW_CHECK(make_image(inputs[name], desc, HostAccess::write));
-  }
-  return take_result(result_desc, program.result_rows());
-}
-
-/// The result image for programs that write so many rows at a time; those for others stay.
-Result<void> FrameRunner::State::take_result(const ImageDesc& desc, int rows) {
-  std::erase_if(other_results, [&](const auto& other) { return !other.second.fits(desc, other.first); });
-  if (result.fits(desc, rows)) return {};
-  const int has = std::max(result.rows.rows(), 1);
-  if (has != rows && result.fits(desc, has)) {
-    other_results[has] = std::move(result);
-    result = std::move(other_results[rows]);
-    other_results.erase(rows);
-  }
-  return make_image(result, desc, HostAccess::read, rows);
-}
-
-/// The rows of `part`; the others hold anything. `brightest`: what to note pixels in while they are at hand, or null.
-Result<std::uint64_t> FrameRunner::State::upload(FrameImage& image, const HostImage& host, const Rect& part,
-                                                 Brightest* brightest) {
-  const ImageDesc& desc = image.image.desc();
-  const auto pack = [&](int y, std::byte* to) -> std::uint64_t {
-    if (y < part.y || y >= part.y + part.height) return 0;
-    const float* row = host.pixels + static_cast<std::ptrdiff_t>(y) * desc.size.width * host.channels;
-    if (brightest) brightest->add_row(row, host.channels, desc.size.width);
-    return pack_row(row, host.channels, desc.size.width, desc.format, to);
-  };
-  if (!image.direct) {
-    image.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    return staging.upload(staged(image), pack);
-  }
-  const auto clamped = over_rows(part.height, image.image.row_pitch(),
-                                 [&](int y) { return pack(part.y + y, image.image.row(part.y + y)); });
-  image.image.memory().flush();
-  return clamped;
+  AFTERGLOW_TRY(const auto descs, FrameInputs::wanted_by(program, host));
+  const ImageDesc result_desc = FrameResult::wanted_by(program);
+  std::uint64_t bytes = program.memory().arena + image_bytes(result_desc);
+  if (!direct) bytes += 2 * Staging::bytes({VK_NULL_HANDLE, result_desc.format, result_desc.size});
+  AFTERGLOW_CHECK(check_memory(descs, bytes));
+  AFTERGLOW_CHECK(prepare_inputs(descs));
+  return take_result(program);
 }
 
 /// Every input that may hold other pixels than those it is given. `look`: find out how bright the source is.
-Result<void> FrameRunner::State::upload_changed(const Program& program, const std::map<std::string, HostImage>& host,
-                                                bool look, HostResult& out) {
+Result<void> FrameRunner::State::upload(const Program& program, const std::map<std::string, HostImage>& host,
+                                        bool look) {
   const bool half = program.storage_format() == VK_FORMAT_R16G16B16A16_SFLOAT;
-  for (const auto& [name, id] : inputs_of(program.graph())) {
-    const HostImage& given = host.at(name);
-    const Rect& part = program.parts().images[id];
-    const bool look_here = look && name == "source";
-    Held& known = held[name];
-    const bool same = given.content && known.content == given.content && known.part == part;
-    if (!same || (look_here && !known.brightest)) {
-      Brightest brightest;
-      known = {.content = {}, .part = part, .version = ++versions, .clamped = 0, .brightest = {}};
-      AFTERGLOW_TRY(known.clamped, upload(inputs.at(name), given, part, look_here ? &brightest : nullptr));
-      known.content = given.content;
-      if (look_here) known.brightest = brightest.value(half ? Storage::fp16 : Storage::fp32);
-    }
-    out.clamped += known.clamped;
-  }
+  for (const auto& [name, id] : inputs_of(program.graph()))
+    AFTERGLOW_CHECK(inputs.upload(staging, name, host.at(name), program.parts().images[id], look && name == "source",
+                                  half ? Storage::fp16 : Storage::fp32));
   return {};
+}
+
+/// The source alone, for frames without a program.
+Result<void> FrameRunner::State::bring_source(const std::map<std::string, HostImage>& host, FrameTimes& times) {
+  const auto source = host.find("source");
+  if (source == host.end() || !source->second.pixels) return Error{ErrorKind::other, "the frame has no image 'source'"};
+  const HostImage& given = source->second;
+  const std::map<std::string, ImageDesc> descs{{"source",
+                                                {.name = "source",
+                                                 .size = given.size,
+                                                 .format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                                                 .usage = VK_IMAGE_USAGE_SAMPLED_BIT}}};
+  AFTERGLOW_CHECK(check_memory(descs, 0));
+  AFTERGLOW_CHECK(prepare_inputs(descs));
+  const auto start = Clock::now();
+  const Rect all{0, 0, given.size.width, given.size.height};
+  AFTERGLOW_CHECK(inputs.upload(staging, "source", given, all, false, Storage::fp32));
+  times.upload = milliseconds_since(start);
+  return {};
+}
+
+/// What is otherwise done after the kernels, when none has run.
+Result<void> FrameRunner::State::leave_readable() {
+  if (inputs.readable()) return {};
+  recorded.reset();
+  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) { inputs.after(commands); }));
+  return submitter.wait();
 }
 
 /// What has to run after the uploads.
@@ -219,113 +161,24 @@ std::vector<bool> FrameRunner::State::kernels_to_run(const Program& program) con
   std::vector<ImageId> changed;
   for (const auto& [name, id] : inputs_of(program.graph())) {
     const bool same =
-        last != ran_with.end() && last->second.contains(name) && last->second.at(name) == held.at(name).version;
+        last != ran_with.end() && last->second.contains(name) && last->second.at(name) == inputs.version(name);
     if (!same) changed.push_back(id);
   }
-  return program.kernels_to_run(changed, result.writer != program.id());
+  return program.kernels_to_run(changed, result.writer() != program.id());
 }
 
 void FrameRunner::State::has_run(Program& program) {
   constexpr std::size_t kMostRemembered = 64;  // programs are few; those that are gone are not worth more than this
   program.up_to_date();
-  result.writer = program.id();
+  result.set_writer(program.id());
   if (ran_with.size() >= kMostRemembered) ran_with.clear();
-  auto& versions_of = ran_with[program.id()];
-  for (const auto& [name, input] : held) versions_of[name] = input.version;
+  ran_with[program.id()] = inputs.versions();
 }
 
-/// Calls `row` for every row of that part of the result, with its first pixel there, and sums up what it returns.
-Result<std::uint64_t> FrameRunner::State::over_result_rows(
-    const Rect& part, const std::function<std::uint64_t(int y, const std::byte* from)>& row) {
-  const std::size_t left = static_cast<std::size_t>(part.x) * bytes_per_pixel(result.image.desc().format);
-  const auto inside = [&](int y, const std::byte* from) -> std::uint64_t {
-    return y < part.y || y >= part.y + part.height ? 0 : row(y, from + left);
-  };
-  if (!result.direct) return staging.download(staged(result), result_layout(), inside);
-  result.image.memory().invalidate();
-  return over_rows(part.height, result.image.row_pitch(),
-                   [&](int y) { return row(part.y + y, result.image.row(part.y + y) + left); });
-}
-
-Result<std::uint64_t> FrameRunner::State::download(const Rect& part, HostResult& out) {
-  const auto [width, height] = result.image.desc().size;
-  const VkFormat format = result.image.desc().format;
-  const auto row_values = static_cast<std::size_t>(width) * 4;
-  if (format == VK_FORMAT_R8G8B8A8_UNORM) {
-    out.codes.resize(row_values * static_cast<std::size_t>(height));
-    return over_result_rows(part, [&](int y, const std::byte* from) {
-      std::memcpy(out.codes.data() + row_values * static_cast<std::size_t>(y) + static_cast<std::ptrdiff_t>(part.x) * 4,
-                  from, static_cast<std::size_t>(part.width) * 4);
-      return std::uint64_t{0};
-    });
-  }
-  const auto values = row_values * static_cast<std::size_t>(height);
-  const bool keep_alpha = out.keep_alpha && out.pixels.size() == values;
-  if (out.pixels.size() != values) {
-    std::vector<float>().swap(out.pixels);  // growing would keep the old ones while it copies them
-    out.pixels.resize(values);
-  }
-  const auto unpack = [&](int y, const std::byte* from) {
-    float* to = out.pixels.data() + row_values * static_cast<std::size_t>(y) + static_cast<std::ptrdiff_t>(part.x) * 4;
-    return keep_alpha ? unpack_row_rgb(from, format, part.width, to) : unpack_row(from, format, part.width, to);
-  };
-  return over_result_rows(part, unpack);
-}
-
-Result<void> FrameRunner::State::bind(Program& program) {
-  const auto binding = [](const FrameImage& image) {
-    return ImageBinding{image.image.get(), image.image.view(), image.image.desc().format, image.image.desc().size,
-                        image.rows.views()};
-  };
-  std::map<std::string, ImageBinding> bindings;
-  for (const auto& [name, image] : inputs) bindings[name] = binding(image);
-  return program.bind(bindings, binding(result));
-}
-
-std::vector<VkImage> FrameRunner::State::result_images() const {
-  std::vector<VkImage> all{result.image.get()};
-  for (int k = 0; k < result.rows.rows(); ++k) all.push_back(result.rows.image(k));
-  return all;
-}
-
-/// Into the layouts that Program::record wants.
-void FrameRunner::State::before(const Program& program, VkCommandBuffer commands) {
-  std::vector<VkImageMemoryBarrier2> barriers;
-  for (auto& [name, image] : inputs) {
-    const VkImageLayout wanted = input_layout(program, name);
-    if (!image.direct && image.layout == wanted) continue;  // the upload has done it
-    const auto stage = image.direct ? VK_PIPELINE_STAGE_2_HOST_BIT : VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-    const VkAccessFlags2 access = image.direct ? VK_ACCESS_2_HOST_WRITE_BIT : VK_ACCESS_2_NONE;
-    barriers.push_back(image_barrier(image.image.get(), stage, access, image.layout,
-                                     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(wanted), wanted));
-    image.layout = wanted;
-  }
-  for (const VkImage image : result_images()) {
-    barriers.push_back(image_barrier(image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0,
-                                     VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, result_layout()));
-  }
-  record_barriers(commands, barriers.data(), barriers.size());
-}
-
-/// Into the layout in which the CPU may touch pixels. Staged images stay as they are.
-void FrameRunner::State::after(VkCommandBuffer commands) {
-  std::vector<VkImageMemoryBarrier2> barriers;
-  for (auto& [name, image] : inputs) {
-    if (!image.direct) continue;
-    barriers.push_back(image_barrier(image.image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, image.layout,
-                                     VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT,
-                                     VK_IMAGE_LAYOUT_GENERAL));
-    image.layout = VK_IMAGE_LAYOUT_GENERAL;
-  }
-  if (result.direct) {
-    for (const VkImage image : result_images()) {
-      barriers.push_back(image_barrier(
-          image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
-          result_layout(), VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT, VK_IMAGE_LAYOUT_GENERAL));
-    }
-  }
-  record_barriers(commands, barriers.data(), barriers.size());
+std::vector<VkImageLayout> FrameRunner::State::input_layouts() const {
+  std::vector<VkImageLayout> layouts;
+  for (const auto& [name, image] : inputs.images()) layouts.push_back(image.layout);
+  return layouts;
 }
 
 Result<void> FrameRunner::State::execute(Program& program, const std::vector<bool>& run, KernelTiming timing,
@@ -338,30 +191,33 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
     AFTERGLOW_TRY(queries, timer.queries(kernels.size() + 1));
   }
 
-  Recorded wanted{.program = program.id(), .run = run, .images = result_images(), .layouts = {}, .bindings = {}};
-  for (const auto& [name, image] : inputs) {
-    wanted.images.push_back(image.image.get());
-    wanted.layouts.push_back(image.layout);
-  }
-  wanted.bindings = program.bindings();
+  Recorded wanted{.program = program.id(),
+                  .run = run,
+                  .images = result.images(),
+                  .layouts = input_layouts(),
+                  .bindings = program.bindings()};
+  for (const auto& [name, image] : inputs.images()) wanted.images.push_back(image.image.get());
   const bool known = timing == KernelTiming::none && recorded == wanted;
   if (!known) {
-    AFTERGLOW_CHECK(bind(program));
+    AFTERGLOW_CHECK(program.bind(inputs.bindings(), binding_of(result.image())));
     wanted.bindings = program.bindings();
   }
 
+  const auto after = [&](VkCommandBuffer commands) {
+    inputs.after(commands);
+    result.after(commands);
+  };
   const auto start = Clock::now();
   auto done = known ? submitter.submit_again() : submitter.submit([&](VkCommandBuffer commands) {
-    before(program, commands);
+    inputs.before(program, commands);
+    result.before(commands);
     program.record(commands, -1, queries, run);
     if (!separate) after(commands);
   });
   if (done) done = submitter.wait();
   // Layouts are where they were when the frame ends as it began.
-  std::vector<VkImageLayout> layouts;
-  for (const auto& [name, image] : inputs) layouts.push_back(image.layout);
   recorded.reset();
-  if (done && timing == KernelTiming::none && layouts == wanted.layouts) recorded = std::move(wanted);
+  if (done && timing == KernelTiming::none && input_layouts() == wanted.layouts) recorded = std::move(wanted);
   if (!done) return KernelTimer::blame(std::move(done).error(), program.plan());
   times.execute = milliseconds_since(start);
   if (stamps) {
@@ -387,48 +243,89 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
   return submitter.wait();
 }
 
-Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out,
-                                    KernelTiming timing, const Choose& choose) {
-  State& s = *state_;
-  const Graph& graph = program.graph();
-  FrameTimes times;
-  out.clamped = 0;
-  if (graph.result == graph.source) {
-    AFTERGLOW_CHECK(check_input(graph, "source", graph.source, inputs));
-    copy_source(inputs.at("source"), out.pixels);
-    return times;
-  }
-  AFTERGLOW_CHECK(s.prepare(program, inputs));
-
-  auto start = Clock::now();
-  AFTERGLOW_CHECK(s.upload_changed(program, inputs, choose != nullptr, out));
+/// The program that made the result, or null when it is the source. Everything of a frame but reading it back.
+Result<Program*> FrameRunner::State::run(Program& program, const std::map<std::string, HostImage>& host,
+                                         KernelTiming timing, const Choose& choose, FrameTimes& times) {
+  AFTERGLOW_CHECK(prepare(program, host));
+  const auto start = Clock::now();
+  AFTERGLOW_CHECK(upload(program, host, choose != nullptr));
   times.upload = milliseconds_since(start);
 
   Program* chosen = &program;
   if (choose) {
-    AFTERGLOW_TRY(chosen, choose(*s.held.at("source").brightest));
+    AFTERGLOW_TRY(chosen, choose(inputs.brightest("source")));
   }
-  if (!chosen) {
-    copy_source(inputs.at("source"), out.pixels);
-    return times;
-  }
-  if (chosen != &program) AFTERGLOW_CHECK(s.take_result(result_desc_of(*chosen), chosen->result_rows()));
-  const std::vector<bool> run = s.kernels_to_run(*chosen);
+  if (!chosen) return chosen;
+  if (chosen != &program) AFTERGLOW_CHECK(take_result(*chosen));
+  const std::vector<bool> run = kernels_to_run(*chosen);
   times.kernels_run = static_cast<int>(std::ranges::count(run, true));
   times.kernels_kept = static_cast<int>(run.size()) - times.kernels_run;
   if (times.kernels_run > 0) {
-    s.result.writer = 0;
-    s.ran_with.erase(chosen->id());  // until it has run
-    AFTERGLOW_CHECK(s.execute(*chosen, run, timing, times));
-    s.has_run(*chosen);
+    result.set_writer(0);
+    ran_with.erase(chosen->id());  // until it has run
+    AFTERGLOW_CHECK(execute(*chosen, run, timing, times));
+    has_run(*chosen);
   }
+  return chosen;
+}
 
-  start = Clock::now();
-  const Rect& part = chosen->parts().images[chosen->graph().result];
-  AFTERGLOW_TRY(const std::uint64_t held, s.download(part, out));
+Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out,
+                                    KernelTiming timing, const Choose& choose) {
+  const Graph& graph = program.graph();
+  FrameTimes times;
+  out.clamped = 0;
+  Program* ran = nullptr;
+  if (graph.result == graph.source) {
+    AFTERGLOW_CHECK(check_input(graph, "source", graph.source, inputs));
+  } else {
+    AFTERGLOW_TRY(ran, state_->run(program, inputs, timing, choose, times));
+    out.clamped = state_->inputs.clamped();
+  }
+  state_->shown.reset();
+  if (ran) state_->shown = ran->parts().images[ran->graph().result];
+  if (!ran) {
+    copy_source(inputs.at("source"), out.pixels);
+    return times;
+  }
+  const auto start = Clock::now();
+  AFTERGLOW_TRY(const std::uint64_t held, state_->result.download(state_->staging, *state_->shown, out));
   out.clamped += held;
   times.readback = milliseconds_since(start);
   return times;
+}
+
+Result<FrameTimes> FrameRunner::run_on_device(Program* program, const std::map<std::string, HostImage>& inputs,
+                                              KernelTiming timing, const Choose& choose) {
+  State& s = *state_;
+  FrameTimes times;
+  Program* ran = nullptr;
+  s.shown.reset();
+  if (program && program->graph().result != program->graph().source) {
+    AFTERGLOW_TRY(ran, s.run(*program, inputs, timing, choose, times));
+  } else {
+    AFTERGLOW_CHECK(s.bring_source(inputs, times));
+  }
+  if (ran)
+    s.shown = ran->parts().images[ran->graph().result];
+  else
+    AFTERGLOW_CHECK(s.leave_readable());
+  return times;
+}
+
+DeviceImages FrameRunner::images() const {
+  const auto image = [](const FrameImage& from) { return DeviceImage{binding_of(from), from.layout}; };
+  DeviceImages out;
+  if (const auto source = state_->inputs.images().find("source"); source != state_->inputs.images().end())
+    out.source = image(source->second);
+  out.ran = state_->shown.has_value();
+  out.result = out.ran ? image(state_->result.image()) : out.source;
+  return out;
+}
+
+Result<void> FrameRunner::read_result(HostResult& out, const std::optional<Rect>& part) {
+  if (!state_->shown) return Error{ErrorKind::other, "no frame was run, there is no result to read"};
+  AFTERGLOW_TRY(out.clamped, state_->result.download(state_->staging, part.value_or(*state_->shown), out));
+  return {};
 }
 
 Result<HostResult> FrameRunner::read_image(Program& program, ImageId image) {
@@ -452,7 +349,7 @@ Result<HostResult> FrameRunner::read_image(Program& program, ImageId image) {
 }
 
 FrameRunner::Counters FrameRunner::counters() const {
-  return {.images = state_->images,
+  return {.images = state_->inputs.made() + state_->result.made(),
           .buffers = state_->staging.buffers() + state_->timer.pools(),
           .recordings = state_->submitter.recordings()};
 }

@@ -42,6 +42,17 @@ struct HostResult {
   bool keep_alpha = false;          ///< write R, G and B alone where `pixels` has the size of the result already
 };
 
+/// An image of a FrameRunner between frames. It may be sampled in fragment shaders of later submissions to the device's
+/// queue without a barrier, in this layout, and must be left in it.
+struct DeviceImage {
+  ImageBinding binding;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+};
+struct DeviceImages {
+  DeviceImage source, result;
+  bool ran = false;  ///< false: nothing had to run, the result *is* the source
+};
+
 /// Images, staging memory, command buffer and fence for one frame at a time; reused while sizes stay the same. Not
 /// thread-safe.
 class FrameRunner {
@@ -60,6 +71,16 @@ class FrameRunner {
   /// written. Errors: other (an input is missing or of another size), io (over `max_memory`), device.
   Result<FrameTimes> run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out,
                          KernelTiming timing, const Choose& choose = {});
+  /// Like `run`, but the result stays on the device: see `images` and `read_result`. `program` null: nothing has to
+  /// run, the source alone is brought to the device. Whoever reads the images of the frame before must be done with it:
+  /// a submission that does has to be waited for.
+  Result<FrameTimes> run_on_device(Program* program, const std::map<std::string, HostImage>& inputs,
+                                   KernelTiming timing, const Choose& choose = {});
+  /// What the last run left on the device. Null images before the first.
+  DeviceImages images() const;
+  /// The result of the last run, or that part of it: the rest of `out` is undefined. When nothing had to run it is the
+  /// source, which is not read back. Errors: other (nothing was run), device.
+  Result<void> read_result(HostResult& out, const std::optional<Rect>& part = {});
   /// Pixels of a transient image as the last run left them. Needs a program created with `reference`. Errors: other.
   Result<HostResult> read_image(Program& program, ImageId image);
 

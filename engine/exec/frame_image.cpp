@@ -25,4 +25,21 @@ Result<FrameImage> FrameImage::create(const Device& device, ImageDesc desc, Host
   return out;
 }
 
+ImageBinding binding_of(const FrameImage& image) {
+  return {image.image.get(), image.image.view(), image.image.desc().format, image.image.desc().size,
+          image.rows.views()};
+}
+
+StagedImage staged(const FrameImage& image) {
+  return {image.image.get(), image.image.desc().format, image.image.desc().size};
+}
+
+VkPipelineStageFlags2 shown_stage(const FrameImage& image) {
+  return VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | (image.direct ? VK_PIPELINE_STAGE_2_HOST_BIT : 0);
+}
+
+VkAccessFlags2 shown_access(const FrameImage& image, VkAccessFlags2 host) {
+  return VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | (image.direct ? host : 0);
+}
+
 }  // namespace afterglow

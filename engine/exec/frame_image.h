@@ -1,6 +1,8 @@
 // A picture of a frame on the device.
 #pragma once
 
+#include "exec/program.h"
+#include "exec/staging.h"
 #include "gpu/row_targets.h"
 
 namespace afterglow {
@@ -21,5 +23,11 @@ struct FrameImage {
            image.desc().format == desc.format && (image.desc().usage & desc.usage) == desc.usage;
   }
 };
+
+ImageBinding binding_of(const FrameImage& image);
+StagedImage staged(const FrameImage& image);
+/// Who reads an image after its frame: shaders of whoever shows it, and of direct ones the CPU (`host`: how).
+VkPipelineStageFlags2 shown_stage(const FrameImage& image);
+VkAccessFlags2 shown_access(const FrameImage& image, VkAccessFlags2 host);
 
 }  // namespace afterglow

@@ -7,12 +7,14 @@
 #include "gpu/device_list.h"
 #include "gpu/error.h"
 #include "gpu/instance.h"
+#include "gpu/surface.h"
 
 namespace afterglow {
 
 namespace {
 
-Result<VkDevice> open_device(const PhysicalDevice& chosen) {
+Result<VkDevice> open_device(const PhysicalDevice& chosen, bool present) {
+  const char* swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
   const float priority = 1;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                       .queueFamilyIndex = chosen.queue_family,
@@ -24,7 +26,9 @@ Result<VkDevice> open_device(const PhysicalDevice& chosen) {
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = &features,
                                 .queueCreateInfoCount = 1,
-                                .pQueueCreateInfos = &queue};
+                                .pQueueCreateInfos = &queue,
+                                .enabledExtensionCount = present ? 1u : 0u,
+                                .ppEnabledExtensionNames = &swapchain};
   VkDevice handle = VK_NULL_HANDLE;
   AFTERGLOW_VK(vkCreateDevice(chosen.handle, &info, nullptr, &handle),
                fmt::format("cannot open device '{}'", chosen.info.name));
@@ -39,10 +43,11 @@ struct Opened {
 /// Opens the device that `choice` means. A GPU that is listed but cannot be opened (its driver is broken, its users are
 /// too many) does not keep "auto" from the ones behind it.
 Result<Opened> open_chosen(std::vector<DeviceInfo> infos, const std::vector<PhysicalDevice>& devices,
-                           const std::string& choice, Diagnostics& diagnostics) {
+                           const DeviceOptions& options, Diagnostics& diagnostics) {
+  const std::string& choice = options.device;
   for (;;) {
     AFTERGLOW_TRY(const std::size_t index, choose_device(infos, choice));
-    auto opened = open_device(devices[index]);
+    auto opened = open_device(devices[index], options.presentation != nullptr);
     if (opened) return Opened{index, *opened};
     const bool automatic = choice.empty() || choice == "auto";
     if (!automatic) return std::move(opened).error();
@@ -52,19 +57,28 @@ Result<Opened> open_chosen(std::vector<DeviceInfo> infos, const std::vector<Phys
   }
 }
 
+/// With a window: judged by whether they can present to it. Its surface serves for that alone.
+Result<std::vector<PhysicalDevice>> devices_for(VkInstance instance, const Presentation* presentation) {
+  if (!presentation) return enumerate_devices(instance);
+  AFTERGLOW_TRY(const Surface surface, Surface::create(instance, *presentation));
+  return enumerate_devices(instance, surface.get());
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options, Diagnostics& diagnostics) {
   auto log = std::make_shared<ValidationLog>();
-  AFTERGLOW_TRY(Instance instance, Instance::create(options.validate ? log : nullptr));
-  AFTERGLOW_TRY(const auto devices, enumerate_devices(instance.get()));
+  const auto extensions = options.presentation ? options.presentation->instance_extensions : std::vector<std::string>{};
+  AFTERGLOW_TRY(Instance instance, Instance::create(options.validate ? log : nullptr, extensions));
+  AFTERGLOW_TRY(const auto devices, devices_for(instance.get(), options.presentation.get()));
   std::vector<DeviceInfo> infos;
   for (const auto& device : devices) infos.push_back(device.info);
-  AFTERGLOW_TRY(const Opened opened, open_chosen(std::move(infos), devices, options.device, diagnostics));
+  AFTERGLOW_TRY(const Opened opened, open_chosen(std::move(infos), devices, options, diagnostics));
   const PhysicalDevice& chosen = devices[opened.index];
 
   std::unique_ptr<Device> device(new Device);
   device->owned_ = true;
+  device->presentation_ = options.presentation;
   device->log_ = std::move(log);
   device->device_ = opened.handle;
   device->instance_ = instance.release(device->messenger_);

@@ -26,10 +26,20 @@ struct DeviceInfo {
 /// loader, no driver).
 Result<std::vector<DeviceInfo>> list_devices();
 
+/// What showing pictures in a window takes. The gpu room knows no window system.
+struct Presentation {
+  std::vector<std::string> instance_extensions;  ///< as the window system names them: VK_KHR_surface and its own
+  /// A new surface of the window; whoever calls it destroys the surface before the instance. Called when the device is
+  /// chosen, by each Swapchain, and again when its surface is lost, on the calling thread. Errors: device.
+  std::function<Result<VkSurfaceKHR>(VkInstance)> make_surface;
+};
+
 struct DeviceOptions {
   std::string device =
       "auto";             ///< "auto", an index into list_devices(), or a part of a name or uuid (case-insensitive)
   bool validate = false;  ///< Khronos validation with synchronization checks; errors when the layer is missing
+  /// To show pictures in a window: the device is chosen among those that can present to it. Null: no window.
+  std::shared_ptr<const Presentation> presentation;
 };
 
 /// A caller's objects to work on; they must outlive the Device. The instance and device are of Vulkan 1.3 with
@@ -62,7 +72,7 @@ class ValidationLog {
 class Device {
  public:
   /// With "auto", a device that cannot be opened is passed over with a warning. `diagnostics` is used during the call
-  /// alone. Errors: device (none, none that matches, none usable, no validation layer).
+  /// alone. Errors: device (none, none that matches, none usable, none that can present, no validation layer).
   static Result<std::unique_ptr<Device>> create(const DeviceOptions& options, Diagnostics& diagnostics);
   /// Destroys none of the caller's objects. Errors: device (not Vulkan 1.3, a queue family without graphics).
   static Result<std::unique_ptr<Device>> adopt(const AdoptedDevice& adopted, Diagnostics& diagnostics);
@@ -70,6 +80,7 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
+  VkInstance instance() const { return instance_; }
   VkDevice handle() const { return device_; }
   VkPhysicalDevice physical() const { return physical_; }
   VkQueue queue() const { return queue_; }
@@ -79,6 +90,8 @@ class Device {
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   const DeviceInfo& info() const { return info_; }
   VkDeviceSize max_allocation() const { return max_allocation_; }  ///< bytes of one VkDeviceMemory
+  /// Null for a device without a window.
+  const Presentation* presentation() const { return presentation_.get(); }
   bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   /// Timestamps around draws mean something (false on CPU devices, where rasterisation is deferred).
   bool timestamps_mean_draws() const { return !is_cpu() && timestamp_mask_ != 0; }
@@ -120,6 +133,7 @@ class Device {
   std::string cache_file_;
   std::size_t cached_bytes_ = 0;
   std::shared_ptr<ValidationLog> log_;
+  std::shared_ptr<const Presentation> presentation_;
   PFN_vkSetDebugUtilsObjectNameEXT name_object_ = nullptr;
   PFN_vkCmdBeginDebugUtilsLabelEXT begin_label_ = nullptr;
   PFN_vkCmdEndDebugUtilsLabelEXT end_label_ = nullptr;

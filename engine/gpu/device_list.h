@@ -19,10 +19,10 @@ struct PhysicalDevice {
 };
 
 /// All devices of the instance in the order of preference. Errors: device (none).
-Result<std::vector<PhysicalDevice>> enumerate_devices(VkInstance instance);
+Result<std::vector<PhysicalDevice>> enumerate_devices(VkInstance instance, VkSurfaceKHR surface = VK_NULL_HANDLE);
 
-/// Name, type, driver, uuid and whether it can be used.
-PhysicalDevice describe_device(VkPhysicalDevice device);
+/// Name, type, driver, uuid and whether it can be used; with `surface`, whether it can present to it too.
+PhysicalDevice describe_device(VkPhysicalDevice device, VkSurfaceKHR surface = VK_NULL_HANDLE);
 
 /// Index into `devices` that `choice` (DeviceOptions::device) means. Pure. Errors: device, with the names there are and
 /// the nearest.

@@ -46,6 +46,8 @@ using PipelineLayoutHandle = Handle<VkPipelineLayout, vkDestroyPipelineLayout>;
 using QueryPoolHandle = Handle<VkQueryPool, vkDestroyQueryPool>;
 using SamplerHandle = Handle<VkSampler, vkDestroySampler>;
 using SetLayoutHandle = Handle<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout>;
+using SemaphoreHandle = Handle<VkSemaphore, vkDestroySemaphore>;
+using SwapchainHandle = Handle<VkSwapchainKHR, vkDestroySwapchainKHR>;
 using ShaderModuleHandle = Handle<VkShaderModule, vkDestroyShaderModule>;
 
 }  // namespace afterglow

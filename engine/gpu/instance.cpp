@@ -1,5 +1,7 @@
 #include "gpu/instance.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -7,6 +9,7 @@
 #include <dlfcn.h>
 #endif
 
+#include "core/text.h"
 #include "gpu/error.h"
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -70,7 +73,7 @@ std::vector<std::string> ValidationLog::messages() const {
   return messages_;
 }
 
-Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log) {
+Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log, const std::vector<std::string>& extensions) {
   std::uint32_t version = VK_API_VERSION_1_0;
   vkEnumerateInstanceVersion(&version);
   if (version < VK_API_VERSION_1_3) return Error{ErrorKind::device, "the Vulkan loader is older than 1.3"};
@@ -98,14 +101,17 @@ Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log) {
                                          .pNext = &messenger,
                                          .enabledValidationFeatureCount = 1,
                                          .pEnabledValidationFeatures = &synchronization};
-  const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+  std::vector<const char*> names;
+  for (const auto& extension : extensions) names.push_back(extension.c_str());
   if (log) {
+    names.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    names.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
     info.pNext = &features;
     info.enabledLayerCount = 1;
     info.ppEnabledLayerNames = &kLayer;
-    info.enabledExtensionCount = 2;
-    info.ppEnabledExtensionNames = extensions;
   }
+  info.enabledExtensionCount = static_cast<std::uint32_t>(names.size());
+  info.ppEnabledExtensionNames = names.data();
 
   Instance out;
   out.log_ = log;
@@ -113,6 +119,11 @@ Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log) {
   if (created == VK_ERROR_INCOMPATIBLE_DRIVER) {
     return Error{ErrorKind::device,
                  "no Vulkan driver found (Debian: mesa-vulkan-drivers brings one that runs on the CPU)"};
+  }
+  if (created == VK_ERROR_EXTENSION_NOT_PRESENT && !extensions.empty()) {
+    return Error{ErrorKind::device, fmt::format("the Vulkan loader cannot show pictures in windows of this system "
+                                                "(it needs {})",
+                                                join(extensions))};
   }
   AFTERGLOW_VK(created, "cannot create a Vulkan instance");
   keep_libraries_loaded();

@@ -18,7 +18,8 @@ namespace afterglow {
 class Instance {
  public:
   /// `log`: collect validation messages there (and load the layer); null: no validation. Errors: device.
-  static Result<Instance> create(std::shared_ptr<ValidationLog> log);
+  /// `extensions`: what a window system needs besides.
+  static Result<Instance> create(std::shared_ptr<ValidationLog> log, const std::vector<std::string>& extensions = {});
   Instance() = default;
   Instance(Instance&& other) noexcept { *this = std::move(other); }
   Instance& operator=(Instance&& other) noexcept;

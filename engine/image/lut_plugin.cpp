@@ -200,6 +200,7 @@ Result<Lut> read(const std::filesystem::path& file) {
     const auto transform = OCIO::FileTransform::Create();
     transform->setSrc(std::filesystem::absolute(file).c_str());
     transform->setInterpolation(OCIO::INTERP_TETRAHEDRAL);
+    transform->setCCCId("0");  // of a list of corrections, the first
     return Taker().take(*config->getProcessor(transform)->createGroupTransform());
   } catch (const Unsupported& why) {
     return Error{ErrorKind::script, why.what, file.string()};

@@ -54,6 +54,7 @@ DoubleImage by_ocio(const DoubleImage& source, const std::filesystem::path& file
   const auto transform = OCIO::FileTransform::Create();
   transform->setSrc(file.c_str());
   transform->setInterpolation(OCIO::INTERP_TETRAHEDRAL);
+  transform->setCCCId("0");
   const auto cpu = OCIO::Config::CreateRaw()->getProcessor(transform)->getOptimizedCPUProcessor(
       OCIO::BIT_DEPTH_F32, OCIO::BIT_DEPTH_F32, OCIO::OPTIMIZATION_NONE);
   DoubleImage out = source;

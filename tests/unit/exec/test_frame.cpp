@@ -72,6 +72,49 @@ TEST_F(FrameTest, SteadyFramesMakeNoObjectsAndGiveTheSameBits) {
   }
 }
 
+TEST_F(FrameTest, WhatStaysOnTheDeviceIsWhatWouldBeReadBack) {
+  const Size size{101, 57};
+  const auto pixels = noise(size, 31);
+  const std::map<std::string, HostImage> inputs{{"source", {pixels.data(), size, 4}}};
+  for (const bool direct : {true, false}) {
+    const auto made = program(graph(size));
+    HostResult expected, got;
+    ASSERT_TRUE(runner(direct)->run(*made, inputs, expected, KernelTiming::none));
+    const auto frames = runner(direct);
+    EXPECT_FALSE(frames->read_result(got)) << "nothing has run";
+    int recordings = 0;
+    for (int i = 0; i < 4; ++i) {
+      ASSERT_TRUE(frames->run_on_device(made.get(), inputs, KernelTiming::none));
+      const DeviceImages left = frames->images();
+      EXPECT_TRUE(left.ran);
+      EXPECT_NE(left.source.binding.image, left.result.binding.image);
+      EXPECT_EQ(left.result.binding.size, size);
+      EXPECT_EQ(left.result.layout, direct && device().is_cpu() ? VK_IMAGE_LAYOUT_GENERAL
+                                                                : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+      if (i == 1) recordings = frames->counters().recordings;
+    }
+    EXPECT_EQ(frames->counters().recordings, recordings) << "steady frames record nothing";
+    ASSERT_TRUE(frames->read_result(got));
+    EXPECT_EQ(got.pixels, expected.pixels);
+    ASSERT_TRUE(frames->read_result(got, Rect{3, 5, 2, 1}));
+    const std::size_t at = (5 * 101 + 3) * 4;
+    EXPECT_EQ(got.pixels[at], expected.pixels[at]);
+
+    // Nothing to run: the source is there by itself, and what was read before still works afterwards.
+    ASSERT_TRUE(frames->run_on_device(nullptr, inputs, KernelTiming::none));
+    EXPECT_FALSE(frames->images().ran);
+    EXPECT_EQ(frames->images().result.binding.image, frames->images().source.binding.image);
+    EXPECT_FALSE(frames->read_result(got));
+    ASSERT_TRUE(frames->run_on_device(made.get(), inputs, KernelTiming::none));
+    ASSERT_TRUE(frames->read_result(got));
+    EXPECT_EQ(got.pixels, expected.pixels);
+    const auto fresh = runner(direct);
+    ASSERT_TRUE(fresh->run_on_device(nullptr, inputs, KernelTiming::none));
+    EXPECT_NE(fresh->images().source.layout, VK_IMAGE_LAYOUT_PREINITIALIZED);
+    EXPECT_NE(fresh->images().source.layout, VK_IMAGE_LAYOUT_UNDEFINED);
+  }
+}
+
 TEST_F(FrameTest, OneRunnerServesChangingSizesStoragesAndPrograms) {
   const auto frames = runner();
   for (const Storage storage : {Storage::fp32, Storage::fp16, Storage::fp32}) {

@@ -1,0 +1,135 @@
+#include "exec/frame_inputs.h"
+
+#include <algorithm>
+
+#include "exec/barriers.h"
+#include "exec/brightest.h"
+#include "exec/convert.h"
+#include "exec/host_input.h"
+
+namespace afterglow {
+namespace {
+
+/// The rows of `part`; the others hold anything. `brightest`: what to note pixels in while they are at hand, or null.
+Result<std::uint64_t> write_pixels(Staging& staging, FrameImage& image, const HostImage& host, const Rect& part,
+                                   Brightest* brightest) {
+  const ImageDesc& desc = image.image.desc();
+  const auto pack = [&](int y, std::byte* to) -> std::uint64_t {
+    if (y < part.y || y >= part.y + part.height) return 0;
+    const float* row = host.pixels + static_cast<std::ptrdiff_t>(y) * desc.size.width * host.channels;
+    if (brightest) brightest->add_row(row, host.channels, desc.size.width);
+    return pack_row(row, host.channels, desc.size.width, desc.format, to);
+  };
+  if (!image.direct) {
+    image.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    return staging.upload(staged(image), pack);
+  }
+  const auto clamped = over_rows(part.height, image.image.row_pitch(),
+                                 [&](int y) { return pack(part.y + y, image.image.row(part.y + y)); });
+  image.image.memory().flush();
+  return clamped;
+}
+
+}  // namespace
+
+VkImageLayout input_layout(const Program& program, const std::string& name) {
+  return name == "source" ? program.source_layout() : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+}
+
+Result<std::map<std::string, ImageDesc>> FrameInputs::wanted_by(const Program& program,
+                                                                const std::map<std::string, HostImage>& host) {
+  const Graph& graph = program.graph();
+  std::map<std::string, ImageDesc> descs;
+  for (const auto& [name, id] : inputs_of(graph)) {
+    AFTERGLOW_CHECK(check_input(graph, name, id, host));
+    descs[name] = {.name = name,
+                   .size = graph.images[id].size,
+                   .format = input_format(name, host.at(name), program.storage_format()),
+                   .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
+    if (input_layout(program, name) == VK_IMAGE_LAYOUT_GENERAL) descs[name].usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+  }
+  return descs;
+}
+
+Result<bool> FrameInputs::prepare(const std::map<std::string, ImageDesc>& wanted) {
+  std::erase_if(images_, [&](const auto& entry) { return !wanted.contains(entry.first); });
+  std::erase_if(held_, [&](const auto& entry) { return !wanted.contains(entry.first); });
+  const int before = made_;
+  for (const auto& [name, desc] : wanted) {
+    FrameImage& image = images_[name];
+    if (image.fits(desc)) continue;
+    held_.erase(name);
+    image = {};  // before the new one is made: the two need not exist at once
+    AFTERGLOW_TRY(image, FrameImage::create(*device_, desc, direct_ ? HostAccess::write : HostAccess::none));
+    ++made_;
+  }
+  return made_ > before;
+}
+
+Result<void> FrameInputs::upload(Staging& staging, const std::string& name, const HostImage& given, const Rect& part,
+                                 bool look, Storage storage) {
+  Held& known = held_[name];
+  const bool same = given.content && known.content == given.content && known.part == part;
+  if (same && (!look || known.brightest)) return {};
+  Brightest brightest;
+  known = {.content = {}, .part = part, .version = ++last_version_, .clamped = 0, .brightest = {}};
+  AFTERGLOW_TRY(known.clamped, write_pixels(staging, images_.at(name), given, part, look ? &brightest : nullptr));
+  known.content = given.content;
+  if (look) known.brightest = brightest.value(storage);
+  return {};
+}
+
+std::map<std::string, std::uint64_t> FrameInputs::versions() const {
+  std::map<std::string, std::uint64_t> out;
+  for (const auto& [name, held] : held_) out[name] = held.version;
+  return out;
+}
+
+std::uint64_t FrameInputs::clamped() const {
+  std::uint64_t sum = 0;
+  for (const auto& [name, held] : held_) sum += held.clamped;
+  return sum;
+}
+
+std::map<std::string, ImageBinding> FrameInputs::bindings() const {
+  std::map<std::string, ImageBinding> out;
+  for (const auto& [name, image] : images_) out[name] = binding_of(image);
+  return out;
+}
+
+void FrameInputs::before(const Program& program, VkCommandBuffer commands) {
+  std::vector<VkImageMemoryBarrier2> barriers;
+  for (auto& [name, image] : images_) {
+    const VkImageLayout wanted = input_layout(program, name);
+    if (!image.direct && image.layout == wanted) continue;  // the upload has done it
+    const VkPipelineStageFlags2 stage =
+        VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | (image.direct ? VK_PIPELINE_STAGE_2_HOST_BIT : 0);
+    const VkAccessFlags2 access = image.direct ? VK_ACCESS_2_HOST_WRITE_BIT : VK_ACCESS_2_NONE;
+    barriers.push_back(image_barrier(image.image.get(), stage, access, image.layout,
+                                     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(wanted), wanted));
+    image.layout = wanted;
+  }
+  record_barriers(commands, barriers.data(), barriers.size());
+}
+
+void FrameInputs::after(VkCommandBuffer commands) {
+  std::vector<VkImageMemoryBarrier2> barriers;
+  for (auto& [name, image] : images_) {
+    const VkImageLayout to = image.direct ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    if (!image.direct && image.layout == to) continue;
+    const bool fresh = image.layout == VK_IMAGE_LAYOUT_PREINITIALIZED;
+    barriers.push_back(image_barrier(
+        image.image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | (fresh ? VK_PIPELINE_STAGE_2_HOST_BIT : 0),
+        fresh ? VK_ACCESS_2_HOST_WRITE_BIT : VK_ACCESS_2_NONE, image.layout, shown_stage(image),
+        shown_access(image, VK_ACCESS_2_HOST_WRITE_BIT), to));
+    image.layout = to;
+  }
+  record_barriers(commands, barriers.data(), barriers.size());
+}
+
+bool FrameInputs::readable() const {
+  return std::ranges::none_of(images_,
+                              [](const auto& entry) { return entry.second.layout == VK_IMAGE_LAYOUT_PREINITIALIZED; });
+}
+
+}  // namespace afterglow

@@ -1,0 +1,103 @@
+#include "exec/frame_result.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "exec/convert.h"
+
+namespace afterglow {
+
+ImageDesc FrameResult::wanted_by(const Program& program) {
+  return {.name = "result",
+          .size = program.graph().images[program.graph().result].size,
+          .format = program.result_format(),
+          .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT};
+}
+
+Result<bool> FrameResult::take(const ImageDesc& desc, int rows) {
+  std::erase_if(others_, [&](const auto& other) { return !other.second.fits(desc, other.first); });
+  if (image_.fits(desc, rows)) return false;
+  const int has = std::max(image_.rows.rows(), 1);
+  if (has != rows && image_.fits(desc, has)) {
+    others_[has] = std::move(image_);
+    image_ = std::move(others_[rows]);
+    others_.erase(rows);
+    if (image_.fits(desc, rows)) return false;
+  }
+  image_ = {};  // before the new one is made: the two need not exist at once
+  AFTERGLOW_TRY(image_, FrameImage::create(*device_, desc, direct_ ? HostAccess::read : HostAccess::none, rows));
+  ++made_;
+  return true;
+}
+
+std::vector<VkImage> FrameResult::images() const {
+  std::vector<VkImage> all{image_.image.get()};
+  for (int k = 0; k < image_.rows.rows(); ++k) all.push_back(image_.rows.image(k));
+  return all;
+}
+
+VkImageLayout FrameResult::drawing_layout() const {
+  return image_.rows.rows() > 1 ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+}
+
+void FrameResult::before(VkCommandBuffer commands) {
+  std::vector<VkImageMemoryBarrier2> barriers;
+  for (const VkImage image : images())
+    barriers.push_back(
+        image_barrier(image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                      0, VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, drawing_layout()));
+  record_barriers(commands, barriers.data(), barriers.size());
+}
+
+void FrameResult::after(VkCommandBuffer commands) {
+  const bool general = image_.direct || image_.rows.rows() > 1;
+  image_.layout = general ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  std::vector<VkImageMemoryBarrier2> barriers;
+  for (const VkImage image : images())
+    barriers.push_back(image_barrier(image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, drawing_layout(), shown_stage(image_),
+                                     shown_access(image_, VK_ACCESS_2_HOST_READ_BIT), image_.layout));
+  record_barriers(commands, barriers.data(), barriers.size());
+}
+
+/// Calls `row` for every row of that part, with its first pixel there, and sums up what it returns.
+Result<std::uint64_t> FrameResult::over_rows_of(Staging& staging, const Rect& part,
+                                                const std::function<std::uint64_t(int y, const std::byte* from)>& row) {
+  const std::size_t left = static_cast<std::size_t>(part.x) * bytes_per_pixel(image_.image.desc().format);
+  const auto inside = [&](int y, const std::byte* from) -> std::uint64_t {
+    return y < part.y || y >= part.y + part.height ? 0 : row(y, from + left);
+  };
+  if (!image_.direct) return staging.download(staged(image_), image_.layout, inside);
+  image_.image.memory().invalidate();
+  return over_rows(part.height, image_.image.row_pitch(),
+                   [&](int y) { return row(part.y + y, image_.image.row(part.y + y) + left); });
+}
+
+Result<std::uint64_t> FrameResult::download(Staging& staging, const Rect& part, HostResult& out) {
+  const auto [width, height] = image_.image.desc().size;
+  const VkFormat format = image_.image.desc().format;
+  const auto row_values = static_cast<std::size_t>(width) * 4;
+  const auto first = [&](int y) {
+    return row_values * static_cast<std::size_t>(y) + static_cast<std::size_t>(part.x) * 4;
+  };
+  if (format == VK_FORMAT_R8G8B8A8_UNORM) {
+    out.codes.resize(row_values * static_cast<std::size_t>(height));
+    return over_rows_of(staging, part, [&](int y, const std::byte* from) {
+      std::memcpy(out.codes.data() + first(y), from, static_cast<std::size_t>(part.width) * 4);
+      return std::uint64_t{0};
+    });
+  }
+  const auto values = row_values * static_cast<std::size_t>(height);
+  const bool keep_alpha = out.keep_alpha && out.pixels.size() == values;
+  if (out.pixels.size() != values) {
+    std::vector<float>().swap(out.pixels);  // growing would keep the old ones while it copies them
+    out.pixels.resize(values);
+  }
+  return over_rows_of(staging, part, [&](int y, const std::byte* from) {
+    float* to = out.pixels.data() + first(y);
+    return keep_alpha ? unpack_row_rgb(from, format, part.width, to) : unpack_row(from, format, part.width, to);
+  });
+}
+
+}  // namespace afterglow
