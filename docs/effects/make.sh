@@ -28,7 +28,8 @@ for name in $names; do render "$name"; done
 
 Made by docs/effects/make.sh from the effects themselves; `afterglow effects NAME` tells the same. Every setting has a default, so
 `fx.vignette {}` is a whole entry. Effects run by injection point and order, wherever they stand in the list; `at` and `order` in an entry
-move one. The pictures show what each example makes of the first picture; all end with a neutral tone curve.
+move one. The pictures show what each example makes of the first picture; all end with a neutral tone curve. The cost is counted in what
+`afterglow graph docs/effects/NAME.lua --size 1920x1080 --format json` describes; `afterglow bench docs/effects/NAME.lua` measures times on your device.
 
 ![before](images/effects/before.jpg)
 

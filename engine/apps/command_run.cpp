@@ -29,7 +29,7 @@ struct Arguments {
   DeviceArguments device;
   ExecutionArguments execution;
   FrameListRequest files;
-  std::string layer, depth, normal, size, region;
+  std::string layer, depth, normal, motion, size, region;
   std::string type = "auto", compression;
   int png_level = 1, jpeg_quality = 95;
   bool dither = false, keep_layers = false, resume = false, fail_fast = false;
@@ -51,6 +51,9 @@ void add_files(CLI::App& app, Arguments& a) {
       ->type_name("FILE[:CHANNEL]")
       ->group(input);
   app.add_option("--normal", a.normal, "Normals from another file or layer; FILE may be a pattern")
+      ->type_name("FILE[:LAYER]")
+      ->group(input);
+  app.add_option("--motion", a.motion, "Motion vectors from another file or layer; FILE may be a pattern")
       ->type_name("FILE[:LAYER]")
       ->group(input);
   app.add_option("--size", a.size, "Scale the picture first, for a quick look")->type_name("WxH")->group(input);
@@ -117,9 +120,9 @@ SampleType sample_type(const std::string& text) {
 
 /// Every option that changes pixels, for the hash that --resume compares.
 std::string pixel_options(const Arguments& a, const StackChoice& choice) {
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", join(a.preset.overrides, "|"),
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", join(a.preset.overrides, "|"),
                      a.preset.at, choice_name(choice.execution), a.execution.precision,
-                     a.execution.max_error.value_or(0), a.execution.reference, a.layer, a.depth, a.normal, a.size,
+                     a.execution.max_error.value_or(0), a.execution.reference, a.layer, a.depth, a.normal, a.motion, a.size,
                      a.region, a.fps, a.type, a.compression, a.png_level, a.jpeg_quality, a.dither, a.keep_layers);
 }
 
@@ -159,6 +162,7 @@ Result<std::vector<FrameJob>> jobs_of(const Arguments& a) {
   FrameListRequest request = a.files;
   if (!a.depth.empty()) request.depth = parse_layer_choice(a.depth);
   if (!a.normal.empty()) request.normal = parse_layer_choice(a.normal);
+  if (!a.motion.empty()) request.motion = parse_layer_choice(a.motion);
   return list_frames(request);
 }
 

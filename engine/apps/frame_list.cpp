@@ -83,6 +83,7 @@ std::vector<fs::path> FrameJob::sources() const {
   std::vector<fs::path> files{input};
   if (!depth.file.empty()) files.push_back(depth.file);
   if (!normal.file.empty()) files.push_back(normal.file);
+  if (!motion.file.empty()) files.push_back(motion.file);
   return files;
 }
 
@@ -99,9 +100,10 @@ Result<std::vector<FrameJob>> list_frames(const FrameListRequest& request) {
       return usage(fmt::format("--frames needs a numbered input like shot.####.exr, not {}", input));
     AFTERGLOW_TRY(const auto files, find_frames(pattern, frames));
     for (const auto& [frame, file] : files) {
-      FrameJob job{frame, file, names.name(file, frame), {}, {}};
+      FrameJob job{frame, file, names.name(file, frame), {}, {}, {}};
       AFTERGLOW_TRY(job.depth, resolve(request.depth, frame));
       AFTERGLOW_TRY(job.normal, resolve(request.normal, frame));
+      AFTERGLOW_TRY(job.motion, resolve(request.motion, frame));
       jobs.push_back(std::move(job));
     }
   }

@@ -13,7 +13,7 @@ namespace afterglow {
 struct FrameJob {
   int frame = 1;
   std::filesystem::path input, output;
-  LayerChoice depth, normal;  ///< patterns resolved for this frame
+  LayerChoice depth, normal, motion;  ///< patterns resolved for this frame
 
   /// Every file that the output is made from.
   std::vector<std::filesystem::path> sources() const;
@@ -24,7 +24,7 @@ struct FrameListRequest {
   std::string output;               ///< file, pattern or folder
   std::string extension;            ///< --format, for outputs in a folder; empty: that of the input
   std::string frames;               ///< "1-24x2"; empty: all that exist
-  LayerChoice depth, normal;
+  LayerChoice depth, normal, motion;
 };
 
 /// Errors: usage (a plain output for several frames, two inputs for one output, an output that is an input), io

@@ -26,6 +26,7 @@ struct Entry {
 struct Inputs {
   const DoubleImage* depth = nullptr;
   const DoubleImage* normal = nullptr;
+  const DoubleImage* motion = nullptr;
   double frame = 1, time = 0;  ///< number in its sequence; seconds
 };
 

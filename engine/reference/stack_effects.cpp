@@ -10,6 +10,7 @@
 #include "reference/grading.h"
 #include "reference/grain.h"
 #include "reference/lens.h"
+#include "reference/motion_blur.h"
 #include "reference/settings.h"
 
 namespace afterglow::reference {
@@ -171,6 +172,17 @@ DoubleImage run_depth_of_field(const DoubleImage& source, const Inputs& inputs, 
       source, linear_depth(*inputs.depth, s.number("near"), s.number("far"), s.flag("reversed_z")), settings);
 }
 
+DoubleImage run_motion_blur(const DoubleImage& source, const Inputs& inputs, const Settings& s) {
+  const auto [x, y] = s.pair("motion_scale");
+  return motion_blur(source, *inputs.motion, inputs.depth,
+                     {.shutter_angle = s.number("shutter_angle"),
+                      .samples = s.integer("samples"),
+                      .max_radius = s.number("max_radius"),
+                      .scale_x = x,
+                      .scale_y = y,
+                      .depth_softness = s.number("depth_softness")});
+}
+
 // ---- edges and detail
 
 DoubleImage run_sharpen(const DoubleImage& source, const Inputs&, const Settings& s) {
@@ -216,6 +228,7 @@ constexpr Oracle kOracles[] = {
     {"lens_dirt", run_lens_dirt},
     {"lens_distortion", run_lens_distortion},
     {"lift_gamma_gain", run_lift_gamma_gain},
+    {"motion_blur", run_motion_blur},
     {"pixelate", run_pixelate},
     {"radial_blur", run_radial_blur},
     {"shadows_midtones_highlights", run_shadows_midtones_highlights},

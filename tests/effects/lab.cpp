@@ -46,6 +46,7 @@ BuildContext context_of(const Scene& scene) {
   context.time = (scene.frame - 1) / context.fps;
   if (scene.depth) context.auxiliary["depth"] = scene.depth->size();
   if (scene.normal) context.auxiliary["normal"] = scene.normal->size();
+  if (scene.motion) context.auxiliary["motion"] = scene.motion->size();
   return context;
 }
 
@@ -85,7 +86,8 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
   auto runner = need(FrameRunner::create(*lab.device, options.max_memory));
 
   std::map<std::string, HostImage> inputs{{"source", {source.data(), made.size, 4}}};
-  std::vector<float> depth, normal;
+  std::vector<float> depth, normal, motion;
+  if (scene.motion) inputs["motion"] = {(motion = floats(*scene.motion)).data(), scene.motion->size(), 4};
   if (scene.depth) inputs["depth"] = {(depth = floats(*scene.depth)).data(), scene.depth->size(), 4};
   if (scene.normal) inputs["normal"] = {(normal = floats(*scene.normal)).data(), scene.normal->size(), 4};
   HostResult result;

@@ -98,6 +98,17 @@ std::vector<std::string> one_by_one(const EffectSchema& effect) {
 /// Settings that the effect itself refuses (near beyond far) are no settings.
 bool is_refused(const std::string& entry, const Scene& scene) { return !build_error(entry, scene).empty(); }
 
+/// With motion of all lengths and directions.
+Scene moving(Scene scene) {
+  auto& motion = scene.motion.emplace(scene.source.size());
+  for (std::size_t i = 0; i < motion.pixels.size(); ++i) {
+    const double angle = static_cast<double>(i) * 0.37, length = static_cast<double>(i % 97);
+    motion.pixels[i] = Rgba(std::cos(angle) * length, std::sin(angle) * length, 0, 1);
+  }
+  motion = in_floats(motion);
+  return scene;
+}
+
 /// The most extreme light that the source of a stack may hold.
 Scene stress_scene() {
   static constexpr double kValues[] = {0, 1e30, 65504, 1e4, 1e-38, 1e-10, 0.18, 1, 60, 3e29, 1e20, 65536};
@@ -110,7 +121,7 @@ Scene stress_scene() {
   }
   scene.source = in_floats(scene.source);
   scene.depth = in_floats(*scene.depth);
-  return scene;
+  return moving(std::move(scene));
 }
 
 TEST_F(Effects, EveryEffectStaysFiniteAtTheEndsOfItsSettings) {
@@ -131,7 +142,7 @@ TEST_F(Effects, EveryEffectStaysFiniteAtTheEndsOfItsSettings) {
 }
 
 TEST_F(Effects, EveryEffectJoinedIsWhatItIsByItself) {
-  const auto scene = neon_scene({96, 54}, 560, 330);
+  const auto scene = moving(neon_scene({96, 54}, 560, 330));
   // Pixel passes on both sides, which it is joined with where that can be.
   const std::string before = "fx.channel_mixer { name = \"before\", at = \"after_opaque_and_sky\", order = -1000, red_out_green_in = 10 }, ";
   const std::string behind = ", fx.channel_mixer { name = \"behind\", at = \"after_post_process\", order = 1000, green_out_blue_in = 10 }";
@@ -172,7 +183,7 @@ std::vector<std::string> neutral_entries(const EffectSchema& effect) {
 }
 
 TEST_F(Effects, EveryEffectHasSettingsThatChangeNothing) {
-  const auto scene = random_scene({24, 18}, 82);
+  const auto scene = moving(random_scene({24, 18}, 82));
   // What has no such settings, like anti-aliasing, has nothing to do where there is nothing to see.
   Scene flat{"flat", DoubleImage(24, 18, Rgba(0.5, 0.25, 0.125, 1)), DoubleImage(24, 18, Rgba(4, 0, 0, 1)),
              DoubleImage(24, 18, Rgba(0, 0, 1, 0))};
