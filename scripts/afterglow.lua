@@ -109,7 +109,7 @@ fx.curve = core.curve
 --- - `order` integer, default 0: place among the effects of that point, smaller first
 --- - `settings` names and their types, in the order in which people see them
 --- - `active(s)` false when the settings make the effect an identity, with the reason as second value
---- - `needs`, `optional` auxiliary inputs ("depth", "normal"), or a function of the settings that returns them. Without a
+--- - `needs`, `optional` auxiliary inputs ("depth", "normal", "motion"), or a function of the settings that returns them. Without a
 ---   needed one the effect is skipped with a warning.
 --- - `idle(s, source)` what makes the effect an identity in a frame: `{ brightest = L }` says that it changes no pixel, to the
 ---   last bit, as long as no red, green or blue of `source` is above L. Frames of which that is known are run without it.

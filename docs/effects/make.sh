@@ -8,7 +8,13 @@ program=${1:-./dev}
 pictures=docs/images/effects
 mkdir -p "$pictures"
 
-render() { "$program" run "docs/effects/$1.lua" tests/images/neon.exr -o "$pictures/$1.jpg" --jpeg-quality 82 --size 320x180 -q; }
+# An example may begin with "-- input: FILE OPTION…" when it needs another picture than the usual one.
+render() {
+  local input
+  input=$(sed -n '1s/^-- input: //p' "docs/effects/$1.lua")
+  # shellcheck disable=SC2086 # words of the line
+  "$program" run "docs/effects/$1.lua" ${input:-tests/images/neon.exr --size 320x180} -o "$pictures/$1.jpg" --jpeg-quality 82 -q
+}
 
 # Passes, and the pixels they write in units of the picture; both at 1920x1080.
 cost() {

@@ -62,7 +62,7 @@ Rect upright_display(const FilePart& part) {
 /// channels are the ways from the previous frame and to the next one; the mean of both is taken, whichever way round
 /// each of them is written: what moves goes on in about the same direction.
 Image motion_of(const Image& stored) {
-  constexpr float kFarthest = 16384;  // pixels: the largest picture
+  static constexpr float kFarthest = 16384;  // pixels: the largest picture
   Image out(stored.width, stored.height, 2);
   const auto channels = static_cast<std::size_t>(stored.channels);
   const auto finite = [](float v) { return std::isfinite(v) ? std::clamp(v, -kFarthest, kFarthest) : 0.0f; };
