@@ -11,6 +11,7 @@
 #include "apps/command.h"
 #include "apps/frame_list.h"
 #include "apps/frame_loop.h"
+#include "apps/lock.h"
 #include "apps/options.h"
 #include "apps/resume.h"
 #include "apps/run_report.h"
@@ -34,7 +35,7 @@ struct Arguments {
   int png_level = 1, jpeg_quality = 95;
   bool dither = false, keep_layers = false, resume = false, fail_fast = false;
   double fps = 24;
-  std::string stats, report;
+  std::string stats, report, lock, locked;
 };
 
 void add_files(CLI::App& app, Arguments& a) {
@@ -101,6 +102,13 @@ void add_files(CLI::App& app, Arguments& a) {
 }
 
 void add_reports(CLI::App& app, Arguments& a) {
+  app.add_option("--lock", a.lock, "Write down what this was made with: hashes of scripts, shaders, options; versions")
+      ->type_name("FILE.json")
+      ->group("Output");
+  app.add_option("--locked", a.locked, "Refuse to run when scripts, shaders or options are not those of this lock")
+      ->type_name("FILE.json")
+      ->excludes("--lock")
+      ->group("Output");
   app.add_flag("--stats{total}", a.stats, "Print where the time went; --stats=passes adds each pass")
       ->check(CLI::IsMember({"total", "passes"}))
       ->type_name("[=passes]")
@@ -118,12 +126,34 @@ SampleType sample_type(const std::string& text) {
   return SampleType::automatic;
 }
 
-/// Every option that changes pixels, for the hash that --resume compares.
-std::string pixel_options(const Arguments& a, const StackChoice& choice) {
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", join(a.preset.overrides, "|"),
-                     a.preset.at, choice_name(choice.execution), a.execution.precision,
-                     a.execution.max_error.value_or(0), a.execution.reference, a.layer, a.depth, a.normal, a.motion, a.size,
-                     a.region, a.fps, a.type, a.compression, a.png_level, a.jpeg_quality, a.dither, a.keep_layers);
+/// Every option that changes pixels, for --lock and the hash that --resume compares.
+PixelOptions pixel_options(const Arguments& a) {
+  const auto flag = [](bool given) { return given ? "yes" : ""; };
+  const auto number = [](std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; };
+  return {{"--set", join(a.preset.overrides, " ")},
+          {"--at", a.preset.at},
+          {"--precision", a.execution.precision},
+          {"--max-error", number(a.execution.max_error)},
+          {"--reference", flag(a.execution.reference)},
+          {"--layer", a.layer},
+          {"--depth", a.depth},
+          {"--normal", a.normal},
+          {"--motion", a.motion},
+          {"--size", a.size},
+          {"--region", a.region},
+          {"--fps", number(a.fps)},
+          {"--type", a.type},
+          {"--compression", a.compression},
+          {"--png-level", fmt::format("{}", a.png_level)},
+          {"--jpeg-quality", fmt::format("{}", a.jpeg_quality)},
+          {"--dither", flag(a.dither)},
+          {"--keep-layers", flag(a.keep_layers)}};
+}
+
+std::string options_text(const PixelOptions& options) {
+  std::string text;
+  for (const auto& [name, value] : options) text += name + "=" + value + "|";
+  return text;
 }
 
 /// Everything about one run that outlives a step.
@@ -134,6 +164,7 @@ struct Run {
   std::unique_ptr<Session> session;
   FrameLoopOptions loop;
   RunReport report;
+  std::optional<Lock> lock;  ///< of what runs, with --lock or --locked
 
   double milliseconds() const { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 };
@@ -166,15 +197,20 @@ Result<std::vector<FrameJob>> jobs_of(const Arguments& a) {
   return list_frames(request);
 }
 
+/// The graph of frames as they usually are.
+Result<Graph> usual_graph(Run& run) {
+  AssumedPicture assumed;
+  AFTERGLOW_TRY(const BuildContext context, assumed.context(run.session->preset()));
+  return run.session->stack().graph(context);
+}
+
 /// Hash of the look for --resume, and the frames that need not be made.
 Result<void> prepare_resume(Run& run) {
   const Arguments& a = run.arguments;
   if (!a.resume && run.report.frames.size() < 2) return {};
-  AssumedPicture assumed;
-  Preset& preset = run.session->preset();
-  AFTERGLOW_TRY(const BuildContext context, assumed.context(preset));
-  AFTERGLOW_TRY(const Graph graph, run.session->stack().graph(context));
-  AFTERGLOW_TRY(const Hash look, look_hash(preset, graph, pixel_options(a, run.session->stack().choice())));
+  AFTERGLOW_TRY(const Graph graph, usual_graph(run));
+  const std::string options = options_text(pixel_options(a)) + choice_name(run.session->stack().choice().execution);
+  AFTERGLOW_TRY(const Hash look, look_hash(run.session->preset(), graph, options));
   run.loop.record_look = look;
   if (!a.resume) return {};
   for (auto& frame : run.report.frames)
@@ -183,6 +219,17 @@ Result<void> prepare_resume(Run& run) {
       run.console.note(fmt::format("{} is up to date", frame.job.output.string()));
     }
   return {};
+}
+
+/// With --locked, ends the run when the look is another; with --lock, what to write when the run is done.
+Result<void> prepare_lock(Run& run) {
+  const Arguments& a = run.arguments;
+  if (a.lock.empty() && a.locked.empty()) return {};
+  AFTERGLOW_TRY(const Graph graph, usual_graph(run));
+  AFTERGLOW_TRY(run.lock, lock_of(*run.session, graph, pixel_options(a)));
+  if (a.locked.empty()) return {};
+  AFTERGLOW_TRY(const Lock locked, read_lock(a.locked));
+  return hold_against(locked, *run.lock, a.locked, run.console.diagnostics());
 }
 
 /// Outputs that cannot be written are refused before any work: one of each folder and format.
@@ -223,6 +270,7 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   AFTERGLOW_TRY(const std::filesystem::path preset, a.preset.preset_file());
   AFTERGLOW_TRY(run.session, Session::open(preset, options, run.console.diagnostics()));
   run.loop.read.auxiliary = run.session->preset().needs();
+  AFTERGLOW_CHECK(prepare_lock(run));
   AFTERGLOW_CHECK(prepare_resume(run));
   run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
   FrameLoop loop(*run.session, run.loop, run.console);
@@ -237,6 +285,7 @@ Result<void> run_command(const Arguments& a, Console& console) {
   AFTERGLOW_TRY(const auto jobs, jobs_of(a));
   for (const auto& job : jobs) run.report.frames.push_back({.job = job});
   auto done = run_frames(run, options);
+  if (done && !a.lock.empty()) done = write_file_atomically(a.lock, lock_text(*run.lock));
   if (run.session) run.report.session = run.session->report();
   run.report.wall = run.milliseconds();
   if (!a.stats.empty() && run.session) fmt::print("{}", report_text(run.report, a.stats == "passes"));

@@ -43,11 +43,16 @@ class OiioFile : public PictureFile {
       if (!input_) return failed(unknown_format(OIIO::geterror()));
       format_ = input_->format_name();
       AFTERGLOW_CHECK(add_parts(limits));
+      if (specs_.front().get_int_attribute("oiio:Movie", 0) != 0) note_movie(specs_.front());
     } catch (const std::exception& error) {
       return failed(message_of(error.what()));
     }
     return {};
   }
+
+  int frames() const override { return frames_; }
+  double frames_per_second() const override { return frames_per_second_; }
+  void select_frame(int frame) override { frame_ = frame; }
 
   std::uint64_t buffer_bytes(int part) const override {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
@@ -150,6 +155,13 @@ class OiioFile : public PictureFile {
     return {};
   }
 
+  void note_movie(const OIIO::ImageSpec& spec) {
+    frames_ = spec.get_int_attribute("oiio:subimages", 0);
+    int rate[2] = {0, 1};
+    if (spec.getattribute("FramesPerSecond", OIIO::TypeRational, rate) && rate[1] != 0)
+      frames_per_second_ = static_cast<double>(rate[0]) / rate[1];
+  }
+
   OIIO::TypeDesc sample_type(const ChannelChoice& color) const {
     return specs_[static_cast<std::size_t>(color.part)].channelformat(color.channels[0]);
   }
@@ -158,8 +170,8 @@ class OiioFile : public PictureFile {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
     const auto x_stride = static_cast<OIIO::stride_t>(first.pixel_stride * sizeof(float));
     const auto y_stride = static_cast<OIIO::stride_t>(first.row_stride * sizeof(float));
-    if (!input_->read_image(part, 0, first.channel, first.channel + channels, OIIO::TypeFloat, first.base, x_stride,
-                            y_stride, y_stride * spec.height))
+    if (!input_->read_image(part + frame_, 0, first.channel, first.channel + channels, OIIO::TypeFloat, first.base,
+                            x_stride, y_stride, y_stride * spec.height))
       return failed(message_of(input_->geterror()));
     return {};
   }
@@ -216,6 +228,8 @@ class OiioFile : public PictureFile {
   ContainerFacts container_;
   OIIO::ImageInput::unique_ptr input_;
   std::vector<OIIO::ImageSpec> specs_;
+  int frames_ = 0, frame_ = 0;  ///< of a video; its frames are sub-images of one part
+  double frames_per_second_ = 0;
 };
 
 }  // namespace

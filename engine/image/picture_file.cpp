@@ -4,6 +4,7 @@
 
 #include "image/container_check.h"
 #include "image/exr_file.h"
+#include "image/movie.h"
 #include "image/oiio_module.h"
 
 namespace afterglow {
@@ -43,6 +44,15 @@ Result<std::unique_ptr<PictureFile>> open_picture(const std::filesystem::path& f
     if (const std::uint64_t size = std::filesystem::file_size(file, ec); !ec && size < least)
       return Error{ErrorKind::io, fmt::format("is truncated: {} bytes cannot hold its pixels", size), file.string()};
   }
+  const char* container_name = nullptr;
+  if (container.kind == ContainerFacts::Kind::other &&
+      movie_container(file, &container_name) == MovieContainer::unreadable_movie)
+    return Error{ErrorKind::io,
+                 fmt::format("is a video in a container that is not read ({}); `ffmpeg -i {} -c copy {}` puts it into "
+                             "one that is",
+                             container_name, file.filename().string(),
+                             std::filesystem::path(file.filename()).replace_extension(".mp4").string()),
+                 file.string(), 0, "MP4, QuickTime, AVI"};
   const auto module = oiio_module();
   if (!module) return Error{ErrorKind::io, module.error().message, file.string()};
   return module.value()->open(file, container, limits);

@@ -35,6 +35,12 @@ class PictureFile {
   const std::string& format() const { return format_; }  ///< OpenImageIO's name of it
   const std::vector<FilePart>& parts() const { return parts_; }
 
+  /// Of a video: how many frames it has and how many it shows a second (0: unknown); 0 frames of everything else.
+  virtual int frames() const { return 0; }
+  virtual double frames_per_second() const { return 0; }
+  /// Which frame of a video `read` reads, from 0; the first until then.
+  virtual void select_frame(int) {}
+
   /// Memory for decoding this part, besides the targets.
   virtual std::uint64_t buffer_bytes(int part) const = 0;
   /// All rows of the part; each channel at most once. Integers are scaled to 0…1, except those of EXR, which are plain

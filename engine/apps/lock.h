@@ -1,0 +1,44 @@
+// --lock and --locked: what a run was made with, written down, and held against what is there now.
+//
+// A lock is a small JSON file. Its `look` is all that decides the pixels besides the pictures: a hash of every script
+// and shader and file they name, and the options; when any of it differs the pixels do, so that a locked run is
+// refused. Its `made_with` names program, libraries, device, driver and way of execution: the look is the same with
+// others, pixels are so within the bounds of docs/determinism.md, so that a difference is a warning.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/result.h"
+#include "graph/graph.h"
+#include "session/session.h"
+
+namespace afterglow {
+
+/// Options that change pixels, by name.
+using PixelOptions = std::vector<std::pair<std::string, std::string>>;
+
+struct Lock {
+  std::string preset;                          ///< name of its file
+  std::map<std::string, std::string> files;    ///< hash by name: "effects/glow.lua", "installation: shaders/…"
+  std::map<std::string, std::string> options;  ///< those that are not empty
+  std::map<std::string, std::string> made_with;
+};
+
+/// Of a session and the graph of its frames. Errors: script, io.
+Result<Lock> lock_of(Session& session, const Graph& graph, const PixelOptions& options);
+
+std::string lock_text(const Lock& lock);
+/// Errors: io (no such file, no lock, a lock of a later version).
+Result<Lock> read_lock(const std::filesystem::path& file);
+
+/// What `now` has otherwise than `locked`. Errors: script, naming every file and option of the look that differs.
+/// Differences of what it was made with are warnings.
+Result<void> hold_against(const Lock& locked, const Lock& now, const std::filesystem::path& file,
+                          Diagnostics& diagnostics);
+
+}  // namespace afterglow

@@ -1,0 +1,151 @@
+#include "play/footage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <unordered_map>
+
+#include "core/text.h"
+#include "image/sequence.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kMostFrames = 1'000'000;
+
+/// The frames of a sequence without gaps, in order; a list that was asked for is taken as it is.
+std::vector<int> numbers_of(const std::vector<FrameFile>& files, const std::optional<std::vector<int>>& wanted) {
+  if (wanted) return *wanted;
+  std::vector<int> numbers;
+  for (const FrameFile& file : files) {
+    const long long gap = numbers.empty() ? 1 : static_cast<long long>(file.frame) - numbers.back();
+    // What lies so far apart is no sequence with holes.
+    if (gap > 1 && numbers.size() + static_cast<std::size_t>(gap) <= kMostFrames)
+      for (int number = numbers.back() + 1; number < file.frame; ++number) numbers.push_back(number);
+    numbers.push_back(file.frame);
+  }
+  return numbers;
+}
+
+Result<LayerChoice> resolved(const LayerChoice& choice, int frame) {
+  if (choice.file.empty()) return choice;
+  AFTERGLOW_TRY(const Pattern pattern, parse_pattern(choice.file.string()));
+  return LayerChoice{pattern.file(frame), choice.name};
+}
+
+}  // namespace
+
+std::string frames_text(const std::vector<int>& frames) {
+  std::string out;
+  for (std::size_t i = 0; i < frames.size();) {
+    std::size_t end = i + 1;
+    while (end < frames.size() && frames[end] == frames[end - 1] + 1) ++end;
+    if (!out.empty()) out += ", ";
+    out += end - i == 1 ? std::to_string(frames[i]) : fmt::format("{}-{}", frames[i], frames[end - 1]);
+    i = end;
+  }
+  return out;
+}
+
+Result<void> Footage::add_sequence(const std::string& input, const std::optional<std::vector<int>>& wanted) {
+  AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));
+  AFTERGLOW_TRY(const auto files, find_frames(pattern, wanted));
+  std::unordered_map<int, int> picture_of;
+  for (const FrameFile& file : files) {
+    std::error_code ignored;
+    // A plain file that is missing is an error when it is read; a hole in a sequence is none.
+    if (pattern.numbered && !fs::exists(file.file, ignored)) continue;
+    picture_of[file.frame] = pictures();
+    pictures_.push_back({.file = file.file, .number = file.frame, .movie = {}, .movie_frame = 0});
+  }
+  if (picture_of.empty()) return Error{ErrorKind::io, "none of the frames that --frames asks for exists", input};
+  const std::vector<int> numbers = pattern.numbered ? numbers_of(files, wanted) : std::vector<int>{files[0].frame};
+  int last = -1;
+  for (const int number : numbers)
+    if (const auto found = picture_of.find(number); last < 0 && found != picture_of.end()) last = found->second;
+  for (const int number : numbers) {
+    const auto found = picture_of.find(number);
+    const bool held = found == picture_of.end();
+    if (!held) last = found->second;
+    if (held) missing_.push_back(number);
+    frames_.push_back({number, last, held});
+  }
+  return {};
+}
+
+Result<void> Footage::add_movie(const fs::path& file, const std::optional<std::vector<int>>& wanted,
+                                Diagnostics& diagnostics) {
+  AFTERGLOW_TRY(std::shared_ptr<Movie> movie, Movie::open(file, {read_.max_side, read_.max_bytes}, diagnostics));
+  const int first = pictures();
+  for (int frame = 0; frame < movie->frames(); ++frame) {
+    if (wanted && std::ranges::find(*wanted, frame + 1) == wanted->end()) continue;
+    frames_.push_back({frame + 1, pictures(), false});
+    pictures_.push_back({.file = file, .number = frame + 1, .movie = movie, .movie_frame = frame});
+  }
+  if (pictures() == first)
+    return Error{ErrorKind::io, fmt::format("has no frame that --frames asks for; it has {}", movie->frames()),
+                 file.string()};
+  if (!fps_ && movie->fps() > 0) fps_ = movie->fps();
+  video_ = true;
+  return {};
+}
+
+Result<void> Footage::add(const std::string& input, const std::optional<std::vector<int>>& wanted,
+                          Diagnostics& diagnostics) {
+  AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));
+  if (pattern.numbered) return add_sequence(input, wanted);
+  if (movie_container(pattern.file(0)) != MovieContainer::none) return add_movie(pattern.file(0), wanted, diagnostics);
+  if (wanted)
+    return Error{ErrorKind::usage,
+                 fmt::format("--frames needs a numbered input like shot.####.exr or a video, not {}", input),
+                 "afterglow play"};
+  return add_sequence(input, {});
+}
+
+Result<std::shared_ptr<const Footage>> Footage::open(const FootageOptions& options, Diagnostics& diagnostics) {
+  std::shared_ptr<Footage> footage(new Footage());
+  footage->read_ = options.read;
+  std::optional<std::vector<int>> wanted;
+  if (!options.frames.empty()) {
+    AFTERGLOW_TRY(wanted, parse_frames(options.frames));
+  }
+  for (const std::string& input : options.inputs) {
+    const std::size_t before = footage->missing_.size();
+    AFTERGLOW_CHECK(footage->add(input, wanted, diagnostics));
+    const std::vector<int> missing(footage->missing_.begin() + static_cast<std::ptrdiff_t>(before),
+                                   footage->missing_.end());
+    if (!missing.empty())
+      diagnostics.warn(fmt::format("{}: {} {} missing, the picture before is held: {}", input, missing.size(),
+                                   missing.size() == 1 ? "frame is" : "frames are", frames_text(missing)));
+  }
+  if (footage->frames_.empty()) return Error{ErrorKind::usage, "there is nothing to play", "afterglow play"};
+  if (footage->frames_.size() > kMostFrames)
+    return Error{ErrorKind::usage, fmt::format("there are more than {} frames", kMostFrames), "afterglow play"};
+  return std::shared_ptr<const Footage>(std::move(footage));
+}
+
+std::string Footage::picture_name(int picture) const {
+  const Source& source = pictures_[static_cast<std::size_t>(picture)];
+  const std::string name = source.file.filename().string();
+  return source.movie ? fmt::format("{}, frame {}", name, source.number) : name;
+}
+
+Result<Picture> Footage::read(int picture, const std::vector<std::string>& auxiliary, Diagnostics& diagnostics) const {
+  const Source& source = pictures_[static_cast<std::size_t>(picture)];
+  ReadOptions options = read_;
+  options.auxiliary = auxiliary;
+  AFTERGLOW_TRY(options.depth, resolved(read_.depth, source.number));
+  AFTERGLOW_TRY(options.normal, resolved(read_.normal, source.number));
+  auto read = source.movie ? source.movie->read(source.movie_frame) : read_picture(source.file, options, diagnostics);
+  if (read) note_content(*read);
+  if (!read && read.error().file.empty()) {
+    Error error = std::move(read).error();
+    error.file = source.file.string();
+    return error;
+  }
+  return read;
+}
+
+}  // namespace afterglow

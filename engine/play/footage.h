@@ -1,0 +1,81 @@
+// What is played: single pictures, numbered sequences, videos, or several of them one after the other, as one row of
+// frames.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/result.h"
+#include "image/movie.h"
+#include "image/reader.h"
+
+namespace afterglow {
+
+struct FootageOptions {
+  std::vector<std::string> inputs;  ///< files, patterns (shot.####.exr, shot.%04d.exr), videos
+  std::string frames;               ///< "1-24x2", for numbered inputs and videos; empty: all there are
+  /// Layers and limits; depth and normal may be patterns. `auxiliary` is given to `read`.
+  ReadOptions read;
+};
+
+/// One frame of the row. A missing file of a sequence holds the picture before it (or, at the start, the one behind).
+struct FootageFrame {
+  int number = 1;   ///< in its sequence: what presets see
+  int picture = 0;  ///< which picture it shows: equal numbers, equal pixels
+  bool held = false;
+};
+
+/// Immutable once opened; thread-safe.
+class Footage {
+ public:
+  /// Looks at names and the headers of videos; reads no picture. Errors: usage (patterns, frame lists), io (nothing
+  /// matches, a video that cannot be read, a frame list that names no frame that exists).
+  static Result<std::shared_ptr<const Footage>> open(const FootageOptions& options, Diagnostics& diagnostics);
+
+  int frames() const { return static_cast<int>(frames_.size()); }
+  int pictures() const { return static_cast<int>(pictures_.size()); }
+  const FootageFrame& frame(int position) const { return frames_[static_cast<std::size_t>(position)]; }
+  /// For people: "shot.0007.exr", "clip.mp4, frame 7".
+  std::string picture_name(int picture) const;
+  const std::filesystem::path& file(int picture) const { return pictures_[static_cast<std::size_t>(picture)].file; }
+  /// Frames a second, where the footage says it (videos).
+  std::optional<double> fps() const { return fps_; }
+  /// Numbers of the frames that are missing and held.
+  const std::vector<int>& missing() const { return missing_; }
+  /// Pictures in order are read much faster than others.
+  bool is_video() const { return video_; }
+
+  /// Reads a picture, with its content hashes noted. `auxiliary`: "depth", "normal", as the stack asks for them.
+  /// Errors: io, naming the file.
+  Result<Picture> read(int picture, const std::vector<std::string>& auxiliary, Diagnostics& diagnostics) const;
+
+ private:
+  struct Source {
+    std::filesystem::path file;
+    int number = 1;
+    std::shared_ptr<Movie> movie;
+    int movie_frame = 0;
+  };
+  Footage() = default;
+  Result<void> add_sequence(const std::string& input, const std::optional<std::vector<int>>& wanted);
+  Result<void> add_movie(const std::filesystem::path& file, const std::optional<std::vector<int>>& wanted,
+                         Diagnostics& diagnostics);
+  Result<void> add(const std::string& input, const std::optional<std::vector<int>>& wanted, Diagnostics& diagnostics);
+
+  ReadOptions read_;
+  std::vector<FootageFrame> frames_;
+  std::vector<Source> pictures_;
+  std::vector<int> missing_;
+  std::optional<double> fps_;
+  bool video_ = false;
+};
+
+/// "3, 7-9, 12".
+std::string frames_text(const std::vector<int>& frames);
+
+}  // namespace afterglow

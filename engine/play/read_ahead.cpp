@@ -1,0 +1,231 @@
+#include "play/read_ahead.h"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <list>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+
+namespace afterglow {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::uint64_t bytes_of(const Picture& picture) {
+  std::uint64_t bytes = picture.color.bytes() + picture.codes.size();
+  for (const auto& [name, image] : picture.auxiliary) bytes += image.bytes();
+  return bytes;
+}
+
+}  // namespace
+
+struct ReadAhead::State {
+  Read read;
+  ReadAheadOptions options;
+  std::function<void()> arrived;
+
+  mutable std::mutex mutex;
+  std::condition_variable work, done;
+  std::vector<int> wanted;
+  std::map<int, std::shared_ptr<const ReadPicture>> pictures;
+  std::list<int> used;  ///< keys of `pictures`, the one used last at the front
+  std::set<int> reading;
+  std::uint64_t bytes = 0, expected = 0;  ///< of the pictures; of one that has yet to be read
+  std::uint64_t epoch = 0;                ///< grows when everything is thrown away
+  Stats stats;
+  double total_milliseconds = 0;
+  bool ending = false;
+  std::vector<std::thread> threads;
+
+  // All of these with `mutex` held.
+  std::optional<int> next() const;
+  bool is_wanted(int key) const { return std::ranges::find(wanted, key) != wanted.end(); }
+  std::size_t rank(int key) const { return static_cast<std::size_t>(std::ranges::find(wanted, key) - wanted.begin()); }
+  bool make_room(std::uint64_t more, std::size_t before);
+  void drop(int key);
+  void take(std::shared_ptr<const ReadPicture> picture);
+  void run();
+};
+
+/// The most urgent picture that nobody has read or reads.
+std::optional<int> ReadAhead::State::next() const {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const int key = wanted[i];
+    if (const auto found = pictures.find(key); found != pictures.end()) {
+      sum += found->second->bytes;
+      continue;
+    }
+    sum += expected;
+    if (i > 0 && sum > options.max_bytes) return std::nullopt;  // what lies further ahead has no room
+    if (!reading.contains(key)) return key;
+    // Until the first has come, nobody knows how large they are: one at a time.
+    if (expected == 0) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+void ReadAhead::State::drop(int key) {
+  const auto found = pictures.find(key);
+  bytes -= found->second->bytes;
+  pictures.erase(found);
+  used.remove(key);
+}
+
+/// Room for so many bytes, at the cost of what nobody wants, then of what is wanted later than `before`.
+bool ReadAhead::State::make_room(std::uint64_t more, std::size_t before) {
+  const auto fits = [&] { return bytes + more <= options.max_bytes; };
+  while (!fits()) {
+    const auto unwanted = std::find_if(used.rbegin(), used.rend(), [&](int key) { return !is_wanted(key); });
+    int victim = -1;
+    if (unwanted != used.rend()) {
+      victim = *unwanted;
+    } else {
+      std::size_t furthest = before;
+      for (const auto& [key, picture] : pictures)
+        if (rank(key) > furthest) {
+          furthest = rank(key);
+          victim = key;
+        }
+    }
+    if (victim < 0) return false;
+    drop(victim);
+    ++stats.evicted;
+  }
+  return true;
+}
+
+void ReadAhead::State::take(std::shared_ptr<const ReadPicture> picture) {
+  const int key = picture->key;
+  ++stats.read;
+  if (picture->error) ++stats.failed;
+  total_milliseconds += picture->milliseconds;
+  expected = std::max(expected, picture->bytes);
+  // Nobody waits for it any more: kept where that costs nothing.
+  if (!is_wanted(key) && (picture->error || bytes + picture->bytes > options.max_bytes)) return;
+  if (!make_room(picture->bytes, rank(key)) && rank(key) > 0) return;
+  bytes += picture->bytes;
+  stats.most_bytes = std::max(stats.most_bytes, bytes);
+  pictures[key] = std::move(picture);
+  used.push_front(key);
+}
+
+void ReadAhead::State::run() {
+  std::unique_lock lock(mutex);
+  while (true) {
+    std::optional<int> key;
+    work.wait(lock, [&] { return ending || (key = next()); });
+    if (ending) return;
+    reading.insert(*key);
+    const std::uint64_t began_in = epoch;
+    // Before it is read, so that the bound holds while both exist.
+    make_room(expected * reading.size(), rank(*key));
+    lock.unlock();
+    auto made = std::make_shared<ReadPicture>();
+    made->key = *key;
+    const auto start = Clock::now();
+    auto result = read(*key);
+    made->milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    if (result) {
+      made->picture = std::move(result).value();
+      made->bytes = bytes_of(made->picture);
+    } else {
+      made->error = std::move(result).error();
+    }
+    lock.lock();
+    if (began_in == epoch) {
+      reading.erase(*key);
+      take(std::move(made));
+    }
+    lock.unlock();
+    done.notify_all();
+    work.notify_all();
+    if (arrived) arrived();
+    lock.lock();
+  }
+}
+
+ReadAhead::ReadAhead(Read read, const ReadAheadOptions& options, std::function<void()> arrived)
+    : state_(std::make_unique<State>()) {
+  state_->read = std::move(read);
+  state_->options = options;
+  state_->arrived = std::move(arrived);
+  for (int i = 0; i < std::max(options.threads, 1); ++i) state_->threads.emplace_back([this] { state_->run(); });
+}
+
+ReadAhead::~ReadAhead() {
+  {
+    const std::lock_guard lock(state_->mutex);
+    state_->ending = true;
+  }
+  state_->work.notify_all();
+  for (auto& thread : state_->threads) thread.join();
+}
+
+void ReadAhead::want(const std::vector<int>& keys) {
+  {
+    const std::lock_guard lock(state_->mutex);
+    State& s = *state_;
+    if (keys == s.wanted) return;
+    s.wanted = keys;
+    std::vector<int> stale;  // errors that nobody looks at: the file may be better when it is wanted again
+    for (const auto& [key, picture] : s.pictures)
+      if (picture->error && !s.is_wanted(key)) stale.push_back(key);
+    for (const int key : stale) s.drop(key);
+    for (auto key = keys.rbegin(); key != keys.rend(); ++key)
+      if (s.pictures.contains(*key)) {
+        s.used.remove(*key);
+        s.used.push_front(*key);
+      }
+  }
+  state_->work.notify_all();
+}
+
+std::shared_ptr<const ReadPicture> ReadAhead::find(int key) const {
+  const std::lock_guard lock(state_->mutex);
+  const auto found = state_->pictures.find(key);
+  return found == state_->pictures.end() ? nullptr : found->second;
+}
+
+std::shared_ptr<const ReadPicture> ReadAhead::wait(int key) {
+  std::unique_lock lock(state_->mutex);
+  State& s = *state_;
+  if (const auto found = s.pictures.find(key); found != s.pictures.end()) return found->second;
+  std::erase(s.wanted, key);
+  s.wanted.insert(s.wanted.begin(), key);
+  s.work.notify_all();
+  s.done.wait(lock, [&] { return s.pictures.contains(key); });
+  return s.pictures.at(key);
+}
+
+void ReadAhead::forget() {
+  {
+    const std::lock_guard lock(state_->mutex);
+    State& s = *state_;
+    ++s.epoch;
+    s.reading.clear();
+    s.pictures.clear();
+    s.used.clear();
+    s.bytes = s.expected = 0;
+  }
+  state_->work.notify_all();
+}
+
+ReadAhead::Stats ReadAhead::stats() const {
+  const std::lock_guard lock(state_->mutex);
+  Stats stats = state_->stats;
+  stats.bytes = state_->bytes;
+  stats.max_bytes = state_->options.max_bytes;
+  stats.pictures = static_cast<int>(state_->pictures.size());
+  for (const int key : state_->wanted) {
+    if (!state_->pictures.contains(key)) break;
+    ++stats.ahead;
+  }
+  if (stats.read > 0) stats.milliseconds = state_->total_milliseconds / static_cast<double>(stats.read);
+  return stats;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,99 @@
+#include "play/view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace afterglow {
+namespace {
+
+Point middle(Size size) { return {size.width / 2.0, size.height / 2.0}; }
+
+bool is_whole(double value) { return std::abs(value - std::round(value)) < 1e-9; }
+
+/// The free zoom and centre that show what is shown now.
+void make_free(View& view, Size picture, Size window) {
+  if (!view.fit) return;
+  view.zoom = fitting_zoom(picture, window);
+  view.center = middle(picture);
+  view.fit = false;
+}
+
+void hold_center(View& view, Size picture) {
+  view.center.x = std::clamp(view.center.x, 0.0, static_cast<double>(picture.width));
+  view.center.y = std::clamp(view.center.y, 0.0, static_cast<double>(picture.height));
+}
+
+}  // namespace
+
+std::string view_channel_name(ViewChannel channel) {
+  static constexpr std::array<const char*, 6> kNames{"color", "red", "green", "blue", "alpha", "luminance"};
+  return kNames[static_cast<std::size_t>(channel)];
+}
+
+std::string compare_name(Compare compare) {
+  static constexpr std::array<const char*, 3> kNames{"none", "source", "other"};
+  return kNames[static_cast<std::size_t>(compare)];
+}
+
+double fitting_zoom(Size picture, Size window) {
+  if (picture.width < 1 || picture.height < 1 || window.width < 1 || window.height < 1) return 1;
+  const double zoom =
+      std::min(static_cast<double>(window.width) / picture.width, static_cast<double>(window.height) / picture.height);
+  return std::clamp(zoom, kLeastZoom, kMostZoom);
+}
+
+Placement placement(const View& view, Size picture, Size window) {
+  Placement out;
+  out.scale = view.fit ? fitting_zoom(picture, window) : std::clamp(view.zoom, kLeastZoom, kMostZoom);
+  const Point center = view.fit ? middle(picture) : view.center, screen = middle(window);
+  out.origin = {screen.x - out.scale * center.x, screen.y - out.scale * center.y};
+  if (is_whole(out.scale)) out.origin = {std::round(out.origin.x), std::round(out.origin.y)};
+  return out;
+}
+
+Point to_screen(const Placement& p, Point picture) {
+  return {p.origin.x + p.scale * picture.x, p.origin.y + p.scale * picture.y};
+}
+
+Point to_picture(const Placement& p, Point screen) {
+  return {(screen.x - p.origin.x) / p.scale, (screen.y - p.origin.y) / p.scale};
+}
+
+std::optional<Pixel> pixel_at(const View& view, Size picture, Size window, Point screen) {
+  const Point at = to_picture(placement(view, picture, window), screen);
+  const double x = std::floor(at.x), y = std::floor(at.y);
+  if (!(x >= 0 && y >= 0 && x < picture.width && y < picture.height)) return std::nullopt;
+  return Pixel{static_cast<int>(x), static_cast<int>(y)};
+}
+
+void fit(View& view) { view.fit = true; }
+
+void one_to_one(View& view, Size picture, Size window) {
+  make_free(view, picture, window);
+  view.zoom = 1;
+}
+
+void zoom_at(View& view, Size picture, Size window, Point screen, double factor) {
+  if (!(factor > 0) || !std::isfinite(factor)) return;
+  make_free(view, picture, window);
+  const Point under = to_picture(placement(view, picture, window), screen);
+  view.zoom = std::clamp(view.zoom * factor, kLeastZoom, kMostZoom);
+  const Point center = middle(window);
+  view.center = {under.x + (center.x - screen.x) / view.zoom, under.y + (center.y - screen.y) / view.zoom};
+  hold_center(view, picture);
+}
+
+void pan(View& view, Size picture, Size window, Point by) {
+  make_free(view, picture, window);
+  view.center = {view.center.x - by.x / view.zoom, view.center.y - by.y / view.zoom};
+  hold_center(view, picture);
+}
+
+void wipe_to(View& view, Size picture, Size window, Point screen) {
+  const Point at = to_picture(placement(view, picture, window), screen);
+  const double part = view.wipe_vertical ? at.y / std::max(picture.height, 1) : at.x / std::max(picture.width, 1);
+  if (std::isfinite(part)) view.wipe = std::clamp(part, 0.0, 1.0);
+}
+
+}  // namespace afterglow

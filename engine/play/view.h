@@ -1,0 +1,73 @@
+// How a picture is looked at: zoom, pan, exposure, channels, comparison. Plain data and its arithmetic; nothing is
+// drawn here, and nothing changes what is rendered.
+//
+// Picture coordinates count pixels of the picture: pixel (x, y) covers [x, x+1) × [y, y+1). Screen coordinates count
+// pixels of the frame buffer from its upper left corner.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/geometry.h"
+#include "core/result.h"
+
+namespace afterglow {
+
+struct Point {
+  double x = 0, y = 0;
+  friend bool operator==(const Point&, const Point&) = default;
+};
+
+enum class ViewChannel { color, red, green, blue, alpha, luminance };
+/// none: the result alone. source: what went in, left of the wipe. other: the result of the second preset, left of it.
+enum class Compare { none, source, other };
+
+/// "color", "red", …
+std::string view_channel_name(ViewChannel channel);
+/// "none", "source", "other".
+std::string compare_name(Compare compare);
+
+struct View {
+  bool fit = true;      ///< the whole picture, as large as the window allows; `zoom` and `center` rest meanwhile
+  double zoom = 1;      ///< screen pixels for each pixel of the picture
+  Point center;         ///< of the picture, in the middle of the window
+  double exposure = 0;  ///< EV, in scene-linear light before encoding for the screen
+  ViewChannel channel = ViewChannel::color;
+  bool false_color = false;  ///< marks values below 0, above 1, and what is not finite
+  Compare compare = Compare::none;
+  double wipe = 0.5;           ///< where the border lies, 0…1 over the picture's width (or height)
+  bool wipe_vertical = false;  ///< the border is horizontal: the compared picture lies above it
+  friend bool operator==(const View&, const View&) = default;
+};
+
+inline constexpr double kLeastZoom = 1.0 / 64, kMostZoom = 128;
+
+/// Where the picture lies: screen = origin + scale · picture.
+struct Placement {
+  Point origin;
+  double scale = 1;
+};
+/// At whole scales the origin is a whole number too, so that pixels stay sharp.
+Placement placement(const View& view, Size picture, Size window);
+Point to_screen(const Placement& placement, Point picture);
+Point to_picture(const Placement& placement, Point screen);
+/// The pixel under a point of the screen; none outside of the picture.
+struct Pixel {
+  int x = 0, y = 0;
+  friend bool operator==(const Pixel&, const Pixel&) = default;
+};
+std::optional<Pixel> pixel_at(const View& view, Size picture, Size window, Point screen);
+/// Scale at which the whole picture fits into the window.
+double fitting_zoom(Size picture, Size window);
+
+void fit(View& view);
+/// One pixel for one pixel, with the point of the picture that was in the middle.
+void one_to_one(View& view, Size picture, Size window);
+/// Multiplies the zoom; the picture's point under `screen` stays there. Held within kLeastZoom…kMostZoom.
+void zoom_at(View& view, Size picture, Size window, Point screen, double factor);
+/// Moves the picture by so many pixels of the screen; its middle stays over the picture.
+void pan(View& view, Size picture, Size window, Point by);
+/// Puts the border of the comparison under a point of the screen.
+void wipe_to(View& view, Size picture, Size window, Point screen);
+
+}  // namespace afterglow

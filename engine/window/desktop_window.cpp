@@ -1,0 +1,177 @@
+#include "window/desktop_window.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "gpu/error.h"
+
+// vulkan.h is here before glfw3.h in every file, which declares these only then otherwise.
+extern "C" VkResult glfwCreateWindowSurface(VkInstance instance, GLFWwindow* window,
+                                            const VkAllocationCallbacks* allocator, VkSurfaceKHR* surface);
+
+namespace afterglow {
+
+namespace {
+
+std::string glfw_reason() {
+  const char* text = nullptr;
+  glfwGetError(&text);
+  return text ? text : "no reason given";
+}
+
+Error no_display(const std::string& why) {
+  Error error{ErrorKind::device, "cannot open a window: " + why};
+  error.allowed = "a display (DISPLAY or WAYLAND_DISPLAY names it), or --headless to play without a window";
+  return error;
+}
+
+/// Xlib ends the process when its server goes away, with exit code 1 and no word of ours: say so, and end as a lost
+/// device does. Nothing can be shown or asked any more, and what is written to files is written atomically.
+int on_display_lost(void*) {
+  std::fputs("error: the connection to the display was lost\n", stderr);
+  std::fflush(nullptr);
+  std::_Exit(static_cast<int>(ErrorKind::device));
+}
+
+/// Through the library that GLFW has loaded; without it (Wayland) there is nothing to do.
+void watch_display() {
+  using Handler = int (*)(void*);
+  using Set = Handler (*)(Handler);
+  void* x11 = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+  if (!x11) return;
+  if (const auto set = reinterpret_cast<Set>(dlsym(x11, "XSetIOErrorHandler"))) set(&on_display_lost);
+  dlclose(x11);
+}
+
+DesktopWindow& self(GLFWwindow* window) { return *static_cast<DesktopWindow*>(glfwGetWindowUserPointer(window)); }
+
+}  // namespace
+
+Result<std::unique_ptr<DesktopWindow>> DesktopWindow::create(const std::string& title, Size size) {
+  if (glfwInit() != GLFW_TRUE) return no_display(glfw_reason());
+  std::unique_ptr<DesktopWindow> out(new DesktopWindow);  // from here on its destructor ends GLFW
+  watch_display();
+  if (glfwVulkanSupported() != GLFW_TRUE) return no_display(glfw_reason());
+  glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  glfwWindowHintString(GLFW_X11_CLASS_NAME, "afterglow");
+  glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "afterglow");
+  // No larger than the screen.
+  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) {
+    int x = 0, y = 0, width = 0, height = 0;
+    glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+    if (width > 0 && height > 0) size = {std::min(size.width, width), std::min(size.height, height)};
+  }
+  out->window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+  if (!out->window_) return no_display(glfw_reason());
+  glfwSetWindowSizeLimits(out->window_, 480, 320, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  out->listen();
+  return out;
+}
+
+DesktopWindow::~DesktopWindow() {
+  if (window_) glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+void DesktopWindow::listen() {
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetKeyCallback(window_, &on_key);
+  glfwSetDropCallback(window_, &on_drop);
+  glfwSetWindowCloseCallback(window_, &on_close);
+  // What these say is asked for when a frame is drawn; that there was something is enough.
+  glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { self(w).events_.any = true; });
+  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { self(w).events_.any = true; });
+  glfwSetWindowIconifyCallback(window_, [](GLFWwindow* w, int) { self(w).events_.any = true; });
+  glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int) { self(w).events_.any = true; });
+  glfwSetWindowContentScaleCallback(window_, [](GLFWwindow* w, float, float) { self(w).events_.any = true; });
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double, double) { self(w).events_.any = true; });
+  glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int) { self(w).events_.any = true; });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int, int, int) { self(w).events_.any = true; });
+  glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double) { self(w).events_.any = true; });
+  glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned) { self(w).events_.any = true; });
+}
+
+void DesktopWindow::on_key(GLFWwindow* window, int key, int, int action, int mods) {
+  WindowEvents& events = self(window).events_;
+  events.any = true;
+  if (action != GLFW_RELEASE) events.keys.push_back({key, mods & 0xf, action == GLFW_REPEAT});
+}
+
+void DesktopWindow::on_drop(GLFWwindow* window, int count, const char** paths) {
+  WindowEvents& events = self(window).events_;
+  events.any = true;
+  for (int i = 0; i < count; ++i) events.dropped.emplace_back(paths[i]);
+}
+
+void DesktopWindow::on_close(GLFWwindow* window) { self(window).events_.any = self(window).events_.close = true; }
+
+std::shared_ptr<const Presentation> DesktopWindow::presentation() const {
+  auto out = std::make_shared<Presentation>();
+  std::uint32_t count = 0;
+  const char** names = glfwGetRequiredInstanceExtensions(&count);
+  for (std::uint32_t i = 0; i < count; ++i) out->instance_extensions.emplace_back(names[i]);
+  out->make_surface = [window = window_](VkInstance instance) -> Result<VkSurfaceKHR> {
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+    AFTERGLOW_VK(glfwCreateWindowSurface(instance, window, nullptr, &surface), "cannot show pictures in the window");
+    return surface;
+  };
+  return out;
+}
+
+void DesktopWindow::show() { glfwShowWindow(window_); }
+void DesktopWindow::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
+Size DesktopWindow::framebuffer() const {
+  if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) return {};
+  Size size;
+  glfwGetFramebufferSize(window_, &size.width, &size.height);
+  return size;
+}
+
+float DesktopWindow::content_scale() const {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(window_, &x, &y);
+  return std::clamp(std::max(x, y), 0.5f, 8.0f);
+}
+
+void DesktopWindow::set_full_screen(bool on) {
+  if (on == full_screen_) return;
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  if (!monitor) return;
+  if (on) {
+    glfwGetWindowPos(window_, &windowed_.x, &windowed_.y);
+    glfwGetWindowSize(window_, &windowed_.width, &windowed_.height);
+    const GLFWvidmode* mode = glfwGetVideoMode(monitor);
+    glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+  } else {
+    glfwSetWindowMonitor(window_, nullptr, windowed_.x, windowed_.y, windowed_.width, windowed_.height, 0);
+  }
+  full_screen_ = on;
+  events_.any = true;
+}
+
+void DesktopWindow::set_clipboard(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }
+
+void DesktopWindow::wait(double seconds) {
+  if (seconds <= 0) {
+    glfwPollEvents();
+  } else if (std::isfinite(seconds)) {
+    glfwWaitEventsTimeout(seconds);
+  } else {
+    glfwWaitEvents();
+  }
+}
+
+WindowEvents DesktopWindow::take_events() { return std::exchange(events_, {}); }
+void DesktopWindow::wake() { glfwPostEmptyEvent(); }
+
+}  // namespace afterglow

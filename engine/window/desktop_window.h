@@ -1,0 +1,77 @@
+// A window of the desktop, through GLFW.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+#include "core/result.h"
+#include "gpu/device.h"
+
+struct GLFWwindow;
+
+namespace afterglow {
+
+struct KeyPress {
+  int key = 0;   ///< GLFW_KEY_…
+  int mods = 0;  ///< of GLFW_MOD_SHIFT, GLFW_MOD_CONTROL, GLFW_MOD_ALT, GLFW_MOD_SUPER
+  bool repeat = false;
+};
+
+/// What has happened since the events were taken last.
+struct WindowEvents {
+  bool any = false;    ///< anything at all: something may look different
+  bool close = false;  ///< the desktop asks the window to close
+  std::vector<KeyPress> keys;
+  std::vector<std::filesystem::path> dropped;
+};
+
+/// One at a time in a process; main thread alone, except where noted.
+class DesktopWindow {
+ public:
+  /// Not visible until `show`. Errors: device (no display, no Vulkan in windows).
+  static Result<std::unique_ptr<DesktopWindow>> create(const std::string& title, Size size);
+  ~DesktopWindow();
+  DesktopWindow(const DesktopWindow&) = delete;
+  DesktopWindow& operator=(const DesktopWindow&) = delete;
+
+  /// For DeviceOptions::presentation. The window must outlive the device.
+  std::shared_ptr<const Presentation> presentation() const;
+  GLFWwindow* handle() const { return window_; }
+
+  void show();
+  void set_title(const std::string& title);
+  /// Of the frame buffer, in pixels; empty while minimised.
+  Size framebuffer() const;
+  /// Pixels for what is a pixel on a plain display: 1, 1.5, 2, …
+  float content_scale() const;
+  void set_full_screen(bool on);
+  bool full_screen() const { return full_screen_; }
+  void set_clipboard(const std::string& text);
+
+  /// Handles events; blocks until one comes, `wake` is called or `seconds` have passed (0: not at all; infinity: as
+  /// long as it takes).
+  void wait(double seconds);
+  WindowEvents take_events();
+  /// Ends a `wait` that runs or comes next. Any thread, as long as a window exists.
+  static void wake();
+  /// An event as if it had come from the desktop, for tests.
+  WindowEvents& pending() { return events_; }
+
+ private:
+  DesktopWindow() = default;
+  static void on_key(GLFWwindow* window, int key, int scancode, int action, int mods);
+  static void on_drop(GLFWwindow* window, int count, const char** paths);
+  static void on_close(GLFWwindow* window);
+  void listen();
+
+  GLFWwindow* window_ = nullptr;
+  WindowEvents events_;
+  bool full_screen_ = false;
+  Rect windowed_;  ///< where it was before it filled the screen
+};
+
+}  // namespace afterglow

@@ -1,0 +1,44 @@
+// Puts picture and interface into the window.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "gpu/swapchain.h"
+#include "window/view_pass.h"
+#include "window/ui_renderer.h"
+
+namespace afterglow {
+
+/// Drawing thread alone. The Device (with a Presentation) must outlive it.
+class Painter {
+ public:
+  /// Errors: device.
+  static Result<std::unique_ptr<Painter>> create(Device& device, const SwapchainOptions& options);
+
+  /// After the interface's fonts have changed; waits for the frames before. Errors: device.
+  Result<void> take_fonts();
+  /// One frame: the picture (none: background alone), then the interface over it. `window`: size of the frame buffer.
+  /// Images of `view` must be readable by fragment shaders in what is submitted from here on. Errors: device.
+  Result<Swapchain::Drawn> paint(Size window, const std::optional<ViewFrame>& view, const ImDrawData& interface);
+  /// The next frame that is painted goes to this file too (PNG, or what else the writer knows).
+  void capture(const std::filesystem::path& file) { capture_ = file; }
+
+  const Swapchain& swapchain() const { return *swapchain_; }
+
+ private:
+  explicit Painter(Device& device) : device_(device) {}
+  Result<void> record(VkCommandBuffer commands, const PresentTarget& target, const std::optional<ViewFrame>& view,
+                      const ImDrawData& interface);
+  void record_copy(VkCommandBuffer commands, const PresentTarget& target, const Buffer& to) const;
+  Result<void> write_capture(const Buffer& pixels, Size size);
+
+  Device& device_;
+  std::unique_ptr<ViewPass> view_pass_;
+  std::unique_ptr<UiRenderer> ui_;
+  std::filesystem::path capture_;
+  std::unique_ptr<Swapchain> swapchain_;  // last: it waits before what its frames use goes
+};
+
+}  // namespace afterglow

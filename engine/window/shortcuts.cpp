@@ -1,0 +1,96 @@
+#include "window/shortcuts.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include "window/desktop_window.h"
+
+namespace afterglow {
+
+namespace {
+
+constexpr int kNone = 0, kShift = GLFW_MOD_SHIFT, kControl = GLFW_MOD_CONTROL,
+              kBoth = GLFW_MOD_SHIFT | GLFW_MOD_CONTROL;
+
+constexpr Shortcut kShortcuts[] = {
+    {Action::play, GLFW_KEY_SPACE, kNone, "Space", "Play", "Play or pause"},
+    {Action::step_forward, GLFW_KEY_RIGHT, kNone, "Right", "Play", "One frame on", true},
+    {Action::step_back, GLFW_KEY_LEFT, kNone, "Left", "Play", "One frame back", true},
+    {Action::jump_forward, GLFW_KEY_RIGHT, kShift, "Shift+Right", "Play", "Ten frames on", true},
+    {Action::jump_back, GLFW_KEY_LEFT, kShift, "Shift+Left", "Play", "Ten frames back", true},
+    {Action::go_to_first, GLFW_KEY_HOME, kNone, "Home", "Play", "To the first frame of the range"},
+    {Action::go_to_last, GLFW_KEY_END, kNone, "End", "Play", "To the last frame of the range"},
+    {Action::loop_mode, GLFW_KEY_L, kNone, "L", "Play", "Once, loop, ping-pong"},
+    {Action::range_begin, GLFW_KEY_I, kNone, "I", "Play", "The range begins here"},
+    {Action::range_end, GLFW_KEY_O, kNone, "O", "Play", "The range ends here"},
+    {Action::range_clear, GLFW_KEY_P, kNone, "P", "Play", "Play the whole sequence again"},
+    {Action::slower, GLFW_KEY_COMMA, kNone, ",", "Play", "Half the speed", true},
+    {Action::faster, GLFW_KEY_PERIOD, kNone, ".", "Play", "Twice the speed", true},
+
+    {Action::fit, GLFW_KEY_F, kNone, "F", "View", "Fit the picture into the window"},
+    {Action::one_to_one, GLFW_KEY_1, kNone, "1", "View", "One pixel for one pixel"},
+    {Action::zoom_in, GLFW_KEY_EQUAL, kNone, "+", "View", "Zoom in (also the wheel, at the pointer)", true},
+    {Action::zoom_in, GLFW_KEY_EQUAL, kShift, "+", "View", "Zoom in", true},
+    {Action::zoom_in, GLFW_KEY_KP_ADD, kNone, "+", "View", "Zoom in", true},
+    {Action::zoom_out, GLFW_KEY_MINUS, kNone, "-", "View", "Zoom out", true},
+    {Action::zoom_out, GLFW_KEY_KP_SUBTRACT, kNone, "-", "View", "Zoom out", true},
+    {Action::compare, GLFW_KEY_W, kNone, "W", "View", "Wipe: off, before and after, other preset"},
+    {Action::turn_wipe, GLFW_KEY_W, kShift, "Shift+W", "View", "Turn the wipe"},
+
+    {Action::color, GLFW_KEY_C, kNone, "C", "Picture", "All channels"},
+    {Action::red, GLFW_KEY_R, kNone, "R", "Picture", "Red alone"},
+    {Action::green, GLFW_KEY_G, kNone, "G", "Picture", "Green alone"},
+    {Action::blue, GLFW_KEY_B, kNone, "B", "Picture", "Blue alone"},
+    {Action::alpha, GLFW_KEY_A, kNone, "A", "Picture", "Alpha"},
+    {Action::luminance, GLFW_KEY_Y, kNone, "Y", "Picture", "Luminance"},
+    {Action::exposure_up, GLFW_KEY_UP, kNone, "Up", "Picture", "A quarter stop brighter (the view alone)", true},
+    {Action::exposure_down, GLFW_KEY_DOWN, kNone, "Down", "Picture", "A quarter stop darker", true},
+    {Action::exposure_reset, GLFW_KEY_0, kNone, "0", "Picture", "Exposure as it is"},
+    {Action::false_color, GLFW_KEY_X, kNone, "X", "Picture", "Mark values that are out of range or not finite"},
+    {Action::background, GLFW_KEY_K, kNone, "K", "Picture", "Behind transparency: nothing, grey, checkers"},
+    {Action::next_image, GLFW_KEY_N, kNone, "N", "Picture", "Next image between passes", true},
+    {Action::previous_image, GLFW_KEY_N, kShift, "Shift+N", "Picture", "Image between passes before", true},
+    {Action::result_image, GLFW_KEY_BACKSPACE, kNone, "Backspace", "Picture", "The result again"},
+    {Action::histogram, GLFW_KEY_H, kNone, "H", "Picture", "Histogram"},
+
+    {Action::reload, GLFW_KEY_F5, kNone, "F5", "Preset", "Look at the files now"},
+    {Action::copy_message, GLFW_KEY_C, kControl, "Ctrl+C", "Preset", "Copy the error message"},
+    {Action::undo, GLFW_KEY_Z, kControl, "Ctrl+Z", "Preset", "Undo", true},
+    {Action::redo, GLFW_KEY_Z, kBoth, "Ctrl+Shift+Z", "Preset", "Redo", true},
+    {Action::save, GLFW_KEY_S, kControl, "Ctrl+S", "Preset", "Write the changed settings into the preset"},
+
+    {Action::panel, GLFW_KEY_TAB, kNone, "Tab", "Window", "Settings panel"},
+    {Action::transport, GLFW_KEY_T, kNone, "T", "Window", "Transport bar"},
+    {Action::stats, GLFW_KEY_S, kNone, "S", "Window", "Frame times and reload latency"},
+    {Action::full_screen, GLFW_KEY_F11, kNone, "F11", "Window", "Full screen"},
+    {Action::screenshot, GLFW_KEY_F12, kNone, "F12", "Window", "Write the window's contents to a PNG file"},
+    {Action::help, GLFW_KEY_F1, kNone, "F1", "Window", "This sheet"},
+    {Action::help, GLFW_KEY_SLASH, kShift, "?", "Window", "This sheet"},
+    {Action::escape, GLFW_KEY_ESCAPE, kNone, "Esc", "Window", "Close the sheet; leave full screen"},
+    {Action::quit, GLFW_KEY_Q, kNone, "Q", "Window", "Quit"},
+    {Action::quit, GLFW_KEY_Q, kControl, "Ctrl+Q", "Window", "Quit"},
+};
+
+}  // namespace
+
+std::span<const Shortcut> shortcuts() { return kShortcuts; }
+
+std::optional<Action> action_of(const KeyPress& press) {
+  for (const Shortcut& shortcut : kShortcuts) {
+    if (shortcut.key != press.key || shortcut.mods != press.mods) continue;
+    if (press.repeat && !shortcut.repeats) return std::nullopt;
+    return shortcut.action;
+  }
+  return std::nullopt;
+}
+
+std::string keys_of(Action action) {
+  std::string out;
+  for (const Shortcut& shortcut : kShortcuts) {
+    if (shortcut.action != action || out == shortcut.keys) continue;
+    out += (out.empty() ? "" : " or ") + std::string(shortcut.keys);
+  }
+  return out;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,79 @@
+// Keys and what they do: the one list that the main loop, the help sheet and the documents go by.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+namespace afterglow {
+
+struct KeyPress;
+
+enum class Action {
+  play,
+  step_forward,
+  step_back,
+  jump_forward,
+  jump_back,
+  go_to_first,
+  go_to_last,
+  loop_mode,
+  range_begin,
+  range_end,
+  range_clear,
+  slower,
+  faster,
+  fit,
+  one_to_one,
+  zoom_in,
+  zoom_out,
+  compare,
+  turn_wipe,
+  color,
+  red,
+  green,
+  blue,
+  alpha,
+  luminance,
+  exposure_up,
+  exposure_down,
+  exposure_reset,
+  false_color,
+  background,
+  next_image,
+  previous_image,
+  result_image,
+  histogram,
+  stats,
+  panel,
+  transport,
+  full_screen,
+  screenshot,
+  reload,
+  copy_message,
+  undo,
+  redo,
+  save,
+  help,
+  escape,
+  quit,
+};
+
+struct Shortcut {
+  Action action;
+  int key;            ///< GLFW_KEY_…
+  int mods;           ///< GLFW_MOD_…, exactly these
+  const char* keys;   ///< as people read it: "Ctrl+S"
+  const char* group;  ///< "Play", "Look", "Picture", "Window", "Preset"
+  const char* doc;
+  bool repeats = false;  ///< while the key is held
+};
+
+/// In the order of groups. An action may have several keys.
+std::span<const Shortcut> shortcuts();
+/// What a key does; none: nothing, or it is held and does not repeat.
+std::optional<Action> action_of(const KeyPress& press);
+/// The keys of an action as people read them, "F1 or ?"; for tooltips.
+std::string keys_of(Action action);
+
+}  // namespace afterglow

@@ -1,0 +1,55 @@
+// What those who draw the interface share.
+#pragma once
+
+#include <imgui.h>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace afterglow {
+
+class Player;
+
+/// State of the interface, and its tools. Drawing thread alone. Those who draw talk to the Player and to this, and to
+/// nothing of the window: they can be tested with ImGui alone.
+struct Ui {
+  float scale = 1;  ///< pixels for a pixel of a plain display: multiply every size by it
+  ImFont* body = nullptr;
+  ImFont* bold = nullptr;
+  ImFont* mono = nullptr;  ///< for numbers and messages
+
+  bool show_panel = true;
+  bool show_transport = true;
+  bool show_help = false;
+  bool show_stats = false;
+  bool show_histogram = false;
+
+  double now = 0;  ///< seconds of a clock that never goes backwards
+  /// Puts text on the clipboard.
+  std::function<void(const std::string&)> copy = [](const std::string&) {};
+  /// Opens a preset, a picture or a sequence, as if it had been dropped on the window.
+  std::function<void(const std::string&)> open = [](const std::string&) {};
+  /// Draws another frame soon, though nothing else will have changed.
+  std::function<void()> again = [] {};
+
+  /// Says something for a few seconds, over the picture.
+  void say(const std::string& text) {
+    message = text;
+    message_until = now + 3;
+  }
+  std::string message;
+  double message_until = 0;
+
+  float px(float size) const { return size * scale; }
+};
+
+/// The colours of the interface.
+namespace ui_color {
+inline constexpr ImU32 kText = IM_COL32(222, 224, 228, 255), kDim = IM_COL32(138, 142, 150, 255),
+                       kAccent = IM_COL32(255, 158, 60, 255), kError = IM_COL32(255, 107, 97, 255),
+                       kWarning = IM_COL32(240, 196, 84, 255), kGood = IM_COL32(120, 200, 130, 255),
+                       kOverlay = IM_COL32(16, 17, 19, 225), kLine = IM_COL32(58, 61, 67, 255);
+}  // namespace ui_color
+
+}  // namespace afterglow

@@ -1,0 +1,172 @@
+#include "window/ui_renderer.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "gpu/error.h"
+
+namespace afterglow {
+
+namespace {
+
+/// Room for `bytes`, and some to spare: interfaces grow by little and often.
+Result<void> make_room(const Device& device, Buffer& buffer, std::size_t bytes, VkBufferUsageFlags usage) {
+  constexpr std::size_t kLeast = std::size_t{64} << 10;
+  if (buffer.size() >= bytes && buffer.get() != VK_NULL_HANDLE) return {};
+  const std::size_t size = std::bit_ceil(std::max(bytes, kLeast));
+  AFTERGLOW_TRY(buffer, Buffer::create(device, size, usage, HostAccess::write, "interface"));
+  return {};
+}
+
+/// The part of the target that a clip rectangle of ImGui leaves; empty: nothing.
+VkRect2D scissor_of(const ImVec4& clip, const ImDrawData& data, Size target) {
+  const ImVec2 scale = data.FramebufferScale, shift = data.DisplayPos;
+  const auto x0 = std::clamp((clip.x - shift.x) * scale.x, 0.0f, static_cast<float>(target.width));
+  const auto y0 = std::clamp((clip.y - shift.y) * scale.y, 0.0f, static_cast<float>(target.height));
+  const auto x1 = std::clamp((clip.z - shift.x) * scale.x, x0, static_cast<float>(target.width));
+  const auto y1 = std::clamp((clip.w - shift.y) * scale.y, y0, static_cast<float>(target.height));
+  return {{static_cast<std::int32_t>(x0), static_cast<std::int32_t>(y0)},
+          {static_cast<std::uint32_t>(x1 - x0), static_cast<std::uint32_t>(y1 - y0)}};
+}
+
+Size target_size(const ImDrawData& data) {
+  return {static_cast<int>(std::lround(data.DisplaySize.x * data.FramebufferScale.x)),
+          static_cast<int>(std::lround(data.DisplaySize.y * data.FramebufferScale.y))};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<UiRenderer>> UiRenderer::create(const Device& device, VkFormat target, std::size_t slots) {
+  std::unique_ptr<UiRenderer> out(new UiRenderer(device));
+  out->linear_ = encodes_srgb(target);
+  AFTERGLOW_TRY(out->pipeline_, UiPipeline::create(device, target));
+  AFTERGLOW_CHECK(out->make_set());
+  out->slots_.resize(slots);
+  return out;
+}
+
+Result<void> UiRenderer::make_set() {
+  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
+  const VkDescriptorPoolCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1, .poolSizeCount = 1, .pPoolSizes = &size};
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  AFTERGLOW_VK(vkCreateDescriptorPool(device_.handle(), &info, nullptr, &pool), "cannot create a descriptor pool");
+  pool_ = DescriptorPoolHandle(device_.handle(), pool);
+  const VkDescriptorSetLayout layout = pipeline_.set.get();
+  const VkDescriptorSetAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                             .descriptorPool = pool,
+                                             .descriptorSetCount = 1,
+                                             .pSetLayouts = &layout};
+  AFTERGLOW_VK(vkAllocateDescriptorSets(device_.handle(), &allocate, &set_), "cannot allocate descriptors");
+  return {};
+}
+
+Result<void> UiRenderer::take_fonts() {
+  unsigned char* pixels = nullptr;
+  Size size;
+  ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &size.width, &size.height);
+  const auto bytes = static_cast<std::size_t>(size.area()) * 4;
+  AFTERGLOW_TRY(staging_,
+                Buffer::create(device_, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, HostAccess::write, "glyphs"));
+  std::memcpy(staging_.data(), pixels, bytes);
+  staging_.memory().flush();
+  AFTERGLOW_TRY(atlas_,
+                GpuImage::create(device_, {.name = "glyphs",
+                                           .size = size,
+                                           .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                           .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
+  const VkDescriptorImageInfo image{pipeline_.sampler.get(), atlas_.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                   .dstSet = set_,
+                                   .dstBinding = 0,
+                                   .descriptorCount = 1,
+                                   .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                   .pImageInfo = &image};
+  vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
+  pending_ = true;
+  return {};
+}
+
+void UiRenderer::upload_atlas(VkCommandBuffer commands) {
+  const auto into =
+      image_barrier(atlas_.get(), VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COPY_BIT,
+                    VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  record_barriers(commands, &into, 1);
+  const Size size = atlas_.desc().size;
+  const VkBufferImageCopy copy{
+      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+      .imageExtent = {static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height), 1}};
+  vkCmdCopyBufferToImage(commands, staging_.get(), atlas_.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+  const auto ready = image_barrier(atlas_.get(), VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                   VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  record_barriers(commands, &ready, 1);
+  pending_ = false;
+}
+
+Result<void> UiRenderer::prepare(VkCommandBuffer commands, std::size_t slot_index, const ImDrawData& data) {
+  if (pending_) upload_atlas(commands);
+  if (data.TotalVtxCount == 0) return {};
+  Slot& slot = slots_[slot_index];
+  const auto vertex_count = static_cast<std::size_t>(data.TotalVtxCount);
+  const auto index_count = static_cast<std::size_t>(data.TotalIdxCount);
+  AFTERGLOW_CHECK(
+      make_room(device_, slot.vertices, vertex_count * sizeof(ImDrawVert), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
+  AFTERGLOW_CHECK(make_room(device_, slot.indices, index_count * sizeof(ImDrawIdx), VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
+  std::byte* vertices = slot.vertices.data();
+  std::byte* indices = slot.indices.data();
+  for (int i = 0; i < data.CmdListsCount; ++i) {
+    const ImDrawList& list = *data.CmdLists[i];
+    const auto vertex_bytes = static_cast<std::size_t>(list.VtxBuffer.Size) * sizeof(ImDrawVert);
+    const auto index_bytes = static_cast<std::size_t>(list.IdxBuffer.Size) * sizeof(ImDrawIdx);
+    std::memcpy(vertices, list.VtxBuffer.Data, vertex_bytes);
+    std::memcpy(indices, list.IdxBuffer.Data, index_bytes);
+    vertices += vertex_bytes;
+    indices += index_bytes;
+  }
+  slot.vertices.memory().flush();
+  slot.indices.memory().flush();
+  return {};
+}
+
+void UiRenderer::record(VkCommandBuffer commands, std::size_t slot_index, const ImDrawData& data) const {
+  const Size target = target_size(data);
+  if (data.TotalVtxCount == 0 || target.area() == 0) return;
+  const Slot& slot = slots_[slot_index];
+  device_.begin_label(commands, "interface");
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.pipeline.get());
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.layout.get(), 0, 1, &set_, 0, nullptr);
+  const VkBuffer vertices = slot.vertices.get();
+  const VkDeviceSize start = 0;
+  vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &start);
+  vkCmdBindIndexBuffer(commands, slot.indices.get(), 0,
+                       sizeof(ImDrawIdx) == 2 ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32);
+  const VkViewport viewport{0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0, 1};
+  vkCmdSetViewport(commands, 0, 1, &viewport);
+  UiPush push{.linear = linear_ ? 1 : 0};
+  push.scale = {2 / data.DisplaySize.x, 2 / data.DisplaySize.y};
+  push.shift = {-1 - data.DisplayPos.x * push.scale[0], -1 - data.DisplayPos.y * push.scale[1]};
+  vkCmdPushConstants(commands, pipeline_.layout.get(), VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
+
+  std::uint32_t first_vertex = 0, first_index = 0;
+  for (int i = 0; i < data.CmdListsCount; ++i) {
+    const ImDrawList& list = *data.CmdLists[i];
+    for (const ImDrawCmd& command : list.CmdBuffer) {
+      if (command.UserCallback) continue;  // nobody here uses them
+      const VkRect2D scissor = scissor_of(command.ClipRect, data, target);
+      if (scissor.extent.width == 0 || scissor.extent.height == 0) continue;
+      vkCmdSetScissor(commands, 0, 1, &scissor);
+      vkCmdDrawIndexed(commands, command.ElemCount, 1, first_index + command.IdxOffset,
+                       static_cast<std::int32_t>(first_vertex + command.VtxOffset), 0);
+    }
+    first_vertex += static_cast<std::uint32_t>(list.VtxBuffer.Size);
+    first_index += static_cast<std::uint32_t>(list.IdxBuffer.Size);
+  }
+  device_.end_label(commands);
+}
+
+}  // namespace afterglow

@@ -1,0 +1,151 @@
+// A picture as one looks at it: placed, filtered, exposed, compared, marked, encoded (view_pass.h says how).
+#version 450
+
+layout(set = 0, binding = 1) uniform sampler2D shown;
+layout(set = 0, binding = 2) uniform sampler2D compared;
+
+layout(push_constant) uniform Push {
+  vec4 outside;         // beside the picture; linear, alpha unused
+  vec4 below;           // mark of values under 0; w: gain of the exposure
+  vec4 above;           // mark of values over 1; w: where the border of the comparison lies, in pixels of the target
+  vec4 not_finite;      // mark; w: half the width of the border's line, in pixels of the target
+  vec2 origin;          // of the picture, in pixels of the target
+  float scale;          // pixels of the target for each of the picture
+  float checker;        // side of a square of the checker board, in pixels of the target
+  ivec2 picture;        // the size that `scale` is about
+  ivec2 shown_size;
+  ivec2 compared_size;
+  int channel;          // ViewChannel
+  int flags;
+} push;
+
+layout(location = 0) out vec4 result;
+
+const int kFalseColor = 1, kCompare = 2, kHorizontal = 4, kEncode = 8, kGray = 16, kChecker = 32;
+const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
+const float kTolerance = 1e-4;  // rounding may carry what a display can just show over its ends
+const float kLargest = 1e30;
+const int kMarkBelow = 1, kMarkAbove = 2, kMarkNotFinite = 4;
+
+bool has(int flag) { return (push.flags & flag) != 0; }
+
+// By its bits: compilers may take isnan() for false.
+bool is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
+bool is_nan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
+
+float tamed(float x) { return is_nan(x) ? 0.0 : clamp(x, -kLargest, kLargest); }
+vec4 tamed(vec4 c) { return vec4(tamed(c.r), tamed(c.g), tamed(c.b), tamed(c.a)); }
+
+int mark(float x) {
+  if (!is_finite(x)) return kMarkNotFinite;
+  if (x < -kTolerance) return kMarkBelow;
+  return x > 1.0 + kTolerance ? kMarkAbove : 0;
+}
+
+// What of the pixel is looked at is out of range. Exposure moves the ends of the range, but not those of alpha.
+int marks(vec4 c) {
+  if (!has(kFalseColor)) return 0;
+  float gain = push.below.w;
+  switch (push.channel) {
+    case 0: return mark(c.r * gain) | mark(c.g * gain) | mark(c.b * gain);
+    case 1: return mark(c.r * gain);
+    case 2: return mark(c.g * gain);
+    case 3: return mark(c.b * gain);
+    case 4: return mark(c.a);
+    default: return mark(dot(c.rgb, kLuminance) * gain);
+  }
+}
+
+struct Sample {
+  vec4 color;
+  int marks;
+};
+
+// The image pixels that lie under this pixel of the target: the nearest one when it is not smaller than that, else the mean
+// of all it covers, each by the area that is covered. `at` is a point of the image, `reach` the side lengths of the target's
+// pixel there.
+Sample sample_image(sampler2D image, ivec2 size, vec2 at, vec2 reach) {
+  ivec2 last = size - 1;
+  if (reach.x <= 1.0 && reach.y <= 1.0) {
+    vec4 c = texelFetch(image, clamp(ivec2(floor(at)), ivec2(0), last), 0);
+    return Sample(tamed(c), marks(c));
+  }
+  reach = max(reach, vec2(1.0));
+  vec2 low = max(at - 0.5 * reach, vec2(0.0)), high = min(at + 0.5 * reach, vec2(size));
+  ivec2 begin = clamp(ivec2(floor(low)), ivec2(0), last), end = clamp(ivec2(ceil(high)) - 1, begin, last);
+  Sample mean = Sample(vec4(0.0), 0);
+  float total = 0.0;
+  for (int y = begin.y; y <= end.y; ++y) {
+    float part = min(float(y + 1), high.y) - max(float(y), low.y);
+    for (int x = begin.x; x <= end.x; ++x) {
+      float weight = part * (min(float(x + 1), high.x) - max(float(x), low.x));
+      vec4 c = texelFetch(image, ivec2(x, y), 0);
+      if (weight > 0.0) mean.marks |= marks(c);
+      mean.color += weight * tamed(c);
+      total += weight;
+    }
+  }
+  mean.color /= max(total, 1e-20);
+  return mean;
+}
+
+vec3 with_channel(vec4 c) {
+  switch (push.channel) {
+    case 0: return c.rgb;
+    case 1: return c.rrr;
+    case 2: return c.ggg;
+    case 3: return c.bbb;
+    case 4: return c.aaa;
+    default: return vec3(dot(c.rgb, kLuminance));
+  }
+}
+
+vec3 over_background(vec4 c) {
+  if (push.channel != 0 || !(has(kGray) || has(kChecker))) return with_channel(c);
+  float background = 0.18;
+  if (has(kChecker)) {
+    ivec2 square = ivec2(floor(gl_FragCoord.xy / push.checker));
+    background = ((square.x + square.y) & 1) == 0 ? 0.08 : 0.25;
+  }
+  return c.rgb + vec3(background * clamp(1.0 - c.a, 0.0, 1.0));
+}
+
+vec3 looked_at(Sample s) {
+  if ((s.marks & kMarkNotFinite) != 0) return push.not_finite.rgb;
+  if ((s.marks & kMarkBelow) != 0) return push.below.rgb;
+  if ((s.marks & kMarkAbove) != 0) return push.above.rgb;
+  vec4 c = s.color;
+  c.rgb *= push.below.w;
+  if (has(kFalseColor)) return push.channel == 0 ? vec3(dot(c.rgb, kLuminance)) : with_channel(c);  // marks stand out
+  return over_background(c);
+}
+
+vec3 encoded(vec3 c) {
+  c = clamp(c, vec3(0.0), vec3(1.0));
+  if (!has(kEncode)) return c;
+  return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
+}
+
+void main() {
+  vec2 point = (gl_FragCoord.xy - push.origin) / push.scale;
+  vec2 picture = vec2(push.picture);
+  if (any(lessThan(point, vec2(0.0))) || any(greaterThanEqual(point, picture))) {
+    result = vec4(encoded(push.outside.rgb), 1.0);
+    return;
+  }
+  float along = has(kHorizontal) ? gl_FragCoord.y : gl_FragCoord.x;
+  float distance = has(kCompare) ? along - push.above.w : 1e9;
+  vec2 to_shown = vec2(push.shown_size) / picture, to_compared = vec2(push.compared_size) / picture;
+  vec3 color = distance < 0.0
+                   ? looked_at(sample_image(compared, push.compared_size, point * to_compared, to_compared / push.scale))
+                   : looked_at(sample_image(shown, push.shown_size, point * to_shown, to_shown / push.scale));
+  color = encoded(color);
+  // A bright line between dark ones shows on any picture.
+  float half_width = push.not_finite.w;
+  if (abs(distance) < half_width) {
+    color = encoded(vec3(0.8));
+  } else if (abs(distance) < half_width + 1.0) {
+    color = encoded(vec3(0.02));
+  }
+  result = vec4(color, 1.0);
+}

@@ -1,0 +1,68 @@
+// Draws source and result as a View says, into any colour target, in one full-screen pass.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "core/geometry.h"
+#include "gpu/device.h"
+#include "play/view.h"
+
+namespace afterglow {
+
+/// An image that fragment shaders may read when the pass runs: usage SAMPLED, barriers are the caller's. RGBA floats,
+/// scene-linear, associated alpha.
+struct ViewImage {
+  VkImageView view = VK_NULL_HANDLE;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  Size size;
+};
+
+/// What shows through where alpha is below 1. none: alpha is ignored, RGB as it is.
+enum class ViewBackground { none, gray, checker };
+
+/// sRGB-encoded, 0…1.
+using ViewColor = std::array<float, 3>;
+/// Marks of false colour; where several apply to a pixel, the first of them counts.
+inline constexpr ViewColor kMarkNotFinite{1.0f, 0.0f, 1.0f}, kMarkBelow{0.15f, 0.4f, 1.0f},
+    kMarkAbove{1.0f, 0.35f, 0.1f};
+
+struct ViewFrame {
+  ViewImage shown;
+  std::optional<ViewImage> compared;  ///< left of (above) the wipe when the view compares
+  /// What coordinates of the view count in. Images of other sizes (an image between passes) are stretched over it.
+  Size picture;
+  View view;
+  Rect area;  ///< of the target: what is drawn, and the window that the view speaks of
+  ViewBackground background = ViewBackground::none;
+  ViewColor outside{0.1f, 0.1f, 0.1f};  ///< beside the picture
+  float pixel_scale = 1;                ///< of lines and squares (HiDPI)
+};
+
+/// What is done to each pixel, in this order:
+/// 1. Place (play/view.h). Magnified, the nearest pixel, exactly; minified, the mean in linear light over what a screen
+///    pixel covers, by area. NaN counts as 0, infinities as ±1e30.
+/// 2. Exposure, c·2^EV; not on alpha.
+/// 3. Channel: one of them or luminance (Rec.709 weights) as grey; colour over the background.
+/// 4. False colour: pixels are marked of which anything under the screen pixel is not finite, below 0 or above 1 (after
+///    exposure, by more than 1e-4), in what the channel view looks at; others are grey.
+/// 5. Clamped to 0…1 and sRGB-encoded, once: here, or by the target's format.
+/// Drawing thread alone.
+class ViewPass {
+ public:
+  /// `target`: format of the colour target. `slots`: as many frames may be under way. Compiles nothing later. Errors:
+  /// device.
+  static Result<std::unique_ptr<ViewPass>> create(const Device& device, VkFormat target, std::size_t slots);
+  ~ViewPass();
+
+  /// Within vkCmdBeginRendering on one colour target. What was recorded with `slot` before must be done.
+  void record(VkCommandBuffer commands, std::size_t slot, const ViewFrame& frame);
+
+ private:
+  struct State;
+  explicit ViewPass(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace afterglow

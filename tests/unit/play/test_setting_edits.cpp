@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include "play/setting_edits.h"
+
+namespace afterglow {
+namespace {
+
+SettingValue number(double value) { return {SettingType::number, {value}, ""}; }
+
+TEST(SettingEdits, ADragIsOneStepOfUndo) {
+  SettingEdits edits;
+  for (const double value : {0.1, 0.2, 0.3}) edits.set("glow", "strength", number(value));
+  edits.set("glow", "radius", number(4));
+  EXPECT_EQ(edits.value("glow", "strength"), number(0.3));
+  ASSERT_TRUE(edits.undo());
+  EXPECT_EQ(edits.value("glow", "radius"), std::nullopt);
+  EXPECT_EQ(edits.value("glow", "strength"), number(0.3));
+  ASSERT_TRUE(edits.undo());
+  EXPECT_TRUE(edits.edits().empty());
+  EXPECT_FALSE(edits.undo());
+  ASSERT_TRUE(edits.redo());
+  EXPECT_EQ(edits.value("glow", "strength"), number(0.3));
+}
+
+TEST(SettingEdits, GesturesEndWhereTheyAreSaidTo) {
+  SettingEdits edits;
+  edits.set("glow", "strength", number(0.1));
+  edits.end_gesture();
+  edits.set("glow", "strength", number(0.2));
+  ASSERT_TRUE(edits.undo());
+  EXPECT_EQ(edits.value("glow", "strength"), number(0.1));
+}
+
+TEST(SettingEdits, AChangeAfterUndoForgetsWhatWasUndone) {
+  SettingEdits edits;
+  edits.set("glow", "strength", number(0.1));
+  edits.set("glow", "radius", number(4));
+  edits.undo();
+  edits.set("glow", "strength", number(0.5));
+  EXPECT_FALSE(edits.can_redo());
+  ASSERT_TRUE(edits.undo());
+  EXPECT_EQ(edits.value("glow", "strength"), number(0.1)) << "undo ends the gesture before it";
+}
+
+TEST(SettingEdits, ResetTakesAwayAndCanBeUndone) {
+  SettingEdits edits;
+  edits.set("glow", "strength", number(0.1));
+  edits.set("glow#2", "strength", number(0.2));
+  EXPECT_FALSE(edits.reset("glow", "radius"));
+  EXPECT_TRUE(edits.reset("glow", "strength"));
+  EXPECT_EQ(edits.edits().size(), 1u);
+  edits.undo();
+  EXPECT_TRUE(edits.reset_entry("glow#2"));
+  EXPECT_TRUE(edits.reset_all());
+  EXPECT_FALSE(edits.reset_all());
+  edits.undo();
+  edits.undo();
+  EXPECT_EQ(edits.edits().size(), 2u);
+}
+
+TEST(SettingEdits, StandOverThoseOfTheCommandLine) {
+  SettingEdits edits;
+  edits.set("glow", "strength", number(0.25));
+  edits.set("glow", "tint", {SettingType::color, {1, 0.5, 0}, ""});
+  const auto all = edits.overrides({{"glow", "strength", "0.7"}});
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0].value, "0.7");
+  EXPECT_EQ(all[1].value, "0.25");
+  EXPECT_EQ(all[2].value, "{1, 0.5, 0}");
+}
+
+}  // namespace
+}  // namespace afterglow

@@ -1,0 +1,88 @@
+// Screen ↔ picture.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "play/view.h"
+
+namespace afterglow {
+namespace {
+
+constexpr Size kPicture{1920, 1080}, kWindow{1280, 800};
+
+TEST(View, FitShowsTheWholePictureInTheMiddle) {
+  const Placement p = placement(View{}, kPicture, kWindow);
+  EXPECT_DOUBLE_EQ(p.scale, 1280.0 / 1920);
+  EXPECT_NEAR(p.origin.x, 0, 1e-9);
+  EXPECT_NEAR(p.origin.y, 40, 1e-9);
+  EXPECT_DOUBLE_EQ(placement(View{}, {0, 0}, kWindow).scale, 1) << "no picture yet";
+}
+
+TEST(View, ThereAndBackAgain) {
+  View view;
+  zoom_at(view, kPicture, kWindow, {300, 200}, 3.7);
+  const Placement p = placement(view, kPicture, kWindow);
+  const Point there = to_picture(p, {17, 600}), back = to_screen(p, there);
+  EXPECT_NEAR(back.x, 17, 1e-9);
+  EXPECT_NEAR(back.y, 600, 1e-9);
+}
+
+TEST(View, ZoomKeepsThePointUnderTheCursor) {
+  View view;
+  const Point cursor{900, 250};
+  const Point before = to_picture(placement(view, kPicture, kWindow), cursor);
+  for (const double factor : {1.25, 1.25, 0.8, 3.0}) {
+    zoom_at(view, kPicture, kWindow, cursor, factor);
+    const Point after = to_picture(placement(view, kPicture, kWindow), cursor);
+    EXPECT_NEAR(after.x, before.x, 1e-6);
+    EXPECT_NEAR(after.y, before.y, 1e-6);
+  }
+  EXPECT_FALSE(view.fit);
+  zoom_at(view, kPicture, kWindow, cursor, 1e9);
+  EXPECT_EQ(view.zoom, kMostZoom);
+}
+
+TEST(View, OneToOneLiesOnWholePixels) {
+  View view;
+  one_to_one(view, {333, 111}, {1000, 700});
+  const Placement p = placement(view, {333, 111}, {1000, 700});
+  EXPECT_EQ(p.scale, 1);
+  EXPECT_EQ(p.origin.x, ::round(p.origin.x));
+  EXPECT_EQ(p.origin.y, ::round(p.origin.y));
+}
+
+TEST(View, PixelsAreThoseUnderThePoint) {
+  View view;
+  view.fit = false;
+  view.zoom = 4;
+  view.center = {0, 0};  // the picture's corner in the middle of the window
+  EXPECT_EQ(pixel_at(view, kPicture, kWindow, {640, 400}), (Pixel{0, 0}));
+  EXPECT_EQ(pixel_at(view, kPicture, kWindow, {643.9, 404}), (Pixel{0, 1}));
+  EXPECT_EQ(pixel_at(view, kPicture, kWindow, {639, 400}), std::nullopt);
+}
+
+TEST(View, PanMovesWithTheHandAndKeepsThePictureInReach) {
+  View view;
+  one_to_one(view, kPicture, kWindow);
+  const Point before = to_screen(placement(view, kPicture, kWindow), {500, 500});
+  pan(view, kPicture, kWindow, {30, -20});
+  const Point after = to_screen(placement(view, kPicture, kWindow), {500, 500});
+  EXPECT_NEAR(after.x - before.x, 30, 1e-9);
+  EXPECT_NEAR(after.y - before.y, -20, 1e-9);
+  pan(view, kPicture, kWindow, {1e6, 1e6});
+  EXPECT_EQ(view.center, (Point{0, 0}));
+}
+
+TEST(View, WipeFollowsThePointOverThePicture) {
+  View view;
+  wipe_to(view, kPicture, kWindow, {320, 400});
+  EXPECT_DOUBLE_EQ(view.wipe, 0.25);
+  wipe_to(view, kPicture, kWindow, {-50, 400});
+  EXPECT_EQ(view.wipe, 0);
+  view.wipe_vertical = true;
+  wipe_to(view, kPicture, kWindow, {320, 400});
+  EXPECT_NEAR(view.wipe, 0.5, 1e-9);
+}
+
+}  // namespace
+}  // namespace afterglow

@@ -1,0 +1,277 @@
+// The view on lavapipe against the same mathematics in double precision.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "exec/submit.h"
+#include "gpu/image.h"
+#include "window/view_pass.h"
+#include "view_oracle.h"
+
+namespace afterglow {
+namespace {
+
+constexpr VkFormat kTarget = VK_FORMAT_R32G32B32A32_SFLOAT;
+
+/// Smooth, with noise, a few values out of range and a few that are not finite.
+Image picture(Size size, unsigned seed) {
+  Image out(size.width, size.height, 4);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> noise(0, 1);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      float* c = out.at(x, y);
+      c[0] = 0.9f * static_cast<float>(x) / static_cast<float>(size.width);
+      c[1] = 0.9f * static_cast<float>(y) / static_cast<float>(size.height);
+      c[2] = 0.7f * noise(random);
+      c[3] = noise(random);
+    }
+  }
+  out.at(3, 2)[0] = 5;
+  out.at(7, 5)[1] = -0.25f;
+  out.at(9, 9)[2] = std::numeric_limits<float>::quiet_NaN();
+  out.at(12, 4)[0] = std::numeric_limits<float>::infinity();
+  out.at(1, 11)[3] = -1;
+  return out;
+}
+
+class ViewPassTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    Diagnostics diagnostics;
+    auto made = Device::create({.validate = true}, diagnostics);
+    ASSERT_TRUE(made) << made.error().text();
+    device_ = std::move(*made).release();
+  }
+  static void TearDownTestSuite() {
+    const auto log = device_->validation_log();
+    delete device_;
+    EXPECT_EQ(log->errors(), 0) << (log->messages().empty() ? "" : log->messages().front());
+  }
+
+  static GpuImage upload(const Image& image) {
+    auto made = GpuImage::create(*device_,
+                                 {.name = "picture",
+                                  .size = image.size(),
+                                  .format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                                  .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
+                                  .tiling = VK_IMAGE_TILING_LINEAR},
+                                 HostAccess::write);
+    EXPECT_TRUE(made) << made.error().text();
+    for (int y = 0; y < image.height; ++y) {
+      std::memcpy(made->row(y), image.at(0, y), static_cast<std::size_t>(image.width) * 4 * sizeof(float));
+    }
+    made->memory().flush();
+    return std::move(*made);
+  }
+
+  static Image draw(const ViewFrame& frame, Size target_size, const std::vector<VkImage>& sources,
+                    VkFormat format = kTarget) {
+    auto target =
+        GpuImage::create(*device_, {.name = "target",
+                                    .size = target_size,
+                                    .format = format,
+                                    .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    EXPECT_TRUE(target) << target.error().text();
+    const auto bytes = static_cast<VkDeviceSize>(target_size.area()) * 16;
+    auto buffer = Buffer::create(*device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::read, "pixels");
+    auto pass = ViewPass::create(*device_, format, 1);
+    EXPECT_TRUE(pass) << pass.error().text();
+    auto submitter = Submitter::create(*device_);
+    EXPECT_TRUE(submitter->submit(
+        [&](VkCommandBuffer commands) { record(commands, **pass, frame, target_size, *target, *buffer, sources); }));
+    EXPECT_TRUE(submitter->wait());
+    buffer->memory().invalidate();
+    Image out(target_size.width, target_size.height, 4);
+    std::memcpy(out.pixels.data(), buffer->data(), out.bytes());
+    return out;
+  }
+
+  static void record(VkCommandBuffer commands, ViewPass& pass, const ViewFrame& frame, Size size,
+                     const GpuImage& target, const Buffer& buffer, const std::vector<VkImage>& sources) {
+    std::vector<VkImageMemoryBarrier2> before;
+    for (VkImage source : sources) {
+      before.push_back(image_barrier(source, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT,
+                                     VK_IMAGE_LAYOUT_PREINITIALIZED, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
+    }
+    before.push_back(image_barrier(target.get(), VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_UNDEFINED,
+                                   VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                   VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL));
+    record_barriers(commands, before.data(), before.size());
+    const VkRenderingAttachmentInfo color{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                          .imageView = target.view(),
+                                          .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                          .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                          .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+                                          .clearValue = {.color = {.float32 = {-1, -1, -1, -1}}}};
+    const VkExtent2D extent{static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height)};
+    const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                    .renderArea = {{0, 0}, extent},
+                                    .layerCount = 1,
+                                    .colorAttachmentCount = 1,
+                                    .pColorAttachments = &color};
+    vkCmdBeginRendering(commands, &rendering);
+    pass.record(commands, 0, frame);
+    vkCmdEndRendering(commands);
+    const auto into = image_barrier(target.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                    VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                                    VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    record_barriers(commands, &into, 1);
+    const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                 .imageExtent = {extent.width, extent.height, 1}};
+    vkCmdCopyImageToBuffer(commands, target.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.get(), 1, &copy);
+    const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                   .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                   .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                   .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
+                                   .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
+    const VkDependencyInfo dependency{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &to_host};
+    vkCmdPipelineBarrier2(commands, &dependency);
+  }
+
+  /// Draws and compares each pixel of the area. How many pixels were neither the surroundings nor equal to all others.
+  static void expect_same(ViewFrame frame, const Image& shown, const Image* compared, Size target, const char* what) {
+    const GpuImage gpu_shown = upload(shown);
+    const GpuImage gpu_compared = compared ? upload(*compared) : GpuImage();
+    std::vector<VkImage> sources{gpu_shown.get()};
+    frame.shown = {gpu_shown.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, shown.size()};
+    if (compared) {
+      frame.compared = ViewImage{gpu_compared.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, compared->size()};
+      sources.push_back(gpu_compared.get());
+    }
+    const Image drawn = draw(frame, target, sources);
+    const ViewOracle oracle(frame, shown, compared);
+    int wrong = 0, inside = 0;
+    for (int y = 0; y < target.height; ++y) {
+      for (int x = 0; x < target.width; ++x) {
+        const float* got = drawn.at(x, y);
+        const Rect& a = frame.area;
+        if (x < a.x || y < a.y || x >= a.x + a.width || y >= a.y + a.height) {
+          ASSERT_EQ(got[0], -1) << what << ": drawn outside of the area at " << x << ", " << y;
+          continue;
+        }
+        const Rgb want = oracle.at(x, y);
+        ++inside;
+        for (int i = 0; i < 3; ++i) {
+          if (std::abs(got[i] - want[i]) <= 2e-4) continue;
+          if (++wrong <= 5) {
+            ADD_FAILURE() << what << ": pixel " << x << ", " << y << " channel " << i << " is " << got[i] << ", not "
+                          << want[i];
+          }
+        }
+        ASSERT_EQ(got[3], 1);
+      }
+    }
+    EXPECT_EQ(wrong, 0) << what;
+    EXPECT_EQ(inside, frame.area.width * frame.area.height);
+  }
+
+  static Device* device_;
+};
+Device* ViewPassTest::device_ = nullptr;
+
+const Size kPicture{23, 17};
+
+ViewFrame frame_of(Rect area, View view) {
+  ViewFrame frame;
+  frame.picture = kPicture;
+  frame.area = area;
+  frame.view = view;
+  return frame;
+}
+
+TEST_F(ViewPassTest, PlacesMagnifiesAndMinifies) {
+  const Image image = picture(kPicture, 1);
+  const Rect area{5, 3, 61, 47};
+  expect_same(frame_of(area, {}), image, nullptr, {70, 55}, "fit");
+  for (const double zoom : {0.125, 0.23, 0.5, 0.81, 1.0, 1.37, 2.0, 3.0, 7.7, 16.0}) {
+    // Centres off the grid, so that no pixel's middle lies on the border of two of the picture's.
+    const View view{.fit = false, .zoom = zoom, .center = {11.213, 8.347}};
+    expect_same(frame_of(area, view), image, nullptr, {70, 55}, std::to_string(zoom).c_str());
+  }
+}
+
+TEST_F(ViewPassTest, AtOneToOneEveryPixelIsThePictures) {
+  const Image image = picture(kPicture, 2);
+  View view;
+  one_to_one(view, kPicture, {23, 17});
+  expect_same(frame_of({0, 0, 23, 17}, view), image, nullptr, {23, 17}, "1:1");
+}
+
+TEST_F(ViewPassTest, ChannelsExposureAndBackgrounds) {
+  const Image image = picture(kPicture, 3);
+  for (const auto channel : {ViewChannel::color, ViewChannel::red, ViewChannel::green, ViewChannel::blue,
+                             ViewChannel::alpha, ViewChannel::luminance}) {
+    for (const double exposure : {0.0, -2.5, 1.75}) {
+      for (const bool marks : {false, true}) {
+        for (const double zoom : {0.4, 2.0}) {
+          View view{.fit = false, .zoom = zoom, .center = {11.213, 8.347}};
+          view.exposure = exposure;
+          view.channel = channel;
+          view.false_color = marks;
+          expect_same(frame_of({0, 0, 48, 36}, view), image, nullptr, {48, 36},
+                      (view_channel_name(channel) + (marks ? ", marked" : "")).c_str());
+        }
+      }
+    }
+  }
+  for (const auto background : {ViewBackground::gray, ViewBackground::checker}) {
+    ViewFrame frame = frame_of({0, 0, 48, 36}, {});
+    frame.background = background;
+    frame.pixel_scale = 1.5f;
+    expect_same(frame, image, nullptr, {48, 36}, "background");
+  }
+}
+
+TEST_F(ViewPassTest, FalseColorFindsOneBadPixelAtAnyZoom) {
+  Image image(64, 64, 4);
+  std::fill(image.pixels.begin(), image.pixels.end(), 0.5f);
+  image.at(37, 21)[1] = std::numeric_limits<float>::quiet_NaN();
+  View view{.fit = false, .zoom = 1.0 / 32, .center = {32, 32}, .false_color = true};
+  ViewFrame frame = frame_of({0, 0, 2, 2}, view);
+  frame.picture = {64, 64};
+  const GpuImage gpu = upload(image);
+  frame.shown = {gpu.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, image.size()};
+  const Image drawn = draw(frame, {2, 2}, {gpu.get()});
+  EXPECT_NEAR(drawn.at(1, 0)[0], kMarkNotFinite[0], 1e-3);
+  EXPECT_NEAR(drawn.at(1, 0)[1], kMarkNotFinite[1], 1e-3);
+  EXPECT_NEAR(drawn.at(0, 0)[0], drawn.at(0, 0)[1], 1e-6);  // grey: nothing is marked here
+  EXPECT_GT(drawn.at(0, 0)[0], 0.5f);
+}
+
+TEST_F(ViewPassTest, WipesBetweenImagesOfAnySize) {
+  const Image after = picture(kPicture, 4), before = picture(kPicture, 5), small = picture({15, 13}, 6);
+  for (const bool vertical : {false, true}) {
+    for (const double zoom : {0.6, 3.0}) {
+      View view{.fit = false, .zoom = zoom, .center = {11.213, 8.347}};
+      view.compare = Compare::source;
+      view.wipe = 0.413;
+      view.wipe_vertical = vertical;
+      expect_same(frame_of({4, 2, 48, 36}, view), after, &before, {56, 40}, "same size");
+      expect_same(frame_of({4, 2, 48, 36}, view), small, &before, {56, 40}, "smaller result");
+      expect_same(frame_of({4, 2, 48, 36}, view), after, nullptr, {56, 40}, "nothing to compare with");
+    }
+  }
+}
+
+TEST_F(ViewPassTest, TargetsThatEncodeAreNotEncodedTwice) {
+  Image image(1, 1, 4);
+  for (float& v : image.pixels) v = 0.214f;
+  const GpuImage gpu = upload(image);
+  ViewFrame frame = frame_of({0, 0, 2, 2}, {});
+  frame.picture = {1, 1};
+  frame.shown = {gpu.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, image.size()};
+  const Image drawn = draw(frame, {2, 2}, {gpu.get()}, VK_FORMAT_R8G8B8A8_SRGB);
+  std::uint32_t texel = 0;
+  std::memcpy(&texel, drawn.pixels.data(), sizeof texel);
+  EXPECT_NEAR(static_cast<int>(texel & 0xff), 127, 1);  // sRGB code of 0.214
+}
+
+}  // namespace
+}  // namespace afterglow

@@ -1,0 +1,141 @@
+// What the view shows of a picture, in double precision on the CPU: written from view_pass.h, not from the shader.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "image/image.h"
+#include "window/view_pass.h"
+
+namespace afterglow {
+
+using Rgb = std::array<double, 3>;
+
+class ViewOracle {
+ public:
+  ViewOracle(const ViewFrame& frame, const Image& shown, const Image* compared)
+      : frame_(frame),
+        place_(placement(frame.view, frame.picture, frame.area.size())),
+        shown_(shown),
+        compared_(compared) {}
+
+  /// sRGB codes in 0…1 of a pixel of the target, which lies within the area.
+  Rgb at(int x, int y) const {
+    const double sx = x - frame_.area.x + 0.5, sy = y - frame_.area.y + 0.5;
+    const Point p = to_picture(place_, {sx, sy});
+    if (p.x < 0 || p.y < 0 || p.x >= frame_.picture.width || p.y >= frame_.picture.height) return coded(frame_.outside);
+    const View& view = frame_.view;
+    const Image* image = &shown_;
+    if (view.compare != Compare::none && compared_) {
+      const Point border = to_screen(place_, {view.wipe * frame_.picture.width, view.wipe * frame_.picture.height});
+      const double distance = view.wipe_vertical ? sy - border.y : sx - border.x;
+      if (std::abs(distance) < frame_.pixel_scale) return encode({0.8, 0.8, 0.8});
+      if (std::abs(distance) < frame_.pixel_scale + 1) return encode({0.02, 0.02, 0.02});
+      if (distance < 0) image = compared_;
+    }
+    return looked_at(*image, p, x, y);
+  }
+
+ private:
+  static Rgb coded(const ViewColor& c) { return {c[0], c[1], c[2]}; }
+  static Rgb encode(Rgb c) {
+    for (double& v : c) {
+      v = std::clamp(v, 0.0, 1.0);
+      v = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+    }
+    return c;
+  }
+  static double luminance(const float* c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
+
+  /// 0 nothing, 1 above, 2 below, 3 not finite
+  int mark_of(const float* c) const {
+    const double gain = std::exp2(frame_.view.exposure);
+    const auto one = [](double v) { return !std::isfinite(v) ? 3 : v < -1e-4 ? 2 : v > 1 + 1e-4 ? 1 : 0; };
+    switch (frame_.view.channel) {
+      case ViewChannel::color:
+        return std::max({one(c[0] * gain), one(c[1] * gain), one(c[2] * gain)});
+      case ViewChannel::red:
+        return one(c[0] * gain);
+      case ViewChannel::green:
+        return one(c[1] * gain);
+      case ViewChannel::blue:
+        return one(c[2] * gain);
+      case ViewChannel::alpha:
+        return one(c[3]);
+      default:
+        return one(luminance(c) * gain);
+    }
+  }
+
+  Rgb looked_at(const Image& image, Point p, int x, int y) const {
+    const double kx = static_cast<double>(image.width) / frame_.picture.width;
+    const double ky = static_cast<double>(image.height) / frame_.picture.height;
+    const double w = kx / place_.scale, h = ky / place_.scale;
+    std::array<double, 4> sum{};
+    double total = 0;
+    int worst = 0;
+    const auto add = [&](int ix, int iy, double weight) {
+      if (!(weight > 0)) return;
+      const float* c = image.at(std::clamp(ix, 0, image.width - 1), std::clamp(iy, 0, image.height - 1));
+      for (int i = 0; i < 4; ++i) {
+        sum[i] += weight * (std::isnan(c[i]) ? 0.0 : std::clamp(static_cast<double>(c[i]), -1e30, 1e30));
+      }
+      total += weight;
+      worst = std::max(worst, mark_of(c));
+    };
+    if (w <= 1 && h <= 1) {
+      add(static_cast<int>(std::floor(p.x * kx)), static_cast<int>(std::floor(p.y * ky)), 1);
+    } else {
+      const double rw = std::max(w, 1.0), rh = std::max(h, 1.0);
+      for (int iy = 0; iy < image.height; ++iy) {
+        const double vertical = std::min(iy + 1.0, p.y * ky + rh / 2) - std::max<double>(iy, p.y * ky - rh / 2);
+        if (vertical <= 0) continue;
+        for (int ix = 0; ix < image.width; ++ix) {
+          const double across = std::min(ix + 1.0, p.x * kx + rw / 2) - std::max<double>(ix, p.x * kx - rw / 2);
+          if (across > 0) add(ix, iy, across * vertical);
+        }
+      }
+    }
+    for (double& v : sum) v /= total;
+    if (frame_.view.false_color && worst > 0) {
+      return coded(worst == 3 ? kMarkNotFinite : worst == 2 ? kMarkBelow : kMarkAbove);
+    }
+    const double gain = std::exp2(frame_.view.exposure);
+    const double r = sum[0] * gain, g = sum[1] * gain, b = sum[2] * gain;
+    const auto gray = [](double v) { return encode({v, v, v}); };
+    switch (frame_.view.channel) {
+      case ViewChannel::red:
+        return gray(r);
+      case ViewChannel::green:
+        return gray(g);
+      case ViewChannel::blue:
+        return gray(b);
+      case ViewChannel::alpha:
+        return gray(sum[3]);
+      case ViewChannel::luminance:
+        return gray(0.2126 * r + 0.7152 * g + 0.0722 * b);
+      default:
+        break;
+    }
+    if (frame_.view.false_color) return gray(0.2126 * r + 0.7152 * g + 0.0722 * b);
+    double background = 0;
+    if (frame_.background == ViewBackground::gray) background = 0.18;
+    if (frame_.background == ViewBackground::checker) {
+      const double side = 12 * frame_.pixel_scale;
+      const int square =
+          static_cast<int>(std::floor((x + 0.5) / side)) + static_cast<int>(std::floor((y + 0.5) / side));
+      background = square % 2 == 0 ? 0.08 : 0.25;
+    }
+    const double through = background * std::clamp(1 - sum[3], 0.0, 1.0);
+    return encode({r + through, g + through, b + through});
+  }
+
+  const ViewFrame& frame_;
+  Placement place_;
+  const Image& shown_;
+  const Image* compared_;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,220 @@
+// Window, swapchain and interface on a display of their own, without a player.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "exec/submit.h"
+#include "window/desktop_window.h"
+#include "window/interface.h"
+#include "window/painter.h"
+#include "xvfb.h"
+
+namespace afterglow {
+namespace {
+namespace fs = std::filesystem;
+
+class PainterTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(xvfb_.runs()) << "Xvfb does not run";
+    setenv("DISPLAY", xvfb_.display().c_str(), 1);
+    folder_ = fs::temp_directory_path() / ("afterglow_painter" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    auto window = DesktopWindow::create("painter", {640, 400});
+    ASSERT_TRUE(window) << window.error().text();
+    window_ = std::move(*window);
+    presentation_ = std::make_shared<Presentation>(*window_->presentation());
+    presentation_->make_surface = [this, make = presentation_->make_surface](VkInstance instance) {
+      ++surfaces_;
+      return make(instance);
+    };
+    Diagnostics diagnostics;
+    auto device = Device::create({.validate = true, .presentation = presentation_}, diagnostics);
+    ASSERT_TRUE(device) << device.error().text();
+    device_ = std::move(*device);
+    interface_ = std::make_unique<Interface>(window_->handle());
+    auto painter = Painter::create(*device_, {.readback = true});
+    ASSERT_TRUE(painter) << painter.error().text();
+    painter_ = std::move(*painter);
+    window_->show();
+    make_picture();
+  }
+
+  void TearDown() override {
+    painter_.reset();
+    picture_ = GpuImage();
+    interface_.reset();
+    std::shared_ptr<const ValidationLog> log;
+    if (device_) log = device_->validation_log();
+    device_.reset();
+    window_.reset();
+    if (log) {
+      EXPECT_EQ(log->errors(), 0) << log->messages().front();
+    }
+    std::error_code ec;
+    fs::remove_all(folder_, ec);
+  }
+
+  /// Linear 0.214 everywhere: sRGB code 127.
+  void make_picture() {
+    auto image = GpuImage::create(
+        *device_,
+        {.name = "picture", .size = {64, 40}, .usage = VK_IMAGE_USAGE_SAMPLED_BIT, .tiling = VK_IMAGE_TILING_LINEAR},
+        HostAccess::write);
+    ASSERT_TRUE(image) << image.error().text();
+    picture_ = std::move(*image);
+    for (int y = 0; y < 40; ++y) {
+      auto* row = reinterpret_cast<float*>(picture_.row(y));
+      for (int i = 0; i < 64 * 4; ++i) row[i] = i % 4 == 3 ? 1.0f : 0.214f;
+    }
+    picture_.memory().flush();
+    auto submitter = Submitter::create(*device_);
+    ASSERT_TRUE(submitter->submit([this](VkCommandBuffer commands) {
+      const auto barrier = image_barrier(picture_.get(), VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT,
+                                         VK_IMAGE_LAYOUT_PREINITIALIZED, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                         VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+      record_barriers(commands, &barrier, 1);
+    }));
+    ASSERT_TRUE(submitter->wait());
+  }
+
+  /// The picture in the left half, and a white square of the interface at its upper left corner.
+  Swapchain::Drawn paint() {
+    window_->wait(0);
+    const Size size = window_->framebuffer();
+    interface_->begin();
+    ImGui::GetForegroundDrawList()->AddRectFilled({10, 10}, {30, 30}, IM_COL32(255, 255, 255, 255));
+    const ImDrawData& data = interface_->end();
+    ViewFrame frame;
+    frame.shown = {picture_.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, {64, 40}};
+    frame.picture = {64, 40};
+    frame.area = {0, 0, size.width / 2, size.height};
+    frame.view.fit = false;
+    frame.view.zoom = 128;
+    frame.view.center = {32, 20};
+    auto drawn = painter_->paint(size, frame, data);
+    EXPECT_TRUE(drawn) << drawn.error().text();
+    return drawn ? *drawn : Swapchain::Drawn::later;
+  }
+
+  Screen shot() { return screenshot(xvfb_.display(), (folder_ / "screen.ppm").string()); }
+
+  /// Paints until the screen is as wanted: the server takes events when it likes.
+  bool paint_until(const std::function<bool(const Screen&)>& wanted) {
+    for (int i = 0; i < 200; ++i) {
+      paint();
+      if (const Screen screen = shot(); !screen.rgb.empty() && wanted(screen)) return true;
+    }
+    return false;
+  }
+
+  Xvfb xvfb_;
+  fs::path folder_;
+  int surfaces_ = 0;
+  std::unique_ptr<DesktopWindow> window_;
+  std::shared_ptr<Presentation> presentation_;
+  std::unique_ptr<Device> device_;
+  std::unique_ptr<Interface> interface_;
+  std::unique_ptr<Painter> painter_;
+  GpuImage picture_;
+};
+
+bool near(const std::uint8_t* rgb, int level) {
+  return std::abs(rgb[0] - level) <= 1 && std::abs(rgb[1] - level) <= 1 && std::abs(rgb[2] - level) <= 1;
+}
+
+TEST_F(PainterTest, ShowsPictureAndInterface) {
+  EXPECT_TRUE(paint_until([](const Screen& s) { return near(s.at(200, 200), 127); }));
+  const Screen screen = shot();
+  int x = 0, y = 0;
+  glfwGetWindowPos(window_->handle(), &x, &y);
+  EXPECT_TRUE(near(screen.at(x + 20, y + 20), 255));   // the square
+  EXPECT_TRUE(near(screen.at(x + 50, y + 20), 127));   // the picture, encoded once
+  EXPECT_TRUE(near(screen.at(x + 500, y + 200), 26));  // beside it
+}
+
+TEST_F(PainterTest, SteadyFramesMakeNothing) {
+  for (int i = 0; i < 5; ++i) paint();
+  const auto before = painter_->swapchain().counters();
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(paint(), Swapchain::Drawn::yes);
+  const auto after = painter_->swapchain().counters();
+  EXPECT_EQ(after.presented, before.presented + 50);
+  EXPECT_EQ(after.made, before.made);
+  EXPECT_EQ(after.retired, 0u);
+}
+
+TEST_F(PainterTest, FollowsItsWindowAndReleasesOldSwapchains) {
+  paint();
+  const Size sizes[] = {{700, 500}, {500, 350}, {900, 600}, {640, 480}, {480, 320}, {800, 640}, {1000, 700}};
+  for (const Size size : sizes) {
+    glfwSetWindowSize(window_->handle(), size.width, size.height);
+    EXPECT_TRUE(paint_until([&](const Screen& s) {
+      return near(s.at(size.width / 2 - 5, size.height - 5), 127) &&
+             near(s.at(size.width / 2 + 5, size.height - 5), 26);
+    })) << size.width
+        << "×" << size.height;
+  }
+  for (int i = 0; i < 10; ++i) paint();
+  EXPECT_GE(painter_->swapchain().counters().made, std::size(sizes));
+  EXPECT_EQ(painter_->swapchain().counters().retired, 0u);
+}
+
+TEST_F(PainterTest, NothingIsDrawnWithoutArea) {
+  paint();
+  const auto before = painter_->swapchain().counters();
+  interface_->begin();
+  const ImDrawData& data = interface_->end();
+  const auto drawn = painter_->paint({0, 0}, std::nullopt, data);
+  ASSERT_TRUE(drawn) << drawn.error().text();
+  EXPECT_EQ(*drawn, Swapchain::Drawn::minimised);
+  EXPECT_EQ(painter_->swapchain().counters().presented, before.presented);
+  EXPECT_EQ(paint(), Swapchain::Drawn::yes);
+}
+
+TEST_F(PainterTest, FontsOfAnotherScaleTakeEffect) {
+  paint();
+  EXPECT_FALSE(interface_->set_scale(1));
+  EXPECT_TRUE(interface_->set_scale(2));
+  ASSERT_TRUE(painter_->take_fonts());
+  EXPECT_EQ(paint(), Swapchain::Drawn::yes);
+  EXPECT_FLOAT_EQ(interface_->ui().body->FontSize, 30);
+}
+
+TEST_F(PainterTest, WritesWhatTheWindowShows) {
+  const fs::path file = folder_ / "window.png";
+  painter_->capture(file);
+  while (paint() != Swapchain::Drawn::yes) {
+  }
+  std::string out;
+  ASSERT_EQ(run_on(xvfb_.display(), "convert " + file.string() + " -crop 1x1+50+20 txt:-", &out), 0);
+  EXPECT_NE(out.find("#7F7F7F"), std::string::npos) << out;
+  ASSERT_EQ(run_on(xvfb_.display(), "identify -format '%wx%h' " + file.string(), &out), 0);
+  EXPECT_EQ(out, "640x400");
+}
+
+TEST_F(PainterTest, DroppedFilesArrive) {
+  GLFWdropfun drop = glfwSetDropCallback(window_->handle(), nullptr);
+  ASSERT_NE(drop, nullptr);
+  const char* paths[] = {"/tmp/a.lua", "/tmp/b.exr"};
+  drop(window_->handle(), 2, paths);
+  const WindowEvents events = window_->take_events();
+  EXPECT_TRUE(events.any);
+  EXPECT_EQ(events.dropped, (std::vector<fs::path>{"/tmp/a.lua", "/tmp/b.exr"}));
+  EXPECT_FALSE(window_->take_events().any);
+}
+
+TEST(DesktopWindow, WithoutADisplayItSaysSo) {
+  setenv("DISPLAY", ":65000", 1);
+  unsetenv("WAYLAND_DISPLAY");
+  const auto window = DesktopWindow::create("nowhere", {100, 100});
+  ASSERT_FALSE(window);
+  EXPECT_EQ(window.error().kind, ErrorKind::device);
+  EXPECT_NE(window.error().text().find("--headless"), std::string::npos) << window.error().text();
+}
+
+}  // namespace
+}  // namespace afterglow
