@@ -15,6 +15,7 @@ pages=(
   "docs/effects.md|Effects"
   "docs/composition.md|Composing looks"
   "docs/writing_effects.md|Writing an effect"
+  "docs/determinism.md|The same pixels"
   "docs/math.md|The mathematics"
   "docs/benchmarks/README.md|Benchmarks"
   "CONTRIBUTING.md|Working on it"
