@@ -35,17 +35,16 @@ Result<DataImages> DataImages::create(const Device& device, const Graph& graph, 
     };
     AFTERGLOW_CHECK(staging.upload({image.get(), kFormat, data->size}, pack));
     if (storage)
-      barriers.push_back(image_barrier(image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0,
-                                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                                       VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-                                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-                                       VK_IMAGE_LAYOUT_GENERAL));
+      barriers.push_back(image_barrier(
+          image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+          VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+          VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_GENERAL));
     out.images_.emplace(static_cast<ImageId>(i), std::move(image));
   }
   if (barriers.empty()) return out;
   AFTERGLOW_TRY(Submitter submitter, Submitter::create(device));
-  AFTERGLOW_CHECK(submitter.submit(
-      [&](VkCommandBuffer commands) { record_barriers(commands, barriers.data(), barriers.size()); }));
+  AFTERGLOW_CHECK(
+      submitter.submit([&](VkCommandBuffer commands) { record_barriers(commands, barriers.data(), barriers.size()); }));
   AFTERGLOW_CHECK(submitter.wait());
   return out;
 }

@@ -3,8 +3,8 @@
 
 #include <map>
 
-#include "graph/graph.h"
 #include "gpu/image.h"
+#include "graph/graph.h"
 
 namespace afterglow {
 

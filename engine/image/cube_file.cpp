@@ -87,15 +87,13 @@ class CubeCheck {
       if (!value) return fail(fmt::format("'{}' is not a number", shown(word)));
       if (!std::isfinite(static_cast<float>(*value))) return fail(fmt::format("'{}' is not finite", shown(word)));
     }
-    if (++colours_ > wanted())
-      return fail(fmt::format("more than the {} colours that the size asks for", wanted()));
+    if (++colours_ > wanted()) return fail(fmt::format("more than the {} colours that the size asks for", wanted()));
     return {};
   }
 
   Result<void> keyword(const std::vector<std::string_view>& words) {
-    static const std::vector<std::string> kKnown{"DOMAIN_MAX",         "DOMAIN_MIN",         "LUT_1D_INPUT_RANGE",
-                                                 "LUT_1D_SIZE",        "LUT_3D_INPUT_RANGE", "LUT_3D_SIZE",
-                                                 "TITLE"};
+    static const std::vector<std::string> kKnown{
+        "DOMAIN_MAX", "DOMAIN_MIN", "LUT_1D_INPUT_RANGE", "LUT_1D_SIZE", "LUT_3D_INPUT_RANGE", "LUT_3D_SIZE", "TITLE"};
     const std::string name(words[0]);
     if (name == "TITLE") return {};
     if (colours_ > 0) return fail(fmt::format("'{}' behind the first colour", shown(name)));

@@ -29,8 +29,9 @@ Result<Lut> read_lut(const std::filesystem::path& file) {
   AFTERGLOW_TRY(const LutModule* module, lut_module());
   const std::vector<std::string> known = module->extensions();
   if (std::find(known.begin(), known.end(), extension) == known.end())
-    return Error{ErrorKind::script, fmt::format("'{}' is no format of look-up tables", extension), file.string(), 0,
-                 join(known), nearest_name(extension, known)};
+    return Error{ErrorKind::script, fmt::format("'{}' is no format of look-up tables", extension),
+                 file.string(),     0,
+                 join(known),       nearest_name(extension, known)};
   auto text = read_file(file, kMaxFile);
   if (!text) return fail(text.error().message);
   if (extension == "cube") AFTERGLOW_CHECK(check_cube(*text, file.string()));

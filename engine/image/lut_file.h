@@ -39,8 +39,8 @@ struct Lut {
 inline constexpr int kMaxLutSteps = 6;
 inline constexpr int kLutRow = 256;  ///< colours a row of one-dimensional tables
 
-/// Thread-safe. Errors (script, with the file and, for .cube, the line): missing, unknown format, what the file holds is
-/// wrong or has no place in steps; io: the module with OpenColorIO is not installed.
+/// Thread-safe. Errors (script, with the file and, for .cube, the line): missing, unknown format, what the file holds
+/// is wrong or has no place in steps; io: the module with OpenColorIO is not installed.
 Result<Lut> read_lut(const std::filesystem::path& file);
 
 /// What the module with OpenColorIO gives.

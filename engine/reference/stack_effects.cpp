@@ -168,8 +168,8 @@ DoubleImage run_depth_of_field(const DoubleImage& source, const Inputs& inputs, 
                               .max_radius = s.number("max_radius"),
                               .samples = s.integer("samples")};
   if (s.is("depth_space", "linear")) return depth_of_field(source, *inputs.depth, settings);
-  return depth_of_field(
-      source, linear_depth(*inputs.depth, s.number("near"), s.number("far"), s.flag("reversed_z")), settings);
+  return depth_of_field(source, linear_depth(*inputs.depth, s.number("near"), s.number("far"), s.flag("reversed_z")),
+                        settings);
 }
 
 DoubleImage run_motion_blur(const DoubleImage& source, const Inputs& inputs, const Settings& s) {
@@ -195,8 +195,8 @@ DoubleImage run_pixelate(const DoubleImage& source, const Inputs&, const Setting
 
 DoubleImage run_edge_detection(const DoubleImage& source, const Inputs&, const Settings& s) {
   return edge_detection(source, {.kind = s.choice<EdgeOperator>("operator", {{"sobel", EdgeOperator::sobel},
-                                                                            {"scharr", EdgeOperator::scharr},
-                                                                            {"roberts", EdgeOperator::roberts}}),
+                                                                             {"scharr", EdgeOperator::scharr},
+                                                                             {"roberts", EdgeOperator::roberts}}),
                                  .intensity = s.number("intensity"),
                                  .threshold = s.number("threshold"),
                                  .color = s.color("color"),
@@ -208,9 +208,9 @@ DoubleImage run_fxaa(const DoubleImage& source, const Inputs&, const Settings& s
   return fxaa(source, {.fixed_threshold = s.number("fixed_threshold"),
                        .relative_threshold = s.number("relative_threshold"),
                        .subpixel_blending = s.number("subpixel_blending"),
-                       .quality = s.choice<FxaaQuality>("quality", {{"low", FxaaQuality::low},
-                                                                    {"medium", FxaaQuality::medium},
-                                                                    {"high", FxaaQuality::high}})});
+                       .quality = s.choice<FxaaQuality>(
+                           "quality",
+                           {{"low", FxaaQuality::low}, {"medium", FxaaQuality::medium}, {"high", FxaaQuality::high}})});
 }
 
 constexpr Oracle kOracles[] = {

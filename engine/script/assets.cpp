@@ -68,8 +68,8 @@ std::shared_ptr<const ImageData> make_data(Runtime& runtime, Size size, std::vec
                                            const fs::path& file) {
   runtime.assets.bytes += pixels.size() * sizeof(float);
   if (runtime.assets.bytes > kMaxBytes)
-    throw failure(fmt::format("'{}' and what was read before take more than {} MiB", file.filename().string(),
-                              kMaxBytes >> 20));
+    throw failure(
+        fmt::format("'{}' and what was read before take more than {} MiB", file.filename().string(), kMaxBytes >> 20));
   ImageData data{size, std::move(pixels), {}, file};
   const Hash of_pixels = hash_bytes(data.pixels.data(), data.pixels.size() * sizeof(float));
   data.hash = Hasher()
@@ -86,8 +86,7 @@ std::vector<float> rgba(const Image& image) {
   std::vector<float> out(static_cast<std::size_t>(image.size().area()) * 4, 1.0F);
   const auto channels = static_cast<std::size_t>(image.channels);
   for (std::size_t i = 0; i < out.size() / 4; ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      out[4 * i + c] = image.pixels[i * channels + (channels >= 3 ? c : 0)];
+    for (std::size_t c = 0; c < 3; ++c) out[4 * i + c] = image.pixels[i * channels + (channels >= 3 ? c : 0)];
   return out;
 }
 
@@ -102,7 +101,8 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
     note_file(runtime, name);
     return name;
   }
-  constexpr const char* kAllowed = "the name of a file beside the preset or on the search path, like \"luts/film.cube\"";
+  constexpr const char* kAllowed =
+      "the name of a file beside the preset or on the search path, like \"luts/film.cube\"";
   if (!is_safe_entry(name, 8)) fail_at(lua, what, name, "leads out of the folders that scripts may read", kAllowed);
   const auto roots = roots_of(runtime);
   for (const auto& root : roots) {

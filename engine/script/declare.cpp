@@ -59,8 +59,9 @@ void read_extensions(lua_State* lua, TableReader& table, SettingSchema& schema) 
       list.push(key);
       const Value given = read_value(lua, -1);
       lua_pop(lua, 1);
-      const bool fits = key.position > 0 && given.kind == Value::Kind::text && !given.text.empty() &&
-                        std::ranges::all_of(given.text, [](unsigned char c) { return std::islower(c) || std::isdigit(c); });
+      const bool fits =
+          key.position > 0 && given.kind == Value::Kind::text && !given.text.empty() &&
+          std::ranges::all_of(given.text, [](unsigned char c) { return std::islower(c) || std::isdigit(c); });
       if (!fits)
         table.fail(failure(fmt::format("{}: {} is no extension of a file", table.what(), given.shown()),
                            {"extensions", key.name}, "small letters and digits, without the point"));

@@ -225,12 +225,9 @@ int image_equal(lua_State* lua) {
 
 void open_graph_binding(lua_State* lua) {
   push_kind(lua, kGraphKind);
-  const luaL_Reg methods[] = {{"pass", &native<graph_pass, "pass">},
-                              {"filter", &native<graph_filter, "filter">},
-                              {"image", &native<graph_image, "image">},
-                              {"input", &native<graph_input, "input">},
-                              {"lookup", &native<graph_lookup, "lookup">},
-                              {"skip", &native<graph_skip, "skip">}};
+  const luaL_Reg methods[] = {{"pass", &native<graph_pass, "pass">},       {"filter", &native<graph_filter, "filter">},
+                              {"image", &native<graph_image, "image">},    {"input", &native<graph_input, "input">},
+                              {"lookup", &native<graph_lookup, "lookup">}, {"skip", &native<graph_skip, "skip">}};
   lua_createtable(lua, 0, 4);
   for (const auto& [name, function] : methods) {
     lua_pushcfunction(lua, function);

@@ -27,7 +27,7 @@ using Position = std::array<double, 3>;
 struct SettingValue {
   SettingType type = SettingType::number;
   std::array<double, 3>
-      number{};        ///< integer and number in [0]; boolean as 0/1 in [0]; vec2 in [0..1]; colour, vec3 in [0..2]
+      number{};  ///< integer and number in [0]; boolean as 0/1 in [0]; vec2 in [0..1]; colour, vec3 in [0..2]
   /// enumeration: the choice. file: its name, as `find_asset` takes it, or an absolute path when [0] of `number` is 1
   /// (the command line's, which may name any file); empty: none.
   std::string choice;

@@ -98,7 +98,8 @@ std::string allowed_text(const SettingSchema& schema) {
     case SettingType::vec3:
       return range.empty() ? "{x, y, z}" : "{x, y, z}, each " + range;
     case SettingType::file:
-      return "\"\" for none, the name of a file beside the preset or on the search path: ." + join(schema.choices, ", .");
+      return "\"\" for none, the name of a file beside the preset or on the search path: ." +
+             join(schema.choices, ", .");
   }
   return {};
 }

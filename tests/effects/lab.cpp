@@ -56,7 +56,8 @@ std::vector<float> floats(const reference::DoubleImage& image) {
 }
 
 std::string write_stack(const std::string& entries) {
-  return write_test_file("stack.lua", "local fx = require \"afterglow\"\nreturn fx.stack {\n" + entries + "\n}\n").string();
+  return write_test_file("stack.lua", "local fx = require \"afterglow\"\nreturn fx.stack {\n" + entries + "\n}\n")
+      .string();
 }
 
 /// Throws std::runtime_error with the error's text, so that a failing step ends the test with its reason.

@@ -1,5 +1,5 @@
-// What holds for every effect that is found on the search path, whatever it is: nobody has to write a line here for a new
-// one. Its settings are read from its own declaration, and tried at their defaults, limits and choices.
+// What holds for every effect that is found on the search path, whatever it is: nobody has to write a line here for a
+// new one. Its settings are read from its own declaration, and tried at their defaults, limits and choices.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,9 @@ std::vector<EffectSchema> every_effect() {
 
 /// A file that the setting allows; empty when there is none of its kind here.
 std::string sample_file(const SettingSchema& setting) {
-  const auto allows = [&](const char* extension) { return std::ranges::find(setting.choices, extension) != setting.choices.end(); };
+  const auto allows = [&](const char* extension) {
+    return std::ranges::find(setting.choices, extension) != setting.choices.end();
+  };
   if (!allows("cube")) return {};
   std::string text = "LUT_3D_SIZE 3\n";
   for (int i = 0; i < 27; ++i)
@@ -66,7 +68,8 @@ using Values = std::vector<std::pair<std::string, std::string>>;
 /// fx.NAME { … }, with a file for each setting that wants one.
 std::string entry_of(const EffectSchema& effect, Values values = {}) {
   for (const auto& setting : effect.settings)
-    if (setting.type == SettingType::file && std::ranges::find(values, setting.name, &Values::value_type::first) == values.end())
+    if (setting.type == SettingType::file &&
+        std::ranges::find(values, setting.name, &Values::value_type::first) == values.end())
       values.emplace_back(setting.name, fmt::format("\"{}\"", sample_file(setting)));
   std::string out = "fx." + effect.name + " { ";
   for (const auto& [name, value] : values) out += fmt::format("{} = {}, ", name, value);
@@ -90,7 +93,8 @@ std::vector<std::string> one_by_one(const EffectSchema& effect) {
         entries.push_back(entry_of(effect, {{setting.name, fmt::format("\"{}\"", choice)}}));
       continue;
     }
-    for (const Side side : {Side::low, Side::high}) entries.push_back(entry_of(effect, {{setting.name, at_limit(setting, side)}}));
+    for (const Side side : {Side::low, Side::high})
+      entries.push_back(entry_of(effect, {{setting.name, at_limit(setting, side)}}));
   }
   return entries;
 }
@@ -144,8 +148,10 @@ TEST_F(Effects, EveryEffectStaysFiniteAtTheEndsOfItsSettings) {
 TEST_F(Effects, EveryEffectJoinedIsWhatItIsByItself) {
   const auto scene = moving(neon_scene({96, 54}, 560, 330));
   // Pixel passes on both sides, which it is joined with where that can be.
-  const std::string before = "fx.channel_mixer { name = \"before\", at = \"after_opaque_and_sky\", order = -1000, red_out_green_in = 10 }, ";
-  const std::string behind = ", fx.channel_mixer { name = \"behind\", at = \"after_post_process\", order = 1000, green_out_blue_in = 10 }";
+  const std::string before =
+      "fx.channel_mixer { name = \"before\", at = \"after_opaque_and_sky\", order = -1000, red_out_green_in = 10 }, ";
+  const std::string behind =
+      ", fx.channel_mixer { name = \"behind\", at = \"after_post_process\", order = 1000, green_out_blue_in = 10 }";
   for (const auto& effect : every_effect())
     for (const auto& entry : {entry_of(effect), all_at(effect, Side::low)}) {
       if (is_refused(entry, scene)) continue;
@@ -162,7 +168,8 @@ bool is_identity(const std::string& entry, const Scene& scene) {
   const Made made = run_stack(entry, scene, Way::joined);
   for (std::size_t i = 0; i < scene.source.pixels.size(); ++i)
     for (int c = 0; c < 4; ++c)
-      if (made.result[4 * i + static_cast<std::size_t>(c)] != static_cast<float>(scene.source.pixels[i][c])) return false;
+      if (made.result[4 * i + static_cast<std::size_t>(c)] != static_cast<float>(scene.source.pixels[i][c]))
+        return false;
   return true;
 }
 

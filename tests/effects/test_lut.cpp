@@ -72,12 +72,13 @@ void expect_close(const std::vector<float>& made, const DoubleImage& expected, c
   for (std::size_t i = 0; i < expected.pixels.size(); ++i)
     for (int c = 0; c < 3; ++c) {
       const double wanted = expected.pixels[i][c];
-      const double error = std::abs(made[4 * i + static_cast<std::size_t>(c)] - wanted) / std::max(1.0, std::abs(wanted));
+      const double error =
+          std::abs(made[4 * i + static_cast<std::size_t>(c)] - wanted) / std::max(1.0, std::abs(wanted));
       if (!(error <= worst)) worst = error, at = i;
     }
   EXPECT_LE(worst, 2e-6) << what << ", pixel " << at << ": " << made[4 * at] << " " << made[4 * at + 1] << " "
-                         << made[4 * at + 2] << ", expected " << expected.pixels[at].r << " "
-                         << expected.pixels[at].g << " " << expected.pixels[at].b;
+                         << made[4 * at + 2] << ", expected " << expected.pixels[at].r << " " << expected.pixels[at].g
+                         << " " << expected.pixels[at].b;
 }
 
 std::string entry(const std::string& file, const std::string& more = "input = \"linear\"") {
@@ -97,8 +98,9 @@ void agree_with_ocio(const std::string& name, const std::string& text) {
 
 TEST_F(Effects, LutCubesAgreeWithOpenColorIo) {
   for (const int size : {2, 3, 17, 33, 64})
-    agree_with_ocio(fmt::format("cube{}.cube", size), fmt::format("TITLE \"random\"\n# comment\nLUT_3D_SIZE {}\n", size) +
-                                                          random_rows(size * size * size));
+    agree_with_ocio(
+        fmt::format("cube{}.cube", size),
+        fmt::format("TITLE \"random\"\n# comment\nLUT_3D_SIZE {}\n", size) + random_rows(size * size * size));
 }
 
 TEST_F(Effects, LutCurvesAgreeWithOpenColorIo) {
@@ -107,7 +109,8 @@ TEST_F(Effects, LutCurvesAgreeWithOpenColorIo) {
 }
 
 TEST_F(Effects, LutDomainsAgreeWithOpenColorIo) {
-  agree_with_ocio("domain3.cube", "LUT_3D_SIZE 9\nDOMAIN_MIN -0.25 0 0.125\nDOMAIN_MAX 1.5 4 0.75\n" + random_rows(729));
+  agree_with_ocio("domain3.cube",
+                  "LUT_3D_SIZE 9\nDOMAIN_MIN -0.25 0 0.125\nDOMAIN_MAX 1.5 4 0.75\n" + random_rows(729));
   agree_with_ocio("domain1.cube", "LUT_1D_SIZE 33\nDOMAIN_MIN -1 -0.5 0.1\nDOMAIN_MAX 2 1 8\n" + random_rows(33));
   agree_with_ocio("resolve.cube",
                   "LUT_1D_SIZE 65\nLUT_1D_INPUT_RANGE -0.5 2.0\nLUT_3D_SIZE 7\nLUT_3D_INPUT_RANGE 0.0 1.25\n" +
@@ -124,10 +127,11 @@ TEST_F(Effects, LutOtherFormatsAgreeWithOpenColorIo) {
   agree_with_ocio("cube.spi3d", spi3d);
   agree_with_ocio("shaper.csp",
                   "CSPLUTV100\n3D\n\n2\n0 2\n0 1\n2\n0 2\n0 1\n2\n0 1.5\n0 1\n\n3 3 3\n" + random_rows(27));
-  agree_with_ocio("grade.cdl",
-                  "<ColorDecisionList xmlns=\"urn:ASC:CDL:v1.01\"><ColorDecision><ColorCorrection id=\"a\"><SOPNode>"
-                  "<Slope>1.1 0.9 1.2</Slope><Offset>0.02 -0.03 0.01</Offset><Power>1.2 0.8 1.05</Power></SOPNode>"
-                  "<SatNode><Saturation>0.7</Saturation></SatNode></ColorCorrection></ColorDecision></ColorDecisionList>");
+  agree_with_ocio(
+      "grade.cdl",
+      "<ColorDecisionList xmlns=\"urn:ASC:CDL:v1.01\"><ColorDecision><ColorCorrection id=\"a\"><SOPNode>"
+      "<Slope>1.1 0.9 1.2</Slope><Offset>0.02 -0.03 0.01</Offset><Power>1.2 0.8 1.05</Power></SOPNode>"
+      "<SatNode><Saturation>0.7</Saturation></SatNode></ColorCorrection></ColorDecision></ColorDecisionList>");
 }
 
 TEST_F(Effects, LutProcessListsAgreeWithOpenColorIo) {
@@ -144,7 +148,8 @@ TEST_F(Effects, LutProcessListsAgreeWithOpenColorIo) {
   std::string half;
   for (int i = 0; i < 65536; ++i) half += fmt::format("{:.5f}\n", std::sin(i * 0.001));
   agree_with_ocio("half.clf", process("<LUT1D inBitDepth=\"32f\" outBitDepth=\"32f\" halfDomain=\"true\"><Array "
-                                      "dim=\"65536 1\">" + half + "</Array></LUT1D>"));
+                                      "dim=\"65536 1\">" +
+                                      half + "</Array></LUT1D>"));
 }
 
 TEST_F(Effects, LutIdentityAndMixAreWhatTheySay) {
@@ -156,19 +161,21 @@ TEST_F(Effects, LutIdentityAndMixAreWhatTheySay) {
   auto scene = random_scene({33, 17}, 72);
   for (auto& p : scene.source.pixels) p = Rgba(glm::min(Rgb(p), Rgb(1)), p.a);
   for (const char* encoding : {"linear", "srgb"})
-    EXPECT_TRUE(agrees(run_stack(entry("identity.cube", fmt::format("input = \"{}\"", encoding)), scene, Way::plain).result,
-                       scene.source, 1e-5, kRgba))
+    EXPECT_TRUE(
+        agrees(run_stack(entry("identity.cube", fmt::format("input = \"{}\"", encoding)), scene, Way::plain).result,
+               scene.source, 1e-5, kRgba))
         << encoding;
   for (auto& p : scene.source.pixels) p = Rgba(0.1 + 0.25 * Rgb(p), p.a);  // inside of AP1, below its 1
   scene.source = in_floats(scene.source);
-  EXPECT_TRUE(agrees(run_stack(entry("identity.cube", "input = \"acescct\""), scene, Way::plain).result, scene.source, 2e-5,
-                     kRgba));
+  EXPECT_TRUE(agrees(run_stack(entry("identity.cube", "input = \"acescct\""), scene, Way::plain).result, scene.source,
+                     2e-5, kRgba));
 
   const auto file = write_test_file("mix.cube", "LUT_3D_SIZE 3\n" + random_rows(27));
   auto expected = by_ocio(scene.source, file);
   for (std::size_t i = 0; i < expected.pixels.size(); ++i)
     expected.pixels[i] = 0.75 * scene.source.pixels[i] + 0.25 * expected.pixels[i];
-  expect_close(run_stack(entry("mix.cube", "input = \"linear\", intensity = 0.25"), scene, Way::plain).result, expected, "mix");
+  expect_close(run_stack(entry("mix.cube", "input = \"linear\", intensity = 0.25"), scene, Way::plain).result, expected,
+               "mix");
 }
 
 TEST_F(Effects, LutEncodesAsItSays) {
@@ -184,14 +191,15 @@ TEST_F(Effects, LutEncodesAsItSays) {
   EXPECT_TRUE(agrees(made.result, expected, 1e-4, kRgb));
   for (std::size_t i = 0; i < encoded.pixels.size(); ++i) encoded.pixels[i].a = scene.source.pixels[i].a;
   auto linear = by_ocio(in_floats(encoded), file);
-  EXPECT_TRUE(agrees(run_stack(entry("encoded.cube", "input = \"srgb\", output = \"linear\""), scene, Way::plain).result, linear,
-                     1e-4, kRgb));
+  EXPECT_TRUE(
+      agrees(run_stack(entry("encoded.cube", "input = \"srgb\", output = \"linear\""), scene, Way::plain).result,
+             linear, 1e-4, kRgb));
 }
 
 TEST_F(Effects, LutJoinsItsNeighbours) {
   write_test_file("joined.cube", "LUT_3D_SIZE 4\n" + random_rows(64));
-  const std::string entries = "fx.tone_mapping {}, fx.color_adjustments { post_exposure = 0.5 }, " + entry("joined.cube") +
-                              ", fx.film_grain {}";
+  const std::string entries = "fx.tone_mapping {}, fx.color_adjustments { post_exposure = 0.5 }, " +
+                              entry("joined.cube") + ", fx.film_grain {}";
   const Made joined = run_stack(entries, random_scene({32, 32}, 74), Way::joined);
   EXPECT_EQ(joined.graph.passes.size(), 4u);
   EXPECT_EQ(joined.kernels, 1u);
@@ -203,7 +211,8 @@ TEST_F(Effects, LutErrorsNameTheFileAndTheLine) {
     write_test_file("wrong.cube", text);
     return build_error(entry("wrong.cube"), scene);
   };
-  EXPECT_THAT(error_of("LUT_3D_SIZE 1000000\n0 0 0\n"), testing::HasSubstr("wrong.cube:1: error: LUT_3D_SIZE is 1000000"));
+  EXPECT_THAT(error_of("LUT_3D_SIZE 1000000\n0 0 0\n"),
+              testing::HasSubstr("wrong.cube:1: error: LUT_3D_SIZE is 1000000"));
   EXPECT_THAT(error_of("LUT_3D_SIZE 2\n0 0 0\n0 nan 0\n"), testing::HasSubstr("wrong.cube:3: error: 'nan' is not"));
   EXPECT_THAT(error_of("LUT_3D_SIZE 2\n0 0 0\n"), testing::HasSubstr("ends after 1 of 8 colours"));
   EXPECT_THAT(build_error(entry("wrnog.cube"), scene), testing::HasSubstr("did you mean 'wrong.cube'"));

@@ -24,9 +24,10 @@ Scene moving(Scene scene, double length) {
 }
 
 std::string entry(const MotionBlur& v) {
-  return fmt::format("fx.motion_blur {{ shutter_angle = {}, samples = {}, max_radius = {}, motion_scale = {{ {}, {} }}, "
-                     "depth_softness = {} }}",
-                     v.shutter_angle, v.samples, v.max_radius, v.scale_x, v.scale_y, v.depth_softness);
+  return fmt::format(
+      "fx.motion_blur {{ shutter_angle = {}, samples = {}, max_radius = {}, motion_scale = {{ {}, {} }}, "
+      "depth_softness = {} }}",
+      v.shutter_angle, v.samples, v.max_radius, v.scale_x, v.scale_y, v.depth_softness);
 }
 
 /// A white bar on black, `width` wide, that moves `speed` pixels a frame across; what is behind it stands still.
@@ -43,10 +44,11 @@ Scene bar(double speed) {
 }
 
 TEST_F(Effects, MotionBlurAgrees) {
-  const MotionBlur variants[] = {{},
-                                 {.shutter_angle = 360, .samples = 9, .max_radius = 10},
-                                 {.shutter_angle = 90, .samples = 40, .max_radius = 21.5, .scale_x = -2, .scale_y = 0.5},
-                                 {.shutter_angle = 360, .max_radius = 16, .depth_softness = 5}};
+  const MotionBlur variants[] = {
+      {},
+      {.shutter_angle = 360, .samples = 9, .max_radius = 10},
+      {.shutter_angle = 90, .samples = 40, .max_radius = 21.5, .scale_x = -2, .scale_y = 0.5},
+      {.shutter_angle = 360, .max_radius = 16, .depth_softness = 5}};
   for (const Size size : {Size{101, 57}, Size{64, 64}, Size{17, 5}, Size{1, 1}})
     for (const bool with_depth : {true, false})
       for (const auto& v : variants) {

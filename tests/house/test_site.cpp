@@ -39,8 +39,7 @@ class Site : public testing::Test {
   /// What stands in an attribute, over the whole page.
   static std::vector<std::string> all(const std::string& text, const std::string& attribute) {
     static std::map<std::string, std::regex> expressions;
-    const auto& expression =
-        expressions.try_emplace(attribute, "[ <]" + attribute + "=\"([^\"]*)\"").first->second;
+    const auto& expression = expressions.try_emplace(attribute, "[ <]" + attribute + "=\"([^\"]*)\"").first->second;
     std::vector<std::string> found;
     for (std::sregex_iterator it(text.begin(), text.end(), expression), end; it != end; ++it)
       found.push_back((*it)[1].str());

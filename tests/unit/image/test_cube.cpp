@@ -24,7 +24,9 @@ std::string rows(int count) {
 
 TEST(Cube, WhatIsRightPasses) {
   EXPECT_EQ(fault_of("LUT_1D_SIZE 2\n0 0 0\n1 1 1\n"), "");
-  EXPECT_EQ(fault_of("# by hand\nTITLE \"x\"\n\nLUT_3D_SIZE 2\r\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 1 1\n# data\n" + rows(8)), "");
+  EXPECT_EQ(
+      fault_of("# by hand\nTITLE \"x\"\n\nLUT_3D_SIZE 2\r\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 1 1\n# data\n" + rows(8)),
+      "");
   EXPECT_EQ(fault_of("LUT_1D_SIZE 3\nLUT_1D_INPUT_RANGE 0 2\nLUT_3D_SIZE 2\n" + rows(11)), "");
   EXPECT_EQ(fault_of("LUT_1D_SIZE 2\n-1e-3 +0.5 .25\n1E2 1. 0\n"), "");
   EXPECT_EQ(fault_of("LUT_1D_SIZE 2\n0 0 0\n1 1 1"), "");  // no newline at the end
@@ -32,7 +34,9 @@ TEST(Cube, WhatIsRightPasses) {
 
 TEST(Cube, SizesThatNoFileHas) {
   for (const char* size : {"1000000", "130", "1", "0", "-2", "2.5", "nan", "1e9", "99999999999999999999", "x", ""})
-    EXPECT_THAT(fault_of(std::string("LUT_3D_SIZE ") + size + "\n" + rows(8)), HasSubstr("a.cube:1: error: LUT_3D_SIZE")) << size;
+    EXPECT_THAT(fault_of(std::string("LUT_3D_SIZE ") + size + "\n" + rows(8)),
+                HasSubstr("a.cube:1: error: LUT_3D_SIZE"))
+        << size;
   EXPECT_THAT(fault_of("LUT_1D_SIZE 65537\n"), HasSubstr("allowed: an integer, 2…65536"));
   EXPECT_THAT(fault_of("LUT_3D_SIZE 2\nLUT_3D_SIZE 2\n"), HasSubstr("a.cube:2: error: LUT_3D_SIZE is there twice"));
 }
@@ -49,15 +53,18 @@ TEST(Cube, Values) {
   EXPECT_THAT(fault_of("LUT_1D_SIZE 2\n0 0 1e39\n0 0 0\n"), HasSubstr("a.cube:2: error: '1e39' is not finite"));
   EXPECT_THAT(fault_of("LUT_1D_SIZE 2\n0 0\n0 0 0\n"), HasSubstr("a.cube:2: error: a colour has 3 numbers, not 2"));
   EXPECT_THAT(fault_of("LUT_1D_SIZE 2\n0 0 zero\n"), HasSubstr("a.cube:2: error: 'zero' is not a number"));
-  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\nDOMAIN_MIN 0 0 1\n" + rows(2)), HasSubstr("a.cube:2: error: DOMAIN_MIN is not below"));
+  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\nDOMAIN_MIN 0 0 1\n" + rows(2)),
+              HasSubstr("a.cube:2: error: DOMAIN_MIN is not below"));
   EXPECT_THAT(fault_of("LUT_1D_SIZE 2\nDOMAIN_MAX 1 inf 1\n"), HasSubstr("a.cube:2: error: DOMAIN_MAX"));
-  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\nLUT_1D_INPUT_RANGE 1 0\n"), HasSubstr("a.cube:2: error: LUT_1D_INPUT_RANGE is no range"));
+  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\nLUT_1D_INPUT_RANGE 1 0\n"),
+              HasSubstr("a.cube:2: error: LUT_1D_INPUT_RANGE is no range"));
 }
 
 TEST(Cube, Words) {
   EXPECT_THAT(fault_of("LUT_3D_SIZ 2\n"), HasSubstr("a.cube:1: error: unknown word 'LUT_3D_SIZ'"));
   EXPECT_THAT(fault_of("LUT_3D_SIZ 2\n"), HasSubstr("did you mean 'LUT_3D_SIZE'?"));
-  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\n0 0 0\nDOMAIN_MIN 0 0 0\n"), HasSubstr("a.cube:3: error: 'DOMAIN_MIN' behind the first"));
+  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\n0 0 0\nDOMAIN_MIN 0 0 0\n"),
+              HasSubstr("a.cube:3: error: 'DOMAIN_MIN' behind the first"));
   EXPECT_THAT(fault_of("\xEF\xBB\xBFLUT_1D_SIZE 2\n"), HasSubstr("byte order mark"));
 }
 
@@ -74,7 +81,8 @@ TEST(Cube, NothingCrashes) {
 
 TEST(Cube, EveryFormatRefusesRubbish) {
   const TemporaryFolder folder;
-  for (const char* name : {"a.3dl", "a.csp", "a.spi1d", "a.spi3d", "a.clf", "a.cub", "a.hdl", "a.itx", "a.m3d", "a.vf", "a.cc", "a.cdl"}) {
+  for (const char* name :
+       {"a.3dl", "a.csp", "a.spi1d", "a.spi3d", "a.clf", "a.cub", "a.hdl", "a.itx", "a.m3d", "a.vf", "a.cc", "a.cdl"}) {
     for (const char* text : {"", "rubbish\n", "\x01\x02\x03", "LUT_3D_SIZE 1000000\n", "<ProcessList>"}) {
       std::ofstream(folder / name) << text;
       const auto read = read_lut(folder / name);

@@ -60,9 +60,7 @@ std::pair<float, float> read_motion(const Names& channels, const std::vector<flo
   return {found->second.at(0, 0)[0], found->second.at(0, 0)[1]};
 }
 
-TEST(Motion, YPointsDown) {
-  EXPECT_EQ(read_motion({"motion.x", "motion.y"}, {3, 4}), std::pair(3.0f, -4.0f));
-}
+TEST(Motion, YPointsDown) { EXPECT_EQ(read_motion({"motion.x", "motion.y"}, {3, 4}), std::pair(3.0f, -4.0f)); }
 
 TEST(Motion, FourChannelsAreAveragedWhicheverWayTheyPoint) {
   const Names vector{"Vector.X", "Vector.Y", "Vector.Z", "Vector.W"};

@@ -1,7 +1,6 @@
 // Files that effects read: the setting type, where a name is looked up, and where it never leads.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -70,14 +69,15 @@ TEST_F(Assets, AlongTheSearchPathAndInPacks) {
 TEST_F(Assets, NamesThatLeadOut) {
   const fs::path outside = fs::temp_directory_path() / ("afterglow_outside_" + std::to_string(getpid()) + ".cube");
   std::ofstream(outside) << kTable;
-  for (const std::string& name : {std::string("../") + outside.filename().string(), outside.string(), std::string("x/../a.cube"),
-                                  std::string("./a.cube"), std::string("a\\b.cube")}) {
+  for (const std::string& name : {std::string("../") + outside.filename().string(), outside.string(),
+                                  std::string("x/../a.cube"), std::string("./a.cube"), std::string("a\\b.cube")}) {
     scene.stack("fx.tint { table = [[" + name + "]] }");
     EXPECT_THAT(found(), HasSubstr("preset.lua:3: error: tint.table = ")) << name;
     EXPECT_THAT(found(), HasSubstr("is not a name inside")) << name;
   }
   // A script that builds the name itself gets no further.
-  scene.effect("reach", "build = function(g, s, source) g:lookup { file = \"" + outside.string() + "\" } return source end,");
+  scene.effect("reach",
+               "build = function(g, s, source) g:lookup { file = \"" + outside.string() + "\" } return source end,");
   scene.stack("fx.reach {}");
   EXPECT_THAT(found(), HasSubstr("leads out of the folders that scripts may read"));
   fs::create_symlink(outside, scene.folder() / "link.cube");
@@ -130,9 +130,12 @@ TEST_F(Assets, Messages) {
   scene.write("film.cube", "LUT_1D_SIZE 2\n0 0 0\n1 1\n");
   scene.stack("fx.tint { table = \"film.cube\" }");
   EXPECT_THAT(found(), HasSubstr("film.cube:3: error: a colour has 3 numbers, not 2"));
-  scene.effect("tint", "settings = { table = fx.file { doc = \"x\" } }, build = function(g, s, source) return source end");
+  scene.effect("tint",
+               "settings = { table = fx.file { doc = \"x\" } }, build = function(g, s, source) return source end");
   EXPECT_THAT(found(), HasSubstr("fx.file needs extensions"));
-  scene.effect("tint", "settings = { table = fx.file { extensions = { \".cube\" } } }, build = function(g, s, source) return source end");
+  scene.effect("tint",
+               "settings = { table = fx.file { extensions = { \".cube\" } } }, build = function(g, s, source) return "
+               "source end");
   EXPECT_THAT(found(), HasSubstr("without the point"));
 }
 
