@@ -13,24 +13,23 @@ using Way = glm::dvec2;
 
 Way way_of(const Rgba& p) { return {p.r, p.g}; }
 
-/// Half ways of all pixels: what they move while half of the exposure passes.
+/// Half ways of all pixels: what they move while half of the exposure passes; their lengths before they are held in .a.
 DoubleImage half_ways(const DoubleImage& motion, const MotionBlur& s) {
   const double exposure = s.shutter_angle / 360;
   return generate(motion.size(), [&](int x, int y) {
     Way way = way_of(motion.at(x, y)) * Way(s.scale_x, s.scale_y) * (exposure / 2);
-    if (glm::length(way) > s.max_radius) way *= s.max_radius / glm::length(way);
-    return Rgba(way.x, way.y, 0, 1);
+    const double length = glm::length(way);
+    if (length > s.max_radius) way *= s.max_radius / length;
+    return Rgba(way.x, way.y, 0, length);
   });
 }
 
 /// The longest in a rectangle of an image; of equal ones the first in the order given: by rows of it.
-Way longest_in(const DoubleImage& ways, int x0, int y0, int x1, int y1) {
-  Way most(0);
+Rgba longest_in(const DoubleImage& ways, int x0, int y0, int x1, int y1) {
+  Rgba most(0);
   for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x) {
-      const Way way = way_of(ways.clamped(x, y));
-      if (glm::dot(way, way) > glm::dot(most, most)) most = way;
-    }
+    for (int x = x0; x < x1; ++x)
+      if (ways.clamped(x, y).a > most.a) most = ways.clamped(x, y);
   return most;
 }
 
@@ -48,13 +47,12 @@ DoubleImage motion_blur(const DoubleImage& source, const DoubleImage& motion, co
   const int tile = static_cast<int>(std::ceil(s.max_radius));
   const Size tiles{(source.width + tile - 1) / tile, (source.height + tile - 1) / tile};
   const DoubleImage by_tile = generate(tiles, [&](int x, int y) {
-    const Way most = longest_in(ways, x * tile, y * tile, glm::min((x + 1) * tile, source.width),
-                                glm::min((y + 1) * tile, source.height));
-    return Rgba(most.x, most.y, 0, 1);
+    return longest_in(ways, x * tile, y * tile, glm::min((x + 1) * tile, source.width),
+                      glm::min((y + 1) * tile, source.height));
   });
   return generate(source.size(), [&](int x, int y) {
     const int tx = x / tile, ty = y / tile;
-    const Way along = longest_in(by_tile, tx - 1, ty - 1, tx + 2, ty + 2);
+    const Way along = way_of(longest_in(by_tile, tx - 1, ty - 1, tx + 2, ty + 2));
     const Rgba color = source.at(x, y);
     if (glm::dot(along, along) <= 0.25) return color;
     const double own = glm::max(glm::length(way_of(ways.at(x, y))), 0.5);

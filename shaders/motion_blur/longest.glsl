@@ -11,7 +11,7 @@ vec4 sample_at(ivec2 pixel) {
   vec4 most = fetch(source, first);
   for (int i = 1; i < count; ++i) {
     vec4 read = fetch(source, first + i * axis);
-    if (dot(read.xy, read.xy) > dot(most.xy, most.xy)) most = read;
+    if (read.w > most.w) most = read;
   }
   return most;
 }

@@ -6,7 +6,7 @@ vec4 sample_at(ivec2 pixel) {
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
       vec4 read = fetch(source, pixel + ivec2(x, y));
-      if (dot(read.xy, read.xy) > dot(most.xy, most.xy)) most = read;
+      if (read.w > most.w) most = read;
     }
   return most;
 }

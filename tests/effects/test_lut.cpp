@@ -61,7 +61,7 @@ DoubleImage by_ocio(const DoubleImage& source, const std::filesystem::path& file
   for (auto& p : out.pixels) {
     float rgb[3] = {static_cast<float>(p.r), static_cast<float>(p.g), static_cast<float>(p.b)};
     cpu->applyRGB(rgb);
-    p = {rgb[0], rgb[1], rgb[2], p.a};
+    p = Rgba(glm::clamp(Rgb(rgb[0], rgb[1], rgb[2]), -1e30, 1e30), p.a);  // no effect returns more
   }
   return out;
 }
