@@ -152,7 +152,7 @@ TEST_F(BuildMessages, TheGraphAndImages) {
   EXPECT_EQ(error("g.pass { shader = \"plain\" }"),
             "effects/probe.lua:4: error: the first argument is a table, not the graph; allowed: g:pass { … }");
   EXPECT_EQ(error("g:pas {}"),
-            "effects/probe.lua:4: error: the graph has no \"pas\"; allowed: filter, fps, frame, input, pass, skip, "
+            "effects/probe.lua:4: error: the graph has no \"pas\"; allowed: filter, fps, frame, image, input, lookup, pass, skip, "
             "time; did you mean 'pass'?");
   EXPECT_EQ(error("local w = source.widht"),
             "effects/probe.lua:4: error: an image has no \"widht\"; allowed: width, height; did you mean 'width'?");
