@@ -21,6 +21,7 @@ Command add_check_command(CLI::App& program);
 Command add_graph_command(CLI::App& program);
 Command add_explain_command(CLI::App& program);
 Command add_effects_command(CLI::App& program);
+Command add_set_command(CLI::App& program);
 Command add_new_command(CLI::App& program);
 Command add_devices_command(CLI::App& program);
 Command add_bench_command(CLI::App& program);

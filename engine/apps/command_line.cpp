@@ -133,10 +133,11 @@ int run_command_line(int argc, char** argv) {
   program.footer(kFooter);
   program.get_formatter()->column_width(34);
 
-  const std::vector<Command> commands{
-      add_run_command(program),     add_check_command(program),   add_graph_command(program),
-      add_explain_command(program), add_effects_command(program), add_new_command(program),
-      add_devices_command(program), add_bench_command(program),   add_calibrate_command(program)};
+  const std::vector<Command> commands{add_run_command(program),     add_check_command(program),
+                                      add_graph_command(program),   add_explain_command(program),
+                                      add_effects_command(program), add_new_command(program),
+                                      add_set_command(program),     add_devices_command(program),
+                                      add_bench_command(program),   add_calibrate_command(program)};
   MessageArguments messages;
   for (const auto& command : commands) messages.add(*command.options);
 

@@ -43,8 +43,8 @@ double fitting_zoom(Size picture, Size window) {
   return std::clamp(zoom, kLeastZoom, kMostZoom);
 }
 
-Placement placement(const View& view, Size picture, Size window) {
-  Placement out;
+ViewPlacement placement(const View& view, Size picture, Size window) {
+  ViewPlacement out;
   out.scale = view.fit ? fitting_zoom(picture, window) : std::clamp(view.zoom, kLeastZoom, kMostZoom);
   const Point center = view.fit ? middle(picture) : view.center, screen = middle(window);
   out.origin = {screen.x - out.scale * center.x, screen.y - out.scale * center.y};
@@ -52,11 +52,11 @@ Placement placement(const View& view, Size picture, Size window) {
   return out;
 }
 
-Point to_screen(const Placement& p, Point picture) {
+Point to_screen(const ViewPlacement& p, Point picture) {
   return {p.origin.x + p.scale * picture.x, p.origin.y + p.scale * picture.y};
 }
 
-Point to_picture(const Placement& p, Point screen) {
+Point to_picture(const ViewPlacement& p, Point screen) {
   return {(screen.x - p.origin.x) / p.scale, (screen.y - p.origin.y) / p.scale};
 }
 

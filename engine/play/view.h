@@ -43,14 +43,14 @@ struct View {
 inline constexpr double kLeastZoom = 1.0 / 64, kMostZoom = 128;
 
 /// Where the picture lies: screen = origin + scale · picture.
-struct Placement {
+struct ViewPlacement {
   Point origin;
   double scale = 1;
 };
 /// At whole scales the origin is a whole number too, so that pixels stay sharp.
-Placement placement(const View& view, Size picture, Size window);
-Point to_screen(const Placement& placement, Point picture);
-Point to_picture(const Placement& placement, Point screen);
+ViewPlacement placement(const View& view, Size picture, Size window);
+Point to_screen(const ViewPlacement& placement, Point picture);
+Point to_picture(const ViewPlacement& placement, Point screen);
 /// The pixel under a point of the screen; none outside of the picture.
 struct Pixel {
   int x = 0, y = 0;

@@ -94,11 +94,11 @@ int do_require(lua_State* lua) {
 
 }  // namespace
 
-DeclaredStack load_stack(lua_State* lua, const fs::path& file) {
+DeclaredStack load_stack(lua_State* lua, const fs::path& file, const std::optional<std::string>& text) {
   Runtime& runtime = Runtime::of(lua);
   std::error_code ec;
   const Loading loading(runtime, "preset " + fs::weakly_canonical(file, ec).string());
-  load_chunk(lua, file);
+  load_chunk(lua, file, false, text);
   call(lua, 0, 1);
   const Handle* handle = to_object<Handle>(lua, -1, kStackKind);
   if (!handle)
@@ -153,14 +153,14 @@ bool lies_in(const fs::path& file, const fs::path& folder) {
   return end == real_folder.end();
 }
 
-void load_chunk(lua_State* lua, const fs::path& file, bool library) {
+void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::optional<std::string>& given) {
   Runtime& runtime = Runtime::of(lua);
   Sandbox& box = *runtime.box;
   runtime.files.push_back(file);
   int index = 0;
   {
     const Sandbox::Pause pause(box);
-    auto text = read_file(file, kMaxScript);
+    auto text = given ? Result<std::string>(*given) : read_file(file, kMaxScript);
     if (!text) throw ScriptError{{ErrorKind::script, text.error().message, file.string()}};
     index = box.add_source({file.string(), std::move(*text), library});
   }

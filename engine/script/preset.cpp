@@ -72,7 +72,7 @@ Error with_entry(Error error, const StackEntry* entry) {
 
 void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   open_graph_binding(lua);
-  DeclaredStack stack = load_stack(lua, file);
+  DeclaredStack stack = load_stack(lua, file, options.text);
   runtime->declaring = false;
   shaders->search(runtime->path);
   if (auto applied = apply_overrides(stack.entries, options.overrides, runtime->effects); !applied)

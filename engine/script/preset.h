@@ -85,6 +85,7 @@ struct PresetOptions {
   std::vector<std::filesystem::path> paths;  ///< --path
   std::vector<Override> overrides;
   std::optional<Position> at;  ///< --at: where the picture is seen from, for volumes
+  std::optional<std::string> text = {};  ///< of the preset, instead of what its file holds; the file need not exist
   ScriptLimits limits;
 };
 

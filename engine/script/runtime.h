@@ -87,14 +87,16 @@ struct Runtime {
 /// Names a file of an effect that declares `name`; finds, loads and remembers it. Errors: throws ScriptError.
 int find_effect(lua_State* lua, const std::string& name);
 
-/// Runs a preset's file; the stack that it returns. Errors: throws ScriptError.
-DeclaredStack load_stack(lua_State* lua, const std::filesystem::path& file);
+/// Runs a preset's file, or `text` in its place; the stack that it returns. Errors: throws ScriptError.
+DeclaredStack load_stack(lua_State* lua, const std::filesystem::path& file,
+                         const std::optional<std::string>& text = std::nullopt);
 /// The same for a preset on the search path. Its folder joins the path: what it brings along is found.
 DeclaredStack load_named_stack(lua_State* lua, const std::string& name);
 
 /// Reads the file as a text chunk with an environment of its own and pushes it as a function. Errors: throws
 /// ScriptError.
-void load_chunk(lua_State* lua, const std::filesystem::path& file, bool library = false);
+void load_chunk(lua_State* lua, const std::filesystem::path& file, bool library = false,
+                const std::optional<std::string>& text = std::nullopt);
 
 /// Pushes `require`.
 void push_require(lua_State* lua);

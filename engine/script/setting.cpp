@@ -75,6 +75,18 @@ bool has_extension(const SettingSchema& schema, const std::string& file) {
   return std::ranges::any_of(schema.choices, [&](const auto& extension) { return name.ends_with("." + extension); });
 }
 
+std::optional<std::string> hex_color(const SettingValue& color) {
+  std::string text = "#";
+  for (const double c : color.number) {
+    if (!(c >= 0 && c <= 1)) return {};
+    const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+    const int code = static_cast<int>(std::lround(encoded * 255));
+    if (static_cast<float>(srgb_to_linear(code / 255.0)) != static_cast<float>(c)) return {};
+    text += fmt::format("{:02x}", code);
+  }
+  return text;
+}
+
 const char* type_name(SettingType type) {
   static constexpr const char* kNames[] = {"integer", "number", "boolean", "choice", "colour", "vec2", "vec3", "file"};
   return kNames[static_cast<int>(type)];

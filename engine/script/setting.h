@@ -1,6 +1,7 @@
 // Checks values against what an effect declares. The one place that knows what each setting type allows.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/result.h"
@@ -18,6 +19,9 @@ Result<SettingValue> check_setting(const std::string& full_name, const SettingSc
 
 /// Has the file one of the extensions that the setting allows?
 bool has_extension(const SettingSchema& schema, const std::string& file);
+
+/// "#rrggbb" for a colour that can be written so: what it is read as is the same colour in 32-bit floats.
+std::optional<std::string> hex_color(const SettingValue& color);
 
 /// "integer", "number", "boolean", "choice", "colour", "vec2", "vec3", "file".
 const char* type_name(SettingType type);

@@ -37,14 +37,14 @@ std::array<float, 4> color_and(const ViewColor& color, double w) {
 std::array<std::int32_t, 2> pair_of(Size size) { return {size.width, size.height}; }
 
 /// Where the border of a comparison lies, in pixels of the target.
-double border_of(const ViewFrame& frame, const Placement& place) {
+double border_of(const ViewFrame& frame, const ViewPlacement& place) {
   const Point at = to_screen(place, {frame.view.wipe * frame.picture.width, frame.view.wipe * frame.picture.height});
   return frame.view.wipe_vertical ? at.y + frame.area.y : at.x + frame.area.x;
 }
 
 Push push_of(const ViewFrame& frame, bool encode) {
   const View& view = frame.view;
-  const Placement place = placement(view, frame.picture, frame.area.size());
+  const ViewPlacement place = placement(view, frame.picture, frame.area.size());
   const bool compare = view.compare != Compare::none && frame.compared.has_value();
   Push push{};
   push.outside = color_and(frame.outside, 0);

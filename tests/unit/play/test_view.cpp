@@ -11,7 +11,7 @@ namespace {
 constexpr Size kPicture{1920, 1080}, kWindow{1280, 800};
 
 TEST(View, FitShowsTheWholePictureInTheMiddle) {
-  const Placement p = placement(View{}, kPicture, kWindow);
+  const ViewPlacement p = placement(View{}, kPicture, kWindow);
   EXPECT_DOUBLE_EQ(p.scale, 1280.0 / 1920);
   EXPECT_NEAR(p.origin.x, 0, 1e-9);
   EXPECT_NEAR(p.origin.y, 40, 1e-9);
@@ -21,7 +21,7 @@ TEST(View, FitShowsTheWholePictureInTheMiddle) {
 TEST(View, ThereAndBackAgain) {
   View view;
   zoom_at(view, kPicture, kWindow, {300, 200}, 3.7);
-  const Placement p = placement(view, kPicture, kWindow);
+  const ViewPlacement p = placement(view, kPicture, kWindow);
   const Point there = to_picture(p, {17, 600}), back = to_screen(p, there);
   EXPECT_NEAR(back.x, 17, 1e-9);
   EXPECT_NEAR(back.y, 600, 1e-9);
@@ -45,7 +45,7 @@ TEST(View, ZoomKeepsThePointUnderTheCursor) {
 TEST(View, OneToOneLiesOnWholePixels) {
   View view;
   one_to_one(view, {333, 111}, {1000, 700});
-  const Placement p = placement(view, {333, 111}, {1000, 700});
+  const ViewPlacement p = placement(view, {333, 111}, {1000, 700});
   EXPECT_EQ(p.scale, 1);
   EXPECT_EQ(p.origin.x, ::round(p.origin.x));
   EXPECT_EQ(p.origin.y, ::round(p.origin.y));

@@ -133,7 +133,7 @@ class ViewOracle {
   }
 
   const ViewFrame& frame_;
-  Placement place_;
+  ViewPlacement place_;
   const Image& shown_;
   const Image* compared_;
 };

@@ -1,0 +1,91 @@
+// `afterglow set`: changes settings in the text of a preset. No device needed.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "apps/command.h"
+#include "apps/options.h"
+#include "apps/text_difference.h"
+#include "script/write_back.h"
+#include "shader/library.h"
+
+namespace afterglow {
+namespace {
+
+struct Arguments {
+  PresetArguments preset;
+  std::vector<std::string> settings, resets;
+  bool dry_run = false;
+};
+
+Result<std::vector<Override>> overrides_of(const std::vector<std::string>& settings) {
+  std::vector<Override> wanted;
+  for (const auto& text : settings) {
+    auto given = parse_override(text);
+    if (!given)
+      return Error{ErrorKind::usage, fmt::format("'{}' is no setting with a value", text), "afterglow set", 0,
+                   "ENTRY.SETTING=VALUE"};
+    wanted.push_back(std::move(*given));
+  }
+  return wanted;
+}
+
+Result<std::vector<PresetEdit>> edits_of(const Arguments& arguments, const std::filesystem::path& file,
+                                          const PresetOptions& options, Console& console) {
+  if (arguments.settings.empty() && arguments.resets.empty())
+    return Error{ErrorKind::usage, "nothing to change", "afterglow set", 0,
+                 "ENTRY.SETTING=VALUE, --reset ENTRY.SETTING"};
+  AFTERGLOW_TRY(const auto wanted, overrides_of(arguments.settings));
+  ShaderLibrary shaders(search_path_for(file, options.paths));
+  AFTERGLOW_TRY(const Preset preset, Preset::load(file, options, shaders, console.diagnostics()));
+  AFTERGLOW_TRY(auto edits, parse_edits(preset, wanted));
+  AFTERGLOW_TRY(const auto resets, parse_resets(preset, arguments.resets));
+  edits.insert(edits.end(), resets.begin(), resets.end());
+  return edits;
+}
+
+Result<void> run(const Arguments& arguments, Console& console) {
+  AFTERGLOW_TRY(const auto file, arguments.preset.preset_file());
+  AFTERGLOW_TRY(const PresetOptions options, arguments.preset.options());
+  AFTERGLOW_TRY(const auto edits, edits_of(arguments, file, options, console));
+  PresetWriter writer(file, options);
+  AFTERGLOW_TRY(const Rewrite rewrite, writer.plan(edits));
+  if (!rewrite.refused.empty()) {
+    for (std::size_t i = 0; i + 1 < rewrite.refused.size(); ++i) console.error(rewrite.refused[i].reason);
+    Error last = rewrite.refused.back().reason;
+    last.trail.emplace_back("nothing was written");
+    return last;
+  }
+  for (const auto& note : rewrite.notes) console.diagnostics().warn(note);
+  if (!arguments.dry_run) AFTERGLOW_CHECK(writer.save(rewrite));
+  fmt::print("{}", difference_text(file.string(), rewrite.before, rewrite.text));
+  if (rewrite.text == rewrite.before) console.diagnostics().note("the preset says so already; nothing was written");
+  return {};
+}
+
+}  // namespace
+
+Command add_set_command(CLI::App& program) {
+  auto* app = program.add_subcommand("set", "Change settings in the text of a preset");
+  auto arguments = std::make_shared<Arguments>();
+  app->add_option("PRESET", arguments->preset.file, "Preset to change: a file, or a name on the search path")
+      ->required();
+  app->add_option("ENTRY.SETTING=VALUE", arguments->settings, "What is to be: glow.intensity=0.4, glow.enabled=false")
+      ->type_name("");
+  app->add_option("--reset", arguments->resets, "Back to the default; may be repeated")
+      ->type_name("ENTRY.SETTING")
+      ->allow_extra_args(false);
+  app->add_flag("-n,--dry-run", arguments->dry_run, "Show what would change; write nothing");
+  arguments->preset.add_paths(*app);
+  app->footer(
+      "Comments, layout and all else stay byte for byte. What a script computes is never overwritten: it is an error "
+      "that names\n"
+      "its place, and nothing is written then. Other files (presets that this one extends, required scripts) stay as "
+      "they are.\n"
+      "Prints the lines that changed. Needs no Vulkan device.\n"
+      "Example: afterglow set look.lua glow.intensity=0.4 'glow.tint=#ff8800' --reset glow.scatter");
+  return {app, [arguments](Console& console) { return run(*arguments, console); }};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,57 @@
+#include "core/replace_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include "core/file.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+// All of it, with the mode, on disk. On failure errno tells.
+bool write_new(const fs::path& path, std::string_view content, mode_t mode) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (file < 0) return false;
+  bool good = true;
+  while (good && !content.empty()) {
+    const ssize_t written = write(file, content.data(), content.size());
+    if (written > 0) content.remove_prefix(static_cast<std::size_t>(written));
+    good = written > 0 || errno == EINTR;
+  }
+  good = good && fchmod(file, mode) == 0 && fsync(file) == 0;
+  const int reason = errno;
+  close(file);
+  errno = reason;
+  return good;
+}
+
+}  // namespace
+
+Result<void> replace_file_atomically(const fs::path& path, std::string_view content) {
+  std::error_code ec;
+  const fs::path target = fs::canonical(path, ec);
+  if (ec) return Error{ErrorKind::io, fmt::format("cannot be written: {}", ec.message()), path.string()};
+  const auto failed = [&](int reason) {
+    return Error{ErrorKind::io, fmt::format("cannot be written: {}", std::strerror(reason)), path.string()};
+  };
+  struct stat status {};
+  if (stat(target.c_str(), &status) != 0) return failed(errno);
+  // A file that may not be written is not replaced either, though its folder would allow it.
+  if (access(target.c_str(), W_OK) != 0) return failed(errno);
+  const fs::path temporary = temporary_beside(target);
+  if (!write_new(temporary, content, status.st_mode & 07777)) {
+    const int reason = errno;
+    fs::remove(temporary, ec);
+    return failed(reason);
+  }
+  return commit_file(temporary, target);
+}
+
+}  // namespace afterglow

@@ -1,0 +1,15 @@
+// Other content for a file that somebody owns: as an editor saves it.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace afterglow {
+
+/// Replaces the content whole or not at all, and on disk before it appears. Links are followed: the file they lead to
+/// is replaced and they stay. Mode bits are kept. On error nothing is left behind. Errors: io.
+Result<void> replace_file_atomically(const std::filesystem::path& path, std::string_view content);
+
+}  // namespace afterglow

@@ -1,0 +1,33 @@
+// Changes of one table constructor in the text of a script, in the layout that it has: nothing is written that the
+// change does not need. Pure text.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "script/lua_text.h"
+
+namespace afterglow::script {
+
+/// A piece of the text that becomes another.
+struct Replacement {
+  std::size_t offset = 0, length = 0;
+  std::string text;
+};
+using Replacements = std::vector<Replacement>;  ///< by ascending offset, none within another
+
+std::string replaced(std::string_view text, const Replacements& replacements);
+
+/// The last item of that key, the one that counts; empty when there is none.
+std::optional<LuaText::Item> find_item(const LuaText& text, std::size_t open, std::string_view key);
+
+/// `key = value` as the last item of the constructor at `open`: on the same line in tables of one line, on a line of
+/// its own where all items have one, with the separators, indent and style of key of its neighbours.
+Replacements insert_item(const LuaText& text, std::size_t open, const std::string& key, const std::string& value);
+
+/// Without the item, its separator and the line that it leaves empty. Nothing when comments stand around it: they may
+/// be about it, and nobody can say what becomes of them.
+std::optional<Replacements> remove_item(const LuaText& text, std::size_t open, const LuaText::Item& item);
+
+}  // namespace afterglow::script

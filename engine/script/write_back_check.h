@@ -1,0 +1,25 @@
+// Does a preset say what edits of another wanted, and everything else as the other did?
+#pragma once
+
+#include "script/explanation.h"
+#include "script/write_back.h"
+
+namespace afterglow::script {
+
+/// What the preset itself says of a setting: before volumes, without overrides.
+struct Said {
+  SettingSchema schema;
+  std::optional<SettingValue> value;  ///< of the entry: its default where the preset says nothing; of a volume: empty
+  bool moving = false;                ///< a curve or a function
+  bool blended = false;               ///< volumes change it
+};
+/// Errors (usage): unknown names, with the nearest.
+Result<Said> said_of(const Preset& preset, const PresetEdit& edit);
+
+/// The same for shaders: 32-bit floats. Integers, choices and booleans exactly.
+bool is_same(const SettingValue& a, const SettingValue& b);
+
+/// Errors (script, without file): what differs.
+Result<void> check_edits(const Preset& before, const Preset& after, const std::vector<PresetEdit>& edits);
+
+}  // namespace afterglow::script

@@ -1,0 +1,46 @@
+#include <utility>
+
+#include "core/file.h"
+#include "core/replace_file.h"
+#include "script/write_back.h"
+
+namespace afterglow {
+namespace {
+
+constexpr std::size_t kMostSaves = 100;
+
+}  // namespace
+
+PresetWriter::PresetWriter(std::filesystem::path file, PresetOptions options)
+    : file_(std::move(file)), options_(std::move(options)) {}
+
+Result<Rewrite> PresetWriter::plan(const std::vector<PresetEdit>& edits) const {
+  AFTERGLOW_TRY(const std::string text, read_file(file_));
+  return rewrite_preset(file_, text, edits, options_);
+}
+
+// Errors: the file holds something else.
+Result<void> PresetWriter::expect(const std::string& text) const {
+  AFTERGLOW_TRY(const std::string now, read_file(file_));
+  if (now == text) return {};
+  return Error{ErrorKind::io, "was changed by something else in the meantime; nothing was written", file_.string()};
+}
+
+Result<void> PresetWriter::save(const Rewrite& rewrite) {
+  if (rewrite.text == rewrite.before) return {};
+  AFTERGLOW_CHECK(expect(rewrite.before));
+  AFTERGLOW_CHECK(replace_file_atomically(file_, rewrite.text));
+  saves_.push_back({rewrite.before, rewrite.text});
+  if (saves_.size() > kMostSaves) saves_.erase(saves_.begin());
+  return {};
+}
+
+Result<void> PresetWriter::undo() {
+  if (saves_.empty()) return Error{ErrorKind::io, "nothing was saved that could be taken back", file_.string()};
+  AFTERGLOW_CHECK(expect(saves_.back().after));
+  AFTERGLOW_CHECK(replace_file_atomically(file_, saves_.back().before));
+  saves_.pop_back();
+  return {};
+}
+
+}  // namespace afterglow

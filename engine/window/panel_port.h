@@ -1,0 +1,44 @@
+// What the panel asks of whoever plays: as small as it can be, so that the panel is tested with ImGui and a preset
+// alone.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exec/frame.h"
+#include "play/setting_edits.h"
+#include "play/view.h"
+#include "script/preset.h"
+#include "session/live.h"
+
+namespace afterglow {
+
+class Player;
+
+/// Drawing thread alone. References hold until the next turn of the player.
+class PanelPort {
+ public:
+  virtual ~PanelPort() = default;
+  virtual const Preset* preset() = 0;  ///< of the stack that is shown; null: there was no good one yet
+  virtual LiveStatus status() = 0;
+  virtual const std::vector<Skipped>& skipped() = 0;      ///< effects of the graph that is shown
+  virtual const std::vector<Skipped>& skipped_now() = 0;  ///< of the last frame, by its content
+  virtual const FrameTimes& times() = 0;                  ///< of the last frame
+
+  virtual const SettingEdits& edits() = 0;
+  virtual void set(const std::string& entry, const std::string& setting, const SettingValue& value) = 0;
+  virtual void reset(const std::string& entry, const std::string& setting) = 0;
+  virtual void reset_all() = 0;
+  virtual bool undo() = 0;
+  virtual bool redo() = 0;
+  virtual void end_gesture() = 0;
+  virtual void edits_saved() = 0;
+
+  virtual View& view() = 0;
+  virtual std::vector<std::string> images() = 0;  ///< that can be shown, see LiveStack::images
+  virtual std::string shown_image() = 0;
+  virtual void show(const std::string& image) = 0;
+  virtual bool has_other() = 0;  ///< a second preset, to compare with
+};
+
+}  // namespace afterglow

@@ -1,0 +1,126 @@
+#include "window/panel_save.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "script/explanation.h"
+
+namespace afterglow {
+namespace {
+
+// Does the preset itself say this, without the edit over it?
+bool says(const Preset& preset, const SettingEdit& edit) {
+  for (const auto& entry : preset.explanation().entries)
+    if (entry.name == edit.entry)
+      for (const auto& setting : entry.settings)
+        if (setting.name == edit.setting) {
+          const SettingValue& value = setting.preset ? *setting.preset : setting.default_value;
+          for (std::size_t i = 0; i < value.number.size(); ++i)
+            if (static_cast<float>(value.number[i]) != static_cast<float>(edit.value.number[i])) return false;
+          return value.choice == edit.value.choice;
+        }
+  return true;  // enabled, at, order: nothing of them is kept of before an override
+}
+
+}  // namespace
+
+void PanelSave::tell(std::string message, bool failed) {
+  message_ = std::move(message);
+  failed_ = failed;
+}
+
+void PanelSave::dismiss() {
+  tell("", false);
+  refused_.clear();
+  notes_.clear();
+}
+
+void PanelSave::save(PanelPort& port) {
+  if (busy()) return;
+  dismiss();
+  saving_ = port.edits().edits();
+  if (saving_.empty()) return tell("Nothing was changed", false);
+  std::vector<PresetEdit> edits;
+  for (const auto& edit : saving_) edits.push_back({edit.entry, edit.setting, edit.value, ""});
+  running_ = std::async(std::launch::async, [this, edits] {
+    Outcome outcome;
+    auto plan = writer_.plan(edits);
+    if (!plan) {
+      outcome.error = plan.error();
+      return outcome;
+    }
+    outcome.rewrite = std::move(*plan);
+    if (const auto saved = writer_.save(outcome.rewrite); !saved) outcome.error = saved.error();
+    return outcome;
+  });
+}
+
+bool PanelSave::poll(PanelPort& port) {
+  forget_what_is_in_the_file(port);
+  if (!busy() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  Outcome outcome = running_.get();
+  if (outcome.error) {
+    tell(outcome.error->text(), true);
+    return true;
+  }
+  refused_ = std::move(outcome.rewrite.refused);
+  notes_ = std::move(outcome.rewrite.notes);
+  std::erase_if(saving_, [&](const SettingEdit& edit) {
+    return std::any_of(refused_.begin(), refused_.end(), [&](const RefusedSetting& refused) {
+      return refused.edit.entry == edit.entry && refused.edit.setting == edit.setting;
+    });
+  });
+  settling_ = saving_;
+  if (outcome.rewrite.text != outcome.rewrite.before) written_.push_back(saving_);
+  if (written_.size() > writer_.saves()) written_.erase(written_.begin());
+  std::string text = outcome.rewrite.written.empty()
+                         ? "The preset says so already"
+                         : fmt::format("{} written to {}",
+                                       outcome.rewrite.written.size() == 1
+                                           ? std::string("1 setting")
+                                           : fmt::format("{} settings", outcome.rewrite.written.size()),
+                                       writer_.file().filename().string());
+  if (!refused_.empty()) text = fmt::format("{}; {} left out", text, refused_.size());
+  tell(std::move(text), false);
+  return true;
+}
+
+// The edits go when the preset on screen says the same: dropping them before would show the old values for a moment.
+void PanelSave::forget_what_is_in_the_file(PanelPort& port) {
+  if (settling_.empty() || busy()) return;
+  const Preset* preset = port.preset();
+  if (!preset) return;
+  const bool all = std::all_of(settling_.begin(), settling_.end(), [&](const SettingEdit& edit) {
+    // Edited again since: the edit stays, and there is nothing to wait for.
+    return port.edits().value(edit.entry, edit.setting) != edit.value || says(*preset, edit);
+  });
+  if (!all || port.status().building) return;
+  std::vector<SettingEdit> left = port.edits().edits();
+  std::erase_if(left, [&](const SettingEdit& edit) {
+    return std::find(settling_.begin(), settling_.end(), edit) != settling_.end();
+  });
+  settling_.clear();
+  port.edits_saved();
+  for (const auto& edit : left) {
+    port.set(edit.entry, edit.setting, edit.value);
+    port.end_gesture();
+  }
+}
+
+void PanelSave::undo(PanelPort& port) {
+  if (!can_undo()) return tell("Nothing was saved that could be taken back", true);
+  dismiss();
+  if (const auto undone = writer_.undo(); !undone) return tell(undone.error().text(), true);
+  settling_.clear();
+  for (const auto& edit : written_.back())
+    if (!port.edits().value(edit.entry, edit.setting)) {
+      port.set(edit.entry, edit.setting, edit.value);
+      port.end_gesture();
+    }
+  written_.pop_back();
+  tell(fmt::format("{} is as it was before", writer_.file().filename().string()), false);
+}
+
+}  // namespace afterglow

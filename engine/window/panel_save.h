@@ -1,0 +1,62 @@
+// The panel's edits into the preset's file, and back out of it.
+#pragma once
+
+#include <future>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "script/write_back.h"
+#include "window/panel_port.h"
+
+namespace afterglow {
+
+/// Drawing thread alone; scripts run and files are written on a thread of its own, so that playing goes on.
+class PanelSave {
+ public:
+  PanelSave(std::filesystem::path preset, PresetOptions options) : writer_(std::move(preset), std::move(options)) {}
+  /// Waits for a save that is under way.
+  ~PanelSave() = default;
+
+  const std::filesystem::path& file() const { return writer_.file(); }
+  /// Begins to write all edits. Nothing happens while another save runs.
+  void save(PanelPort& port);
+  /// The file as it was before the last save; what was written then stands over it as edits again.
+  void undo(PanelPort& port);
+  bool can_undo() const { return !busy() && writer_.saves() > 0; }
+  bool busy() const { return running_.valid(); }
+  /// Takes what has come of a save; to be called in every turn. True when there is something new to tell.
+  bool poll(PanelPort& port);
+  /// Blocks until `poll` has something to take. For tests.
+  void wait() const {
+    if (running_.valid()) running_.wait();
+  }
+
+  /// Of the last save or undo: "3 settings written to look.lua"; the error when it failed.
+  const std::string& message() const { return message_; }
+  bool failed() const { return failed_; }
+  /// What the last save left out, with the reason, and what it wants to be known.
+  const std::vector<RefusedSetting>& refused() const { return refused_; }
+  const std::vector<std::string>& notes() const { return notes_; }
+  void dismiss();
+
+ private:
+  struct Outcome {
+    std::optional<Error> error;
+    Rewrite rewrite;
+  };
+  void tell(std::string message, bool failed);
+  void forget_what_is_in_the_file(PanelPort& port);
+
+  PresetWriter writer_;
+  std::vector<SettingEdit> saving_;                // what the running save writes
+  std::vector<std::vector<SettingEdit>> written_;  // by each save that can be taken back
+  std::vector<SettingEdit> settling_;              // written, and still edits until the new file is shown
+  std::string message_;
+  bool failed_ = false;
+  std::vector<RefusedSetting> refused_;
+  std::vector<std::string> notes_;
+  std::future<Outcome> running_;  // last: it ends before what it uses goes
+};
+
+}  // namespace afterglow

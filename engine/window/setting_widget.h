@@ -1,0 +1,23 @@
+// One setting as a row of the panel: what fits its type and range.
+#pragma once
+
+#include <optional>
+
+#include "script/preset.h"
+#include "window/ui.h"
+
+namespace afterglow {
+
+/// Draws the control at the cursor, `width` wide; the new value when it was changed in this frame. `name` is unique
+/// among those drawn in the same ID scope. Ctrl+click types a value; values stay in the setting's range.
+std::optional<SettingValue> setting_widget(const Ui& ui, const char* name, const SettingSchema& schema,
+                                           const SettingValue& value, float width);
+
+/// Does a slider over the setting's range move by factors? Where it spans more than two decades above 0.
+bool is_logarithmic(const SettingSchema& schema);
+
+/// Colours in sRGB encoding, as screens show them; above 1 the code goes on along the same curve.
+double encode_color(double linear);
+double decode_color(double encoded);
+
+}  // namespace afterglow

@@ -1,0 +1,71 @@
+#include "window/view_controls.h"
+
+#include <string>
+
+namespace afterglow {
+namespace {
+
+constexpr ViewChannel kChannels[] = {ViewChannel::color, ViewChannel::red,   ViewChannel::green,
+                                     ViewChannel::blue,  ViewChannel::alpha, ViewChannel::luminance};
+
+void help(const char* text) {
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+}
+
+void draw_image_picker(PanelPort& port) {
+  const std::string shown = port.shown_image();
+  if (ImGui::BeginCombo("image", shown.empty() ? "result" : shown.c_str(), ImGuiComboFlags_HeightLarge)) {
+    if (ImGui::Selectable("result", shown.empty())) port.show("");
+    for (const auto& name : port.images())
+      if (ImGui::Selectable(name.c_str(), name == shown)) port.show(name);
+    ImGui::EndCombo();
+  }
+  help("The result, or any image between passes (N, Shift+N, Backspace)");
+}
+
+void draw_comparison(PanelPort& port) {
+  View& view = port.view();
+  if (ImGui::BeginCombo("compare", compare_name(view.compare).c_str())) {
+    for (const Compare compare : {Compare::none, Compare::source, Compare::other}) {
+      if (compare == Compare::other && !port.has_other()) continue;
+      if (ImGui::Selectable(compare_name(compare).c_str(), compare == view.compare)) view.compare = compare;
+    }
+    ImGui::EndCombo();
+  }
+  help("Left of the border: what went in, or the other preset's result (W)");
+  if (view.compare == Compare::none) return;
+  float wipe = static_cast<float>(view.wipe);
+  if (ImGui::SliderFloat("border", &wipe, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) view.wipe = wipe;
+  ImGui::Checkbox("horizontal border", &view.wipe_vertical);
+  help("Shift+W");
+}
+
+}  // namespace
+
+void draw_view_controls(Ui& ui, PanelPort& port) {
+  View& view = port.view();
+  ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * 0.6f);
+  draw_image_picker(port);
+  float exposure = static_cast<float>(view.exposure);
+  if (ImGui::SliderFloat("exposure", &exposure, -10, 10, "%+.2f EV")) view.exposure = exposure;
+  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) view.exposure = 0;
+  help("Of the view alone, before encoding for the screen (Up, Down, 0); right-click for 0");
+  if (ImGui::BeginCombo("channel", view_channel_name(view.channel).c_str())) {
+    for (const ViewChannel channel : kChannels)
+      if (ImGui::Selectable(view_channel_name(channel).c_str(), channel == view.channel)) view.channel = channel;
+    ImGui::EndCombo();
+  }
+  help("C, R, G, B, A, Y");
+  draw_comparison(port);
+  ImGui::PopItemWidth();
+  ImGui::Checkbox("false colour", &view.false_color);
+  help("Marks values below 0, above 1, and what is not finite (X)");
+  ImGui::SameLine();
+  ImGui::Checkbox("histogram", &ui.show_histogram);
+  help("H");
+  ImGui::SameLine();
+  ImGui::Checkbox("figures", &ui.show_stats);
+  help("Frame times and reload latency (S)");
+}
+
+}  // namespace afterglow

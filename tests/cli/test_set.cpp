@@ -1,0 +1,105 @@
+// set: settings changed in a preset's own text, as users run it.
+#include <unistd.h>
+
+#include "cli_test.h"
+
+namespace afterglow::test {
+namespace {
+
+class Set : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    write("look.lua", kLook);
+  }
+  static constexpr const char* kLook =
+      "local fx = require \"afterglow\"\n"
+      "local strength = 0.2\n"
+      "return fx.stack {\n"
+      "  fx.bloom { threshold = 1.0, intensity = 0.2 },  -- the tubes\n"
+      "  fx.tone_mapping {},\n"
+      "  fx.color_adjustments {\n"
+      "    contrast = 100 * strength,\n"
+      "    color_filter = \"#ffeedd\",\n"
+      "  },\n"
+      "}\n";
+};
+
+TEST_F(Set, ChangesTheFileAndShowsTheLines) {
+  const Outcome outcome =
+      run({"set", "look.lua", "bloom.intensity=0.4", "bloom.scatter=0.6", "color_adjustments.saturation=-8"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_EQ(outcome.out,
+            "look.lua:4\n"
+            "-  fx.bloom { threshold = 1.0, intensity = 0.2 },  -- the tubes\n"
+            "+  fx.bloom { threshold = 1.0, intensity = 0.4, scatter = 0.6 },  -- the tubes\n"
+            "look.lua:9\n"
+            "+    saturation = -8,\n");
+  std::string wanted = kLook;
+  wanted.replace(wanted.find("intensity = 0.2"), 15, "intensity = 0.4, scatter = 0.6");
+  wanted.insert(wanted.find("  },\n}"), "    saturation = -8,\n");
+  EXPECT_EQ(read("look.lua"), wanted);
+  EXPECT_THAT(files(), ::testing::ElementsAre("look.lua"));
+  // What check then says.
+  EXPECT_THAT(run({"check", "look.lua"}).out, ContainsRegex("scatter +0\\.6"));
+  const Outcome again = run({"set", "look.lua", "bloom.intensity=0.4", "-v"});
+  EXPECT_EQ(again.exit_code, kDone);
+  EXPECT_THAT(again.out, IsEmpty());
+  EXPECT_THAT(again.err, HasSubstr("says so already"));
+}
+
+TEST_F(Set, DryRunsWriteNothing) {
+  const Outcome outcome = run({"set", "look.lua", "tone_mapping.mode=neutral", "--dry-run"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_EQ(outcome.out, "look.lua:5\n-  fx.tone_mapping {},\n+  fx.tone_mapping { mode = \"neutral\" },\n");
+  EXPECT_EQ(read("look.lua"), kLook);
+}
+
+TEST_F(Set, Resets) {
+  const Outcome outcome =
+      run({"set", "look.lua", "--reset", "bloom.intensity", "--reset", "color_adjustments.color_filter"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(read("look.lua"), HasSubstr("fx.bloom { threshold = 1.0 },"));
+  EXPECT_THAT(read("look.lua"), HasSubstr("contrast = 100 * strength,\n  },"));
+}
+
+TEST_F(Set, WhatIsComputedIsAnErrorAndNothingIsWritten) {
+  const Outcome outcome = run({"set", "look.lua", "bloom.intensity=0.4", "color_adjustments.contrast=3"});
+  EXPECT_EQ(outcome.exit_code, kScript);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("look.lua:7: error: color_adjustments.contrast is computed and stays as it is: 100 * strength\n"
+                        "  nothing was written"));
+  EXPECT_EQ(read("look.lua"), kLook);
+}
+
+TEST_F(Set, Messages) {
+  const auto fails = [&](const std::vector<std::string>& arguments, int exit_code, const std::string& text) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, exit_code);
+    EXPECT_THAT(outcome.err, HasSubstr(text));
+    EXPECT_EQ(read("look.lua"), kLook);
+  };
+  fails({"set", "look.lua"}, kUsage, "nothing to change; allowed: ENTRY.SETTING=VALUE");
+  fails({"set", "look.lua", "bloom"}, kUsage, "'bloom' is no setting with a value; allowed: ENTRY.SETTING=VALUE");
+  fails({"set", "look.lua", "blom.knee=1"}, kUsage,
+        "the stack has no entry 'blom'; allowed: bloom, tone_mapping, color_adjustments; did you mean 'bloom'?");
+  fails({"set", "look.lua", "bloom.kne=1"}, kUsage, "did you mean 'knee'?");
+  fails({"set", "look.lua", "bloom.knee=7"}, kUsage, "bloom.knee = 7 is out of range; allowed: 0…1");
+  fails({"set", "nowhere.lua", "bloom.knee=1"}, kScript, "nowhere.lua: error:");
+}
+
+TEST_F(Set, FilesThatMayNotBeWritten) {
+  fs::permissions(path("look.lua"), fs::perms::owner_read);
+  const Outcome outcome = run({"set", "look.lua", "bloom.knee=1"});
+  // A superuser may write anything.
+  if (geteuid() != 0) {
+    EXPECT_EQ(outcome.exit_code, kFiles);
+    EXPECT_THAT(outcome.err, HasSubstr("cannot be written"));
+    EXPECT_EQ(read("look.lua"), kLook);
+  } else {
+    EXPECT_EQ(fs::status(path("look.lua")).permissions(), fs::perms::owner_read);
+  }
+}
+
+}  // namespace
+}  // namespace afterglow::test

@@ -1,0 +1,441 @@
+// The interface without a window: frames of Dear ImGui with a pointer and keys that are moved by hand, on a real
+// preset.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <imgui_internal.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/file.h"
+#include "window/help_sheet.h"
+#include "window/interface.h"
+#include "window/panel.h"
+#include "window/setting_widget.h"
+#include "window/shortcuts.h"
+#include "window/transport_bar.h"
+
+namespace afterglow::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kPreset =
+    "local fx = require \"afterglow\"\n"
+    "return fx.stack {\n"
+    "  name = \"Test look\",\n"
+    "  fx.bloom { intensity = 0.2 },  -- glow\n"
+    "  fx.tone_mapping { mode = \"aces\" },\n"
+    "  fx.color_adjustments { contrast = 5 + 5, post_exposure = fx.curve { { 1, 0 }, { 9, 1 } } },\n"
+    "}\n";
+
+/// A preset and plain data in place of a player.
+class Port : public PanelPort {
+ public:
+  explicit Port(const fs::path& file) : file_(file) { reload(); }
+  void reload() {
+    preset_.reset();
+    shaders_ = std::make_unique<ShaderLibrary>(search_path_for(file_, {}));
+    auto loaded = Preset::load(file_, {}, *shaders_, diagnostics_);
+    ASSERT_TRUE(loaded) << loaded.error().text();
+    preset_ = std::make_unique<Preset>(std::move(*loaded));
+  }
+
+  const Preset* preset() override { return preset_.get(); }
+  LiveStatus status() override { return {}; }
+  const std::vector<Skipped>& skipped() override { return skips; }
+  const std::vector<Skipped>& skipped_now() override { return skips_now; }
+  const FrameTimes& times() override { return frame_times; }
+  const SettingEdits& edits() override { return changes; }
+  void set(const std::string& entry, const std::string& setting, const SettingValue& value) override {
+    ++sets;
+    changes.set(entry, setting, value);
+  }
+  void reset(const std::string& entry, const std::string& setting) override { changes.reset(entry, setting); }
+  void reset_all() override { changes.reset_all(); }
+  bool undo() override { return changes.undo(); }
+  bool redo() override { return changes.redo(); }
+  void end_gesture() override { changes.end_gesture(); }
+  void edits_saved() override { changes = {}; }
+  View& view() override { return look; }
+  std::vector<std::string> images() override { return {"source", "bloom.down[1]", "bloom.up[1]"}; }
+  std::string shown_image() override { return image; }
+  void show(const std::string& name) override { image = name; }
+  bool has_other() override { return false; }
+
+  SettingEdits changes;
+  std::vector<Skipped> skips, skips_now;
+  FrameTimes frame_times;
+  View look;
+  std::string image;
+  int sets = 0;
+
+ private:
+  fs::path file_;
+  Diagnostics diagnostics_;
+  std::unique_ptr<ShaderLibrary> shaders_;
+  std::unique_ptr<Preset> preset_;
+};
+
+class PanelTest : public ::testing::Test {
+ protected:
+  PanelTest()
+      : folder_(fs::temp_directory_path() / ("afterglow_panel_" + std::to_string(getpid()))),
+        file(folder_ / "look.lua"),
+        interface(nullptr) {
+    fs::create_directories(folder_);
+    std::ofstream(file) << kPreset;
+    port = std::make_unique<Port>(file);
+    panel = std::make_unique<Panel>(file, PresetOptions{});
+    what_ = [this] { panel->draw(interface.ui(), *port, {0, 0}, {kWidth, kHeight}); };
+    move(-100, -100);
+    frame();
+  }
+  ~PanelTest() override {
+    std::error_code ec;
+    fs::remove_all(folder_, ec);
+  }
+
+  void frame() {
+    interface.begin({static_cast<int>(2 * kWidth), static_cast<int>(kHeight)});
+    what_();
+    interface.end();
+  }
+  /// What the first window of a frame says in words.
+  std::string words() {
+    move(-100, -100);  // tooltips are windows too
+    frame();
+    ImGui::SetClipboardText("");
+    interface.begin({static_cast<int>(2 * kWidth), static_cast<int>(kHeight)});
+    ImGui::LogToClipboard();
+    what_();
+    interface.end();
+    const char* text = ImGui::GetClipboardText();
+    return text ? text : "";
+  }
+
+  void move(float x, float y) { ImGui::GetIO().MousePos = {x, y}; }
+  void press(bool down, int button = 0) {
+    ImGui::GetIO().MouseDown[button] = down;
+    frame();
+  }
+  void click(int button = 0) {
+    frame();
+    press(true, button);
+    press(false, button);
+    frame();
+  }
+  static ImGuiID id_of(const std::vector<std::string>& path) {
+    ImGuiID id = 0;
+    for (const auto& part : path) id = ImHashStr(part.c_str(), 0, id);
+    return id;
+  }
+  /// Moves the pointer until it is over the item; false when it is nowhere.
+  bool find(const std::vector<std::string>& path) {
+    const ImGuiID id = id_of(path);
+    std::vector<float> columns{20, 45, 80, 100, 130, 170, 250};
+    for (float x = 8; x < kWidth; x += 8) columns.push_back(x);
+    for (const float x : columns)
+      for (float y = 4; y < kHeight; y += 6) {
+        move(x, y);
+        frame();
+        if (ImGui::GetCurrentContext()->HoveredId == id) return true;
+      }
+    return false;
+  }
+  SettingValue edited(const std::string& entry, const std::string& setting) {
+    return port->changes.value(entry, setting).value_or(SettingValue{SettingType::vec3, {-99, -99, -99}, ""});
+  }
+
+  static constexpr float kWidth = 440, kHeight = 1900;
+  fs::path folder_;
+  fs::path file;
+  Interface interface;
+  std::unique_ptr<Port> port;
+  std::unique_ptr<Panel> panel;
+  std::function<void()> what_;
+};
+
+TEST_F(PanelTest, SlidersSetWithinTheirRangeAsOneGesture) {
+  ASSERT_TRUE(find({"Settings", "bloom", "scatter", "##value"}));
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  press(true);
+  for (const float x : {60.0f, 90.0f, 120.0f, 5000.0f}) {
+    move(x, at.y);
+    frame();
+  }
+  press(false);
+  frame();
+  EXPECT_NEAR(edited("bloom", "scatter").number[0], 0.95, 1e-6);  // its largest value
+  EXPECT_GE(port->sets, 3);
+  EXPECT_TRUE(port->changes.undo());
+  EXPECT_FALSE(port->changes.value("bloom", "scatter"));  // one step
+}
+
+TEST_F(PanelTest, ValuesAreTyped) {
+  ASSERT_TRUE(find({"Settings", "bloom", "scatter", "##value"}));
+  ImGuiIO& io = ImGui::GetIO();
+  io.KeyCtrl = true;
+  io.KeyMods = ImGuiKeyModFlags_Ctrl;
+  press(true);
+  press(false);
+  io.KeyCtrl = false;
+  io.KeyMods = 0;
+  frame();
+  io.AddInputCharactersUTF8("0.625");
+  frame();
+  frame();
+  move(-100, -100);
+  press(true);  // elsewhere: done
+  press(false);
+  frame();
+  EXPECT_DOUBLE_EQ(edited("bloom", "scatter").number[0], 0.625);
+}
+
+TEST_F(PanelTest, SwitchesAndChoices) {
+  ASSERT_TRUE(find({"Settings", "bloom", "fade_fireflies", "##value"}));
+  click();
+  EXPECT_EQ(edited("bloom", "fade_fireflies").number[0], 1);
+  ASSERT_TRUE(find({"Settings", "bloom", "##enabled"}));
+  click();
+  EXPECT_EQ(edited("bloom", "enabled").number[0], 0);
+  EXPECT_EQ(edited("bloom", "enabled").type, SettingType::boolean);
+  ASSERT_TRUE(find({"Settings", "tone_mapping", "mode", "##value"}));
+  click();
+  ASSERT_TRUE(find({"##Combo_00", "neutral"}));
+  click();
+  EXPECT_EQ(edited("tone_mapping", "mode").choice, "neutral");
+}
+
+TEST_F(PanelTest, ResetsOneSettingAnEffectAndAll) {
+  const SettingValue half{SettingType::number, {0.5}, ""};
+  port->changes.set("bloom", "intensity", half);
+  port->changes.set("bloom", "scatter", half);
+  port->changes.set("color_adjustments", "contrast", half);
+  ASSERT_TRUE(find({"Settings", "bloom", "intensity", "x"}));
+  click();
+  EXPECT_FALSE(port->changes.value("bloom", "intensity"));
+  EXPECT_TRUE(port->changes.value("bloom", "scatter"));
+  ASSERT_TRUE(find({"Settings", "bloom", "Reset"}));
+  click();
+  EXPECT_FALSE(port->changes.value("bloom", "scatter"));
+  ASSERT_TRUE(find({"Settings", "Reset all"}));
+  click();
+  EXPECT_TRUE(port->changes.edits().empty());
+  ASSERT_TRUE(find({"Settings", "Undo"}));
+  click();
+  EXPECT_EQ(port->changes.edits().size(), 1u);
+}
+
+TEST_F(PanelTest, TellsWhatRunsWhatItCostsAndWhatIsComputed) {
+  port->skips = {{"tone_mapping", "mode is none"}};
+  port->frame_times.kernels = {
+      {"bloom.prefilter", 0.5}, {"bloom.down[1]", 0.25}, {"color_adjustments.grade+tone_mapping.aces", 1}};
+  const std::string text = words();
+  EXPECT_THAT(text, HasSubstr("Test look"));
+  EXPECT_THAT(text, HasSubstr("skipped: mode is none"));
+  EXPECT_THAT(text, HasSubstr("0.75 ms"));
+  EXPECT_THAT(text, HasSubstr("0.50 ms"));  // half of the kernel that it shares
+  EXPECT_THAT(text, HasSubstr("curve"));
+  EXPECT_THAT(text, Not(HasSubstr("over curve")));
+  port->changes.set("color_adjustments", "post_exposure", {SettingType::number, {1}, ""});
+  EXPECT_THAT(words(), HasSubstr("over curve"));
+}
+
+TEST_F(PanelTest, Search) {
+  panel->search();
+  frame();
+  frame();
+  ImGui::GetIO().AddInputCharactersUTF8("scatter");
+  frame();
+  frame();
+  const std::string text = words();
+  EXPECT_THAT(text, HasSubstr("scatter"));
+  EXPECT_THAT(text, Not(HasSubstr("tone_mapping")));
+  EXPECT_THAT(text, Not(HasSubstr("max_iterations")));
+  EXPECT_TRUE(find({"Settings", "bloom", "scatter", "##value"}));
+  EXPECT_FALSE(find({"Settings", "bloom", "knee", "##value"}));
+}
+
+TEST_F(PanelTest, SavesAndListsWhatIsLeftOut) {
+  port->changes.set("bloom", "intensity", {SettingType::number, {0.5}, ""});
+  port->changes.set("color_adjustments", "contrast", {SettingType::number, {20}, ""});
+  ASSERT_TRUE(find({"Settings", "Save preset"}));
+  click();
+  panel->saving().wait();
+  const std::string text = words();
+  EXPECT_THAT(text, HasSubstr("1 setting written to look.lua; 1 left out"));
+  EXPECT_THAT(text, HasSubstr("look.lua:6: error: color_adjustments.contrast is computed and stays as it is: 5 + 5"));
+  EXPECT_THAT(*read_file(file), HasSubstr("fx.bloom { intensity = 0.5 },  -- glow"));
+  // The edit stays until the new file is on screen, then only what could not be written is left.
+  EXPECT_EQ(port->changes.edits().size(), 2u);
+  port->reload();
+  frame();
+  EXPECT_FALSE(port->changes.value("bloom", "intensity"));
+  EXPECT_TRUE(port->changes.value("color_adjustments", "contrast"));
+
+  ASSERT_TRUE(find({"Settings", "Undo save"}));
+  click();
+  EXPECT_EQ(*read_file(file), kPreset);
+  EXPECT_EQ(edited("bloom", "intensity").number[0], 0.5);  // the picture stays as it was
+  EXPECT_THAT(words(), HasSubstr("look.lua is as it was before"));
+}
+
+TEST_F(PanelTest, SavesThatFailSayWhy) {
+  port->changes.set("bloom", "intensity", {SettingType::number, {0.5}, ""});
+  std::ofstream(file) << "return fx.stack {";
+  panel->save(*port);
+  panel->saving().wait();
+  EXPECT_THAT(words(), HasSubstr("look.lua:1: error:"));
+  EXPECT_EQ(port->changes.edits().size(), 1u);
+}
+
+TEST_F(PanelTest, ViewControls) {
+  ASSERT_TRUE(find({"Settings", "View"}));
+  click();
+  ASSERT_TRUE(find({"Settings", "image"}));
+  click();
+  ASSERT_TRUE(find({"##Combo_00", "bloom.up[1]"}));
+  click();
+  EXPECT_EQ(port->image, "bloom.up[1]");
+  ASSERT_TRUE(find({"Settings", "false colour"}));
+  click();
+  EXPECT_TRUE(port->look.false_color);
+  ASSERT_TRUE(find({"Settings", "channel"}));
+  click();
+  ASSERT_TRUE(find({"##Combo_00", "luminance"}));
+  click();
+  EXPECT_EQ(port->look.channel, ViewChannel::luminance);
+  ASSERT_TRUE(find({"Settings", "histogram"}));
+  click();
+  EXPECT_TRUE(interface.ui().show_histogram);
+}
+
+TEST_F(PanelTest, WithoutAPreset) {
+  what_ = [this] {
+    class Empty : public Port {
+     public:
+      using Port::Port;
+      const Preset* preset() override { return nullptr; }
+    } empty(file);
+    panel->draw(interface.ui(), empty, {0, 0}, {kWidth, kHeight});
+  };
+  EXPECT_THAT(words(), HasSubstr("No preset yet"));
+}
+
+class TransportBar : public PanelTest {
+ protected:
+  TransportBar() : transport(100) {
+    what_ = [this] {
+      TransportBarState state{transport, now, transport.position(), [](int at) { return at + 1001; },
+                              [](int at) { return at < 50; }};
+      draw_transport_bar(interface.ui(), state, {0, 0}, {kWidth * 2, transport_bar_height(interface.ui())});
+    };
+    frame();
+  }
+  /// x of the middle of a position.
+  static float x_of(int position) {
+    const float padding = ImGui::GetStyle().WindowPadding.x;
+    return padding + (static_cast<float>(position) + 0.5f) * (kWidth * 2 - 2 * padding) / 100;
+  }
+  Transport transport;
+  double now = 0;
+};
+
+TEST_F(TransportBar, PlaysAndSteps) {
+  ASSERT_TRUE(find({"Transport", "###play"}));
+  click();
+  EXPECT_TRUE(transport.playing());
+  ASSERT_TRUE(find({"Transport", "###play"}));
+  click();
+  EXPECT_FALSE(transport.playing());
+  ASSERT_TRUE(find({"Transport", ">>##on"}));
+  click();
+  EXPECT_EQ(transport.position(), 1);
+  ASSERT_TRUE(find({"Transport", ">|##last"}));
+  click();
+  EXPECT_EQ(transport.position(), 99);
+  EXPECT_THAT(words(), HasSubstr("1100  100/100"));
+}
+
+TEST_F(TransportBar, Scrubs) {
+  ASSERT_TRUE(find({"Transport", "scrub"}));
+  move(x_of(40), ImGui::GetIO().MousePos.y);
+  press(true);
+  EXPECT_EQ(transport.position(), 40);
+  move(x_of(71), ImGui::GetIO().MousePos.y);
+  frame();
+  EXPECT_EQ(transport.position(), 71);
+  move(5000, 5000);
+  frame();
+  EXPECT_EQ(transport.position(), 99);
+  press(false);
+  move(x_of(3), 10);
+  frame();
+  EXPECT_EQ(transport.position(), 99);
+}
+
+TEST_F(TransportBar, RangesWithShift) {
+  ASSERT_TRUE(find({"Transport", "scrub"}));
+  const float y = ImGui::GetIO().MousePos.y;
+  ImGui::GetIO().KeyShift = true;
+  ImGui::GetIO().KeyMods = ImGuiKeyModFlags_Shift;
+  move(x_of(20), y);
+  frame();
+  press(true);
+  press(false);
+  move(x_of(60), y);
+  frame();
+  press(true);
+  press(false);
+  EXPECT_EQ(transport.first(), 20);
+  EXPECT_EQ(transport.last(), 60);
+  ImGui::GetIO().KeyShift = false;
+  ImGui::GetIO().KeyMods = 0;
+  click(1);
+  EXPECT_EQ(transport.first(), 0);
+  EXPECT_EQ(transport.last(), 99);
+}
+
+TEST(PositionInBar, CoversEveryFrameEvenly) {
+  EXPECT_EQ(position_in_bar(10, 10, 100, 10), 0);
+  EXPECT_EQ(position_in_bar(19.9f, 10, 100, 10), 0);
+  EXPECT_EQ(position_in_bar(20.1f, 10, 100, 10), 1);
+  EXPECT_EQ(position_in_bar(109.9f, 10, 100, 10), 9);
+  EXPECT_EQ(position_in_bar(-50, 10, 100, 10), 0);
+  EXPECT_EQ(position_in_bar(500, 10, 100, 10), 9);
+  EXPECT_EQ(position_in_bar(5, 0, 0, 10), 0);
+}
+
+TEST_F(PanelTest, HelpTellsEveryKey) {
+  interface.ui().show_help = true;
+  what_ = [this] { draw_help_sheet(interface.ui(), {1600, kHeight}); };
+  frame();
+  const std::string text = words();
+  for (const Shortcut& shortcut : shortcuts()) EXPECT_THAT(text, HasSubstr(keys_of(shortcut.action))) << shortcut.doc;
+  interface.ui().show_help = false;
+  EXPECT_THAT(words(), Not(HasSubstr("Space")));
+}
+
+TEST(SettingWidget, SlidersByFactorsWhereTheRangeIsWide) {
+  SettingSchema schema;
+  EXPECT_FALSE(is_logarithmic(schema));
+  schema.min = 0;
+  schema.max = 1;
+  EXPECT_FALSE(is_logarithmic(schema));
+  schema.max = 1000;
+  EXPECT_TRUE(is_logarithmic(schema));
+  schema.min = -1000;
+  EXPECT_FALSE(is_logarithmic(schema));
+}
+
+TEST(SettingWidget, ColourCodesAreThoseOfSrgb) {
+  EXPECT_NEAR(encode_color(0.21586050011389926), 128 / 255.0, 1e-9);
+  for (const double value : {0.0, 0.001, 0.18, 1.0, 4.0}) EXPECT_NEAR(decode_color(encode_color(value)), value, 1e-6);
+}
+
+}  // namespace
+}  // namespace afterglow::test
