@@ -20,4 +20,5 @@ pkg_check_modules(MINIZIP REQUIRED IMPORTED_TARGET minizip)
 # OpenEXR beside OpenImageIO: see engine/image/exr_file.h.
 find_package(OpenEXR REQUIRED)
 find_package(ZLIB REQUIRED)
+pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO)
 pkg_check_modules(LCMS2 REQUIRED IMPORTED_TARGET lcms2)

@@ -2,7 +2,7 @@
 #   find_package(afterglow REQUIRED)  and  target_link_libraries(engine PRIVATE afterglow::session)
 include(CMakePackageConfigHelpers)
 
-install(DIRECTORY scripts shaders presets templates calibration DESTINATION ${CMAKE_INSTALL_DATADIR}/afterglow USE_SOURCE_PERMISSIONS)
+install(DIRECTORY scripts shaders presets templates calibration assets DESTINATION ${CMAKE_INSTALL_DATADIR}/afterglow USE_SOURCE_PERMISSIONS)
 install(DIRECTORY engine/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/afterglow
   FILES_MATCHING PATTERN "*.h" PATTERN reference EXCLUDE PATTERN bench EXCLUDE PATTERN play EXCLUDE PATTERN window EXCLUDE PATTERN apps EXCLUDE)
 

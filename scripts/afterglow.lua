@@ -39,7 +39,14 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field input fun(self: afterglow.Graph, name: string): afterglow.Image?                an auxiliary image that `needs` or `optional` names; nil when the picture lacks it
 ---@field history fun(self: afterglow.Graph, history: afterglow.History): afterglow.Image     what the frame before kept; must be given its next image by `keep`
 ---@field keep fun(self: afterglow.Graph, history: afterglow.Image, next: afterglow.Image)    the next frame gets this image as that history; of its size
+---@field lookup fun(self: afterglow.Graph, lookup: { file: string }): afterglow.Lut            reads a look-up table (.cube, …), for the shader lut/apply
+---@field image fun(self: afterglow.Graph, image: { file: string }): afterglow.Image       reads a picture: scene-linear, associated alpha
 ---@field skip fun(self: afterglow.Graph, reason: string)                                 records why the effect does nothing; then `return source`
+
+---A look-up table taken apart into steps, see engine/image/lut_file.h. scripts/effects/lut.lua shows what to do with it.
+---@class afterglow.Lut
+---@field table afterglow.Image  the numbers of all steps
+---@field steps { kind: integer, row: integer, size: integer }[]
 
 ---A pass with a shader. Further keys are the inputs and parameters that the shader declares, by name: images, numbers,
 ---booleans, arrays of numbers. Every input and every `uniform` must be given; a `layout(constant_id = …)` constant may be.
@@ -114,7 +121,7 @@ fx.curve = core.curve
 --- - `order` integer, default 0: place among the effects of that point, smaller first
 --- - `settings` names and their types, in the order in which people see them
 --- - `active(s)` false when the settings make the effect an identity, with the reason as second value
---- - `needs`, `optional` auxiliary inputs ("depth", "normal"), or a function of the settings that returns them. Without a
+--- - `needs`, `optional` auxiliary inputs ("depth", "normal", "motion"), or a function of the settings that returns them. Without a
 ---   needed one the effect is skipped with a warning.
 --- - `idle(s, source)` what makes the effect an identity in a frame: `{ brightest = L }` says that it changes no pixel, to the
 ---   last bit, as long as no red, green or blue of `source` is above L. Frames of which that is known are run without it.
@@ -151,6 +158,12 @@ fx.vec2 = core.vec2
 ---Three finite numbers {x, y, z}, each from `min` to `max`.
 ---@type fun(setting: { default: number[], min?: number, max?: number, doc?: string, unit?: string }): afterglow.SettingType
 fx.vec3 = core.vec3
+
+---The name of a file with one of these extensions, or "" for none (the default): beside the preset, then along the search path, in
+---packs too. For `g:lookup` and `g:image`. Names are relative and never lead out of those folders; on the command line any path may
+---be given.
+---@type fun(setting: { extensions: string[], default?: string, doc?: string }): afterglow.SettingType
+fx.file = core.file
 
 ---Makers of filters for `g:filter`. Each returns a new table, which may be changed.
 ---@class afterglow.Filters

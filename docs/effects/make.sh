@@ -8,7 +8,13 @@ program=${1:-./dev}
 pictures=docs/images/effects
 mkdir -p "$pictures"
 
-render() { "$program" run "docs/effects/$1.lua" tests/images/neon.exr -o "$pictures/$1.jpg" --jpeg-quality 82 --size 320x180 -q; }
+# An example may begin with "-- input: FILE OPTION…" when it needs another picture than the usual one.
+render() {
+  local input
+  input=$(sed -n '1s/^-- input: //p' "docs/effects/$1.lua")
+  # shellcheck disable=SC2086 # words of the line
+  "$program" run "docs/effects/$1.lua" ${input:-tests/images/neon.exr --size 320x180} -o "$pictures/$1.jpg" --jpeg-quality 82 -q
+}
 
 # Passes, and the pixels they write in units of the picture; both at 1920x1080.
 cost() {
@@ -28,7 +34,8 @@ for name in $names; do render "$name"; done
 
 Made by docs/effects/make.sh from the effects themselves; `afterglow effects NAME` tells the same. Every setting has a default, so
 `fx.vignette {}` is a whole entry. Effects run by injection point and order, wherever they stand in the list; `at` and `order` in an entry
-move one. The pictures show what each example makes of the first picture; all end with a neutral tone curve.
+move one. The pictures show what each example makes of the first picture; all end with a neutral tone curve. The cost is counted in what
+`afterglow graph docs/effects/NAME.lua --size 1920x1080 --format json` describes; `afterglow bench docs/effects/NAME.lua` measures times on your device.
 
 ![before](images/effects/before.jpg)
 

@@ -32,7 +32,7 @@ struct Arguments {
   DeviceArguments device;
   ExecutionArguments execution;
   FrameListRequest files;
-  std::string layer, depth, normal, size, region;
+  std::string layer, depth, normal, motion, size, region;
   std::string type = "auto", compression;
   int png_level = 1, jpeg_quality = 95;
   bool dither = false, keep_layers = false, resume = false, fail_fast = false;
@@ -55,6 +55,9 @@ void add_files(CLI::App& app, Arguments& a) {
       ->type_name("FILE[:CHANNEL]")
       ->group(input);
   app.add_option("--normal", a.normal, "Normals from another file or layer; FILE may be a pattern")
+      ->type_name("FILE[:LAYER]")
+      ->group(input);
+  app.add_option("--motion", a.motion, "Motion vectors from another file or layer; FILE may be a pattern")
       ->type_name("FILE[:LAYER]")
       ->group(input);
   app.add_option("--size", a.size, "Scale the picture first, for a quick look")->type_name("WxH")->group(input);
@@ -144,6 +147,7 @@ PixelOptions pixel_options(const Arguments& a) {
           {"--layer", a.layer},
           {"--depth", a.depth},
           {"--normal", a.normal},
+          {"--motion", a.motion},
           {"--size", a.size},
           {"--region", a.region},
           {"--fps", number(a.fps)},
@@ -199,6 +203,7 @@ FrameListRequest files_of(const Arguments& a) {
   FrameListRequest request = a.files;
   if (!a.depth.empty()) request.depth = parse_layer_choice(a.depth);
   if (!a.normal.empty()) request.normal = parse_layer_choice(a.normal);
+  if (!a.motion.empty()) request.motion = parse_layer_choice(a.motion);
   return request;
 }
 

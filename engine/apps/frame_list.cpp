@@ -87,9 +87,10 @@ Result<void> check_outputs(const std::vector<FrameJob>& jobs) {
 }  // namespace
 
 Result<FrameJob> job_of(const FrameListRequest& request, const std::string& sequence, const FrameFile& file) {
-  FrameJob job{.frame = file.frame, .input = file.file, .output = {}, .depth = {}, .normal = {}, .sequence = sequence};
+  FrameJob job{.frame = file.frame, .input = file.file, .output = {}, .depth = {}, .normal = {}, .motion = {}, .sequence = sequence};
   AFTERGLOW_TRY(job.depth, resolve(request.depth, file.frame));
   AFTERGLOW_TRY(job.normal, resolve(request.normal, file.frame));
+  AFTERGLOW_TRY(job.motion, resolve(request.motion, file.frame));
   return job;
 }
 
@@ -97,6 +98,7 @@ std::vector<fs::path> FrameJob::sources() const {
   std::vector<fs::path> files{input};
   if (!depth.file.empty()) files.push_back(depth.file);
   if (!normal.file.empty()) files.push_back(normal.file);
+  if (!motion.file.empty()) files.push_back(motion.file);
   return files;
 }
 

@@ -14,7 +14,7 @@ namespace afterglow {
 struct FrameJob {
   int frame = 1;
   std::filesystem::path input, output;
-  LayerChoice depth, normal;  ///< patterns resolved for this frame
+  LayerChoice depth, normal, motion;  ///< patterns resolved for this frame
   /// Frames of one sequence have the same: the pattern, or a file's name without its number.
   std::string sequence{};
   std::vector<std::filesystem::path> earlier{};  ///< files of earlier frames that the output depends on
@@ -28,7 +28,7 @@ struct FrameListRequest {
   std::string output;               ///< file, pattern or folder
   std::string extension;            ///< --format, for outputs in a folder; empty: that of the input
   std::string frames;               ///< "1-24x2"; empty: all that exist
-  LayerChoice depth, normal;
+  LayerChoice depth, normal, motion;
 };
 
 /// A frame of a sequence, without an output. Errors: usage (a pattern for depth or normal that is none).

@@ -130,6 +130,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   ReadOptions options = options_.read;
   options.depth = frame.job.depth;
   options.normal = frame.job.normal;
+  options.motion = frame.job.motion;
   const auto header = read_header(frame.job.input, options);
   if (!header) {
     reading->refused = named(header.error(), frame.job);

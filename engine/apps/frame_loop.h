@@ -18,7 +18,7 @@
 namespace afterglow {
 
 struct FrameLoopOptions {
-  ReadOptions read;  ///< depth and normal are those of each frame
+  ReadOptions read;  ///< depth, normal and motion are those of each frame
   WriteOptions write;
   std::optional<Size> size;    ///< display window to scale pictures to before the stack
   std::optional<Rect> region;  ///< part of the display window that is wanted

@@ -211,7 +211,8 @@ void AssumedPicture::add(CLI::App& command) {
       ->type_name("N")
       ->group("Picture");
   command
-      .add_option("--without", without, "Auxiliary input that the assumed picture lacks: depth, normal (repeatable)")
+      .add_option("--without", without,
+                  "Auxiliary input that the assumed picture lacks: depth, normal, motion (repeatable)")
       ->type_name("INPUT")
       ->expected(1)
       ->allow_extra_args(false)

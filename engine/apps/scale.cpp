@@ -98,7 +98,13 @@ void scale_picture(Picture& picture, Size target) {
   const Size display = picture.display_window.size();
   const Size size = scaled_size(picture.data_window.size(), display, target);
   picture.color = resample_columns(resample_rows(picture.color, size.width), size.height);
-  for (auto& [name, image] : picture.auxiliary) image = nearest(image, size);
+  const float across = static_cast<float>(size.width) / static_cast<float>(picture.data_window.width),
+              down = static_cast<float>(size.height) / static_cast<float>(picture.data_window.height);
+  for (auto& [name, image] : picture.auxiliary) {
+    image = nearest(image, size);
+    if (name != "motion") continue;  // its values are pixels
+    for (std::size_t i = 0; i < image.pixels.size(); i += 2) image.pixels[i] *= across, image.pixels[i + 1] *= down;
+  }
   const Rect old = picture.display_window;
   picture.data_window = scaled_window(picture.data_window, old, target);
   picture.display_window = {old.x, old.y, target.width, target.height};

@@ -24,6 +24,8 @@ const char* type_text(SettingType type) {
       return "vec2";
     case SettingType::vec3:
       return "vec3";
+    case SettingType::file:
+      return "file";
   }
   return "?";
 }
@@ -32,6 +34,7 @@ std::string allowed_text(const SettingSchema& setting) {
   const std::string unit = setting.unit.empty() ? "" : " " + setting.unit;
   if (setting.type == SettingType::boolean) return "true, false";
   if (setting.type == SettingType::enumeration) return join(setting.choices);
+  if (setting.type == SettingType::file) return "." + join(setting.choices, ", .");
   if (setting.min && setting.max)
     return fmt::format("{} to {}{}", number_text(*setting.min), number_text(*setting.max), unit);
   if (setting.min) return fmt::format("at least {}{}", number_text(*setting.min), unit);
@@ -48,6 +51,7 @@ nlohmann::json value_json(const SettingValue& value) {
     case SettingType::boolean:
       return value.number[0] != 0;
     case SettingType::enumeration:
+    case SettingType::file:
       return value.choice;
     case SettingType::vec2:
       return {value.number[0], value.number[1]};
@@ -65,7 +69,7 @@ nlohmann::json setting_json(const SettingSchema& setting) {
                      {"doc", setting.doc}};
   if (setting.min) out["min"] = *setting.min;
   if (setting.max) out["max"] = *setting.max;
-  if (!setting.choices.empty()) out["choices"] = setting.choices;
+  if (!setting.choices.empty()) out[setting.type == SettingType::file ? "extensions" : "choices"] = setting.choices;
   if (!setting.unit.empty()) out["unit"] = setting.unit;
   return out;
 }

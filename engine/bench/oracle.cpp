@@ -29,8 +29,8 @@ std::vector<double> oracle_result(const Picture& picture, const std::vector<refe
     const auto found = auxiliary.find(name);
     return found == auxiliary.end() ? nullptr : &found->second;
   };
-  const auto result =
-      reference::evaluate(as_double(picture.color), {.depth = find("depth"), .normal = find("normal")}, entries);
+  const auto result = reference::evaluate(
+      as_double(picture.color), {.depth = find("depth"), .normal = find("normal"), .motion = find("motion")}, entries);
   std::vector<double> rgb;
   rgb.reserve(result.pixels.size() * 3);
   for (const auto& p : result.pixels) rgb.insert(rgb.end(), {p.r, p.g, p.b});

@@ -38,6 +38,7 @@ const PassInput* find_input(const Pass& pass, const std::string& name) {
 
 /// How an image is best read: as a storage image where it is one.
 ImageRead read_of(const Graph& graph, ImageId image, const DescribeOptions& options) {
+  if (graph.images[image].data) return ImageRead::storage_rgba32f;  // whatever the stack's own images are
   const History* history = history_of_previous(graph, image);
   const bool between = history || graph.images[image].producer >= 0;
   if (!between && !(image == graph.source && options.source_is_storage)) return ImageRead::sampled;

@@ -164,7 +164,7 @@ std::optional<Program::Transient> Program::transient(ImageId image) const {
 Program::Counters Program::counters() const {
   const State& s = *state_;
   return {.pipelines = s.pipelines.size(),
-          .images = s.arena.images(),
+          .images = s.arena.images() + s.data.size(),
           .allocations = s.arena.allocations() + (s.parameters.buffer() != VK_NULL_HANDLE ? 1 : 0)};
 }
 

@@ -18,7 +18,9 @@ void Program::State::write_set(int which, const Look& look) const {
     }
 }
 
+/// Images between passes, and those that the graph brings along.
 Program::State::Seen Program::State::look_between(ImageId image) const {
+  if (const GpuImage* brought = data.image(image)) return {brought->view(), data.layout()};
   const UnboundImage* found = arena.image(image);
   return found ? Seen{found->view(), read_layout()} : Seen{};
 }

@@ -120,6 +120,7 @@ Result<void> Program::State::compile(KernelCompiler& compiler, const std::vector
     images.push_back(std::move(bind));
     pointers.push_back(&compiled_of(i));
   }
+  AFTERGLOW_TRY(data, DataImages::create(device, graph, storage_reads));
   AFTERGLOW_TRY(sampler, create_sampler(device, hardware_filter() ? VK_FILTER_LINEAR : VK_FILTER_NEAREST));
   AFTERGLOW_TRY(parameters, ParameterBuffer::create(device, graph, plan, pointers));
   return {};

@@ -7,6 +7,7 @@
 
 #include "exec/arena.h"
 #include "exec/barriers.h"
+#include "exec/data_images.h"
 #include "exec/describe.h"
 #include "exec/descriptors.h"
 #include "exec/histories.h"
@@ -38,6 +39,7 @@ struct Program::State {
   std::vector<std::vector<ImageId>> reads;   ///< what must be ready to be read before each kernel
   ParameterBuffer parameters;
   Arena arena;
+  DataImages data;
   KernelPipelines pipelines;  ///< of compiled.unique
   SamplerHandle sampler;
   Descriptors descriptors;

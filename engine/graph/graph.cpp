@@ -23,6 +23,10 @@ Result<void> validate_images(const Graph& graph) {
     if (image.size.width < 1 || image.size.height < 1)
       return Error{ErrorKind::script,
                    fmt::format("image '{}' has no pixels ({}×{})", image.name, image.size.width, image.size.height)};
+  for (const auto& image : graph.images)
+    if (image.data && (image.producer >= 0 || image.data->size != image.size ||
+                       image.data->pixels.size() != static_cast<std::size_t>(image.size.area()) * 4))
+      return Error{ErrorKind::script, fmt::format("image '{}' does not fit the data it is made of", image.name)};
   if (!is_image(graph, graph.source)) return Error{ErrorKind::script, "the graph has no source image"};
   if (!is_image(graph, graph.result)) return Error{ErrorKind::script, "the graph has no result image"};
   return {};
@@ -116,6 +120,10 @@ bool same_histories(const Graph& a, const Graph& b) {
   });
 }
 
+bool same_data(const std::shared_ptr<const ImageData>& a, const std::shared_ptr<const ImageData>& b) {
+  return a == b || (a && b && a->hash == b->hash);
+}
+
 bool same_conditions(const Graph& a, const Graph& b) {
   return std::ranges::equal(a.idle, b.idle, [](const IdleCondition& x, const IdleCondition& y) {
     return x.image == y.image && x.output == y.output;
@@ -153,7 +161,9 @@ bool same_structure(const Graph& a, const Graph& b) {
   if (a.source != b.source || a.result != b.result || a.auxiliary != b.auxiliary) return false;
   if (!same_conditions(a, b) || !same_histories(a, b)) return false;
   for (std::size_t i = 0; i < a.images.size(); ++i)
-    if (a.images[i].size != b.images[i].size || a.images[i].producer != b.images[i].producer) return false;
+    if (a.images[i].size != b.images[i].size || a.images[i].producer != b.images[i].producer ||
+        !same_data(a.images[i].data, b.images[i].data))
+      return false;
   for (std::size_t i = 0; i < a.passes.size(); ++i) {
     const Pass &p = a.passes[i], &q = b.passes[i];
     if (p.name != q.name || p.kind != q.kind || p.shader != q.shader || !(p.filter == q.filter) ||

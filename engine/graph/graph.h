@@ -4,12 +4,14 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/filter.h"
 #include "core/geometry.h"
+#include "core/image_data.h"
 #include "core/result.h"
 #include "shader/interface.h"
 
@@ -22,6 +24,9 @@ struct GraphImage {
   std::string name;  ///< "source", "depth", or the name of the pass that makes it
   Size size;
   int producer = -1;  ///< index of the pass that makes it; -1: an input of the graph, or what a history holds
+  /// Of an image that the look brings along (tables, pictures from files): its pixels. Such an image is no input of a
+  /// frame; the program holds it.
+  std::shared_ptr<const ImageData> data = {};
 };
 
 /// `copy`-free kinds of pass. `filter` is data; `pixel` and `sample` name a shader.

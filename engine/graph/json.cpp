@@ -66,6 +66,13 @@ std::string to_json(const Graph& graph) {
                    {"height", graph.images[graph.source].size.height}};
   out["inputs"] = Json::array();
   for (const auto& [name, id] : graph.auxiliary) out["inputs"].push_back(name);
+  out["data"] = Json::array();
+  for (const auto& image : graph.images)
+    if (image.data)
+      out["data"].push_back({{"image", image.name},
+                             {"file", image.data->file.string()},
+                             {"width", image.size.width},
+                             {"height", image.size.height}});
   out["passes"] = Json::array();
   for (const auto& pass : graph.passes) out["passes"].push_back(pass_json(graph, pass));
   out["result"] = graph.images[graph.result].name;

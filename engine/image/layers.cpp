@@ -61,6 +61,10 @@ std::vector<Layer> layers_of(const std::vector<FilePart>& parts) {
 }
 
 bool named_normal(const Layer& layer) { return any_of(layer.last, {"n", "normal", "normals", "norm", "nn"}); }
+bool named_motion(const Layer& layer) {
+  return any_of(layer.last, {"vector", "motion", "motionvector", "motionvectors", "motion_vector", "motion_vectors",
+                             "velocity", "forward", "mv", "mvec"});
+}
 bool named_depth(const Layer& layer) { return any_of(layer.last, {"z", "depth", "zdepth", "pz"}); }
 
 int red_of(const Layer& l) { return l.find({"r", "red"}); }
@@ -81,7 +85,7 @@ ChannelChoice color_choice(const Layer& l) {
 
 /// How likely a layer is the picture itself: small is likely, negative never.
 int color_rank(const Layer& l) {
-  if (named_normal(l) || named_depth(l)) return -1;
+  if (named_normal(l) || named_depth(l) || named_motion(l)) return -1;
   if (has_rgb(l)) {
     if (l.name.empty()) return 0;
     if (l.last == "combined") return 1;
@@ -200,6 +204,18 @@ std::optional<std::vector<int>> normal_of(const Layer& l, bool certain) {
   return std::nullopt;
 }
 
+std::optional<std::vector<int>> motion_of(const Layer& l, bool certain) {
+  if (certain && !named_motion(l)) return std::nullopt;
+  const int x = l.find({"x"}), y = l.find({"y"}), z = l.find({"z"}), w = l.find({"w"});
+  if (x >= 0 && y >= 0 && z >= 0 && w >= 0) return std::vector<int>{x, y, z, w};
+  if (x >= 0 && y >= 0) return std::vector<int>{x, y};
+  const int u = l.find({"u"}), v = l.find({"v"});
+  if (u >= 0 && v >= 0) return std::vector<int>{u, v};
+  if (red_of(l) >= 0 && green_of(l) >= 0) return std::vector<int>{red_of(l), green_of(l)};
+  if (l.channels.size() == 2) return l.channels;
+  return std::nullopt;
+}
+
 /// Candidates in order of nearness to the colour layer: its own view layer, then plain ones, then the rest.
 std::vector<const Layer*> by_nearness(const std::vector<Layer>& layers, const ChannelChoice* color) {
   std::string group;
@@ -280,6 +296,22 @@ Result<std::optional<ChannelChoice>> find_normal(const std::vector<FilePart>& pa
       if (auto channels = normal_of(*layer, certain))
         return std::optional(ChannelChoice{layer->part, std::move(*channels)});
   return not_found(parts, layers, "normal layer", name);
+}
+
+Result<std::optional<ChannelChoice>> find_motion(const std::vector<FilePart>& parts, const std::string& name,
+                                                 const ChannelChoice* color) {
+  const std::vector<Layer> layers = layers_of(parts);
+  if (name.empty()) {
+    for (const Layer* layer : by_nearness(layers, color))
+      if (auto channels = motion_of(*layer, true))
+        return std::optional(ChannelChoice{layer->part, std::move(*channels)});
+    return std::optional<ChannelChoice>();
+  }
+  for (const bool certain : {true, false})
+    for (const Layer* layer : layers_named(parts, layers, name))
+      if (auto channels = motion_of(*layer, certain))
+        return std::optional(ChannelChoice{layer->part, std::move(*channels)});
+  return not_found(parts, layers, "motion layer", name);
 }
 
 }  // namespace afterglow

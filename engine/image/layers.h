@@ -1,5 +1,5 @@
-// Finds colour, depth and normals among the channels of a file by the names that renderers give them. Pure data, no
-// file access.
+// Finds colour, depth, normals and motion among the channels of a file by the names that renderers give them. Pure
+// data, no file access.
 #pragma once
 
 #include <array>
@@ -40,6 +40,11 @@ Result<std::optional<ChannelChoice>> find_depth(const std::vector<FilePart>& par
 
 /// The normal layer (three channels), likewise.
 Result<std::optional<ChannelChoice>> find_normal(const std::vector<FilePart>& parts, const std::string& name,
+                                                 const ChannelChoice* color);
+
+/// Motion vectors, likewise: two channels (x, y), or four of Blender's Vector pass (from the previous frame, to the
+/// next).
+Result<std::optional<ChannelChoice>> find_motion(const std::vector<FilePart>& parts, const std::string& name,
                                                  const ChannelChoice* color);
 
 }  // namespace afterglow

@@ -29,8 +29,9 @@ struct FileFacts;  // format, pixel type, metadata, …: image/reader.h; kept fo
 struct Picture {
   Image color;  ///< RGBA; scene-linear Rec.709, alpha associated (premultiplied), finite, ≥ 0
   /// Auxiliary inputs by name. "depth": 1 channel, view-space distance in scene units (background 1e10), or device
-  /// depth as stored; "normal": 3 channels as stored. Only those that the file (or --depth/--normal) holds and the
-  /// caller asked for.
+  /// depth as stored; "normal": 3 channels as stored; "motion": 2 channels, how far the pixel's content moves in
+  /// one frame, in pixels, x to the right and y down. Only those that the file (or --depth/--normal/--motion) holds and
+  /// the caller asked for.
   std::map<std::string, Image> auxiliary;
   /// Hashes of `color` ("source") and of auxiliary images, where they are known: equal hashes mean equal pixels.
   std::map<std::string, Hash> content;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <new>
 #include <utility>
 
@@ -22,6 +24,8 @@ struct AuxiliaryKind {
 };
 constexpr AuxiliaryKind kDepth{"depth", 1, 1e10f};
 constexpr AuxiliaryKind kNormal{"normal", 3, 0.0f};
+constexpr AuxiliaryKind kMotion{"motion", 2, 0.0f};
+constexpr std::array kKinds{&kDepth, &kNormal, &kMotion};
 
 /// One auxiliary image: where it will come from.
 struct AuxiliaryPlan {
@@ -54,6 +58,28 @@ Rect upright_display(const FilePart& part) {
   return upright(part.display_window, part.display_window, part.orientation);
 }
 
+/// How far each pixel's content moves in one frame, x to the right and y down. Files hold y upwards. Blender's four
+/// channels are the ways from the previous frame and to the next one; the mean of both is taken, whichever way round
+/// each of them is written: what moves goes on in about the same direction.
+Image motion_of(const Image& stored) {
+  static constexpr float kFarthest = 16384;  // pixels: the largest picture
+  Image out(stored.width, stored.height, 2);
+  const auto channels = static_cast<std::size_t>(stored.channels);
+  const auto finite = [](float v) { return std::isfinite(v) ? std::clamp(v, -kFarthest, kFarthest) : 0.0f; };
+  for (std::size_t i = 0; i < out.pixels.size() / 2; ++i) {
+    const float* from = stored.pixels.data() + i * channels;
+    float x = finite(from[0]), y = finite(from[1]);
+    if (channels == 4) {
+      float nx = finite(from[2]), ny = finite(from[3]);
+      if (x * nx + y * ny < 0) nx = -nx, ny = -ny;
+      x = 0.5f * (x + nx), y = 0.5f * (y + ny);
+    }
+    out.pixels[2 * i] = x;
+    out.pixels[2 * i + 1] = -y;
+  }
+  return out;
+}
+
 std::uint64_t area(const Rect& rect) { return static_cast<std::uint64_t>(rect.size().area()); }
 
 /// A name that nothing answers to and that looks like a file was probably meant as one.
@@ -82,8 +108,9 @@ Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, c
   }
   const PictureFile& file = plan.file_of(made);
   const ChannelChoice* color = made.other ? nullptr : &plan.color;
-  auto found =
-      kind.channels == 1 ? find_depth(file.parts(), wanted.name, color) : find_normal(file.parts(), wanted.name, color);
+  auto found = &kind == &kDepth    ? find_depth(file.parts(), wanted.name, color)
+               : &kind == &kNormal ? find_normal(file.parts(), wanted.name, color)
+                                   : find_motion(file.parts(), wanted.name, color);
   if (!found) {
     if (!made.other && looks_like_file(wanted.name)) return Error{ErrorKind::io, "no such file", wanted.name};
     return in_file(std::move(found).error(), file.path());
@@ -112,10 +139,10 @@ Result<Plan> make_plan(const fs::path& file, const ReadOptions& options, const s
   AFTERGLOW_CHECK(check_sides(plan.color_part().data_window, "data window", limits_of(options), file));
   AFTERGLOW_CHECK(check_sides(plan.color_part().display_window, "display window", limits_of(options), file));
   for (const std::string& name : auxiliary) {
-    const bool depth = name == kDepth.name;
-    if (!depth && name != kNormal.name) continue;  // kinds that no file holds yet
-    AFTERGLOW_TRY(auto made,
-                  plan_auxiliary(depth ? kDepth : kNormal, depth ? options.depth : options.normal, plan, options));
+    const auto kind = std::ranges::find(kKinds, name, &AuxiliaryKind::name);
+    if (kind == kKinds.end()) continue;  // kinds that no file holds
+    const LayerChoice& choice = *kind == &kDepth ? options.depth : *kind == &kNormal ? options.normal : options.motion;
+    AFTERGLOW_TRY(auto made, plan_auxiliary(**kind, choice, plan, options));
     if (made) plan.auxiliary.push_back(std::move(*made));
   }
   return plan;
@@ -198,7 +225,7 @@ Result<Picture> read_planned(Plan& plan, Diagnostics& diagnostics) {
   std::vector<Image> auxiliary;
   for (const AuxiliaryPlan& extra : plan.auxiliary) {
     const Rect window = plan.part_of(extra).data_window;
-    auxiliary.emplace_back(window.width, window.height, extra.kind->channels);
+    auxiliary.emplace_back(window.width, window.height, static_cast<int>(extra.choice.channels.size()));
   }
   for (std::size_t i = 0; i < auxiliary.size(); ++i) {
     const AuxiliaryPlan& extra = plan.auxiliary[i];
@@ -224,8 +251,10 @@ Result<Picture> read_planned(Plan& plan, Diagnostics& diagnostics) {
     const FilePart& from = plan.part_of(extra);
     Image image = upright(std::move(auxiliary[i]), from.orientation);
     const Rect window = extra.other ? picture.data_window : upright_data(from);
+    if (extra.kind == &kMotion) image = motion_of(image);
     image = placed(std::move(image), window, picture.data_window, extra.kind->background);
-    extra.kind == &kDepth ? sanitize_depth(image, picture.sanitized) : sanitize_normal(image, picture.sanitized);
+    if (extra.kind == &kDepth) sanitize_depth(image, picture.sanitized);
+    if (extra.kind == &kNormal) sanitize_normal(image, picture.sanitized);
     picture.auxiliary.emplace(extra.kind->name, std::move(image));
   }
   report(picture.sanitized, plan.file->path(), diagnostics);

@@ -14,10 +14,10 @@
 
 namespace afterglow {
 
-/// `FILE[:NAME]` of --depth and --normal: another file and/or a channel or layer in it.
+/// `FILE[:NAME]` of --depth, --normal and --motion: another file and/or a channel or layer in it.
 struct LayerChoice {
   std::filesystem::path file;  ///< empty: the picture's own file; may be a sequence pattern, resolved by the caller
-  std::string name;            ///< channel (depth) or layer (normal); empty: found by the usual names
+  std::string name;            ///< channel (depth) or layer (normal, motion); empty: found by the usual names
   bool given() const { return !file.empty() || !name.empty(); }
 };
 /// Splits at the last ':' whose left side is an existing file or pattern; a text that is no file is taken for a NAME.
@@ -26,8 +26,8 @@ LayerChoice parse_layer_choice(const std::string& text);
 struct ReadOptions {
   /// --layer: colour layer ("ViewLayer.Combined", "ViewLayer", part name, channel); empty: the first usual one
   std::string layer;
-  LayerChoice depth, normal;
-  std::vector<std::string> auxiliary;    ///< what the stack asks for: "depth", "normal"; only these are read
+  LayerChoice depth, normal, motion;
+  std::vector<std::string> auxiliary;    ///< what the stack asks for: "depth", "normal", "motion"; only these are read
   int max_side = 16384;                  ///< larger sides are refused from the header
   std::uint64_t max_bytes = 6ull << 30;  ///< pictures whose own host memory would be larger are refused from the header
 };

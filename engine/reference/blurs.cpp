@@ -114,15 +114,39 @@ DoubleImage circles_of_confusion(const DoubleImage& depth, const DepthOfField& s
   });
 }
 
+namespace {
+
+/// The widest circle of the tiles around each tile of `side` pixels.
+DoubleImage widest_around(const DoubleImage& circles, int side) {
+  DoubleImage tiles((circles.width + side - 1) / side, (circles.height + side - 1) / side, Rgba(0));
+  for (int y = 0; y < circles.height; ++y)
+    for (int x = 0; x < circles.width; ++x) {
+      double& widest = tiles.at(x / side, y / side).r;
+      widest = glm::max(widest, std::abs(circles.at(x, y).r));
+    }
+  return generate(tiles.size(), [&](int x, int y) {
+    double widest = 0;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) widest = glm::max(widest, tiles.clamped(x + dx, y + dy).r);
+    return Rgba(widest);
+  });
+}
+
+}  // namespace
+
 DoubleImage depth_of_field(const DoubleImage& source, const DoubleImage& depth, const DepthOfField& s) {
   const DoubleImage circles = circles_of_confusion(depth, s);
+  const int side = static_cast<int>(std::ceil(s.max_radius));
+  const DoubleImage around = widest_around(circles, side);
   const double golden_angle = kPi * (3 - std::sqrt(5.0));
   return generate(source.size(), [&](int x, int y) {
-    const double own = circles.at(x, y).r;
+    const double own = circles.at(x, y).r, widest = around.at(x / side, y / side).r;
+    if (widest < 0.5) return source.at(x, y);
+    const double limit = glm::min(widest + 0.5, s.max_radius);
     double weight = 0.5 / s.samples;
     Rgb sum = weight * Rgb(source.at(x, y));
     for (int i = 0; i < s.samples; ++i) {
-      const double t = (i + 0.5) / s.samples, radius = t * s.max_radius, angle = -golden_angle * (i + 1);
+      const double t = (i + 0.5) / s.samples, radius = t * limit, angle = -golden_angle * (i + 1);
       const int px = x + static_cast<int>(std::floor(std::cos(angle) * radius + 0.5));
       const int py = y + static_cast<int>(std::floor(std::sin(angle) * radius + 0.5));
       const double circle = circles.clamped(px, py).r;

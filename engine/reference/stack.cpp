@@ -1,41 +1,15 @@
 #include "reference/stack.h"
 
-#include <algorithm>
-#include <stdexcept>
-
 #include "reference/bloom.h"
 #include "reference/box_bloom.h"
 #include "reference/color_adjustments.h"
 #include "reference/color_blit.h"
 #include "reference/outline.h"
+#include "reference/settings.h"
 #include "reference/tone_mapping.h"
 
 namespace afterglow::reference {
 namespace {
-
-/// Settings as the oracles want them. A name that is not there is a mistake of this file: std::out_of_range.
-class Settings {
- public:
-  explicit Settings(const Entry& entry) : values_(entry.settings) {}
-  double number(const char* name) const { return values_.at(name).number[0]; }
-  int integer(const char* name) const { return static_cast<int>(number(name)); }
-  bool flag(const char* name) const { return number(name) != 0; }
-  Rgb color(const char* name) const {
-    const auto& v = values_.at(name).number;
-    return {v[0], v[1], v[2]};
-  }
-  bool is(const char* name, const char* choice) const { return values_.at(name).choice == choice; }
-  /// The value whose name was chosen.
-  template <class T>
-  T choice(const char* name, std::initializer_list<std::pair<const char*, T>> all) const {
-    for (const auto& [text, value] : all)
-      if (is(name, text)) return value;
-    throw std::out_of_range(name);
-  }
-
- private:
-  const std::map<std::string, Value>& values_;
-};
 
 DoubleImage run_bloom(const DoubleImage& source, const Inputs&, const Settings& s) {
   return bloom(source, {.mode = s.is("mode", "additive") ? BloomMode::additive : BloomMode::scattering,
@@ -101,19 +75,16 @@ DoubleImage run_outline(const DoubleImage& source, const Inputs& inputs, const S
   return outline(source, inputs.depth, inputs.normal, settings);
 }
 
-struct Oracle {
-  const char* effect;
-  DoubleImage (*run)(const DoubleImage& source, const Inputs& inputs, const Settings& settings);
-};
-
 constexpr Oracle kOracles[] = {
     {"bloom", run_bloom},           {"box_bloom", run_box_bloom}, {"color_adjustments", run_color_adjustments},
     {"color_blit", run_color_blit}, {"outline", run_outline},     {"tone_mapping", run_tone_mapping},
 };
 
 const Oracle* oracle_of(const Entry& entry) {
-  const auto found = std::ranges::find(kOracles, entry.effect, &Oracle::effect);
-  return found == std::end(kOracles) ? nullptr : found;
+  for (const std::span<const Oracle> oracles : {std::span<const Oracle>(kOracles), more_oracles()})
+    for (const Oracle& oracle : oracles)
+      if (entry.effect == oracle.effect) return &oracle;
+  return nullptr;
 }
 
 }  // namespace

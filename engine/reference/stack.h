@@ -22,10 +22,12 @@ struct Entry {
   std::map<std::string, Value> settings;
 };
 
-/// Auxiliary inputs; null: the picture has none.
+/// Auxiliary inputs (null: the picture has none), and when the picture is seen.
 struct Inputs {
   const DoubleImage* depth = nullptr;
   const DoubleImage* normal = nullptr;
+  const DoubleImage* motion = nullptr;
+  double frame = 1, time = 0;  ///< number in its sequence; seconds
 };
 
 /// The first effect that no oracle knows; empty when all are known.

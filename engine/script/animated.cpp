@@ -143,7 +143,8 @@ Result<Animated> check_animated(lua_State* lua, const std::string& full_name, co
     AFTERGLOW_TRY(animated.fixed, check_setting(full_name, schema, given.value));
     return animated;
   }
-  if (schema.type == SettingType::boolean || schema.type == SettingType::enumeration)
+  if (schema.type == SettingType::boolean || schema.type == SettingType::enumeration ||
+      schema.type == SettingType::file)
     return Error{ErrorKind::script, fmt::format("{} cannot be a curve: it has nothing between its values", full_name),
                  "", 0, allowed_text(schema) + ", a function of t"};
   const DeclaredCurve& declared = Runtime::of(lua).curves[static_cast<std::size_t>(given.curve)];

@@ -22,6 +22,8 @@ std::string lua_type(const SettingSchema& setting) {
     case SettingType::vec2:
     case SettingType::vec3:
       return "number[]|afterglow.Moving";
+    case SettingType::file:
+      return "string|afterglow.OfTime";
     case SettingType::enumeration:
       break;
   }

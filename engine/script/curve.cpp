@@ -7,7 +7,8 @@ namespace afterglow::script {
 
 SettingValue interpolate(const SettingValue& a, const SettingValue& b, double factor, double snap_at) {
   if (factor <= 0) return a;
-  if (b.type == SettingType::boolean || b.type == SettingType::enumeration) return factor >= snap_at ? b : a;
+  if (b.type == SettingType::boolean || b.type == SettingType::enumeration || b.type == SettingType::file)
+    return factor >= snap_at ? b : a;
   if (factor >= 1) return b;
   SettingValue mixed = a;
   for (std::size_t i = 0; i < mixed.number.size(); ++i)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/text.h"
 #include "script/injection.h"
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxDeclared = 4096;  // settings, effects, entries of one state
 
-constexpr const char* kMakers[] = {"int", "float", "bool", "enum", "color", "vec2", "vec3"};
+constexpr const char* kMakers[] = {"int", "float", "bool", "enum", "color", "vec2", "vec3", "file"};
 
 std::vector<std::string> known_keys(SettingType type) {
   switch (type) {
@@ -24,6 +25,8 @@ std::vector<std::string> known_keys(SettingType type) {
     case SettingType::vec2:
     case SettingType::vec3:
       return {"default", "doc", "max", "min", "unit"};
+    case SettingType::file:
+      return {"default", "doc", "extensions"};
     default:
       return {"default", "doc"};
   }
@@ -46,8 +49,38 @@ void read_choices(lua_State* lua, TableReader& table, SettingSchema& schema) {
   if (schema.choices.empty() && !table.failed()) table.fail(failure(fmt::format("{} has no choices", table.what())));
 }
 
+// { "cube", "png" }; the texts of a table or of the setting itself.
+void read_extensions(lua_State* lua, TableReader& table, SettingSchema& schema) {
+  const int top = lua_gettop(lua);
+  table.push("extensions");
+  if (lua_istable(lua, -1)) {
+    const TableReader list(lua, -1, "extensions");
+    for (const auto& key : list.keys()) {
+      list.push(key);
+      const Value given = read_value(lua, -1);
+      lua_pop(lua, 1);
+      const bool fits =
+          key.position > 0 && given.kind == Value::Kind::text && !given.text.empty() &&
+          std::ranges::all_of(given.text, [](unsigned char c) { return std::islower(c) || std::isdigit(c); });
+      if (!fits)
+        table.fail(failure(fmt::format("{}: {} is no extension of a file", table.what(), given.shown()),
+                           {"extensions", key.name}, "small letters and digits, without the point"));
+      else
+        schema.choices.push_back(given.text);
+    }
+  }
+  lua_settop(lua, top);
+  if (schema.choices.empty() && !table.failed())
+    table.fail(failure(fmt::format("{} needs extensions, those that its files may have", table.what()), {"extensions"},
+                       "{ \"cube\" }"));
+}
+
 void read_default(TableReader& table, SettingSchema& schema) {
   const Value given = table.value("default");
+  if (given.kind == Value::Kind::nothing && schema.type == SettingType::file) {
+    schema.default_value.type = SettingType::file;
+    return;
+  }
   if (given.kind == Value::Kind::nothing) {
     table.fail(failure(fmt::format("{} has no default", table.what()), {}, allowed_text(schema)));
     return;
@@ -78,6 +111,7 @@ int make_setting(lua_State* lua, SettingType type) {
         fmt::format("{}: min {} is above max {}", what, number_text(*schema.min), number_text(*schema.max)), {"min"}));
   if (type == SettingType::color) schema.min = 0;
   if (type == SettingType::enumeration) read_choices(lua, table, schema);
+  if (type == SettingType::file) read_extensions(lua, table, schema);
   if (!table.failed()) read_default(table, schema);
   table.finish(maker);
   runtime.settings.push_back({std::move(schema)});
@@ -113,7 +147,7 @@ void read_settings(lua_State* lua, TableReader& table, EffectSchema& schema) {
                          place));
     else if (!handle)
       table.fail(failure(fmt::format("{}: setting '{}' = {} is not a setting type", table.what(), key.name, shown),
-                         place, "fx.int, fx.float, fx.bool, fx.enum, fx.color, fx.vec2, fx.vec3"));
+                         place, "fx.int, fx.float, fx.bool, fx.enum, fx.color, fx.vec2, fx.vec3, fx.file"));
     else
       found.emplace_back(handle->index, runtime.settings[static_cast<std::size_t>(handle->index)].schema).second.name =
           key.name;
@@ -165,6 +199,7 @@ template int declare_setting<SettingType::enumeration>(lua_State*);
 template int declare_setting<SettingType::color>(lua_State*);
 template int declare_setting<SettingType::vec2>(lua_State*);
 template int declare_setting<SettingType::vec3>(lua_State*);
+template int declare_setting<SettingType::file>(lua_State*);
 
 std::vector<std::string> pop_input_names(lua_State* lua, const std::string& what) {
   if (!lua_istable(lua, -1))

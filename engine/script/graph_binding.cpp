@@ -172,6 +172,48 @@ int graph_input(lua_State* lua) {
   return 1;
 }
 
+// The file that g:lookup and g:image are given; a failure at the key of the call.
+std::filesystem::path read_file_key(lua_State* lua, TableReader& table, const char* function) {
+  table.allow({"file"}, false);
+  const auto name = table.text("file");
+  if ((!name || name->empty()) && !table.failed())
+    table.fail(failure(fmt::format("{} needs 'file', the name of a file", table.what()), {"file"}));
+  table.finish(function);
+  return find_asset(lua, table.what(), *name);
+}
+
+int graph_lookup(lua_State* lua) {
+  GraphBuilder& graph = graph_of(lua, "g:lookup { file = … }");
+  TableReader table(lua, 2, fmt::format("effect '{}': g:lookup", graph.entry().effect));
+  const auto file = read_file_key(lua, table, "lookup");
+  const LoadedLut& loaded = load_lut(lua, file);
+  lua_createtable(lua, 0, 2);
+  push_image(lua, graph.data(file.filename().string(), loaded.table));
+  lua_setfield(lua, -2, "table");
+  lua_createtable(lua, static_cast<int>(loaded.steps.size()), 0);
+  for (std::size_t i = 0; i < loaded.steps.size(); ++i) {
+    const LutStep& step = loaded.steps[i];
+    lua_createtable(lua, 0, 3);
+    const std::pair<const char*, int> fields[] = {
+        {"kind", static_cast<int>(step.kind)}, {"row", step.row}, {"size", step.size}};
+    for (const auto& [name, value] : fields) {
+      lua_pushinteger(lua, value);
+      lua_setfield(lua, -2, name);
+    }
+    lua_rawseti(lua, -2, static_cast<lua_Integer>(i) + 1);
+  }
+  lua_setfield(lua, -2, "steps");
+  return 1;
+}
+
+int graph_image(lua_State* lua) {
+  GraphBuilder& graph = graph_of(lua, "g:image { file = … }");
+  TableReader table(lua, 2, fmt::format("effect '{}': g:image", graph.entry().effect));
+  const auto file = read_file_key(lua, table, "image");
+  push_image(lua, graph.data(file.filename().string(), load_picture(lua, file)));
+  return 1;
+}
+
 int graph_skip(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:skip(\"reason\")");
   const Value reason = read_value(lua, 2);
@@ -197,8 +239,8 @@ int graph_index(lua_State* lua) {
   else if (name == "frame_time")
     lua_pushnumber(lua, context.step / context.fps);
   else {
-    const std::vector<std::string> names{"filter", "fps",  "frame", "frame_time", "history",
-                                         "input",  "keep", "pass",  "skip",       "time"};
+    const std::vector<std::string> names{"filter", "fps",  "frame",  "frame_time", "history", "image",
+                                         "input",  "keep", "lookup", "pass",       "skip",    "time"};
     throw failure(fmt::format("the graph has no {}", key.shown()), {}, join(names), nearest_name(name, names));
   }
   return 1;
@@ -232,9 +274,11 @@ void open_graph_binding(lua_State* lua) {
                               {"filter", &native<graph_filter, "filter">},
                               {"history", &native<graph_history, "history">},
                               {"keep", &native<graph_keep, "keep">},
+                              {"image", &native<graph_image, "image">},
+                              {"lookup", &native<graph_lookup, "lookup">},
                               {"input", &native<graph_input, "input">},
                               {"skip", &native<graph_skip, "skip">}};
-  lua_createtable(lua, 0, 6);
+  lua_createtable(lua, 0, static_cast<int>(std::size(methods)));
   for (const auto& [name, function] : methods) {
     lua_pushcfunction(lua, function);
     lua_setfield(lua, -2, name);

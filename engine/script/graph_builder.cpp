@@ -122,6 +122,14 @@ std::optional<ImageRef> GraphBuilder::input(const std::string& name) {
   return ref(known->second);
 }
 
+ImageRef GraphBuilder::data(const std::string& name, std::shared_ptr<const ImageData> pixels) {
+  for (std::size_t i = 0; i < graph_.images.size(); ++i)
+    if (graph_.images[i].data && graph_.images[i].data->hash == pixels->hash) return ref(static_cast<ImageId>(i));
+  const ImageId id = add_image(name, pixels->size, -1);
+  graph_.images.back().data = std::move(pixels);
+  return ref(id);
+}
+
 // ---- passes with a shader
 
 ImageRef GraphBuilder::pass(const PassRequest& request, const CallPlace& place) {

@@ -85,6 +85,8 @@ class GraphBuilder {
 
   /// Empty when the picture has no such image.
   std::optional<ImageRef> input(const std::string& name);
+  /// An image that the look brings along; the same data is the same image.
+  ImageRef data(const std::string& name, std::shared_ptr<const ImageData> pixels);
   void skip(std::string reason) { skip_reason_ = std::move(reason); }
   const std::optional<std::string>& skip_reason() const { return skip_reason_; }
   std::size_t pass_count() const { return graph_.passes.size(); }

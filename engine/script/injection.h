@@ -27,8 +27,8 @@ inline const std::vector<std::string>& entry_keys() {
 
 /// What `fx` itself holds; an effect of such a name could never be reached.
 inline const std::vector<std::string>& library_names() {
-  static const std::vector<std::string> names{"bool",  "color", "curve", "effect", "enum", "extend", "filters",
-                                              "float", "int",   "stack", "vec2",   "vec3", "volume"};
+  static const std::vector<std::string> names{"bool", "color", "curve", "effect", "enum", "extend", "filters",
+                                              "file", "float", "int",   "stack",  "vec2", "vec3",   "volume"};
   return names;
 }
 

@@ -66,6 +66,7 @@ void push_core(lua_State* lua) {
       {"color", &native<declare_setting<SettingType::color>, "color">},
       {"vec2", &native<declare_setting<SettingType::vec2>, "vec2">},
       {"vec3", &native<declare_setting<SettingType::vec3>, "vec3">},
+      {"file", &native<declare_setting<SettingType::file>, "file">},
       {"curve", &native<declare_curve, "curve">},
       {"extend", &native<declare_extend, "extend">},
       {"volume", &native<declare_volume, "volume">},

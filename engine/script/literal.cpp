@@ -152,6 +152,7 @@ std::string literal_like(const LuaText& text, std::size_t first, std::size_t end
       if (number_end(text, first) == end) return number_like(text[end - 1].text, value.number[0]);
       break;
     case SettingType::enumeration:
+    case SettingType::file:
       if (is_text) return quoted(old.text, value.choice);
       break;
     case SettingType::color:
@@ -185,6 +186,7 @@ std::string literal_text(const SettingValue& value, char quote, bool spaced) {
     case SettingType::boolean:
       return value.number[0] != 0 ? "true" : "false";
     case SettingType::enumeration:
+    case SettingType::file:
       return quoted(std::string(1, quote), value.choice);
     case SettingType::color:
     case SettingType::vec2:

@@ -37,10 +37,30 @@ SettingSchema entry_key_schema(const std::string& name) {
   return schema;
 }
 
+namespace {
+
+constexpr std::string_view kCommandLine = "--set ";
+
+// Whoever gives commands may name any file; names of scripts go along the search path.
+std::optional<SettingValue> named_file(const Override& given, const SettingSchema& schema) {
+  std::error_code ec;
+  const std::filesystem::path file(parse_value(given.value).text);
+  if (file.empty() || !has_extension(schema, file.string()) || !std::filesystem::is_regular_file(file, ec)) return {};
+  return SettingValue{SettingType::file, {1}, std::filesystem::absolute(file, ec).string()};
+}
+
+}  // namespace
+
 Result<SettingValue> parse_setting(const Override& given, const SettingSchema& schema, std::string_view where) {
   Value value = parse_value(given.value);
   // A choice may look like something else: `mode=2d`, `mode=true`.
   if (schema.type == SettingType::enumeration && value.kind != Value::Kind::text) {
+    value.kind = Value::Kind::text;
+    value.text = trim(given.value);
+  }
+  if (schema.type == SettingType::file) {
+    if (where == kCommandLine)
+      if (auto file = named_file(given, schema)) return *file;
     value.kind = Value::Kind::text;
     value.text = trim(given.value);
   }
@@ -58,12 +78,12 @@ Result<void> apply(DeclaredEntry& declared, const Override& given, const EffectS
   const auto found = std::find_if(schema.settings.begin(), schema.settings.end(),
                                   [&](const auto& s) { return s.name == given.setting; });
   if (found != schema.settings.end()) {
-    AFTERGLOW_TRY(SettingValue value, parse_setting(given, *found, "--set "));
+    AFTERGLOW_TRY(SettingValue value, parse_setting(given, *found, kCommandLine));
     declared.sources[static_cast<std::size_t>(found - schema.settings.begin())].overridden = std::move(value);
     return {};
   }
   if (given.setting == "enabled" || given.setting == "order" || given.setting == "at") {
-    AFTERGLOW_TRY(const SettingValue value, parse_setting(given, entry_key_schema(given.setting), "--set "));
+    AFTERGLOW_TRY(const SettingValue value, parse_setting(given, entry_key_schema(given.setting), kCommandLine));
     if (given.setting == "enabled") entry.enabled = value.number[0] != 0;
     if (given.setting == "order") entry.order = static_cast<int>(value.number[0]);
     if (given.setting == "at") entry.at = value.choice;

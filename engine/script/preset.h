@@ -20,7 +20,7 @@
 
 namespace afterglow {
 
-enum class SettingType { integer, number, boolean, enumeration, color, vec2, vec3 };
+enum class SettingType { integer, number, boolean, enumeration, color, vec2, vec3, file };
 
 /// In the scene: x, y, z in its units.
 using Position = std::array<double, 3>;
@@ -29,8 +29,10 @@ using Position = std::array<double, 3>;
 struct SettingValue {
   SettingType type = SettingType::number;
   std::array<double, 3>
-      number{};        ///< integer and number in [0]; boolean as 0/1 in [0]; vec2 in [0..1]; colour, vec3 in [0..2]
-  std::string choice;  ///< enumeration
+      number{};  ///< integer and number in [0]; boolean as 0/1 in [0]; vec2 in [0..1]; colour, vec3 in [0..2]
+  /// enumeration: the choice. file: its name, as `find_asset` takes it, or an absolute path when [0] of `number` is 1
+  /// (the command line's, which may name any file); empty: none.
+  std::string choice;
   friend bool operator==(const SettingValue&, const SettingValue&) = default;
   std::string text() const;  ///< as one would write it in Lua
 };
@@ -41,7 +43,7 @@ struct SettingSchema {
   SettingType type = SettingType::number;
   SettingValue default_value;
   std::optional<double> min, max;
-  std::vector<std::string> choices;
+  std::vector<std::string> choices;  ///< enumeration; file: the extensions it may have, without the point
   std::string unit;
 };
 
@@ -127,7 +129,9 @@ class Preset {
   std::vector<std::string> needs() const;
   /// Where names are looked up; a preset that extends another has that one's folder in it too.
   const SearchPath& path() const;
-  const std::vector<std::filesystem::path>& files() const;  ///< every script read: preset, library, effects
+  /// Every file read so far: preset, library, effects; from the first `build` on also tables and pictures that effects
+  /// read (and where those that were not found would be).
+  const std::vector<std::filesystem::path>& files() const;
 
   /// Bytes that the script's state holds, after a collection.
   std::size_t memory_used() const;

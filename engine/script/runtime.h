@@ -13,6 +13,7 @@
 
 #include "core/paths.h"
 #include "script/animated.h"
+#include "script/assets.h"
 #include "script/function_ref.h"
 #include "script/preset.h"
 #include "script/sandbox.h"
@@ -68,7 +69,7 @@ struct Runtime {
 
   std::unique_ptr<Sandbox> box;
   SearchPath path;
-  std::vector<std::filesystem::path> files;  ///< every script read
+  std::vector<std::filesystem::path> files;  ///< every script and asset read
   std::deque<Effect> effects;
   std::map<std::string, int> effect_by_name;
   std::set<std::string> loading;  ///< effects and modules that are being loaded: cycles
@@ -77,6 +78,7 @@ struct Runtime {
   std::vector<DeclaredStack> stacks;
   std::vector<DeclaredCurve> curves;
   std::vector<DeclaredVolume> volumes;
+  Assets assets;
   std::size_t curve_keys = 0, wanted = 0;  ///< of all curves; settings of all volumes: limited
   bool declaring = true;                   ///< false once the preset is loaded
   GraphBuilder* graph = nullptr;           ///< while `build` runs

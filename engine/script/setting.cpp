@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/pack.h"
 #include "core/text.h"
 #include "script/read_only.h"
 
@@ -27,6 +29,7 @@ std::string SettingValue::text() const {
     case SettingType::boolean:
       return number[0] != 0 ? "true" : "false";
     case SettingType::enumeration:
+    case SettingType::file:
       return '"' + choice + '"';
     case SettingType::color:
       return list_text(*this, 3);
@@ -67,6 +70,11 @@ bool parse_hex_color(const std::string& text, SettingValue& value) {
 
 }  // namespace
 
+bool has_extension(const SettingSchema& schema, const std::string& file) {
+  const std::string name = lower(file);
+  return std::ranges::any_of(schema.choices, [&](const auto& extension) { return name.ends_with("." + extension); });
+}
+
 std::optional<std::string> hex_color(const SettingValue& color) {
   std::string text = "#";
   for (const double c : color.number) {
@@ -80,7 +88,7 @@ std::optional<std::string> hex_color(const SettingValue& color) {
 }
 
 const char* type_name(SettingType type) {
-  static constexpr const char* kNames[] = {"integer", "number", "boolean", "choice", "colour", "vec2", "vec3"};
+  static constexpr const char* kNames[] = {"integer", "number", "boolean", "choice", "colour", "vec2", "vec3", "file"};
   return kNames[static_cast<int>(type)];
 }
 
@@ -101,6 +109,9 @@ std::string allowed_text(const SettingSchema& schema) {
       return range.empty() ? "{x, y}" : "{x, y}, each " + range;
     case SettingType::vec3:
       return range.empty() ? "{x, y, z}" : "{x, y, z}, each " + range;
+    case SettingType::file:
+      return "\"\" for none, the name of a file beside the preset or on the search path: ." +
+             join(schema.choices, ", .");
   }
   return {};
 }
@@ -138,6 +149,13 @@ Result<SettingValue> check_setting(const std::string& full_name, const SettingSc
           return value;
         }
       return fail("not a choice", nearest_name(given.text, schema.choices));
+    case SettingType::file:
+      if (given.kind != Kind::text) return fail("not the name of a file");
+      value.choice = given.text;
+      if (given.text.empty()) return value;
+      if (!is_safe_entry(given.text, 8)) return fail("not a name inside of the folders that scripts may read");
+      if (!has_extension(schema, given.text)) return fail("no file of a kind that is allowed");
+      return value;
     case SettingType::color:
     case SettingType::vec2:
     case SettingType::vec3: {
@@ -169,6 +187,7 @@ void push_setting(lua_State* lua, const SettingValue& value) {
       lua_pushboolean(lua, value.number[0] != 0);
       return;
     case SettingType::enumeration:
+    case SettingType::file:
       lua_pushlstring(lua, value.choice.data(), value.choice.size());
       return;
     case SettingType::color:

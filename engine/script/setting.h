@@ -17,10 +17,13 @@ std::string allowed_text(const SettingSchema& schema);
 /// `full_name` is what the message calls it: "glow.knee".
 Result<SettingValue> check_setting(const std::string& full_name, const SettingSchema& schema, const Value& value);
 
+/// Has the file one of the extensions that the setting allows?
+bool has_extension(const SettingSchema& schema, const std::string& file);
+
 /// "#rrggbb" for a colour that can be written so: what it is read as is the same colour in 32-bit floats.
 std::optional<std::string> hex_color(const SettingValue& color);
 
-/// "integer", "number", "boolean", "choice", "colour", "vec2", "vec3".
+/// "integer", "number", "boolean", "choice", "colour", "vec2", "vec3", "file".
 const char* type_name(SettingType type);
 
 /// Pushes the value as scripts read it (`s.NAME`); colours and vec2 are read-only tables.

@@ -143,6 +143,14 @@ std::optional<SettingValue> setting_widget(const Ui& ui, const char* name, const
     case SettingType::enumeration:
       changed = choice_row(name, schema, out.choice);
       break;
+    case SettingType::file: {
+      std::array<char, 512> text{};
+      out.choice.copy(text.data(), text.size() - 1);
+      changed = ImGui::InputText(name, text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+      out.choice = text.data();
+      out.number[0] = 0;
+      break;
+    }
     case SettingType::color:
       changed = color_row(ui, name, out.number, width);
       for (double& c : out.number) c = std::isfinite(c) ? std::max(c, 0.0) : 0;

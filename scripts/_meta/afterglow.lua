@@ -171,6 +171,21 @@
 ---@field gain? number[]|string|afterglow.Moving  Colour of gain; only its hue and saturation count. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
 ---@field gain_offset? number|afterglow.Moving  Light times 1 + this; shows most in the brights. -1…1, default 0
 
+---Colours by a look-up table from a file (.cube and others).
+---@class afterglow.settings.lut : afterglow.EntryKeys
+---@field file? string|afterglow.OfTime  The table: beside the preset or on the search path. None: no effect. default ""
+---@field intensity? number|afterglow.Moving  How much of the table's colours: 0 none, 1 they alone. 0…1, default 1
+---@field input? "linear"|"srgb"|"acescct"|afterglow.OfTime  How the table wants its colours: scene-linear Rec.709, sRGB, ACEScct. default "srgb"
+---@field output? "same"|"linear"|"srgb"|"acescct"|afterglow.OfTime  How the colours are encoded that it gives; same: as its input. default "same"
+
+---Blurs what moves, by motion vectors.
+---@class afterglow.settings.motion_blur : afterglow.EntryKeys
+---@field shutter_angle? number|afterglow.Moving  How long the shutter is open: 360 is the whole frame. 0: no blur. 0…720 degrees, default 180
+---@field samples? integer|afterglow.Moving  Reads for each pixel that moves: more are smoother, and dearer. integer 3…128, default 24
+---@field max_radius? number|afterglow.Moving  No blur reaches further each way. 1…128 px, default 32
+---@field motion_scale? number[]|afterglow.Moving  Factor of the motion vectors: {1, -1} for files with y downwards, {width, height} for motion in pictures. {x, y}, each -16384…16384, default {1, 1}
+---@field depth_softness? number|afterglow.Moving  Difference of depth over which one thing is in front of another. 0.0001…1000000 m, default 0.1
+
 ---Ink lines along edges of depth, of normals, or of both.
 ---@class afterglow.settings.outline : afterglow.EntryKeys
 ---@field source? "depth"|"device_depth"|"normals"|"mixed"|afterglow.OfTime  What is compared: distance, stored device depth as it is, normals, or distance and normals. default "mixed"
@@ -262,6 +277,8 @@
 ---@field lens_dirt fun(settings: afterglow.settings.lens_dirt): afterglow.Entry  Dust on the lens that lights up around bright lights.
 ---@field lens_distortion fun(settings: afterglow.settings.lens_distortion): afterglow.Entry  Bends the picture as a wide lens (barrel) or a long one (pincushion) does.
 ---@field lift_gamma_gain fun(settings: afterglow.settings.lift_gamma_gain): afterglow.Entry  The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.
+---@field lut fun(settings: afterglow.settings.lut): afterglow.Entry  Colours by a look-up table from a file (.cube and others).
+---@field motion_blur fun(settings: afterglow.settings.motion_blur): afterglow.Entry  Blurs what moves, by motion vectors.
 ---@field outline fun(settings: afterglow.settings.outline): afterglow.Entry  Ink lines along edges of depth, of normals, or of both.
 ---@field pixelate fun(settings: afterglow.settings.pixelate): afterglow.Entry  Large square pixels, each the mean of what it covers.
 ---@field radial_blur fun(settings: afterglow.settings.radial_blur): afterglow.Entry  Streaks towards a centre, as of a zoom or of speed.

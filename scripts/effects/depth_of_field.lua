@@ -31,6 +31,12 @@ return fx.effect {
     local image = g:pass { shader = "depth_of_field/circle", source = source, depth = g:input("depth"), focus_distance = d,
                            infinity = math.min(infinity, 1e6), max_radius = s.max_radius, device_input = s.depth_space == "device",
                            reversed_z = s.reversed_z, inverse_clip = { 1 / s.near, 1 / s.far }, name = "circle" }
-    return g:pass { shader = "depth_of_field/gather", source = image, picture = source, max_radius = s.max_radius, samples = s.samples }
+    -- Reads go no further than the widest circle of the tiles around: where little is blurred, they lie close.
+    local tile = math.ceil(s.max_radius)
+    local across, down = (source.width + tile - 1) // tile, (source.height + tile - 1) // tile
+    local rows = g:pass { shader = "depth_of_field/widest", source = image, size = { across, source.height }, block = tile, down = false, name = "rows" }
+    local tiles = g:pass { shader = "depth_of_field/widest", source = rows, size = { across, down }, block = tile, down = true, name = "tiles" }
+    return g:pass { shader = "depth_of_field/gather", source = image, picture = source, widest = g:pass { shader = "depth_of_field/around", source = tiles },
+                    block = tile, max_radius = s.max_radius, samples = s.samples }
   end,
 }

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "exec/frame.h"
+#include "files.h"
 #include "image/metrics.h"
 #include "shader/kernel.h"
 #include "shader/library.h"
@@ -45,6 +46,7 @@ BuildContext context_of(const Scene& scene) {
   context.time = (scene.frame - 1) / context.fps;
   if (scene.depth) context.auxiliary["depth"] = scene.depth->size();
   if (scene.normal) context.auxiliary["normal"] = scene.normal->size();
+  if (scene.motion) context.auxiliary["motion"] = scene.motion->size();
   return context;
 }
 
@@ -54,9 +56,8 @@ std::vector<float> floats(const reference::DoubleImage& image) {
 }
 
 std::string write_stack(const std::string& entries) {
-  const std::string file = fmt::format("{}/afterglow_effects_{}.lua", testing::TempDir(), getpid());
-  std::ofstream(file) << "local fx = require \"afterglow\"\nreturn fx.stack {\n" << entries << "\n}\n";
-  return file;
+  return write_test_file("stack.lua", "local fx = require \"afterglow\"\nreturn fx.stack {\n" + entries + "\n}\n")
+      .string();
 }
 
 /// Throws std::runtime_error with the error's text, so that a failing step ends the test with its reason.
@@ -86,7 +87,8 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
   auto runner = need(FrameRunner::create(*lab.device, options.max_memory));
 
   std::map<std::string, HostImage> inputs{{"source", {source.data(), made.size, 4}}};
-  std::vector<float> depth, normal;
+  std::vector<float> depth, normal, motion;
+  if (scene.motion) inputs["motion"] = {(motion = floats(*scene.motion)).data(), scene.motion->size(), 4};
   if (scene.depth) inputs["depth"] = {(depth = floats(*scene.depth)).data(), scene.depth->size(), 4};
   if (scene.normal) inputs["normal"] = {(normal = floats(*scene.normal)).data(), scene.normal->size(), 4};
   HostResult result;

@@ -14,7 +14,8 @@ struct Scene {
   std::string name;
   reference::DoubleImage source;
   std::optional<reference::DoubleImage> depth, normal;
-  double frame = 1;  ///< number in a sequence
+  double frame = 1;                                   ///< number in a sequence
+  std::optional<reference::DoubleImage> motion = {};  ///< .xy: pixels a frame, y down
 };
 
 /// Every value rounded to a float.

@@ -77,6 +77,26 @@ TEST_F(Effects, DepthOfFieldIsSkippedWithoutDepth) {
   EXPECT_THAT(made.graph.skipped.at(0).reason, testing::HasSubstr("depth"));
 }
 
+TEST_F(Effects, FewSamplesComeCloseToMany) {
+  const auto scene = neon_scene({160, 90}, 560, 330);
+  const auto mean_error = [&](int samples) {
+    const DepthOfField settings{.focus_distance = 4.5, .aperture = 0.7, .max_radius = 8, .samples = samples};
+    DepthOfField many = settings;
+    many.samples = 4000;
+    const auto expected = depth_of_field(scene.source, *scene.depth, many);
+    const auto made = run_stack(focused(settings).entries, scene, Way::joined).result;
+    double sum = 0;
+    for (std::size_t i = 0; i < expected.pixels.size(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const double wanted = expected.pixels[i][c];
+        sum += std::abs(made[4 * i + static_cast<std::size_t>(c)] - wanted) / (wanted + 0.01);
+      }
+    return sum / (3.0 * static_cast<double>(expected.pixels.size()));
+  };
+  EXPECT_LT(mean_error(48), 0.04);
+  EXPECT_LT(mean_error(96), 0.025);
+}
+
 TEST_F(Effects, WhatIsInFocusStaysBitForBit) {
   auto scene = random_scene({40, 30}, 67);
   scene.depth = DoubleImage(40, 30, Rgba(2, 0, 0, 1));

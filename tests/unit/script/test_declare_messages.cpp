@@ -70,7 +70,7 @@ TEST(DeclareMessages, Settings) {
   EXPECT_EQ(setting("5"),
             "effects/glow.lua:4: error: fx.effect: setting 'amount' = 5 is not a setting type; allowed: fx.int, "
             "fx.float, fx.bool, "
-            "fx.enum, fx.color, fx.vec2, fx.vec3");
+            "fx.enum, fx.color, fx.vec2, fx.vec3, fx.file");
   EXPECT_EQ(
       setting("fx.float {\n mim = 0, default = 0 }"),
       "effects/glow.lua:5: error: fx.float has no 'mim'; allowed: default, doc, max, min, unit; did you mean 'min'?");

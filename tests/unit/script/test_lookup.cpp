@@ -148,7 +148,7 @@ TEST(ListEffects, NamesOfTheLibraryAreReserved) {
   ASSERT_EQ(scene.load_error(), "");
   EXPECT_THAT(
       scene.notes,
-      ElementsAre("preset.lua:4: bool color curve effect enum extend filters float int stack vec2 vec3 volume"));
+      ElementsAre("preset.lua:4: bool color curve effect enum extend file filters float int stack vec2 vec3 volume"));
 }
 
 // Every effect of the installation, as the design's table has it, can be listed without a complaint.

@@ -1,0 +1,8 @@
+-- input: tests/images/neon_crop.exr --motion tests/images/neon_crop_motion.exr
+local fx = require "afterglow"
+
+return fx.stack {
+  fx.motion_blur { shutter_angle = 300, samples = 48 },
+  fx.tone_mapping { mode = "neutral" },
+  fx.color_adjustments { post_exposure = 1.5 },
+}

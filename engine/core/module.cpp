@@ -1,0 +1,49 @@
+#include "core/module.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+std::vector<fs::path> candidates(const std::string& name) {
+  std::vector<fs::path> folders;
+  Dl_info here{};
+  if (dladdr(reinterpret_cast<const void*>(&load_module), &here) && here.dli_fname) {
+    std::error_code ec;
+    fs::path binary = fs::canonical(here.dli_fname, ec);
+    if (ec) binary = fs::read_symlink("/proc/self/exe", ec);
+    folders.push_back(binary.parent_path());
+    folders.push_back(binary.parent_path() / "afterglow");
+    folders.push_back(binary.parent_path().parent_path() / AFTERGLOW_MODULE_FOLDER);
+  }
+  folders.emplace_back(AFTERGLOW_BUILT_MODULE_FOLDER);
+  for (fs::path& folder : folders) folder /= name;
+  return folders;
+}
+
+}  // namespace
+
+Result<void*> load_module(const std::string& name, const char* entry) {
+  std::string why = "not found";
+  for (const fs::path& file : candidates(name)) {
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) continue;
+    // Never closed: what they link keeps threads.
+    void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library) {
+      why = dlerror();
+      continue;
+    }
+    if (void* address = dlsym(library, entry)) return address;
+    why = fmt::format("{} lacks {}", file.string(), entry);
+  }
+  return Error{ErrorKind::io, fmt::format("{} ({})", name, why)};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,16 @@
+// Modules: parts of the program in shared libraries of their own, loaded when they are first needed, because what they
+// link takes longer to load than most commands take to run.
+#pragma once
+
+#include <string>
+
+#include "core/result.h"
+
+namespace afterglow {
+
+/// The address of `entry` in the module `name` ("afterglow_oiio.so"): beside the running binary, in the library folder
+/// of its installation, or where it was built. The module stays loaded. Thread-safe. Errors: io (not installed, cannot
+/// be loaded; the message is about "NAME (why)").
+Result<void*> load_module(const std::string& name, const char* entry);
+
+}  // namespace afterglow

@@ -1,0 +1,31 @@
+// The images of a graph that it brings along itself (GraphImage::data), on the device.
+#pragma once
+
+#include <map>
+
+#include "gpu/image.h"
+#include "graph/graph.h"
+
+namespace afterglow {
+
+class DataImages {
+ public:
+  /// Makes and fills them as full floats, whatever the storage of the stack. `storage`: to be read as storage images.
+  /// Errors: device.
+  static Result<DataImages> create(const Device& device, const Graph& graph, bool storage);
+
+  /// The image, or null when the graph does not bring it along.
+  const GpuImage* image(ImageId id) const {
+    const auto found = images_.find(id);
+    return found == images_.end() ? nullptr : &found->second;
+  }
+  /// In which they stay.
+  VkImageLayout layout() const { return layout_; }
+  int size() const { return static_cast<int>(images_.size()); }
+
+ private:
+  std::map<ImageId, GpuImage> images_;
+  VkImageLayout layout_ = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,57 @@
+// Look-up tables in files: .cube and the other formats that OpenColorIO reads, taken apart into steps that a shader can
+// do, with their numbers in one image.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+#include "core/result.h"
+
+namespace afterglow {
+
+/// One step on a colour c. Its numbers begin at pixel (0, row) of the table.
+enum class LutKind {
+  none = 0,
+  matrix = 1,   ///< 3 pixels (mᵢ₀, mᵢ₁, mᵢ₂, oᵢ): cᵢ' = Σ mᵢⱼ cⱼ + oᵢ
+  table1d = 2,  ///< `size` colours, 256 a row, of c in 0…1 (held to it), linear between them, each channel by itself
+  table3d = 3,  ///< size³ colours of c in 0…1 (held to it), tetrahedral between them: colour (r, g, b) is at
+                ///< (r + size·(b mod 2), row + g + size·⌊b/2⌋)
+  range = 4,    ///< 1 pixel (scale, offset, low, high): c' = clamp(scale·c + offset, low, high)
+  cdl = 5,      ///< 4 pixels: slope, offset, power, (saturation, 1: held to 0…1 as ASC says; 0: not held)
+  power = 6,    ///< 1 pixel (exponents, style of negatives: 0 cut off, 1 mirrored, 2 left as they are)
+  table_half = 7,  ///< 65536 colours, 256 a row, by the bits of c as a half float, linear between neighbours
+};
+
+struct LutStep {
+  LutKind kind = LutKind::none;
+  int row = 0, size = 0;
+  friend bool operator==(const LutStep&, const LutStep&) = default;
+};
+
+struct Lut {
+  std::vector<LutStep> steps;  ///< in order; at most kMaxLutSteps
+  Size size;                   ///< of the table
+  std::vector<float> table;    ///< RGBA
+};
+
+inline constexpr int kMaxLutSteps = 6;
+inline constexpr int kLutRow = 256;  ///< colours a row of one-dimensional tables
+
+/// Thread-safe. Errors (script, with the file and, for .cube, the line): missing, unknown format, what the file holds
+/// is wrong or has no place in steps; io: the module with OpenColorIO is not installed.
+Result<Lut> read_lut(const std::filesystem::path& file);
+
+/// What the module with OpenColorIO gives.
+struct LutModule {
+  Result<Lut> (*read)(const std::filesystem::path& file);
+  /// Of the formats that it knows, without the point, sorted.
+  std::vector<std::string> (*extensions)();
+};
+
+/// Looks a .cube through before OpenColorIO reads it, which says less about what is wrong and takes memory for whatever
+/// size a file claims. Errors: script, at the line.
+Result<void> check_cube(const std::string& text, const std::string& file);
+
+}  // namespace afterglow

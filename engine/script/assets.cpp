@@ -1,0 +1,153 @@
+#include "script/assets.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/pack.h"
+#include "core/text.h"
+#include "image/reader.h"
+#include "script/graph_builder.h"
+#include "script/native.h"
+#include "script/runtime.h"
+
+namespace afterglow::script {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::uint64_t kFileCost = 100'000;   // instructions that a look at the file system counts as
+constexpr std::size_t kMaxBytes = 512u << 20;  // of all that one preset reads: it lives outside of Lua's memory
+constexpr int kMaxSide = 8192;                 // of pictures
+
+/// The setting of the entry being built that has this value; null: none.
+const std::pair<std::string, SettingValue>* setting_of(const Runtime& runtime, const std::string& name) {
+  const auto& settings = runtime.graph->entry().settings;
+  const auto found = std::ranges::find_if(settings, [&](const auto& setting) {
+    return setting.second.type == SettingType::file && setting.second.choice == name;
+  });
+  return found == settings.end() ? nullptr : &*found;
+}
+
+/// At the setting of the preset where the name comes from, else at the call.
+[[noreturn]] void fail_at(lua_State* lua, const std::string& what, const std::string& name, const std::string& why,
+                          const std::string& allowed, const std::string& nearest = {}) {
+  const Runtime& runtime = Runtime::of(lua);
+  const auto* setting = setting_of(runtime, name);
+  const std::string shown = tidy_message(name, 100);
+  ScriptError error = failure(setting ? fmt::format("{} = \"{}\": {}", setting->first, shown, why)
+                                      : fmt::format("{}: '{}': {}", what, shown, why),
+                              {}, allowed, nearest);
+  if (setting && runtime.box->blame) locate_blame(*runtime.box, *runtime.box->blame, error.error);
+  throw error;
+}
+
+std::vector<fs::path> roots_of(const Runtime& runtime) {
+  std::vector<fs::path> roots = runtime.path.user;
+  if (!runtime.path.installation.empty()) roots.push_back(runtime.path.installation / "assets");
+  return roots;
+}
+
+/// Files with the same ending near where the name would be, for "did you mean".
+std::string nearest_file(const std::vector<fs::path>& roots, const std::string& name) {
+  const fs::path folder = fs::path(name).parent_path();
+  std::vector<std::string> names;
+  for (const auto& root : roots) {
+    std::error_code ec;
+    for (fs::directory_iterator it(root / folder, ec), end; !ec && it != end && names.size() < 1000; it.increment(ec))
+      if (it->path().extension() == fs::path(name).extension())
+        names.push_back((folder / it->path().filename()).string());
+  }
+  return nearest_name(name, names);
+}
+
+void note_file(Runtime& runtime, const fs::path& file) {
+  if (std::ranges::find(runtime.files, file) == runtime.files.end()) runtime.files.push_back(file);
+}
+
+std::shared_ptr<const ImageData> make_data(Runtime& runtime, Size size, std::vector<float> pixels,
+                                           const fs::path& file) {
+  runtime.assets.bytes += pixels.size() * sizeof(float);
+  if (runtime.assets.bytes > kMaxBytes)
+    throw failure(
+        fmt::format("'{}' and what was read before take more than {} MiB", file.filename().string(), kMaxBytes >> 20));
+  ImageData data{size, std::move(pixels), {}, file};
+  const Hash of_pixels = hash_bytes(data.pixels.data(), data.pixels.size() * sizeof(float));
+  data.hash = Hasher()
+                  .add(static_cast<std::uint64_t>(size.width))
+                  .add(static_cast<std::uint64_t>(size.height))
+                  .add(of_pixels.hex())
+                  .finish();
+  return std::make_shared<const ImageData>(std::move(data));
+}
+
+/// RGBA from whatever channels a picture has.
+std::vector<float> rgba(const Image& image) {
+  if (image.channels == 4) return image.pixels;
+  std::vector<float> out(static_cast<std::size_t>(image.size().area()) * 4, 1.0F);
+  const auto channels = static_cast<std::size_t>(image.channels);
+  for (std::size_t i = 0; i < out.size() / 4; ++i)
+    for (std::size_t c = 0; c < 3; ++c) out[4 * i + c] = image.pixels[i * channels + (channels >= 3 ? c : 0)];
+  return out;
+}
+
+}  // namespace
+
+fs::path find_asset(lua_State* lua, const std::string& what, const std::string& name) {
+  Runtime& runtime = Runtime::of(lua);
+  runtime.box->charge(kFileCost);
+  const Sandbox::Pause pause(*runtime.box);
+  const auto* setting = setting_of(runtime, name);
+  if (setting && setting->second.number[0] == 1) {  // the command line's
+    note_file(runtime, name);
+    return name;
+  }
+  constexpr const char* kAllowed =
+      "the name of a file beside the preset or on the search path, like \"luts/film.cube\"";
+  if (!is_safe_entry(name, 8)) fail_at(lua, what, name, "leads out of the folders that scripts may read", kAllowed);
+  const auto roots = roots_of(runtime);
+  for (const auto& root : roots) {
+    const fs::path file = root / name;
+    std::error_code ec;
+    if (!fs::is_regular_file(file, ec)) continue;
+    const bool own = std::ranges::find(runtime.path.user, root) != runtime.path.user.end();
+    if (own && !lies_in(file, root))
+      fail_at(lua, what, name, fmt::format("is a link that leads out of {}", root.string()), kAllowed);
+    note_file(runtime, file);
+    return file;
+  }
+  if (!roots.empty()) note_file(runtime, roots.front() / name);  // where it may appear
+  fail_at(lua, what, name, "there is no such file", kAllowed, nearest_file(roots, name));
+}
+
+const LoadedLut& load_lut(lua_State* lua, const fs::path& file) {
+  Runtime& runtime = Runtime::of(lua);
+  const auto known = runtime.assets.luts.find(file);
+  if (known != runtime.assets.luts.end()) return known->second;
+  runtime.box->charge(kFileCost);
+  const Sandbox::Pause pause(*runtime.box);
+  auto read = read_lut(file);
+  if (!read) throw ScriptError{std::move(read).error()};
+  LoadedLut loaded{std::move(read->steps), make_data(runtime, read->size, std::move(read->table), file)};
+  return runtime.assets.luts.emplace(file, std::move(loaded)).first->second;
+}
+
+std::shared_ptr<const ImageData> load_picture(lua_State* lua, const fs::path& file) {
+  Runtime& runtime = Runtime::of(lua);
+  auto& known = runtime.assets.pictures[file];
+  if (known) return known;
+  runtime.box->charge(kFileCost);
+  const Sandbox::Pause pause(*runtime.box);
+  Diagnostics ignored;
+  ReadOptions options;
+  options.max_side = kMaxSide;
+  options.max_bytes = kMaxBytes;
+  auto picture = read_picture(file, options, ignored);
+  if (!picture) {
+    Error error = std::move(picture).error();
+    error.kind = ErrorKind::script;  // it is a part of the look
+    throw ScriptError{std::move(error)};
+  }
+  return known = make_data(runtime, picture->color.size(), rgba(picture->color), file);
+}
+
+}  // namespace afterglow::script

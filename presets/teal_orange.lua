@@ -1,0 +1,10 @@
+-- Teal and orange: a filmic tone curve, a soft glow, and a colourist's table (assets/luts).
+local fx = require "afterglow"
+
+return fx.stack {
+  name = "Teal and orange",
+  fx.bloom { mode = "scattering", threshold = 1.0, intensity = 0.15 },
+  fx.tone_mapping { mode = "neutral" },
+  fx.lut { file = "luts/teal_orange.cube", intensity = 0.9 },
+  fx.vignette { at = "after_post_process", order = 110, intensity = 0.3 },
+}

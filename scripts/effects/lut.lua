@@ -1,0 +1,39 @@
+-- LUT: colours by a look-up table in a file. OpenColorIO reads the file (.cube of Adobe and Resolve, .3dl, .csp, .spi1d, .spi3d, .clf, …); its steps
+-- are done in order: matrices and ranges (the domain of a .cube), curves linearly between their entries, cubes tetrahedrally between the
+-- four nearest. Tables know colours from 0 to 1 alone: what is outside of a table's domain gets the colour of its edge.
+-- `input` says how colours are encoded before the look-up, `output` what the table gives; tables for finished pictures want "srgb" (the
+-- default), those for scenes often "acescct" (AP1 primaries, ACES S-2016-001). Alpha stays.
+local fx = require "afterglow"
+
+local encodings = { linear = 0, srgb = 1, acescct = 2 }
+
+return fx.effect {
+  name = "lut",
+  doc = "Colours by a look-up table from a file (.cube and others).",
+  at = "after_post_process", order = 100,
+  settings = {
+    file = fx.file {
+      extensions = { "cube", "3dl", "csp", "spi1d", "spi3d", "clf", "cub", "lut", "hdl", "itx", "m3d", "mga", "vf", "cc", "cdl" },
+      doc = "The table: beside the preset or on the search path. None: no effect.",
+    },
+    intensity = fx.float { min = 0, max = 1, default = 1, doc = "How much of the table's colours: 0 none, 1 they alone." },
+    input = fx.enum { "linear", "srgb", "acescct", default = "srgb", doc = "How the table wants its colours: scene-linear Rec.709, sRGB, ACEScct." },
+    output = fx.enum { "same", "linear", "srgb", "acescct", default = "same", doc = "How the colours are encoded that it gives; same: as its input." },
+  },
+  active = function(s)
+    if s.file == "" then return false, "file is not given" end
+    return s.intensity > 0, "intensity is 0"
+  end,
+  build = function(g, s, source)
+    local lookup = g:lookup { file = s.file }
+    local output = s.output == "same" and s.input or s.output
+    local pass = {
+      shader = "lut/apply", source = source, table = lookup.table, intensity = s.intensity,
+      before = encodings[s.input], behind = encodings[output],
+    }
+    for i, step in ipairs(lookup.steps) do
+      pass["kind" .. i], pass["row" .. i], pass["size" .. i] = step.kind, step.row, step.size
+    end
+    return g:pass(pass)
+  end,
+}

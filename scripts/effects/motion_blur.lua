@@ -1,0 +1,36 @@
+-- Motion blur from motion vectors: the reconstruction filter of M. McGuire, P. Hennessy, M. Bukowski, B. Osman, "A Reconstruction Filter for
+-- Plausible Motion Blur" (I3D 2012). The longest motion of each tile and of its neighbours says along which line a pixel reads; a
+-- read counts when its own motion carries it to the pixel, when the pixel's motion uncovers it, or when both are blurred together; depth, when
+-- there is one, says which of the two is in front. math.md §16.
+-- Motion is in pixels in one frame, x to the right and y up, as renderers write it (Blender's Vector pass, Nuke's forward.u and .v).
+local fx = require "afterglow"
+
+return fx.effect {
+  name = "motion_blur",
+  doc = "Blurs what moves, by motion vectors.",
+  at = "post_process", order = 20,
+  settings = {
+    shutter_angle = fx.float { min = 0, max = 720, default = 180, unit = "degrees", doc = "How long the shutter is open: 360 is the whole frame. 0: no blur." },
+    samples = fx.int { min = 3, max = 128, default = 24, doc = "Reads for each pixel that moves: more are smoother, and dearer." },
+    max_radius = fx.float { min = 1, max = 128, default = 32, unit = "px", doc = "No blur reaches further each way." },
+    motion_scale = fx.vec2 { min = -16384, max = 16384, default = { 1, 1 },
+      doc = "Factor of the motion vectors: {1, -1} for files with y downwards, {width, height} for motion in pictures." },
+    depth_softness = fx.float { min = 1e-4, max = 1e6, default = 0.1, unit = "m", doc = "Difference of depth over which one thing is in front of another." },
+  },
+  needs = { "motion" },
+  optional = { "depth" },
+  active = function(s) return s.shutter_angle > 0, "shutter_angle is 0" end,
+  build = function(g, s, source)
+    local depth = g:input("depth")
+    local shutter = 0.5 * s.shutter_angle / 360
+    local tile = math.ceil(s.max_radius)
+    local across, down = (source.width + tile - 1) // tile, (source.height + tile - 1) // tile
+    local motion = g:pass { shader = "motion_blur/motion", source = source, motion = g:input("motion"), depth = depth or source, has_depth = depth ~= nil,
+                            scale = { s.motion_scale[1] * shutter, s.motion_scale[2] * shutter }, max_radius = s.max_radius }
+    local rows = g:pass { shader = "motion_blur/longest", source = motion, size = { across, source.height }, block = tile, down = false, name = "rows" }
+    local tiles = g:pass { shader = "motion_blur/longest", source = rows, size = { across, down }, block = tile, down = true, name = "tiles" }
+    local neighbours = g:pass { shader = "motion_blur/neighbours", source = tiles }
+    return g:pass { shader = "motion_blur/gather", source = motion, picture = source, longest = neighbours, block = tile, samples = s.samples,
+                    softness = s.depth_softness, has_depth = depth ~= nil }
+  end,
+}

@@ -1,0 +1,101 @@
+// c → lerp(c, decode(steps(encode(c))), intensity): the steps of a look-up table that g:lookup read, one behind the other.
+#include "lib/color.glsl"
+#include "lib/encoding.glsl"
+#include "lib/lut.glsl"
+
+uniform sampler2D table;
+uniform float intensity;
+layout(constant_id = 0) const int before = 1;  // encodings: see lib/encoding.glsl
+layout(constant_id = 1) const int behind = 1;
+layout(constant_id = 2) const int kind1 = 0;
+layout(constant_id = 3) const int row1 = 0;
+layout(constant_id = 4) const int size1 = 0;
+layout(constant_id = 5) const int kind2 = 0;
+layout(constant_id = 6) const int row2 = 0;
+layout(constant_id = 7) const int size2 = 0;
+layout(constant_id = 8) const int kind3 = 0;
+layout(constant_id = 9) const int row3 = 0;
+layout(constant_id = 10) const int size3 = 0;
+layout(constant_id = 11) const int kind4 = 0;
+layout(constant_id = 12) const int row4 = 0;
+layout(constant_id = 13) const int size4 = 0;
+layout(constant_id = 14) const int kind5 = 0;
+layout(constant_id = 15) const int row5 = 0;
+layout(constant_id = 16) const int size5 = 0;
+layout(constant_id = 17) const int kind6 = 0;
+layout(constant_id = 18) const int row6 = 0;
+layout(constant_id = 19) const int size6 = 0;
+
+vec3 matrix_step(vec3 c, int row) {
+  vec4 r = fetch(table, ivec2(0, row)), g = fetch(table, ivec2(1, row)), b = fetch(table, ivec2(2, row));
+  return vec3(dot(r.rgb, c) + r.a, dot(g.rgb, c) + g.a, dot(b.rgb, c) + b.a);
+}
+
+vec3 table_1d(vec3 c, int row, int size) {
+  vec3 at = clamp(c, 0.0, 1.0) * float(size - 1);
+  ivec3 low = ivec3(at), high = min(low + 1, ivec3(size - 1));
+  vec3 t = at - vec3(low);
+  vec3 a = vec3(fetch(table, lut_entry(row, low.r)).r, fetch(table, lut_entry(row, low.g)).g, fetch(table, lut_entry(row, low.b)).b);
+  vec3 b = vec3(fetch(table, lut_entry(row, high.r)).r, fetch(table, lut_entry(row, high.g)).g, fetch(table, lut_entry(row, high.b)).b);
+  return a * (1.0 - t) + b * t;
+}
+
+vec3 table_half(vec3 c, int row) {
+  ivec3 low, high;
+  vec3 t;
+  lut_half(c.r, low.r, high.r, t.r);
+  lut_half(c.g, low.g, high.g, t.g);
+  lut_half(c.b, low.b, high.b, t.b);
+  vec3 a = vec3(fetch(table, lut_entry(row, low.r)).r, fetch(table, lut_entry(row, low.g)).g, fetch(table, lut_entry(row, low.b)).b);
+  vec3 b = vec3(fetch(table, lut_entry(row, high.r)).r, fetch(table, lut_entry(row, high.g)).g, fetch(table, lut_entry(row, high.b)).b);
+  return a * (1.0 - t) + b * t;
+}
+
+vec3 table_3d(vec3 c, int row, int size) {
+  vec3 at = clamp(c, 0.0, 1.0) * float(size - 1);
+  ivec3 low = ivec3(at), high = min(low + 1, ivec3(size - 1)), a, b;
+  vec4 weights = lut_tetrahedron(at - vec3(low), a, b);
+  a = a * high + (1 - a) * low;
+  b = b * high + (1 - b) * low;
+  return fetch(table, lut_entry(row, size, low)).rgb * weights.x + fetch(table, lut_entry(row, size, a)).rgb * weights.y +
+         fetch(table, lut_entry(row, size, b)).rgb * weights.z + fetch(table, lut_entry(row, size, high)).rgb * weights.w;
+}
+
+vec3 range_step(vec3 c, int row) {
+  vec4 r = fetch(table, ivec2(0, row));
+  return clamp(c * r.x + r.y, r.z, r.w);
+}
+
+vec3 cdl_step(vec3 c, int row) {
+  return lut_cdl(c, fetch(table, ivec2(0, row)).rgb, fetch(table, ivec2(1, row)).rgb, fetch(table, ivec2(2, row)).rgb,
+                 fetch(table, ivec2(3, row)).xy);
+}
+
+vec3 power_step(vec3 c, int row) {
+  vec4 p = fetch(table, ivec2(0, row));
+  return lut_power(c, p.rgb, p.a);
+}
+
+// The kind is compiled in: of these, one is left.
+vec3 one_step(vec3 c, int kind, int row, int size) {
+  if (kind == kLutMatrix) return matrix_step(c, row);
+  if (kind == kLutTable1d) return table_1d(c, row, size);
+  if (kind == kLutTable3d) return table_3d(c, row, size);
+  if (kind == kLutRange) return range_step(c, row);
+  if (kind == kLutCdl) return cdl_step(c, row);
+  if (kind == kLutPower) return power_step(c, row);
+  if (kind == kLutTableHalf) return table_half(c, row);
+  return c;
+}
+
+vec4 apply(vec4 color) {
+  vec3 c = encoded(color.rgb, before);
+  c = one_step(c, kind1, row1, size1);
+  c = one_step(c, kind2, row2, size2);
+  c = one_step(c, kind3, row3, size3);
+  c = one_step(c, kind4, row4, size4);
+  c = one_step(c, kind5, row5, size5);
+  c = one_step(c, kind6, row6, size6);
+  c = clamp(decoded(c, behind), -kMaxLight, kMaxLight);
+  return vec4(lerp(color.rgb, c, intensity), color.a);
+}

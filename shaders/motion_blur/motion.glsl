@@ -1,0 +1,12 @@
+// Half the way that a pixel moves while the shutter is open, held to max_radius (xy), its depth (z), and the way's length before it was held (w).
+layout(constant_id = 0) const bool has_depth = false;
+
+uniform vec2 scale;
+uniform float max_radius;
+
+vec4 apply(vec4 color, vec4 motion, vec4 depth) {
+  vec2 way = clamp(motion.xy * scale, -1e9, 1e9);
+  float length_of_way = length(way);
+  if (length_of_way > max_radius) way *= max_radius / length_of_way;
+  return vec4(way, has_depth ? depth.r : 0.0, length_of_way);
+}

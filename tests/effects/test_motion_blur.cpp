@@ -1,0 +1,105 @@
+// Motion blur: the oracle, and what may and may not be blurred.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cases.h"
+#include "reference/motion_blur.h"
+
+namespace afterglow {
+namespace {
+
+using namespace reference;
+
+/// Motion that turns over the picture, up to `length` pixels a frame.
+Scene moving(Scene scene, double length) {
+  auto& motion = scene.motion.emplace(scene.source.size());
+  for (int y = 0; y < motion.height; ++y)
+    for (int x = 0; x < motion.width; ++x) {
+      const double angle = 0.07 * x + 0.05 * y, way = length * (0.5 + 0.5 * std::sin(0.11 * x - 0.13 * y));
+      motion.at(x, y) = Rgba(std::cos(angle) * way, std::sin(angle) * way, 0, 1);
+    }
+  motion = in_floats(motion);
+  return scene;
+}
+
+std::string entry(const MotionBlur& v) {
+  return fmt::format(
+      "fx.motion_blur {{ shutter_angle = {}, samples = {}, max_radius = {}, motion_scale = {{ {}, {} }}, "
+      "depth_softness = {} }}",
+      v.shutter_angle, v.samples, v.max_radius, v.scale_x, v.scale_y, v.depth_softness);
+}
+
+/// A white bar on black, `width` wide, that moves `speed` pixels a frame across; what is behind it stands still.
+Scene bar(double speed) {
+  Scene scene{"bar", DoubleImage(96, 32, Rgba(0, 0, 0, 1)), DoubleImage(96, 32, Rgba(10, 0, 0, 1)), {}};
+  scene.motion.emplace(96, 32, Rgba(0, 0, 0, 1));
+  for (int y = 0; y < 32; ++y)
+    for (int x = 40; x < 56; ++x) {
+      scene.source.at(x, y) = Rgba(1);
+      scene.depth->at(x, y).r = 2;
+      scene.motion->at(x, y).r = speed;
+    }
+  return scene;
+}
+
+TEST_F(Effects, MotionBlurAgrees) {
+  const MotionBlur variants[] = {
+      {},
+      {.shutter_angle = 360, .samples = 9, .max_radius = 10},
+      {.shutter_angle = 90, .samples = 40, .max_radius = 21.5, .scale_x = -2, .scale_y = 0.5},
+      {.shutter_angle = 360, .max_radius = 16, .depth_softness = 5}};
+  for (const Size size : {Size{101, 57}, Size{64, 64}, Size{17, 5}, Size{1, 1}})
+    for (const bool with_depth : {true, false})
+      for (const auto& v : variants) {
+        auto scene = moving(random_scene(size, 91), 40);
+        if (!with_depth) scene.depth.reset();
+        SCOPED_TRACE(entry(v) + (with_depth ? " with depth" : ""));
+        const auto expected = motion_blur(scene.source, *scene.motion, scene.depth ? &*scene.depth : nullptr, v);
+        for (const Way way : {Way::plain, Way::joined}) {
+          const Made made = run_stack(entry(v), scene, way);
+          EXPECT_TRUE(agrees(made.result, expected, kDecisions.full, kRgba));
+          EXPECT_TRUE(alpha_is_kept(made, scene));
+        }
+      }
+}
+
+TEST_F(Effects, WhatStandsStillStaysBitForBit) {
+  auto scene = random_scene({70, 50}, 92);
+  scene.motion.emplace(70, 50, Rgba(0.9, 0, 0, 1));  // with half a shutter, less than half a pixel each way
+  EXPECT_TRUE(agrees(run_stack("fx.motion_blur {}", scene, Way::plain).result, scene.source, 0, kRgba));
+}
+
+TEST_F(Effects, AMovingBarSpreadsBothWaysAndTheRestStaysSharp) {
+  const auto made = run_stack("fx.motion_blur { shutter_angle = 360, samples = 64 }", bar(16), Way::plain).result;
+  const auto at = [&](int x) { return made[4 * static_cast<std::size_t>(96 * 16 + x)]; };
+  EXPECT_GT(at(36), 0.1F);  // before the bar's edge
+  EXPECT_LT(at(36), 0.9F);
+  EXPECT_GT(at(59), 0.1F);
+  EXPECT_GT(at(48), 0.9F);  // its middle
+  EXPECT_EQ(at(28), 0.0F);  // further than half of what it moves
+  EXPECT_EQ(at(70), 0.0F);
+  double sum = 0;
+  for (int x = 0; x < 96; ++x) sum += at(x);
+  EXPECT_NEAR(sum, 16, 10);  // the filter is plausible, not exact: beside the bar it counts for more than it covers
+}
+
+TEST_F(Effects, WhatMovesBehindSomethingSharpDoesNotCoverIt) {
+  // The bar stands still in front; everything behind it moves.
+  auto scene = bar(0);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 96; ++x)
+      if (x < 40 || x >= 56) scene.motion->at(x, y).r = 16;
+  const auto made = run_stack("fx.motion_blur { shutter_angle = 360, samples = 64 }", scene, Way::plain).result;
+  for (int x = 40; x < 56; ++x) EXPECT_GT(made[4 * static_cast<std::size_t>(96 * 16 + x)], 0.97F) << x;
+}
+
+TEST_F(Effects, MotionBlurIsSkippedWithoutMotion) {
+  const Made made = run_stack("fx.motion_blur {}", random_scene({16, 16}, 93), Way::plain);
+  EXPECT_FALSE(made.ran());
+  EXPECT_THAT(made.graph.skipped.at(0).reason, testing::HasSubstr("no motion input"));
+  expect_skipped("fx.motion_blur { shutter_angle = 0 }", "shutter_angle is 0");
+}
+
+}  // namespace
+}  // namespace afterglow

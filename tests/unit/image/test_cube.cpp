@@ -1,0 +1,99 @@
+// .cube files that are wrong, by accident or on purpose: refused at the line, before anything large is allocated.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "image/lut_file.h"
+#include "temporary_folder.h"
+
+namespace afterglow {
+namespace {
+using testing::HasSubstr;
+
+std::string fault_of(const std::string& text) {
+  const auto checked = check_cube(text, "a.cube");
+  return checked ? "" : checked.error().text();
+}
+
+std::string rows(int count) {
+  std::string out;
+  for (int i = 0; i < count; ++i) out += "0.1 0.2 0.3\n";
+  return out;
+}
+
+TEST(Cube, WhatIsRightPasses) {
+  EXPECT_EQ(fault_of("LUT_1D_SIZE 2\n0 0 0\n1 1 1\n"), "");
+  EXPECT_EQ(
+      fault_of("# by hand\nTITLE \"x\"\n\nLUT_3D_SIZE 2\r\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 1 1\n# data\n" + rows(8)),
+      "");
+  EXPECT_EQ(fault_of("LUT_1D_SIZE 3\nLUT_1D_INPUT_RANGE 0 2\nLUT_3D_SIZE 2\n" + rows(11)), "");
+  EXPECT_EQ(fault_of("LUT_1D_SIZE 2\n-1e-3 +0.5 .25\n1E2 1. 0\n"), "");
+  EXPECT_EQ(fault_of("LUT_1D_SIZE 2\n0 0 0\n1 1 1"), "");  // no newline at the end
+}
+
+TEST(Cube, SizesThatNoFileHas) {
+  for (const char* size : {"1000000", "130", "1", "0", "-2", "2.5", "nan", "1e9", "99999999999999999999", "x", ""})
+    EXPECT_THAT(fault_of(std::string("LUT_3D_SIZE ") + size + "\n" + rows(8)),
+                HasSubstr("a.cube:1: error: LUT_3D_SIZE"))
+        << size;
+  EXPECT_THAT(fault_of("LUT_1D_SIZE 65537\n"), HasSubstr("allowed: an integer, 2…65536"));
+  EXPECT_THAT(fault_of("LUT_3D_SIZE 2\nLUT_3D_SIZE 2\n"), HasSubstr("a.cube:2: error: LUT_3D_SIZE is there twice"));
+}
+
+TEST(Cube, TooFewAndTooMany) {
+  EXPECT_THAT(fault_of("LUT_3D_SIZE 2\n" + rows(7)), HasSubstr("ends after 7 of 8 colours"));
+  EXPECT_THAT(fault_of("LUT_3D_SIZE 2\n" + rows(9)), HasSubstr("a.cube:10: error: more than the 8 colours"));
+  EXPECT_THAT(fault_of(""), HasSubstr("holds no table"));
+  EXPECT_THAT(fault_of("0 0 0\n"), HasSubstr("a.cube:1: error: colours before the size"));
+}
+
+TEST(Cube, Values) {
+  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\n0 0 nan\n0 0 0\n"), HasSubstr("a.cube:2: error: 'nan' is not finite"));
+  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\n0 0 1e39\n0 0 0\n"), HasSubstr("a.cube:2: error: '1e39' is not finite"));
+  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\n0 0\n0 0 0\n"), HasSubstr("a.cube:2: error: a colour has 3 numbers, not 2"));
+  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\n0 0 zero\n"), HasSubstr("a.cube:2: error: 'zero' is not a number"));
+  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\nDOMAIN_MIN 0 0 1\n" + rows(2)),
+              HasSubstr("a.cube:2: error: DOMAIN_MIN is not below"));
+  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\nDOMAIN_MAX 1 inf 1\n"), HasSubstr("a.cube:2: error: DOMAIN_MAX"));
+  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\nLUT_1D_INPUT_RANGE 1 0\n"),
+              HasSubstr("a.cube:2: error: LUT_1D_INPUT_RANGE is no range"));
+}
+
+TEST(Cube, Words) {
+  EXPECT_THAT(fault_of("LUT_3D_SIZ 2\n"), HasSubstr("a.cube:1: error: unknown word 'LUT_3D_SIZ'"));
+  EXPECT_THAT(fault_of("LUT_3D_SIZ 2\n"), HasSubstr("did you mean 'LUT_3D_SIZE'?"));
+  EXPECT_THAT(fault_of("LUT_1D_SIZE 2\n0 0 0\nDOMAIN_MIN 0 0 0\n"),
+              HasSubstr("a.cube:3: error: 'DOMAIN_MIN' behind the first"));
+  EXPECT_THAT(fault_of("\xEF\xBB\xBFLUT_1D_SIZE 2\n"), HasSubstr("byte order mark"));
+}
+
+TEST(Cube, NothingCrashes) {
+  std::mt19937 random(17);
+  const std::string good = "TITLE \"t\"\nLUT_1D_SIZE 2\nLUT_3D_SIZE 2\nDOMAIN_MIN 0 0 0\n" + rows(10);
+  for (int i = 0; i < 20000; ++i) {
+    std::string text = good;
+    for (unsigned k = random() % 6; k-- > 0;) text[random() % text.size()] = static_cast<char>(random() % 256);
+    if (random() % 3 == 0) text.resize(random() % text.size());
+    (void)check_cube(text, "a.cube");
+  }
+}
+
+TEST(Cube, EveryFormatRefusesRubbish) {
+  const TemporaryFolder folder;
+  for (const char* name :
+       {"a.3dl", "a.csp", "a.spi1d", "a.spi3d", "a.clf", "a.cub", "a.hdl", "a.itx", "a.m3d", "a.vf", "a.cc", "a.cdl"}) {
+    for (const char* text : {"", "rubbish\n", "\x01\x02\x03", "LUT_3D_SIZE 1000000\n", "<ProcessList>"}) {
+      std::ofstream(folder / name) << text;
+      const auto read = read_lut(folder / name);
+      ASSERT_FALSE(read) << name << ": " << text;
+      EXPECT_EQ(read.error().kind, ErrorKind::script);
+      EXPECT_THAT(read.error().file, HasSubstr(name));
+    }
+  }
+  EXPECT_THAT(read_lut(folder / "a.png").error().text(), HasSubstr("no format of look-up tables"));
+  EXPECT_THAT(read_lut(folder / "none.cube").error().text(), HasSubstr("none.cube: error: "));
+}
+
+}  // namespace
+}  // namespace afterglow

@@ -1,0 +1,143 @@
+// Files that effects read: the setting type, where a name is looked up, and where it never leads.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "scene.h"
+
+namespace afterglow {
+namespace {
+namespace fs = std::filesystem;
+using test::Scene;
+using testing::HasSubstr;
+
+const std::string kTable = "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n";
+
+class Assets : public testing::Test {
+ protected:
+  void SetUp() override {
+    scene.effect("tint", R"(
+      settings = { table = fx.file { extensions = { "cube" }, doc = "The table." } },
+      active = function(s) return s.table ~= "", "table is not given" end,
+      build = function(g, s, source)
+        return g:pass { shader = "tint/apply", source = source, numbers = g:lookup { file = s.table }.table }
+      end,)");
+    scene.write("shaders/tint/apply.glsl",
+                "uniform sampler2D numbers;\nvec4 apply(vec4 color) { return color + fetch(numbers, ivec2(0)); }\n");
+  }
+  /// The file that the graph's data comes from, without the scene's folder; or the error.
+  std::string found() {
+    auto preset = scene.load();
+    if (!preset) return scene.shorten(preset.error().text());
+    auto graph = scene.build(*preset);
+    if (!graph) return scene.shorten(graph.error().text());
+    for (const auto& image : graph->images)
+      if (image.data) return scene.shorten(image.data->file.string());
+    return "nothing";
+  }
+  Scene scene;
+};
+
+TEST_F(Assets, BesideThePreset) {
+  scene.write("a.cube", kTable);
+  scene.write("luts/b.cube", kTable);
+  scene.stack("fx.tint { table = \"a.cube\" }");
+  EXPECT_EQ(found(), "a.cube");
+  scene.stack("fx.tint { table = \"luts/b.cube\" }");
+  EXPECT_EQ(found(), "luts/b.cube");
+  scene.stack("fx.tint {}");
+  EXPECT_EQ(found(), "nothing");
+}
+
+TEST_F(Assets, AlongTheSearchPathAndInPacks) {
+  scene.write("packs/glow/c.cube", kTable);
+  scene.write("other/d.cube", kTable);
+  scene.write("other/a.cube", kTable);
+  scene.write("a.cube", kTable);
+  scene.options.paths = {scene.folder() / "other"};
+  scene.stack("fx.tint { table = \"c.cube\" }");
+  EXPECT_EQ(found(), "packs/glow/c.cube");
+  scene.stack("fx.tint { table = \"d.cube\" }");
+  EXPECT_EQ(found(), "other/d.cube");
+  scene.stack("fx.tint { table = \"a.cube\" }");
+  EXPECT_EQ(found(), "a.cube");
+}
+
+TEST_F(Assets, NamesThatLeadOut) {
+  const fs::path outside = fs::temp_directory_path() / ("afterglow_outside_" + std::to_string(getpid()) + ".cube");
+  std::ofstream(outside) << kTable;
+  for (const std::string& name : {std::string("../") + outside.filename().string(), outside.string(),
+                                  std::string("x/../a.cube"), std::string("./a.cube"), std::string("a\\b.cube")}) {
+    scene.stack("fx.tint { table = [[" + name + "]] }");
+    EXPECT_THAT(found(), HasSubstr("preset.lua:3: error: tint.table = ")) << name;
+    EXPECT_THAT(found(), HasSubstr("is not a name inside")) << name;
+  }
+  // A script that builds the name itself gets no further.
+  scene.effect("reach",
+               "build = function(g, s, source) g:lookup { file = \"" + outside.string() + "\" } return source end,");
+  scene.stack("fx.reach {}");
+  EXPECT_THAT(found(), HasSubstr("leads out of the folders that scripts may read"));
+  fs::create_symlink(outside, scene.folder() / "link.cube");
+  scene.stack("fx.tint { table = \"link.cube\" }");
+  EXPECT_THAT(found(), HasSubstr("preset.lua:3: error: table = \"link.cube\": is a link that leads out of"));
+  fs::create_directory_symlink(outside.parent_path(), scene.folder() / "folder");
+  scene.stack("fx.tint { table = \"folder/" + outside.filename().string() + "\" }");
+  EXPECT_THAT(found(), HasSubstr("is a link that leads out of"));
+  fs::remove(outside);
+}
+
+TEST_F(Assets, TheCommandLineMayNameAnyFile) {
+  const fs::path outside = fs::temp_directory_path() / ("afterglow_given_" + std::to_string(getpid()) + ".cube");
+  std::ofstream(outside) << kTable;
+  scene.stack("fx.tint {}");
+  scene.options.overrides = {{"tint", "table", outside.string()}};
+  EXPECT_EQ(found(), outside.string());
+  fs::remove(outside);
+  EXPECT_THAT(found(), HasSubstr("is not a name inside"));
+}
+
+TEST_F(Assets, FilesAreKnownOnceBuilt) {
+  const auto file = scene.write("a.cube", kTable);
+  scene.stack("fx.tint { table = \"a.cube\" }");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset);
+  ASSERT_TRUE(scene.build(*preset));
+  const auto& files = preset->files();
+  EXPECT_NE(std::find(files.begin(), files.end(), file), files.end());
+  // Every build of a preset sees the same; another preset sees what the file holds then.
+  const auto graph = scene.build(*preset).value();
+  scene.write("a.cube", "LUT_1D_SIZE 2\n0 0 0\n1 1 0.5\n");
+  EXPECT_TRUE(same_structure(graph, scene.build(*preset).value()));
+  auto again = scene.load();
+  ASSERT_TRUE(again);
+  EXPECT_FALSE(same_structure(graph, scene.build(*again).value()));
+}
+
+TEST_F(Assets, Messages) {
+  scene.write("film.cube", kTable);
+  scene.stack("fx.tint {\n  table = \"flim.cube\" }");
+  EXPECT_THAT(found(), HasSubstr("preset.lua:4: error: table = \"flim.cube\": there is no such file"));
+  EXPECT_THAT(found(), HasSubstr("did you mean 'film.cube'?"));
+  scene.stack("fx.tint { table = \"film.png\" }");
+  EXPECT_THAT(found(), HasSubstr("no file of a kind that is allowed"));
+  scene.stack("fx.tint { table = 3 }");
+  EXPECT_THAT(found(), HasSubstr("not the name of a file"));
+  scene.stack("fx.tint { table = fx.curve { { 0, \"a.cube\" }, { 9, \"film.cube\" } } }");
+  EXPECT_THAT(found(), HasSubstr("cannot be a curve"));
+  scene.write("film.cube", "LUT_1D_SIZE 2\n0 0 0\n1 1\n");
+  scene.stack("fx.tint { table = \"film.cube\" }");
+  EXPECT_THAT(found(), HasSubstr("film.cube:3: error: a colour has 3 numbers, not 2"));
+  scene.effect("tint",
+               "settings = { table = fx.file { doc = \"x\" } }, build = function(g, s, source) return source end");
+  EXPECT_THAT(found(), HasSubstr("fx.file needs extensions"));
+  scene.effect("tint",
+               "settings = { table = fx.file { extensions = { \".cube\" } } }, build = function(g, s, source) return "
+               "source end");
+  EXPECT_THAT(found(), HasSubstr("without the point"));
+}
+
+}  // namespace
+}  // namespace afterglow
