@@ -57,7 +57,10 @@ return fx.effect {
 )"));
     AFTERGLOW_CHECK(edit_value(0));
     AFTERGLOW_CHECK(edit_shader(0));
-    return write_picture(bench::make_picture(options.size), path("picture.exr"), {}, diagnostics);
+    Picture picture = bench::make_picture(options.size);
+    AFTERGLOW_CHECK(write_picture(picture, path("picture.1.exr"), {}, diagnostics));
+    for (float& value : picture.color.pixels) value *= 0.5f;  // another picture, for whole frames
+    return write_picture(picture, path("picture.2.exr"), {}, diagnostics);
   }
   Result<void> edit_value(int number) const {
     return write_file_atomically(path("look.lua"),
@@ -94,11 +97,11 @@ Result<double> time_edit(Player& player, const std::function<Result<void>()>& ed
   return milliseconds_since(start);
 }
 
-/// All passes of a frame, by showing the same picture anew.
+/// All passes of a frame: of two pictures in turns.
 Result<double> frame_time(Player& player) {
   std::vector<double> work;
   for (int i = 0; i < 9; ++i) {
-    player.reload_pictures();
+    player.transport().step(1, player.now());
     player.settle();
     const auto start = Clock::now();
     if (auto step = player.step(); !step) return std::move(step).error();
@@ -126,7 +129,7 @@ Result<ReloadBench> measure_reloads(Device& device, const ReloadBenchOptions& op
   playing.live.stack.cache_folder = place.path("cache");
   // What the preset finds beside itself.
   playing.live.stack.preset.paths.insert(playing.live.stack.preset.paths.begin(), options.preset.parent_path());
-  playing.footage.inputs = {place.path("picture.exr").string()};
+  playing.footage.inputs = {place.path("picture.#.exr").string()};
   AFTERGLOW_TRY(const auto player, Player::open(device, playing, diagnostics));
   player->settle();
   if (auto first = player->step(); !first) return std::move(first).error();

@@ -99,7 +99,7 @@ void Player::State::follow_needs() {
   }
   if (more && ahead) {
     ahead->forget();
-    picture.reset();
+    reread = true;
   }
 }
 
@@ -147,6 +147,7 @@ Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, 
   if (const LiveStatus status = first->live().status(); status.generation != measured) {
     if (measured > 0) figures.reloaded({.build = status.times, .execute = work, .present = 0});
     measured = status.generation;
+    follow_needs();
   }
   return true;
 }
@@ -156,7 +157,7 @@ Result<bool> Player::State::show_due(double now) {
   const Transport::Due due = transport.due(now);
   want_pictures();
   const bool compare_missing = second && view.compare == Compare::other && !second_runs;
-  if (!due.moved && !dirty && !compare_missing && shown.position == due.position) return false;
+  if (!due.moved && !dirty && !reread && !compare_missing && shown.position == due.position) return false;
   const FootageFrame& frame = footage->frame(due.position);
   const auto read = ahead->find(frame.picture);
   if (!read) {
@@ -165,6 +166,7 @@ Result<bool> Player::State::show_due(double now) {
     if (dirty && picture && shown.position >= 0) return run(picture, {shown.position, due.tick, false});
     return false;
   }
+  reread = false;
   const bool same_picture = picture && read == picture && !dirty && !compare_missing;
   shown.position = due.position;
   shown.number = frame.number;

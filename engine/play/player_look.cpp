@@ -144,7 +144,7 @@ void Player::show(const std::string& image) { state_->first->live().show(image);
 void Player::reload_pictures() {
   State& s = *state_;
   s.ahead->forget();
-  s.dirty = true;
+  s.reread = true;
 }
 
 Result<void> Player::open_footage(const std::vector<std::string>& inputs) {

@@ -35,6 +35,7 @@ struct Player::State {
   ShownFrame shown;
   HostResult result;         ///< what was read back of the first's
   bool dirty = true;         ///< the picture on screen has to be run again
+  bool reread = false;       ///< …and so does the one that is being read anew, when it comes
   bool reloaded = false;     ///< builds were taken since the last turn
   bool second_runs = false;  ///< B was run for what is on screen
   double turn_ended = 0;

@@ -226,6 +226,19 @@ TEST_F(PlayerTest, AFrameThatCannotBeReadSaysSoAndPlayingGoesOn) {
   EXPECT_EQ(player.stats().unreadable, 1u);
 }
 
+TEST_F(PlayerTest, PicturesThatAreReadAgainAreShownWhenTheyCome) {
+  write_sequence(1);
+  Player& player = open();
+  turn();
+  write_picture_of(1, 0.375f);
+  EXPECT_FALSE(turn().changed) << "pictures are not followed";
+  player.reload_pictures();
+  ASSERT_TRUE(player.step()) << "before it has come";
+  turn();
+  EXPECT_FLOAT_EQ(source(), 0.375f);
+  EXPECT_FLOAT_EQ(result(), 0.75f);
+}
+
 TEST_F(PlayerTest, ComparesTwoPresets) {
   write_sequence(2);
   write_look("other.lua", 2);
