@@ -10,7 +10,7 @@ namespace afterglow {
 
 namespace {
 
-constexpr float kPanelWidth = 340, kTransportHeight = 78;
+constexpr float kPanelWidth = 376, kTransportHeight = 78;
 constexpr int kSettle = 3;                 // ImGui needs a frame to see an event and one to answer it
 constexpr double kLeastPause = 1.0 / 120;  // between frames that show no new picture
 constexpr double kBlink = 0.5, kHistogramPause = 0.1;
