@@ -128,7 +128,6 @@ void Panel::draw_head(Ui& ui, PanelPort& port) {
     save(port);
   ImGui::SameLine();
   if (small_button(ui, "Undo save", "The file as it was before the last save", save_.can_undo())) undo_save(port);
-  ImGui::SameLine();
   if (small_button(ui, "Undo", "Ctrl+Z", edits.can_undo())) port.undo();
   ImGui::SameLine();
   if (small_button(ui, "Redo", "Ctrl+Shift+Z", edits.can_redo())) port.redo();

@@ -27,14 +27,15 @@ double held(const SettingSchema& schema, double value) {
   return value;
 }
 
+// Dragged values are those that the row shows, so that presets get 0.176 and not 0.17600000053644177. Typed ones stay.
 bool number_row(const char* name, const SettingSchema& schema, double& value) {
   if (schema.min && schema.max) {
-    const int flags = is_logarithmic(schema) ? ImGuiSliderFlags_Logarithmic : 0;
-    return ImGui::SliderScalar(name, ImGuiDataType_Double, &value, &*schema.min, &*schema.max, number_format(schema),
-                               flags | ImGuiSliderFlags_NoRoundToFormat);
+    const bool by_factors = is_logarithmic(schema);
+    return ImGui::SliderScalar(name, ImGuiDataType_Double, &value, &*schema.min, &*schema.max,
+                               by_factors ? "%.4g" : number_format(schema),
+                               by_factors ? ImGuiSliderFlags_Logarithmic : 0);
   }
-  return ImGui::DragScalar(name, ImGuiDataType_Double, &value, drag_speed(value), nullptr, nullptr, "%.3f",
-                           ImGuiSliderFlags_NoRoundToFormat);
+  return ImGui::DragScalar(name, ImGuiDataType_Double, &value, drag_speed(value), nullptr, nullptr, "%.3f");
 }
 
 bool integer_row(const char* name, const SettingSchema& schema, double& value) {
@@ -66,9 +67,8 @@ bool choice_row(const char* name, const SettingSchema& schema, std::string& choi
 bool vector_row(const char* name, const SettingSchema& schema, std::array<double, 3>& number, int count) {
   if (schema.min && schema.max)
     return ImGui::SliderScalarN(name, ImGuiDataType_Double, number.data(), count, &*schema.min, &*schema.max,
-                                number_format(schema), ImGuiSliderFlags_NoRoundToFormat);
-  return ImGui::DragScalarN(name, ImGuiDataType_Double, number.data(), count, 0.01f, nullptr, nullptr, "%.3f",
-                            ImGuiSliderFlags_NoRoundToFormat);
+                                number_format(schema));
+  return ImGui::DragScalarN(name, ImGuiDataType_Double, number.data(), count, 0.01f, nullptr, nullptr, "%.3f");
 }
 
 // Hue, saturation and value as the eye knows them, up to 1; what is brighter is that colour times a number of stops.
@@ -84,7 +84,8 @@ bool color_picker(const Ui& ui, std::array<double, 3>& number) {
   ImGui::SetNextItemWidth(ui.px(160));
   changed |= ImGui::SliderFloat("stops over 1", &stops, 0, 10, "%.2f", ImGuiSliderFlags_AlwaysClamp);
   if (changed)
-    for (std::size_t i = 0; i < 3; ++i) number[i] = std::max(0.0, decode_color(code[i])) * std::exp2(stops);
+    for (std::size_t i = 0; i < 3; ++i)
+      number[i] = static_cast<float>(std::max(0.0, decode_color(code[i])) * std::exp2(stops));
   return changed;
 }
 
@@ -101,9 +102,7 @@ bool color_row(const Ui& ui, const char* name, std::array<double, 3>& number, fl
   }
   ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
   ImGui::SetNextItemWidth(width - side - ImGui::GetStyle().ItemInnerSpacing.x);
-  return ImGui::DragScalarN(name, ImGuiDataType_Double, number.data(), 3, 0.005f, nullptr, nullptr, "%.3f",
-                            ImGuiSliderFlags_NoRoundToFormat) ||
-         changed;
+  return ImGui::DragScalarN(name, ImGuiDataType_Double, number.data(), 3, 0.005f, nullptr, nullptr, "%.3f") || changed;
 }
 
 }  // namespace

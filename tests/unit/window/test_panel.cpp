@@ -161,14 +161,18 @@ class PanelTest : public ::testing::Test {
 TEST_F(PanelTest, SlidersSetWithinTheirRangeAsOneGesture) {
   ASSERT_TRUE(find({"Settings", "bloom", "scatter", "##value"}));
   const ImVec2 at = ImGui::GetIO().MousePos;
+  std::vector<double> dragged;
   press(true);
   for (const float x : {60.0f, 90.0f, 120.0f, 5000.0f}) {
     move(x, at.y);
     frame();
+    dragged.push_back(edited("bloom", "scatter").number[0]);
   }
   press(false);
   frame();
   EXPECT_NEAR(edited("bloom", "scatter").number[0], 0.95, 1e-6);  // its largest value
+  EXPECT_THAT(dragged, ::testing::SizeIs(::testing::Ge(3u)));
+  for (const double value : dragged) EXPECT_EQ(value, std::round(value * 1000) / 1000);  // as it is shown
   EXPECT_GE(port->sets, 3);
   EXPECT_TRUE(port->changes.undo());
   EXPECT_FALSE(port->changes.value("bloom", "scatter"));  // one step
@@ -184,14 +188,14 @@ TEST_F(PanelTest, ValuesAreTyped) {
   io.KeyCtrl = false;
   io.KeyMods = 0;
   frame();
-  io.AddInputCharactersUTF8("0.625");
+  io.AddInputCharactersUTF8("0.6251234");
   frame();
   frame();
   move(-100, -100);
   press(true);  // elsewhere: done
   press(false);
   frame();
-  EXPECT_DOUBLE_EQ(edited("bloom", "scatter").number[0], 0.625);
+  EXPECT_EQ(edited("bloom", "scatter").number[0], 0.6251234);
 }
 
 TEST_F(PanelTest, SwitchesAndChoices) {
