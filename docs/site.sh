@@ -18,6 +18,7 @@ pages=(
   "docs/determinism.md|The same pixels"
   "docs/math.md|The mathematics"
   "docs/benchmarks/README.md|Benchmarks"
+  "docs/benchmarks/flicker.md|Flicker"
   "CONTRIBUTING.md|Working on it"
   "tests/images/README.md|Test pictures"
   "CHANGELOG.md|Changes"

@@ -73,9 +73,10 @@ void add_files(CLI::App& app, Arguments& a) {
       ->check(CLI::PositiveNumber)
       ->type_name("N")
       ->group(sequence);
-  app.add_option("--pre-roll", a.pre_roll,
-                 "Earlier frames to run first, without writing them, for effects that look back (default: what they ask "
-                 "for; 0: none)")
+  app.add_option(
+         "--pre-roll", a.pre_roll,
+         "Earlier frames to run first, without writing them, for effects that look back (default: what they ask "
+         "for; 0: none)")
       ->check(CLI::Range(0, 100000))
       ->type_name("N")
       ->group(sequence);
@@ -304,8 +305,8 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   run.loop.histories = earlier.has_value();
   if (earlier && a.resume) note_earlier_files(run.report.frames, files_of(a), *earlier);
   AFTERGLOW_CHECK(prepare_resume(run));
-  Schedule schedule = earlier ? schedule_with_histories(run.report.frames, files_of(a), *earlier)
-                              : plain_schedule(run.report.frames);
+  Schedule schedule =
+      earlier ? schedule_with_histories(run.report.frames, files_of(a), *earlier) : plain_schedule(run.report.frames);
   run.report.pre_roll = schedule.earlier.size();
   run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
   FrameLoop loop(*run.session, run.loop, run.console);

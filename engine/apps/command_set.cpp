@@ -32,7 +32,7 @@ Result<std::vector<Override>> overrides_of(const std::vector<std::string>& setti
 }
 
 Result<std::vector<PresetEdit>> edits_of(const Arguments& arguments, const std::filesystem::path& file,
-                                          const PresetOptions& options, Console& console) {
+                                         const PresetOptions& options, Console& console) {
   if (arguments.settings.empty() && arguments.resets.empty())
     return Error{ErrorKind::usage, "nothing to change", "afterglow set", 0,
                  "ENTRY.SETTING=VALUE, --reset ENTRY.SETTING"};

@@ -77,9 +77,9 @@ std::string history_text(const Graph& graph, const History& history) {
                                 ? graph.images[static_cast<std::size_t>(history.first)].name
                                 : fmt::format("{{{}, {}, {}, {}}}", history.initial[0], history.initial[1],
                                               history.initial[2], history.initial[3]);
-  return fmt::format("   history {}: {}×{}, keeps {}; without a frame before it: {}; pre-roll {} frames\n", history.name,
-                     size.width, size.height, graph.images[static_cast<std::size_t>(history.next)].name, first,
-                     history.pre_roll);
+  return fmt::format("   history {}: {}×{}, keeps {}; without a frame before it: {}; pre-roll {} frames\n",
+                     history.name, size.width, size.height, graph.images[static_cast<std::size_t>(history.next)].name,
+                     first, history.pre_roll);
 }
 
 std::string entry_text(const ExplainView& view, const StackEntry& entry, const EntryHistory& history,

@@ -87,7 +87,13 @@ Result<void> check_outputs(const std::vector<FrameJob>& jobs) {
 }  // namespace
 
 Result<FrameJob> job_of(const FrameListRequest& request, const std::string& sequence, const FrameFile& file) {
-  FrameJob job{.frame = file.frame, .input = file.file, .output = {}, .depth = {}, .normal = {}, .motion = {}, .sequence = sequence};
+  FrameJob job{.frame = file.frame,
+               .input = file.file,
+               .output = {},
+               .depth = {},
+               .normal = {},
+               .motion = {},
+               .sequence = sequence};
   AFTERGLOW_TRY(job.depth, resolve(request.depth, file.frame));
   AFTERGLOW_TRY(job.normal, resolve(request.normal, file.frame));
   AFTERGLOW_TRY(job.motion, resolve(request.motion, file.frame));

@@ -36,9 +36,8 @@ class FrameLoop {
   ~FrameLoop();
 
   /// Runs the frames of the schedule and notes in each what became of it. A frame whose files fail is reported and
-  /// the rest go on; errors of the script or the device end the run. A frame of the pre-roll that fails is warned about and
-  /// left out, as if it was not there. Errors: that of the only frame, or one that counts
-  /// the failed ones.
+  /// the rest go on; errors of the script or the device end the run. A frame of the pre-roll that fails is warned about
+  /// and left out, as if it was not there. Errors: that of the only frame, or one that counts the failed ones.
   Result<void> run(Schedule& schedule);
 
   std::uint64_t largest_need() const { return largest_need_; }

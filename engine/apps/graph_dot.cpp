@@ -71,9 +71,8 @@ std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& t
   for (std::size_t i = 0; i < graph.images.size(); ++i)
     if (graph.images[i].producer < 0)
       out += fmt::format("  image{} [label={}, shape=ellipse];\n", i,
-                         quoted(graph.images[i].name + (history_of_previous(graph, static_cast<ImageId>(i))
-                                                            ? "\nof the frame before"
-                                                            : "")));
+                         quoted(graph.images[i].name +
+                                (history_of_previous(graph, static_cast<ImageId>(i)) ? "\nof the frame before" : "")));
   for (std::size_t k = 0; k < plan.kernels.size(); ++k) {
     const auto& kernel = plan.kernels[k];
     const bool joined = kernel.passes.size() > 1;

@@ -55,8 +55,15 @@ std::vector<Node> nodes_of(const Graph& graph, const Plan& plan) {
     of_image[i] = nodes.size();
     const Size size = graph.images[i].size;
     nodes.push_back(
-        {graph.images[i].name, fmt::format("{} {}×{}", history_of_previous(graph, static_cast<ImageId>(i)) ? "frame before," : "input",
-                                              size.width, size.height), "#eeeeee", {}, 0, 0, 0, true});
+        {graph.images[i].name,
+         fmt::format("{} {}×{}", history_of_previous(graph, static_cast<ImageId>(i)) ? "frame before," : "input",
+                     size.width, size.height),
+         "#eeeeee",
+         {},
+         0,
+         0,
+         0,
+         true});
   }
   for (std::size_t p = 0; p < graph.passes.size(); ++p) {
     const Pass& pass = graph.passes[p];

@@ -108,21 +108,22 @@ Json frame_json(const FrameRecord& frame) {
 }
 
 Json session_json(const SessionReport& session) {
-  Json out{
-      {"preset", session.preset},
-      {"device", session.device},
-      {"driver", session.driver},
-      {"choice", choice_name(session.choice.execution)},
-      {"choice_from", session.choice.from},
-      {"storage", session.choice.execution.storage == Storage::fp16 ? "fp16" : "fp32"},
-      {"reference", session.reference},
-      {"hardware_filter", session.choice.execution.hardware_filter},
-      {"max_error", session.choice.max_error},
-      {"kernels", session.kernels},
-      {"skipped", Json::array()},
-      {"image_memory",
-       Json{{"shared", session.memory.arena}, {"unshared", session.memory.sum}, {"least", session.memory.lower_bound},{"histories", session.memory.histories}}},
-      {"clamped_samples", session.clamped}};
+  Json out{{"preset", session.preset},
+           {"device", session.device},
+           {"driver", session.driver},
+           {"choice", choice_name(session.choice.execution)},
+           {"choice_from", session.choice.from},
+           {"storage", session.choice.execution.storage == Storage::fp16 ? "fp16" : "fp32"},
+           {"reference", session.reference},
+           {"hardware_filter", session.choice.execution.hardware_filter},
+           {"max_error", session.choice.max_error},
+           {"kernels", session.kernels},
+           {"skipped", Json::array()},
+           {"image_memory", Json{{"shared", session.memory.arena},
+                                 {"unshared", session.memory.sum},
+                                 {"least", session.memory.lower_bound},
+                                 {"histories", session.memory.histories}}},
+           {"clamped_samples", session.clamped}};
   for (const auto& skipped : session.skipped)
     out["skipped"].push_back(Json{{"name", skipped.name}, {"reason", skipped.reason}});
   return out;

@@ -25,8 +25,8 @@ struct RunReport {
   std::optional<SessionReport> session;  ///< empty when it could not be opened
   std::vector<FrameRecord> frames;
   std::size_t pre_roll = 0;  ///< earlier frames that were run besides, for what they hand on
-  double startup = 0;  ///< from the start of the program until the first frame can begin; script not included
-  double wall = 0;     ///< from the start of the program to now
+  double startup = 0;        ///< from the start of the program until the first frame can begin; script not included
+  double wall = 0;           ///< from the start of the program to now
   std::uint64_t memory_needed = 0;  ///< estimate that was held against --max-memory, of the largest frame
 };
 

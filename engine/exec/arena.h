@@ -23,8 +23,8 @@ struct ArenaOptions {
 
 class Arena {
  public:
-  /// Makes every image of `plan.transient` but the result, which is the caller's, and what histories keep. Errors: device (limits, out of
-  /// memory), io (over `max_memory`, before anything is allocated).
+  /// Makes every image of `plan.transient` but the result, which is the caller's, and what histories keep. Errors:
+  /// device (limits, out of memory), io (over `max_memory`, before anything is allocated).
   static Result<Arena> create(const Device& device, const Graph& graph, const Plan& plan, const ArenaOptions& options);
   Arena() = default;
 

@@ -42,8 +42,8 @@ ImageRead read_of(const Graph& graph, ImageId image, const DescribeOptions& opti
   const History* history = history_of_previous(graph, image);
   const bool between = history || graph.images[image].producer >= 0;
   if (!between && !(image == graph.source && options.source_is_storage)) return ImageRead::sampled;
-  const ImageRead read = options.half_storage && !is_precise(graph, image) ? ImageRead::storage_rgba16f
-                                                                           : ImageRead::storage_rgba32f;
+  const ImageRead read =
+      options.half_storage && !is_precise(graph, image) ? ImageRead::storage_rgba16f : ImageRead::storage_rgba32f;
   // In a first frame another image stands in the same place.
   if (history && history->first != kNoImage && read_of(graph, history->first, options) != read)
     return ImageRead::sampled;

@@ -59,7 +59,7 @@ struct FrameRunner::State {
     int bindings = 0;
     friend bool operator==(const Recorded&, const Recorded&) = default;
   };
-  static constexpr int kOneOff = 2;  ///< buffer of the Submitter for what is submitted once
+  static constexpr int kOneOff = 2;                       ///< buffer of the Submitter for what is submitted once
   std::array<std::optional<Recorded>, kOneOff> recorded;  ///< by Program::recording
   /// What a program is bound to: the images, and its own count then.
   struct Bound {
@@ -223,12 +223,15 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
     result.after(commands);
   };
   const auto start = Clock::now();
-  auto done = known ? submitter.submit_again(which) : submitter.submit([&](VkCommandBuffer commands) {
-    inputs.before(program, commands);
-    result.before(commands);
-    program.record(commands, -1, queries, run);
-    if (!separate) after(commands);
-  }, which);
+  auto done = known ? submitter.submit_again(which)
+                    : submitter.submit(
+                          [&](VkCommandBuffer commands) {
+                            inputs.before(program, commands);
+                            result.before(commands);
+                            program.record(commands, -1, queries, run);
+                            if (!separate) after(commands);
+                          },
+                          which);
   if (done) done = submitter.wait();
   // Layouts are where they were when the frame ends as it began.
   last.reset();

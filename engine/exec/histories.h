@@ -27,8 +27,8 @@ class Histories {
   /// their pixels; others begin anew; what the graph does not have goes. Must not be called while a submission that
   /// uses them is in flight; programs have to be pointed at them afterwards. Errors: device, io (over `max_memory`).
   Result<void> fit(const Device& device, const Graph& graph, const Options& options);
-  /// Takes over the images of `other` that fit as well as those here, with what they hold and the place in time; `other`
-  /// is left without them. For a stack that takes another's place. As `fit` in the rest.
+  /// Takes over the images of `other` that fit as well as those here, with what they hold and the place in time;
+  /// `other` is left without them. For a stack that takes another's place. As `fit` in the rest.
   void take(Histories& other);
 
   /// A frame begins. It follows the frame made last when its number is `step` greater: then it reads what that one

@@ -118,7 +118,8 @@ void Program::record(VkCommandBuffer commands, int only, VkQueryPool timestamps,
   if (s.begins_anew()) s.write_set(State::kFirst, [&](ImageId id) { return s.look_in_first_frame(id); });
   if (only >= 0) {
     const auto kernel = static_cast<std::size_t>(only);
-    if (kernel < count) s.record_one(commands, kernel, s.kernels[static_cast<std::size_t>(s.parity())][kernel].barriers);
+    if (kernel < count)
+      s.record_one(commands, kernel, s.kernels[static_cast<std::size_t>(s.parity())][kernel].barriers);
     return;
   }
   const auto stamp = [&](std::size_t query) {

@@ -96,8 +96,8 @@ class Program {
   std::vector<bool> kernels_to_run(const std::vector<ImageId>& changed_inputs, bool result_lost) const;
   /// Notes that everything that had to run has run, in the frame that its histories began.
   void up_to_date();
-  /// What frames hand on to the next; null when the graph has no histories. `Histories::begin` says which frame `record`
-  /// records.
+  /// What frames hand on to the next; null when the graph has no histories. `Histories::begin` says which frame
+  /// `record` records.
   Histories* histories() const;
   /// Other histories, which must have been fitted to this graph (or to one that it was reduced from). Commands recorded
   /// before must not be submitted again; none may be in flight. Errors: other (they do not fit).

@@ -66,8 +66,7 @@ Result<void> Program::State::use(std::shared_ptr<Histories> given) {
       return Error{ErrorKind::other, fmt::format("there are no images for the history '{}'", history.name)};
   }
   histories = std::move(given);
-  for (const int parity : {kEven, kOdd})
-    write_set(parity, [&](ImageId id) { return look_at_history(id, parity); });
+  for (const int parity : {kEven, kOdd}) write_set(parity, [&](ImageId id) { return look_at_history(id, parity); });
   make_commands();
   ++uses;
   return {};

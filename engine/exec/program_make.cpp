@@ -17,7 +17,9 @@ bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted
 }
 
 bool Program::State::hardware_filter() const {
-  const auto filters = [&](VkFormat of) { return supports(device, of, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT); };
+  const auto filters = [&](VkFormat of) {
+    return supports(device, of, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT);
+  };
   return options.hardware_filter && !options.reference && filters(format) &&
          (graph.histories.empty() || filters(VK_FORMAT_R32G32B32A32_SFLOAT));
 }
@@ -100,7 +102,8 @@ Result<void> Program::State::make_images(std::vector<KernelDesc>& descs) {
   return {};
 }
 
-/// What a kernel that binds these images may read besides histories, which are ready to be read as soon as they are made.
+/// What a kernel that binds these images may read besides histories, which are ready to be read as soon as they are
+/// made.
 std::vector<ImageId> Program::State::reads_of(const std::vector<ImageId>& bound) const {
   std::vector<ImageId> out;
   for (const ImageId image : bound) {
@@ -129,7 +132,8 @@ Result<void> Program::State::compile(KernelCompiler& compiler, const std::vector
 Result<void> Program::State::make_pipelines() {
   std::vector<std::string> names(compiled.unique.size());
   for (std::size_t i = plan.kernels.size(); i-- > 0;) names[compiled.index[i]] = plan.kernels[i].name;
-  AFTERGLOW_TRY(pipelines, KernelPipelines::create(device, compiled.unique, names, VK_FORMAT_UNDEFINED, options.pipelines));
+  AFTERGLOW_TRY(pipelines,
+                KernelPipelines::create(device, compiled.unique, names, VK_FORMAT_UNDEFINED, options.pipelines));
   return {};
 }
 

@@ -32,7 +32,7 @@ struct Program::State {
   Plan plan;
   Regions parts;
   std::vector<bool> changed;  ///< kernels with new parameters since the last run; all before the first
-  std::uint64_t serial = 0;  ///< Program::id
+  std::uint64_t serial = 0;   ///< Program::id
 
   CompiledKernels compiled;
   std::vector<std::vector<ImageId>> images;  ///< to bind, parallel to the plan's kernels
@@ -50,8 +50,8 @@ struct Program::State {
   std::vector<VkImageView> result;
   int result_rows = 1;
   bool storage_reads = false;
-  bool linear = false;  ///< images between kernels stay in GENERAL
-  int bindings = 0, uses = 0;  ///< of inputs and result; of histories
+  bool linear = false;                   ///< images between kernels stay in GENERAL
+  int bindings = 0, uses = 0;            ///< of inputs and result; of histories
   std::shared_ptr<Histories> histories;  ///< null when the graph has none
   std::uint64_t ran_turn = 0;            ///< Histories::turn of the last run
 

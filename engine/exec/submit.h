@@ -25,7 +25,8 @@ class Submitter {
   Result<void> submit(const std::function<void(VkCommandBuffer)>& record, int which = 0);
   /// Records without submitting. Waits like `submit`. Errors: device.
   Result<void> record(const std::function<void(VkCommandBuffer)>& record, int which = 0);
-  /// What was recorded last into this buffer, once more or for the first time: nothing that it uses may have changed. Errors: device.
+  /// What was recorded last into this buffer, once more or for the first time: nothing that it uses may have changed.
+  /// Errors: device.
   Result<void> submit_again(int which = 0);
   /// Until the last submission is done; at once when there is none. Errors: device (lost).
   Result<void> wait();

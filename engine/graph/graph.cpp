@@ -69,8 +69,7 @@ Result<void> validate_conditions(const Graph& graph) {
 /// Which pass makes each history's next image, which reads its previous one.
 Result<void> validate_history(const Graph& graph, const History& history) {
   const auto wrong = [&](const std::string& what) {
-    return Error{ErrorKind::script,
-                 fmt::format("history '{}' of effect '{}': {}", history.name, history.effect, what)};
+    return Error{ErrorKind::script, fmt::format("history '{}' of effect '{}': {}", history.name, history.effect, what)};
   };
   if (!is_image(graph, history.previous) || !is_image(graph, history.next))
     return wrong("it is about no image of this graph");

@@ -80,8 +80,8 @@ struct IdleCondition {
 
 /// An image that one frame makes for the next. Both images have the same size. See graph/history.h.
 struct History {
-  std::string name;    ///< unique: "auto_exposure.exposure"
-  std::string effect;  ///< name of the effect's entry
+  std::string name;             ///< unique: "glow.past"
+  std::string effect;           ///< name of the effect's entry
   ImageId previous = kNoImage;  ///< read: what `next` was in the frame before; no pass makes it
   ImageId next = kNoImage;      ///< made by a pass; not the result
   /// Read in place of `previous` when there is no frame before; made before anything reads `previous`. kNoImage: every
@@ -89,7 +89,7 @@ struct History {
   ImageId first = kNoImage;
   std::array<double, 4> initial{};  ///< rounded to 32-bit floats; may change without a rebuild
   bool precise = true;              ///< in full floats, whatever the storage of the other images
-  int pre_roll = 1;  ///< earlier frames after which it hardly matters that there was none before them
+  int pre_roll = 1;                 ///< earlier frames after which it hardly matters that there was none before them
 };
 
 struct Graph {

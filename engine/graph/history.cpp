@@ -30,7 +30,8 @@ std::vector<bool> passes_of_part(const Graph& graph, const History& history) {
   return part;
 }
 
-/// The passes that make these images and what they read. A `previous` that is read needs its `next` in the frame before.
+/// The passes that make these images and what they read. A `previous` that is read needs its `next` in the frame
+/// before.
 std::vector<bool> passes_for(const Graph& graph, std::vector<ImageId> wanted) {
   std::vector<bool> read(graph.images.size(), false), needed(graph.passes.size(), false);
   while (!wanted.empty()) {

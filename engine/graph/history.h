@@ -35,8 +35,8 @@ void separate_result(Graph& graph);
 /// histories of other effects ask for, because one may work on what another made. 0 without histories.
 int pre_roll(const Graph& graph);
 
-/// Equal where the part of the graph that makes the history, of the passes of its effect, is the same but for parameters:
-/// its pixels then mean the same.
+/// Equal where the part of the graph that makes the history, of the passes of its effect, is the same but for
+/// parameters: its pixels then mean the same.
 Hash history_part(const Graph& graph, const History& history);
 
 }  // namespace afterglow

@@ -25,7 +25,7 @@ std::vector<bool> passes_that_matter(const Graph& graph) {
 
 std::vector<int> count_readers(const Graph& graph, const std::vector<bool>& keep) {
   std::vector<int> readers(graph.images.size(), 0);
-  ++readers[graph.result];  // whoever runs the graph
+  ++readers[graph.result];                                              // whoever runs the graph
   for (const auto& history : graph.histories) ++readers[history.next];  // the next frame
   for (std::size_t i = 0; i < graph.passes.size(); ++i)
     if (keep[i])

@@ -97,8 +97,7 @@ DoubleImage firefly_stabilisation(const DoubleImage& source, const std::vector<D
   };
   return generate(source.size(), [&](int x, int y) {
     const Rgba& c = source.at(x, y);
-    const double limit =
-        std::max(settings.threshold, settings.tolerance * std::max(around(x, y), before(x, y)));
+    const double limit = std::max(settings.threshold, settings.tolerance * std::max(around(x, y), before(x, y)));
     return brightest(c) <= limit ? c : Rgba(Rgb(c) * (limit / brightest(c)), c.a);
   });
 }

@@ -270,14 +270,11 @@ int image_equal(lua_State* lua) {
 
 void open_graph_binding(lua_State* lua) {
   push_kind(lua, kGraphKind);
-  const luaL_Reg methods[] = {{"pass", &native<graph_pass, "pass">},
-                              {"filter", &native<graph_filter, "filter">},
-                              {"history", &native<graph_history, "history">},
-                              {"keep", &native<graph_keep, "keep">},
-                              {"image", &native<graph_image, "image">},
-                              {"lookup", &native<graph_lookup, "lookup">},
-                              {"input", &native<graph_input, "input">},
-                              {"skip", &native<graph_skip, "skip">}};
+  const luaL_Reg methods[] = {
+      {"pass", &native<graph_pass, "pass">},          {"filter", &native<graph_filter, "filter">},
+      {"history", &native<graph_history, "history">}, {"keep", &native<graph_keep, "keep">},
+      {"image", &native<graph_image, "image">},       {"lookup", &native<graph_lookup, "lookup">},
+      {"input", &native<graph_input, "input">},       {"skip", &native<graph_skip, "skip">}};
   lua_createtable(lua, 0, static_cast<int>(std::size(methods)));
   for (const auto& [name, function] : methods) {
     lua_pushcfunction(lua, function);

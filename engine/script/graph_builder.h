@@ -49,8 +49,8 @@ struct FilterRequest {
 
 struct HistoryRequest {
   std::optional<std::string> name;
-  std::optional<Size> size;             ///< default: that of `first`
-  std::optional<ImageRef> first;        ///< else `initial`
+  std::optional<Size> size;       ///< default: that of `first`
+  std::optional<ImageRef> first;  ///< else `initial`
   std::array<double, 4> initial{};
   bool precise = true;
   std::optional<int> pre_roll;

@@ -34,7 +34,8 @@ ImageRef GraphBuilder::history(const HistoryRequest& request, const CallPlace& p
   if (request.first && request.first->build != build_)
     fail_history(history, "'first' is an image of another run of build", {"first"});
   if (request.first && history_of_previous(graph_, request.first->id))
-    fail_history(history, "'first' is itself an image of an earlier frame", {"first"}, "an image of this frame, numbers");
+    fail_history(history, "'first' is itself an image of an earlier frame", {"first"},
+                 "an image of this frame, numbers");
   if (!request.size && !request.first)
     fail_history(history, "its size is not known", {}, "size = an image, {width, height}; first = an image");
   const Size size = request.size.value_or(request.first ? request.first->size : Size{});
@@ -108,10 +109,14 @@ void GraphBuilder::keep(const ImageRef& image, const ImageRef& next, const CallP
 void GraphBuilder::end() {
   if (open_histories_.empty()) return;
   const auto& [name, place] = open_histories_.front();
-  throw ScriptError{{ErrorKind::script,
-                     fmt::format("history '{}' of effect '{}' is given nothing to keep for the next frame", name,
-                                 entry_->effect),
-                     place.file, place.line, "g:keep(history, image)", {}, {}}};
+  throw ScriptError{
+      {ErrorKind::script,
+       fmt::format("history '{}' of effect '{}' is given nothing to keep for the next frame", name, entry_->effect),
+       place.file,
+       place.line,
+       "g:keep(history, image)",
+       {},
+       {}}};
 }
 
 }  // namespace afterglow::script

@@ -89,8 +89,8 @@ struct ScriptLimits {
 struct PresetOptions {
   std::vector<std::filesystem::path> paths;  ///< --path
   std::vector<Override> overrides;
-  bool leave_out_unfit = false;  ///< overrides that do not fit the stack are warned about, and are no errors
-  std::optional<Position> at;    ///< --at: where the picture is seen from, for volumes
+  bool leave_out_unfit = false;          ///< overrides that do not fit the stack are warned about, and are no errors
+  std::optional<Position> at;            ///< --at: where the picture is seen from, for volumes
   std::optional<std::string> text = {};  ///< of the preset, instead of what its file holds; the file need not exist
   ScriptLimits limits;
 };

@@ -44,7 +44,7 @@ std::string shown(const std::optional<SettingValue>& value) { return value ? val
 
 // What edits want of a setting, the last one counting; null when none names it.
 const PresetEdit* edit_of(const std::vector<PresetEdit>& edits, const std::string& entry, const std::string& setting,
-                           const std::string& volume) {
+                          const std::string& volume) {
   const PresetEdit* found = nullptr;
   for (const auto& edit : edits)
     if (edit.entry == entry && edit.setting == setting && edit.volume == volume) found = &edit;

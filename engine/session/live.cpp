@@ -41,7 +41,11 @@ LiveStack::~LiveStack() = default;
 
 Result<std::unique_ptr<LiveStack>> LiveStack::open(Device& device, const std::filesystem::path& preset,
                                                    const LiveOptions& options, Diagnostics& diagnostics) {
+  // Drivers of CPU devices compile a shader when it is first drawn with: half the rows take half the time, and a frame
+  // hardly longer.
+  constexpr int kRowsWhileEdited = 4;
   LiveOptions own = options;
+  own.stack.most_rows = std::min(own.stack.most_rows, kRowsWhileEdited);
   const auto& cache = options.stack.cache_folder;
   if (!own.stack.shared) {
     own.stack.shared = std::make_shared<StackShared>(cache.empty() ? cache : cache / "shaders");

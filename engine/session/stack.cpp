@@ -30,6 +30,7 @@ StackChoice choose(const Device& device, const StackOptions& options, const Cali
   StackChoice choice{{}, {}, max_error};
   const Calibration::Found found = calibration.find(device.info(), max_error);
   choice.execution = found.choice;
+  choice.execution.rows = std::min(choice.execution.rows, options.most_rows);
   choice.from = found.from;
   if (options.precision == Precision::automatic) return choice;
   choice.execution.storage = options.precision == Precision::fp16 ? Storage::fp16 : Storage::fp32;

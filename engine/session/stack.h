@@ -18,6 +18,7 @@
 #include "gpu/device.h"
 #include "script/preset.h"
 #include "session/display_encoding.h"
+#include "shader/kernel.h"
 
 namespace afterglow {
 
@@ -39,8 +40,11 @@ struct StackOptions {
   bool keep_images = false;  ///< images between passes stay, so that after an edit only what it changes runs again
   std::uint64_t max_memory = 6ull << 30;  ///< bytes of device memory for images
   std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
-  std::optional<Choice> choice;           ///< execute so, whatever calibration and precision say
-  std::filesystem::path calibration;      ///< a table of `afterglow calibrate`; empty: the shipped one
+  /// At most so many rows an invocation, whatever calibration says. Fewer make large frames slower and shaders faster
+  /// to compile; the pixels are the same.
+  int most_rows = kMaxRows;
+  std::optional<Choice> choice;       ///< execute so, whatever calibration and precision say
+  std::filesystem::path calibration;  ///< a table of `afterglow calibrate`; empty: the shipped one
   /// Null: the stack's own. Its cache folder counts, and whoever made it calls Device::use_pipeline_cache.
   std::shared_ptr<StackShared> shared;
 };

@@ -126,7 +126,7 @@
 ---@class afterglow.settings.firefly_stabilisation : afterglow.EntryKeys
 ---@field threshold? number|afterglow.Moving  Brightness (largest channel) up to which a pixel is left alone; linear. 0…1000000, default 1
 ---@field tolerance? number|afterglow.Moving  How many times as bright as its surroundings or its past a pixel may be. 1…1000, default 2
----@field search? integer|afterglow.Moving  How far a small light may move from frame to frame and still be known. integer 0…16 px, default 3
+---@field search? integer|afterglow.Moving  How far a small light may move from frame to frame and still be known. integer 0…8 px, default 3
 ---@field frames? integer|afterglow.Moving  How many earlier frames must have had the light: more take down fireflies that come twice. integer 1…4, default 2
 ---@field first_frame? "keep"|"clamp"|afterglow.OfTime  Where there are no earlier frames. keep: everything stays. clamp: single bright pixels go, small lights too. default "keep"
 

@@ -42,10 +42,10 @@ EffectCase stabilised(const FireflyStabilisation& v) {
 constexpr Tolerances kLogarithms{.full = 5e-5, .joined = 1e-5, .half = kHalfFloat};
 
 TEST_F(Effects, AutoExposureOfOnePictureAgrees) {
-  agree_everywhere({exposed({}), exposed({.compensation = 1.5, .low_percentile = 0, .high_percentile = 100}),
-                    exposed({.low_percentile = 70, .high_percentile = 95, .center = true}),
-                    exposed({.min_ev = 1, .max_ev = 1.25})},
-                   kLogarithms);
+  agree_everywhere(
+      {exposed({}), exposed({.compensation = 1.5, .low_percentile = 0, .high_percentile = 100}),
+       exposed({.low_percentile = 70, .high_percentile = 95, .center = true}), exposed({.min_ev = 1, .max_ev = 1.25})},
+      kLogarithms);
 }
 
 TEST_F(Effects, AutoExposureFollowsAsTheOracleDoes) {
@@ -78,9 +78,7 @@ TEST_F(Effects, AutoExposureBringsGreyToMiddleGreyAtOnce) {
 TEST_F(Effects, AutoExposureMovesByItsSpeeds) {
   TemporalPlayer player("fx.auto_exposure { speed_up = 6, speed_down = 3, min_ev = -16, max_ev = 16 }");
   EXPECT_NEAR(player.play(grey(0.18), 1)[0], 0.18, 1e-5);
-  const auto exposure = [&](double light, int frame) {
-    return std::log2(light / player.play(grey(light), frame)[0]);
-  };
+  const auto exposure = [&](double light, int frame) { return std::log2(light / player.play(grey(light), frame)[0]); };
   EXPECT_NEAR(exposure(0.18 * 256, 2), 6 / 24.0, 1e-4) << "8 stops up: 6 a second";
   EXPECT_NEAR(exposure(0.18 * 256, 3), 12 / 24.0, 1e-4);
   EXPECT_NEAR(exposure(0.18 / 256, 4), (12 - 3) / 24.0, 1e-4) << "and down: 3 a second";
@@ -116,9 +114,10 @@ TEST_F(Effects, AutoExposureSaysWhatIsWrong) {
 }
 
 TEST_F(Effects, FireflyStabilisationOfOnePictureAgrees) {
-  agree_everywhere({stabilised({.clamp_first = true}), stabilised({.threshold = 0, .tolerance = 1, .clamp_first = true}),
-                    stabilised({.search = 0, .frames = 4})},
-                   {.spikes = true});
+  agree_everywhere(
+      {stabilised({.clamp_first = true}), stabilised({.threshold = 0, .tolerance = 1, .clamp_first = true}),
+       stabilised({.search = 0, .frames = 4})},
+      {.spikes = true});
 }
 
 /// Sparks in random places of a noisy picture.

@@ -79,7 +79,8 @@ TEST_F(Cells, EveryShippedLookAgreesWithTheWholeOracle) {
     // These two read between pixels, at positions that are sums of floats: one near 100 is known to 2^-18.
     const std::string name = entry.path().stem().string();
     const bool between = name == "anamorphic_night" || name == "vhs_tape";
-    EXPECT_LE(cell->points.at(0).quality->error.percentile, between ? 5e-4 : 1e-5) << entry.path() << " against " << cell->truth;
+    EXPECT_LE(cell->points.at(0).quality->error.percentile, between ? 5e-4 : 1e-5)
+        << entry.path() << " against " << cell->truth;
     with_oracle += cell->truth == "double precision";
   }
   EXPECT_GE(with_oracle, 9);

@@ -89,8 +89,8 @@ TEST_F(FrameTest, WhatStaysOnTheDeviceIsWhatWouldBeReadBack) {
       EXPECT_TRUE(left.ran);
       EXPECT_NE(left.source.binding.image, left.result.binding.image);
       EXPECT_EQ(left.result.binding.size, size);
-      EXPECT_EQ(left.result.layout, direct && device().is_cpu() ? VK_IMAGE_LAYOUT_GENERAL
-                                                                : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+      EXPECT_EQ(left.result.layout,
+                direct && device().is_cpu() ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
       if (i == 1) recordings = frames->counters().recordings;
     }
     EXPECT_EQ(frames->counters().recordings, recordings) << "steady frames record nothing";

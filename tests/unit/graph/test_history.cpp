@@ -56,8 +56,7 @@ TEST(History, BadOnesAreRefused) {
   EXPECT_EQ(t.error(), "history 'test.before' of effect 'test': it is 8×8, but the next frame gets 16×8");
   t = Trail(true);
   t.history().first = t.grade;
-  EXPECT_EQ(t.error(),
-            "history 'test.before' of effect 'test': 'test.before' is read before its first image is made");
+  EXPECT_EQ(t.error(), "history 'test.before' of effect 'test': 'test.before' is read before its first image is made");
   t = Trail(true);
   t.history().first = t.before;
   EXPECT_EQ(t.error(), "history 'test.before' of effect 'test': its first image is itself of an earlier frame");

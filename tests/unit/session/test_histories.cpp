@@ -112,7 +112,7 @@ TEST_F(HistoriesOfFrames, AFrameReadsWhatTheOneBeforeItMade) {
   rows.choice = Choice{.storage_reads = true, .rows = 4};
   for (const auto& options : {plain, kept, reference, half, rows}) {
     const auto session = open(options);
-    EXPECT_EQ(run(*session, 1, 1), 9);   // 16 / 2 + 1
+    EXPECT_EQ(run(*session, 1, 1), 9);  // 16 / 2 + 1
     EXPECT_EQ(run(*session, 2, 1), 5.5f) << "the same picture again, in another frame";
     EXPECT_EQ(run(*session, 3, 2), 4.75f);
     EXPECT_EQ(run(*session, 4, 2), 4.375f);
@@ -164,8 +164,9 @@ TEST_F(HistoriesOfFrames, AFirstImageStandsForTheFrameBefore) {
 }
 
 TEST_F(HistoriesOfFrames, TheyOutliveChangesOfOtherEffectsAndOfValues) {
-  look("fx.trail { keep = function(t) return t.frame == 3 and 0.25 or 0.5 end }, "
-       "fx.other { factor = function(t) return t.frame == 3 and 2 or 1 end }");
+  look(
+      "fx.trail { keep = function(t) return t.frame == 3 and 0.25 or 0.5 end }, "
+      "fx.other { factor = function(t) return t.frame == 3 and 2 or 1 end }");
   const auto session = open();
   EXPECT_EQ(run(*session, 1, 1), 9);
   EXPECT_EQ(run(*session, 2, 1), 5.5f);
@@ -223,8 +224,9 @@ TEST_F(HistoriesOfFrames, AStackThatTakesAnothersPlaceGoesOn) {
 }
 
 TEST_F(HistoriesOfFrames, WithoutThemAFrameIsTheSameWhateverWasPlayed) {
-  look("fx.other { factor = function(t) return t.frame % 5 == 0 and 1 or 1 + t.frame / 8 end }, "
-       "fx.bloom { intensity = fx.curve { { 0, 0.1 }, { 24, 0.9 } } }, fx.film_grain {}, fx.tone_mapping {}");
+  look(
+      "fx.other { factor = function(t) return t.frame % 5 == 0 and 1 or 1 + t.frame / 8 end }, "
+      "fx.bloom { intensity = fx.curve { { 0, 0.1 }, { 24, 0.9 } } }, fx.film_grain {}, fx.tone_mapping {}");
   const auto straight = open(), jumping = open();
   const auto pixels = [](Session& session, int frame) {
     Picture p = picture(static_cast<float>(frame) / 4);

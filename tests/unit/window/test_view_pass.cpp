@@ -8,8 +8,8 @@
 
 #include "exec/submit.h"
 #include "gpu/image.h"
-#include "window/view_pass.h"
 #include "view_oracle.h"
+#include "window/view_pass.h"
 
 namespace afterglow {
 namespace {
