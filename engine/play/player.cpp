@@ -127,6 +127,9 @@ Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, 
   const bool compare = second && view.compare == Compare::other;
   BuildContext frame = context(due);
   if (read->picture.facts) frame.position = camera_position(read->picture.facts->metadata);
+  // Effects that look back go on over frames that were dropped; after a jump they begin anew.
+  if (transport.playing() && ran && due.tick > ran->tick && frame.frame > ran->number)
+    frame.step = frame.frame - ran->number;
   auto done = first->process(read->picture, frame, options.timing);
   if (done && compare) done = second->process(read->picture, frame);
   shown.failed.reset();
@@ -137,6 +140,7 @@ Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, 
     return true;
   }
   picture = read;
+  ran = {due.tick, frame.frame};
   second_runs = compare;
   dirty = false;
   shown.size = read->picture.color.size();
@@ -180,7 +184,7 @@ Result<bool> Player::State::show_due(double now) {
   }
   const auto may_change = [](LiveSession* session) {
     Stack* stack = session ? session->live().stack() : nullptr;
-    return stack && stack->preset().may_change();
+    return stack && (stack->preset().may_change() || !stack->prepared_graph().histories.empty());
   };
   const bool moves = may_change(first.get()) || may_change(second.get());
   if (same_picture && !moves) {

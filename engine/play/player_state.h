@@ -33,10 +33,16 @@ struct Player::State {
   std::unique_ptr<LiveSession> first, second;
   std::shared_ptr<const ReadPicture> picture;  ///< that the images on the device were made of
   ShownFrame shown;
-  HostResult result;         ///< what was read back of the first's
-  bool dirty = true;         ///< the picture on screen has to be run again
-  bool reread = false;       ///< …and so does the one that is being read anew, when it comes
-  bool reloaded = false;     ///< builds were taken since the last turn
+  HostResult result;      ///< what was read back of the first's
+  bool dirty = true;      ///< the picture on screen has to be run again
+  bool reread = false;    ///< …and so does the one that is being read anew, when it comes
+  bool reloaded = false;  ///< builds were taken since the last turn
+  /// The last frame that was run.
+  struct Ran {
+    std::int64_t tick = 0;
+    double number = 0;
+  };
+  std::optional<Ran> ran;
   bool second_runs = false;  ///< B was run for what is on screen
   double turn_ended = 0;
   std::vector<int> wanted_for;       ///< position, heading and speed that the wishes were made for
