@@ -112,6 +112,14 @@ void Player::State::take_builds() {
   }
 }
 
+/// Errors of builds, once each, for the terminal.
+void Player::State::tell_errors() {
+  const std::string error = first->live().status().error_text();
+  if (error == told) return;
+  told = error;
+  if (!error.empty() && first->live().stack()) diagnostics.warn("the last good version plays on: " + error);
+}
+
 BuildContext Player::State::context(const Transport::Due& due) const {
   const FootageFrame& frame = footage->frame(due.position);
   BuildContext context;
@@ -204,6 +212,7 @@ Result<Step> Player::step() {
   }
   Step step;
   s.take_builds();
+  s.tell_errors();
   step.reloaded = std::exchange(s.reloaded, false);
   if (!s.transport.playing()) s.figures.stop();
   AFTERGLOW_TRY(step.changed, s.show_due(now));

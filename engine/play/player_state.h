@@ -37,6 +37,7 @@ struct Player::State {
   bool dirty = true;      ///< the picture on screen has to be run again
   bool reread = false;    ///< …and so does the one that is being read anew, when it comes
   bool reloaded = false;  ///< builds were taken since the last turn
+  std::string told;  ///< the error that was told last
   /// The last frame that was run.
   struct Ran {
     std::int64_t tick = 0;
@@ -55,6 +56,7 @@ struct Player::State {
   void begin_reading();
   void want_pictures();
   void take_builds();
+  void tell_errors();
   void follow_needs();
   Result<bool> show_due(double now);
   Result<bool> run(const std::shared_ptr<const ReadPicture>& read, const Transport::Due& due);

@@ -142,7 +142,8 @@ void WindowApp::note_step(const Step& turn) {
   }
   if (error != noted_error_) {
     noted_error_ = error;
-    diagnostics_.note(error.empty() ? "reload: good again" : "reload: " + status.error_text());
+    diagnostics_.note(error.empty() ? "reload: good again" : "reload: failed");
+    if (!error.empty() && !player_.live().stack()) diagnostics_.warn("no good version yet: " + status.error_text());
     redraw_ = kSettle;
   }
   update_title();
