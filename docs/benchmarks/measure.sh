@@ -14,6 +14,7 @@ mkdir -p "$folder"
 
 ./dev calibrate -o "$folder/calibration.json"
 docs/benchmarks/commands.sh >/dev/null
+./dev bench presets/neon_night.lua --reload >"$folder/reload.txt"
 
 compare=()
 if [[ -f $folder/bench.json ]]; then

@@ -203,6 +203,10 @@ Result<bool> Player::State::show_due(double now) {
   return run(read, due);
 }
 
+bool Player::in_memory(int position) const {
+  return state_->ahead->find(state_->footage->frame(position).picture) != nullptr;
+}
+
 Result<Step> Player::step() {
   State& s = *state_;
   const double now = s.now();

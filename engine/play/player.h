@@ -90,6 +90,8 @@ class Player {
   Transport& transport();
   View& view();
   const Footage& footage() const;
+  /// Whether the picture at this position has been read and is kept.
+  bool in_memory(int position) const;
   LiveStack& live();
   LiveStack* other();  ///< null without a second preset
   const ShownFrame& shown() const;

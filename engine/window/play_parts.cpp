@@ -16,7 +16,7 @@ void PlayParts::draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size
                           .now = player.now(),
                           .shown = player.shown().position,
                           .number = [&player](int position) { return player.footage().frame(position).number; },
-                          .cached = [](int) { return false; },
+                          .cached = [&player](int position) { return player.in_memory(position); },
                           .fps = stats.fps,
                           .late = stats.late,
                           .picture = player.shown().name};

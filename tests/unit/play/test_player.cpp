@@ -117,6 +117,19 @@ TEST_F(PlayerTest, PlaysByTheClockAndRunsEachFrame) {
   EXPECT_NEAR(player.stats().fps, 10, 1e-6);
 }
 
+TEST_F(PlayerTest, TellsWhichPicturesAreInMemory) {
+  write_sequence(8);
+  Player& all = open();
+  turn();
+  for (int i = 0; i < 8; ++i) EXPECT_TRUE(all.in_memory(i)) << i;
+  PlayerOptions options;
+  options.read_ahead.max_bytes = 1;
+  Player& one = open(options);
+  turn();
+  EXPECT_TRUE(one.in_memory(0)) << "what is on screen is kept whatever it takes";
+  EXPECT_FALSE(one.in_memory(7));
+}
+
 TEST_F(PlayerTest, DropsWhatIsLate) {
   write_sequence(8);
   Player& player = open();
