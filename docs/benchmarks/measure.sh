@@ -14,7 +14,7 @@ mkdir -p "$folder"
 
 ./dev calibrate -o "$folder/calibration.json"
 docs/benchmarks/commands.sh >/dev/null
-./dev bench presets/neon_night.lua --reload >"$folder/reload.txt"
+./dev bench presets/neon_night.lua --reload -o "$folder" >"$folder/reload.txt"
 
 compare=()
 if [[ -f $folder/bench.json ]]; then
