@@ -76,11 +76,7 @@ Result<void> LiveSession::process(const Picture& picture, const BuildContext& fr
 std::vector<Skipped> LiveSession::skipped() const {
   const State& s = *state_;
   std::vector<Skipped> out;
-  if (Stack* stack = s.live->stack()) {
-    out = stack->prepared_graph().skipped;
-    if (const Program* program = stack->program())
-      out.insert(out.end(), program->plan().skipped.begin(), program->plan().skipped.end());
-  }
+  if (const Stack* stack = s.live->stack()) out = stack->skipped();
   out.insert(out.end(), s.skipped_now.begin(), s.skipped_now.end());
   return out;
 }

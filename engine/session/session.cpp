@@ -112,18 +112,14 @@ SessionReport Session::report() const {
   report.preset = state_->preset_file;
   report.choice = stack.choice();
   report.reference = state_->options.stack.reference;
-  report.skipped = stack.prepared_graph().skipped;
+  report.skipped = stack.skipped();
   report.skipped_now = state_->skipped_now;
   report.counters = {.programs = stack.programs(),
                      .images = state_->runner->counters().images,
                      .buffers = state_->runner->counters().buffers};
   if (state_->ran)
     for (const auto& kernel : state_->ran->plan().kernels) report.kernels.push_back(kernel.name);
-  if (const Program* program = state_->stack->program()) {
-    report.skipped.insert(report.skipped.end(), program->plan().skipped.begin(), program->plan().skipped.end());
-    if (stack.region()) report.skipped.push_back(skipped_pixels(program->graph(), program->plan(), program->parts()));
-    report.memory = program->memory();
-  }
+  if (const Program* program = state_->stack->program()) report.memory = program->memory();
   report.clamped = state_->result.clamped;
   report.times = state_->times;
   report.times.script = stack.script_milliseconds();

@@ -122,6 +122,16 @@ bool Stack::runs() const { return state_->prepared && state_->graph.result != st
 Program* Stack::program() { return state_->program.get(); }
 const Graph& Stack::prepared_graph() const { return state_->graph; }
 const StackChoice& Stack::choice() const { return state_->choice; }
+
+std::vector<Skipped> Stack::skipped() const {
+  std::vector<Skipped> all = state_->graph.skipped;
+  if (const Program* program = state_->program.get()) {
+    all.insert(all.end(), program->plan().skipped.begin(), program->plan().skipped.end());
+    if (state_->region) all.push_back(skipped_pixels(program->graph(), program->plan(), program->parts()));
+  }
+  return all;
+}
+
 double Stack::script_milliseconds() const { return state_->script_ms; }
 double Stack::compile_milliseconds() const { return state_->compile_ms; }
 

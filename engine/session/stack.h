@@ -114,6 +114,8 @@ class Stack {
   Program* program();
   /// The graph of the last `prepare`.
   const Graph& prepared_graph() const;
+  /// Effects, passes and pixels that no frame like the last one that was prepared runs, with reasons.
+  std::vector<Skipped> skipped() const;
 
   /// Whether the content of a frame may make effects idle: then ask `program_for` for the program of each frame.
   bool depends_on_content() const;

@@ -137,6 +137,7 @@ TEST_F(Live, ARepairEndsAnEndlessScriptBeforeItsTime) {
   EXPECT_EQ(shown(), 1.f);
   // A build that has begun may still read the repaired file: then the script never ran, and we try again.
   for (int attempt = 0; attempt < 100 && live().counters().given_up == 0; ++attempt) {
+    live().settle();
     const auto builds = live().counters().builds;
     write("endless.lua", "while true do end\n");
     fs::rename(folder_ / "endless.lua", folder_ / "look.lua");  // at once: a build must not see half of it
@@ -155,6 +156,7 @@ TEST_F(Live, AnEditDuringABuildIsBuiltAfterIt) {
   open();
   EXPECT_EQ(shown(), 1.f);
   for (int i = 0; i < 8; ++i) {
+    live().settle();  // a build that was under way might see the edit and count for none
     const auto builds = live().counters().builds;
     write("shaders/t/lib.glsl", "vec3 tinted(vec3 c, float gain) { return c * gain + " + std::to_string(i) + ".0; }\n");
     while (live().counters().builds == builds) std::this_thread::yield();
