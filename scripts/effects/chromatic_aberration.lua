@@ -12,6 +12,7 @@ return fx.effect {
     samples = fx.int { min = 3, max = 24, default = 6, doc = "Reads along a fringe: 3 are three sharp pictures, more blend into a spectrum." },
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
+  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = 5e-4 },
   build = function(g, s, source)
     return g:pass { shader = "chromatic_aberration/spectrum", source = source, amount = s.intensity * 0.05 * 2 / 3, samples = s.samples }
   end,

@@ -35,6 +35,7 @@ return fx.effect {
     return false, "all settings are neutral"
   end,
 
+  holds = { "constant", "mirror", "turn_180", "turn_90", shift = 1, error = { fp32 = 1e-4, fp16 = 1e-2, up_to = 60 } },
   build = function(g, s, source)
     local use = steps(s)
     local sextants = s.hue_shift / 60

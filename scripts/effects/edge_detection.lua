@@ -16,6 +16,7 @@ return fx.effect {
     background_opacity = fx.float { min = 0, max = 1, default = 0, doc = "0: lines over the picture. 1: lines over the background alone." },
   },
   active = function(s) return s.intensity > 0 or s.background_opacity > 0, "intensity and background_opacity are 0" end,
+  holds = { "constant", mirror = { when = function(s) return s.operator ~= "roberts" end }, error = 1e-5 },
   build = function(g, s, source)
     return g:pass { shader = "edge_detection/lines", source = source, operator = ({ sobel = 0, scharr = 1, roberts = 2 })[s.operator],
                     intensity = s.intensity, threshold = s.threshold, ink = s.color, paper = s.background, opacity = s.background_opacity }

@@ -17,6 +17,7 @@ return fx.effect {
     local bends = s.intensity ~= 0 and (s.x_multiplier > 0 or s.y_multiplier > 0)
     return bends or s.scale ~= 1, "nothing bends and scale is 1"
   end,
+  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = 5e-4 },
   build = function(g, s, source)
     local theta = math.min(1.6 * math.max(math.abs(s.intensity) * 100, 1), 160) * math.pi / 180
     return g:pass {

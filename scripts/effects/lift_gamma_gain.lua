@@ -37,6 +37,7 @@ return fx.effect {
     local lift, power, gain = values(s)
     return not (all(lift, 0) and all(power, 1) and all(gain, 1)), "all settings are neutral"
   end,
+  holds = { "constant", "mirror", "turn_180", "turn_90", shift = 1, "monotone", error = 1e-5 },
   build = function(g, s, source)
     local lift, power, gain = values(s)
     return g:pass { shader = "lift_gamma_gain/grade", source = source, lift = lift, power = power, gain = gain }

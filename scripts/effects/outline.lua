@@ -56,6 +56,7 @@ return fx.effect {
     return true
   end,
 
+  holds = { error = 1e-5 },
   build = function(g, s, source)
     if s.source == "device_depth" and s.depth_space ~= "device" then
       error('source = "device_depth" requires depth_space = "device"', 0)

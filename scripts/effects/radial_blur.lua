@@ -11,6 +11,7 @@ return fx.effect {
     center = fx.vec2 { min = 0, max = 1, default = { 0.5, 0.5 }, doc = "The point that stays sharp: {0, 0} is the upper left corner, {1, 1} the lower right." },
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
+  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = 5e-4 },
   build = function(g, s, source)
     return g:pass { shader = "radial_blur/zoom", source = source, amount = s.intensity, samples = s.samples, center = s.center }
   end,
