@@ -125,6 +125,14 @@ void fill_render(Image& image, Random& random) {
   });
 }
 
+/// What is left after tone mapping.
+void fill_display(Image& image, Random& random) {
+  each_pixel(image, [&](int, int, float* p) {
+    for (int c = 0; c < 3; ++c) p[c] = static_cast<float>(random.unit());
+    p[3] = 1;
+  });
+}
+
 /// Around 1, where thresholds begin: steps of a few halves.
 void fill_threshold(Image& image, Random& random) {
   const double around = random.chance(0.5) ? 1 : random.log_between(0.2, 10);
@@ -158,6 +166,7 @@ void fill_greys(Image& image, Random& random) {
 
 constexpr PictureKind kKinds[] = {
     {"render", "log-normal light up to 43, as renders have it", fill_render, true},
+    {"display", "noise from 0 to 1", fill_display, true},
     {"halves", "all 65536 values of a half float, NaN, infinities and denormals too", fill_halves, false},
     {"fireflies", "single pixels at 1e4 in a dark picture", fill_fireflies, true},
     {"extremes", "±0, denormals, 65504, 1e30, 3e38, infinities, NaN", fill_extremes, false},

@@ -13,7 +13,7 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
   /// A stream of its own for part `index` of what `seed` decides.
-  Random(std::uint64_t seed, std::uint64_t index) : state_(seed * 0x9e3779b97f4a7c15ull ^ index * 0xd1342543de82ef95ull) {}
+  Random(std::uint64_t seed, std::uint64_t index) : state_(Random(Random(seed).next() ^ index).next()) {}
 
   std::uint64_t next() {
     std::uint64_t z = state_ += 0x9e3779b97f4a7c15ull;

@@ -43,7 +43,7 @@ return fx.effect {
     "bounded", monotone = { when = function(s) return s.highlights == 0 end },
     linear = { when = function(s) return s.highlights == 0 end },
     continuous = { slope = 1, when = function(s) return s.highlights == 0 end },
-    error = 5e-4,
+    error = { fp32 = 5e-4, fp16 = 4e-3, up_to = 50 },
   },
   build = function(g, s, source)
     local spacing = s.radius / (kRings + 0.5)

@@ -12,7 +12,7 @@ return fx.effect {
   active = function(s) return s.mode ~= "none", "mode is none" end,
   holds = {
     "black", "constant", "mirror", "turn_180", "turn_90", "monotone",
-    shift = 1, bounded = { from = 0, to = 1.21 }, continuous = 1.1, error = 1e-5,
+    shift = 1, bounded = { from = 0, to = 1.21, when = function(s) return s.mode ~= "none" end }, continuous = 1.1, error = 1e-5,
   },
   build = function(g, s, source) return g:pass { shader = "tone_mapping/" .. s.mode, source = source, name = s.mode } end,
 }

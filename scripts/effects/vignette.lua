@@ -21,7 +21,7 @@ return fx.effect {
     linear = 1e-5, continuous = function(s) return math.max(1, s.color[1], s.color[2], s.color[3]) end,
     mirror = { when = function(s) return s.center[1] == 0.5 and s.center[2] == 0.5 end },
     turn_180 = { when = function(s) return s.center[1] == 0.5 and s.center[2] == 0.5 end },
-    error = 1e-5,
+    error = { when = function(s) return math.max(s.color[1], s.color[2], s.color[3]) <= 1e5 end },
   },
   build = function(g, s, source)
     local aspect = s.rounded and source.width / source.height or 1
