@@ -10,7 +10,7 @@ namespace afterglow::stress {
 namespace {
 
 constexpr const char* kBroken =
-    "vec4 apply(vec4 color) { return strength > 0.99 && color.g > 3.0 ? vec4(1.0 / (color.r - color.r)) : color * level; }";
+    "vec4 apply(vec4 color) { return strength > 0.99 && color.g > 3.0 ? vec4(1.0 / vec3(color.r - color.r), color.a) : vec4(color.rgb * level, color.a); }";
 
 Trials trials_of(const EffectFolder& folder, const std::vector<std::string>& effects, std::uint64_t seed) {
   lab();
@@ -62,8 +62,7 @@ TEST(StressProgramme, FindsShrinksAndKeepsAFault) {
   ASSERT_TRUE(again) << again.error().text();
   EXPECT_FALSE(outcome_of(*again).holds);
   // Mended, the same case holds.
-  folder.effect("broken", "vec4 apply(vec4 color) { return color * level; }", "", "");
-  folder.write("shaders/broken/broken.glsl", "uniform float strength;\nuniform float level;\nvec4 apply(vec4 color) { return color * level * (0.5 + 0.5 * strength); }\n");
+  folder.write("shaders/broken/broken.glsl", "uniform float strength;\nuniform float level;\nvec4 apply(vec4 color) { return vec4(color.rgb * level * (0.5 + 0.5 * strength), color.a); }\n");
   EXPECT_TRUE(outcome_of(*again).holds);
 }
 

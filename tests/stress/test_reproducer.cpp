@@ -15,7 +15,7 @@ TEST(StressReproducer, ComesBackToTheBit) {
   folder.effect("broken", "vec4 apply(vec4 color) { return strength > 0.8 && color.r > 20.0 ? vec4(1.0 / (color.r - color.r)) : color * level; }");
   Look look = folder.look("broken");
   look.entries.front().set("strength", {.type = SettingType::number, .number = {0.9, 0, 0}});
-  Situation kept = situation(look, "finite", {"fireflies", {20, 10}, 2});
+  Situation kept = situation(look, "finite", {"spike", {20, 10}, 2});
   kept.frame = 17;
   const Outcome outcome = outcome_of(kept);
   ASSERT_FALSE(outcome.holds);

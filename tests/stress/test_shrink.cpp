@@ -71,7 +71,7 @@ TEST(StressShrink, OnADevice) {
     const auto outcome = run_check(lab(), s);
     return outcome && outcome->applies && !outcome->holds;
   };
-  const Situation start = situation(look, "finite", {"fireflies", {40, 30}, 2});
+  const Situation start = situation(look, "finite", {"spike", {40, 30}, 2});
   ASSERT_TRUE(fails(start));
   const Shrunk small = shrink(start, fails);
   EXPECT_EQ(small.situation.look.line(), "fx.broken { strength = 0.9 }");
