@@ -4,6 +4,7 @@
 //   AFTERGLOW_FAULT_KIND=…       error: the Nth call fails with EIO
 //                                full: from the Nth write on the disk is full
 //                                kill: the process dies before the Nth call
+//                                interrupt: it gets a SIGINT before the Nth call, as from Ctrl-C
 //                                writes, reads: such calls do a few bytes each, and every third is interrupted first
 //                                cut: at the Nth read the file becomes half as long
 //                                swap: at the Nth read every byte of the file becomes another
@@ -32,7 +33,7 @@
 namespace {
 
 enum class What { other, read, write };
-enum class Kind { none, error, full, kill, writes, reads, cut, swap };
+enum class Kind { none, error, full, kill, interrupt, writes, reads, cut, swap };
 
 /// The next definition of a function behind ours.
 template <typename Function>
@@ -54,6 +55,7 @@ struct Wanted {
     kind = name == "error"    ? Kind::error
            : name == "full"   ? Kind::full
            : name == "kill"   ? Kind::kill
+           : name == "interrupt" ? Kind::interrupt
            : name == "writes" ? Kind::writes
            : name == "reads"  ? Kind::reads
            : name == "cut"    ? Kind::cut
@@ -134,6 +136,7 @@ int strike(const char* name, const std::string& path, What what) {
   if (number > wanted().call) return 0;
   if (wanted().kind == Kind::error) return EIO;
   if (wanted().kind == Kind::kill) syscall(SYS_kill, getpid(), SIGKILL);
+  if (wanted().kind == Kind::interrupt) syscall(SYS_kill, getpid(), SIGINT);
   if (wanted().kind == Kind::cut || wanted().kind == Kind::swap) damage(path);
   return 0;
 }

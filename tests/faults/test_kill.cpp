@@ -39,6 +39,31 @@ TEST_F(Processes, KilledBeforeAnyCallTheNextRunCompletesTheWork) {
   EXPECT_GT(some_were_there, 0);
 }
 
+TEST_F(Processes, InterruptedAtAnyCallItEndsCleanlyAndTheNextRunCompletesTheWork) {
+  fs::create_directory(path("out"));
+  const Fault fault = file_fault("interrupt", path(""));
+  const long last = places(command_, fault);
+  take_reference(outputs_);
+  int interrupted = 0;
+  for (const long place : some(1, last, 16)) {
+    SCOPED_TRACE("interrupted before call " + std::to_string(place) + " of " + std::to_string(last));
+    const Outcome outcome = run_with(command_, fault, place);
+    EXPECT_THAT(outcome.exit_code, ::testing::AnyOf(kDone, kInterrupted)) << outcome.err;
+    interrupted += outcome.exit_code == kInterrupted ? 1 : 0;
+    if (outcome.exit_code == kDone) {
+      EXPECT_EQ(expect_whole_or_absent(), 3);
+    }
+    expect_whole_or_absent();
+    expect_nothing_left_over();
+    const Outcome again = run_with(command_, {}, 0);
+    EXPECT_EQ(again.exit_code, kDone) << again.err;
+    EXPECT_EQ(expect_whole_or_absent(), 3);
+    fs::remove_all(path("out"));
+    fs::create_directory(path("out"));
+  }
+  EXPECT_GT(interrupted, 4);
+}
+
 TEST_F(Processes, KilledWhileCachesAreMadeTheNextRunIsWell) {
   environment_ = {{"AFTERGLOW_CACHE", text("cache")}};
   const std::vector<std::string> command{"run", neon_night(), "in.0001.exr", "-o", "out.png"};
