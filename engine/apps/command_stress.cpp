@@ -34,7 +34,9 @@ struct Arguments {
 
 /// "90", "90s", "10m", "2h" in seconds. Errors: usage.
 Result<double> parse_duration(const std::string& text) {
-  const auto wrong = [&] { return Error{ErrorKind::usage, fmt::format("'{}' is no duration", text), "--for", 0, "30s, 10m, 2h"}; };
+  const auto wrong = [&] {
+    return Error{ErrorKind::usage, fmt::format("'{}' is no duration", text), "--for", 0, "30s, 10m, 2h"};
+  };
   if (text.empty()) return wrong();
   const char unit = text.back();
   const double factor = unit == 'h' ? 3600 : unit == 'm' ? 60 : 1;
@@ -52,7 +54,8 @@ Result<double> parse_duration(const std::string& text) {
 
 void print_list() {
   Table checks({"check", "of", "what"});
-  for (const auto& check : stress::checks()) checks.add({check.name, check.promise ? "those that promise it" : "every stack", check.doc});
+  for (const auto& check : stress::checks())
+    checks.add({check.name, check.promise ? "those that promise it" : "every stack", check.doc});
   Table pictures({"picture", "what"});
   for (const auto& kind : stress::picture_kinds()) pictures.add({kind.name, kind.doc});
   fmt::print("{}\n{}", checks.text(), pictures.text());
@@ -98,7 +101,8 @@ Result<Opened> open(const Arguments& a, const std::string& name, Diagnostics& di
 /// The validation layer's word counts too.
 Result<void> check_validation(const Device& device) {
   if (device.validation_errors() == 0) return {};
-  return Error{ErrorKind::device, fmt::format("{} Vulkan validation errors; the first: {}", device.validation_errors(), device.validation_messages().front())};
+  return Error{ErrorKind::device, fmt::format("{} Vulkan validation errors; the first: {}", device.validation_errors(),
+                                              device.validation_messages().front())};
 }
 
 /// --repeat FOLDER: the case again. Errors: other (it still fails).
@@ -108,7 +112,8 @@ Result<void> repeat(const Arguments& a, Console& console) {
   AFTERGLOW_TRY(const Opened opened, open(a, a.devices.empty() ? "auto" : a.devices.front(), quiet));
   AFTERGLOW_TRY(const stress::Outcome outcome, stress::run_check(*opened.lab, situation));
   if (!outcome.applies) {
-    fmt::print("{}: no longer applies: the effect does not promise it for these settings, or refuses them\n", situation.check);
+    fmt::print("{}: no longer applies: the effect does not promise it for these settings, or refuses them\n",
+               situation.check);
     return {};
   }
   if (!outcome.holds) return Error{ErrorKind::other, fmt::format("{}: {}", situation.check, outcome.what), a.repeat};
@@ -156,8 +161,10 @@ Result<std::vector<stress::ProcessCheck>> ask_other_processes(const Arguments& a
   for (const auto& [index, hash] : some) arguments.insert(arguments.end(), {"--digests-of", std::to_string(index)});
   for (const char* threads : {"0", "5"}) {
     if (interrupted()) return out;
-    AFTERGLOW_TRY(const std::string theirs, stress::output_of("/proc/self/exe", arguments, {{"LP_NUM_THREADS", threads}}));
-    AFTERGLOW_TRY(auto check, stress::compare_digests(fmt::format("LP_NUM_THREADS={}, another process", threads), some, theirs));
+    AFTERGLOW_TRY(const std::string theirs,
+                  stress::output_of("/proc/self/exe", arguments, {{"LP_NUM_THREADS", threads}}));
+    AFTERGLOW_TRY(auto check,
+                  stress::compare_digests(fmt::format("LP_NUM_THREADS={}, another process", threads), some, theirs));
     out.push_back(std::move(check));
   }
   return out;
@@ -168,17 +175,24 @@ Result<stress::StressReport> try_device(const Arguments& a, const std::string& d
   Diagnostics quiet;  // settings that are hard to stand are worth a warning each
   AFTERGLOW_TRY(const Opened opened, open(a, device, quiet));
   const stress::Trials trials(std::move(subjects), search_path_for({}, extra_paths(a)), a.seed);
-  stress::ProgrammeOptions options{.seed = a.seed, .cases = a.cases, .seconds = 0, .out = fs::path(a.out) / fmt::format("seed-{}", a.seed),
+  stress::ProgrammeOptions options{.seed = a.seed,
+                                   .cases = a.cases,
+                                   .seconds = 0,
+                                   .out = fs::path(a.out) / fmt::format("seed-{}", a.seed),
                                    .version = AFTERGLOW_VERSION};
   if (!a.duration.empty()) {
     AFTERGLOW_TRY(options.seconds, parse_duration(a.duration));
   }
   if (a.quick && options.cases == 0) options.cases = kShortCases;
-  stress::StressReport report{.version = AFTERGLOW_VERSION, .device = opened.device->info().name, .driver = opened.device->info().driver, .seed = a.seed};
+  stress::StressReport report{.version = AFTERGLOW_VERSION,
+                              .device = opened.device->info().name,
+                              .driver = opened.device->info().driver,
+                              .seed = a.seed};
   console.note(fmt::format("seed {}", a.seed));
   const auto total = [&](const stress::Summary& so_far) -> std::pair<std::size_t, std::size_t> {
     if (options.cases > 0) return {so_far.cases, options.cases};
-    if (options.seconds > 0) return {static_cast<std::size_t>(so_far.seconds), static_cast<std::size_t>(options.seconds)};
+    if (options.seconds > 0)
+      return {static_cast<std::size_t>(so_far.seconds), static_cast<std::size_t>(options.seconds)};
     return {so_far.trials, trials.round()};
   };
   const auto step = [&](const stress::Summary& so_far) -> Result<void> {
@@ -188,14 +202,16 @@ Result<stress::StressReport> try_device(const Arguments& a, const std::string& d
     return {};
   };
   const auto found = [&](const stress::Finding& f) {
-    console.warning(fmt::format("{}: {}: {}{}", f.subject, f.check, f.what, f.folder.empty() ? "" : "; kept in " + f.folder.string()));
+    console.warning(fmt::format("{}: {}: {}{}", f.subject, f.check, f.what,
+                                f.folder.empty() ? "" : "; kept in " + f.folder.string()));
   };
   AFTERGLOW_TRY(report.summary, stress::run_programme(*opened.lab, trials, options, quiet, step, found));
   console.end_progress();
   if (!report.summary.interrupted) {
     AFTERGLOW_TRY(report.processes, ask_other_processes(a, device, report.summary.digests));
-    auto growth = stress::error_growth(*opened.lab, trials.subjects(), a.quick ? kShortGrowthSize : kGrowthSize, a.quick, a.seed,
-                                       [&]() -> Result<void> { return interrupted() ? Result<void>(interrupt_error()) : Result<void>(); });
+    auto growth = stress::error_growth(
+        *opened.lab, trials.subjects(), a.quick ? kShortGrowthSize : kGrowthSize, a.quick, a.seed,
+        [&]() -> Result<void> { return interrupted() ? Result<void>(interrupt_error()) : Result<void>(); });
     if (growth)
       report.growth = std::move(*growth);
     else if (growth.error().kind != ErrorKind::interrupted)
@@ -218,7 +234,8 @@ Result<void> run_command(const Arguments& a, Console& console) {
     AFTERGLOW_TRY(const auto report, try_device(a, device, console));
     fmt::print("{}", stress::report_text(report));
     std::fflush(stdout);
-    const std::string file = a.devices.size() > 1 ? fs::path(a.report).replace_extension(device + ".json").string() : a.report;
+    const std::string file =
+        a.devices.size() > 1 ? fs::path(a.report).replace_extension(device + ".json").string() : a.report;
     if (!a.report.empty()) AFTERGLOW_CHECK(write_file_atomically(file, stress::report_json(report)));
     failures += report.summary.failures;
     clean = clean && report.clean();
@@ -237,11 +254,15 @@ void add_options(CLI::App& app, Arguments& a) {
   list("--path", a.paths, "Folder with effects/ and shaders/ of yours (repeatable)", "FOLDER");
   app.add_option("--seed", a.seed, "What is tried is made from this number alone (default 1)")->type_name("N");
   app.add_option("--cases", a.cases, "End after so many cases")->check(CLI::PositiveNumber)->type_name("N");
-  app.add_option("--for", a.duration, "End after this time: 30s, 10m, 2h (default: when every effect has had all its limits)")->type_name("TIME");
-  app.add_flag("--short", a.quick, fmt::format("{} cases, and less of the growth of errors: under a minute on two cores", kShortCases));
+  app.add_option("--for", a.duration,
+                 "End after this time: 30s, 10m, 2h (default: when every effect has had all its limits)")
+      ->type_name("TIME");
+  app.add_flag("--short", a.quick,
+               fmt::format("{} cases, and less of the growth of errors: under a minute on two cores", kShortCases));
   app.add_option("--report", a.report, "Write everything as JSON")->type_name("FILE.json");
   app.add_option("-o,--out", a.out, "Folder for cases that fail (default: stress)")->type_name("FOLDER");
-  app.add_option("--repeat", a.repeat, "Run a case again that was kept; exit code 1 when it still fails")->type_name("FOLDER");
+  app.add_option("--repeat", a.repeat, "Run a case again that was kept; exit code 1 when it still fails")
+      ->type_name("FOLDER");
   app.add_flag("--list", a.list, "List checks and pictures");
   list("--device", a.devices, "Device to try, see `devices` (repeatable; default auto)", "NAME");
   app.add_flag("--validate", a.validate, "Vulkan validation with synchronization checks (also AFTERGLOW_VALIDATE=1)");

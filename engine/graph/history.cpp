@@ -110,7 +110,12 @@ void drop_unread_histories(Graph& graph) {
 void separate_result(Graph& graph) {
   const bool source = graph.result == graph.source && !graph.histories.empty();
   const History* kept = history_of_next(graph, graph.result);
-  if (!source && !kept) return;
+  // What is cut off behind the result goes, unless a history needs it.
+  const bool read = !graph.histories.empty() && std::ranges::any_of(graph.passes, [&](const Pass& pass) {
+    const std::vector<ImageId> images = images_read(graph, pass);
+    return std::ranges::find(images, graph.result) != images.end();
+  });
+  if (!source && !kept && !read) return;
   Pass copy;
   copy.effect = kept ? kept->effect : graph.histories.front().effect;
   copy.name = unused_name(graph, copy.effect + ".result");

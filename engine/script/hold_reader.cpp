@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/text.h"
 #include "script/entry_run.h"
@@ -62,8 +63,15 @@ class HoldReader {
       hold_.schema.stated.numbers[name] = given.number;
       return;
     }
-    const char* wanted = name == "when" ? "a function" : "a number, function(s, source)";
-    table_.fail(failure(fmt::format("{}: holds: {}: {} = {}", table_.what(), kind_.name, name, given.shown()), place, wanted));
+    if (name != "when" && name != kind_.main && given.kind == Value::Kind::boolean && given.number == 0) {
+      hold_.schema.stated.numbers[name] = std::numeric_limits<double>::infinity();  // no bound
+      return;
+    }
+    const char* wanted = name == "when"       ? "a function"
+                         : name == kind_.main ? "a number, function(s, source)"
+                                              : "a number, false, function(s, source)";
+    table_.fail(
+        failure(fmt::format("{}: holds: {}: {} = {}", table_.what(), kind_.name, name, given.shown()), place, wanted));
   }
 
   void finish(Effect& effect, const KeyPath& place) {
@@ -120,8 +128,9 @@ void read_named(lua_State* lua, TableReader& table, Effect& effect, const std::s
     const auto known = parameters_of(*kind);
     for (const auto& key : parameters.keys()) {
       if (key.position > 0 || std::ranges::find(known, key.name) == known.end()) {
-        parameters.fail(failure(fmt::format("{}: holds: {} has no '{}'", table.what(), name, tidy_message(key.name, 60)),
-                                {key.name}, join(known), nearest_name(key.name, known)));
+        parameters.fail(
+            failure(fmt::format("{}: holds: {} has no '{}'", table.what(), name, tidy_message(key.name, 60)),
+                    {key.name}, join(known), nearest_name(key.name, known)));
         continue;
       }
       parameters.push(key);

@@ -56,8 +56,16 @@ const std::vector<HoldKind>& hold_kinds() {
        {{"within", 1e-5}, {"up_to", kNeeded}},
        {"setting"},
        "What the effect adds is proportional to `setting`, up to `up_to`."},
-      {"mirror", "within", {{"within", 1e-5}}, {}, "A picture that is mirrored, either way, gives the mirrored result."},
-      {"turn_180", "within", {{"within", 1e-5}}, {}, "A picture that is turned by 180 degrees gives the turned result."},
+      {"mirror",
+       "within",
+       {{"within", 1e-5}},
+       {},
+       "A picture that is mirrored, either way, gives the mirrored result."},
+      {"turn_180",
+       "within",
+       {{"within", 1e-5}},
+       {},
+       "A picture that is turned by 180 degrees gives the turned result."},
       {"turn_90",
        "within",
        {{"within", 1e-5}, {"margin", 0}},
@@ -67,7 +75,8 @@ const std::vector<HoldKind>& hold_kinds() {
        "by",
        {{"by", kNeeded}, {"margin", 0}, {"within", 1e-5}},
        {},
-       "A picture that is moved by a multiple of `by` pixels gives the moved result, when nothing but black lies within "
+       "A picture that is moved by a multiple of `by` pixels gives the moved result, when nothing but black lies "
+       "within "
        "`margin` pixels of the edges before and behind."},
       {"error",
        "fp32",

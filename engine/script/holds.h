@@ -13,10 +13,10 @@ namespace afterglow {
 /// A promise that effects can make.
 struct HoldKind {
   std::string name;
-  std::string main;                         ///< what a bare value stands for: `mean = 1e-3` is { within = 1e-3 }
-  std::map<std::string, double> numbers;    ///< its parameters and their defaults; NaN: must be given
-  std::vector<std::string> setting_names;   ///< parameters that name a setting of the effect
-  std::string doc;                          ///< what is promised
+  std::string main;                        ///< what a bare value stands for: `mean = 1e-3` is { within = 1e-3 }
+  std::map<std::string, double> numbers;   ///< its parameters and their defaults; NaN: must be given
+  std::vector<std::string> setting_names;  ///< parameters that name a setting of the effect
+  std::string doc;                         ///< what is promised
 };
 /// All of them, in the order of the documents.
 const std::vector<HoldKind>& hold_kinds();

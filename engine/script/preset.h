@@ -50,7 +50,7 @@ struct SettingSchema {
 /// A promise of an effect about its result (script/holds.h), with its parameters.
 struct Hold {
   std::string name;
-  std::map<std::string, double> numbers;         ///< NaN: left open
+  std::map<std::string, double> numbers;        ///< NaN: left open
   std::map<std::string, std::string> settings;  ///< parameters that name a setting
 };
 struct HoldSchema {

@@ -32,11 +32,20 @@ Surface random_surface(Random& random) {
 }
 
 Surface hard_surface(Random& random) {
-  static const std::vector<float> kDepths{0.0f,   -0.0f, 1e-38f, 1e-6f, 1.0f, 65504.0f, 1e10f, 1e30f, -1.0f, 0.5f,
+  static const std::vector<float> kDepths{0.0f,
+                                          -0.0f,
+                                          1e-38f,
+                                          1e-6f,
+                                          1.0f,
+                                          65504.0f,
+                                          1e10f,
+                                          1e30f,
+                                          -1.0f,
+                                          0.5f,
                                           std::numeric_limits<float>::infinity(),
                                           std::numeric_limits<float>::quiet_NaN()};
-  static const std::vector<float> kDirections{0.0f, 1.0f, -1.0f, 1e30f, -1e30f, 1e-38f,
-                                              std::numeric_limits<float>::quiet_NaN()};
+  static const std::vector<float> kDirections{
+      0.0f, 1.0f, -1.0f, 1e30f, -1e30f, 1e-38f, std::numeric_limits<float>::quiet_NaN()};
   static const std::vector<float> kMotions{0.0f, 0.4f, 1e-38f, 16384.0f, -16384.0f, 1e30f, -1e30f, 3.0f};
   Surface out{};
   out.depth = random.pick(kDepths);

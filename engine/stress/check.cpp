@@ -47,8 +47,7 @@ std::string place_of(const Image& image, std::size_t sample) {
 Way usual_way(const Lab& lab) { return {.choice = lab.usual()}; }
 
 Outcome compare(const Image& a, const Image& wanted, double allowed, const std::string& what) {
-  if (a.size() != wanted.size())
-    return {.holds = false, .measured = 1, .allowed = 0, .what = what + ": sizes differ"};
+  if (a.size() != wanted.size()) return {.holds = false, .measured = 1, .allowed = 0, .what = what + ": sizes differ"};
   if (allowed <= 0) return compare_bits(a, wanted, what);
   const auto x = rgb_of(a), y = rgb_of(wanted);
   const ErrorMeasure error = measure_error(x, std::span<const float>(y));
@@ -56,15 +55,16 @@ Outcome compare(const Image& a, const Image& wanted, double allowed, const std::
   const std::size_t sample = error.worst_index / 3 * 4 + error.worst_index % 3;
   Outcome out{.holds = holds, .measured = std::max(error.percentile, error.worst / 50), .allowed = allowed, .what = {}};
   if (!holds)
-    out.what = fmt::format("{}: error {:.3g} (99.99 %), {:.3g} (worst, {}: {:.9g}, expected {:.9g}), allowed {:.3g}", what,
-                           error.percentile, error.worst, place_of(a, sample), a.pixels[sample], wanted.pixels[sample], allowed);
+    out.what = fmt::format("{}: error {:.3g} (99.99 %), {:.3g} (worst, {}: {:.9g}, expected {:.9g}), allowed {:.3g}",
+                           what, error.percentile, error.worst, place_of(a, sample), a.pixels[sample],
+                           wanted.pixels[sample], allowed);
   return out;
 }
 
 std::span<const Check> checks() {
   static const std::vector<Check> all = [] {
     std::vector<Check> list;
-    for (const auto part : {common_checks(), light_checks(), symmetry_checks(), exact_checks()})
+    for (const auto part : {common_checks(), light_checks(), continuous_checks(), symmetry_checks(), exact_checks()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

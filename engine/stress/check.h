@@ -21,11 +21,11 @@ struct Situation {
 };
 
 struct Outcome {
-  bool applies = true;      ///< false: the check says nothing about this situation
+  bool applies = true;  ///< false: the check says nothing about this situation
   bool holds = true;
-  double measured = 0;      ///< in the measure of the check: error, gain, number of samples
+  double measured = 0;  ///< in the measure of the check: error, gain, number of samples
   double allowed = 0;
-  std::string what;         ///< of one that does not hold: what was seen, where
+  std::string what;  ///< of one that does not hold: what was seen, where
 };
 
 struct Check {
@@ -46,10 +46,11 @@ Result<Outcome> run_check(Lab& lab, const Situation& situation);
 
 // For the files that hold checks.
 
-std::span<const Check> common_checks();     ///< checks_common.cpp
-std::span<const Check> light_checks();      ///< checks_light.cpp
-std::span<const Check> symmetry_checks();   ///< checks_symmetry.cpp
-std::span<const Check> exact_checks();      ///< check_error.cpp
+std::span<const Check> common_checks();      ///< checks_common.cpp
+std::span<const Check> light_checks();       ///< checks_light.cpp
+std::span<const Check> continuous_checks();  ///< check_continuous.cpp
+std::span<const Check> symmetry_checks();    ///< checks_symmetry.cpp
+std::span<const Check> exact_checks();       ///< check_error.cpp
 
 inline Outcome not_applicable() { return {.applies = false}; }
 inline Outcome within_bound(double measured, double allowed, const std::string& what) {
@@ -62,10 +63,12 @@ inline Picture changed(const Picture& picture) {
   out.content.clear();
   return out;
 }
+/// The situation's picture without colour: each pixel as bright as its brightest channel.
+Picture greys_of(const Situation& situation);
 /// The usual way of execution, in full floats.
 Way usual_way(const Lab& lab);
-/// Compares R, G and B by the measure of docs/math.md §13, over the part of `a` alone when it is given. `allowed` 0: bit for
-/// bit, alpha too.
+/// Compares R, G and B by the measure of docs/math.md §13, over the part of `a` alone when it is given. `allowed` 0:
+/// bit for bit, alpha too.
 Outcome compare(const Image& a, const Image& wanted, double allowed, const std::string& what);
 /// "pixel 3 4 green".
 std::string place_of(const Image& image, std::size_t sample);

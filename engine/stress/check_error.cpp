@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "stress/check.h"
 #include "stress/truth.h"
@@ -11,6 +12,7 @@ namespace {
 
 Result<Outcome> check_error(Lab& lab, const Situation& s, const Hold& hold, bool half) {
   const float largest = *std::ranges::max_element(s.picture.color.pixels);
+  if (!std::isfinite(hold.numbers.at(half ? "fp16" : "fp32"))) return not_applicable();
   if (largest > hold.numbers.at("up_to") || (half && !exact_in_halves(s.picture.color))) return not_applicable();
   AFTERGLOW_TRY(const LookFacts facts, lab.facts(s.look, s.picture.color.size(), s.frame));
   const auto truth = truth_of(facts, s.picture, s.frame);
@@ -21,11 +23,15 @@ Result<Outcome> check_error(Lab& lab, const Situation& s, const Hold& hold, bool
   AFTERGLOW_TRY(const Made made, lab.run(s.look, s.picture, s.frame, way));
   const ErrorMeasure error = error_against(made.image, *truth, half);
   const std::size_t sample = error.worst_index / 3 * 4 + error.worst_index % 3;
-  Outcome out{.holds = within(error, allowed), .measured = std::max(error.percentile, error.worst / 50), .allowed = allowed, .what = {}};
+  Outcome out{.holds = within(error, allowed),
+              .measured = std::max(error.percentile, error.worst / 50),
+              .allowed = allowed,
+              .what = {}};
   if (!out.holds)
-    out.what = fmt::format("{}: error {:.3g} (99.99 %), {:.3g} (worst, {}: {:.9g}, in double precision {:.9g}), allowed {:.3g}",
-                           way.name(), error.percentile, error.worst, place_of(made.image, sample), made.image.pixels[sample],
-                           (*truth)[error.worst_index], allowed);
+    out.what = fmt::format(
+        "{}: error {:.3g} (99.99 %), {:.3g} (worst, {}: {:.9g}, in double precision {:.9g}), allowed {:.3g}",
+        way.name(), error.percentile, error.worst, place_of(made.image, sample), made.image.pixels[sample],
+        (*truth)[error.worst_index], allowed);
   return out;
 }
 

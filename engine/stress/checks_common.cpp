@@ -49,7 +49,10 @@ Outcome source_is_sound(const Picture& picture) {
   for (std::size_t i = 0; i < picture.color.pixels.size(); ++i) {
     const float v = picture.color.pixels[i];
     if (!std::isfinite(v) || (i % 4 < 3 && (v < 0 || v > 1e30f)))
-      return {.holds = false, .measured = 1, .allowed = 0, .what = fmt::format("the source: {} is {:g}", place_of(picture.color, i), v)};
+      return {.holds = false,
+              .measured = 1,
+              .allowed = 0,
+              .what = fmt::format("the source: {} is {:g}", place_of(picture.color, i), v)};
   }
   return {};
 }
@@ -58,7 +61,8 @@ Result<Outcome> finite(Lab& lab, const Situation& s, const Hold&) {
   if (auto sound = source_is_sound(s.picture); !sound.holds) return sound;
   AFTERGLOW_TRY(const auto images, lab.images(s.look, s.picture, s.frame));
   for (const auto& [name, image] : images)
-    if (auto outcome = all_finite(image, std::numeric_limits<float>::max(), "image " + name); !outcome.holds) return outcome;
+    if (auto outcome = all_finite(image, std::numeric_limits<float>::max(), "image " + name); !outcome.holds)
+      return outcome;
   return Outcome{};
 }
 
@@ -161,7 +165,8 @@ constexpr Check kChecks[] = {
     {"finite_joined", nullptr, "nor as users run it, in full and half floats, nor any image in between", finite_joined},
     {"alpha", nullptr, "alpha is the source's, bit for bit", alpha},
     {"repeated", nullptr, "the same picture again gives the same bits", repeated},
-    {"same_ways", nullptr, "joined or not, whatever the layout of memory: within 1e-6 of plain passes in full floats", same_ways},
+    {"same_ways", nullptr, "joined or not, whatever the layout of memory: within 1e-6 of plain passes in full floats",
+     same_ways},
     {"region", nullptr, "a region is the crop of the whole, bit for bit", region},
     {"idle", nullptr, "frames without idle effects are as if they had run, bit for bit", idle},
 };

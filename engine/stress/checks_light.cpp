@@ -21,10 +21,6 @@ Picture with_color(const Situation& s, const std::function<void(int x, int y, fl
 float grey_of(const float* p) { return std::max({p[0], p[1], p[2]}); }
 void set_grey(float* p, float grey) { p[0] = p[1] = p[2] = grey; }
 
-Picture greys_of(const Situation& s) {
-  return with_color(s, [](int, int, float* p) { set_grey(p, grey_of(p)); });
-}
-
 Result<Outcome> black(Lab& lab, const Situation& s, const Hold& hold) {
   const Picture source = with_color(s, [](int, int, float* p) { set_grey(p, 0); });
   Outcome worst;
@@ -50,7 +46,8 @@ Result<Outcome> constant(Lab& lab, const Situation& s, const Hold& hold) {
   const Picture source = with_color(s, [&](int, int, float* p) { std::copy_n(color, 3, p); });
   AFTERGLOW_TRY(const Made made, lab.run(s.look, source, s.frame, usual_way(lab)));
   Image wanted = made.image;
-  for (std::size_t i = 0; i < wanted.pixels.size(); i += 4) std::copy_n(made.image.pixels.begin(), 3, &wanted.pixels[i]);
+  for (std::size_t i = 0; i < wanted.pixels.size(); i += 4)
+    std::copy_n(made.image.pixels.begin(), 3, &wanted.pixels[i]);
   return compare(made.image, wanted, hold.numbers.at("within"),
                  fmt::format("of the one colour {:g} {:g} {:g}", color[0], color[1], color[2]));
 }
@@ -89,14 +86,17 @@ Result<Outcome> check_mean(Lab& lab, const Situation& s, const Hold& hold, bool 
   if (!source) return not_applicable();
   // Of colours, the light of one channel may let another channel pass a threshold.
   if (growth_alone)
-    for (std::size_t i = 0; i < source->color.pixels.size(); i += 4) set_grey(&source->color.pixels[i], grey_of(&source->color.pixels[i]));
+    for (std::size_t i = 0; i < source->color.pixels.size(); i += 4)
+      set_grey(&source->color.pixels[i], grey_of(&source->color.pixels[i]));
   AFTERGLOW_TRY(const Made made, lab.run(s.look, *source, s.frame, usual_way(lab)));
   const double gain = gain_of(source->color, made.image, growth_alone);
   return within_bound(gain, hold.numbers.at("within"), fmt::format("the mean changes by {:.3g} of itself", gain));
 }
 
 Result<Outcome> mean(Lab& lab, const Situation& s, const Hold& hold) { return check_mean(lab, s, hold, false); }
-Result<Outcome> no_added_light(Lab& lab, const Situation& s, const Hold& hold) { return check_mean(lab, s, hold, true); }
+Result<Outcome> no_added_light(Lab& lab, const Situation& s, const Hold& hold) {
+  return check_mean(lab, s, hold, true);
+}
 
 /// A brighter picture in some places: everywhere by as much as another pixel has, or in one pixel alone.
 Picture brighter(const Situation& s, const Picture& greys) {
@@ -108,7 +108,8 @@ Picture brighter(const Situation& s, const Picture& greys) {
   Picture out = changed(greys);
   for (std::size_t i = 0; i < pixels; ++i)
     if (everywhere || i == one)
-      set_grey(&out.color.pixels[4 * i], values[4 * i] + (everywhere ? values[4 * ((i + offset) % pixels)] * amount : amount));
+      set_grey(&out.color.pixels[4 * i],
+               values[4 * i] + (everywhere ? values[4 * ((i + offset) % pixels)] * amount : amount));
   return out;
 }
 
@@ -148,7 +149,8 @@ Result<Outcome> bounded(Lab& lab, const Situation& s, const Hold& hold) {
   std::size_t at = 0;
   for (std::size_t i = 0; i < made.image.pixels.size(); ++i) {
     const double v = made.image.pixels[i];
-    const double beyond = i % 4 == 3 ? 0 : std::max((from - v) / (std::abs(from) + 0.01), (v - to) / (std::abs(to) + 0.01));
+    const double beyond =
+        i % 4 == 3 ? 0 : std::max((from - v) / (std::abs(from) + 0.01), (v - to) / (std::abs(to) + 0.01));
     if (beyond > worst) {
       worst = beyond;
       at = i;
@@ -157,81 +159,6 @@ Result<Outcome> bounded(Lab& lab, const Situation& s, const Hold& hold) {
   return within_bound(worst, hold.numbers.at("within"),
                       fmt::format("{:.9g} at {} is not within {:.9g} and {:.9g}", made.image.pixels[at],
                                   place_of(made.image, at), from, to));
-}
-
-/// The stack over a family of greys: those of the picture, lifted by `level`.
-class Lifted {
- public:
-  Lifted(Lab& lab, const Situation& s) : lab_(lab), s_(s), base_(greys_of(s)) {}
-  Result<Image> at(double level) {
-    Picture lifted = changed(base_);
-    for (std::size_t i = 0; i < lifted.color.pixels.size(); ++i)
-      if (i % 4 < 3) lifted.color.pixels[i] = static_cast<float>(base_.color.pixels[i] * 0.1 + level);
-    AFTERGLOW_TRY(Made made, lab_.run(s_.look, lifted, s_.frame, usual_way(lab_)));
-    return std::move(made.image);
-  }
-  float largest() const { return *std::ranges::max_element(base_.color.pixels); }
-
- private:
-  Lab& lab_;
-  const Situation& s_;
-  Picture base_;
-};
-
-struct Step {
-  double low, high;    ///< levels
-  double change = 0;   ///< largest of any sample
-  double magnitude = 0;  ///< of the sample there
-  double excess(double slope) const { return change - slope * (high - low); }
-};
-
-Step step_between(double low, double high, const Image& a, const Image& b) {
-  Step step{low, high};
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    if (i % 4 == 3) continue;
-    const double change = std::abs(static_cast<double>(b.pixels[i]) - static_cast<double>(a.pixels[i]));
-    if (!(change <= step.change)) {
-      step.change = change;
-      step.magnitude = std::max(std::abs(a.pixels[i]), std::abs(b.pixels[i]));
-    }
-  }
-  return step;
-}
-
-/// The steps between `count` levels from `low` to `high`, each larger than the one before by a factor.
-Result<std::vector<Step>> steps(Lifted& lifted, double low, double high, int count) {
-  std::vector<Step> out;
-  AFTERGLOW_TRY(Image before, lifted.at(low));
-  double from = low;
-  for (int i = 1; i <= count; ++i) {
-    // What the device gets: floats.
-    const double level = static_cast<float>(low * std::pow(high / low, static_cast<double>(i) / count));
-    if (level <= from) continue;
-    AFTERGLOW_TRY(Image after, lifted.at(level));
-    out.push_back(step_between(from, level, before, after));
-    before = std::move(after);
-    from = level;
-  }
-  return out;
-}
-
-/// Looks closer and closer where the most happens: what is left of a jump when the step gets small.
-Result<Outcome> continuous(Lab& lab, const Situation& s, const Hold& hold) {
-  constexpr int kFirst = 32, kCloser = 8, kZooms = 5;
-  constexpr double kRounding = 4e-6;  // of two results, and of the sums that levels are
-  const double slope = hold.numbers.at("slope");
-  Lifted lifted(lab, s);
-  AFTERGLOW_TRY(std::vector<Step> found, steps(lifted, 1e-3, 100, kFirst));
-  Step worst{};
-  for (int zoom = 0; zoom <= kZooms && !found.empty(); ++zoom) {
-    worst = *std::ranges::max_element(found, {}, [&](const Step& step) { return step.excess(slope); });
-    if (zoom == kZooms) break;
-    AFTERGLOW_TRY(found, steps(lifted, worst.low, worst.high, kCloser));
-  }
-  const double rounding = kRounding * (worst.magnitude + slope * (worst.high + lifted.largest()) + 0.01);
-  return within_bound(worst.change, slope * (worst.high - worst.low) + rounding,
-                      fmt::format("between the levels {:.9g} and {:.9g} the result changes by {:.3g}: more than {:g} times as much",
-                                  worst.low, worst.high, worst.change, slope));
 }
 
 /// Of pictures A and B: the sum of their results is the result of their sum.
@@ -244,7 +171,8 @@ Result<Outcome> linear(Lab& lab, const Situation& s, const Hold& hold) {
   Picture a = changed(s.picture), b = a, sum = a;
   for (std::size_t i = 0; i < 4 * pixels; ++i) {
     if (i % 4 == 3) continue;
-    const float x = std::min(s.picture.color.pixels[i], limit), y = std::min(s.picture.color.pixels[(i + 4 * offset) % (4 * pixels)], limit);
+    const float x = std::min(s.picture.color.pixels[i], limit),
+                y = std::min(s.picture.color.pixels[(i + 4 * offset) % (4 * pixels)], limit);
     a.color.pixels[i] = static_cast<float>(part) * x;
     b.color.pixels[i] = static_cast<float>(1 - part) * y;
     sum.color.pixels[i] = a.color.pixels[i] + b.color.pixels[i];
@@ -262,7 +190,8 @@ Result<Outcome> proportional(Lab& lab, const Situation& s, const Hold& hold) {
   const std::string& setting = hold.settings.at("setting");
   const double up_to = hold.numbers.at("up_to");
   Random random(s.seed);
-  const double high = static_cast<float>(up_to * random.between(0.3, 1.0)), low = static_cast<float>(high * random.between(0.1, 0.8));
+  const double high = static_cast<float>(up_to * random.between(0.3, 1.0)),
+               low = static_cast<float>(high * random.between(0.1, 0.8));
   const auto added = [&](double amount) -> Result<Image> {
     Look look = s.look;
     look.entries.front().set(setting, {.type = SettingType::number, .number = {amount, 0, 0}});
@@ -284,11 +213,9 @@ Result<Outcome> proportional(Lab& lab, const Situation& s, const Hold& hold) {
     }
   }
   return within_bound(worst, hold.numbers.at("within"),
-                      fmt::format("{} from {:g} to {:g}: what is added is {:.3g} off from being in proportion, {}", setting, low,
-                                  high, worst, place_of(of_high, at)));
+                      fmt::format("{} from {:g} to {:g}: what is added is {:.3g} off from being in proportion, {}",
+                                  setting, low, high, worst, place_of(of_high, at)));
 }
-
-constexpr long long kSmall = 4096;
 
 constexpr Check kChecks[] = {
     {"black", "black", "black stays black", black},
@@ -297,12 +224,15 @@ constexpr Check kChecks[] = {
     {"no_added_light", "no_added_light", "the mean does not grow", no_added_light},
     {"monotone", "monotone", "brighter greys give nothing darker", monotone},
     {"bounded", "bounded", "results of greys lie within bounds", bounded},
-    {"continuous", "continuous", "no jump where light changes by a little", continuous, kSmall},
     {"linear", "linear", "the result of a sum is the sum of results", linear},
     {"proportional", "proportional", "what is added is proportional to a setting", proportional},
 };
 
 }  // namespace
+
+Picture greys_of(const Situation& s) {
+  return with_color(s, [](int, int, float* p) { set_grey(p, grey_of(p)); });
+}
 
 std::span<const Check> light_checks() { return kChecks; }
 

@@ -35,8 +35,8 @@ Picture mapped(const Picture& picture, Size size, const Map& from) {
 }
 
 /// The result of the mapped picture against the mapped result.
-Result<Outcome> commutes(Lab& lab, const Situation& s, const Picture& picture, Size size, const Map& from, double allowed,
-                         const std::string& what) {
+Result<Outcome> commutes(Lab& lab, const Situation& s, const Picture& picture, Size size, const Map& from,
+                         double allowed, const std::string& what) {
   AFTERGLOW_TRY(const Made straight, lab.run(s.look, picture, s.frame, usual_way(lab)));
   AFTERGLOW_TRY(const Made turned, lab.run(s.look, mapped(picture, size, from), s.frame, usual_way(lab)));
   return compare(turned.image, mapped(straight.image, size, from), allowed, what);
@@ -45,17 +45,29 @@ Result<Outcome> commutes(Lab& lab, const Situation& s, const Picture& picture, S
 Result<Outcome> mirror(Lab& lab, const Situation& s, const Hold& hold) {
   const Size size = s.picture.color.size();
   const double allowed = hold.numbers.at("within");
-  AFTERGLOW_TRY(const Outcome across, commutes(lab, s, s.picture, size, [&](int x, int y) { return Place{size.width - 1 - x, y}; },
-                                               allowed, "mirrored, left and right"));
+  AFTERGLOW_TRY(const Outcome across, commutes(
+                                          lab, s, s.picture, size,
+                                          [&](int x, int y) {
+                                            return Place{size.width - 1 - x, y};
+                                          },
+                                          allowed, "mirrored, left and right"));
   if (!across.holds) return across;
-  return commutes(lab, s, s.picture, size, [&](int x, int y) { return Place{x, size.height - 1 - y}; }, allowed,
-                  "mirrored, top and bottom");
+  return commutes(
+      lab, s, s.picture, size,
+      [&](int x, int y) {
+        return Place{x, size.height - 1 - y};
+      },
+      allowed, "mirrored, top and bottom");
 }
 
 Result<Outcome> turn_180(Lab& lab, const Situation& s, const Hold& hold) {
   const Size size = s.picture.color.size();
-  return commutes(lab, s, s.picture, size, [&](int x, int y) { return Place{size.width - 1 - x, size.height - 1 - y}; },
-                  hold.numbers.at("within"), "turned by 180 degrees");
+  return commutes(
+      lab, s, s.picture, size,
+      [&](int x, int y) {
+        return Place{size.width - 1 - x, size.height - 1 - y};
+      },
+      hold.numbers.at("within"), "turned by 180 degrees");
 }
 
 /// The picture with black wherever `inside` is false.
@@ -71,11 +83,14 @@ Result<Outcome> turn_90(Lab& lab, const Situation& s, const Hold& hold) {
   const Size size = s.picture.color.size(), turned{size.height, size.width};
   const auto m = static_cast<int>(std::min(hold.numbers.at("margin"), 1e6));
   if (2 * m >= size.width || 2 * m >= size.height) return not_applicable();
-  const Picture picture = masked(s.picture, [&](int x, int y) {
-    return x >= m && y >= m && x < size.width - m && y < size.height - m;
-  });
-  return commutes(lab, s, picture, turned, [&](int x, int y) { return Place{y, size.height - 1 - x}; }, hold.numbers.at("within"),
-                  "turned by 90 degrees");
+  const Picture picture =
+      masked(s.picture, [&](int x, int y) { return x >= m && y >= m && x < size.width - m && y < size.height - m; });
+  return commutes(
+      lab, s, picture, turned,
+      [&](int x, int y) {
+        return Place{y, size.height - 1 - x};
+      },
+      hold.numbers.at("within"), "turned by 90 degrees");
 }
 
 /// Moved to the right and down. Light stays `margin` away from all edges before and after.
@@ -100,9 +115,15 @@ Result<Outcome> shift(Lab& lab, const Situation& s, const Hold& hold) {
   AFTERGLOW_TRY(const Made a, lab.run(s.look, before, s.frame, usual_way(lab)));
   AFTERGLOW_TRY(const Made b, lab.run(s.look, after, s.frame, usual_way(lab)));
   const Size common{size.width - dx, size.height - dy};
-  return compare(mapped(b.image, common, [&](int x, int y) { return Place{x + dx, y + dy}; }),
-                 mapped(a.image, common, [](int x, int y) { return Place{x, y}; }), hold.numbers.at("within"),
-                 fmt::format("moved by {} and {} pixels", dx, dy));
+  return compare(mapped(b.image, common,
+                        [&](int x, int y) {
+                          return Place{x + dx, y + dy};
+                        }),
+                 mapped(a.image, common,
+                        [](int x, int y) {
+                          return Place{x, y};
+                        }),
+                 hold.numbers.at("within"), fmt::format("moved by {} and {} pixels", dx, dy));
 }
 
 constexpr Check kChecks[] = {

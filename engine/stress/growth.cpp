@@ -107,7 +107,8 @@ Result<std::vector<GrowthRow>> error_growth(Lab& lab, const std::vector<Subject>
       for (const auto& kind : kinds(quick)) {
         AFTERGLOW_CHECK(step());
         lab.forget();
-        AFTERGLOW_CHECK(grow(lab, {*subject.effect, *levels, variant, subject.looks.front().paths}, {kind, size, seed}, rows));
+        AFTERGLOW_CHECK(
+            grow(lab, {*subject.effect, *levels, variant, subject.looks.front().paths}, {kind, size, seed}, rows));
       }
   }
   return rows;
@@ -123,15 +124,16 @@ std::string growth_text(const std::vector<GrowthRow>& rows) {
     Worst& worst = all[{row.effect, row.levels}];
     const std::string condition = row.variant == "defaults" ? row.picture : row.picture + ", " + row.variant;
     if (row.fp32.percentile >= worst.fp32) worst.fp32 = row.fp32.percentile, worst.picture32 = condition;
-    if (row.has_fp16 && row.fp16.percentile >= worst.fp16) worst.fp16 = row.fp16.percentile, worst.picture16 = condition;
+    if (row.has_fp16 && row.fp16.percentile >= worst.fp16)
+      worst.fp16 = row.fp16.percentile, worst.picture16 = condition;
     worst.worst32 = std::max(worst.worst32, row.fp32.worst);
     if (row.has_fp16) worst.worst16 = std::max(worst.worst16, row.fp16.worst);
   }
-  std::string out = fmt::format("{:<20}{:>7}  {:<10}{:<10}{:<10}{:<10}{}\n", "effect", "levels", "fp32", "worst", "fp16", "worst",
-                                "where fp32 · fp16 are largest");
+  std::string out = fmt::format("{:<20}{:>7}  {:<10}{:<10}{:<10}{:<10}{}\n", "effect", "levels", "fp32", "worst",
+                                "fp16", "worst", "where fp32 · fp16 are largest");
   for (const auto& [key, worst] : all)
-    out += fmt::format("{:<20}{:>7}  {:<10.2g}{:<10.2g}{:<10.2g}{:<10.2g}{} · {}\n", key.first, key.second, worst.fp32, worst.worst32,
-                       worst.fp16, worst.worst16, worst.picture32, worst.picture16);
+    out += fmt::format("{:<20}{:>7}  {:<10.2g}{:<10.2g}{:<10.2g}{:<10.2g}{} · {}\n", key.first, key.second, worst.fp32,
+                       worst.worst32, worst.fp16, worst.worst16, worst.picture32, worst.picture16);
   return out;
 }
 

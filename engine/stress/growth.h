@@ -15,12 +15,12 @@ struct GrowthRow {
   std::string effect, variant;  ///< "defaults", or the choice that differs: "mode = \"scattering\""
   std::string picture;          ///< kind
   int levels = 0;
-  ErrorMeasure fp32, fp16;      ///< fp16: empty where the picture is not exact in half floats
+  ErrorMeasure fp32, fp16;  ///< fp16: empty where the picture is not exact in half floats
   bool has_fp16 = false;
 };
 
-/// Of every subject whose promise about its error names the setting that counts levels (`levels`), until more levels change
-/// nothing. `quick`: the defaults and three kinds of picture alone. Errors: as Lab::run; what `step` returns.
+/// Of every subject whose promise about its error names the setting that counts levels (`levels`), until more levels
+/// change nothing. `quick`: the defaults and three kinds of picture alone. Errors: as Lab::run; what `step` returns.
 Result<std::vector<GrowthRow>> error_growth(Lab& lab, const std::vector<Subject>& subjects, Size size, bool quick,
                                             std::uint64_t seed, const std::function<Result<void>()>& step);
 

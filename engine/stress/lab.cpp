@@ -131,7 +131,8 @@ Result<Made> Lab::State::run(const Look& look, const Picture& picture, double fr
   auto inputs = picture_inputs(picture, one->stack->prepared_graph());
   for (auto& [name, input] : inputs) input.content.reset();  // it is to run, whatever ran before
   HostResult result;
-  AFTERGLOW_TRY(const FrameTimes times, one->runner->run(*one->stack->program(), inputs, result, KernelTiming::none, choose));
+  AFTERGLOW_TRY(const FrameTimes times,
+                one->runner->run(*one->stack->program(), inputs, result, KernelTiming::none, choose));
   (void)times;
   const Size size = one->stack->prepared_graph().images[one->stack->prepared_graph().result].size;
   Made made{.image = {}, .clamped = result.clamped, .shown = one->stack->shows()};
@@ -174,7 +175,11 @@ Result<LookFacts> Lab::facts(const Look& look, Size size, double frame) {
 Result<LookFacts> Lab::State::find_facts(const Look& look, Size size, double frame) {
   AFTERGLOW_TRY(const auto stack, Stack::load("stress.lua", options(look, {.plain = true}), *diagnostics));
   AFTERGLOW_TRY(const Graph graph, stack->graph(context_for(size, frame)));
-  LookFacts facts{.entries = bench::oracle_entries(stack->preset(), graph), .holds = {}, .runs = graph.result != graph.source, .passes = 0, .images = {}};
+  LookFacts facts{.entries = bench::oracle_entries(stack->preset(), graph),
+                  .holds = {},
+                  .runs = graph.result != graph.source,
+                  .passes = 0,
+                  .images = {}};
   facts.passes = graph.passes.size();
   for (const auto& pass : graph.passes) {
     const GraphImage& image = graph.images[static_cast<std::size_t>(pass.output)];

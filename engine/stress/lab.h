@@ -45,7 +45,8 @@ struct LookFacts {
 class Lab {
  public:
   /// `device` must outlive it. `cache`: for shaders; empty: none.
-  static Result<std::unique_ptr<Lab>> create(Device& device, const std::filesystem::path& cache, Diagnostics& diagnostics);
+  static Result<std::unique_ptr<Lab>> create(Device& device, const std::filesystem::path& cache,
+                                             Diagnostics& diagnostics);
   ~Lab();
 
   /// The result of a stack for a picture, which begins a sequence. Of a picture whose `content` is known, a result that

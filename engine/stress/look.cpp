@@ -13,7 +13,8 @@ std::string entry_text(const LookEntry& entry) {
   std::vector<std::string> keys;
   if (!entry.at.empty()) keys.push_back(fmt::format("at = \"{}\", order = {}", entry.at, entry.order));
   for (const auto& [name, value] : entry.settings) keys.push_back(fmt::format("{} = {}", name, value.text()));
-  return keys.empty() ? fmt::format("fx.{} {{}}", entry.effect) : fmt::format("fx.{} {{ {} }}", entry.effect, join(keys));
+  return keys.empty() ? fmt::format("fx.{} {{}}", entry.effect)
+                      : fmt::format("fx.{} {{ {} }}", entry.effect, join(keys));
 }
 
 }  // namespace

@@ -44,10 +44,32 @@ void fill_halves(Image& image, Random& random) {
 }
 
 void fill_extremes(Image& image, Random& random) {
-  static const std::vector<float> kValues{
-      0.0f,    -0.0f, 1e30f,  65504.0f,  65505.0f, 65520.0f,   1e4f,      1e-38f,   1e-45f,     6.1e-5f,
-      5.96e-8f, 1.0f, 60.0f,  3.0e38f,   1e20f,    kInfinity,  -kInfinity, kNaN,    -1e30f,     -1.0f,
-      0.18f,   1e-10f, 65536.0f, 8.0e-46f, std::nextafter(1.0f, 0.0f), std::nextafter(1.0f, 2.0f)};
+  static const std::vector<float> kValues{0.0f,
+                                          -0.0f,
+                                          1e30f,
+                                          65504.0f,
+                                          65505.0f,
+                                          65520.0f,
+                                          1e4f,
+                                          1e-38f,
+                                          1e-45f,
+                                          6.1e-5f,
+                                          5.96e-8f,
+                                          1.0f,
+                                          60.0f,
+                                          3.0e38f,
+                                          1e20f,
+                                          kInfinity,
+                                          -kInfinity,
+                                          kNaN,
+                                          -1e30f,
+                                          -1.0f,
+                                          0.18f,
+                                          1e-10f,
+                                          65536.0f,
+                                          8.0e-46f,
+                                          std::nextafter(1.0f, 0.0f),
+                                          std::nextafter(1.0f, 2.0f)};
   each_pixel(image, [&](int, int, float* p) {
     set(p, random.pick(kValues), random.pick(kValues), random.pick(kValues), random.pick(kValues));
   });
@@ -144,7 +166,8 @@ void fill_threshold(Image& image, Random& random) {
 
 void fill_empty_alpha(Image& image, Random& random) {
   each_pixel(image, [&](int x, int y, float* p) {
-    set(p, static_cast<float>(random.unit()), static_cast<float>(random.unit() * 4), 0.25f, (x / 3 + y / 3) % 2 ? 0.0f : 1.0f);
+    set(p, static_cast<float>(random.unit()), static_cast<float>(random.unit() * 4), 0.25f,
+        (x / 3 + y / 3) % 2 ? 0.0f : 1.0f);
   });
 }
 

@@ -35,7 +35,8 @@ const PictureKind* find_picture_kind(const std::string& name);
 /// negative values: what a broken renderer writes. The kind must exist.
 Picture make_picture(const PictureSpec& spec);
 
-/// The picture as a stack gets it: written to an EXR file in `folder` and read again, which makes it finite. Errors: io.
+/// The picture as a stack gets it: written to an EXR file in `folder` and read again, which makes it finite. Errors:
+/// io.
 Result<Picture> as_read(const Picture& picture, const std::filesystem::path& folder, Diagnostics& diagnostics);
 
 /// Every value of the colour to the nearest half float within ±65504.

@@ -73,8 +73,9 @@ Result<std::string> output_of(const std::string& program, const std::vector<std:
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return out;
-  return Error{ErrorKind::other, WIFEXITED(status) ? fmt::format("'{}' ended with exit code {}", program, WEXITSTATUS(status))
-                                                   : fmt::format("'{}' was ended by signal {}", program, WTERMSIG(status))};
+  return Error{ErrorKind::other, WIFEXITED(status)
+                                     ? fmt::format("'{}' ended with exit code {}", program, WEXITSTATUS(status))
+                                     : fmt::format("'{}' was ended by signal {}", program, WTERMSIG(status))};
 }
 
 }  // namespace afterglow::stress

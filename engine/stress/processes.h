@@ -11,8 +11,8 @@ namespace afterglow::stress {
 
 using Environment = std::vector<std::pair<std::string, std::string>>;
 
-/// What a program prints on its standard output; its standard error goes where this process's goes. `environment` is added
-/// to this process's. Errors: other (it cannot be started, ends with an exit code that is not 0).
+/// What a program prints on its standard output; its standard error goes where this process's goes. `environment` is
+/// added to this process's. Errors: other (it cannot be started, ends with an exit code that is not 0).
 Result<std::string> output_of(const std::string& program, const std::vector<std::string>& arguments,
                               const Environment& environment);
 

@@ -104,7 +104,8 @@ class Run {
 
   Result<void> found(const Trial& trial, const PictureSpec& spec, const Situation& situation, const Outcome& outcome) {
     ++summary_.failures;
-    if (summary_.subjects[trial.subject][situation.check].failures > static_cast<std::uint64_t>(options_.kept_per_kind)) return {};
+    if (summary_.subjects[trial.subject][situation.check].failures > static_cast<std::uint64_t>(options_.kept_per_kind))
+      return {};
     const StillFails fails = [&](const Situation& candidate) {
       const auto again = tried(candidate);
       return again && again->applies && !again->holds;
@@ -122,7 +123,8 @@ class Run {
                     .tries = small.tries,
                     .folder = {}};
     if (!options_.out.empty()) {
-      finding.folder = options_.out / fmt::format("{}-{}-{}-{}", trial.subject, situation.check, trial.index, spec.kind);
+      finding.folder =
+          options_.out / fmt::format("{}-{}-{}-{}", trial.subject, situation.check, trial.index, spec.kind);
       const auto& info = lab_.device().info();
       AFTERGLOW_CHECK(write_reproducer(finding.folder, small.situation, last,
                                        {options_.version, info.name, info.driver, options_.seed, trial.index}));
@@ -153,7 +155,11 @@ void Tally::add(const Outcome& outcome) {
 }
 
 Result<Situation> situation_of(const Trial& trial, const PictureSpec& spec, Diagnostics& diagnostics) {
-  Situation out{.look = trial.look, .picture = make_picture(spec), .frame = trial.frame, .check = {}, .seed = trial.seed ^ spec.seed};
+  Situation out{.look = trial.look,
+                .picture = make_picture(spec),
+                .frame = trial.frame,
+                .check = {},
+                .seed = trial.seed ^ spec.seed};
   if (!find_picture_kind(spec.kind)->gentle) {
     AFTERGLOW_TRY(out.picture, as_read(out.picture, scratch(), diagnostics));
   }

@@ -25,7 +25,7 @@ struct Tally {
 /// Something that does not hold.
 struct Finding {
   std::string subject, check, stack, picture, what;
-  Size size;                     ///< after shrinking
+  Size size;  ///< after shrinking
   std::uint64_t trial = 0;
   int tries = 0;                 ///< that shrinking took
   std::filesystem::path folder;  ///< of the reproducer; empty: none was asked for
@@ -33,12 +33,12 @@ struct Finding {
 
 struct ProgrammeOptions {
   std::uint64_t seed = 1;
-  std::uint64_t cases = 0;      ///< ends after so many; 0: no limit
-  double seconds = 0;           ///< ends after so long; 0: no limit. Without both limits: one round over all looks
-  std::filesystem::path out;    ///< reproducers go here; empty: none are kept
-  std::string version;          ///< of the program, for reproducers
-  int digests_every = 8;        ///< every so many trials its results are hashed, for other processes to compare
-  int kept_per_kind = 2;        ///< findings of one subject and check that are shrunk and kept; the others are counted
+  std::uint64_t cases = 0;    ///< ends after so many; 0: no limit
+  double seconds = 0;         ///< ends after so long; 0: no limit. Without both limits: one round over all looks
+  std::filesystem::path out;  ///< reproducers go here; empty: none are kept
+  std::string version;        ///< of the program, for reproducers
+  int digests_every = 8;      ///< every so many trials its results are hashed, for other processes to compare
+  int kept_per_kind = 2;      ///< findings of one subject and check that are shrunk and kept; the others are counted
 };
 
 struct Summary {

@@ -31,6 +31,7 @@ std::string report_json(const StressReport& report);
 
 /// "NUMBER HASH" lines, as another process is asked for them. Errors (other): a line that is none.
 std::string digests_text(const std::map<std::uint64_t, Hash>& digests);
-Result<ProcessCheck> compare_digests(const std::string& how, const std::map<std::uint64_t, Hash>& own, const std::string& theirs);
+Result<ProcessCheck> compare_digests(const std::string& how, const std::map<std::uint64_t, Hash>& own,
+                                     const std::string& theirs);
 
 }  // namespace afterglow::stress

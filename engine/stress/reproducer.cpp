@@ -36,7 +36,8 @@ Look look_of(const json& from) {
   Look look;
   for (const auto& path : from.at("paths")) look.paths.emplace_back(path.get<std::string>());
   for (const auto& one : from.at("entries")) {
-    LookEntry entry{.effect = one.at("effect"), .settings = {}, .at = one.value("at", ""), .order = one.value("order", 0)};
+    LookEntry entry{
+        .effect = one.at("effect"), .settings = {}, .at = one.value("at", ""), .order = one.value("order", 0)};
     for (const auto& setting : one.at("settings")) {
       SettingValue value{.type = static_cast<SettingType>(setting.at("type").get<int>())};
       value.number = setting.at("number").get<std::array<double, 3>>();
@@ -60,8 +61,10 @@ std::string read_me(const fs::path& folder, const Situation& s, const Outcome& o
   for (const auto& path : s.look.paths) paths += " --path " + quoted(fs::absolute(path).string());
   const std::string here = fs::absolute(folder).string();
   return fmt::format(
-      "{}: {}\n{}\n\nThe check again:\n  afterglow stress --repeat {}\nThe picture alone:\n  afterglow run {} {} -o out.exr{}\n", s.check,
-      find_check(s.check)->doc, outcome.what, quoted(here), quoted(here + "/" + kPreset), quoted(here + "/" + kInput), paths);
+      "{}: {}\n{}\n\nThe check again:\n  afterglow stress --repeat {}\nThe picture alone:\n  afterglow run {} {} -o "
+      "out.exr{}\n",
+      s.check, find_check(s.check)->doc, outcome.what, quoted(here), quoted(here + "/" + kPreset),
+      quoted(here + "/" + kInput), paths);
 }
 
 }  // namespace
@@ -72,19 +75,24 @@ Result<void> write_reproducer(const fs::path& folder, const Situation& situation
   fs::create_directories(folder, ec);
   if (ec) return Error{ErrorKind::io, "cannot be made: " + ec.message(), folder.string()};
   const Size size = situation.picture.color.size();
-  const json text{{"check", situation.check},
-                  {"promise", find_check(situation.check)->promise ? json(find_check(situation.check)->promise) : json()},
-                  {"what", outcome.what},
-                  {"measured", outcome.measured},
-                  {"allowed", outcome.allowed},
-                  {"stack", as_json(situation.look)},
-                  {"frame", situation.frame},
-                  {"check_seed", situation.seed},
-                  {"width", size.width},
-                  {"height", size.height},
-                  {"found", {{"version", provenance.version}, {"device", provenance.device}, {"driver", provenance.driver},
-                             {"seed", provenance.seed}, {"trial", provenance.trial}}},
-                  {"command", fmt::format("afterglow stress --repeat {}", quoted(fs::absolute(folder).string()))}};
+  const json text{
+      {"check", situation.check},
+      {"promise", find_check(situation.check)->promise ? json(find_check(situation.check)->promise) : json()},
+      {"what", outcome.what},
+      {"measured", outcome.measured},
+      {"allowed", outcome.allowed},
+      {"stack", as_json(situation.look)},
+      {"frame", situation.frame},
+      {"check_seed", situation.seed},
+      {"width", size.width},
+      {"height", size.height},
+      {"found",
+       {{"version", provenance.version},
+        {"device", provenance.device},
+        {"driver", provenance.driver},
+        {"seed", provenance.seed},
+        {"trial", provenance.trial}}},
+      {"command", fmt::format("afterglow stress --repeat {}", quoted(fs::absolute(folder).string()))}};
   AFTERGLOW_CHECK(write_picture_file(situation.picture, folder / kInput));
   AFTERGLOW_CHECK(write_file_atomically(folder / kPreset, situation.look.text()));
   AFTERGLOW_CHECK(write_file_atomically(folder / "README.txt", read_me(folder, situation, outcome)));
@@ -101,12 +109,17 @@ Result<Situation> read_reproducer(const fs::path& folder, Diagnostics& diagnosti
     out.frame = from.at("frame");
     out.seed = from.at("check_seed");
   } catch (const std::exception& error) {
-    return Error{ErrorKind::io, fmt::format("is no case of `afterglow stress`: {}", error.what()), (folder / kCase).string()};
+    return Error{ErrorKind::io, fmt::format("is no case of `afterglow stress`: {}", error.what()),
+                 (folder / kCase).string()};
   }
   if (!find_check(out.check)) {
     std::vector<std::string> names;
     for (const auto& check : checks()) names.emplace_back(check.name);
-    return Error{ErrorKind::io, fmt::format("unknown check '{}'", out.check), (folder / kCase).string(), 0, join(names),
+    return Error{ErrorKind::io,
+                 fmt::format("unknown check '{}'", out.check),
+                 (folder / kCase).string(),
+                 0,
+                 join(names),
                  nearest_name(out.check, names)};
   }
   AFTERGLOW_TRY(out.picture, read_picture_file(folder / kInput, diagnostics));

@@ -17,8 +17,8 @@ struct Provenance {
 Result<void> write_reproducer(const std::filesystem::path& folder, const Situation& situation, const Outcome& outcome,
                               const Provenance& provenance);
 
-/// Reads it back. The stack comes from case.json; preset.lua is the same for `afterglow run`. Errors: io (not such a folder;
-/// what is wrong with it).
+/// Reads it back. The stack comes from case.json; preset.lua is the same for `afterglow run`. Errors: io (not such a
+/// folder; what is wrong with it).
 Result<Situation> read_reproducer(const std::filesystem::path& folder, Diagnostics& diagnostics);
 
 }  // namespace afterglow::stress

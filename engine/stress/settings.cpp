@@ -22,7 +22,8 @@ double high_of(const SettingSchema& s) {
 SettingValue with_number(const SettingSchema& setting, double value) {
   SettingValue out{.type = setting.type};
   out.number = {value, value, value};
-  if (setting.type == SettingType::integer || setting.type == SettingType::number || setting.type == SettingType::boolean)
+  if (setting.type == SettingType::integer || setting.type == SettingType::number ||
+      setting.type == SettingType::boolean)
     out.number[1] = out.number[2] = 0;
   if (setting.type == SettingType::vec2) out.number[2] = 0;
   return out;
@@ -40,13 +41,17 @@ std::vector<double> ends_of(const SettingSchema& s) {
   if (s.type == SettingType::boolean) return {0, 1};
   if (s.type == SettingType::color) return {0, 1e30};
   const double low = low_of(s), high = high_of(s);
-  if (s.type == SettingType::integer) return low + 1 < high ? std::vector{low, low + 1, high - 1, high} : std::vector{low, high};
+  if (s.type == SettingType::integer)
+    return low + 1 < high ? std::vector{low, low + 1, high - 1, high} : std::vector{low, high};
   return {low, next_inside(low, high), next_inside(high, low), high};
 }
 
 double random_number(const SettingSchema& s, Random& random) {
   const double low = low_of(s), high = high_of(s);
   if (random.chance(0.15)) return random.pick(ends_of(s));
+  if (random.chance(0.15)) return low;  // where much promises more: no threshold, no blur
+  // Counts: of levels, samples, rounds. Few are quick, and let light stay away from the edges.
+  if (s.type == SettingType::integer && random.chance(0.4)) return random.between(low, std::min(low + 4, high));
   // Where the range is wide, every power of ten is alike; it may lie on both sides of 0.
   double value = random.between(low, high);
   if (high - low > 100) {
@@ -79,7 +84,8 @@ LookEntry with_files(const EffectSchema& effect, const SearchPath& path) {
   LookEntry entry{.effect = effect.name, .settings = {}, .at = {}};
   for (const auto& setting : effect.settings)
     if (setting.type == SettingType::file)
-      if (const auto file = sample_file(setting, path); !file.empty()) entry.set(setting.name, with_choice(setting, file));
+      if (const auto file = sample_file(setting, path); !file.empty())
+        entry.set(setting.name, with_choice(setting, file));
   return entry;
 }
 
@@ -115,9 +121,11 @@ SettingValue random_value(const SettingSchema& setting, Random& random) {
   SettingValue out = with_number(setting, random_number(setting, random));
   if (setting.type == SettingType::color) {
     for (double& v : out.number)
-      v = random.chance(0.2) ? random.pick(ends_of(setting)) : static_cast<double>(static_cast<float>(random.log_between(0.01, 10)));
+      v = random.chance(0.2) ? random.pick(ends_of(setting))
+                             : static_cast<double>(static_cast<float>(random.log_between(0.01, 10)));
   } else if (setting.type != SettingType::number) {
-    for (std::size_t i = 0; i < (setting.type == SettingType::vec2 ? 2u : 3u); ++i) out.number[i] = random_number(setting, random);
+    for (std::size_t i = 0; i < (setting.type == SettingType::vec2 ? 2u : 3u); ++i)
+      out.number[i] = random_number(setting, random);
   }
   return out;
 }
@@ -145,7 +153,8 @@ LookEntry random_entry(const EffectSchema& effect, const SearchPath& path, Rando
   LookEntry entry = with_files(effect, path);
   const double share = random.between(0.2, 1.0);
   for (const auto& setting : effect.settings)
-    if (setting.type != SettingType::file && random.chance(share)) entry.set(setting.name, random_value(setting, random));
+    if (setting.type != SettingType::file && random.chance(share))
+      entry.set(setting.name, random_value(setting, random));
   return entry;
 }
 

@@ -14,9 +14,9 @@ constexpr int kPicturesPerTrial = 3;
 
 /// Small ones come often: they are quick, and hold as many edges.
 Size random_size(Random& random) {
-  static const std::vector<Size> kSmall{{1, 1},   {1, 2},   {2, 1},   {2, 2},   {3, 3},   {5, 3},   {1, 17},
-                                        {23, 1},  {7, 11},  {8, 8},   {13, 17}, {16, 16}, {31, 37}, {32, 32},
-                                        {64, 64}, {33, 65}, {17, 5},  {9, 64},  {63, 62}, {48, 20}};
+  static const std::vector<Size> kSmall{{1, 1},   {1, 2},   {2, 1},  {2, 2},   {3, 3},   {5, 3},   {1, 17},
+                                        {23, 1},  {7, 11},  {8, 8},  {13, 17}, {16, 16}, {31, 37}, {32, 32},
+                                        {64, 64}, {33, 65}, {17, 5}, {9, 64},  {63, 62}, {48, 20}};
   static const std::vector<Size> kMiddle{{128, 128}, {101, 57}, {97, 61}, {240, 135}, {128, 64}, {256, 256}, {160, 90}};
   static const std::vector<Size> kLong{{1, 4099}, {4099, 1}, {16384, 2}, {2, 16384}, {1021, 7}};
   const double kind = random.unit();
@@ -53,14 +53,16 @@ Trial Trials::at(std::uint64_t index) const {
 }
 
 Result<std::vector<Subject>> subjects_of_effects(const std::vector<std::string>& names,
-                                                 const std::vector<std::filesystem::path>& paths, Diagnostics& diagnostics) {
+                                                 const std::vector<std::filesystem::path>& paths,
+                                                 Diagnostics& diagnostics) {
   const SearchPath path = search_path_for({}, paths);
   AFTERGLOW_TRY(auto effects, list_effects(path, diagnostics));
   std::vector<std::string> known;
   for (const auto& effect : effects) known.push_back(effect.name);
   for (const auto& name : names)
     if (std::ranges::find(known, name) == known.end())
-      return Error{ErrorKind::usage, fmt::format("unknown effect '{}'", name), {}, 0, join(known), nearest_name(name, known)};
+      return Error{ErrorKind::usage,         fmt::format("unknown effect '{}'", name), {}, 0, join(known),
+                   nearest_name(name, known)};
   std::vector<Subject> out;
   for (auto& effect : effects) {
     if (!names.empty() && std::ranges::find(names, effect.name) == names.end()) continue;

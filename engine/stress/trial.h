@@ -12,7 +12,7 @@ namespace afterglow::stress {
 /// What the programme tries: effects one by one, presets whole.
 struct Subject {
   std::string name;
-  std::vector<Look> looks;  ///< settings to try, the defaults first; after them come random ones
+  std::vector<Look> looks;             ///< settings to try, the defaults first; after them come random ones
   std::optional<EffectSchema> effect;  ///< of a single effect: what random settings are drawn for
 };
 
@@ -45,6 +45,7 @@ class Trials {
 
 /// Every effect on the path, or those of these names. Errors: usage (unknown name), script.
 Result<std::vector<Subject>> subjects_of_effects(const std::vector<std::string>& names,
-                                                 const std::vector<std::filesystem::path>& paths, Diagnostics& diagnostics);
+                                                 const std::vector<std::filesystem::path>& paths,
+                                                 Diagnostics& diagnostics);
 
 }  // namespace afterglow::stress

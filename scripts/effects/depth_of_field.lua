@@ -23,7 +23,8 @@ return fx.effect {
   },
   needs = { "depth" },
 
-  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = { fp32 = 5e-4, fp16 = 1, up_to = 50 } },
+  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, 
+    error = { fp32 = 5e-4, fp16 = false, up_to = 50, when = function(s) return s.depth_space == "linear" end } },
   build = function(g, s, source)
     local f = s.focal_length / 1000
     local d = math.max(s.focus_distance, 1.01 * f)  -- nearer nothing is ever sharp

@@ -49,7 +49,8 @@ void EffectFolder::write(const std::string& file, const std::string& text) const
   std::ofstream(path_ / file, std::ios::binary) << text;
 }
 
-void EffectFolder::effect(const std::string& name, const std::string& glsl, const std::string& more, const std::string& pass) const {
+void EffectFolder::effect(const std::string& name, const std::string& glsl, const std::string& more,
+                          const std::string& pass) const {
   write("effects/" + name + ".lua", fmt::format(R"(local fx = require "afterglow"
 return fx.effect {{
   name = "{0}", doc = "Made for a test.",
@@ -67,7 +68,9 @@ return fx.effect {{
   write(fmt::format("shaders/{0}/{0}.glsl", name), "uniform float strength;\nuniform float level;\n" + glsl + "\n");
 }
 
-Look EffectFolder::look(const std::string& effect) const { return {{{.effect = effect, .settings = {}, .at = {}}}, {path_}}; }
+Look EffectFolder::look(const std::string& effect) const {
+  return {{{.effect = effect, .settings = {}, .at = {}}}, {path_}};
+}
 
 Lab& lab() { return *world().lab; }
 int validation_errors() { return world().device->validation_errors(); }

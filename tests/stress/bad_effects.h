@@ -21,9 +21,11 @@ class EffectFolder {
   EffectFolder& operator=(const EffectFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
 
-  /// An effect of one pass, with the settings `strength` (0…1, 0.5) and `level` (0…10, 1) and `more` lines of Lua. `glsl`
-  /// defines apply or sample_at and may use the uniforms strength and level; lines in `pass` go into the g:pass call.
-  void effect(const std::string& name, const std::string& glsl, const std::string& more = "", const std::string& pass = "") const;
+  /// An effect of one pass, with the settings `strength` (0…1, 0.5) and `level` (0…10, 1) and `more` lines of Lua.
+  /// `glsl` defines apply or sample_at and may use the uniforms strength and level; lines in `pass` go into the g:pass
+  /// call.
+  void effect(const std::string& name, const std::string& glsl, const std::string& more = "",
+              const std::string& pass = "") const;
   void write(const std::string& file, const std::string& text) const;
   /// Only that effect, at its defaults.
   Look look(const std::string& effect) const;

@@ -10,8 +10,8 @@ namespace {
 struct BadEffect {
   const char* check;  ///< that must fail
   const char* glsl;
-  const char* holds = "";       ///< what it promises falsely
-  const char* pass = "";        ///< further keys of g:pass
+  const char* holds = "";  ///< what it promises falsely
+  const char* pass = "";   ///< further keys of g:pass
   const char* picture = "render";
   Size size{33, 18};
 };
@@ -20,24 +20,36 @@ const BadEffect kBad[] = {
     {"finite", "vec4 apply(vec4 color) { return vec4(color.rgb / max(color.r - 0.5, 0.0), color.a); }"},
     {"finite_joined", "vec4 apply(vec4 color) { return vec4(sqrt(0.5 - color.rgb), color.a); }"},
     {"alpha", "vec4 apply(vec4 color) { return color * 0.5; }"},
-    {"region", "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return fetch(source, p + ivec2(9, 5)); }", "", "reach = 1", "render", {64, 64}},
+    {"region",
+     "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return fetch(source, p + ivec2(9, 5)); }",
+     "",
+     "reach = 1",
+     "render",
+     {64, 64}},
     {"idle", "vec4 apply(vec4 color) { return vec4(color.rgb * 0.5, color.a); }"},
     {"black", "vec4 apply(vec4 color) { return vec4(color.rgb + 1e-6, color.a); }", "\"black\""},
-    {"constant", "vec4 apply(vec4 color, ivec2 p) { return vec4(color.rgb * (1.0 + 0.001 * float(p.x)), color.a); }", "\"constant\""},
+    {"constant", "vec4 apply(vec4 color, ivec2 p) { return vec4(color.rgb * (1.0 + 0.001 * float(p.x)), color.a); }",
+     "\"constant\""},
     {"mean", "vec4 apply(vec4 color) { return vec4(color.rgb * 0.999, color.a); }", "mean = 1e-4"},
     {"no_added_light", "vec4 apply(vec4 color) { return vec4(color.rgb * 1.001, color.a); }", "no_added_light = 1e-4"},
     {"monotone", "vec4 apply(vec4 color) { return vec4(1.0 / (1.0 + color.rgb), color.a); }", "\"monotone\""},
     {"bounded", "vec4 apply(vec4 color) { return vec4(color.rgb * 1.01, color.a); }", "\"bounded\""},
     {"bounded", "vec4 apply(vec4 color) { return color; }", "bounded = { from = 0, to = 1 }"},
-    {"continuous", "vec4 apply(vec4 color) { return vec4(color.rgb + 0.01 * step(1.37, color.rgb), color.a); }", "continuous = 1.01"},
+    {"continuous", "vec4 apply(vec4 color) { return vec4(color.rgb + 0.01 * step(1.37, color.rgb), color.a); }",
+     "continuous = 1.01"},
     {"linear", "vec4 apply(vec4 color) { return vec4(color.rgb * (1.0 + 1e-3 * color.rgb), color.a); }", "\"linear\""},
     {"proportional", "vec4 apply(vec4 color) { return vec4(color.rgb * (1.0 + strength * strength), color.a); }",
      "proportional = { setting = \"strength\", up_to = 1 }"},
-    {"mirror", "vec4 apply(vec4 color, ivec2 p) { return vec4(color.rgb * (1.0 + 0.001 * float(p.y)), color.a); }", "\"mirror\""},
-    {"turn_180", "vec4 apply(vec4 color, ivec2 p) { return vec4(color.rgb * (1.0 + 0.001 * float(p.x)), color.a); }", "\"turn_180\""},
-    {"turn_90", "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return 0.5 * (fetch(source, p + ivec2(1, 0)) + fetch(source, p - ivec2(1, 0))); }",
+    {"mirror", "vec4 apply(vec4 color, ivec2 p) { return vec4(color.rgb * (1.0 + 0.001 * float(p.y)), color.a); }",
+     "\"mirror\""},
+    {"turn_180", "vec4 apply(vec4 color, ivec2 p) { return vec4(color.rgb * (1.0 + 0.001 * float(p.x)), color.a); }",
+     "\"turn_180\""},
+    {"turn_90",
+     "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return 0.5 * (fetch(source, p + ivec2(1, 0)) + "
+     "fetch(source, p - ivec2(1, 0))); }",
      "\"turn_90\""},
-    {"shift", "vec4 apply(vec4 color, ivec2 p) { return p.x % 2 == 0 ? color : vec4(color.rgb * 0.5, color.a); }", "shift = 1"},
+    {"shift", "vec4 apply(vec4 color, ivec2 p) { return p.x % 2 == 0 ? color : vec4(color.rgb * 0.5, color.a); }",
+     "shift = 1"},
 };
 
 void PrintTo(const BadEffect& bad, std::ostream* out) { *out << bad.check << ": " << bad.glsl; }
@@ -70,12 +82,14 @@ TEST_P(BadEffects, AreCaught) {
 INSTANTIATE_TEST_SUITE_P(, BadEffects, testing::ValuesIn(kBad));
 
 constexpr const char* kEverything =
-    "holds = { \"black\", \"constant\", \"monotone\", \"bounded\", \"linear\", \"mirror\", \"turn_180\", \"turn_90\", mean = 1e-6, "
+    "holds = { \"black\", \"constant\", \"monotone\", \"bounded\", \"linear\", \"mirror\", \"turn_180\", \"turn_90\", "
+    "mean = 1e-6, "
     "no_added_light = 1e-6, continuous = 1, shift = 1, proportional = { setting = \"strength\", up_to = 1 } },";
 
 TEST(StressChecks, AGoodEffectPassesAll) {
   const EffectFolder folder;
-  folder.effect("honest", "vec4 apply(vec4 color) { return color * (0.999999 + 1e-6 * min(strength + level, 1.0)); }", kEverything);
+  folder.effect("honest", "vec4 apply(vec4 color) { return color * (0.999999 + 1e-6 * min(strength + level, 1.0)); }",
+                kEverything);
   const Look look = folder.look("honest");
   for (const auto& kind : picture_kinds())
     for (const Check& check : checks()) {
@@ -89,7 +103,8 @@ TEST(StressChecks, AGoodEffectPassesAll) {
 
 TEST(StressChecks, EveryPromiseHasACheckAndEveryCheckABreaker) {
   for (const auto& kind : hold_kinds())
-    EXPECT_TRUE(std::ranges::any_of(checks(), [&](const Check& c) { return c.promise && kind.name == c.promise; })) << kind.name;
+    EXPECT_TRUE(std::ranges::any_of(checks(), [&](const Check& c) { return c.promise && kind.name == c.promise; }))
+        << kind.name;
   for (const Check& check : checks()) {
     // What no effect can break; errors have a test of their own.
     const std::string name = check.name;
@@ -120,13 +135,46 @@ TEST(StressChecks, AFalseBoundOfTheErrorIsCaught) {
 return fx.effect { name = "color_blit", settings = { intensity = fx.float { min = 0, max = 2, default = 1 } }, holds = { error = 1e-5 },
   build = function(g, s, source) return g:pass { shader = "wrong", source = source, intensity = s.intensity } end }
 )");
-  folder.write("shaders/wrong.glsl", "uniform float intensity;\nvec4 apply(vec4 color) { return vec4(0.0, color.g * intensity * 1.0001, 0.0, color.a); }\n");
+  folder.write("shaders/wrong.glsl",
+               "uniform float intensity;\nvec4 apply(vec4 color) { return vec4(0.0, color.g * intensity * 1.0001, 0.0, "
+               "color.a); }\n");
   const Outcome wrong = outcome_of(situation(folder.look("color_blit"), "error_fp32", {"render", {16, 16}, 1}));
   EXPECT_TRUE(wrong.applies);
   EXPECT_FALSE(wrong.holds);
-  folder.write("shaders/wrong.glsl", "uniform float intensity;\nvec4 apply(vec4 color) { return vec4(0.0, color.g * intensity, 0.0, color.a); }\n");
+  folder.write(
+      "shaders/wrong.glsl",
+      "uniform float intensity;\nvec4 apply(vec4 color) { return vec4(0.0, color.g * intensity, 0.0, color.a); }\n");
   const Outcome right = outcome_of(situation(folder.look("color_blit"), "error_fp32", {"render", {16, 16}, 1}));
   EXPECT_TRUE(right.applies && right.holds) << right.what;
+}
+
+/// Of a pyramid of few levels, where pictures are large enough for light to stay away from the edges: what its promises
+/// with margins and conditions say does apply, and holds.
+TEST(StressChecks, AScatteringPyramidKeepsItsPromises) {
+  const auto number = [](SettingType type, double v) {
+    return SettingValue{.type = type, .number = {v, 0, 0}, .choice = {}};
+  };
+  for (const int levels : {1, 2})
+    for (const double threshold : {0.0, 0.5}) {
+      Look look{{{.effect = "bloom", .settings = {}, .at = {}}}, {}};
+      auto& entry = look.entries.front();
+      entry.set("mode", {.type = SettingType::enumeration, .number = {}, .choice = "scattering"});
+      entry.set("max_iterations", number(SettingType::integer, levels));
+      entry.set("threshold", number(SettingType::number, threshold));
+      entry.set("intensity", number(SettingType::number, 0.9));
+      const int side = 128 * levels;
+      for (const char* check : {"mean", "no_added_light", "turn_90", "shift", "bounded", "monotone"})
+        for (const char* kind : {"render", "fireflies", "checkerboard", "diagonals"}) {
+          const Outcome outcome = outcome_of(situation(look, check, {kind, {side, side}, 11}, 3));
+          if (std::string(check) == "mean" && threshold > 0) {
+            EXPECT_FALSE(outcome.applies);
+            continue;
+          }
+          EXPECT_TRUE(outcome.applies) << check << " " << levels;
+          EXPECT_TRUE(outcome.holds) << check << " " << levels << " " << threshold << " " << kind << ": "
+                                     << outcome.what;
+        }
+    }
 }
 
 TEST(StressChecks, PromisesOfOtherSettingsDoNotApply) {

@@ -32,7 +32,8 @@ TEST(StressPictures, GentleOnesAreWithinWhatPromisesAreMeantFor) {
   for (const auto& kind : picture_kinds()) {
     if (!kind.gentle) continue;
     for (std::uint64_t seed = 0; seed < 20; ++seed)
-      for (const float v : make_picture({kind.name, {19, 13}, seed}).color.pixels) ASSERT_TRUE(v >= 0 && v <= 1e6f) << kind.name << " " << v;
+      for (const float v : make_picture({kind.name, {19, 13}, seed}).color.pixels)
+        ASSERT_TRUE(v >= 0 && v <= 1e6f) << kind.name << " " << v;
   }
 }
 

@@ -10,7 +10,8 @@ namespace afterglow::stress {
 namespace {
 
 constexpr const char* kBroken =
-    "vec4 apply(vec4 color) { return strength > 0.99 && color.g > 3.0 ? vec4(1.0 / vec3(color.r - color.r), color.a) : vec4(color.rgb * level, color.a); }";
+    "vec4 apply(vec4 color) { return strength > 0.99 && color.g > 3.0 ? vec4(1.0 / vec3(color.r - color.r), color.a) : "
+    "vec4(color.rgb * level, color.a); }";
 
 Trials trials_of(const EffectFolder& folder, const std::vector<std::string>& effects, std::uint64_t seed) {
   lab();
@@ -25,7 +26,8 @@ Result<void> go_on(const Summary&) { return {}; }
 TEST(StressProgramme, TrialsAreMadeFromSeedAndNumberAlone) {
   const EffectFolder folder;
   folder.effect("good", "vec4 apply(vec4 color) { return color * (strength + level); }");
-  const Trials a = trials_of(folder, {"good"}, 5), b = trials_of(folder, {"good"}, 5), c = trials_of(folder, {"good"}, 6);
+  const Trials a = trials_of(folder, {"good"}, 5), b = trials_of(folder, {"good"}, 5),
+               c = trials_of(folder, {"good"}, 6);
   int different = 0;
   for (const std::uint64_t index : {0u, 3u, 50u, 1000u}) {
     const Trial x = a.at(index), y = b.at(index);
@@ -62,7 +64,9 @@ TEST(StressProgramme, FindsShrinksAndKeepsAFault) {
   ASSERT_TRUE(again) << again.error().text();
   EXPECT_FALSE(outcome_of(*again).holds);
   // Mended, the same case holds.
-  folder.write("shaders/broken/broken.glsl", "uniform float strength;\nuniform float level;\nvec4 apply(vec4 color) { return vec4(color.rgb * level * (0.5 + 0.5 * strength), color.a); }\n");
+  folder.write("shaders/broken/broken.glsl",
+               "uniform float strength;\nuniform float level;\nvec4 apply(vec4 color) { return vec4(color.rgb * level "
+               "* (0.5 + 0.5 * strength), color.a); }\n");
   EXPECT_TRUE(outcome_of(*again).holds);
 }
 
@@ -73,7 +77,9 @@ TEST(StressProgramme, EndsInOrderWhenInterrupted) {
   Diagnostics quiet;
   const auto summary = run_programme(
       lab(), trials, {.seed = 1}, quiet,
-      [](const Summary& so_far) -> Result<void> { return so_far.trials < 2 ? Result<void>() : Result<void>(Error{ErrorKind::interrupted, "now"}); },
+      [](const Summary& so_far) -> Result<void> {
+        return so_far.trials < 2 ? Result<void>() : Result<void>(Error{ErrorKind::interrupted, "now"});
+      },
       [](const Finding&) {});
   ASSERT_TRUE(summary);
   EXPECT_TRUE(summary->interrupted);
@@ -83,7 +89,8 @@ TEST(StressProgramme, EndsInOrderWhenInterrupted) {
 
 TEST(StressProgramme, ABrokenDefaultIsAnError) {
   const EffectFolder folder;
-  folder.effect("refuses", "vec4 apply(vec4 color) { return color * strength * level; }", "active = function() error(\"never\", 0) end,");
+  folder.effect("refuses", "vec4 apply(vec4 color) { return color * strength * level; }",
+                "active = function() error(\"never\", 0) end,");
   const Trials trials = trials_of(folder, {"refuses"}, 1);
   Diagnostics quiet;
   const auto summary = run_programme(lab(), trials, {.seed = 1}, quiet, go_on, [](const Finding&) {});

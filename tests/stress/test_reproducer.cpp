@@ -12,7 +12,9 @@ namespace {
 
 TEST(StressReproducer, ComesBackToTheBit) {
   const EffectFolder folder;
-  folder.effect("broken", "vec4 apply(vec4 color) { return strength > 0.8 && color.r > 20.0 ? vec4(1.0 / (color.r - color.r)) : color * level; }");
+  folder.effect("broken",
+                "vec4 apply(vec4 color) { return strength > 0.8 && color.r > 20.0 ? vec4(1.0 / (color.r - color.r)) : "
+                "color * level; }");
   Look look = folder.look("broken");
   look.entries.front().set("strength", {.type = SettingType::number, .number = {0.9, 0, 0}});
   Situation kept = situation(look, "finite", {"spike", {20, 10}, 2});
@@ -31,8 +33,10 @@ TEST(StressReproducer, ComesBackToTheBit) {
   EXPECT_EQ(read->seed, kept.seed);
   EXPECT_EQ(read->frame, kept.frame);
   ASSERT_EQ(read->picture.color.pixels.size(), kept.picture.color.pixels.size());
-  EXPECT_EQ(std::memcmp(read->picture.color.pixels.data(), kept.picture.color.pixels.data(), kept.picture.color.bytes()), 0);
-  for (const char* name : {"depth", "normal", "motion"}) EXPECT_EQ(read->picture.auxiliary.at(name).pixels, kept.picture.auxiliary.at(name).pixels) << name;
+  EXPECT_EQ(
+      std::memcmp(read->picture.color.pixels.data(), kept.picture.color.pixels.data(), kept.picture.color.bytes()), 0);
+  for (const char* name : {"depth", "normal", "motion"})
+    EXPECT_EQ(read->picture.auxiliary.at(name).pixels, kept.picture.auxiliary.at(name).pixels) << name;
   const Outcome again = outcome_of(*read);
   EXPECT_FALSE(again.holds);
   EXPECT_EQ(again.what, outcome.what);
@@ -51,10 +55,12 @@ TEST(StressReproducer, WhatIsNoneIsNamed) {
   EXPECT_THAT(error(), testing::HasSubstr("case.json"));
   folder.write("case.json", "{");
   EXPECT_THAT(error(), testing::HasSubstr("is no case of `afterglow stress`"));
-  folder.write("case.json", R"({"check": "finit", "stack": {"entries": [], "paths": []}, "frame": 1, "check_seed": 1})");
+  folder.write("case.json",
+               R"({"check": "finit", "stack": {"entries": [], "paths": []}, "frame": 1, "check_seed": 1})");
   EXPECT_THAT(error(), testing::HasSubstr("unknown check 'finit'"));
   EXPECT_THAT(error(), testing::HasSubstr("did you mean 'finite'?"));
-  folder.write("case.json", R"({"check": "finite", "stack": {"entries": [], "paths": []}, "frame": 1, "check_seed": 1})");
+  folder.write("case.json",
+               R"({"check": "finite", "stack": {"entries": [], "paths": []}, "frame": 1, "check_seed": 1})");
   EXPECT_THAT(error(), testing::HasSubstr("input.exr"));
 }
 

@@ -43,7 +43,8 @@ TEST(StressShrink, FindsTheMinimalCaseOfAPlantedFault) {
   EXPECT_EQ(small.situation.picture.color.height, 1);
   EXPECT_EQ(bright_pixels(small.situation.picture, 0), 2);
   // Auxiliary images stay as large as the colour.
-  for (const auto& [name, image] : small.situation.picture.auxiliary) EXPECT_EQ(image.size(), small.situation.picture.color.size()) << name;
+  for (const auto& [name, image] : small.situation.picture.auxiliary)
+    EXPECT_EQ(image.size(), small.situation.picture.color.size()) << name;
   EXPECT_LE(small.tries, 400);
 }
 
@@ -53,7 +54,8 @@ TEST(StressShrink, StopsAfterItsTries) {
     ++calls;
     return false;
   };
-  const Situation start = situation({{{.effect = "a", .settings = {{"x", of(1)}}, .at = {}}}, {}}, "finite", {"render", {64, 64}, 1});
+  const Situation start =
+      situation({{{.effect = "a", .settings = {{"x", of(1)}}, .at = {}}}, {}}, "finite", {"render", {64, 64}, 1});
   const Shrunk same = shrink(start, count, 10);
   EXPECT_EQ(calls, 10);
   EXPECT_EQ(same.tries, 10);
@@ -62,7 +64,9 @@ TEST(StressShrink, StopsAfterItsTries) {
 
 TEST(StressShrink, OnADevice) {
   const EffectFolder folder;
-  folder.effect("broken", "vec4 apply(vec4 color) { return strength > 0.8 && color.r > 20.0 ? vec4(1.0 / (color.r - color.r)) : color * level; }");
+  folder.effect("broken",
+                "vec4 apply(vec4 color) { return strength > 0.8 && color.r > 20.0 ? vec4(1.0 / (color.r - color.r)) : "
+                "color * level; }");
   folder.effect("other", "vec4 apply(vec4 color) { return color * (strength + level); }");
   Look look = folder.look("other");
   look.entries.push_back({.effect = "broken", .settings = {{"strength", of(0.9)}, {"level", of(2)}}, .at = {}});

@@ -1,6 +1,8 @@
 // What effects promise: read, checked, and asked for the settings of a frame.
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "scene.h"
 #include "script/holds.h"
 
@@ -31,7 +33,8 @@ std::vector<Hold> held(const std::string& holds, const std::string& entry = "fx.
 }
 
 TEST(Holds, NamesNumbersAndTables) {
-  const auto holds = held("\"black\", mean = 1e-3, shift = { by = 4, margin = 9 }, proportional = { setting = \"amount\", up_to = 2 }");
+  const auto holds = held(
+      "\"black\", mean = 1e-3, shift = { by = 4, margin = 9 }, proportional = { setting = \"amount\", up_to = 2 }");
   ASSERT_EQ(holds.size(), 4u);
   EXPECT_EQ(holds[0].name, "black");
   EXPECT_EQ(holds[0].numbers.at("within"), 0);
@@ -44,8 +47,9 @@ TEST(Holds, NamesNumbersAndTables) {
 }
 
 TEST(Holds, FunctionsOfSettingsAndSize) {
-  const std::string text = "continuous = function(s, source) return s.amount * source.width end, "
-                           "mirror = { when = function(s, source) return s.amount > 1 and source.height == 32 end }";
+  const std::string text =
+      "continuous = function(s, source) return s.amount * source.width end, "
+      "mirror = { when = function(s, source) return s.amount > 1 and source.height == 32 end }";
   auto holds = held(text, "fx.glow { amount = 0.5 }");
   ASSERT_EQ(holds.size(), 1u);
   EXPECT_EQ(holds[0].numbers.at("slope"), 32);
@@ -53,31 +57,49 @@ TEST(Holds, FunctionsOfSettingsAndSize) {
   EXPECT_EQ(held(text, "fx.glow { amount = 1.5 }", {64, 33}).size(), 1u);
 }
 
+TEST(Holds, FalseIsNoBound) {
+  const auto holds = held("error = { fp32 = 1e-4, fp16 = false }");
+  ASSERT_EQ(holds.size(), 1u);
+  EXPECT_EQ(holds[0].numbers.at("fp32"), 1e-4);
+  EXPECT_TRUE(std::isinf(holds[0].numbers.at("fp16")));
+}
+
 TEST(Holds, Messages) {
   EXPECT_EQ(declared("\"blak\""),
-            "effects/glow.lua:4: error: fx.effect: holds: unknown promise \"blak\"; allowed: black, constant, mean, no_added_light, "
-            "monotone, bounded, continuous, linear, proportional, mirror, turn_180, turn_90, shift, error; did you mean 'black'?");
+            "effects/glow.lua:4: error: fx.effect: holds: unknown promise \"blak\"; allowed: black, constant, mean, "
+            "no_added_light, "
+            "monotone, bounded, continuous, linear, proportional, mirror, turn_180, turn_90, shift, error; did you "
+            "mean 'black'?");
   EXPECT_EQ(declared("meen = 1"),
-            "effects/glow.lua:4: error: fx.effect: holds: unknown promise 'meen'; allowed: black, constant, mean, no_added_light, "
-            "monotone, bounded, continuous, linear, proportional, mirror, turn_180, turn_90, shift, error; did you mean 'mean'?");
+            "effects/glow.lua:4: error: fx.effect: holds: unknown promise 'meen'; allowed: black, constant, mean, "
+            "no_added_light, "
+            "monotone, bounded, continuous, linear, proportional, mirror, turn_180, turn_90, shift, error; did you "
+            "mean 'mean'?");
   EXPECT_EQ(declared("mirror = {\n      wihin = 3 }"),
-            "effects/glow.lua:5: error: fx.effect: holds: mirror has no 'wihin'; allowed: when, within; did you mean 'within'?");
-  EXPECT_EQ(declared("mirror = { when = true }"), "effects/glow.lua:4: error: fx.effect: holds: mirror: when = true; allowed: a function");
-  EXPECT_EQ(declared("mirror = \"yes\""),
-            "effects/glow.lua:4: error: fx.effect: holds: mirror: within = \"yes\"; allowed: a number, function(s, source)");
+            "effects/glow.lua:5: error: fx.effect: holds: mirror has no 'wihin'; allowed: when, within; did you mean "
+            "'within'?");
+  EXPECT_EQ(declared("mirror = { when = true }"),
+            "effects/glow.lua:4: error: fx.effect: holds: mirror: when = true; allowed: a function");
+  EXPECT_EQ(
+      declared("mirror = \"yes\""),
+      "effects/glow.lua:4: error: fx.effect: holds: mirror: within = \"yes\"; allowed: a number, function(s, source)");
   EXPECT_EQ(declared("mean = {}"), "effects/glow.lua:4: error: fx.effect: holds: mean needs within");
   EXPECT_EQ(declared("\"continuous\""), "effects/glow.lua:4: error: fx.effect: holds: continuous needs slope");
   EXPECT_EQ(declared("proportional = { setting = \"amout\", up_to = 1 }"),
-            "effects/glow.lua:4: error: fx.effect: holds: proportional: setting = \"amout\" is no setting that is a number; allowed: "
+            "effects/glow.lua:4: error: fx.effect: holds: proportional: setting = \"amout\" is no setting that is a "
+            "number; allowed: "
             "amount; did you mean 'amount'?");
-  EXPECT_EQ(declared("3"),
-            "effects/glow.lua:4: error: fx.effect: holds: unknown promise 3; allowed: black, constant, mean, no_added_light, "
-            "monotone, bounded, continuous, linear, proportional, mirror, turn_180, turn_90, shift, error");
+  EXPECT_EQ(
+      declared("3"),
+      "effects/glow.lua:4: error: fx.effect: holds: unknown promise 3; allowed: black, constant, mean, no_added_light, "
+      "monotone, bounded, continuous, linear, proportional, mirror, turn_180, turn_90, shift, error");
 }
 
 TEST(Holds, FunctionsThatFail) {
   Scene scene;
-  scene.effect("glow", std::string("  holds = { continuous = function(s) return \"much\" end,\n   black = { when = function() return 3 end } },") + kRest);
+  scene.effect("glow", std::string("  holds = { continuous = function(s) return \"much\" end,\n   black = { when = "
+                                   "function() return 3 end } },") +
+                           kRest);
   scene.stack("fx.glow {}");
   auto preset = scene.load();
   ASSERT_TRUE(preset);
@@ -88,13 +110,16 @@ TEST(Holds, FunctionsThatFail) {
 
 TEST(Holds, AreToldInWords) {
   Scene scene;
-  scene.effect("glow", std::string("  holds = { \"black\", mean = { within = 0.5, when = function() return true end }, continuous = function() return 1 end },") + kRest);
+  scene.effect("glow", std::string("  holds = { \"black\", mean = { within = 0.5, when = function() return true end }, "
+                                   "continuous = function() return 1 end },") +
+                           kRest);
   scene.stack("fx.glow {}");
   auto preset = scene.load();
   ASSERT_TRUE(preset);
   std::vector<std::string> texts;
   for (const auto& hold : preset->schema("glow").holds) texts.push_back(hold_text(hold));
-  EXPECT_THAT(texts, testing::ElementsAre("black (within 0)", "continuous (slope by settings)", "mean (margin 0; within 0.5; for some settings)"));
+  EXPECT_THAT(texts, testing::ElementsAre("black (within 0)", "continuous (slope by settings)",
+                                          "mean (margin 0; within 0.5; for some settings)"));
 }
 
 }  // namespace

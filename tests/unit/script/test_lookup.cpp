@@ -132,9 +132,10 @@ TEST(ListEffects, AllOfThePathByName) {
   EXPECT_THAT(names, testing::Contains("mine"));
   EXPECT_THAT(names, testing::Contains("tone_mapping"));
   EXPECT_THAT(names, testing::Not(testing::Contains("broken")));
-  EXPECT_THAT(scene.warnings, ElementsAre("effect 'broken' is left out: effects/broken.lua:3: error: fx.effect has no "
-                                          "'odrer'; allowed: active, at, build, "
-                                          "doc, holds, idle, name, needs, optional, order, settings; did you mean 'order'?"));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("effect 'broken' is left out: effects/broken.lua:3: error: fx.effect has no "
+                          "'odrer'; allowed: active, at, build, "
+                          "doc, holds, idle, name, needs, optional, order, settings; did you mean 'order'?"));
 }
 
 // The names that no effect may have are those that the library has.

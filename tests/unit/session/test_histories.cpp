@@ -203,6 +203,16 @@ TEST_F(HistoriesOfFrames, AnImageThatIsKeptCanBeShown) {
   EXPECT_EQ(run(*session, 4, 1), 4 * (1 + (1 + 5.5f / 2) / 2)) << "histories went on while the source was shown";
 }
 
+TEST_F(HistoriesOfFrames, AnImageThatAHistoryIsMadeOfCanBeShown) {
+  look("fx.trail { image = true }");
+  const auto session = open();
+  session->stack().show("trail.bright");
+  EXPECT_EQ(run(*session, 1, 1), 8);
+  EXPECT_EQ(run(*session, 2, 2), 16);
+  session->stack().show("");
+  EXPECT_EQ(run(*session, 3, 1), 1 + (2 + (1 + 8 / 2.0f) / 2) / 2);
+}
+
 TEST_F(HistoriesOfFrames, ARegionIsTheCropOfTheWhole) {
   const auto session = open();
   const Rect left{2, 3, 4, 5}, right{12, 1, 8, 8};
