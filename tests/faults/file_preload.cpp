@@ -52,15 +52,15 @@ struct Wanted {
   long call = std::atol(variable("AFTERGLOW_FAULT_CALL").c_str());
   Wanted() {
     const std::string name = variable("AFTERGLOW_FAULT_KIND");
-    kind = name == "error"    ? Kind::error
-           : name == "full"   ? Kind::full
-           : name == "kill"   ? Kind::kill
+    kind = name == "error"       ? Kind::error
+           : name == "full"      ? Kind::full
+           : name == "kill"      ? Kind::kill
            : name == "interrupt" ? Kind::interrupt
-           : name == "writes" ? Kind::writes
-           : name == "reads"  ? Kind::reads
-           : name == "cut"    ? Kind::cut
-           : name == "swap"   ? Kind::swap
-                              : Kind::none;
+           : name == "writes"    ? Kind::writes
+           : name == "reads"     ? Kind::reads
+           : name == "cut"       ? Kind::cut
+           : name == "swap"      ? Kind::swap
+                                 : Kind::none;
   }
 };
 

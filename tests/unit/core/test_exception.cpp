@@ -1,9 +1,9 @@
-#include "core/exception.h"
-
 #include <gtest/gtest.h>
 
 #include <new>
 #include <stdexcept>
+
+#include "core/exception.h"
 
 namespace afterglow {
 namespace {

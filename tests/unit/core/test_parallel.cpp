@@ -1,10 +1,10 @@
-#include "core/parallel.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <stdexcept>
 #include <vector>
+
+#include "core/parallel.h"
 
 namespace afterglow {
 namespace {

@@ -1,9 +1,8 @@
-#include "image/memory_file.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 
+#include "image/memory_file.h"
 #include "make_files.h"
 #include "temporary_folder.h"
 
