@@ -125,9 +125,11 @@ fx.curve = core.curve
 ---   needed one the effect is skipped with a warning.
 --- - `idle(s, source)` what makes the effect an identity in a frame: `{ brightest = L }` says that it changes no pixel, to the
 ---   last bit, as long as no red, green or blue of `source` is above L. Frames of which that is known are run without it.
+--- - `holds` what the effect promises of its result, for `afterglow stress` to check: names ("black"), `NAME = number` and
+---   `NAME = { when = function(s, source) … end, … }`; docs/writing_effects.md lists them. Nothing else relies on it.
 --- - `build(g, s, source)` describes the passes with `g` and returns the image that replaces `source`
 ---Errors: unknown or missing keys, wrong types, unknown injection point or input.
----@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, settings?: table<string, afterglow.SettingType>, active?: (fun(s: table): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image): { brightest: number }?), build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
+---@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, settings?: table<string, afterglow.SettingType>, active?: (fun(s: table): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image): { brightest: number }?), holds?: table, build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
 fx.effect = core.effect
 
 ---An integer from `min` to `max` (both included, both optional). 4.0 is one, 4.5 is not. `unit` is for people: "px", "EV".

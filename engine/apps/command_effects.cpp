@@ -12,6 +12,7 @@
 #include "apps/setting_text.h"
 #include "apps/table.h"
 #include "core/text.h"
+#include "script/holds.h"
 #include "script/preset.h"
 
 namespace afterglow {
@@ -32,6 +33,7 @@ nlohmann::json as_json(const EffectSchema& effect) {
                      {"order", effect.order},
                      {"file", effect.file.string()},
                      {"settings", std::move(settings)}};
+  for (const auto& hold : effect.holds) out["holds"].push_back(hold_text(hold));
   for (const auto& file : effect.shadowed) out["shadowed"].push_back(file.string());
   return out;
 }
@@ -49,6 +51,11 @@ std::string effect_text(const EffectSchema& effect) {
         {setting.name, type_text(setting.type), allowed_text(setting), setting.default_value.text(), setting.doc});
   std::string out = fmt::format("{}: {}\nat {}, order {}; {}\n\n{}", effect.name, effect.doc, effect.at, effect.order,
                                 effect.file.string(), table.text("  "));
+  if (!effect.holds.empty()) {
+    std::vector<std::string> promises;
+    for (const auto& hold : effect.holds) promises.push_back(hold_text(hold));
+    out += fmt::format("\nholds: {}\n", join(promises));
+  }
   for (const auto& file : effect.shadowed) out += fmt::format("\nshadows {}\n", file.string());
   return out;
 }

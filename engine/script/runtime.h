@@ -29,8 +29,16 @@ struct InputList {
   FunctionRef function;
 };
 
+/// A promise as an effect makes it.
+struct DeclaredHold {
+  HoldSchema schema;
+  FunctionRef when;  ///< not set: always
+  std::map<std::string, FunctionRef> computed;
+};
+
 struct Effect {
   EffectSchema schema;
+  std::vector<DeclaredHold> holds;  ///< parallel to the schema's
   FunctionRef active, build, idle;
   InputList needs, optional;
 };

@@ -164,6 +164,7 @@ void Stack::State::cut(Graph& built) {
     return;
   }
   built.result = found == images.begin() ? built.source : built.passes[found - images.begin() - 1].output;
+  separate_result(built);
 }
 
 Result<Graph> Stack::State::build(const BuildContext& context, const std::optional<DisplayEncoding>& encoding) {

@@ -19,6 +19,31 @@ local function knee_vector(s)
   return { t, tk - t, 2 * tk, 0.25 / (tk + 1e-5) }
 end
 
+-- Levels of the pyramid for a picture, and whether every size on the way down is half of the one before.
+local function pyramid(s, source)
+  local width, height, levels, even = source.width // 2, source.height // 2, 0, source.width % 2 == 0 and source.height % 2 == 0
+  if width < 2 * s.downscale_limit or height < 2 * s.downscale_limit then return 0, true end
+  even = even and width % 2 == 0 and height % 2 == 0
+  width, height = width // 2, height // 2
+  while levels < s.max_iterations and width >= s.downscale_limit and height >= s.downscale_limit do
+    levels = levels + 1
+    even = even and (levels == s.max_iterations or width % 2 == 0 and height % 2 == 0 or width // 2 < s.downscale_limit or height // 2 < s.downscale_limit)
+    width, height = width // 2, height // 2
+  end
+  return levels, even
+end
+
+local function is_even(s, source)
+  local _, even = pyramid(s, source)
+  return even
+end
+
+-- Pixels that light reaches, generously: nine reads two texels apart at each level, and four on the way up.
+local function reach(s, source) return 24 * 2 ^ pyramid(s, source) end
+
+local function passes_all(s) return s.threshold == 0 and not s.fade_fireflies end
+local function scatters(s) return s.mode == "scattering" end
+
 return fx.effect {
   name = "bloom",
   doc = "Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.",
@@ -55,6 +80,22 @@ return fx.effect {
     return { brightest = -knee[2] * (even and 1 or 1 - 1e-6) }
   end,
 
+  holds = {
+    "black", "constant", "mirror", "turn_180",
+    mean = { within = 1e-4, margin = reach, when = function(s, source) return scatters(s) and passes_all(s) and is_even(s, source) end },
+    no_added_light = { within = 1e-4, margin = reach, when = function(s, source) return scatters(s) and is_even(s, source) end },
+    bounded = { when = scatters },
+    monotone = { when = function(s) return not s.fade_fireflies end },
+    continuous = { slope = function(s, source)
+      local gain = scatters(s) and math.min(s.intensity, kScatterLimit) or s.intensity * pyramid(s, source)
+      return 1 + gain * (s.fade_fireflies and 6 or 1)
+    end },
+    linear = { within = 1e-3, when = function(s) return passes_all(s) and s.intensity <= 1 end },
+    proportional = { setting = "intensity", up_to = function(s) return scatters(s) and kScatterLimit or 10 end },
+    turn_90 = { margin = reach, when = is_even },
+    shift = { by = function(s, source) return 2 ^ (pyramid(s, source) + 1) end, margin = reach, when = is_even },
+    error = { fp32 = 1e-5, fp16 = 2e-3, levels = "max_iterations" },
+  },
   build = function(g, s, source)
     local width, height = source.width // 2, source.height // 2
     if width < 2 * s.downscale_limit or height < 2 * s.downscale_limit then
