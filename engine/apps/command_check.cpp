@@ -7,6 +7,7 @@
 #include <set>
 
 #include "apps/command.h"
+#include "apps/json_text.h"
 #include "apps/look.h"
 #include "apps/setting_text.h"
 #include "apps/table.h"
@@ -87,7 +88,7 @@ std::string as_json(const Look& look, const std::string& file, const std::vector
   out["passes"] = look.graph.passes.size();
   out["kernels"] = look.plan.kernels.size();
   out["shadows"] = shadows;
-  return out.dump(2) + "\n";
+  return json_text(out);
 }
 
 Result<void> run(const Arguments& arguments, Console& console) {

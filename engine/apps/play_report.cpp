@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/json_text.h"
 #include "apps/options.h"
 #include "apps/run_report.h"
 #include "apps/table.h"
@@ -100,7 +101,7 @@ std::string play_report_json(const PlayReport& report, Player& player) {
   if (status.error) out["preset_error"] = status.error->text();
   if (report.error) out["error"] = report.error->text();
   out["memory"] = Json{{"peak", peak_memory()}};
-  return out.dump(2) + "\n";
+  return json_text(out);
 }
 
 }  // namespace afterglow

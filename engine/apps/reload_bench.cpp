@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "apps/json_text.h"
 #include "apps/table.h"
 #include "bench/picture.h"
 #include "core/file.h"
@@ -190,7 +191,7 @@ std::string reload_bench_json(const ReloadBench& bench, const std::string& devic
                                                  {"execute", of([](const auto& l) { return l.execute; })}}},
                                 {"samples", row.seen}});
   }
-  return out.dump(2) + "\n";
+  return json_text(out);
 }
 
 }  // namespace afterglow

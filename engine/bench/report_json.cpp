@@ -88,7 +88,7 @@ std::string report_json(const Report& report) {
            {"kind", report.kind}, {"repeat", report.repeat},     {"cells", Json::array()},  {"goals", Json::array()}};
   for (const auto& cell : report.cells) out["cells"].push_back(cell_json(cell));
   for (const auto& goal : report.goals) out["goals"].push_back(goal_json(goal));
-  return out.dump(1) + "\n";
+  return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Result<std::vector<Comparison>> compare_reports(const std::string& old_json, const std::string& file,
