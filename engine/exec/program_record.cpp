@@ -113,17 +113,21 @@ void Program::State::record_some(VkCommandBuffer commands, const std::vector<boo
                                  const std::function<void(std::size_t)>& stamp) const {
   Plan some;
   std::vector<std::vector<ImageId>> read;
-  std::set<ImageId> made;
+  std::set<ImageId> targets;
   for (std::size_t i = 0; i < run.size(); ++i) {
     if (!run[i]) continue;
     some.kernels.push_back(plan.kernels[i]);
     read.push_back(reads[i]);
-    made.insert(plan.kernels[i].output);
+    targets.insert(plan.kernels[i].output);
   }
   const auto image_of = [&](ImageId id) {
-    return made.contains(id) ? barrier_image(id, parity()) : VkImage{VK_NULL_HANDLE};
+    return targets.contains(id) ? barrier_image(id, parity()) : VkImage{VK_NULL_HANDLE};
   };
   auto barriers = kernel_barriers(some, read, image_of, read_layout());
+  KernelBarriers linear_ones;  // those that run may never have been drawn before
+  for (const ImageId id : targets)
+    for (const VkImage image : arena.linear_images(id)) linear_ones.images.push_back(into_general(image));
+  afterglow::record_barriers(commands, linear_ones);
   for (std::size_t i = 0, next = 0; i < run.size(); ++i) {
     if (run[i]) {
       KernelBarriers before = std::move(barriers[next++]);

@@ -112,6 +112,7 @@ class LiveStack {
     std::uint64_t compiled = 0;    ///< kernels that the compiler made: neither memory nor disk had them
     std::uint64_t pipelines_alive = 0;
     std::uint64_t pipelines = 0;  ///< made so far
+    std::uint64_t images = 0;     ///< between kernels, alive now
     std::uint64_t stacks = 0;     ///< alive now: shown, built, not yet released
   };
   Counters counters() const;  ///< any thread

@@ -353,6 +353,7 @@ LiveStack::Counters LiveBuilder::counters() const {
   const auto pipelines = shared.pipelines.counters();
   counters.pipelines = pipelines.made;
   counters.pipelines_alive = pipelines.alive;
+  counters.images = shared.images.counters().alive;
   return counters;
 }
 

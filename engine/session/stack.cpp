@@ -84,6 +84,7 @@ struct Stack::State {
     out.keep_images = options.keep_images;
     out.max_memory = options.max_memory;
     out.pipelines = &shared->pipelines;
+    out.images = &shared->images;
     out.histories = histories;
     return out;
   }
@@ -273,8 +274,11 @@ Result<void> Stack::prepare(const BuildContext& context, const std::optional<Dis
 
 /// The program of `graph`.
 Result<void> Stack::State::make() {
-  program.reset();
+  // Images that programs share go with the last of them: where they are kept, the program before stays until the new
+  // one is there.
+  std::unique_ptr<Program> before = std::exchange(program, nullptr);
   idle = {};
+  if (!options.keep_images) before.reset();
   if (graph.result == graph.source) return {};
   const auto start = Clock::now();
   AFTERGLOW_CHECK(fit_histories());

@@ -13,6 +13,7 @@
 #include "core/result.h"
 #include "exec/choice.h"
 #include "exec/idle_programs.h"
+#include "exec/image_pool.h"
 #include "exec/pipeline_pool.h"
 #include "exec/program.h"
 #include "gpu/device.h"
@@ -29,6 +30,7 @@ struct StackShared {
   explicit StackShared(std::filesystem::path cache_folder) : compiler(std::move(cache_folder)) {}
   KernelCompiler compiler;
   PipelinePool pipelines;
+  ImagePool images;  ///< of those that keep them: they must be run on one thread
 };
 
 struct StackOptions {
