@@ -307,6 +307,33 @@ Result<FrameTimes> FrameRunner::run_on_device(Program* program, const std::map<s
   return times;
 }
 
+Result<std::optional<double>> FrameRunner::time_kernel(Program& program, std::size_t kernel) {
+  State& s = *state_;
+  if (s.result.writer() != program.id() || !s.bound || s.bound->program != program.id() ||
+      kernel >= program.plan().kernels.size())
+    return std::optional<double>();
+  const bool makes_result = program.plan().kernels[kernel].output == program.graph().result;
+  const bool stamps = s.device.timestamps_mean_draws();
+  VkQueryPool queries = VK_NULL_HANDLE;
+  if (stamps) {
+    AFTERGLOW_TRY(queries, s.timer.queries(2));
+  }
+  const auto start = Clock::now();
+  AFTERGLOW_CHECK(s.submitter.submit(
+      [&](VkCommandBuffer commands) {
+        s.inputs.before(program, commands);
+        if (makes_result) s.result.before(commands);
+        program.record_again(commands, kernel, queries);
+        s.inputs.after(commands);
+        if (makes_result) s.result.after(commands);
+      },
+      State::kOneOff));
+  AFTERGLOW_CHECK(s.submitter.wait());
+  if (!stamps) return std::optional<double>(milliseconds_since(start));
+  AFTERGLOW_TRY(const double between, s.timer.between());
+  return std::optional<double>(between);
+}
+
 DeviceImages FrameRunner::images() const {
   const auto image = [](const FrameImage& from) { return DeviceImage{binding_of(from), from.layout}; };
   DeviceImages out;

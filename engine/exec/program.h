@@ -50,6 +50,8 @@ struct ProgramOptions {
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.
   std::optional<Rect> region{};
+  /// Each kernel draws one pixel alone: for exec/warm_up.h. What images hold is undefined.
+  bool a_pixel_each = false;
   /// Images between kernels keep their pixels from run to run (they share no memory), so that `record` can run the
   /// kernels alone for which something has changed.
   bool keep_images = false;
@@ -132,6 +134,11 @@ class Program {
   /// `run`: as `kernels_to_run` said, or empty for all.
   void record(VkCommandBuffer commands, int only = -1, VkQueryPool timestamps = VK_NULL_HANDLE,
               const std::vector<bool>& run = {}) const;
+
+  /// Records one kernel once more after a run, as the frame that ran last; every image holds and is laid out after it
+  /// what and as it was before. Needs `keep_images`. The caller's images as for `record`. `timestamps`: a pool with 2
+  /// queries, or null.
+  void record_again(VkCommandBuffer commands, std::size_t kernel, VkQueryPool timestamps = VK_NULL_HANDLE) const;
 
   const Plan& plan() const;
   const Graph& graph() const;

@@ -138,4 +138,25 @@ void Program::State::record_some(VkCommandBuffer commands, const std::vector<boo
   }
 }
 
+void Program::record_again(VkCommandBuffer commands, std::size_t kernel, VkQueryPool timestamps) const {
+  const State& s = *state_;
+  const auto stamp = [&](std::uint32_t query) {
+    if (timestamps == VK_NULL_HANDLE) return;
+    vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, timestamps, query);
+  };
+  if (timestamps != VK_NULL_HANDLE) vkCmdResetQueryPool(commands, timestamps, 0, 2);
+  std::vector<bool> run(s.plan.kernels.size(), false);
+  run[kernel] = true;
+  stamp(0);
+  s.record_some(commands, run, [&](std::size_t done) {
+    if (done == kernel + 1) stamp(1);
+  });
+  // Its readers do not follow.
+  const ImageId output = s.plan.kernels[kernel].output;
+  if (s.linear || !s.arena.image(output)) return;
+  KernelBarriers after;
+  after.images = {before_reading(s.arena.image(output)->get(), s.read_layout())};
+  afterglow::record_barriers(commands, after);
+}
+
 }  // namespace afterglow
