@@ -98,6 +98,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
   const bool half = options.half_storage && !is_precise(graph, kernel.output);
   desc.target = half ? KernelTarget::float16 : KernelTarget::float32;
   if (options.codes && kernel.output == graph.result) desc.target = KernelTarget::codes8;
+  desc.flag_non_finite = options.flag_non_finite && kernel.output == graph.result;
   const long long pixels = graph.images[kernel.output].size.area();
   const Pass& head = graph.passes[kernel.passes.front()];
   std::size_t first_stage = 1;

@@ -26,13 +26,18 @@ constexpr std::string_view kHeader =
 /// Rounds to half floats, to nearest even, so that the store is exact whatever rounding the device's attachments have.
 constexpr std::string_view kRoundToHalf = R"(
 vec4 ag_round_to_half(vec4 v) {
-  v = clamp(v, vec4(-65504.0), vec4(65504.0));
+  v = mix(v, vec4(65504.0), greaterThan(v, vec4(65504.0)));           // unlike clamp, hands a NaN on
+  v = mix(v, vec4(-65504.0), lessThan(v, vec4(-65504.0)));
   uvec4 bits = floatBitsToUint(v);
   uvec4 normal = (bits + 0xfffu + ((bits >> 13u) & 1u)) & ~0x1fffu;   // 10 bits of mantissa stay
   vec4 tiny = roundEven(v * 16777216.0) * 5.9604644775390625e-8;      // below 2^-14 halves are multiples of 2^-24
   return mix(uintBitsToFloat(normal), tiny, lessThan(abs(v), vec4(6.103515625e-5)));
 }
 )";
+
+/// Of KernelDesc::flag_non_finite. Whatever a later stage makes of it, a NaN or an infinity stays in a sum: no branch, no
+/// comparison until the end.
+constexpr const char* kAddLight = "  ag_light += ag_color.r + ag_color.g + ag_color.b;\n";
 
 class Assembler {
  public:
@@ -45,6 +50,7 @@ class Assembler {
       return Error{ErrorKind::other, fmt::format("an invocation makes 1 to {} rows, not {}", kMaxRows, kernel_.rows)};
     out_.file_names = {"", "lib/prelude.glsl"};
     AFTERGLOW_CHECK(head());
+    if (kernel_.flag_non_finite) row_ += std::string("  float ag_light = 0.0;\n") + kAddLight;
     for (const auto& stage : kernel_.stages) AFTERGLOW_CHECK(add_stage(stage, ShaderKind::pixel));
     if (out_.images.size() > kMaxImages) {
       Error error{ErrorKind::script, fmt::format("the joined passes read {} images", out_.images.size())};
@@ -63,6 +69,9 @@ class Assembler {
     if (kernel_.target == KernelTarget::float16) out_.glsl += kRoundToHalf;
     if (kernel_.target == KernelTarget::float16) row_ += "  ag_color = ag_round_to_half(ag_color);\n";
     if (kernel_.target == KernelTarget::codes8) row_ += "  ag_color = clamp(ag_color, 0.0, 1.0);\n";
+    if (kernel_.flag_non_finite)
+      row_ += fmt::format("  ag_color.a {} float(abs(ag_light) <= 3.4028234e38);\n",
+                          kernel_.target == KernelTarget::codes8 ? "*=" : "=");
     if (row_.empty()) {
       every_row("ag_result{0} = ag_color{0};");
     } else {
@@ -185,7 +194,8 @@ class Assembler {
     if (kind == ShaderKind::sample)
       every_row("vec4 ag_color{0} = " + prefix + "sample_at(ag_pixel{0});");
     else
-      row_ += fmt::format("  ag_color = {}apply({});\n", prefix, arguments);
+      row_ += fmt::format("  ag_color = {}apply({});\n", prefix, arguments) +
+              (kernel_.flag_non_finite ? kAddLight : "");
     ++stage_count_;
     return {};
   }

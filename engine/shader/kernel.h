@@ -46,6 +46,9 @@ struct KernelDesc {
   std::vector<KernelStage> stages;  ///< pixel stages, in order
   bool hardware_filter = false;     ///< let the sampler interpolate (error of 8-bit fractions) where that helps
   KernelTarget target = KernelTarget::float32;
+  /// The alpha of what is written tells whether all colours on the way were finite, those of the head and behind each
+  /// stage: 1 (codes8: as it was), or 0 where one was not. (The sum of three finite colours above 1e38 counts as not.)
+  bool flag_non_finite = false;
   /// Rows of the target that one invocation makes, each its own output location: invocation (x, Y) makes the pixels
   /// (x, rows·Y) … (x, rows·Y + rows − 1). What neighbouring rows both read is read once. 1 … kMaxRows.
   int rows = 1;
