@@ -46,8 +46,8 @@ struct ProgramOptions {
   int rows = 1;
   WorthAKernel worth;
   bool codes = false;           ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
-  /// The result's alpha is 0 where the last kernel met a colour that was not finite, in what it read or behind any of
-  /// its passes; elsewhere 1 (`codes`: what the last pass gave).
+  /// The result's alpha is 0 where a colour that was not finite came up in a pass and no pass of another kernel that
+  /// reads around its pixel made it finite again; elsewhere 1 (`codes`: what the last pass gave). See Watch.
   bool flag_non_finite = false;
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.

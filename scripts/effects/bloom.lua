@@ -19,6 +19,23 @@ local function knee_vector(s)
   return { t, tk - t, 2 * tk, 0.25 / (tk + 1e-5) }
 end
 
+-- The picture as it would be at that height: halved while that leaves at least as much, then the mean over what is left.
+local function scaled(g, source, height)
+  local width = math.max(1, (2 * source.width * height + source.height) // (2 * source.height))
+  local image, i = source, 0
+  local function to(size, filter)
+    image = g:filter { source = image, size = size, filter = filter, name = ("scaled[%d]"):format(i) }
+    i = i + 1
+  end
+  while image.height >= 2 * height and image.width >= 2 * width do
+    to({ image.width // 2, image.height // 2 }, fx.filters.bilinear())
+  end
+  if image.width ~= width or image.height ~= height then
+    to({ width, height }, fx.filters.area(image.width / width, image.height / height))
+  end
+  return image
+end
+
 return fx.effect {
   name = "bloom",
   doc = "Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.",
@@ -38,6 +55,9 @@ return fx.effect {
     scatter = fx.float { min = 0.05, max = 0.95, default = 0.7,
       doc = "Scattering mode: how far light spreads, as the share that each level takes from the coarser ones." },
     bicubic_upsampling = fx.bool { default = true, doc = "Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow." },
+    reference_height = fx.int { min = 0, max = 16384, default = 0, unit = "px",
+      doc = "The glow is that of the picture scaled to this height: the same at every resolution. 0: that of the picture as it is, \
+finer in larger ones." },
     fade_fireflies = fx.bool { default = false, doc = "Weigh down isolated very bright pixels before the pyramid, so that they do not flicker." },
   },
 
@@ -52,23 +72,25 @@ return fx.effect {
   idle = function(s, source)
     local knee = knee_vector(s)
     local even = source.width % 2 == 0 and source.height % 2 == 0
-    return { brightest = -knee[2] * (even and 1 or 1 - 1e-6) }
+    local slack = s.reference_height > 0 and 1e-5 or even and 0 or 1e-6
+    return { brightest = -knee[2] * (1 - slack) }
   end,
 
   build = function(g, s, source)
-    local width, height = source.width // 2, source.height // 2
+    local picture = s.reference_height > 0 and scaled(g, source, s.reference_height) or source
+    local width, height = picture.width // 2, picture.height // 2
     if width < 2 * s.downscale_limit or height < 2 * s.downscale_limit then
       g:skip(("the picture is too small: %dx%d, downscale_limit %d needs %d on each side"):format(
-        source.width, source.height, s.downscale_limit, 4 * s.downscale_limit))
+        picture.width, picture.height, s.downscale_limit, 4 * s.downscale_limit))
       return source
     end
 
     local knee = knee_vector(s)
     local image
     if s.fade_fireflies then
-      image = g:pass { shader = "bloom/fireflies", source = source, size = { width, height }, knee = knee, reach = 3, name = "prefilter" }
+      image = g:pass { shader = "bloom/fireflies", source = picture, size = { width, height }, knee = knee, reach = 3, name = "prefilter" }
     else
-      image = g:filter { source = source, size = { width, height }, filter = fx.filters.bilinear(), name = "half" }
+      image = g:filter { source = picture, size = { width, height }, filter = fx.filters.bilinear(), name = "half" }
       image = g:pass { shader = "bloom/threshold", source = image, knee = knee, name = "prefilter" }
     end
 
