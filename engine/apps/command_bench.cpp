@@ -281,7 +281,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--sizes", a.sizes, "Sizes of the picture (default 1920x1080,3840x2160)")->type_name("WxH,…");
   app.add_option(
          "--variants", a.variants,
-         "Ways of execution, as `devices` and --report name them, or plain16f, plain32f, chosen (what `run` does)")
+         "Ways of execution, as `devices` and --report name them, or plain16f, plain32f, chosen (what `run` does), watched (the same, looking for values that are not finite, as `run` does)")
       ->type_name("NAME,…");
   list("--set", a.overrides, "Overrides one setting for all that is measured (repeatable)", "EFFECT.SETTING=VALUE");
   list("--vary", a.vary, "Measures each value of a setting; errors are against the preset as it is (repeatable)",

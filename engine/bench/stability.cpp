@@ -9,7 +9,7 @@
 namespace afterglow::bench {
 namespace {
 
-constexpr int kPoints = 16;  ///< per axis, for the mean over a pixel's area
+constexpr int kPoints = 64;  ///< per axis, for the mean over a pixel's area
 constexpr float kGround = 0.05f;
 
 double luminance(const float* rgb) { return 0.2126729 * rgb[0] + 0.7151522 * rgb[1] + 0.0721750 * rgb[2]; }
@@ -21,15 +21,26 @@ Picture empty_picture(Size size) {
   return picture;
 }
 
+/// The share of the pixel from (x, y) on that a disc around (0, 0) covers.
+float covered(double x, double y, double radius) {
+  constexpr double kHalfDiagonal = 0.7072;
+  const double distance = std::hypot(x + 0.5, y + 0.5);
+  if (distance > radius + kHalfDiagonal) return 0;
+  if (distance < radius - kHalfDiagonal) return 1;
+  int inside = 0;
+  for (int i = 0; i < kPoints * kPoints; ++i) {
+    const double u = x + (i % kPoints + 0.5) / kPoints, v = y + (i / kPoints + 0.5) / kPoints;
+    inside += u * u + v * v < radius * radius;
+  }
+  return static_cast<float>(inside) / (kPoints * kPoints);
+}
+
 /// Mixes `light` into each pixel by the share of its area that the disc covers.
 void add_disc(Image& image, double cx, double cy, double radius, std::array<float, 3> light) {
   const auto from = [](double v) { return static_cast<int>(std::floor(v)); };
   for (int y = std::max(from(cy - radius), 0); y <= std::min(from(cy + radius), image.height - 1); ++y)
     for (int x = std::max(from(cx - radius), 0); x <= std::min(from(cx + radius), image.width - 1); ++x) {
-      int inside = 0;
-      for (int i = 0; i < kPoints * kPoints; ++i)
-        inside += std::hypot(x + (i % kPoints + 0.5) / kPoints - cx, y + (i / kPoints + 0.5) / kPoints - cy) < radius;
-      const float share = static_cast<float>(inside) / (kPoints * kPoints);
+      const float share = covered(x - cx, y - cy, radius);
       for (std::size_t c = 0; c < 3; ++c) image.at(x, y)[c] += share * (light[c] - image.at(x, y)[c]);
     }
 }

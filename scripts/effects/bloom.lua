@@ -56,8 +56,7 @@ return fx.effect {
       doc = "Scattering mode: how far light spreads, as the share that each level takes from the coarser ones." },
     bicubic_upsampling = fx.bool { default = true, doc = "Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow." },
     reference_height = fx.int { min = 0, max = 16384, default = 0, unit = "px",
-      doc = "The glow is that of the picture scaled to this height: the same at every resolution. 0: that of the picture as it is, \
-finer in larger ones." },
+      doc = "The glow is that of the picture scaled to this height: the same at every resolution. 0: of the picture as it is." },
     fade_fireflies = fx.bool { default = false, doc = "Weigh down isolated very bright pixels before the pyramid, so that they do not flicker." },
   },
 

@@ -273,7 +273,7 @@ TEST_F(NonFiniteValues, HistoriesGoOnMended) {
   write("shaders/keeps/add.glsl",
         "uniform float frame;\nuniform sampler2D source, before;\n"
         "vec4 sample_at(ivec2 p) { vec4 c = fetch(source, p) + fetch(before, p);\n"
-        "  return frame == 2.0 && p == ivec2(8, 8) ? vec4(c.rgb / (c.a - c.a), 1.0) : vec4(c.rgb, 1.0); }\n");
+        "  return frame == 2.0 && p == ivec2(8, 8) ? vec4(c.rgb / (fetch(source, p).a - 1.0), 1.0) : vec4(c.rgb, 1.0); }\n");
   write("shaders/keeps/show.glsl", "vec4 apply(vec4 color, vec4 kept) { return vec4(kept.rgb, color.a); }\n");
   write("effects/keeps.lua",
         "local fx = require \"afterglow\"\n"

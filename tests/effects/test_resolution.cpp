@@ -50,13 +50,19 @@ std::vector<double> glow(const std::string& entries, Size size, int factor) {
   return out;
 }
 
-/// The largest difference, as a share of the largest glow.
-double worst(const std::vector<double>& a, const std::vector<double>& b) {
+/// The largest difference, as a share of the largest glow. Pixels at the edge of a lamp do not count: there the light of a
+/// pixel is a mean of the lamp's and the ground's, and a threshold of a mean is no mean of thresholds.
+double worst(const std::vector<double>& a, const std::vector<double>& b, Size size) {
+  const Scene scene = lamps(size);
   double most = 0, largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    most = std::max(most, std::abs(a[i] - b[i]));
-    largest = std::max(largest, std::abs(b[i]));
-  }
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      bool even = true;
+      for (int i = 0; i < 9; ++i) even = even && scene.source.clamped(x + i % 3 - 1, y + i / 3 - 1) == scene.source.at(x, y);
+      const auto at = static_cast<std::size_t>(y * size.width + x);
+      if (even) most = std::max(most, std::abs(a[at] - b[at]));
+      largest = std::max(largest, std::abs(b[at]));
+    }
   return most / largest;
 }
 
@@ -69,9 +75,10 @@ TEST_F(Effects, AReferenceHeightMakesTheGlowThatOfEveryResolution) {
     const auto small = glow(fixed, base, 1), before = glow(plain, base, 1);
     for (const int factor : {2, 3, 4}) {
       const Size size{base.width * factor, base.height * factor};
-      const double with = worst(glow(fixed, size, factor), small), without = worst(glow(plain, size, factor), before);
+      const double with = worst(glow(fixed, size, factor), small, base),
+                   without = worst(glow(plain, size, factor), before, base);
       EXPECT_LT(with, kBound) << mode << " " << size.height;
-      EXPECT_GT(without, 0.1) << mode << " " << size.height << ": the test has something to measure";
+      EXPECT_GT(without, 2 * kBound) << mode << " " << size.height << ": the test has something to measure";
     }
   }
 }
