@@ -20,6 +20,7 @@ pages=(
   "docs/math.md|The mathematics"
   "docs/benchmarks/README.md|Benchmarks"
   "docs/benchmarks/flicker.md|Flicker"
+  "docs/benchmarks/stability.md|Steadiness"
   "CONTRIBUTING.md|Working on it"
   "tests/images/README.md|Test pictures"
   "CHANGELOG.md|Changes"

@@ -226,6 +226,25 @@ function filters.box(delta)
   return { interpolation = "linear", x = { { -delta, 0.5 }, { delta, 0.5 } }, y = { { -delta, 0.5 }, { delta, 0.5 } } }
 end
 
+---The mean over `x` times `y` texels of the source around the target's pixel centres, for making images smaller by that much:
+---reads at most half a texel apart, so that a small light weighs the same (within 4 %) wherever it lies. 1 or less on an axis: one
+---bilinear read there. By exactly 2 on both, `bilinear` makes the same with one read.
+---@param x number  source width over target width, at most 16
+---@param y? number  source height over target height; default: x
+---@return afterglow.Filter
+function filters.area(x, y)
+  local function taps(ratio)
+    if type(ratio) ~= "number" or not (ratio > 0 and ratio <= 16) then
+      core.fail("fx.filters.area: " .. core.show(ratio) .. " is not a ratio of sizes", "0 < ratio ≤ 16")
+    end
+    if ratio <= 1 then return { { 0, 1 } } end
+    local out, n = {}, math.ceil(2 * ratio)
+    for i = 1, n do out[i] = { (i - (n + 1) / 2) * ratio / n, 1 / n } end
+    return out
+  end
+  return { interpolation = "linear", x = taps(x), y = taps(y or x) }
+end
+
 ---Three reads per axis, one texel of the source apart, weighted 1 : 2 : 1.
 ---@return afterglow.Filter
 function filters.tent()

@@ -269,6 +269,7 @@ Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string
   const Graph& graph = program.graph();
   FrameTimes times;
   out.clamped = 0;
+  out.flagged = false;
   Program* ran = nullptr;
   if (graph.result == graph.source) {
     AFTERGLOW_CHECK(check_input(graph, "source", graph.source, inputs));
@@ -283,7 +284,8 @@ Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string
     return times;
   }
   const auto start = Clock::now();
-  AFTERGLOW_TRY(const std::uint64_t held, state_->result.download(state_->staging, *state_->shown, out));
+  AFTERGLOW_TRY(const std::uint64_t held, state_->result.download(state_->staging, *state_->shown, out,
+                                                                          ran->flags_non_finite()));
   out.clamped += held;
   times.readback = milliseconds_since(start);
   return times;

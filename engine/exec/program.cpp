@@ -121,6 +121,7 @@ ProgramMemory Program::memory() const {
 }
 int Program::bindings() const { return state_->bindings + state_->uses; }
 VkFormat Program::storage_format() const { return state_->format; }
+bool Program::flags_non_finite() const { return state_->options.flag_non_finite; }
 VkFormat Program::result_format() const { return state_->result_format(); }
 int Program::result_rows() const { return state_->result_rows; }
 VkImageLayout Program::source_layout() const { return state_->source_layout(); }

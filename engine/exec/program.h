@@ -47,6 +47,9 @@ struct ProgramOptions {
   int rows = 1;
   WorthAKernel worth;
   bool codes = false;           ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
+  /// The result's alpha is 0 where a colour that was not finite came up in a pass and no pass of another kernel that
+  /// reads around its pixel made it finite again; elsewhere 1 (`codes`: what the last pass gave). See Watch.
+  bool flag_non_finite = false;
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.
   std::optional<Rect> region{};
@@ -146,6 +149,7 @@ class Program {
   VkFormat storage_format() const;
   /// What is read of inputs and made of the others: everything, unless there is a region.
   const Regions& parts() const;
+  bool flags_non_finite() const;   ///< ProgramOptions::flag_non_finite
   VkFormat result_format() const;  ///< the storage format, or R8G8B8A8_UNORM with ProgramOptions::codes
   /// With `result_by_rows`: how many rows the targets of the result must have; 1: they are not used.
   int result_rows() const;

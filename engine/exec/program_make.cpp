@@ -63,6 +63,7 @@ Result<std::vector<KernelDesc>> Program::State::describe(ShaderLibrary& shaders)
   const DescribeOptions describe{.hardware_filter = hardware_filter(),
                                  .half_storage = options.storage == Storage::fp16,
                                  .codes = options.codes,
+                                 .flag_non_finite = options.flag_non_finite,
                                  .storage_reads = storage_reads,
                                  .source_is_storage = options.source_is_storage,
                                  .rows = options.reference ? 1 : options.rows,

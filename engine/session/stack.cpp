@@ -93,6 +93,7 @@ struct Stack::State {
     out.result_by_rows = own_images;
     out.codes = encoded;
     out.region = region;
+    out.flag_non_finite = options.flag_non_finite;
     out.keep_images = options.keep_images;
     out.max_memory = options.max_memory;
     out.pipelines = &shared->pipelines;
@@ -389,6 +390,25 @@ Result<void> Stack::State::make() {
   device->save_pipeline_cache();
   compile_ms += milliseconds_since(start);
   return {};
+}
+
+Result<std::unique_ptr<Program>> Stack::program_by_passes(const Graph& graph, const std::optional<Rect>& region) const {
+  ProgramOptions options = program_options(kReference);
+  const bool halves = std::ranges::any_of(graph.histories, [](const History& history) { return !history.precise; });
+  if (halves) options.storage = state_->choice.execution.storage;
+  options.reference = true;
+  options.storage_reads = state_->choice.execution.storage_reads;  // as the histories are made
+  options.region = region;
+  options.max_memory = state_->options.max_memory;
+  options.pipelines = &state_->shared->pipelines;
+  options.histories = state_->histories;
+  return Program::create(*state_->device, *state_->scripts.shaders, state_->shared->compiler, graph, options);
+}
+
+std::filesystem::path Stack::shader_file(const std::string& shader) const {
+  if (shader.empty()) return {};
+  const auto found = state_->scripts.shaders->find(shader);
+  return found ? (*found)->path : std::filesystem::path();
 }
 
 bool Stack::depends_on_content() const {

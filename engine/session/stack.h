@@ -40,6 +40,7 @@ struct StackOptions {
   std::optional<double> max_error;  ///< E of math.md §13; default: the preset's, else 2e-3
   bool reference = false;           ///< every pass on its own in fp32 with computed weights: the slow truth
   bool skip_idle = true;     ///< run frames without the effects that their content makes idle (never with `reference`)
+  bool flag_non_finite = false;  ///< the result's alpha tells of colours that were not finite: see ProgramOptions
   bool keep_images = false;  ///< images between passes stay, so that after an edit only what it changes runs again
   /// Programs of other structures that stay besides the present one, for presets whose structure moves with the frame;
   /// with their images, within `max_memory` altogether.
@@ -141,6 +142,12 @@ class Stack {
   const std::optional<Rect>& region() const;
   /// Programs made for the present structure.
   int programs() const;
+
+  /// A program for a variant of this stack's graph that runs every pass by itself and keeps all its images, with the
+  /// stack's shaders and histories. In full floats, unless the histories are half floats. Errors: those of `prepare`.
+  Result<std::unique_ptr<Program>> program_by_passes(const Graph& graph, const std::optional<Rect>& region) const;
+  /// The file of a shader that the last graph names; empty for unknown ones.
+  std::filesystem::path shader_file(const std::string& shader) const;
 
   /// Format that the result image must have: VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT, or with a
   /// display encoding VK_FORMAT_R8G8B8A8_UNORM.
