@@ -41,7 +41,6 @@ const Case kCases[] = {
     {"Bmp", "bmp", OIIO::TypeUInt8, {"R", "G", "B"}, 255, 0.5 / 255},
     {"Targa", "tga", OIIO::TypeUInt8, {"R", "G", "B"}, 255, 0.5 / 255},
     {"Sgi", "sgi", OIIO::TypeUInt8, {"R", "G", "B"}, 255, 0.5 / 255},
-    {"Ppm", "ppm", OIIO::TypeUInt8, {"R", "G", "B"}, 255, 0.5 / 255},
 };
 
 class Formats : public testing::TestWithParam<std::tuple<Case, Size>> {};
