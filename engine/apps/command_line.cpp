@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <new>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,25 +12,18 @@
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
+#include "core/exception.h"
 #include "core/text.h"
 
 namespace afterglow {
 namespace {
 
-constexpr const char* kPurpose = "Finishes rendered pictures: Lua looks on Vulkan.";
 constexpr const char* kFooter =
     "Exit codes: 0 done, 2 usage, 3 preset or script, 4 input or output, 5 device, 130 interrupted, 1 anything else.\n"
     "Environment: AFTERGLOW_HOME installation to use, AFTERGLOW_PATH further folders with effects/ and shaders/ (':' "
     "between),\n"
     "             AFTERGLOW_CACHE folder for caches, AFTERGLOW_VALIDATE=1 Vulkan validation, NO_COLOR no colours.\n"
     "`afterglow COMMAND --help` tells the rest.";
-
-/// Error texts of the parser, in one line.
-std::string one_line(std::string text) {
-  for (auto& c : text)
-    if (c == '\n') c = ' ';
-  return trim(text);
-}
 
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
@@ -108,33 +100,32 @@ std::optional<int> parse(CLI::App& program, const std::vector<Command>& commands
       }
     }
     const std::string where = command ? "afterglow " + command->options->get_name() : "afterglow";
-    return fail(console, {ErrorKind::usage, one_line(error.what()), where});
+    return fail(console, {ErrorKind::usage, exception_text(error), where});
   }
 }
 
-Result<void> run(const Command& command, Console& console) {
-  try {
-    return command.run(console);
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorKind::io, "out of memory"};
-  } catch (const std::exception& exception) {
-    return Error{ErrorKind::other, fmt::format("internal error: {}", one_line(exception.what()))};
-  }
-}
+enum class Work { all, parsing };
 
-/// Declares everything and parses; an exit code when there is nothing more to do.
-std::optional<int> prepare(CLI::App& program, std::vector<Command>& commands, MessageArguments& messages, int argc,
-                           char** argv, Console& console) {
+int run(Console& console, int argc, char** argv, Work work) {
+  CLI::App program("Finishes rendered pictures: Lua looks on Vulkan.", "afterglow");
   program.set_version_flag("--version", "afterglow " AFTERGLOW_VERSION);
   program.require_subcommand(1);
   program.footer(kFooter);
   program.get_formatter()->column_width(34);
-  commands = {add_run_command(program),       add_check_command(program),   add_graph_command(program),
-              add_explain_command(program),   add_effects_command(program), add_new_command(program),
-              add_set_command(program),       add_devices_command(program), add_bench_command(program),
-              add_calibrate_command(program), add_play_command(program)};
+
+  const std::vector<Command> commands{
+      add_run_command(program),       add_check_command(program),   add_graph_command(program),
+      add_explain_command(program),   add_effects_command(program), add_new_command(program),
+      add_set_command(program),       add_devices_command(program), add_bench_command(program),
+      add_calibrate_command(program), add_play_command(program)};
+  MessageArguments messages;
   for (const auto& command : commands) messages.add(*command.options);
-  return parse(program, commands, argc, argv, console);
+
+  if (const auto exit_code = parse(program, commands, argc, argv, console)) return *exit_code;
+  if (work == Work::parsing) return 0;
+  messages.apply(console);
+  const auto done = parsed_command(commands)->run(console);
+  return done ? 0 : fail(console, done.error());
 }
 
 }  // namespace
@@ -142,21 +133,16 @@ std::optional<int> prepare(CLI::App& program, std::vector<Command>& commands, Me
 int run_command_line(int argc, char** argv) {
   Console console;
   install_interrupt_handler();
-  CLI::App program(kPurpose, "afterglow");
-  std::vector<Command> commands;
-  MessageArguments messages;
-  if (const auto exit_code = prepare(program, commands, messages, argc, argv, console)) return *exit_code;
-  messages.apply(console);
-  const auto done = run(*parsed_command(commands), console);
-  return done ? 0 : fail(console, done.error());
+  try {
+    return run(console, argc, argv, Work::all);
+  } catch (const std::exception& exception) {
+    return fail(console, exception_error(exception));
+  }
 }
 
 int check_command_line(int argc, char** argv) {
   Console console;
-  CLI::App program(kPurpose, "afterglow");
-  std::vector<Command> commands;
-  MessageArguments messages;
-  return prepare(program, commands, messages, argc, argv, console).value_or(0);
+  return run(console, argc, argv, Work::parsing);
 }
 
 }  // namespace afterglow

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/exception.h"
 #include "core/file.h"
 #include "core/text.h"
 
@@ -116,7 +117,11 @@ void LiveBuilder::run() {
     busy_ = true;
     const LiveRequest request = request_;
     lock.unlock();
-    if (why.any()) work(why, request);
+    try {
+      if (why.any()) work(why, request);
+    } catch (const std::exception& exception) {  // out of memory
+      fail(exception_error(exception));
+    }
     dead.clear();
     lock.lock();
     busy_ = false;
