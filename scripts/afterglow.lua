@@ -10,7 +10,9 @@
 -- texts, booleans), `print` writes a note, every file has globals of its own, and `require` finds "afterglow" and scripts beside
 -- the preset or on the search path ("lib.taps" is lib/taps.lua). An `error(message, 0)` in a function of an effect is about the
 -- preset: it is reported at the entry there, and at one of its settings when the message begins with that setting's name.
--- A load or a build may take 64 MiB of memory and 50 million instructions or 2 seconds.
+-- `setmetatable` takes the metamethods that the metatable has at this moment (later ones do not count), no __gc and no __mode, and
+-- a __call that is a function. A load or a build may take 64 MiB of memory and 50 million instructions or 2 seconds of the
+-- processor; all scripts of a preset have at most 16 MiB.
 
 local core = ... -- native functions: engine/script/library.cpp
 

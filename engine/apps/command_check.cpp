@@ -11,6 +11,7 @@
 #include "apps/look.h"
 #include "apps/setting_text.h"
 #include "apps/table.h"
+#include "core/printable.h"
 #include "script/explanation.h"
 
 namespace afterglow {
@@ -100,7 +101,7 @@ Result<void> run(const Arguments& arguments, Console& console) {
   }
   const auto shadows = shadow_notes(look);
   const auto& file = arguments.preset.file;
-  fmt::print("{}", arguments.json ? as_json(look, file, shadows) : as_text(look, file, shadows));
+  fmt::print("{}", arguments.json ? as_json(look, file, shadows) : printable(as_text(look, file, shadows), true));
   return {};
 }
 

@@ -12,6 +12,7 @@
 #include "apps/options.h"
 #include "apps/setting_text.h"
 #include "apps/table.h"
+#include "core/printable.h"
 #include "core/text.h"
 #include "script/holds.h"
 #include "script/preset.h"
@@ -85,7 +86,7 @@ Result<void> run(const Arguments& arguments, Console& console) {
     for (const auto& effect : effects) list.push_back(as_json(effect));
     fmt::print("{}", json_text(list));
   } else {
-    fmt::print("{}", arguments.name.empty() ? list_text(effects) : effect_text(effects.front()));
+    fmt::print("{}", printable(arguments.name.empty() ? list_text(effects) : effect_text(effects.front()), true));
   }
   return {};
 }

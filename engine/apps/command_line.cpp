@@ -18,7 +18,6 @@
 namespace afterglow {
 namespace {
 
-constexpr const char* kPurpose = "Finishes rendered pictures: Lua looks on Vulkan.";
 constexpr const char* kFooter =
     "Exit codes: 0 done, 2 usage, 3 preset or script, 4 input or output, 5 device, 130 interrupted, 1 anything else.\n"
     "Environment: AFTERGLOW_HOME installation to use, AFTERGLOW_PATH further folders with effects/ and shaders/ (':' "
@@ -105,26 +104,25 @@ std::optional<int> parse(CLI::App& program, const std::vector<Command>& commands
   }
 }
 
-/// Declares everything and parses; an exit code when there is nothing more to do.
-std::optional<int> prepare(CLI::App& program, std::vector<Command>& commands, MessageArguments& messages, int argc,
-                           char** argv, Console& console) {
+enum class Work { all, parsing };
+
+int run(Console& console, int argc, char** argv, Work work) {
+  CLI::App program("Finishes rendered pictures: Lua looks on Vulkan.", "afterglow");
   program.set_version_flag("--version", "afterglow " AFTERGLOW_VERSION);
   program.require_subcommand(1);
   program.footer(kFooter);
   program.get_formatter()->column_width(34);
-  commands = {add_run_command(program),       add_check_command(program),   add_graph_command(program),
-              add_explain_command(program),   add_effects_command(program), add_new_command(program),
-              add_set_command(program),       add_devices_command(program), add_bench_command(program),
-              add_calibrate_command(program), add_play_command(program),    add_stress_command(program)};
-  for (const auto& command : commands) messages.add(*command.options);
-  return parse(program, commands, argc, argv, console);
-}
 
-int run(Console& console, int argc, char** argv) {
-  CLI::App program(kPurpose, "afterglow");
-  std::vector<Command> commands;
+  const std::vector<Command> commands{
+      add_run_command(program),       add_check_command(program),   add_graph_command(program),
+      add_explain_command(program),   add_effects_command(program), add_new_command(program),
+      add_set_command(program),       add_devices_command(program), add_bench_command(program),
+      add_calibrate_command(program), add_play_command(program),    add_stress_command(program)};
   MessageArguments messages;
-  if (const auto exit_code = prepare(program, commands, messages, argc, argv, console)) return *exit_code;
+  for (const auto& command : commands) messages.add(*command.options);
+
+  if (const auto exit_code = parse(program, commands, argc, argv, console)) return *exit_code;
+  if (work == Work::parsing) return 0;
   messages.apply(console);
   const auto done = parsed_command(commands)->run(console);
   return done ? 0 : fail(console, done.error());
@@ -136,7 +134,7 @@ int run_command_line(int argc, char** argv) {
   Console console;
   install_interrupt_handler();
   try {
-    return run(console, argc, argv);
+    return run(console, argc, argv, Work::all);
   } catch (const std::exception& exception) {
     return fail(console, exception_error(exception));
   }
@@ -144,10 +142,7 @@ int run_command_line(int argc, char** argv) {
 
 int check_command_line(int argc, char** argv) {
   Console console;
-  CLI::App program(kPurpose, "afterglow");
-  std::vector<Command> commands;
-  MessageArguments messages;
-  return prepare(program, commands, messages, argc, argv, console).value_or(0);
+  return run(console, argc, argv, Work::parsing);
 }
 
 }  // namespace afterglow

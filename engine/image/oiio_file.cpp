@@ -127,7 +127,7 @@ class OiioFile : public PictureFile {
 
  private:
   Result<void> add_parts(const SizeLimits& limits) {
-    const bool pages = format_ == "tiff" || format_ == "psd";
+    const bool pages = format_ == "tiff";
     for (std::size_t i = 0; i < (pages ? kMaxParts : 1) && input_->seek_subimage(static_cast<int>(i), 0); ++i) {
       const OIIO::ImageSpec spec = input_->spec();
       FilePart part;

@@ -34,7 +34,6 @@ constexpr std::array kSignatures{
     Signature{8, "WEBP"sv, "webp"},
     Signature{0, "\0\0\0\x0cjP  "sv, "jpeg2000"},
     Signature{0, "\xff\x4f\xff\x51"sv, "jpeg2000"},
-    Signature{0, "8BPS"sv, "psd"},
     Signature{0, "\x01\xda"sv, "sgi"},
     Signature{0, "GIF8"sv, "gif"},
     Signature{8, "avif"sv, "heif"},
@@ -71,7 +70,7 @@ std::string picture_format(const std::filesystem::path& file) {
   });
   if (found != kSignatures.end()) return found->format;
   if (is_pnm(head)) return "pnm";
-  if (movie_container(file) == MovieContainer::movie) return "FFmpeg movie";
+  if (movie_container(file) == MovieContainer::movie) return "ffmpeg";
   return is_targa(file, in) ? "targa" : "";
 }
 
