@@ -10,7 +10,9 @@
 -- texts, booleans), `print` writes a note, every file has globals of its own, and `require` finds "afterglow" and scripts beside
 -- the preset or on the search path ("lib.taps" is lib/taps.lua). An `error(message, 0)` in a function of an effect is about the
 -- preset: it is reported at the entry there, and at one of its settings when the message begins with that setting's name.
--- A load or a build may take 64 MiB of memory and 50 million instructions or 2 seconds.
+-- `setmetatable` takes the metamethods that the metatable has at this moment (later ones do not count), no __gc and no __mode, and
+-- a __call that is a function. A load or a build may take 64 MiB of memory and 50 million instructions or 2 seconds of the
+-- processor; all scripts of a preset have at most 16 MiB.
 
 local core = ... -- native functions: engine/script/library.cpp
 
@@ -224,6 +226,25 @@ end
 function filters.box(delta)
   check_delta("box", delta)
   return { interpolation = "linear", x = { { -delta, 0.5 }, { delta, 0.5 } }, y = { { -delta, 0.5 }, { delta, 0.5 } } }
+end
+
+---The mean over `x` times `y` texels of the source around the target's pixel centres, for making images smaller by that much:
+---reads at most half a texel apart, so that a small light weighs the same (within 4 %) wherever it lies. 1 or less on an axis: one
+---bilinear read there. By exactly 2 on both, `bilinear` makes the same with one read.
+---@param x number  source width over target width, at most 16
+---@param y? number  source height over target height; default: x
+---@return afterglow.Filter
+function filters.area(x, y)
+  local function taps(ratio)
+    if type(ratio) ~= "number" or not (ratio > 0 and ratio <= 16) then
+      core.fail("fx.filters.area: " .. core.show(ratio) .. " is not a ratio of sizes", "0 < ratio ≤ 16")
+    end
+    if ratio <= 1 then return { { 0, 1 } } end
+    local out, n = {}, math.ceil(2 * ratio)
+    for i = 1, n do out[i] = { (i - (n + 1) / 2) * ratio / n, 1 / n } end
+    return out
+  end
+  return { interpolation = "linear", x = taps(x), y = taps(y or x) }
 end
 
 ---Three reads per axis, one texel of the source apart, weighted 1 : 2 : 1.

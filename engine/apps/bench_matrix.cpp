@@ -9,6 +9,7 @@ namespace afterglow {
 namespace {
 
 constexpr const char* kChosen = "chosen";
+constexpr const char* kWatched = "watched";
 constexpr int kLeastSquare = 256;
 
 }  // namespace
@@ -26,12 +27,13 @@ Result<std::vector<bench::Variant>> parse_variants(const std::string& text) {
   std::vector<bench::Variant> out;
   for (const auto& part : split(text, ',')) {
     bench::Variant variant{.label = trim(part), .choice = {}, .settings = {}, .overrides = {}};
-    if (variant.label != kChosen) {
+    variant.watch = variant.label == kWatched;
+    if (variant.label != kChosen && !variant.watch) {
       auto choice = parse_choice(variant.label);
       if (!choice) {
         Error error = std::move(choice).error();
         error.file = "--variants";
-        error.allowed += fmt::format(", {}", kChosen);
+        error.allowed += fmt::format(", {}, {}", kChosen, kWatched);
         return error;
       }
       variant.choice = *choice;

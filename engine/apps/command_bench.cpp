@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "apps/bench_matrix.h"
+#include "apps/bench_stability.h"
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
@@ -34,13 +35,15 @@ struct Arguments {
   std::string calibration, sizes, variants, picture, out = "bench", goals, compare;
   int repeat = 9, scaling = 0;
   double threshold = 1.15;
-  bool quick = false, reload = false;
+  bool quick = false, reload = false, temporal = false;
 };
 
 /// --quick: enough to see that everything works.
 constexpr const char* kQuickSizes = "320x180";
 constexpr const char* kSizes = "1920x1080,3840x2160";
 constexpr const char* kReloadSizes = "1280x720";
+constexpr const char* kResolutions = "960x540,1280x720,1920x1080,3840x2160";
+constexpr const char* kQuickResolutions = "160x90,320x180";
 constexpr const char* kQuickVariants = "plain16f,chosen";
 constexpr int kQuickRepeat = 3;
 
@@ -204,7 +207,37 @@ Result<void> measure_all_reloads(Bench& bench) {
   return {};
 }
 
+/// --temporal: shots and resolutions instead of times.
+Result<void> measure_steadiness(Bench& bench) {
+  const Arguments& a = bench.arguments;
+  StabilityRequest request{.presets = {}, .options = {}, .variants = {}, .sizes = {}, .shot = a.picture, .quick = a.quick};
+  for (const auto& name : a.presets) {
+    AFTERGLOW_TRY(const fs::path preset, find_preset_file(name, {a.paths.begin(), a.paths.end()}));
+    request.presets.push_back(preset);
+  }
+  request.options.device = a.device.options();
+  request.options.stack = bench.base;
+  AFTERGLOW_TRY(const auto chosen, parse_variants("chosen"));
+  AFTERGLOW_TRY(request.variants, vary_settings(chosen, a.vary));
+  AFTERGLOW_TRY(request.sizes, parse_sizes(!a.sizes.empty() ? a.sizes : a.quick ? kQuickResolutions : kResolutions));
+  bench.device.reset();  // sessions open their own
+  std::size_t done = 0;
+  auto measured = measure_stability(request, bench.report, bench.console.diagnostics(), [&](const std::string& what) -> Result<void> {
+    if (interrupted()) return interrupt_error();
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - bench.start;
+    bench.console.progress(done++, steps_of(request), what, seconds.count());
+    return {};
+  });
+  bench.console.end_progress();
+  if (!measured) return measured;
+  AFTERGLOW_CHECK(bench::write_report(bench.report, a.out));
+  fmt::print("{}", stability_text(bench.report));
+  return {};
+}
+
 Result<void> run_command(const Arguments& a, Console& console) {
+  if (a.temporal && a.presets.empty())
+    return Error{ErrorKind::usage, "--temporal needs a look to measure", "afterglow bench", 0, "one or more PRESETs"};
   if (a.reload && a.presets.empty())
     return Error{ErrorKind::usage, "--reload needs a look to edit", "afterglow bench", 0, "one or more PRESETs"};
   if (a.presets.empty() && a.goals.empty())
@@ -229,6 +262,7 @@ Result<void> run_command(const Arguments& a, Console& console) {
                   .goals = {}};
 
   if (a.reload) return measure_all_reloads(bench);
+  if (a.temporal) return measure_steadiness(bench);
   if (!a.presets.empty()) AFTERGLOW_CHECK(measure_matrix(bench));
   if (!a.goals.empty()) AFTERGLOW_CHECK(measure_goals(bench));
   console.end_progress();
@@ -247,7 +281,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--sizes", a.sizes, "Sizes of the picture (default 1920x1080,3840x2160)")->type_name("WxH,…");
   app.add_option(
          "--variants", a.variants,
-         "Ways of execution, as `devices` and --report name them, or plain16f, plain32f, chosen (what `run` does)")
+         "Ways of execution, as `devices` and --report name them, or plain16f, plain32f, chosen (what `run` does), watched (the same, looking for values that are not finite, as `run` does)")
       ->type_name("NAME,…");
   list("--set", a.overrides, "Overrides one setting for all that is measured (repeatable)", "EFFECT.SETTING=VALUE");
   list("--vary", a.vary, "Measures each value of a setting; errors are against the preset as it is (repeatable)",
@@ -262,6 +296,10 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_flag("--reload", a.reload,
                "How long edits take from the save to the new picture: medians of 50 of a value and 50 of a shader, at "
                "1280x720 unless --sizes says otherwise");
+  app.add_flag("--temporal", a.temporal,
+               "How steady what the looks add is: highlights that drift by parts of a pixel (or the shot of --picture "
+               "shot.####.exr), and one scene at the --sizes (default 960x540,1280x720,1920x1080,3840x2160)")
+      ->excludes("--reload");
   app.add_flag("--quick", a.quick, "320x180, 3 rounds, two variants: to see that it works");
   app.add_option("-o,--out", a.out, "Folder for bench.json, bench.csv, bench.html, front.svg (default: bench)")
       ->type_name("FOLDER");

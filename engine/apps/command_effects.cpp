@@ -8,9 +8,11 @@
 
 #include "apps/command.h"
 #include "apps/effect_page.h"
+#include "apps/json_text.h"
 #include "apps/options.h"
 #include "apps/setting_text.h"
 #include "apps/table.h"
+#include "core/printable.h"
 #include "core/text.h"
 #include "script/holds.h"
 #include "script/preset.h"
@@ -82,9 +84,9 @@ Result<void> run(const Arguments& arguments, Console& console) {
   } else if (arguments.json) {
     auto list = nlohmann::json::array();
     for (const auto& effect : effects) list.push_back(as_json(effect));
-    fmt::print("{}\n", list.dump(2));
+    fmt::print("{}", json_text(list));
   } else {
-    fmt::print("{}", arguments.name.empty() ? list_text(effects) : effect_text(effects.front()));
+    fmt::print("{}", printable(arguments.name.empty() ? list_text(effects) : effect_text(effects.front()), true));
   }
   return {};
 }

@@ -104,7 +104,9 @@ std::optional<int> parse(CLI::App& program, const std::vector<Command>& commands
   }
 }
 
-int run(Console& console, int argc, char** argv) {
+enum class Work { all, parsing };
+
+int run(Console& console, int argc, char** argv, Work work) {
   CLI::App program("Finishes rendered pictures: Lua looks on Vulkan.", "afterglow");
   program.set_version_flag("--version", "afterglow " AFTERGLOW_VERSION);
   program.require_subcommand(1);
@@ -120,6 +122,7 @@ int run(Console& console, int argc, char** argv) {
   for (const auto& command : commands) messages.add(*command.options);
 
   if (const auto exit_code = parse(program, commands, argc, argv, console)) return *exit_code;
+  if (work == Work::parsing) return 0;
   messages.apply(console);
   const auto done = parsed_command(commands)->run(console);
   return done ? 0 : fail(console, done.error());
@@ -131,10 +134,15 @@ int run_command_line(int argc, char** argv) {
   Console console;
   install_interrupt_handler();
   try {
-    return run(console, argc, argv);
+    return run(console, argc, argv, Work::all);
   } catch (const std::exception& exception) {
     return fail(console, exception_error(exception));
   }
+}
+
+int check_command_line(int argc, char** argv) {
+  Console console;
+  return run(console, argc, argv, Work::parsing);
 }
 
 }  // namespace afterglow

@@ -33,7 +33,7 @@ struct Arguments {
   ExecutionArguments execution;
   FrameListRequest files;
   std::string layer, depth, normal, motion, size, region;
-  std::string type = "auto", compression;
+  std::string type = "auto", compression, nan_policy = "zero";
   int png_level = 1, jpeg_quality = 95;
   bool dither = false, keep_layers = false, resume = false, fail_fast = false;
   double fps = 24;
@@ -61,6 +61,12 @@ void add_files(CLI::App& app, Arguments& a) {
       ->type_name("FILE[:LAYER]")
       ->group(input);
   app.add_option("--size", a.size, "Scale the picture first, for a quick look")->type_name("WxH")->group(input);
+  app.add_option("--nan-policy", a.nan_policy,
+                 "For values that are not finite, in pictures or made by passes: zero (default), neighbour (the mean of "
+                 "finite neighbours) or fail (end with an error; every pass is looked at)")
+      ->check(CLI::IsMember({"zero", "neighbour", "fail"}))
+      ->type_name("POLICY")
+      ->group(input);
   app.add_option("--region", a.region,
                  "Only this part of the picture, counted from the upper left corner: the crop of the whole result")
       ->type_name("X,Y,W,H")
@@ -128,6 +134,10 @@ void add_reports(CLI::App& app, Arguments& a) {
       ->group("Messages");
 }
 
+NanPolicy nan_policy(const std::string& text) {
+  return text == "neighbour" ? NanPolicy::neighbour : text == "fail" ? NanPolicy::fail : NanPolicy::zero;
+}
+
 SampleType sample_type(const std::string& text) {
   if (text == "half") return SampleType::half;
   if (text == "float") return SampleType::float32;
@@ -151,6 +161,7 @@ PixelOptions pixel_options(const Arguments& a) {
           {"--motion", a.motion},
           {"--size", a.size},
           {"--region", a.region},
+          {"--nan-policy", a.nan_policy == "neighbour" ? a.nan_policy : ""},
           {"--fps", number(a.fps)},
           {"--pre-roll", a.pre_roll ? fmt::format("{}", *a.pre_roll) : ""},
           {"--type", a.type},
@@ -185,6 +196,7 @@ Result<SessionOptions> session_options(const Arguments& a) {
   options.device = a.device.options();
   AFTERGLOW_TRY(options.stack, a.execution.options());
   AFTERGLOW_TRY(options.stack.preset, a.preset.options());
+  options.stack.flag_non_finite = true;
   if (a.stats == "passes") options.timing = KernelTiming::timestamps;
   return options;
 }
@@ -243,6 +255,8 @@ Result<void> prepare_resume(Run& run) {
   AFTERGLOW_TRY(const Hash look, look_hash(run.session->preset(), graph, options));
   run.loop.record_look = look;
   if (!a.resume) return {};
+  if (const int left = remove_leftovers(run.report.frames))
+    run.console.note(fmt::format("removed {} half-written files of runs that were killed", left));
   for (auto& frame : run.report.frames)
     if (is_up_to_date(frame.job, look)) {
       frame.state = FrameRecord::State::up_to_date;
@@ -276,7 +290,8 @@ Result<void> check_outputs(const Run& run) {
 Result<void> run_frames(Run& run, const SessionOptions& options) {
   const Arguments& a = run.arguments;
   run.loop.write = write_options(a);
-  run.loop.fail_fast = a.fail_fast;
+  run.loop.nan_policy = nan_policy(a.nan_policy);
+  run.loop.fail_fast = a.fail_fast || run.loop.nan_policy == NanPolicy::fail;
   run.loop.fps = a.fps;
   run.loop.max_memory = options.stack.max_memory;
   run.loop.read.layer = a.layer;

@@ -39,6 +39,7 @@ struct FrameLoop::Reading {
   BuildContext context;
   std::optional<Rect> part;  ///< of the picture, when there is a region
   std::optional<DisplayEncoding> encoding;
+  ReadOptions options;
   std::future<Result<Picture>> picture;
 };
 
@@ -94,6 +95,7 @@ Result<void> FrameLoop::close(Result<void> result) {
     return result;
   }
   if (!last) return last;
+  if (total_ > 1) non_finite_.sum_up(console_.diagnostics());
   if (failed_ > 0) return Error{ErrorKind::io, fmt::format("{} of {} frames failed", failed_, total_)};
   return {};
 }
@@ -131,6 +133,8 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   options.depth = frame.job.depth;
   options.normal = frame.job.normal;
   options.motion = frame.job.motion;
+  options.nan_policy = options_.nan_policy;
+  reading->options = options;
   const auto header = read_header(frame.job.input, options);
   if (!header) {
     reading->refused = named(header.error(), frame.job);
@@ -188,7 +192,8 @@ Result<void> FrameLoop::process(Reading& reading) {
   if (!picture) return fail(frame, named(std::move(picture).error(), frame.job), reading.pre_roll);
   if (interrupted()) return interrupt_error();
   frame.size = picture->color.size();
-  const auto processed = session_.process(*picture, reading.context, reading.encoding, reading.part);
+  frame.non_finite.input = picture->non_finite;
+  const auto processed = make(reading, *picture);
   // Validation goes first: it says what a failure comes from.
   if (session_.device().validation_errors() > 0)
     return fail(frame, {ErrorKind::device, "Vulkan validation: " + session_.device().validation_messages().front()});
@@ -200,6 +205,7 @@ Result<void> FrameLoop::process(Reading& reading) {
   }
   const SessionReport report = session_.report();
   frame.times = report.times.frame;
+  non_finite_.add(frame.non_finite);
   frame.skipped = report.skipped_now;
   if (report.clamped > 0)
     console_.diagnostics().warn_once(
@@ -209,6 +215,40 @@ Result<void> FrameLoop::process(Reading& reading) {
   if (interrupted()) return interrupt_error();
   AFTERGLOW_CHECK(finish_writing());
   begin_writing(frame, std::move(*picture));
+  return {};
+}
+
+/// Runs the stack. A frame in which something was not finite is made once more from its file, pass by pass and mended.
+Result<void> FrameLoop::make(Reading& reading, Picture& picture) {
+  if (options_.nan_policy == NanPolicy::fail) {
+    AFTERGLOW_TRY(const Trace trace, session_.trace(picture, reading.context, reading.encoding, reading.part,
+                                                    options_.nan_policy));
+    take_findings(reading.frame->non_finite, trace, picture);
+    if (!trace.passes.empty()) return non_finite_error(reading.frame->non_finite.passes.front(), reading.frame->job.input);
+  }
+  AFTERGLOW_CHECK(session_.process(picture, reading.context, reading.encoding, reading.part));
+  const SessionReport report = session_.report();
+  const bool overflow = report.clamped > 0 && !non_finite_.overflow_told();
+  if (!report.flagged && !overflow) return {};
+  return mend(reading, picture);
+}
+
+Result<void> FrameLoop::mend(Reading& reading, Picture& picture) {
+  FrameRecord& frame = *reading.frame;
+  const bool flagged = session_.report().flagged;
+  Diagnostics quiet;
+  AFTERGLOW_TRY(Picture source, read_picture(frame.job.input, reading.options, quiet));
+  if (options_.size) scale_picture(source, *options_.size);
+  AFTERGLOW_TRY(Trace trace, session_.trace(source, reading.context, reading.encoding,
+                                             reading.part, options_.nan_policy));
+  if (trace.overflow) non_finite_.tell_overflow(*trace.overflow, frame.job.input, console_.diagnostics());
+  if (!flagged) return {};
+  take_findings(frame.non_finite, trace, picture);
+  frame.non_finite.untraced = trace.passes.empty();
+  non_finite_.tell(frame.non_finite, frame.job.input, options_.nan_policy, console_.diagnostics());
+  if (options_.nan_policy == NanPolicy::fail) return Error{ErrorKind::script, kUntraced};
+  picture.color = std::move(trace.result);
+  picture.codes.clear();
   return {};
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/console.h"
+#include "apps/non_finite_record.h"
 #include "apps/run_report.h"
 #include "apps/schedule.h"
 #include "core/hash.h"
@@ -27,6 +28,7 @@ struct FrameLoopOptions {
   std::uint64_t max_memory = 6ull << 30;
   std::optional<Hash> record_look;  ///< leave notes for --resume
   bool fail_fast = false;
+  NanPolicy nan_policy = NanPolicy::zero;  ///< fail: every pass of every frame is looked at, and nothing mended
   bool histories = false;  ///< pictures depend on the frames before them
 };
 
@@ -57,6 +59,8 @@ class FrameLoop {
   std::unique_ptr<Reading> begin_reading(const ScheduledFrame& scheduled);
   void place_in_time(Reading& reading);
   Result<void> process(Reading& reading);
+  Result<void> make(Reading& reading, Picture& picture);
+  Result<void> mend(Reading& reading, Picture& picture);
   void begin_writing(FrameRecord& frame, Picture picture);
   Result<void> finish_writing();
   Result<void> fail(FrameRecord& frame, Error error, bool pre_roll = false);
@@ -66,6 +70,7 @@ class FrameLoop {
   FrameLoopOptions options_;
   Console& console_;
   std::unique_ptr<Writing> writing_;
+  NonFiniteRecord non_finite_;
   std::size_t total_ = 0, pre_roll_ = 0, done_ = 0, failed_ = 0;
   std::uint64_t largest_need_ = 0;
   bool overlap_ = false;

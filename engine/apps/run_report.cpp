@@ -4,8 +4,10 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/json_text.h"
 #include "apps/options.h"
 #include "apps/table.h"
 
@@ -13,6 +15,42 @@ namespace afterglow {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// A value that JSON may have no number for.
+Json value_json(float value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+
+Json counts_json(const NonFinite& found) {
+  Json value = Json::array();
+  for (int c = 0; c < found.first->channels; ++c) value.push_back(value_json(found.first->values[static_cast<std::size_t>(c)]));
+  return {{"nan", found.nan},
+          {"plus_infinity", found.plus_infinity},
+          {"minus_infinity", found.minus_infinity},
+          {"first", Json{{"x", found.first->x}, {"y", found.first->y}, {"value", value}}}};
+}
+
+Json non_finite_json(const FrameNonFinite& found) {
+  Json out = Json::object();
+  for (const auto& [layer, counts] : found.input) {
+    Json one{{"layer", layer}};
+    one.update(counts_json(counts));
+    out["input"].push_back(std::move(one));
+  }
+  for (const auto& pass : found.passes) {
+    Json one{{"pass", pass.pass}, {"effect", pass.effect}};
+    if (!pass.file.empty()) one["file"] = pass.file, one["line"] = pass.line;
+    if (!pass.shader.empty()) one["shader"] = pass.shader;
+    one["width"] = pass.size.width;
+    one["height"] = pass.size.height;
+    one.update(counts_json(pass.found));
+    out["passes"].push_back(std::move(one));
+  }
+  if (found.untraced) out["untraced"] = true;
+  return out;
+}
 
 std::size_t count(const RunReport& report, FrameRecord::State state) {
   return static_cast<std::size_t>(
@@ -91,6 +129,7 @@ Json frame_json(const FrameRecord& frame) {
            {"output", frame.job.output.string()},
            {"state", kStates[static_cast<int>(frame.state)]}};
   if (frame.error) out["error"] = frame.error->text();
+  if (auto found = non_finite_json(frame.non_finite); !found.empty()) out["non_finite"] = std::move(found);
   if (frame.state != FrameRecord::State::done) return out;
   out["width"] = frame.size.width;
   out["height"] = frame.size.height;
@@ -177,7 +216,7 @@ std::string report_json(const RunReport& report) {
   out["pre_roll"] = report.pre_roll;
   out["frames"] = Json::array();
   for (const auto& frame : report.frames) out["frames"].push_back(frame_json(frame));
-  return out.dump(2) + "\n";
+  return json_text(out);
 }
 
 }  // namespace afterglow

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/frame_list.h"
+#include "apps/non_finite_record.h"
 #include "session/session.h"
 
 namespace afterglow {
@@ -18,6 +19,7 @@ struct FrameRecord {
   Size size;
   double read = 0, write = 0;
   FrameTimes times;
+  FrameNonFinite non_finite;
   std::vector<Skipped> skipped;  ///< what this frame did not run because of its content
 };
 

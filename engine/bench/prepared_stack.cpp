@@ -43,6 +43,7 @@ Result<PreparedStack> PreparedStack::create(Device& device, const std::filesyste
   out.variant_ = variant;
   StackOptions options = base;
   options.choice = variant.choice;
+  options.flag_non_finite = variant.watch;
   options.preset.overrides.insert(options.preset.overrides.end(), variant.overrides.begin(), variant.overrides.end());
   AFTERGLOW_TRY(out.stack_, Stack::load(preset, options, diagnostics));
   out.stack_->use(device, true);

@@ -14,12 +14,17 @@ namespace afterglow::bench {
 std::string report_json(const Report& report);
 /// One line a point.
 std::string report_csv(const Report& report);
+/// One line a shot, then one line a size, of `temporal` and `resolutions`.
+std::string stability_csv(const Report& report);
+/// Swing against the highlight's radius, one line for each setting of each preset.
+std::string temporal_svg(const Report& report);
 /// One page that needs no other file and no network: run time against error, cost per pass, scaling, goals.
 std::string report_html(const Report& report);
 /// Run time against error of one cell, with the front drawn.
 std::string front_svg(const Report& report, const Cell& cell);
 
-/// bench.json, bench.csv, bench.html and front.svg (of the cell with most points) in `folder`, which is made. Errors:
+/// bench.json, bench.csv, bench.html, front.svg (of the cell with most points) and, of what is steady, stability.csv and
+/// temporal.svg in `folder`, which is made. Errors:
 /// io.
 Result<void> write_report(const Report& report, const std::filesystem::path& folder);
 

@@ -34,4 +34,15 @@ std::string report_csv(const Report& report) {
   return out;
 }
 
+std::string stability_csv(const Report& report) {
+  std::string out = "kind,preset,settings,scene,width,height,radius_px,swing,flicker,pixel_flicker,worst,rms\n";
+  for (const auto& c : report.temporal)
+    out += fmt::format("shot,{},{},{},{},{},{:g},{:.6g},{:.6g},{:.6g},,\n", quoted(c.preset), quoted(c.settings),
+                       quoted(c.scene), c.size.width, c.size.height, c.radius, c.swing, c.flicker, c.pixels);
+  for (const auto& p : report.resolutions)
+    out += fmt::format("resolution,{},{},lamps,{},{},,,,,{:.6g},{:.6g}\n", quoted(p.preset), quoted(p.settings),
+                       p.size.width, p.size.height, p.worst, p.rms);
+  return out;
+}
+
 }  // namespace afterglow::bench

@@ -38,6 +38,10 @@ Result<void> write_report(const Report& report, const std::filesystem::path& fol
   AFTERGLOW_CHECK(write_file_atomically(folder / "bench.json", report_json(report)));
   AFTERGLOW_CHECK(write_file_atomically(folder / "bench.csv", report_csv(report)));
   AFTERGLOW_CHECK(write_file_atomically(folder / "bench.html", report_html(report)));
+  if (!report.temporal.empty() || !report.resolutions.empty()) {
+    AFTERGLOW_CHECK(write_file_atomically(folder / "stability.csv", stability_csv(report)));
+    AFTERGLOW_CHECK(write_file_atomically(folder / "temporal.svg", temporal_svg(report)));
+  }
   const auto largest = std::ranges::max_element(report.cells, {}, [](const Cell& cell) {
     return std::ranges::count_if(cell.points, [](const Point& p) { return p.quality.has_value(); });
   });

@@ -75,6 +75,18 @@ Json goal_json(const GoalResult& goal) {
   return out;
 }
 
+Json temporal_json(const TemporalCurve& curve) {
+  return {{"preset", curve.preset},       {"settings", curve.settings}, {"scene", curve.scene},
+          {"width", curve.size.width},    {"height", curve.size.height}, {"radius", curve.radius},
+          {"light", curve.light},         {"swing", curve.swing},       {"flicker", curve.flicker},
+          {"pixels", curve.pixels}};
+}
+
+Json resolution_json(const ResolutionPoint& point) {
+  return {{"preset", point.preset}, {"settings", point.settings}, {"width", point.size.width},
+          {"height", point.size.height}, {"worst", point.worst}, {"rms", point.rms}};
+}
+
 std::string key(const std::string& preset, int width, int height, const std::string& label, const std::string& choice,
                 const std::string& settings) {
   const std::string name = label.empty() || label == choice ? choice : label;
@@ -88,7 +100,10 @@ std::string report_json(const Report& report) {
            {"kind", report.kind}, {"repeat", report.repeat},     {"cells", Json::array()},  {"goals", Json::array()}};
   for (const auto& cell : report.cells) out["cells"].push_back(cell_json(cell));
   for (const auto& goal : report.goals) out["goals"].push_back(goal_json(goal));
-  return out.dump(1) + "\n";
+  out["temporal"] = out["resolutions"] = Json::array();
+  for (const auto& curve : report.temporal) out["temporal"].push_back(temporal_json(curve));
+  for (const auto& point : report.resolutions) out["resolutions"].push_back(resolution_json(point));
+  return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Result<std::vector<Comparison>> compare_reports(const std::string& old_json, const std::string& file,

@@ -56,11 +56,32 @@ struct GoalResult {
   bool reached() const { return ratio && (at_least ? *ratio >= goal : *ratio <= goal); }
 };
 
+/// How steady what a look adds is over the frames of a shot. Shares are of the mean over the frames.
+struct TemporalCurve {
+  std::string preset, settings;
+  std::string scene;          ///< "highlight of 0.5 px", or the files
+  Size size;
+  double radius = 0;          ///< of the highlight, pixels; 0: another scene
+  std::vector<double> light;  ///< frame by frame, from the third on: the light that was added, its mean being 1
+  double swing = 0;           ///< largest less smallest of them
+  double flicker = 0;         ///< how far a frame is from the mean of its neighbours, median over the frames
+  double pixels = 0;          ///< the same pixel by pixel, mean over them
+};
+
+/// How far what a look adds at one size is from that at the first size: shares of the latter's largest, and of its RMS.
+struct ResolutionPoint {
+  std::string preset, settings;
+  Size size;
+  double worst = 0, rms = 0;
+};
+
 struct Report {
   std::string version, device, driver, kind;
   int repeat = 0;
   std::vector<Cell> cells;
   std::vector<GoalResult> goals;
+  std::vector<TemporalCurve> temporal;
+  std::vector<ResolutionPoint> resolutions;
 };
 
 /// Marks the points of the cell that no other beats in both median time and 99.99th percentile of the error. Points

@@ -73,6 +73,25 @@ std::uint64_t unpack_row_rgb(const std::byte* from, VkFormat format, int width, 
   return held;
 }
 
+namespace {
+
+/// Without branches, so that it vectorises.
+template <class Sample>
+bool any_alpha_zero(const std::byte* from, int width) {
+  const auto* samples = reinterpret_cast<const Sample*>(from);
+  Sample any = 0;
+  for (int x = 0; x < width; ++x) any |= static_cast<Sample>(samples[4 * x + 3] == 0);
+  return any != 0;
+}
+
+}  // namespace
+
+bool any_alpha_zero(const std::byte* from, VkFormat format, int width) {
+  if (format == VK_FORMAT_R8G8B8A8_UNORM) return any_alpha_zero<std::uint8_t>(from, width);
+  if (format == VK_FORMAT_R16G16B16A16_SFLOAT) return any_alpha_zero<std::uint16_t>(from, width);
+  return any_alpha_zero<std::uint32_t>(from, width);
+}
+
 std::uint64_t over_rows(int rows, std::size_t bytes_per_row, const std::function<std::uint64_t(int)>& row) {
   // Below a few MiB threads cost more than they bring.
   constexpr std::size_t kBandBytes = 2u << 20;

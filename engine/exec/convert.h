@@ -19,6 +19,9 @@ std::uint64_t unpack_row(const std::byte* from, VkFormat format, int width, floa
 /// The same, but leaves the alphas in `rgba` as they are.
 std::uint64_t unpack_row_rgb(const std::byte* from, VkFormat format, int width, float* rgba);
 
+/// Whether the alpha of some pixel of RGBA32F, RGBA16F or RGBA8 is (+)0.
+bool any_alpha_zero(const std::byte* from, VkFormat format, int width);
+
 /// Calls `row(y)` for every row, over threads when the rows together are large; returns the sum of what it returned.
 std::uint64_t over_rows(int rows, std::size_t bytes_per_row, const std::function<std::uint64_t(int y)>& row);
 

@@ -119,6 +119,11 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
     AFTERGLOW_TRY(KernelStage stage, stage_of(shaders, graph.passes[kernel.passes[i]]));
     desc.stages.push_back(std::move(stage));
   }
+  // What has no stages hands on by itself.
+  if (options.flag_non_finite && kernel.output == graph.result)
+    desc.watch = Watch::flag;
+  else if (options.flag_non_finite && !desc.stages.empty())
+    desc.watch = Watch::hand_on;
   if (options.storage_reads) desc.reads = reads_of(graph, kernel, desc, options);
   if (pixels >= options.worth.rows) desc.rows = rows_that_pay(desc, options.rows);
   return desc;

@@ -16,6 +16,7 @@ struct DescribeOptions {
   bool hardware_filter = false;
   bool half_storage = false;
   bool codes = false;              ///< the result holds 8-bit codes
+  bool flag_non_finite = false;    ///< see ProgramOptions
   bool storage_reads = false;      ///< images between kernels are read as storage images where their shaders allow it
   bool source_is_storage = false;  ///< the source too
   int rows = 1;                    ///< an invocation may make so many where that pays

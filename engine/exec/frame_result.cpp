@@ -1,6 +1,7 @@
 #include "exec/frame_result.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 #include "exec/convert.h"
@@ -68,13 +69,24 @@ Result<std::uint64_t> FrameResult::over_rows_of(Staging& staging, const Rect& pa
   const auto inside = [&](int y, const std::byte* from) -> std::uint64_t {
     return y < part.y || y >= part.y + part.height ? 0 : row(y, from + left);
   };
-  if (!image_.direct) return staging.download(staged(image_), image_.layout, inside);
+  if (!image_.direct) return staging.download(staged(image_), image_.layout, inside, part.y, part.y + part.height);
   image_.image.memory().invalidate();
   return over_rows(part.height, image_.image.row_pitch(),
                    [&](int y) { return row(part.y + y, image_.image.row(part.y + y) + left); });
 }
 
-Result<std::uint64_t> FrameResult::download(Staging& staging, const Rect& part, HostResult& out) {
+Result<std::uint64_t> FrameResult::download(Staging& staging, const Rect& part, HostResult& out, bool flags) {
+  std::atomic<bool> flagged = false;
+  const auto look = [&](const std::byte* from, VkFormat of) {
+    if (flags && any_alpha_zero(from, of, part.width)) flagged.store(true, std::memory_order_relaxed);
+  };
+  AFTERGLOW_TRY(const std::uint64_t held, download_looking(staging, part, out, look));
+  out.flagged = flagged.load();
+  return held;
+}
+
+Result<std::uint64_t> FrameResult::download_looking(Staging& staging, const Rect& part, HostResult& out,
+                                                    const LookAtRow& look) {
   const auto [width, height] = image_.image.desc().size;
   const VkFormat format = image_.image.desc().format;
   const auto row_values = static_cast<std::size_t>(width) * 4;
@@ -84,6 +96,7 @@ Result<std::uint64_t> FrameResult::download(Staging& staging, const Rect& part, 
   if (format == VK_FORMAT_R8G8B8A8_UNORM) {
     out.codes.resize(row_values * static_cast<std::size_t>(height));
     return over_rows_of(staging, part, [&](int y, const std::byte* from) {
+      look(from, format);
       std::memcpy(out.codes.data() + first(y), from, static_cast<std::size_t>(part.width) * 4);
       return std::uint64_t{0};
     });
@@ -95,6 +108,7 @@ Result<std::uint64_t> FrameResult::download(Staging& staging, const Rect& part, 
     out.pixels.resize(values);
   }
   return over_rows_of(staging, part, [&](int y, const std::byte* from) {
+    look(from, format);
     float* to = out.pixels.data() + first(y);
     return keep_alpha ? unpack_row_rgb(from, format, part.width, to) : unpack_row(from, format, part.width, to);
   });

@@ -33,11 +33,14 @@ class FrameResult {
   /// Into a layout in which the CPU may read a direct image, and later submissions may sample it.
   void after(VkCommandBuffer commands);
 
-  /// Reads that part back. Returns how many samples were clamped to ±65504. Errors: device.
-  Result<std::uint64_t> download(Staging& staging, const Rect& part, HostResult& out);
+  /// Reads that part back. Returns how many samples were clamped to ±65504. `flags`: look for alphas of 0, for
+  /// HostResult::flagged. Errors: device.
+  Result<std::uint64_t> download(Staging& staging, const Rect& part, HostResult& out, bool flags = false);
   int made() const { return made_; }  ///< images so far
 
  private:
+  using LookAtRow = std::function<void(const std::byte* from, VkFormat format)>;
+  Result<std::uint64_t> download_looking(Staging& staging, const Rect& part, HostResult& out, const LookAtRow& look);
   VkImageLayout drawing_layout() const;
   Result<std::uint64_t> over_rows_of(Staging& staging, const Rect& part,
                                      const std::function<std::uint64_t(int y, const std::byte* from)>& row);

@@ -170,15 +170,19 @@ void decode_color(const ColorEncoding& encoding, float* rgba, std::size_t pixels
   decode_rows(encoding, CurveDecoder(encoding), rgba, pixels, counts);
 }
 
-void decode_color(const ColorEncoding& encoding, Image& rgba, SanitizeCounts& counts) {
+void decode_color(const ColorEncoding& encoding, Image& rgba, SanitizeCounts& counts, NonFinite* found) {
   const CurveDecoder curve(encoding);
   std::mutex mutex;
   parallel_rows(rgba.height, static_cast<long long>(rgba.pixels.size()), [&](int begin, int end) {
     SanitizeCounts own;
-    for (int y = begin; y < end; ++y)
+    NonFinite own_found;
+    for (int y = begin; y < end; ++y) {
+      if (found) note_non_finite(rgba.at(0, y), rgba.channels, rgba.width, y, own_found);
       decode_rows(encoding, curve, rgba.at(0, y), static_cast<std::size_t>(rgba.width), own);
+    }
     const std::lock_guard lock(mutex);
     counts += own;
+    if (found) *found += own_found;
   });
 }
 

@@ -39,8 +39,8 @@ struct ColorEncoding {
 /// Brings rows of RGBA that hold stored values (integers scaled to 0…1) into the form that Picture::color has. `pixels`
 /// are contiguous. Counts what had to be made finite.
 void decode_color(const ColorEncoding& encoding, float* rgba, std::size_t pixels, SanitizeCounts& counts);
-/// The same for a whole image, on several threads.
-void decode_color(const ColorEncoding& encoding, Image& rgba, SanitizeCounts& counts);
+/// The same for a whole image, on several threads. `found`: what of the stored values was not finite, added up.
+void decode_color(const ColorEncoding& encoding, Image& rgba, SanitizeCounts& counts, NonFinite* found = nullptr);
 
 void sanitize_depth(Image& depth, SanitizeCounts& counts);
 void sanitize_normal(Image& normal, SanitizeCounts& counts);

@@ -10,6 +10,7 @@
 
 #include "core/hash.h"
 #include "image/image.h"
+#include "image/non_finite.h"
 
 namespace afterglow {
 
@@ -41,6 +42,9 @@ struct Picture {
   Rect data_window;        ///< where `color` lies, in the coordinates of the file, after orientation is applied
   Rect display_window;     ///< what a display format shows
   SanitizeCounts sanitized;
+  /// What was not finite, by layer, before it was mended: "color", "depth", "normal", "motion" (as stored, upright).
+  /// Layers without are not listed.
+  std::map<std::string, NonFinite> non_finite;
   std::shared_ptr<const FileFacts> facts;  ///< never null after reading; may be null for pictures made in memory
 };
 

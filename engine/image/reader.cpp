@@ -9,6 +9,7 @@
 
 #include "core/exception.h"
 #include "core/file_trace.h"
+#include "core/saturated.h"
 #include "core/text.h"
 #include "image/color_encoding.h"
 #include "image/orientation.h"
@@ -163,7 +164,7 @@ std::uint64_t host_bytes(const Plan& plan, const std::vector<std::string>& wante
     second = std::max(second, area(part.data_window) * pixel);
     buffers = std::max(buffers, plan.file_of(auxiliary).buffer_bytes(auxiliary.choice.part));
   }
-  return images + second + buffers;
+  return saturated_sum({images, second, buffers});
 }
 
 /// Targets that spread the given channels over the channels of `image`; a channel that occurs twice is read once, into
@@ -192,7 +193,29 @@ Image placed(Image image, const Rect& window, const Rect& wanted, float backgrou
   return out;
 }
 
-void report(const SanitizeCounts& counts, const fs::path& file, Diagnostics& diagnostics) {
+void note_layer(Picture& picture, const char* layer, const NonFinite& found) {
+  if (found.count() == 0) return;
+  NonFinite& noted = picture.non_finite[layer] = found;
+  // Places are counted from the display window's corner, like those of --region.
+  noted.first->x += picture.data_window.x - picture.display_window.x;
+  noted.first->y += picture.data_window.y - picture.display_window.y;
+}
+
+/// "color: 2 NaN, 1 +Inf, first at pixel 5,3: (nan, 0.25, inf, 1)" for each layer.
+std::string non_finite_text(const Picture& picture) {
+  std::vector<std::string> parts;
+  for (const auto& [layer, found] : picture.non_finite)
+    parts.push_back(fmt::format("{}: {}, first at {}", layer, found.text(), found.first->text()));
+  return join(parts, "; ");
+}
+
+Error non_finite_error(const Picture& picture, const fs::path& file) {
+  return {ErrorKind::io, fmt::format("the picture has values that are not finite (--nan-policy fail): {}", non_finite_text(picture)),
+          file.string()};
+}
+
+void report(const Picture& picture, NanPolicy policy, const fs::path& file, Diagnostics& diagnostics) {
+  const SanitizeCounts& counts = picture.sanitized;
   std::vector<std::string> parts;
   const auto add = [&](std::uint64_t count, const char* what) {
     if (count) parts.push_back(fmt::format("{} {}", count, what));
@@ -202,15 +225,21 @@ void report(const SanitizeCounts& counts, const fs::path& file, Diagnostics& dia
   add(counts.alpha, "alpha");
   add(counts.depth, "depth");
   add(counts.normal, "normal");
-  const bool harmless = parts.empty();  // negatives alone: ringing of filters and lossy compression
+  const bool harmless = parts.empty() && picture.non_finite.empty();  // negatives alone: ringing, lossy compression
   add(counts.negative, "negative");
-  if (parts.empty()) return;
-  const std::string text = fmt::format("{}: samples made finite and not negative: {}", file.string(), join(parts));
-  harmless ? diagnostics.note(text) : diagnostics.warn(text);
+  std::vector<std::string> said;
+  if (!parts.empty()) said.push_back("samples made finite and not negative: " + join(parts));
+  if (!picture.non_finite.empty())
+    said.push_back((policy == NanPolicy::neighbour ? "not finite, replaced by the mean of neighbours: " : "not finite: ") +
+                   non_finite_text(picture));
+  if (said.empty()) return;
+  const std::string text = fmt::format("{}: {}", file.string(), join(said, "; "));
+  // Told once: those who run sequences sum up at the end.
+  harmless ? diagnostics.note(text) : diagnostics.warn_once("values made finite", text);
 }
 
 /// Allocates, reads and decodes everything of the plan. May throw std::bad_alloc.
-Result<Picture> read_planned(Plan& plan, Diagnostics& diagnostics) {
+Result<Picture> read_planned(Plan& plan, NanPolicy policy, Diagnostics& diagnostics) {
   const FilePart& part = plan.color_part();
   Picture picture;
   picture.data_window = upright_data(part);
@@ -245,20 +274,37 @@ Result<Picture> read_planned(Plan& plan, Diagnostics& diagnostics) {
   }
   AFTERGLOW_CHECK(plan.file->read(plan.color.part, targets));
 
-  decode_color(encoding, picture.color, picture.sanitized);
+  // Turned first: what is found has the place where the picture shows it.
   picture.color = upright(std::move(picture.color), part.orientation);
+  {
+    NonFinite found;
+    if (policy == NanPolicy::neighbour) {
+      found = find_non_finite(picture.color);
+      if (found.count() > 0) repair_from_neighbours(picture.color);
+    }
+    decode_color(encoding, picture.color, picture.sanitized, policy == NanPolicy::neighbour ? nullptr : &found);
+    note_layer(picture, "color", found);
+  }
   for (std::size_t i = 0; i < auxiliary.size(); ++i) {
     const AuxiliaryPlan& extra = plan.auxiliary[i];
     const FilePart& from = plan.part_of(extra);
     Image image = upright(std::move(auxiliary[i]), from.orientation);
     const Rect window = extra.other ? picture.data_window : upright_data(from);
+    NonFinite found = find_non_finite(image);
+    if (found.count() > 0 && policy == NanPolicy::neighbour) repair_from_neighbours(image);
+    if (found.first) {  // its own window may lie elsewhere
+      found.first->x += window.x - picture.data_window.x;
+      found.first->y += window.y - picture.data_window.y;
+    }
+    note_layer(picture, extra.kind->name, found);
     if (extra.kind == &kMotion) image = motion_of(image);
     image = placed(std::move(image), window, picture.data_window, extra.kind->background);
     if (extra.kind == &kDepth) sanitize_depth(image, picture.sanitized);
     if (extra.kind == &kNormal) sanitize_normal(image, picture.sanitized);
     picture.auxiliary.emplace(extra.kind->name, std::move(image));
   }
-  report(picture.sanitized, plan.file->path(), diagnostics);
+  if (policy == NanPolicy::fail && !picture.non_finite.empty()) return non_finite_error(picture, plan.file->path());
+  report(picture, policy, plan.file->path(), diagnostics);
   return picture;
 }
 
@@ -316,7 +362,7 @@ Result<Picture> read_noting(const fs::path& file, const ReadOptions& options, Di
                    fmt::format("needs {} MiB of memory, more than the {} MiB allowed (--max-memory)", bytes >> 20,
                                options.max_bytes >> 20),
                    file.string()};
-    return read_planned(plan, diagnostics);
+    return read_planned(plan, options.nan_policy, diagnostics);
   } catch (const std::exception& error) {
     return Error{ErrorKind::io, fmt::format("cannot be read: {}", exception_text(error)), file.string()};
   }

@@ -8,6 +8,7 @@
 
 #include "core/exception.h"
 #include "core/file.h"
+#include "core/temporary.h"
 #include "image/exr_file.h"
 #include "image/oiio_module.h"
 #include "image/output_file.h"

@@ -43,6 +43,28 @@ Rgb BloomThreshold::operator()(const Rgb& c) const {
   return c * (glm::max(s, b - t) / glm::max(b, 1e-5));
 }
 
+DoubleImage bloom_scaled(const DoubleImage& source, int height) {
+  const long long w = source.width, h = source.height;
+  const Size wanted{glm::max(1, static_cast<int>((2 * w * height + h) / (2 * h))), height};
+  const auto resized = [](const DoubleImage& from, Size size, int nx, int ny) {
+    const double step_x = static_cast<double>(from.width) / size.width / nx;
+    const double step_y = static_cast<double>(from.height) / size.height / ny;
+    return generate(size, [&](int x, int y) {
+      Rgba sum(0);
+      for (int j = 0; j < ny; ++j)
+        for (int i = 0; i < nx; ++i)
+          sum += fetch(from, size, x, y, (i - (nx - 1) / 2.0) * step_x, (j - (ny - 1) / 2.0) * step_y);
+      return sum / static_cast<double>(nx * ny);
+    });
+  };
+  DoubleImage image = source;
+  while (image.height >= 2 * wanted.height && image.width >= 2 * wanted.width)
+    image = resized(image, half(image.size()), 1, 1);
+  if (image.size() == wanted) return image;
+  const auto reads = [](int from, int to) { return from <= to ? 1 : (2 * from + to - 1) / to; };
+  return resized(image, wanted, reads(image.width, wanted.width), reads(image.height, wanted.height));
+}
+
 DoubleImage bloom_prefilter(const DoubleImage& source, const BloomThreshold& threshold) {
   const Size size = half(source.size());
   return generate(size, [&](int x, int y) {
@@ -119,7 +141,8 @@ std::vector<Size> bloom_sizes(Size size, int max_iterations, int downscale_limit
 
 BloomImages bloom(const DoubleImage& source, const BloomSettings& settings) {
   BloomImages out;
-  const auto sizes = bloom_sizes(source.size(), settings.max_iterations, settings.downscale_limit);
+  const DoubleImage scaled = settings.reference_height > 0 ? bloom_scaled(source, settings.reference_height) : source;
+  const auto sizes = bloom_sizes(scaled.size(), settings.max_iterations, settings.downscale_limit);
   if (sizes.empty() || settings.intensity <= 0) {
     out.result = source;
     return out;
@@ -127,7 +150,7 @@ BloomImages bloom(const DoubleImage& source, const BloomSettings& settings) {
   out.ran = true;
   const auto threshold = BloomThreshold::from_gamma(settings.threshold, settings.knee);
   out.prefilter =
-      settings.fade_fireflies ? bloom_prefilter_fireflies(source, threshold) : bloom_prefilter(source, threshold);
+      settings.fade_fireflies ? bloom_prefilter_fireflies(scaled, threshold) : bloom_prefilter(scaled, threshold);
 
   const std::size_t levels = sizes.size() - 1;
   for (std::size_t i = 0; i < levels; ++i) {

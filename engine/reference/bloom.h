@@ -20,7 +20,12 @@ struct BloomSettings {
   double scatter = 0.7;
   bool bicubic_upsampling = true;
   bool fade_fireflies = false;
+  int reference_height = 0;  ///< pixels; 0: the pyramid is built on the picture as it is
 };
+
+/// The picture as it would be at this height: halved while that leaves at least as much on both sides, then the mean of
+/// bilinear reads at most half a texel apart over what is left.
+DoubleImage bloom_scaled(const DoubleImage& source, int height);
 
 /// The soft-knee threshold T(c) = c · max(s, b − t)/max(b, 1e-5), b the largest channel, s the quadratic knee between
 /// t(1−k) and t(1+k).

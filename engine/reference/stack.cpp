@@ -20,7 +20,8 @@ DoubleImage run_bloom(const DoubleImage& source, const Inputs&, const Settings& 
                         .intensity = s.number("intensity"),
                         .scatter = s.number("scatter"),
                         .bicubic_upsampling = s.flag("bicubic_upsampling"),
-                        .fade_fireflies = s.flag("fade_fireflies")})
+                        .fade_fireflies = s.flag("fade_fireflies"),
+                        .reference_height = s.integer("reference_height")})
       .result;
 }
 

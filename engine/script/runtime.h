@@ -118,7 +118,4 @@ bool is_identifier(const std::string& name);
 /// Every effect name on the search path, sorted, each once.
 std::vector<std::string> effect_names(const SearchPath& path);
 
-/// Does `file`, links followed, lie in `folder`, links followed?
-bool lies_in(const std::filesystem::path& file, const std::filesystem::path& folder);
-
 }  // namespace afterglow::script

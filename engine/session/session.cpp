@@ -21,6 +21,16 @@ OpenedDevice open_device(const DeviceOptions& options, Diagnostics& diagnostics)
   return {std::move(device), std::chrono::duration<double, std::milli>(Clock::now() - start).count()};
 }
 
+/// Whether the codes have no alpha somewhere in `part` where the picture has some.
+bool lost_alpha(const Picture& picture, const Rect& part) {
+  for (int y = part.y; y < part.y + part.height; ++y)
+    for (int x = part.x; x < part.x + part.width; ++x) {
+      const std::size_t alpha = 4 * (static_cast<std::size_t>(y) * picture.color.width + static_cast<std::size_t>(x)) + 3;
+      if (picture.codes[alpha] == 0 && picture.color.pixels[alpha] >= 1.0f / 255) return true;
+    }
+  return false;
+}
+
 }  // namespace
 
 struct Session::State {
@@ -30,7 +40,9 @@ struct Session::State {
   std::unique_ptr<Device> device;
   std::unique_ptr<Stack> stack;
   std::unique_ptr<FrameRunner> runner;
+  std::unique_ptr<Tracer> tracer;  ///< once a frame was traced
   HostResult result;
+  bool flagged = false;  ///< the last frame's result
   SessionTimes times;
   Program* ran = nullptr;  ///< in the last frame; null: nothing
   std::vector<Skipped> skipped_now;
@@ -78,6 +90,7 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame,
   AFTERGLOW_CHECK(prepare(context, encoding, region));
   state_->times.frame = {};
   state_->result.clamped = 0;
+  state_->flagged = state_->result.flagged = false;
   state_->skipped_now.clear();
   if (!state_->stack->runs()) return {};
 
@@ -100,8 +113,20 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame,
   picture.codes = std::move(result.codes);
   if (!times) return std::move(times).error();
   state_->times.frame = std::move(times).value();
+  state_->flagged = result.flagged;
+  if (result.flagged && encoding && encoding->straight_alpha && !picture.codes.empty())
+    state_->flagged = lost_alpha(picture, region.value_or(Rect{0, 0, context.size.width, context.size.height}));
   for (auto& kept : kept_of(state_->times.frame)) state_->skipped_now.push_back(std::move(kept));
   return {};
+}
+
+Result<Trace> Session::trace(const Picture& picture, const BuildContext& frame,
+                             const std::optional<DisplayEncoding>& encoding, const std::optional<Rect>& region,
+                             NanPolicy policy) {
+  AFTERGLOW_CHECK(state_->stack->prepare(context_of(picture, frame), encoding, region));
+  if (!state_->tracer)
+    state_->tracer = std::make_unique<Tracer>(*state_->device, state_->options.stack.max_memory);
+  return state_->tracer->run(*state_->stack, picture, frame, region, policy);
 }
 
 SessionReport Session::report() const {
@@ -121,6 +146,7 @@ SessionReport Session::report() const {
     for (const auto& kernel : state_->ran->plan().kernels) report.kernels.push_back(kernel.name);
   if (const Program* program = state_->stack->program()) report.memory = program->memory();
   report.clamped = state_->result.clamped;
+  report.flagged = state_->flagged;
   report.times = state_->times;
   report.times.script = stack.script_milliseconds();
   report.times.compile = stack.compile_milliseconds();

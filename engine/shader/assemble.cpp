@@ -26,13 +26,20 @@ constexpr std::string_view kHeader =
 /// Rounds to half floats, to nearest even, so that the store is exact whatever rounding the device's attachments have.
 constexpr std::string_view kRoundToHalf = R"(
 vec4 ag_round_to_half(vec4 v) {
-  v = clamp(v, vec4(-65504.0), vec4(65504.0));
+  v = mix(v, vec4(65504.0), greaterThan(v, vec4(65504.0)));           // unlike clamp, hands a NaN on
+  v = mix(v, vec4(-65504.0), lessThan(v, vec4(-65504.0)));
   uvec4 bits = floatBitsToUint(v);
   uvec4 normal = (bits + 0xfffu + ((bits >> 13u) & 1u)) & ~0x1fffu;   // 10 bits of mantissa stay
   vec4 tiny = roundEven(v * 16777216.0) * 5.9604644775390625e-8;      // below 2^-14 halves are multiples of 2^-24
   return mix(uintBitsToFloat(normal), tiny, lessThan(abs(v), vec4(6.103515625e-5)));
 }
 )";
+
+/// Of a kernel that watches. A NaN or an infinity stays in a sum, whatever a later stage makes of it: no branch, and no
+/// comparison until the end.
+std::string add_light(const std::string& color) {
+  return fmt::format("  ag_light += {0}.r + {0}.g + {0}.b;\n", color);
+}
 
 class Assembler {
  public:
@@ -45,6 +52,7 @@ class Assembler {
       return Error{ErrorKind::other, fmt::format("an invocation makes 1 to {} rows, not {}", kMaxRows, kernel_.rows)};
     out_.file_names = {"", "lib/prelude.glsl"};
     AFTERGLOW_CHECK(head());
+    if (watches()) row_ += "  float ag_light = 0.0;\n" + add_light("ag_color");
     for (const auto& stage : kernel_.stages) AFTERGLOW_CHECK(add_stage(stage, ShaderKind::pixel));
     if (out_.images.size() > kMaxImages) {
       Error error{ErrorKind::script, fmt::format("the joined passes read {} images", out_.images.size())};
@@ -63,6 +71,11 @@ class Assembler {
     if (kernel_.target == KernelTarget::float16) out_.glsl += kRoundToHalf;
     if (kernel_.target == KernelTarget::float16) row_ += "  ag_color = ag_round_to_half(ag_color);\n";
     if (kernel_.target == KernelTarget::codes8) row_ += "  ag_color = clamp(ag_color, 0.0, 1.0);\n";
+    if (watches()) row_ += "  bool ag_finite = abs(ag_light) <= 3.4028234e38;\n";
+    if (kernel_.watch == Watch::flag)
+      row_ += fmt::format("  ag_color.a {} float(ag_finite);\n", kernel_.target == KernelTarget::codes8 ? "*=" : "=");
+    if (kernel_.watch == Watch::hand_on)
+      row_ += "  ag_color = mix(vec4(uintBitsToFloat(0x7fc00000u)), ag_color, bvec4(ag_finite));\n";
     if (row_.empty()) {
       every_row("ag_result{0} = ag_color{0};");
     } else {
@@ -76,6 +89,8 @@ class Assembler {
   }
 
  private:
+  bool watches() const { return kernel_.watch != Watch::none; }
+
   Result<void> head() {
     if (kernel_.sample) return add_stage(*kernel_.sample, ShaderKind::sample);
     const ImageRead read = add_image(-1, "source", "ag_image0", true);
@@ -166,6 +181,7 @@ class Assembler {
       const ImageRead read = add_image(stage_count_, input.name, variable, by_engine);
       if (input.pixelwise) {
         arguments += ", ag_in" + std::to_string(out_.images.size());
+        if (watches()) row_ += add_light("ag_in" + std::to_string(out_.images.size()));
         row_parameters_ += ", vec4 ag_in" + std::to_string(out_.images.size());
         row_arguments_ += ", " + texel(read, variable, "ag_pixel{0}");
       } else if (read != ImageRead::sampled) {
@@ -185,7 +201,7 @@ class Assembler {
     if (kind == ShaderKind::sample)
       every_row("vec4 ag_color{0} = " + prefix + "sample_at(ag_pixel{0});");
     else
-      row_ += fmt::format("  ag_color = {}apply({});\n", prefix, arguments);
+      row_ += fmt::format("  ag_color = {}apply({});\n", prefix, arguments) + (watches() ? add_light("ag_color") : "");
     ++stage_count_;
     return {};
   }

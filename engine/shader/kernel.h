@@ -36,6 +36,14 @@ enum class ImageRead { sampled, storage_rgba32f, storage_rgba16f };
 /// 0…1.
 enum class KernelTarget { float32, float16, codes8 };
 
+/// What a kernel does where a colour on its way is not finite: that of the head, one that a stage reads at its own pixel,
+/// or what a stage made of them, whatever later stages make of it. (Finite ones whose sum is above 1e38 count as such.)
+enum class Watch {
+  none,
+  hand_on,  ///< it writes NaN there, so that later kernels see it
+  flag      ///< it writes alpha 0 there, and elsewhere 1 (codes8: what the last stage gave)
+};
+
 inline constexpr int kMaxRows = 8;  ///< colour attachments that every desktop device has
 
 struct KernelDesc {
@@ -46,6 +54,7 @@ struct KernelDesc {
   std::vector<KernelStage> stages;  ///< pixel stages, in order
   bool hardware_filter = false;     ///< let the sampler interpolate (error of 8-bit fractions) where that helps
   KernelTarget target = KernelTarget::float32;
+  Watch watch = Watch::none;
   /// Rows of the target that one invocation makes, each its own output location: invocation (x, Y) makes the pixels
   /// (x, rows·Y) … (x, rows·Y + rows − 1). What neighbouring rows both read is read once. 1 … kMaxRows.
   int rows = 1;
@@ -108,7 +117,8 @@ std::optional<LinesRead> lines_shared(const Filter& filter, AxisRatio ratio_y, i
 Result<AssembledKernel> assemble(const KernelDesc& kernel);
 
 /// GLSL → SPIR-V with glslang, reflected with SPIRV-Cross, cached on disk by the hash of the assembled text and the
-/// compiler version. Corrupt cache files are ignored and rebuilt. Thread-safe.
+/// compiler version. Corrupt cache files are ignored and rebuilt; the folder is held within CacheLimits
+/// (core/cache_folder.h). Thread-safe.
 class KernelCompiler {
  public:
   explicit KernelCompiler(std::filesystem::path cache_folder);  ///< empty: no disk cache

@@ -37,6 +37,7 @@
 ---@field intensity? number|afterglow.Moving  Strength. additive: factor of the glow. scattering: share of the spread light, held to 0.95. 0: no bloom. ≥ 0, default 0.2
 ---@field scatter? number|afterglow.Moving  Scattering mode: how far light spreads, as the share that each level takes from the coarser ones. 0.05…0.95, default 0.7
 ---@field bicubic_upsampling? boolean|afterglow.OfTime  Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow. default true
+---@field reference_height? integer|afterglow.Moving  The glow is that of the picture scaled to this height: the same at every resolution. 0: of the picture as it is. integer 0…16384 px, default 0
 ---@field fade_fireflies? boolean|afterglow.OfTime  Weigh down isolated very bright pixels before the pyramid, so that they do not flicker. default false
 
 ---Blurs the picture as a lens out of focus: bright points become discs or polygons.

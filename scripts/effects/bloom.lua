@@ -19,9 +19,35 @@ local function knee_vector(s)
   return { t, tk - t, 2 * tk, 0.25 / (tk + 1e-5) }
 end
 
+-- Size of the picture whose glow is made: of the source, or as it would be at reference_height.
+local function size_of(s, source)
+  if s.reference_height == 0 then return source.width, source.height end
+  local height = s.reference_height
+  return math.max(1, (2 * source.width * height + source.height) // (2 * source.height)), height
+end
+
+-- The picture of that size: halved while that leaves at least as much, then the mean over what is left.
+local function scaled(g, s, source)
+  local width, height = size_of(s, source)
+  local image, i = source, 0
+  local function to(size, filter)
+    image = g:filter { source = image, size = size, filter = filter, name = ("scaled[%d]"):format(i) }
+    i = i + 1
+  end
+  while image.height >= 2 * height and image.width >= 2 * width do
+    to({ image.width // 2, image.height // 2 }, fx.filters.bilinear())
+  end
+  if image.width ~= width or image.height ~= height then
+    to({ width, height }, fx.filters.area(image.width / width, image.height / height))
+  end
+  return image
+end
+
 -- Levels of the pyramid for a picture, and whether every size on the way down is half of the one before.
 local function pyramid(s, source)
-  local width, height, levels, even = source.width // 2, source.height // 2, 0, source.width % 2 == 0 and source.height % 2 == 0
+  local width, height = size_of(s, source)
+  local levels, even = 0, s.reference_height == 0 and width % 2 == 0 and height % 2 == 0
+  width, height = width // 2, height // 2
   if width < 2 * s.downscale_limit or height < 2 * s.downscale_limit then return 0, true end
   even = even and width % 2 == 0 and height % 2 == 0
   width, height = width // 2, height // 2
@@ -63,6 +89,8 @@ return fx.effect {
     scatter = fx.float { min = 0.05, max = 0.95, default = 0.7,
       doc = "Scattering mode: how far light spreads, as the share that each level takes from the coarser ones." },
     bicubic_upsampling = fx.bool { default = true, doc = "Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow." },
+    reference_height = fx.int { min = 0, max = 16384, default = 0, unit = "px",
+      doc = "The glow is that of the picture scaled to this height: the same at every resolution. 0: of the picture as it is." },
     fade_fireflies = fx.bool { default = false, doc = "Weigh down isolated very bright pixels before the pyramid, so that they do not flicker." },
   },
 
@@ -77,7 +105,8 @@ return fx.effect {
   idle = function(s, source)
     local knee = knee_vector(s)
     local even = source.width % 2 == 0 and source.height % 2 == 0
-    return { brightest = -knee[2] * (even and 1 or 1 - 1e-6) }
+    local slack = s.reference_height > 0 and 1e-5 or even and 0 or 1e-6
+    return { brightest = -knee[2] * (1 - slack) }
   end,
 
   holds = {
@@ -97,19 +126,20 @@ return fx.effect {
     error = { fp32 = 1e-5, fp16 = 2e-3, levels = "max_iterations" },
   },
   build = function(g, s, source)
-    local width, height = source.width // 2, source.height // 2
+    local picture = s.reference_height > 0 and scaled(g, s, source) or source
+    local width, height = picture.width // 2, picture.height // 2
     if width < 2 * s.downscale_limit or height < 2 * s.downscale_limit then
       g:skip(("the picture is too small: %dx%d, downscale_limit %d needs %d on each side"):format(
-        source.width, source.height, s.downscale_limit, 4 * s.downscale_limit))
+        picture.width, picture.height, s.downscale_limit, 4 * s.downscale_limit))
       return source
     end
 
     local knee = knee_vector(s)
     local image
     if s.fade_fireflies then
-      image = g:pass { shader = "bloom/fireflies", source = source, size = { width, height }, knee = knee, reach = 3, name = "prefilter" }
+      image = g:pass { shader = "bloom/fireflies", source = picture, size = { width, height }, knee = knee, reach = 3, name = "prefilter" }
     else
-      image = g:filter { source = source, size = { width, height }, filter = fx.filters.bilinear(), name = "half" }
+      image = g:filter { source = picture, size = { width, height }, filter = fx.filters.bilinear(), name = "half" }
       image = g:pass { shader = "bloom/threshold", source = image, knee = knee, name = "prefilter" }
     end
 

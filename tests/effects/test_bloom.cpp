@@ -14,19 +14,29 @@ std::string lua(const BloomSettings& s) {
   return fmt::format(
       "fx.bloom {{ mode = \"{}\", max_iterations = {}, downscale_limit = {}, threshold = {}, knee = {}, intensity = "
       "{}, scatter = {}, "
-      "bicubic_upsampling = {}, fade_fireflies = {} }}",
+      "bicubic_upsampling = {}, fade_fireflies = {}, reference_height = {} }}",
       s.mode == BloomMode::additive ? "additive" : "scattering", s.max_iterations, s.downscale_limit, s.threshold,
-      s.knee, s.intensity, s.scatter, s.bicubic_upsampling, s.fade_fireflies);
+      s.knee, s.intensity, s.scatter, s.bicubic_upsampling, s.fade_fireflies, s.reference_height);
 }
 
 std::string level(const char* name, std::size_t i) { return fmt::format("bloom.{}[{}]", name, i); }
 
+std::vector<float> interleaved_floats(const DoubleImage& image) {
+  const auto doubles = interleaved(image);
+  return {doubles.begin(), doubles.end()};
+}
+
 /// Each pass on what the device itself gave to it.
 void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& s) {
   const auto threshold = BloomThreshold::from_gamma(s.threshold, s.knee);
+  DoubleImage picture = scene.source;
+  for (std::size_t i = 0; made.has(level("scaled", i)); ++i) picture = made.image(level("scaled", i));
+  if (s.reference_height > 0)
+    EXPECT_TRUE(agrees(interleaved_floats(picture), bloom_scaled(scene.source, s.reference_height), kFullFloat, kRgb))
+        << "scaled";
   EXPECT_TRUE(agrees(
       made.pixels("bloom.prefilter"),
-      s.fade_fireflies ? bloom_prefilter_fireflies(scene.source, threshold) : bloom_prefilter(scene.source, threshold),
+      s.fade_fireflies ? bloom_prefilter_fireflies(picture, threshold) : bloom_prefilter(picture, threshold),
       kFullFloat, kRgb))
       << "prefilter";
   std::size_t levels = 0;
@@ -126,6 +136,20 @@ TEST_F(Effects, BloomOfARealFrameAgrees) {
 TEST_F(Effects, BloomOfAnExtremelyLongPictureAgrees) {
   check(random_scene({1021, 9}, 5), {.downscale_limit = 1});
   check(random_scene({4, 700}, 6), {.mode = BloomMode::scattering, .downscale_limit = 1});
+}
+
+TEST_F(Effects, BloomAtAReferenceHeightAgrees) {
+  // Larger and smaller than the picture, whole and other ratios, the picture's own, and less than the levels need.
+  for (const int height : {30, 45, 67, 90, 100, 135, 200, 4})
+    for (const bool fireflies : {false, true})
+      check(random_scene({240, 135}, 11, true), {.fade_fireflies = fireflies, .reference_height = height});
+  check(random_scene({101, 57}, 12), {.mode = BloomMode::scattering, .downscale_limit = 1, .reference_height = 20});
+}
+
+TEST_F(Effects, TheReferenceHeightOfAPictureChangesNothing) {
+  const Scene scene = random_scene({96, 54}, 13);
+  EXPECT_EQ(run_stack("fx.bloom { reference_height = 54 }", scene, Way::joined).result,
+            run_stack("fx.bloom {}", scene, Way::joined).result);
 }
 
 TEST_F(Effects, BloomSkipsAndSaysWhy) {

@@ -33,6 +33,7 @@ TEST_F(Processes, KilledBeforeAnyCallTheNextRunCompletesTheWork) {
     const Outcome again = run_with(command_, {}, 0);
     EXPECT_EQ(again.exit_code, kDone) << again.err;
     EXPECT_EQ(expect_whole_or_absent(), 3);
+    expect_nothing_left_over();
     fs::remove_all(path("out"));
     fs::create_directory(path("out"));
   }

@@ -130,6 +130,38 @@ function drawGoals() {
   else byId("goals").outerHTML = "<p>Not measured; see bench --goals.</p>";
 }
 
+const lookName = c => c.preset + (c.settings ? " " + c.settings : "");
+const percent = v => `${number(100 * v)} %`;
+
+function lines(id, sets, x, y, logarithmic) {
+  const data = [...sets].map(([label, points], i) => ({ label, data: points, showLine: true, borderColor: colors[i % colors.length], backgroundColor: colors[i % colors.length], pointRadius: 3 }));
+  draw(id, { type: "scatter", data: { datasets: data }, options: { scales: {
+    x: { type: logarithmic ? "logarithmic" : "linear", title: { display: true, text: x } }, y: { title: { display: true, text: y } } } } });
+}
+
+function grouped(curves, points) {
+  const sets = new Map();
+  for (const c of curves) sets.set(lookName(c), (sets.get(lookName(c)) || []).concat(points(c)));
+  return sets;
+}
+
+function chooseScene() {
+  const scene = byId("scene").value;
+  lines("light", grouped(report.temporal.filter(c => c.scene === scene), c => c.light.map((y, i) => ({ x: i + 3, y }))), "frame", "light, mean 1", false);
+}
+
+function drawSteady() {
+  if (!report.temporal.length && !report.resolutions.length) { byId("steady").remove(); return; }
+  lines("swing", grouped(report.temporal.filter(c => c.radius > 0), c => [{ x: c.radius, y: 100 * c.swing }]), "radius of the highlight, pixels", "swing, %", true);
+  for (const scene of new Set(report.temporal.map(c => c.scene))) option(byId("scene"), scene, scene);
+  byId("scene").onchange = chooseScene;
+  chooseScene();
+  table("shots", ["look", "shot", "size", "swing", "flicker", "of pixels"],
+    report.temporal.map(c => ({ cells: [lookName(c), c.scene, `${c.width}×${c.height}`, percent(c.swing), percent(c.flicker), percent(c.pixels)] })));
+  table("resolutions", ["look", "size", "largest difference", "RMS"],
+    report.resolutions.map(p => ({ cells: [lookName(p), `${p.width}×${p.height}`, percent(p.worst), percent(p.rms)] })));
+}
+
 function choosePoint() { drawPasses(report.cells[byId("cell").value]?.points[byId("point").value]); }
 
 function chooseCell() {
@@ -148,4 +180,5 @@ byId("cell").onchange = chooseCell;
 byId("point").onchange = choosePoint;
 chooseCell();
 drawScaling();
+drawSteady();
 drawGoals();

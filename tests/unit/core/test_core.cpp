@@ -26,6 +26,18 @@ TEST(Error, PrintsOneLineWithPlaceAllowedAndNearest) {
   EXPECT_EQ(Error{.message = "plain"}.text(), "error: plain");
 }
 
+TEST(Error, TextsNeverReachTheTerminalAsEscapes) {
+  Error error{ErrorKind::io, "layer 'a\x1b]0;owned\a\r\nb' \x7f", "x\x1b[2J.exr", 3, "\t", "\xc2\x9b""31m"};
+  error.trail = {"in \x1b[1m"};
+  EXPECT_EQ(error.text(),
+            "x [2J.exr:3: error: layer 'a ]0;owned   b'  ; allowed:  ; did you mean ' 31m'?\n  in  [1m");
+  EXPECT_EQ((Error{ErrorKind::io, "größer: 3×4 → …"}).text(), "error: größer: 3×4 → …");
+  std::string shown;
+  Diagnostics diagnostics([&](Severity, const std::string& text) { shown = text; });
+  diagnostics.warn("one\x1b[2J\n  two");
+  EXPECT_EQ(shown, "one [2J\n  two");
+}
+
 Result<int> half(int x) {
   if (x % 2) return Error{.message = "odd"};
   return x / 2;
@@ -84,13 +96,6 @@ TEST_F(Folder, ReadErrorsSayWhy) {
   EXPECT_EQ(read_file(folder_).error().message, "is a folder, not a file");
   std::ofstream(folder_ / "big") << std::string(100, 'x');
   EXPECT_FALSE(read_file(folder_ / "big", 10));
-}
-
-TEST_F(Folder, TemporaryNamesKeepTheExtension) {
-  const auto name = temporary_beside(folder_ / "a.exr");
-  EXPECT_EQ(name.extension(), ".exr");
-  EXPECT_EQ(name.parent_path(), folder_);
-  EXPECT_NE(name, temporary_beside(folder_ / "a.exr"));
 }
 
 TEST_F(Folder, SearchPathPrefersTheUser) {

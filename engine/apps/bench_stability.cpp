@@ -1,0 +1,94 @@
+#include "apps/bench_stability.h"
+
+#include <fmt/format.h>
+
+#include "apps/table.h"
+#include "image/reader.h"
+#include "image/sequence.h"
+
+namespace afterglow {
+namespace {
+
+constexpr double kRadii[] = {0.25, 0.5, 1, 2, 4, 8};  ///< pixels
+constexpr Size kSize{640, 360}, kQuickSize{160, 90};
+constexpr int kFrames = 34, kQuickFrames = 6;  ///< 32 that count: four pixels, a texel of the finest bloom level
+
+struct Shot {
+  std::string scene;
+  double radius = 0;
+  std::vector<Picture> frames;
+};
+
+Result<Shot> read_shot(const std::string& pattern, Diagnostics& diagnostics) {
+  AFTERGLOW_TRY(const Pattern parsed, parse_pattern(pattern));
+  AFTERGLOW_TRY(const auto files, find_frames(parsed, {}));
+  Shot shot{.scene = std::filesystem::path(pattern).filename().string(), .frames = {}};
+  for (const auto& file : files) {
+    AFTERGLOW_TRY(Picture picture, read_picture(file.file, {}, diagnostics));
+    if (!shot.frames.empty() && picture.color.size() != shot.frames.front().color.size())
+      return Error{ErrorKind::io, "is of another size than the frames before it", file.file.string()};
+    shot.frames.push_back(std::move(picture));
+  }
+  if (shot.frames.size() < 5) return Error{ErrorKind::io, "a shot needs 5 frames or more", pattern};
+  return shot;
+}
+
+Result<std::vector<Shot>> shots_of(const StabilityRequest& request, Diagnostics& diagnostics) {
+  std::vector<Shot> out;
+  if (!request.shot.empty()) {
+    AFTERGLOW_TRY(Shot shot, read_shot(request.shot, diagnostics));
+    out.push_back(std::move(shot));
+    return out;
+  }
+  for (const double radius : kRadii)
+    out.push_back({fmt::format("highlight of {:g} px", radius), radius,
+                   bench::drifting_highlight(request.quick ? kQuickSize : kSize, radius, request.quick ? kQuickFrames : kFrames)});
+  return out;
+}
+
+std::string look_name(const std::string& preset, const std::string& settings) {
+  return preset + (settings.empty() ? "" : " " + settings);
+}
+
+std::string percent(double share) { return fmt::format("{:.2f} %", 100 * share); }
+
+}  // namespace
+
+std::size_t steps_of(const StabilityRequest& request) {
+  const std::size_t frames = request.quick ? kQuickFrames : kFrames;
+  const std::size_t shots = request.shot.empty() ? std::size(kRadii) : 1;
+  return request.presets.size() * request.variants.size() * (shots * frames + request.sizes.size());
+}
+
+Result<void> measure_stability(const StabilityRequest& request, bench::Report& report, Diagnostics& diagnostics,
+                               const bench::Step& step) {
+  AFTERGLOW_TRY(const auto shots, shots_of(request, diagnostics));
+  for (const auto& preset : request.presets)
+    for (const auto& variant : request.variants) {
+      for (const auto& shot : shots) {
+        AFTERGLOW_TRY(auto curve, bench::measure_shot({.preset = preset,
+                                                       .options = request.options,
+                                                       .variant = variant,
+                                                       .scene = shot.scene,
+                                                       .radius = shot.radius},
+                                                      shot.frames, diagnostics, step));
+        report.temporal.push_back(std::move(curve));
+      }
+      AFTERGLOW_TRY(const auto points, bench::measure_resolutions(preset, request.options, variant, request.sizes, diagnostics, step));
+      report.resolutions.insert(report.resolutions.end(), points.begin(), points.end());
+    }
+  return {};
+}
+
+std::string stability_text(const bench::Report& report) {
+  Table shots({"look", "shot", "swing", "flicker", "of pixels"});
+  for (const auto& c : report.temporal)
+    shots.add({look_name(c.preset, c.settings), c.scene, percent(c.swing), percent(c.flicker), percent(c.pixels)});
+  Table sizes({"look", "size", "largest difference", "RMS"});
+  for (const auto& p : report.resolutions)
+    sizes.add({look_name(p.preset, p.settings), fmt::format("{}×{}", p.size.width, p.size.height), percent(p.worst), percent(p.rms)});
+  return "light that is added, over the frames\n" + shots.text("  ") + "\nlight that is added, against the first size\n" +
+         sizes.text("  ");
+}
+
+}  // namespace afterglow

@@ -1,0 +1,69 @@
+#include "apps/non_finite_record.h"
+
+#include <fmt/format.h>
+
+#include "core/text.h"
+
+namespace afterglow {
+namespace {
+
+/// "pass 'glow.divide' made 12 NaN, first at pixel 5,3: (nan, 0, 0, 1)", with the file that is to blame.
+std::string finding_text(const PassFinding& finding) {
+  const bool history = finding.pass.starts_with("history ");
+  std::string out = history ? fmt::format("{} holds {}", finding.pass, finding.found.text())
+                            : fmt::format("pass '{}' made {}", finding.pass, finding.found.text());
+  out += fmt::format(", first at {} of {}x{}", finding.found.first->text(), finding.size.width, finding.size.height);
+  if (!finding.shader.empty()) out += fmt::format(" (shader {})", finding.shader);
+  return out;
+}
+
+}  // namespace
+
+void take_findings(FrameNonFinite& frame, const Trace& trace, const Picture& picture) {
+  frame.passes = trace.passes;
+  for (auto& finding : frame.passes) {
+    if (finding.size != picture.color.size()) continue;
+    finding.found.first->x += picture.data_window.x - picture.display_window.x;
+    finding.found.first->y += picture.data_window.y - picture.display_window.y;
+  }
+}
+
+Error non_finite_error(const PassFinding& finding, const std::filesystem::path& input) {
+  return {ErrorKind::script, fmt::format("{}, in {} (--nan-policy fail)", finding_text(finding), input.string()), finding.file, finding.line};
+}
+
+void NonFiniteRecord::add(const FrameNonFinite& frame) {
+  ++of_;
+  for (const auto& [layer, found] : frame.input) samples_["input " + layer] += found.count();
+  for (const auto& pass : frame.passes) samples_["pass " + pass.pass] += pass.found.count();
+  if (!frame.input.empty() || !frame.passes.empty()) ++frames_;
+}
+
+void NonFiniteRecord::tell(const FrameNonFinite& frame, const std::filesystem::path& input, NanPolicy policy,
+                           Diagnostics& diagnostics) const {
+  const char* mended = policy == NanPolicy::neighbour ? "replaced by the mean of neighbours" : "replaced by 0";
+  for (const auto& finding : frame.passes) {
+    const std::string where = finding.file.empty() ? "" : fmt::format("{}:{}: ", finding.file, finding.line);
+    diagnostics.warn_once("not finite: " + finding.pass,
+                          fmt::format("{}{}; {}, in {}", where, finding_text(finding), mended, input.string()));
+  }
+  if (frame.untraced)
+    diagnostics.warn_once("not finite, untraced", fmt::format("{}: {}", input.string(), kUntraced));
+}
+
+void NonFiniteRecord::tell_overflow(const PassOverflow& overflow, const std::filesystem::path& input,
+                                    Diagnostics& diagnostics) {
+  overflow_told_ = true;
+  diagnostics.warn(fmt::format("{}: pass '{}' overflows half floats: {} samples above 65504, first at {}; --precision fp32 "
+                               "keeps them",
+                               input.string(), overflow.pass, overflow.samples, overflow.first.text()));
+}
+
+void NonFiniteRecord::sum_up(Diagnostics& diagnostics) const {
+  if (frames_ == 0) return;
+  std::vector<std::string> parts;
+  for (const auto& [source, samples] : samples_) parts.push_back(fmt::format("{} from {}", samples, source));
+  diagnostics.warn(fmt::format("samples that were not finite, in {} of {} frames: {}", frames_, of_, join(parts)));
+}
+
+}  // namespace afterglow

@@ -1,0 +1,172 @@
+#include "session/trace.h"
+
+#include <cmath>
+
+#include "exec/histories.h"
+#include "session/picture_inputs.h"
+
+namespace afterglow {
+namespace {
+
+constexpr float kMaxHalf = 65504;
+
+/// The pass that mends `image`; its own image is the next one.
+Pass guard_of(const Graph& graph, ImageId image, NanPolicy policy) {
+  Pass pass;
+  pass.name = graph.images[image].name + " (finite)";
+  pass.effect = "output";
+  const bool neighbours = policy == NanPolicy::neighbour;
+  pass.kind = neighbours ? PassKind::sample : PassKind::pixel;
+  pass.shader = neighbours ? "output/finite_neighbours" : "output/finite";
+  pass.inputs = {{"source", image, !neighbours}};
+  if (neighbours) pass.reach = kNeighbourReach;
+  return pass;
+}
+
+/// Appends a pass; returns its image.
+ImageId append(Graph& graph, Pass pass, Size size) {
+  pass.output = static_cast<ImageId>(graph.images.size());
+  graph.images.push_back({pass.name, size, static_cast<int>(graph.passes.size())});
+  graph.passes.push_back(std::move(pass));
+  return graph.passes.back().output;
+}
+
+/// `image` of the part that was made; outside it is what it was.
+NonFinite find_in(const Image& image, const Rect& part) {
+  NonFinite found;
+  for (int y = part.y; y < part.y + part.height; ++y)
+    note_non_finite(image.at(part.x, y), image.channels, part.width, y, found);
+  if (found.first) found.first->x += part.x;
+  return found;
+}
+
+std::optional<PassOverflow> overflow_in(const Image& image, const Rect& part) {
+  PassOverflow out;
+  for (int y = part.y; y < part.y + part.height; ++y)
+    for (int x = part.x; x < part.x + part.width; ++x) {
+      const float* pixel = image.at(x, y);
+      std::uint64_t over = 0;
+      for (int c = 0; c < 3; ++c) over += std::isfinite(pixel[c]) && std::abs(pixel[c]) > kMaxHalf;
+      if (over > 0 && out.samples == 0) out.first = {x, y, 4, {pixel[0], pixel[1], pixel[2], pixel[3]}};
+      out.samples += over;
+    }
+  return out.samples > 0 ? std::optional(out) : std::nullopt;
+}
+
+}  // namespace
+
+GuardedGraph guard(const Graph& graph, NanPolicy policy) {
+  GuardedGraph out;
+  Graph& made = out.graph;
+  made = graph;
+  made.passes.clear();
+  made.idle.clear();  // what has nothing to do makes nothing that is not finite either
+  std::vector<ImageId> mended(graph.images.size());
+  for (std::size_t i = 0; i < mended.size(); ++i) mended[i] = static_cast<ImageId>(i);
+  for (const Pass& from : graph.passes) {
+    Pass pass = from;
+    for (auto& input : pass.inputs) input.image = mended[static_cast<std::size_t>(input.image)];
+    made.images[pass.output].producer = static_cast<int>(made.passes.size());
+    made.passes.push_back(std::move(pass));
+    out.made.push_back(from.output);
+    mended[static_cast<std::size_t>(from.output)] =
+        append(made, guard_of(graph, from.output, policy), graph.images[from.output].size);
+  }
+  made.result = mended[static_cast<std::size_t>(graph.result)];
+  for (auto& history : made.histories) {
+    history.next = mended[static_cast<std::size_t>(history.next)];
+    if (history.first != kNoImage) history.first = mended[static_cast<std::size_t>(history.first)];
+  }
+  return out;
+}
+
+struct Tracer::State {
+  State(Device& device_in, std::uint64_t max_memory_in) : device(device_in), max_memory(max_memory_in) {}
+  Device& device;
+  std::uint64_t max_memory;
+  GuardedGraph guarded;
+  std::optional<Rect> region;
+  std::unique_ptr<Program> program;
+  std::unique_ptr<FrameRunner> runner;  // last: it waits before the program goes
+
+  Result<void> prepare(Stack& stack, GuardedGraph wanted, const std::optional<Rect>& part);
+  Result<std::optional<Image>> image(ImageId id);
+  Result<void> look(Stack& stack, const Graph& graph, Trace& trace);
+};
+
+Tracer::Tracer(Device& device, std::uint64_t max_memory) : state_(std::make_unique<State>(device, max_memory)) {}
+Tracer::~Tracer() = default;
+
+Result<void> Tracer::State::prepare(Stack& stack, GuardedGraph wanted, const std::optional<Rect>& part) {
+  const bool reusable = program && region == part && same_structure(guarded.graph, wanted.graph);
+  guarded = std::move(wanted);
+  region = part;
+  if (!runner) {
+    AFTERGLOW_TRY(runner, FrameRunner::create(device, max_memory));
+  }
+  if (reusable) {
+    program->set_parameters(guarded.graph);
+    return {};
+  }
+  program.reset();
+  AFTERGLOW_TRY(program, stack.program_by_passes(guarded.graph, part));
+  return {};
+}
+
+/// Empty for what no pass made in the end.
+Result<std::optional<Image>> Tracer::State::image(ImageId id) {
+  const auto transient = program->transient(id);
+  if (!transient || !transient->kept) return std::optional<Image>();
+  AFTERGLOW_TRY(HostResult read, runner->read_image(*program, id));
+  Image out;
+  out.width = transient->binding.size.width;
+  out.height = transient->binding.size.height;
+  out.channels = 4;
+  out.pixels = std::move(read.pixels);
+  return std::optional(std::move(out));
+}
+
+Result<void> Tracer::State::look(Stack& stack, const Graph& graph, Trace& trace) {
+  for (const auto& history : graph.histories) {
+    if (!program->histories()->has_previous(history.name)) continue;
+    AFTERGLOW_TRY(const auto read, image(history.previous));
+    if (!read) continue;
+    const NonFinite found = find_in(*read, {0, 0, read->width, read->height});
+    if (found.count() > 0)
+      trace.passes.push_back({"history " + history.name, history.effect, {}, 0, {}, read->size(), found});
+  }
+  for (std::size_t i = 0; i < graph.passes.size(); ++i) {
+    const Pass& pass = graph.passes[i];
+    AFTERGLOW_TRY(const auto read, image(guarded.made[i]));
+    if (!read) continue;
+    const Rect part = program->parts().images[guarded.made[i]];
+    const NonFinite found = find_in(*read, part);
+    if (found.count() > 0)
+      trace.passes.push_back(
+          {pass.name, pass.effect, pass.file, pass.line, stack.shader_file(pass.shader).string(), read->size(), found});
+    if (!trace.overflow && (trace.overflow = overflow_in(*read, part))) {
+      trace.overflow->pass = pass.name;
+      trace.overflow->effect = pass.effect;
+    }
+  }
+  return {};
+}
+
+Result<Trace> Tracer::run(Stack& stack, const Picture& picture, const BuildContext& frame,
+                          const std::optional<Rect>& region, NanPolicy policy) {
+  Trace trace;
+  AFTERGLOW_TRY(const Graph graph, stack.graph(context_of(picture, frame)));
+  trace.result = picture.color;
+  if (graph.result == graph.source) return trace;
+  AFTERGLOW_CHECK(state_->prepare(stack, guard(graph, policy), region));
+  const auto inputs = picture_inputs(picture, graph);
+  HostResult result;
+  result.pixels = std::move(trace.result.pixels);
+  result.keep_alpha = true;
+  AFTERGLOW_CHECK(state_->runner->run(*state_->program, inputs, result, KernelTiming::none));
+  trace.result.pixels = std::move(result.pixels);
+  AFTERGLOW_CHECK(state_->look(stack, graph, trace));
+  return trace;
+}
+
+}  // namespace afterglow
