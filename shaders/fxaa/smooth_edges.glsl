@@ -51,8 +51,7 @@ vec4 sample_at(ivec2 pixel) {
   vec2 along = horizontal ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
 
   vec2 centre = vec2(pixel) + 0.5;
-  // Between two tones luma often changes by just a quarter: rounding must not decide here either.
-  float edge = 0.5 * (m + other), enough = 0.25 * abs(other - m) - 1e-5, change_p, change_n;
+  float edge = 0.5 * (m + other), enough = 0.25 * abs(other - m), change_p, change_n;
   float way_p = way_to_end(centre + 0.5 * across, along, edge, enough, change_p);
   float way_n = way_to_end(centre + 0.5 * across, -along, edge, enough, change_n);
   bool rising = (way_p <= way_n ? change_p : change_n) >= 0.0;
