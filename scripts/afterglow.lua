@@ -10,7 +10,9 @@
 -- texts, booleans), `print` writes a note, every file has globals of its own, and `require` finds "afterglow" and scripts beside
 -- the preset or on the search path ("lib.taps" is lib/taps.lua). An `error(message, 0)` in a function of an effect is about the
 -- preset: it is reported at the entry there, and at one of its settings when the message begins with that setting's name.
--- A load or a build may take 64 MiB of memory and 50 million instructions or 2 seconds.
+-- `setmetatable` takes the metamethods that the metatable has at this moment (later ones do not count), no __gc and no __mode, and
+-- a __call that is a function. A load or a build may take 64 MiB of memory and 50 million instructions or 2 seconds of the
+-- processor; all scripts of a preset have at most 16 MiB.
 
 local core = ... -- native functions: engine/script/library.cpp
 
@@ -125,9 +127,11 @@ fx.curve = core.curve
 ---   needed one the effect is skipped with a warning.
 --- - `idle(s, source)` what makes the effect an identity in a frame: `{ brightest = L }` says that it changes no pixel, to the
 ---   last bit, as long as no red, green or blue of `source` is above L. Frames of which that is known are run without it.
+--- - `holds` what the effect promises of its result, for `afterglow stress` to check: names ("black"), `NAME = number` and
+---   `NAME = { when = function(s, source) … end, … }`; docs/writing_effects.md lists them. Nothing else relies on it.
 --- - `build(g, s, source)` describes the passes with `g` and returns the image that replaces `source`
 ---Errors: unknown or missing keys, wrong types, unknown injection point or input.
----@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, settings?: table<string, afterglow.SettingType>, active?: (fun(s: table): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image): { brightest: number }?), build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
+---@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, settings?: table<string, afterglow.SettingType>, active?: (fun(s: table): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image): { brightest: number }?), holds?: table, build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
 fx.effect = core.effect
 
 ---An integer from `min` to `max` (both included, both optional). 4.0 is one, 4.5 is not. `unit` is for people: "px", "EV".

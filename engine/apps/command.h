@@ -27,5 +27,6 @@ Command add_devices_command(CLI::App& program);
 Command add_bench_command(CLI::App& program);
 Command add_calibrate_command(CLI::App& program);
 Command add_play_command(CLI::App& program);
+Command add_stress_command(CLI::App& program);
 
 }  // namespace afterglow

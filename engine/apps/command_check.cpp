@@ -7,9 +7,11 @@
 #include <set>
 
 #include "apps/command.h"
+#include "apps/json_text.h"
 #include "apps/look.h"
 #include "apps/setting_text.h"
 #include "apps/table.h"
+#include "core/printable.h"
 #include "script/explanation.h"
 
 namespace afterglow {
@@ -87,7 +89,7 @@ std::string as_json(const Look& look, const std::string& file, const std::vector
   out["passes"] = look.graph.passes.size();
   out["kernels"] = look.plan.kernels.size();
   out["shadows"] = shadows;
-  return out.dump(2) + "\n";
+  return json_text(out);
 }
 
 Result<void> run(const Arguments& arguments, Console& console) {
@@ -99,7 +101,7 @@ Result<void> run(const Arguments& arguments, Console& console) {
   }
   const auto shadows = shadow_notes(look);
   const auto& file = arguments.preset.file;
-  fmt::print("{}", arguments.json ? as_json(look, file, shadows) : as_text(look, file, shadows));
+  fmt::print("{}", arguments.json ? as_json(look, file, shadows) : printable(as_text(look, file, shadows), true));
   return {};
 }
 

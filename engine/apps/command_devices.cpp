@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/command.h"
+#include "apps/json_text.h"
 #include "apps/table.h"
 #include "gpu/device.h"
 #include "session/calibration.h"
@@ -37,7 +38,7 @@ std::string as_json(const std::vector<DeviceInfo>& devices, const Calibration& c
     entry["choice_from"] = found.from;
     list.push_back(std::move(entry));
   }
-  return list.dump(2) + "\n";
+  return json_text(list);
 }
 
 std::string as_table(const std::vector<DeviceInfo>& devices, const Calibration& calibration) {

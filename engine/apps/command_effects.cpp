@@ -8,10 +8,13 @@
 
 #include "apps/command.h"
 #include "apps/effect_page.h"
+#include "apps/json_text.h"
 #include "apps/options.h"
 #include "apps/setting_text.h"
 #include "apps/table.h"
+#include "core/printable.h"
 #include "core/text.h"
+#include "script/holds.h"
 #include "script/preset.h"
 
 namespace afterglow {
@@ -32,6 +35,7 @@ nlohmann::json as_json(const EffectSchema& effect) {
                      {"order", effect.order},
                      {"file", effect.file.string()},
                      {"settings", std::move(settings)}};
+  for (const auto& hold : effect.holds) out["holds"].push_back(hold_text(hold));
   for (const auto& file : effect.shadowed) out["shadowed"].push_back(file.string());
   return out;
 }
@@ -49,6 +53,11 @@ std::string effect_text(const EffectSchema& effect) {
         {setting.name, type_text(setting.type), allowed_text(setting), setting.default_value.text(), setting.doc});
   std::string out = fmt::format("{}: {}\nat {}, order {}; {}\n\n{}", effect.name, effect.doc, effect.at, effect.order,
                                 effect.file.string(), table.text("  "));
+  if (!effect.holds.empty()) {
+    std::vector<std::string> promises;
+    for (const auto& hold : effect.holds) promises.push_back(hold_text(hold));
+    out += fmt::format("\nholds: {}\n", join(promises));
+  }
   for (const auto& file : effect.shadowed) out += fmt::format("\nshadows {}\n", file.string());
   return out;
 }
@@ -75,9 +84,9 @@ Result<void> run(const Arguments& arguments, Console& console) {
   } else if (arguments.json) {
     auto list = nlohmann::json::array();
     for (const auto& effect : effects) list.push_back(as_json(effect));
-    fmt::print("{}\n", list.dump(2));
+    fmt::print("{}", json_text(list));
   } else {
-    fmt::print("{}", arguments.name.empty() ? list_text(effects) : effect_text(effects.front()));
+    fmt::print("{}", printable(arguments.name.empty() ? list_text(effects) : effect_text(effects.front()), true));
   }
   return {};
 }

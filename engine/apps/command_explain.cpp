@@ -8,6 +8,7 @@
 
 #include "apps/command.h"
 #include "apps/explain_view.h"
+#include "core/printable.h"
 #include "core/text.h"
 
 namespace afterglow {
@@ -47,7 +48,7 @@ Result<void> run(const Arguments& arguments, Console& console) {
   AFTERGLOW_TRY(const BuildContext context, arguments.picture.context(*look.preset));
   ExplainView view{look, arguments.preset.file, context, "", ""};
   if (!arguments.setting.empty()) AFTERGLOW_CHECK(choose(arguments.setting, view));
-  fmt::print("{}", arguments.format == "json" ? explain_json(view) : explain_text(view));
+  fmt::print("{}", arguments.format == "json" ? explain_json(view) : printable(explain_text(view), true));
   return {};
 }
 

@@ -104,7 +104,9 @@ std::optional<int> parse(CLI::App& program, const std::vector<Command>& commands
   }
 }
 
-int run(Console& console, int argc, char** argv) {
+enum class Work { all, parsing };
+
+int run(Console& console, int argc, char** argv, Work work) {
   CLI::App program("Finishes rendered pictures: Lua looks on Vulkan.", "afterglow");
   program.set_version_flag("--version", "afterglow " AFTERGLOW_VERSION);
   program.require_subcommand(1);
@@ -115,11 +117,12 @@ int run(Console& console, int argc, char** argv) {
       add_run_command(program),       add_check_command(program),   add_graph_command(program),
       add_explain_command(program),   add_effects_command(program), add_new_command(program),
       add_set_command(program),       add_devices_command(program), add_bench_command(program),
-      add_calibrate_command(program), add_play_command(program)};
+      add_calibrate_command(program), add_play_command(program),    add_stress_command(program)};
   MessageArguments messages;
   for (const auto& command : commands) messages.add(*command.options);
 
   if (const auto exit_code = parse(program, commands, argc, argv, console)) return *exit_code;
+  if (work == Work::parsing) return 0;
   messages.apply(console);
   const auto done = parsed_command(commands)->run(console);
   return done ? 0 : fail(console, done.error());
@@ -131,10 +134,15 @@ int run_command_line(int argc, char** argv) {
   Console console;
   install_interrupt_handler();
   try {
-    return run(console, argc, argv);
+    return run(console, argc, argv, Work::all);
   } catch (const std::exception& exception) {
     return fail(console, exception_error(exception));
   }
+}
+
+int check_command_line(int argc, char** argv) {
+  Console console;
+  return run(console, argc, argv, Work::parsing);
 }
 
 }  // namespace afterglow

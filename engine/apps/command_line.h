@@ -7,4 +7,7 @@ namespace afterglow {
 /// else.
 int run_command_line(int argc, char** argv);
 
+/// What `main` would return when nothing were run: 2 for arguments that are wrong, which are told on stderr; else 0.
+int check_command_line(int argc, char** argv);
+
 }  // namespace afterglow

@@ -27,7 +27,7 @@ struct Arguments {
   DeviceArguments device;
   ExecutionArguments execution;
   std::vector<std::string> inputs;
-  std::string frames, layer, depth, normal;
+  std::string frames, layer, depth, normal, motion;
   std::string other, show, loop, cache = "2G", screenshot, report;
   std::optional<double> fps;
   double speed = 1;
@@ -52,6 +52,9 @@ void add_input(CLI::App& app, Arguments& a) {
       ->type_name("FILE[:CHANNEL]")
       ->group(group);
   app.add_option("--normal", a.normal, "Normals from another file or layer; FILE may be a pattern")
+      ->type_name("FILE[:LAYER]")
+      ->group(group);
+  app.add_option("--motion", a.motion, "Motion vectors from another file or layer; FILE may be a pattern")
       ->type_name("FILE[:LAYER]")
       ->group(group);
   app.add_option("--cache", a.cache, "Memory for pictures read ahead (default 2G)")->type_name("SIZE")->group(group);
@@ -113,6 +116,7 @@ Result<PlayerOptions> player_options(const Arguments& a) {
   options.footage.read.max_bytes = options.live.stack.max_memory;
   if (!a.depth.empty()) options.footage.read.depth = parse_layer_choice(a.depth);
   if (!a.normal.empty()) options.footage.read.normal = parse_layer_choice(a.normal);
+  if (!a.motion.empty()) options.footage.read.motion = parse_layer_choice(a.motion);
   auto cache = parse_memory(a.cache);
   if (!cache) {
     Error error = std::move(cache).error();
@@ -193,12 +197,13 @@ Result<void> play_with_window(const Arguments& a, const PlayerOptions& options, 
   const PlayWindowOptions window{
       .scale = a.ui_scale, .full_screen = a.full_screen, .paused = a.paused, .stats = a.stats, .speed = a.speed};
   Result<void> reported;
-  const auto report = [&](const Device& device, Player& player) {
-    const PlayReport figures{.preset = options.preset.string(),
-                             .device = device.info().name,
-                             .driver = device.info().driver,
-                             .mode = "window",
-                             .error = {}};
+  const auto report = [&](const Device& device, Player& player, const Result<void>& done) {
+    PlayReport figures{.preset = options.preset.string(),
+                       .device = device.info().name,
+                       .driver = device.info().driver,
+                       .mode = "window",
+                       .error = {}};
+    if (!done) figures.error = done.error();
     if (a.stats) fmt::print("{}", play_report_text(figures, player));
     if (!a.report.empty()) reported = write_file_atomically(a.report, play_report_json(figures, player));
   };

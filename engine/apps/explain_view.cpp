@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/graph_view.h"
+#include "apps/json_text.h"
 #include "apps/setting_text.h"
 #include "apps/table.h"
 #include "core/text.h"
@@ -182,7 +183,7 @@ std::string explain_json(const ExplainView& view) {
         item["histories"].push_back({{"name", history.name}, {"pre_roll", history.pre_roll}});
     out["entries"].push_back(std::move(item));
   }
-  return out.dump(2) + "\n";
+  return json_text(out);
 }
 
 }  // namespace afterglow

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/graph_view.h"
+#include "apps/json_text.h"
 #include "graph/condition.h"
 #include "graph/history.h"
 
@@ -121,7 +122,7 @@ std::string graph_json(const Graph& graph, const Plan& plan, const std::string& 
   }
   for (const auto& skipped : all_skipped(graph, plan))
     out["skipped"].push_back(Json{{"name", skipped.name}, {"reason", skipped.reason}});
-  return out.dump(2) + "\n";
+  return json_text(out);
 }
 
 }  // namespace afterglow

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "apps/json_text.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "exec/choice.h"
@@ -102,7 +103,7 @@ std::string lock_text(const Lock& lock) {
   const json out{{"afterglow_lock", kVersion},
                  {"look", {{"preset", lock.preset}, {"files", lock.files}, {"options", lock.options}}},
                  {"made_with", lock.made_with}};
-  return out.dump(2) + "\n";
+  return json_text(out);
 }
 
 Result<Lock> read_lock(const fs::path& file) {

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/json_text.h"
 #include "apps/options.h"
 #include "apps/run_report.h"
 #include "apps/table.h"
@@ -19,6 +20,8 @@ const char* kind_name(BuildTimes::Kind kind) {
       return "values";
     case BuildTimes::Kind::structure:
       return "structure";
+    case BuildTimes::Kind::frame:
+      return "frame";
     case BuildTimes::Kind::none:
       break;
   }
@@ -35,6 +38,7 @@ Json json_of(const ReloadLatency& latency) {
           {"script", latency.build.script},
           {"shader", latency.build.shader},
           {"pipeline", latency.build.pipeline},
+          {"warm_up", latency.build.warm_up},
           {"wait", latency.build.wait},
           {"execute", latency.execute},
           {"present", latency.present},
@@ -59,13 +63,18 @@ std::string play_report_text(const PlayReport& report, Player& player) {
   out += fmt::format("cache: {} of {} in {} pictures, {:.1f} ms to read one; {} turns came before their picture\n",
                      memory_text(stats.cache.bytes), memory_text(stats.cache.max_bytes), stats.cache.pictures,
                      stats.cache.milliseconds, stats.late);
+  if (stats.rebuilding > 0)
+    out += fmt::format("passes of {} frames were being built while they were due: the frame before stayed\n",
+                       stats.rebuilding);
   if (!stats.latencies.empty()) {
     const ReloadLatency& last = stats.latencies.back();
     out += fmt::format(
-        "reloads: {}; the last ({}) took {:.1f} ms: notice {:.1f}, script {:.1f}, shader {:.1f}, pipeline {:.1f}, wait "
+        "reloads: {}; the last ({}) took {:.1f} ms: notice {:.1f}, script {:.1f}, shader {:.1f}, pipeline {:.1f}, "
+        "warm-up "
+        "{:.1f}, wait "
         "{:.1f}, execute {:.1f}, present {:.1f}\n",
         stats.reloads, kind_name(last.build.kind), last.total(), last.build.notice, last.build.script,
-        last.build.shader, last.build.pipeline, last.build.wait, last.execute, last.present);
+        last.build.shader, last.build.pipeline, last.build.warm_up, last.build.wait, last.execute, last.present);
   }
   return out;
 }
@@ -85,7 +94,8 @@ std::string play_report_json(const PlayReport& report, Player& player) {
                        {"speed", transport.speed()},
                        {"loop", loop_mode_name(transport.loop())}}}};
   out["frames"] = Json{{"shown", stats.shown},           {"dropped", stats.dropped}, {"late", stats.late},
-                       {"unreadable", stats.unreadable}, {"kept", stats.kept},       {"last", player.shown().number}};
+                       {"unreadable", stats.unreadable}, {"kept", stats.kept},       {"rebuilding", stats.rebuilding},
+                       {"last", player.shown().number}};
   out["milliseconds"] = Json{{"startup", report.startup},
                              {"wall", report.wall},
                              {"interval", json_of(stats.interval)},
@@ -100,7 +110,7 @@ std::string play_report_json(const PlayReport& report, Player& player) {
   if (status.error) out["preset_error"] = status.error->text();
   if (report.error) out["error"] = report.error->text();
   out["memory"] = Json{{"peak", peak_memory()}};
-  return out.dump(2) + "\n";
+  return json_text(out);
 }
 
 }  // namespace afterglow

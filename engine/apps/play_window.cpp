@@ -21,7 +21,7 @@ WindowOptions window_options(const PlayWindowOptions& options) {
 
 Result<void> play_in_window(PlayerOptions player_options, DeviceOptions device_options,
                             const PlayWindowOptions& options, Console& console,
-                            const std::function<void(const Device&, Player&)>& at_end) {
+                            const std::function<void(const Device&, Player&, const Result<void>& done)>& at_end) {
   install_interrupt_handler();
   AFTERGLOW_TRY(const auto window, DesktopWindow::create("Afterglow", options.size));
   device_options.presentation = window->presentation();
@@ -35,8 +35,12 @@ Result<void> play_in_window(PlayerOptions player_options, DeviceOptions device_o
     WindowOptions shown = window_options(options);
     PlayParts parts(*player, player_options.preset, player_options.live.stack.preset);
     parts.add_to(shown);
+    window->set_last_words([&] {
+      at_end(*device, *player, Error{ErrorKind::device, "the connection to the display was lost"});
+    });
     done = run_window(*window, *device, *player, shown, console.diagnostics());
-    if (at_end) at_end(*device, *player);
+    window->set_last_words(nullptr);
+    at_end(*device, *player, done);
   }
   // Validation goes first: it says what a failure comes from.
   if (device->validation_errors() > 0) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "apps/json_text.h"
 #include "apps/table.h"
 #include "bench/picture.h"
 #include "core/file.h"
@@ -154,15 +155,16 @@ Result<ReloadBench> measure_reloads(Device& device, const ReloadBenchOptions& op
 }
 
 std::string reload_bench_text(const ReloadBench& bench) {
-  Table table({"edit", "count", "median ms", "p95", "notice", "script", "shader", "pipeline", "wait", "execute"});
+  Table table(
+      {"edit", "count", "median ms", "p95", "notice", "script", "shader", "pipeline", "warm-up", "wait", "execute"});
   for (const ReloadRow& row : bench.rows) {
     const Percentiles seen = Percentiles::of(row.seen);
     const auto of = [&](auto value) { return fmt::format("{:.1f}", median(row.latencies, value)); };
     table.add({row.kind, std::to_string(seen.count), fmt::format("{:.1f}", seen.median),
                fmt::format("{:.1f}", seen.p95), of([](const auto& l) { return l.build.notice; }),
                of([](const auto& l) { return l.build.script; }), of([](const auto& l) { return l.build.shader; }),
-               of([](const auto& l) { return l.build.pipeline; }), of([](const auto& l) { return l.build.wait; }),
-               of([](const auto& l) { return l.execute; })});
+               of([](const auto& l) { return l.build.pipeline; }), of([](const auto& l) { return l.build.warm_up; }),
+               of([](const auto& l) { return l.build.wait; }), of([](const auto& l) { return l.execute; })});
   }
   return fmt::format("from the save to the new picture at {}×{}; a whole frame takes {:.1f} ms\n{}", bench.size.width,
                      bench.size.height, bench.frame, table.text("  "));
@@ -186,11 +188,12 @@ std::string reload_bench_json(const ReloadBench& bench, const std::string& devic
                                                  {"script", of([](const auto& l) { return l.build.script; })},
                                                  {"shader", of([](const auto& l) { return l.build.shader; })},
                                                  {"pipeline", of([](const auto& l) { return l.build.pipeline; })},
+                                                 {"warm_up", of([](const auto& l) { return l.build.warm_up; })},
                                                  {"wait", of([](const auto& l) { return l.build.wait; })},
                                                  {"execute", of([](const auto& l) { return l.execute; })}}},
                                 {"samples", row.seen}});
   }
-  return out.dump(2) + "\n";
+  return json_text(out);
 }
 
 }  // namespace afterglow

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/json_text.h"
 #include "apps/options.h"
 #include "apps/table.h"
 
@@ -216,7 +217,7 @@ std::string report_json(const RunReport& report) {
   out["pre_roll"] = report.pre_roll;
   out["frames"] = Json::array();
   for (const auto& frame : report.frames) out["frames"].push_back(frame_json(frame));
-  return out.dump(2) + "\n";
+  return json_text(out);
 }
 
 }  // namespace afterglow

@@ -83,7 +83,7 @@ std::string calibration_json(const CalibrationResult& result) {
              {"milliseconds", point.execute.median},
              {"error", point.quality ? Json(point.quality->error.percentile) : Json(nullptr)}});
   for (const auto& cost : result.operations) measured["nanoseconds_per_pixel"][cost.name] = cost.nanoseconds_per_pixel;
-  return Json{{"devices", Json::array({std::move(entry)})}}.dump(2) + "\n";
+  return Json{{"devices", Json::array({std::move(entry)})}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace afterglow::bench

@@ -103,7 +103,7 @@ std::string report_json(const Report& report) {
   out["temporal"] = out["resolutions"] = Json::array();
   for (const auto& curve : report.temporal) out["temporal"].push_back(temporal_json(curve));
   for (const auto& point : report.resolutions) out["resolutions"].push_back(resolution_json(point));
-  return out.dump(1) + "\n";
+  return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Result<std::vector<Comparison>> compare_reports(const std::string& old_json, const std::string& file,

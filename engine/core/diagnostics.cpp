@@ -1,5 +1,7 @@
 #include "core/diagnostics.h"
 
+#include "core/printable.h"
+
 namespace afterglow {
 
 void Diagnostics::warn_once(const std::string& key, const std::string& message) {
@@ -12,7 +14,7 @@ void Diagnostics::warn_once(const std::string& key, const std::string& message) 
 
 void Diagnostics::emit(Severity severity, const std::string& message) {
   std::lock_guard lock(mutex_);
-  if (sink_) sink_(severity, message);
+  if (sink_) sink_(severity, printable(message, true));
 }
 
 }  // namespace afterglow

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/printable.h"
+
 namespace afterglow {
 
 std::string Error::text() const {
@@ -10,7 +12,8 @@ std::string Error::text() const {
   out += "error: " + message;
   if (!allowed.empty()) out += "; allowed: " + allowed;
   if (!nearest.empty()) out += fmt::format("; did you mean '{}'?", nearest);
-  for (const auto& detail : trail) out += "\n  " + detail;
+  out = printable(std::move(out));
+  for (const auto& detail : trail) out += "\n  " + printable(detail);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include "exec/image_pool.h"
 #include "exec/program.h"
 #include "gpu/image.h"
 #include "gpu/row_targets.h"
@@ -19,6 +20,10 @@ struct ArenaOptions {
   /// and images are tiled as the device likes. Else images are linear and stay in GENERAL.
   std::vector<int> rows;
   std::uint64_t max_memory = 0;
+  /// Images come from here, each with memory of its own, under these keys, parallel to the plan's kernels. Null: all
+  /// are the arena's alone.
+  ImagePool* pool = nullptr;
+  std::vector<Hash> keys{};
 };
 
 class Arena {
@@ -27,21 +32,42 @@ class Arena {
   /// device (limits, out of memory), io (over `max_memory`, before anything is allocated).
   static Result<Arena> create(const Device& device, const Graph& graph, const Plan& plan, const ArenaOptions& options);
   Arena() = default;
+  /// What the image of a kernel is made as.
+  static ImageDesc desc_of(const Graph& graph, ImageId id, const ArenaOptions& options);
 
   /// Null for images that are not in the arena.
   const UnboundImage* image(ImageId id) const;
   /// The draw targets of an image that is written several rows at a time; null for the others.
   const RowTargets* row_targets(ImageId id) const;
+  /// Null for images that are not from the pool.
+  PooledImage* pooled(ImageId id) const;
   /// Every VkImage of a linear arena; their content may be thrown away before the first kernel.
   std::vector<VkImage> linear_images() const;
+  /// Those that are this image of a linear arena.
+  std::vector<VkImage> linear_images(ImageId id) const;
   const ProgramMemory& memory() const { return memory_; }
-  int images() const { return static_cast<int>(images_.size()); }
-  int allocations() const { return static_cast<int>(allocations_.size()); }
+  int images() const { return static_cast<int>(images_.size() + pooled_.size()); }
+  int allocations() const { return static_cast<int>(allocations_.size() + pooled_.size()); }
 
  private:
+  /// An image that is to be made for a kernel's target.
+  struct Wanted {
+    ImageId id = kNoImage;
+    ImageDesc desc;
+    int rows = 1;
+    Hash key;
+    Plan::Lifetime lifetime;
+  };
+  static std::vector<Wanted> wanted(const Device& device, const Graph& graph, const Plan& plan,
+                                    const ArenaOptions& options);
+  Result<void> check_memory(const ArenaOptions& options) const;
+  Result<void> make_pooled(const Device& device, const std::vector<Wanted>& wanted, const ArenaOptions& options);
+  Result<void> make_own(const Device& device, const std::vector<Wanted>& wanted, const ArenaOptions& options);
+
   std::vector<Memory> allocations_;  // before the images: freed after them
   std::map<ImageId, UnboundImage> images_;
   std::map<ImageId, RowTargets> row_targets_;
+  std::map<ImageId, std::shared_ptr<PooledImage>> pooled_;
   bool linear_ = false;
   ProgramMemory memory_;
 };

@@ -47,7 +47,6 @@ struct FrameRunner::State {
   FrameInputs inputs;
   FrameResult result;
   std::optional<Rect> shown;  ///< the part of the result that the last run made; none: the result is the source
-  std::map<std::uint64_t, std::map<std::string, std::uint64_t>> ran_with;  ///< program → versions of its inputs
   Staging staging;
   KernelTimer timer;
   /// What the command buffer holds and what it needs to be so again.
@@ -78,8 +77,6 @@ struct FrameRunner::State {
   Result<void> upload(const Program& program, const std::map<std::string, HostImage>& host, bool look);
   Result<void> bring_source(const std::map<std::string, HostImage>& host, FrameTimes& times);
   Result<void> leave_readable();
-  std::vector<bool> kernels_to_run(const Program& program) const;
-  void has_run(Program& program);
   Result<Program*> run(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
                        const Choose& choose, FrameTimes& times);
   Result<void> execute(Program& program, const std::vector<bool>& run, KernelTiming timing, FrameTimes& times);
@@ -162,26 +159,6 @@ Result<void> FrameRunner::State::leave_readable() {
   if (inputs.readable()) return {};
   AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) { inputs.after(commands); }, kOneOff));
   return submitter.wait();
-}
-
-/// What has to run after the uploads.
-std::vector<bool> FrameRunner::State::kernels_to_run(const Program& program) const {
-  const auto last = ran_with.find(program.id());
-  std::vector<ImageId> changed;
-  for (const auto& [name, id] : inputs_of(program.graph())) {
-    const bool same =
-        last != ran_with.end() && last->second.contains(name) && last->second.at(name) == inputs.version(name);
-    if (!same) changed.push_back(id);
-  }
-  return program.kernels_to_run(changed, result.writer() != program.id());
-}
-
-void FrameRunner::State::has_run(Program& program) {
-  constexpr std::size_t kMostRemembered = 64;  // programs are few; those that are gone are not worth more than this
-  program.up_to_date();
-  result.set_writer(program.id());
-  if (ran_with.size() >= kMostRemembered) ran_with.clear();
-  ran_with[program.id()] = inputs.versions();
 }
 
 std::vector<VkImageLayout> FrameRunner::State::input_layouts() const {
@@ -275,14 +252,14 @@ Result<Program*> FrameRunner::State::run(Program& program, const std::map<std::s
   }
   if (!chosen) return chosen;
   if (chosen != &program) AFTERGLOW_CHECK(take_result(*chosen));
-  const std::vector<bool> run = kernels_to_run(*chosen);
+  const std::vector<bool> run = chosen->begin_run(inputs.versions(), result.writer() != chosen->id());
   times.kernels_run = static_cast<int>(std::ranges::count(run, true));
   times.kernels_kept = static_cast<int>(run.size()) - times.kernels_run;
   if (times.kernels_run > 0) {
     result.set_writer(0);
-    ran_with.erase(chosen->id());  // until it has run
     AFTERGLOW_CHECK(execute(*chosen, run, timing, times));
-    has_run(*chosen);
+    chosen->up_to_date();
+    result.set_writer(chosen->id());
   }
   return chosen;
 }
@@ -330,6 +307,33 @@ Result<FrameTimes> FrameRunner::run_on_device(Program* program, const std::map<s
   else
     AFTERGLOW_CHECK(s.leave_readable());
   return times;
+}
+
+Result<std::optional<double>> FrameRunner::time_kernel(Program& program, std::size_t kernel) {
+  State& s = *state_;
+  if (s.result.writer() != program.id() || !s.bound || s.bound->program != program.id() ||
+      kernel >= program.plan().kernels.size())
+    return std::optional<double>();
+  const bool makes_result = program.plan().kernels[kernel].output == program.graph().result;
+  const bool stamps = s.device.timestamps_mean_draws();
+  VkQueryPool queries = VK_NULL_HANDLE;
+  if (stamps) {
+    AFTERGLOW_TRY(queries, s.timer.queries(2));
+  }
+  const auto start = Clock::now();
+  AFTERGLOW_CHECK(s.submitter.submit(
+      [&](VkCommandBuffer commands) {
+        s.inputs.before(program, commands);
+        if (makes_result) s.result.before(commands);
+        program.record_again(commands, kernel, queries);
+        s.inputs.after(commands);
+        if (makes_result) s.result.after(commands);
+      },
+      State::kOneOff));
+  AFTERGLOW_CHECK(s.submitter.wait());
+  if (!stamps) return std::optional<double>(milliseconds_since(start));
+  AFTERGLOW_TRY(const double between, s.timer.between());
+  return std::optional<double>(between);
 }
 
 DeviceImages FrameRunner::images() const {

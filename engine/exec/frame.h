@@ -78,6 +78,10 @@ class FrameRunner {
   /// a submission that does has to be waited for.
   Result<FrameTimes> run_on_device(Program* program, const std::map<std::string, HostImage>& inputs,
                                    KernelTiming timing, const Choose& choose = {});
+  /// How long kernel `kernel` of the program that ran last takes, by itself: it is run once more, which changes no
+  /// pixel. None when another program ran last, or nothing did. Needs a program created with `keep_images`. Whoever
+  /// reads `images` must be done with them. Errors: device.
+  Result<std::optional<double>> time_kernel(Program& program, std::size_t kernel);
   /// What the last run left on the device. Null images before the first.
   DeviceImages images() const;
   /// The result of the last run, or that part of it: the rest of `out` is undefined. When nothing had to run it is the

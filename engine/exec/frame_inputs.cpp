@@ -1,6 +1,7 @@
 #include "exec/frame_inputs.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "exec/barriers.h"
 #include "exec/brightest.h"
@@ -28,6 +29,12 @@ Result<std::uint64_t> write_pixels(Staging& staging, FrameImage& image, const Ho
                                  [&](int y) { return pack(part.y + y, image.image.row(part.y + y)); });
   image.image.memory().flush();
   return clamped;
+}
+
+/// Programs of several runners may share images, and what these hold is told by the versions of what they read.
+std::uint64_t next_version() {
+  static std::atomic<std::uint64_t> versions = 0;
+  return ++versions;
 }
 
 }  // namespace
@@ -72,15 +79,15 @@ Result<void> FrameInputs::upload(Staging& staging, const std::string& name, cons
   const bool same = given.content && known.content == given.content && known.part == part;
   if (same && (!look || known.brightest)) return {};
   Brightest brightest;
-  known = {.content = {}, .part = part, .version = ++last_version_, .clamped = 0, .brightest = {}};
+  known = {.content = {}, .part = part, .version = next_version(), .clamped = 0, .brightest = {}};
   AFTERGLOW_TRY(known.clamped, write_pixels(staging, images_.at(name), given, part, look ? &brightest : nullptr));
   known.content = given.content;
   if (look) known.brightest = brightest.value(storage);
   return {};
 }
 
-std::map<std::string, std::uint64_t> FrameInputs::versions() const {
-  std::map<std::string, std::uint64_t> out;
+Program::InputVersions FrameInputs::versions() const {
+  Program::InputVersions out;
   for (const auto& [name, held] : held_) out[name] = held.version;
   return out;
 }

@@ -31,10 +31,8 @@ class FrameInputs {
   /// is, as stored so. Errors: device.
   Result<void> upload(Staging& staging, const std::string& name, const HostImage& given, const Rect& part, bool look,
                       Storage storage);
-  /// Another number for other pixels.
-  std::uint64_t version(const std::string& name) const { return held_.at(name).version; }
-  /// Names with their versions.
-  std::map<std::string, std::uint64_t> versions() const;
+  /// See Program::InputVersions.
+  Program::InputVersions versions() const;
   float brightest(const std::string& name) const { return *held_.at(name).brightest; }
   /// Samples of what is held that were clamped to ±65504.
   std::uint64_t clamped() const;
@@ -61,7 +59,6 @@ class FrameInputs {
   bool direct_;
   std::map<std::string, FrameImage> images_;
   std::map<std::string, Held> held_;
-  std::uint64_t last_version_ = 0;
   int made_ = 0;
 };
 

@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "core/processor.h"
+
 #if defined(__x86_64__) && defined(__GNUC__)
 #define AFTERGLOW_F16C 1
 #include <immintrin.h>
@@ -14,11 +16,6 @@ namespace {
 constexpr std::uint16_t kSign = 0x8000;
 
 #if AFTERGLOW_F16C
-
-bool has_f16c() {
-  static const bool has = __builtin_cpu_supports("f16c") && __builtin_cpu_supports("avx");
-  return has;
-}
 
 __attribute__((target("avx,f16c"))) std::uint64_t halves_from_floats_f16c(const float* from, std::size_t count,
                                                                           std::uint16_t* to) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "gpu/error.h"
 
 namespace afterglow {
@@ -32,6 +34,15 @@ Result<std::vector<KernelTime>> KernelTimer::read(const Plan& plan) const {
                                                milliseconds_per_tick});
   }
   return times;
+}
+
+Result<double> KernelTimer::between() const {
+  std::array<std::uint64_t, 2> ticks{};
+  AFTERGLOW_VK(vkGetQueryPoolResults(device_->handle(), pool_.get(), 0, 2, sizeof ticks, ticks.data(), sizeof ticks[0],
+                                     VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+               "cannot read timestamps");
+  return static_cast<double>((ticks[1] - ticks[0]) & device_->timestamp_mask()) *
+         static_cast<double>(device_->properties().limits.timestampPeriod) * 1e-6;
 }
 
 Error KernelTimer::blame(Error error, const Plan& plan) {

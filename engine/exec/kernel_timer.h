@@ -16,6 +16,8 @@ class KernelTimer {
   Result<VkQueryPool> queries(std::size_t count);
   /// Times of the plan's kernels in the run that is done. Errors: device.
   Result<std::vector<KernelTime>> read(const Plan& plan) const;
+  /// Milliseconds between the first two timestamps. Errors: device.
+  Result<double> between() const;
   /// Names the kernels that a failed run was about.
   static Error blame(Error error, const Plan& plan);
   int pools() const { return pools_; }

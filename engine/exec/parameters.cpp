@@ -62,28 +62,29 @@ Result<ParameterBuffer> ParameterBuffer::create(const Device& device, const Grap
                   Buffer::create(device, size, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, HostAccess::write, "parameters"));
     std::memset(out.buffer_.data(), 0, size);
     out.values_.resize(size);
-    std::vector<bool> all(plan.kernels.size());
-    out.write(graph, all);
+    out.write(graph);
   }
   return out;
 }
 
-void ParameterBuffer::write(const Graph& graph, std::vector<bool>& changed) {
+void ParameterBuffer::write(const Graph& graph) {
   if (values_.empty()) return;
-  const std::vector<std::byte> before = values_;
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    const KernelBlock& block = blocks_[i];
+  for (const KernelBlock& block : blocks_) {
     for (const auto& param : block.compiled->params) {
       const Pass& pass = pass_of_stage(graph, block.kernel, param.stage);
       const auto value = pass.params.find(param.name);
       if (value == pass.params.end()) continue;
       write_value(value->second, param.type, values_.data() + block.offset + param.offset);
     }
-    if (std::memcmp(values_.data() + block.offset, before.data() + block.offset, block.compiled->block_size) != 0)
-      changed[i] = true;
   }
   std::memcpy(buffer_.data(), values_.data(), values_.size());
   buffer_.memory().flush();
+}
+
+std::string_view ParameterBuffer::bytes(std::size_t kernel) const {
+  const KernelBlock& block = blocks_[kernel];
+  if (block.compiled->block_size == 0) return {};
+  return {reinterpret_cast<const char*>(values_.data()) + block.offset, block.compiled->block_size};
 }
 
 }  // namespace afterglow

@@ -1,6 +1,7 @@
 // The uniform buffer of a program: one block for each kernel, filled by name from the passes' parameters.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "exec/describe.h"
@@ -23,9 +24,10 @@ class ParameterBuffer {
                                         const std::vector<const CompiledKernel*>& compiled);
   ParameterBuffer() = default;
 
-  /// Writes the values of `graph`, which has the structure of the one given to `create`. Touches bytes alone. Sets
-  /// `changed` (parallel to the kernels) for each kernel that gets other bytes than it had.
-  void write(const Graph& graph, std::vector<bool>& changed);
+  /// Writes the values of `graph`, which has the structure of the one given to `create`. Touches bytes alone.
+  void write(const Graph& graph);
+  /// The block of a kernel as the buffer holds it.
+  std::string_view bytes(std::size_t kernel) const;
 
   VkBuffer buffer() const { return buffer_.get(); }  ///< null when no kernel has parameters
   VkDeviceSize offset(std::size_t kernel) const { return blocks_[kernel].offset; }

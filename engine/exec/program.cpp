@@ -6,7 +6,6 @@
 #include <atomic>
 
 #include "exec/program_state.h"
-#include "graph/changes.h"
 #include "graph/history.h"
 
 namespace afterglow {
@@ -24,13 +23,15 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   state->storage_reads = options.storage_reads && supports(device, state->format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
   static std::atomic<std::uint64_t> programs = 0;
   state->serial = ++programs;
-  state->changed.assign(state->plan.kernels.size(), true);
+  state->made.resize(state->plan.kernels.size());
   AFTERGLOW_CHECK(state->find_parts());
   AFTERGLOW_CHECK(state->check());
   if (!state->plan.kernels.empty()) {
     AFTERGLOW_TRY(std::vector<KernelDesc> descs, state->describe(shaders));
     AFTERGLOW_CHECK(state->make_images(descs));
     AFTERGLOW_CHECK(state->compile(compiler, descs));
+    state->identify();
+    AFTERGLOW_CHECK(state->take_images(descs));
     AFTERGLOW_CHECK(state->make_pipelines());
     AFTERGLOW_CHECK(state->make_histories());
     AFTERGLOW_CHECK(state->make_descriptors());
@@ -42,34 +43,8 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
 
 void Program::set_parameters(const Graph& graph) {
   if (!same_structure(state_->graph, graph)) return;
-  state_->parameters.write(graph, state_->changed);
+  state_->parameters.write(graph);
   state_->graph.histories = graph.histories;  // values of first frames
-}
-
-std::vector<bool> Program::kernels_to_run(const std::vector<ImageId>& changed_inputs, bool result_lost) const {
-  const State& s = *state_;
-  std::vector<bool> changed = s.changed;
-  if (result_lost)
-    for (std::size_t i = 0; i < changed.size(); ++i)
-      if (s.plan.kernels[i].output == s.graph.result) changed[i] = true;
-  std::vector<ImageId> changed_images = changed_inputs;
-  if (s.histories && s.histories->turn() != s.ran_turn) {
-    // Another frame: what it reads of the one before is new, and what it hands on goes into the other image.
-    for (const auto& history : s.graph.histories) changed_images.push_back(history.previous);
-    for (std::size_t i = 0; i < changed.size(); ++i)
-      if (history_of_next(s.graph, s.plan.kernels[i].output)) changed[i] = true;
-  }
-  std::vector<bool> run = afterglow::kernels_to_run(s.graph, s.plan, changed, changed_images);
-  const bool any = std::ranges::find(run, true) != run.end();
-  if (any && !s.options.keep_images) run.assign(run.size(), true);
-  return run;
-}
-
-void Program::up_to_date() {
-  state_->changed.assign(state_->changed.size(), false);
-  if (!state_->histories) return;
-  state_->ran_turn = state_->histories->turn();
-  state_->histories->made();
 }
 
 Histories* Program::histories() const { return state_->histories.get(); }

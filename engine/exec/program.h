@@ -21,6 +21,7 @@
 namespace afterglow {
 
 class Histories;     // exec/histories.h
+class ImagePool;     // exec/image_pool.h
 class PipelinePool;  // exec/pipeline_pool.h
 
 enum class Storage { fp32, fp16 };
@@ -52,10 +53,15 @@ struct ProgramOptions {
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.
   std::optional<Rect> region{};
+  /// Each kernel draws one pixel alone: for exec/warm_up.h. What images hold is undefined.
+  bool a_pixel_each = false;
   /// Images between kernels keep their pixels from run to run (they share no memory), so that `record` can run the
   /// kernels alone for which something has changed.
   bool keep_images = false;
   PipelinePool* pipelines = nullptr;  ///< shared with other programs of the device; null: the program's own
+  /// With `keep_images`: images between kernels are shared with other programs that have the same kernels, and so is
+  /// what they hold. Null: the program's own. It must outlive the program.
+  ImagePool* images = nullptr;
   /// Images of the graph's histories, shared with other programs; null: the program makes its own.
   std::shared_ptr<Histories> histories;
   bool share_memory = true;  ///< images whose lifetimes do not overlap share bytes (never with `reference`)
@@ -93,11 +99,13 @@ class Program {
   /// submission of this program is in flight.
   void set_parameters(const Graph& graph);
 
-  /// The kernels that have to run for the result to be right, when these inputs have new pixels since the last run, and
-  /// for what `set_parameters` has changed since then. Parallel to the plan's kernels. Without `keep_images` all or
-  /// none. `result_lost`: the result image does not hold what this program last wrote.
-  std::vector<bool> kernels_to_run(const std::vector<ImageId>& changed_inputs, bool result_lost) const;
-  /// Notes that everything that had to run has run, in the frame that its histories began.
+  /// By name of an input ("source", "depth", …): a number that no other pixels of it ever had, in this process.
+  using InputVersions = std::map<std::string, std::uint64_t>;
+  /// The kernels that have to run for the result to be right with these inputs, the parameters as they are, and what
+  /// images hold. Parallel to the plan's kernels. Without `keep_images` all or none. `result_lost`: the result image
+  /// does not hold what this program last wrote. What these kernels' images hold counts as lost until `up_to_date`.
+  std::vector<bool> begin_run(const InputVersions& inputs, bool result_lost);
+  /// Notes that what `begin_run` said has run, in the frame that its histories began.
   void up_to_date();
   /// What frames hand on to the next; null when the graph has no histories. `Histories::begin` says which frame
   /// `record` records.
@@ -129,6 +137,11 @@ class Program {
   /// `run`: as `kernels_to_run` said, or empty for all.
   void record(VkCommandBuffer commands, int only = -1, VkQueryPool timestamps = VK_NULL_HANDLE,
               const std::vector<bool>& run = {}) const;
+
+  /// Records one kernel once more after a run, as the frame that ran last; every image holds and is laid out after it
+  /// what and as it was before. Needs `keep_images`. The caller's images as for `record`. `timestamps`: a pool with 2
+  /// queries, or null.
+  void record_again(VkCommandBuffer commands, std::size_t kernel, VkQueryPool timestamps = VK_NULL_HANDLE) const;
 
   const Plan& plan() const;
   const Graph& graph() const;

@@ -76,30 +76,45 @@ Result<std::vector<KernelDesc>> Program::State::describe(ShaderLibrary& shaders)
   return descs;
 }
 
-/// The images between kernels, and how many rows their kernels and the last one really make at a time.
-Result<void> Program::State::make_images(std::vector<KernelDesc>& descs) {
+ArenaOptions Program::State::arena_options(const std::vector<KernelDesc>& descs) const {
   ArenaOptions wanted{.format = format,
                       .share = options.share_memory && !options.reference && !options.keep_images,
                       .readable = options.reference,
                       .storage = storage_reads,
                       .rows = {},
                       .max_memory = options.max_memory};
+  if (linear)
+    for (const auto& desc : descs) wanted.rows.push_back(desc.rows);
+  return wanted;
+}
+
+/// How many rows kernels really make at a time, and the images between them, unless those come from a pool.
+Result<void> Program::State::make_images(std::vector<KernelDesc>& descs) {
   for (std::size_t i = 0; i < descs.size(); ++i)
     if (history_of_next(graph, plan.kernels[i].output)) descs[i].rows = 1;
   linear = std::ranges::any_of(descs, [](const KernelDesc& desc) { return desc.rows > 1; });
-  if (linear)
-    for (const auto& desc : descs) wanted.rows.push_back(desc.rows);
-  AFTERGLOW_TRY(arena, Arena::create(device, graph, plan, wanted));
   for (std::size_t i = 0; i < descs.size(); ++i) {
     const ImageId output = plan.kernels[i].output;
-    const RowTargets* targets = arena.row_targets(output);
     if (output == graph.result) {
       descs[i].rows = options.result_by_rows ? RowTargets::possible(device, result_desc(), descs[i].rows) : 1;
       result_rows = descs[i].rows;
-    } else {
-      descs[i].rows = targets ? targets->rows() : 1;
+    } else if (linear) {
+      const ImageDesc desc = Arena::desc_of(graph, output, arena_options(descs));
+      descs[i].rows = RowTargets::possible(device, desc, descs[i].rows);
     }
   }
+  if (from_pool()) return {};
+  AFTERGLOW_TRY(arena, Arena::create(device, graph, plan, arena_options(descs)));
+  return {};
+}
+
+/// The images between kernels, where those of other programs serve: known once the kernels are.
+Result<void> Program::State::take_images(const std::vector<KernelDesc>& descs) {
+  if (!from_pool()) return {};
+  ArenaOptions wanted = arena_options(descs);
+  wanted.pool = options.images;
+  wanted.keys = identities;
+  AFTERGLOW_TRY(arena, Arena::create(device, graph, plan, wanted));
   return {};
 }
 
@@ -170,6 +185,11 @@ Result<void> Program::State::find_parts() {
   const auto whole = [this](ImageId id) {
     return Rect{0, 0, graph.images[id].size.width, graph.images[id].size.height};
   };
+  if (options.a_pixel_each) {
+    parts.kernels.assign(plan.kernels.size(), Rect{0, 0, 1, 1});
+    for (std::size_t i = 0; i < graph.images.size(); ++i) parts.images.push_back(whole(static_cast<ImageId>(i)));
+    return {};
+  }
   if (options.region) {
     const Rect &part = *options.region, all = whole(graph.result);
     if (part.width < 1 || part.height < 1 || part.x < 0 || part.y < 0 || part.x + part.width > all.width ||

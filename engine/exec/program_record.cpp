@@ -113,17 +113,21 @@ void Program::State::record_some(VkCommandBuffer commands, const std::vector<boo
                                  const std::function<void(std::size_t)>& stamp) const {
   Plan some;
   std::vector<std::vector<ImageId>> read;
-  std::set<ImageId> made;
+  std::set<ImageId> targets;
   for (std::size_t i = 0; i < run.size(); ++i) {
     if (!run[i]) continue;
     some.kernels.push_back(plan.kernels[i]);
     read.push_back(reads[i]);
-    made.insert(plan.kernels[i].output);
+    targets.insert(plan.kernels[i].output);
   }
   const auto image_of = [&](ImageId id) {
-    return made.contains(id) ? barrier_image(id, parity()) : VkImage{VK_NULL_HANDLE};
+    return targets.contains(id) ? barrier_image(id, parity()) : VkImage{VK_NULL_HANDLE};
   };
   auto barriers = kernel_barriers(some, read, image_of, read_layout());
+  KernelBarriers linear_ones;  // those that run may never have been drawn before
+  for (const ImageId id : targets)
+    for (const VkImage image : arena.linear_images(id)) linear_ones.images.push_back(into_general(image));
+  afterglow::record_barriers(commands, linear_ones);
   for (std::size_t i = 0, next = 0; i < run.size(); ++i) {
     if (run[i]) {
       KernelBarriers before = std::move(barriers[next++]);
@@ -132,6 +136,27 @@ void Program::State::record_some(VkCommandBuffer commands, const std::vector<boo
     }
     stamp(i + 1);
   }
+}
+
+void Program::record_again(VkCommandBuffer commands, std::size_t kernel, VkQueryPool timestamps) const {
+  const State& s = *state_;
+  const auto stamp = [&](std::uint32_t query) {
+    if (timestamps == VK_NULL_HANDLE) return;
+    vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, timestamps, query);
+  };
+  if (timestamps != VK_NULL_HANDLE) vkCmdResetQueryPool(commands, timestamps, 0, 2);
+  std::vector<bool> run(s.plan.kernels.size(), false);
+  run[kernel] = true;
+  stamp(0);
+  s.record_some(commands, run, [&](std::size_t done) {
+    if (done == kernel + 1) stamp(1);
+  });
+  // Its readers do not follow.
+  const ImageId output = s.plan.kernels[kernel].output;
+  if (s.linear || !s.arena.image(output)) return;
+  KernelBarriers after;
+  after.images = {before_reading(s.arena.image(output)->get(), s.read_layout())};
+  afterglow::record_barriers(commands, after);
 }
 
 }  // namespace afterglow

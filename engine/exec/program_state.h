@@ -31,8 +31,13 @@ struct Program::State {
   VkFormat format = VK_FORMAT_UNDEFINED;
   Plan plan;
   Regions parts;
-  std::vector<bool> changed;  ///< kernels with new parameters since the last run; all before the first
-  std::uint64_t serial = 0;   ///< Program::id
+  /// Of the plan's kernels, see graph/changes.h: what each does but for its parameters, what the images that are not of
+  /// a pool hold, and of the run that began what images will hold, and which kernels run.
+  std::vector<Hash> identities;
+  std::vector<std::optional<Hash>> made;
+  std::vector<Hash> making;
+  std::vector<bool> running;
+  std::uint64_t serial = 0;  ///< Program::id
 
   CompiledKernels compiled;
   std::vector<std::vector<ImageId>> images;  ///< to bind, parallel to the plan's kernels
@@ -53,7 +58,6 @@ struct Program::State {
   bool linear = false;                   ///< images between kernels stay in GENERAL
   int bindings = 0, uses = 0;            ///< of inputs and result; of histories
   std::shared_ptr<Histories> histories;  ///< null when the graph has none
-  std::uint64_t ran_turn = 0;            ///< Histories::turn of the last run
 
   /// Sets of descriptors for each kernel: one for each image that a history's previous one may be, and one for frames
   /// that have none before them.
@@ -87,12 +91,20 @@ struct Program::State {
   Result<void> check();
   Result<void> find_parts();
   Result<std::vector<KernelDesc>> describe(ShaderLibrary& shaders);
+  bool from_pool() const { return options.images && options.keep_images && !options.reference; }
+  ArenaOptions arena_options(const std::vector<KernelDesc>& descs) const;
   Result<void> make_images(std::vector<KernelDesc>& descs);
+  Result<void> take_images(const std::vector<KernelDesc>& descs);
   std::vector<ImageId> reads_of(const std::vector<ImageId>& bound) const;
   Result<void> compile(KernelCompiler& compiler, const std::vector<KernelDesc>& descs);
   Result<void> make_pipelines();
   Result<void> make_descriptors();
   Result<void> make_histories();
+
+  // program_reuse.cpp
+  void identify();
+  std::vector<Hash> content(const InputVersions& inputs) const;
+  std::optional<Hash>& holds(std::size_t kernel);
 
   // program_images.cpp
   /// An image as kernels find it.

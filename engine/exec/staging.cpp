@@ -86,7 +86,8 @@ Result<std::uint64_t> Staging::upload(const StagedImage& image, const PackRow& p
   return held;
 }
 
-Result<std::uint64_t> Staging::download(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack) {
+Result<std::uint64_t> Staging::download(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack,
+                                        int from, int to) {
   AFTERGLOW_CHECK(prepare(downloads_, image, HostAccess::read));
   const int step = rows_per_band(image);
   std::uint64_t held = 0;
@@ -100,11 +101,11 @@ Result<std::uint64_t> Staging::download(const StagedImage& image, VkImageLayout 
     return {};
   };
   int turn = 0;
-  for (int first = 0; first < image.size.height; first += step, turn ^= 1) {
+  for (int first = from; first < to; first += step, turn ^= 1) {
     Band& band = downloads_[turn];
     AFTERGLOW_CHECK(take(band));
-    const int rows = std::min(step, image.size.height - first);
-    const bool is_first = first == 0, is_last = first + rows == image.size.height;
+    const int rows = std::min(step, to - first);
+    const bool is_first = first == from, is_last = first + rows == to;
     AFTERGLOW_CHECK(band.submitter.submit([&](VkCommandBuffer commands) {
       if (is_first) {
         const auto begin = image_barrier(image.image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | kShader,

@@ -32,8 +32,13 @@ class Staging {
   /// of `pack`.
   Result<std::uint64_t> upload(const StagedImage& image, const PackRow& pack);
 
-  /// Takes the image in `layout`, written by draws, and leaves it so. Returns the sum of `unpack`.
-  Result<std::uint64_t> download(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack);
+  /// Takes the image in `layout`, written by draws, and leaves it so. Rows `from` … `to` − 1 are moved, no others.
+  /// Returns the sum of `unpack`.
+  Result<std::uint64_t> download(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack, int from,
+                                 int to);
+  Result<std::uint64_t> download(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack) {
+    return download(image, layout, unpack, 0, image.size.height);
+  }
 
   /// Bytes of the buffers that moving an image of this size takes.
   static VkDeviceSize bytes(const StagedImage& image);

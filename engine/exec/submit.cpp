@@ -59,6 +59,7 @@ Result<void> Submitter::submit_again(int which) {
                                          .commandBuffer = commands_[static_cast<std::size_t>(which)]};
   const VkSubmitInfo2 info{
       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &buffer};
+  const auto lock = device_->lock_queue();
   AFTERGLOW_VK(vkQueueSubmit2(device_->queue(), 1, &info, fence_.get()), "cannot submit");
   pending_ = true;
   return {};

@@ -67,8 +67,8 @@ class ValidationLog {
   std::vector<std::string> messages_;
 };
 
-/// One logical device with one graphics+compute queue. Immutable after creation; submissions must come from one thread
-/// at a time.
+/// One logical device with one graphics+compute queue. Immutable after creation. Whoever submits, presents or waits for
+/// the queue holds `lock_queue` meanwhile; on an adopted device the host must not do so at the same time.
 class Device {
  public:
   /// With "auto", a device that cannot be opened is passed over with a warning. `diagnostics` is used during the call
@@ -84,6 +84,7 @@ class Device {
   VkDevice handle() const { return device_; }
   VkPhysicalDevice physical() const { return physical_; }
   VkQueue queue() const { return queue_; }
+  std::unique_lock<std::mutex> lock_queue() const { return std::unique_lock(queue_mutex_); }
   std::uint32_t queue_family() const { return queue_family_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
@@ -122,6 +123,7 @@ class Device {
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
+  mutable std::mutex queue_mutex_;
   std::uint32_t queue_family_ = 0;
   VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
   VkPhysicalDeviceProperties properties_{};

@@ -21,7 +21,7 @@ std::uint32_t bytes_per_pixel(VkFormat format) {
 }
 
 Result<void> check_image(const Device& device, const ImageDesc& desc) {
-  const auto [width, height] = desc.size;
+  const int width = desc.size.width, height = desc.size.height;
   const auto fail = [&](const std::string& why) {
     return Error{ErrorKind::device, fmt::format("image '{}' of {}×{} pixels: {}", desc.name, width, height, why)};
   };

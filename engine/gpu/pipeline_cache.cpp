@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "core/cache_folder.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "gpu/device.h"
@@ -15,7 +16,7 @@ namespace afterglow {
 namespace {
 
 constexpr std::size_t kHashDigits = 32;
-constexpr std::size_t kMaxCacheBytes = 256u << 20;
+constexpr std::size_t kMaxCacheBytes = 64u << 20;
 
 }  // namespace
 
@@ -42,6 +43,7 @@ void Device::use_pipeline_cache(const std::string& folder) {
   cache_file_ = (std::filesystem::path(folder) / fmt::format("pipelines-{}.bin", uuid)).string();
   const std::string data = read_pipeline_cache(cache_file_, properties_);
   if (data.empty()) return;
+  note_cache_use(cache_file_);
   const VkPipelineCacheCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
                                        .initialDataSize = data.size(),
                                        .pInitialData = data.data()};
@@ -61,9 +63,16 @@ void Device::save_pipeline_cache() const {
   if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, data.data()) != VK_SUCCESS) return;
   data.resize(size);
   std::error_code ignored;
+  // Vulkan takes nothing out of a cache: one that has grown too large goes, and the next process begins it with what it
+  // uses.
+  if (data.size() + kHashDigits > kMaxCacheBytes) {
+    std::filesystem::remove(cache_file_, ignored);
+    return;
+  }
   std::filesystem::create_directories(std::filesystem::path(cache_file_).parent_path(), ignored);
   // A cache that cannot be written costs time only.
   (void)write_file_atomically(cache_file_, pipeline_cache_file_content(data));
+  trim_cache(std::filesystem::path(cache_file_).parent_path(), ".bin");  // of drivers that are gone
 }
 
 }  // namespace afterglow

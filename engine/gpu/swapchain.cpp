@@ -261,7 +261,10 @@ Result<void> Swapchain::submit(Slot& slot, const Image& image, const Draw& draw)
                            .pCommandBufferInfos = &buffer,
                            .signalSemaphoreInfoCount = 1,
                            .pSignalSemaphoreInfos = &signal};
-  AFTERGLOW_VK(vkQueueSubmit2(device_.queue(), 1, &info, fence), "cannot submit a frame");
+  {
+    const auto lock = device_.lock_queue();
+    AFTERGLOW_VK(vkQueueSubmit2(device_.queue(), 1, &info, fence), "cannot submit a frame");
+  }
   slot.pending = true;
   slot.frame = ++frame_number_;
   return {};
@@ -276,7 +279,10 @@ Result<void> Swapchain::present(Image& image, std::uint32_t index) {
                               .swapchainCount = 1,
                               .pSwapchains = &swapchain,
                               .pImageIndices = &index};
-  const VkResult result = vkQueuePresentKHR(device_.queue(), &info);
+  const VkResult result = [&] {
+    const auto lock = device_.lock_queue();
+    return vkQueuePresentKHR(device_.queue(), &info);
+  }();
   image.presented = true;
   ++counters_.presented;
   switch (result) {
@@ -330,7 +336,10 @@ void Swapchain::retire_chain() {
 
 /// Waits for everything on the queue, presentations too as far as Vulkan 1.3 can, and destroys all that was retired.
 Result<void> Swapchain::drain() {
-  AFTERGLOW_VK(vkQueueWaitIdle(device_.queue()), "the device did not finish");
+  {
+    const auto lock = device_.lock_queue();
+    AFTERGLOW_VK(vkQueueWaitIdle(device_.queue()), "the device did not finish");
+  }
   AFTERGLOW_CHECK(finish());
   proven_chain_ = chain_number_ + (chain_ ? 0 : 1);
   release();

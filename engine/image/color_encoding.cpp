@@ -87,7 +87,7 @@ void make_finite(float& value, SanitizeCounts& counts) {
 }
 
 void make_alpha_finite(float& alpha, SanitizeCounts& counts) {
-  if (std::isfinite(alpha)) return;
+  if (std::abs(alpha) <= kLargest) return;
   alpha = 1;
   ++counts.alpha;
 }
@@ -109,7 +109,7 @@ void sanitize_linear(float* rgba, std::size_t pixels, SanitizeCounts& counts) {
         const float positive = v > 0 ? v : 0.0f;  // NaN fails the test
         pixel[c] = positive < kLargest ? positive : kLargest;
       }
-      const bool finite = std::abs(pixel[3]) <= std::numeric_limits<float>::max();
+      const bool finite = std::abs(pixel[3]) <= kLargest;  // as light: filters sum alpha too, and must not overflow
       block_alpha += !finite;
       pixel[3] = finite ? pixel[3] : 1.0f;
     }

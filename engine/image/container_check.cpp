@@ -11,6 +11,7 @@
 #include <fstream>
 #include <vector>
 
+#include "core/saturated.h"
 #include "image/exr_header.h"
 
 namespace afterglow {
@@ -69,6 +70,10 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
       if (number(0) < 1 || number(1) < 1) return malformed(file, "has no pixels");
       if (number(0) > 0x7fffffff || number(1) > 0x7fffffff) return malformed(file, "is a malformed PNG");
       facts.size = {static_cast<int>(number(0)), static_cast<int>(number(1))};
+      const auto area = static_cast<std::uint64_t>(facts.size.area());
+      facts.least_file_bytes = area / 8 / 1100;  // a bit a pixel at least, and deflate gains 1032 at most
+      const bool interlaced = data[12] != 0, deep = data[8] == 16;
+      if (interlaced) facts.decoder_bytes = saturated_product({area, 4, deep ? 2u : 1u});
     } else if (type == "sRGB") {
       facts.srgb = true;
     } else if (type == "iCCP") {
@@ -89,6 +94,8 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
 bool is_frame_header(unsigned char marker) {
   return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
 }
+
+bool is_progressive(unsigned char marker) { return (marker & 3) == 2; }
 
 /// Walks the segments, and the entropy-coded data for its end marker.
 Result<ContainerFacts> check_jpeg(const fs::path& file, std::ifstream& in, std::uint64_t size) {
@@ -118,9 +125,13 @@ Result<ContainerFacts> check_jpeg(const fs::path& file, std::ifstream& in, std::
     const std::size_t length = big_endian(&bytes[at + 2], 2);
     if (length < 2 || at + 2 + length > bytes.size()) break;
     if (is_frame_header(marker)) {
-      if (length < 8) return malformed(file, "is a malformed JPEG");
+      if (length < 8 || facts.size.width > 0) return malformed(file, "is a malformed JPEG");
       facts.size = {static_cast<int>(big_endian(&bytes[at + 7], 2)), static_cast<int>(big_endian(&bytes[at + 5], 2))};
       if (facts.size.width < 1 || facts.size.height < 1) return malformed(file, "has no pixels");
+      const auto area = static_cast<std::uint64_t>(facts.size.area());
+      // Huffman codes (the first three kinds) take a bit at least for each block of 8×8.
+      if (marker <= 0xc2) facts.least_file_bytes = area / 64 / 8;
+      if (is_progressive(marker)) facts.decoder_bytes = area * bytes[at + 9] * sizeof(std::int16_t);
     }
     at += 2 + length;
   }

@@ -2,6 +2,7 @@
 // early (JPEG decoders invent the missing half), and PNG's colour chunks, which OpenImageIO does not pass on.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 
@@ -14,6 +15,8 @@ namespace afterglow {
 struct ContainerFacts {
   enum class Kind { other, exr, png, jpeg } kind = Kind::other;
   Size size;                                ///< PNG and JPEG
+  std::uint64_t least_file_bytes = 0;       ///< fewer cannot hold the pixels, however well they compress
+  std::uint64_t decoder_bytes = 0;          ///< what the decoder keeps of the whole picture (interlaced, progressive)
   bool srgb = false;                        ///< PNG sRGB chunk
   bool icc = false;                         ///< PNG iCCP chunk
   std::optional<double> gamma;              ///< PNG gAMA: the exponent that encoded, e.g. 0.45455

@@ -10,6 +10,7 @@
 #include <immintrin.h>
 #endif
 
+#include "core/processor.h"
 #include "image/srgb.h"
 
 namespace afterglow {
@@ -111,8 +112,7 @@ std::uint64_t to_half(const float* values, std::uint16_t* halves, std::size_t co
   std::uint64_t overflows = 0;
   std::size_t i = 0;
 #if defined(__x86_64__)
-  static const bool has_f16c = __builtin_cpu_supports("avx") && __builtin_cpu_supports("f16c");
-  if (has_f16c) i = to_half_f16c(values, halves, count, overflows);
+  if (has_f16c()) i = to_half_f16c(values, halves, count, overflows);
 #endif
   for (; i < count; ++i) {
     overflows += std::abs(values[i]) > kLargestHalf;

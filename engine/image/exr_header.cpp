@@ -9,6 +9,8 @@
 #include <fstream>
 #include <optional>
 
+#include "core/saturated.h"
+
 namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
@@ -68,7 +70,8 @@ std::vector<ExrChannel> channel_list(const std::vector<char>& value) {
   std::size_t at = 0;
   while (at < value.size() && value[at] != 0) {
     const auto* end = static_cast<const char*>(std::memchr(&value[at], 0, value.size() - at));
-    if (!end || channels.size() >= kMaxChannels) throw Malformed{"the channel list is malformed"};
+    if (channels.size() >= kMaxChannels) throw Malformed{fmt::format("has more than {} channels", kMaxChannels)};
+    if (!end) throw Malformed{"the channel list is malformed"};
     ExrChannel channel;
     channel.name.assign(&value[at], end);
     at += channel.name.size() + 1;
@@ -118,7 +121,8 @@ std::optional<ExrPart> read_part(Bytes& bytes, std::uint32_t flags) {
     };
     if (name == "channels") {
       expect("chlist", -1);
-      if (static_cast<std::uint64_t>(size) > kMaxChannelList) throw Malformed{"the channel list is malformed"};
+      if (static_cast<std::uint64_t>(size) > kMaxChannelList)
+        throw Malformed{fmt::format("has more than {} channels", kMaxChannels)};
       std::vector<char> value(static_cast<std::size_t>(size));
       bytes.read(value.data(), value.size());
       part.channels = channel_list(value);
@@ -186,39 +190,46 @@ std::uint64_t ExrPart::pixel_bytes() const {
   return bytes;
 }
 
+std::uint64_t ExrPart::chunks() const {
+  const auto pieces = [](int side, int piece) { return (std::uint64_t(side) + std::uint64_t(piece) - 1) / std::uint64_t(piece); };
+  if (tiled) return pieces(data_window.width, tile.width) * pieces(data_window.height, tile.height);
+  return pieces(data_window.height, lines_per_chunk(compression));
+}
+
 std::uint64_t ExrPart::least_file_bytes() const {
-  if (deep) return 0;
+  const std::uint64_t places = chunks() * sizeof(std::uint64_t);
+  if (deep) return places;
   std::uint64_t raw = 0;
   for (const ExrChannel& channel : channels) {
     const auto columns = static_cast<std::uint64_t>(data_window.width / channel.x_sampling);
     const auto lines = static_cast<std::uint64_t>(data_window.height / channel.y_sampling);
-    raw += columns * lines * (channel.type == ExrChannelType::half ? 2 : 4);
+    raw = saturated_sum({raw, saturated_product({columns, lines, channel.type == ExrChannelType::half ? 2u : 4u})});
   }
   switch (compression) {
     case 0:
-      return raw;
+      return saturated_sum({places, raw});
     case 1:
-      return raw / 64;  // 2 bytes for a run of 128
+      return places + raw / 64;  // 2 bytes for a run of 128
     case 2:
     case 3:
-      return raw / 1100;  // deflate gains 1032 at most
+      return places + raw / 1100;  // deflate gains 1032 at most
     case 5:
-      return raw / 1500;  // and floats are cut to 24 bits before
+      return places + raw / 1500;  // and floats are cut to 24 bits before
     default:
-      return 0;
+      return places;
   }
 }
 
 std::uint64_t ExrPart::buffer_bytes(int threads) const {
-  const std::uint64_t buffers = 2 * static_cast<std::uint64_t>(std::max(threads, 1));
+  const std::uint64_t buffers = 4 * static_cast<std::uint64_t>(std::max(threads, 1));  // two a thread, packed and unpacked
   const auto width = static_cast<std::uint64_t>(data_window.width);
   if (!tiled) {
     const int lines = std::min(lines_per_chunk(compression), data_window.height);
-    return width * static_cast<std::uint64_t>(lines) * pixel_bytes() * buffers * 2;  // packed and unpacked
+    return saturated_product({width, static_cast<std::uint64_t>(lines), pixel_bytes(), buffers});
   }
-  const std::uint64_t tile_pixels = static_cast<std::uint64_t>(tile.width) * static_cast<std::uint64_t>(tile.height);
-  return tile_pixels * pixel_bytes() * buffers * 2 +
-         (width + static_cast<std::uint64_t>(tile.width)) * static_cast<std::uint64_t>(tile.height) * pixel_bytes();
+  const auto tile_width = static_cast<std::uint64_t>(tile.width), tile_height = static_cast<std::uint64_t>(tile.height);
+  return saturated_sum({saturated_product({tile_width, tile_height, pixel_bytes(), buffers}),
+                        saturated_product({width + tile_width, tile_height, pixel_bytes()})});
 }
 
 bool is_exr(const fs::path& file) {
@@ -246,7 +257,7 @@ Result<std::vector<ExrPart>> read_exr_header(const fs::path& file) {
     }
     while (auto part = read_part(bytes, 0)) {
       parts.push_back(std::move(*part));
-      if (parts.size() > kMaxParts) throw Malformed{"has too many parts"};
+      if (parts.size() > kMaxParts) throw Malformed{fmt::format("has more than {} parts", kMaxParts)};
     }
     if (parts.empty()) throw Malformed{"the header is empty"};
     return parts;

@@ -30,9 +30,13 @@ struct ExrPart {
   int orientation = 1;
 
   std::uint64_t pixel_bytes() const;
+  /// Tiles or groups of lines at full resolution. The file holds the place of each, and OpenEXR takes memory for all of
+  /// these when it opens the file, whichever part is wanted.
+  std::uint64_t chunks() const;
   /// Fewer bytes than this cannot hold the part, however well it compresses.
   std::uint64_t least_file_bytes() const;
-  /// Bytes that OpenEXR needs for its line or tile buffers while it reads with `threads` threads.
+  /// Bytes that OpenEXR needs for its line or tile buffers while it reads with `threads` threads; the largest number
+  /// when they are more than that.
   std::uint64_t buffer_bytes(int threads) const;
 };
 

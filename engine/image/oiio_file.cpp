@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/exception.h"
+#include "core/saturated.h"
 #include "core/text.h"
 #include "image/icc_profile.h"
 #include "image/oiio_metadata.h"
@@ -37,12 +38,13 @@ class OiioFile : public PictureFile {
  public:
   OiioFile(const std::filesystem::path& file, const ContainerFacts& container) : container_(container) { path_ = file; }
 
-  Result<void> open(const SizeLimits& limits) {
-    OIIO::ImageSpec wanted;
+  Result<void> open(const std::string& format, const SizeLimits& limits) {
+    OIIO::ImageSpec wanted, found;
     wanted.attribute("oiio:UnassociatedAlpha", 1);  // straight alpha stays straight: it is multiplied after decoding
     try {
-      input_ = OIIO::ImageInput::open(path_.string(), &wanted);
-      if (!input_) return failed(unknown_format(OIIO::geterror()));
+      input_ = OIIO::ImageInput::create(format);
+      if (!input_) return failed(message_of(OIIO::geterror()));
+      if (!input_->open(path_.string(), found, wanted)) return failed(message_of(input_->geterror()));
       format_ = input_->format_name();
       AFTERGLOW_CHECK(add_parts(limits));
       if (specs_.front().get_int_attribute("oiio:Movie", 0) != 0) note_movie(specs_.front());
@@ -59,8 +61,9 @@ class OiioFile : public PictureFile {
   std::uint64_t buffer_bytes(int part) const override {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
     constexpr std::uint64_t kLines = 64;
-    return spec.scanline_bytes(true) * kLines +
-           (container_.kind == ContainerFacts::Kind::png ? 0 : spec.tile_bytes(true) * 16);
+    const std::uint64_t tiles = container_.kind == ContainerFacts::Kind::png ? 0 : spec.tile_bytes(true);
+    return saturated_sum({saturated_product({spec.scanline_bytes(true), kLines}), saturated_product({tiles, 16}),
+                          container_.decoder_bytes});
   }
 
   Result<void> read(int part, std::span<const ReadTarget> targets) override {
@@ -123,15 +126,8 @@ class OiioFile : public PictureFile {
   }
 
  private:
-  static std::string unknown_format(const std::string& why) {
-    // Among OpenImageIO's reasons this one means that no reader knew the bytes.
-    if (why.empty() || why.find("could not find a format reader") != std::string::npos)
-      return "is not a picture in a format that is known";
-    return message_of(why);
-  }
-
   Result<void> add_parts(const SizeLimits& limits) {
-    const bool pages = format_ == "tiff" || format_ == "psd";
+    const bool pages = format_ == "tiff";
     for (std::size_t i = 0; i < (pages ? kMaxParts : 1) && input_->seek_subimage(static_cast<int>(i), 0); ++i) {
       const OIIO::ImageSpec spec = input_->spec();
       FilePart part;
@@ -239,10 +235,10 @@ class OiioFile : public PictureFile {
 
 }  // namespace
 
-Result<std::unique_ptr<PictureFile>> open_with_oiio(const std::filesystem::path& file, const ContainerFacts& container,
-                                                    const SizeLimits& limits) {
+Result<std::unique_ptr<PictureFile>> open_with_oiio(const std::filesystem::path& file, const std::string& format,
+                                                    const ContainerFacts& container, const SizeLimits& limits) {
   auto opened = std::make_unique<OiioFile>(file, container);
-  AFTERGLOW_CHECK(opened->open(limits));
+  AFTERGLOW_CHECK(opened->open(format, limits));
   return std::unique_ptr<PictureFile>(std::move(opened));
 }
 

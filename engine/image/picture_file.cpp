@@ -2,13 +2,23 @@
 
 #include <fmt/format.h>
 
+#include "core/saturated.h"
 #include "image/container_check.h"
 #include "image/exr_file.h"
 #include "image/movie.h"
 #include "image/oiio_module.h"
+#include "image/picture_format.h"
 
 namespace afterglow {
 namespace {
+
+/// A file that claims more pixels than its bytes can hold is refused before memory is taken for them.
+Result<void> check_room(const std::filesystem::path& file, std::uint64_t least) {
+  std::error_code ec;
+  const std::uint64_t size = std::filesystem::file_size(file, ec);
+  if (ec || size >= least) return {};
+  return Error{ErrorKind::io, fmt::format("is truncated: {} bytes cannot hold its pixels", size), file.string()};
+}
 
 Result<std::unique_ptr<PictureFile>> open_checked_exr(const std::filesystem::path& file, const SizeLimits& limits) {
   AFTERGLOW_TRY(std::vector<ExrPart> parts, read_exr_header(file));
@@ -23,10 +33,8 @@ Result<std::unique_ptr<PictureFile>> open_checked_exr(const std::filesystem::pat
                    file.string()};
   }
   std::uint64_t least = 0;
-  for (const ExrPart& part : parts) least += part.least_file_bytes();
-  std::error_code ec;
-  if (const std::uint64_t size = std::filesystem::file_size(file, ec); !ec && size < least)
-    return Error{ErrorKind::io, fmt::format("is truncated: {} bytes cannot hold its pixels", size), file.string()};
+  for (const ExrPart& part : parts) least = saturated_sum({least, part.least_file_bytes()});
+  AFTERGLOW_CHECK(check_room(file, least));
   return open_exr(file, std::move(parts));
 }
 
@@ -37,13 +45,7 @@ Result<std::unique_ptr<PictureFile>> open_picture(const std::filesystem::path& f
   if (container.kind == ContainerFacts::Kind::exr) return open_checked_exr(file, limits);
   if (container.kind == ContainerFacts::Kind::png || container.kind == ContainerFacts::Kind::jpeg)
     AFTERGLOW_CHECK(check_sides({0, 0, container.size.width, container.size.height}, "picture", limits, file));
-  if (container.kind == ContainerFacts::Kind::png) {
-    // A bit a pixel at least, and deflate gains 1032 at most.
-    const std::uint64_t least = static_cast<std::uint64_t>(container.size.area()) / 8 / 1100;
-    std::error_code ec;
-    if (const std::uint64_t size = std::filesystem::file_size(file, ec); !ec && size < least)
-      return Error{ErrorKind::io, fmt::format("is truncated: {} bytes cannot hold its pixels", size), file.string()};
-  }
+  AFTERGLOW_CHECK(check_room(file, container.least_file_bytes));
   const char* container_name = nullptr;
   if (container.kind == ContainerFacts::Kind::other &&
       movie_container(file, &container_name) == MovieContainer::unreadable_movie)
@@ -53,9 +55,12 @@ Result<std::unique_ptr<PictureFile>> open_picture(const std::filesystem::path& f
                              container_name, file.filename().string(),
                              std::filesystem::path(file.filename()).replace_extension(".mp4").string()),
                  file.string(), 0, "MP4, QuickTime, AVI"};
+  const std::string format = picture_format(file);
+  if (format.empty())
+    return Error{ErrorKind::io, "is not a picture in a format that is known", file.string(), 0, kPictureFormats};
   const auto module = oiio_module();
   if (!module) return Error{ErrorKind::io, module.error().message, file.string()};
-  return module.value()->open(file, container, limits);
+  return module.value()->open(file, format, container, limits);
 }
 
 }  // namespace afterglow

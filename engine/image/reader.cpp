@@ -9,6 +9,7 @@
 
 #include "core/exception.h"
 #include "core/file_trace.h"
+#include "core/saturated.h"
 #include "core/text.h"
 #include "image/color_encoding.h"
 #include "image/orientation.h"
@@ -163,7 +164,7 @@ std::uint64_t host_bytes(const Plan& plan, const std::vector<std::string>& wante
     second = std::max(second, area(part.data_window) * pixel);
     buffers = std::max(buffers, plan.file_of(auxiliary).buffer_bytes(auxiliary.choice.part));
   }
-  return images + second + buffers;
+  return saturated_sum({images, second, buffers});
 }
 
 /// Targets that spread the given channels over the channels of `image`; a channel that occurs twice is read once, into

@@ -46,16 +46,20 @@ void Figures::presented(double milliseconds) {
   latencies_.back().present = milliseconds;
 }
 
+double Figures::fps() const {
+  if (last_ < 0 || intervals_.empty()) return 0;
+  const std::size_t frames = std::min(kFpsFrames, intervals_.size());
+  double sum = 0;
+  for (std::size_t i = intervals_.size() - frames; i < intervals_.size(); ++i) sum += intervals_[i];
+  return sum > 0 ? 1000 * static_cast<double>(frames) / sum : 0;
+}
+
 PlayerStats Figures::stats() const {
   PlayerStats stats;
   stats.interval = Percentiles::of({intervals_.begin(), intervals_.end()});
   stats.work = Percentiles::of({work_.begin(), work_.end()});
-  if (last_ >= 0 && !intervals_.empty()) {
-    const std::size_t frames = std::min(kFpsFrames, intervals_.size());
-    double sum = 0;
-    for (std::size_t i = intervals_.size() - frames; i < intervals_.size(); ++i) sum += intervals_[i];
-    if (sum > 0) stats.fps = 1000 * static_cast<double>(frames) / sum;
-  }
+  stats.fps = fps();
+  stats.rebuilding = rebuilding;
   stats.shown = shown_;
   stats.late = late;
   stats.unreadable = unreadable;

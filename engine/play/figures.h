@@ -24,7 +24,7 @@ struct ReloadLatency {
   double execute = 0;  ///< the first frame of the new stack, upload included
   double present = 0;  ///< from there until it was handed to the screen; 0 without a window
   double total() const {
-    return build.notice + build.script + build.shader + build.pipeline + build.wait + execute + present;
+    return build.notice + build.script + build.shader + build.pipeline + build.warm_up + build.wait + execute + present;
   }
 };
 
@@ -37,6 +37,7 @@ struct PlayerStats {
   std::uint64_t late = 0;        ///< times that the due picture had not been read yet
   std::uint64_t unreadable = 0;  ///< frames that could not be read
   std::uint64_t kept = 0;        ///< frames shown that needed no pass: the same content and settings
+  std::uint64_t rebuilding = 0;  ///< frames due while their structure was being built: the one before stayed
   std::uint64_t reloads = 0;     ///< builds taken
   ReadAhead::Stats cache;
   std::vector<ReloadLatency> latencies;  ///< of the last builds taken, at most 1000
@@ -53,8 +54,9 @@ class Figures {
   /// Adds the time to the screen to the last reload, once.
   void presented(double milliseconds);
   PlayerStats stats() const;
+  double fps() const;  ///< PlayerStats::fps
 
-  std::uint64_t late = 0, unreadable = 0, kept = 0;
+  std::uint64_t late = 0, unreadable = 0, kept = 0, rebuilding = 0;
 
  private:
   std::deque<double> intervals_, work_;

@@ -138,6 +138,7 @@ Result<Picture> Footage::read(int picture, const std::vector<std::string>& auxil
   options.auxiliary = auxiliary;
   AFTERGLOW_TRY(options.depth, resolved(read_.depth, source.number));
   AFTERGLOW_TRY(options.normal, resolved(read_.normal, source.number));
+  AFTERGLOW_TRY(options.motion, resolved(read_.motion, source.number));
   auto read = source.movie ? source.movie->read(source.movie_frame) : read_picture(source.file, options, diagnostics);
   if (read) note_content(*read);
   if (!read && read.error().file.empty()) {

@@ -35,6 +35,8 @@ LiveOptions Player::State::live_options(const std::vector<Override>& overrides) 
   LiveOptions live = options.live;
   live.stack.preset.overrides = overrides;
   live.stack.keep_images = true;  // after an edit only what it changes runs again
+  live.stack.spare_programs = 3;  // of presets whose passes come and go with the frame
+  live.warm_up = options.warm_up;
   live.notify = [this, given = options.live.notify] {
     wake();
     if (given) given();
@@ -138,7 +140,11 @@ Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, 
   // Effects that look back go on over frames that were dropped; after a jump they begin anew.
   if (transport.playing() && ran && due.tick > ran->tick && frame.frame > ran->number)
     frame.step = frame.frame - ran->number;
+  // By the clock, a frame that must be built does not hold up the others.
+  first->build_aside(transport.pacing() == Pacing::real_time);
+  if (second) second->build_aside(transport.pacing() == Pacing::real_time);
   auto done = first->process(read->picture, frame, options.timing);
+  if (done && first->waits()) return false;
   if (done && compare) done = second->process(read->picture, frame);
   shown.failed.reset();
   if (!done) {
@@ -157,7 +163,8 @@ Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, 
   figures.frame_shown(now(), work, transport.playing());
   // The first build is no reload. `process` takes builds too: the generation says what is on screen.
   if (const LiveStatus status = first->live().status(); status.generation != measured) {
-    if (measured > 0) figures.reloaded({.build = status.times, .execute = work, .present = 0});
+    if (measured > 0 && status.times.kind != BuildTimes::Kind::frame)
+      figures.reloaded({.build = status.times, .execute = work, .present = 0});
     measured = status.generation;
     follow_needs();
   }
@@ -178,15 +185,16 @@ Result<bool> Player::State::show_due(double now) {
     if (dirty && picture && shown.position >= 0) return run(picture, {shown.position, due.tick, false});
     return false;
   }
-  reread = false;
+  const ShownFrame before = shown;
   const bool same_picture = picture && read == picture && !dirty && !compare_missing;
   shown.position = due.position;
   shown.number = frame.number;
   shown.held = frame.held;
   shown.name = footage->picture_name(frame.picture);
   shown.unreadable = read->error;
-  transport.shown(due);
   if (read->error) {
+    reread = false;
+    transport.shown(due);
     ++figures.unreadable;
     return true;
   }
@@ -196,11 +204,38 @@ Result<bool> Player::State::show_due(double now) {
   };
   const bool moves = may_change(first.get()) || may_change(second.get());
   if (same_picture && !moves) {
+    reread = false;
+    transport.shown(due);
     ++figures.kept;
     figures.frame_shown(now, 0, transport.playing());
     return true;
   }
-  return run(read, due);
+  AFTERGLOW_TRY(const bool changed, run(read, due));
+  transport.shown(due);
+  if (!changed) {  // it is being built: what is on screen stays
+    if (transport.playing() && due.moved) ++figures.rebuilding;
+    shown = before;
+    return false;
+  }
+  reread = false;
+  return true;
+}
+
+/// One at a time, so that no frame is held up for long.
+Result<bool> Player::State::time_a_kernel(bool changed, Step& step) {
+  if (!time_kernels || !picture) return false;
+  constexpr int kEvery = 2;  // frames while playing
+  if (transport.playing()) {
+    if (changed && first->times().kernels_run > 0) ++frames_untimed;
+    if (frames_untimed < kEvery) return false;
+  } else if (changed || first->all_timed()) {
+    if (!first->all_timed()) step.next = now();
+    return false;
+  }
+  frames_untimed = 0;
+  AFTERGLOW_TRY(const bool timed, first->time_a_kernel());
+  if (timed && !transport.playing() && !first->all_timed()) step.next = now();
+  return timed;
 }
 
 bool Player::in_memory(int position) const {
@@ -221,6 +256,7 @@ Result<Step> Player::step() {
   if (!s.transport.playing()) s.figures.stop();
   AFTERGLOW_TRY(step.changed, s.show_due(now));
   step.next = s.transport.next_due();
+  AFTERGLOW_TRY(step.timed, s.time_a_kernel(step.changed, step));
   s.turn_ended = s.now();
   return step;
 }

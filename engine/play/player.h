@@ -32,6 +32,7 @@ struct PlayerOptions {
   LoopMode loop = LoopMode::loop;
   Pacing pacing = Pacing::real_time;
   KernelTiming timing = KernelTiming::none;
+  bool warm_up = true;            ///< LiveOptions::warm_up of both
   std::string show;               ///< image between passes to show; empty: the result
   std::function<double()> clock;  ///< seconds, never backwards; empty: the system's steady clock
   std::function<void()> wake;     ///< called on any thread when `step` has something to do before `Step::next`
@@ -41,6 +42,7 @@ struct PlayerOptions {
 struct Step {
   bool changed = false;   ///< `images` or `shown` are others than before: draw
   bool reloaded = false;  ///< a new build was taken
+  bool timed = false;     ///< `Player::kernel_times` has something new
   double next = 0;        ///< when the next frame is due, by the player's clock; infinity: not before a `wake`
 };
 
@@ -132,6 +134,14 @@ class Player {
   /// The window has handed the frame of the last turn to the screen.
   void presented();
   PlayerStats stats() const;
+  /// Of `stats`, for each frame of an interface: sorts nothing.
+  double fps() const;
+  std::uint64_t late() const;
+  /// Times kernels one by one: one with every second frame while playing, the others when nothing else is to do. Off at
+  /// first.
+  void time_kernels(bool on);
+  /// What is known of the first preset's kernels, in milliseconds.
+  std::vector<KernelTime> kernel_times() const;
 
  private:
   struct State;

@@ -189,6 +189,11 @@ Result<void> Player::open_other(const std::filesystem::path& preset) {
   return {};
 }
 
+double Player::fps() const { return state_->figures.fps(); }
+std::uint64_t Player::late() const { return state_->figures.late; }
+void Player::time_kernels(bool on) { state_->time_kernels = on; }
+std::vector<KernelTime> Player::kernel_times() const { return state_->first->kernel_times(); }
+
 void Player::presented() {
   State& s = *state_;
   s.figures.presented((s.now() - s.turn_ended) * 1000);

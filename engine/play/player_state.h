@@ -37,13 +37,15 @@ struct Player::State {
   bool dirty = true;      ///< the picture on screen has to be run again
   bool reread = false;    ///< …and so does the one that is being read anew, when it comes
   bool reloaded = false;  ///< builds were taken since the last turn
-  std::string told;  ///< the error that was told last
+  std::string told;       ///< the error that was told last
   /// The last frame that was run.
   struct Ran {
     std::int64_t tick = 0;
     double number = 0;
   };
   std::optional<Ran> ran;
+  bool time_kernels = false;
+  int frames_untimed = 0;    ///< since a kernel was timed
   bool second_runs = false;  ///< B was run for what is on screen
   double turn_ended = 0;
   std::vector<int> wanted_for;       ///< position, heading and speed that the wishes were made for
@@ -59,6 +61,7 @@ struct Player::State {
   void tell_errors();
   void follow_needs();
   Result<bool> show_due(double now);
+  Result<bool> time_a_kernel(bool changed, Step& step);
   Result<bool> run(const std::shared_ptr<const ReadPicture>& read, const Transport::Due& due);
   BuildContext context(const Transport::Due& due) const;
   void apply_edits();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/inside.h"
 #include "core/pack.h"
 #include "core/text.h"
 #include "image/reader.h"

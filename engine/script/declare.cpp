@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "core/text.h"
+#include "script/hold_reader.h"
 #include "script/injection.h"
 #include "script/object.h"
 #include "script/setting.h"
@@ -228,7 +229,7 @@ int declare_effect(lua_State* lua) {
   if (!runtime.declaring) throw failure("fx.effect can only be used while a script loads");
   if (runtime.effects.size() >= kMaxDeclared) throw failure(fmt::format("more than {} effects", kMaxDeclared));
   TableReader table(lua, 1, "fx.effect");
-  table.allow({"active", "at", "build", "doc", "idle", "name", "needs", "optional", "order", "settings"}, false);
+  table.allow({"active", "at", "build", "doc", "holds", "idle", "name", "needs", "optional", "order", "settings"}, false);
   Effect effect;
   EffectSchema& schema = effect.schema;
   schema.name = table.text("name", 65).value_or("");
@@ -243,6 +244,7 @@ int declare_effect(lua_State* lua) {
                        join(injection_points()), nearest_name(schema.at, injection_points())));
   schema.order = table.integer("order").value_or(0);
   read_settings(lua, table, schema);
+  read_holds(lua, table, effect);
   effect.active = read_function(lua, table, "active", false);
   effect.build = read_function(lua, table, "build", true);
   effect.idle = read_function(lua, table, "idle", false);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "script/metatables.h"
 #include "script/native.h"
 #include "script/read_only.h"
 #include "script/value.h"
@@ -106,24 +107,11 @@ int do_tonumber(lua_State* lua) {
   return lua_gettop(lua);
 }
 
-int do_setmetatable(lua_State* lua) {
-  luaL_checktype(lua, 1, LUA_TTABLE);
-  if (!lua_isnil(lua, 2)) luaL_checktype(lua, 2, LUA_TTABLE);
-  if (luaL_getmetafield(lua, 1, "__metatable") != LUA_TNIL) throw failure("setmetatable: this metatable is protected");
-  if (lua_istable(lua, 2)) {
-    lua_pushliteral(lua, "__gc");
-    if (lua_rawget(lua, 2) != LUA_TNIL) throw failure("setmetatable: __gc is not allowed");
-  }
-  lua_settop(lua, 2);
-  lua_setmetatable(lua, 1);
-  return 1;
-}
-
 int do_rawset(lua_State* lua) {
   luaL_checktype(lua, 1, LUA_TTABLE);
   luaL_checkany(lua, 2);
   luaL_checkany(lua, 3);
-  if (luaL_getmetafield(lua, 1, "__metatable") != LUA_TNIL) throw failure("rawset: this table is protected");
+  if (is_protected(lua, 1)) throw failure("rawset: this table is protected");
   lua_settop(lua, 3);
   lua_rawset(lua, 1);
   return 1;

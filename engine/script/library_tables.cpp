@@ -1,10 +1,12 @@
 // The tables `string`, `table` and `math` of scripts.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
 #include "script/globals.h"
+#include "script/metatables.h"
 #include "script/native.h"
 #include "script/read_only.h"
 
@@ -51,11 +53,27 @@ int string_format(lua_State* lua) {
   return 1;
 }
 
+// Nothing, a million times over: Lua's own runs a loop that no limit ends.
+int string_rep(lua_State* lua) {
+  std::size_t size = 0, separator = 0;
+  luaL_checklstring(lua, 1, &size);
+  luaL_checkinteger(lua, 2);
+  luaL_optlstring(lua, 3, "", &separator);
+  if (size + separator == 0) {
+    lua_pushliteral(lua, "");
+    return 1;
+  }
+  lua_pushvalue(lua, lua_upvalueindex(1));
+  lua_insert(lua, 1);
+  call(lua, lua_gettop(lua) - 1, 1);
+  return 1;
+}
+
 // ---- table: like Lua's, on the table itself (no metamethods, whose loops could run unseen), and counted
 
 lua_Integer length(lua_State* lua) {
   luaL_checktype(lua, 1, LUA_TTABLE);
-  if (luaL_getmetafield(lua, 1, "__metatable") != LUA_TNIL) throw failure("this table is read-only");
+  if (is_protected(lua, 1)) throw failure("this table is read-only");
   return static_cast<lua_Integer>(lua_rawlen(lua, 1));
 }
 
@@ -121,6 +139,18 @@ int table_concat(lua_State* lua) {
   return 1;
 }
 
+int table_unpack(lua_State* lua) {
+  const lua_Integer first = luaL_optinteger(lua, 2, 1);
+  const lua_Integer last = lua_isnoneornil(lua, 3) ? luaL_len(lua, 1) : luaL_checkinteger(lua, 3);
+  // Ranges that run over an integer are too long for Lua's own, which says so.
+  if (first <= last) Sandbox::of(lua).charge(std::min<std::uint64_t>(static_cast<std::uint64_t>(last) - static_cast<std::uint64_t>(first), 1u << 20));
+  lua_settop(lua, 3);
+  lua_pushvalue(lua, lua_upvalueindex(1));
+  lua_insert(lua, 1);
+  call(lua, 3, LUA_MULTRET);
+  return lua_gettop(lua);
+}
+
 int table_sort(lua_State* lua) {
   const double size = static_cast<double>(length(lua));
   lua_settop(lua, 2);
@@ -139,9 +169,12 @@ void push_string_library(lua_State* lua) {
   luaopen_string(lua);
   lua_getfield(lua, -1, "format");
   lua_pushcclosure(lua, (&native<string_format, "format">), 1);
-  lua_insert(lua, -2);
-  pick(lua, {"byte", "char", "len", "lower", "rep", "reverse", "sub", "upper"});
-  lua_insert(lua, -2);
+  lua_getfield(lua, -2, "rep");
+  lua_pushcclosure(lua, (&native<string_rep, "rep">), 1);
+  lua_rotate(lua, -3, 2);
+  pick(lua, {"byte", "char", "len", "lower", "reverse", "sub", "upper"});
+  lua_rotate(lua, -3, 1);
+  lua_setfield(lua, -3, "rep");
   lua_setfield(lua, -2, "format");
   make_read_only(lua);
   // Methods of strings come from the same table, and nobody may replace them.
@@ -159,8 +192,12 @@ void push_table_library(lua_State* lua) {
   lua_getfield(lua, -1, "sort");
   lua_pushcclosure(lua, (&native<table_sort, "sort">), 1);
   lua_insert(lua, -2);
-  pick(lua, {"pack", "unpack"});
+  lua_getfield(lua, -1, "unpack");
+  lua_pushcclosure(lua, (&native<table_unpack, "unpack">), 1);
   lua_insert(lua, -2);
+  pick(lua, {"pack"});
+  lua_rotate(lua, -3, 1);
+  lua_setfield(lua, -3, "unpack");
   lua_setfield(lua, -2, "sort");
   set(lua, "insert", &native<table_insert, "insert">);
   set(lua, "remove", &native<table_remove, "remove">);

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/file.h"
+#include "core/inside.h"
 #include "core/text.h"
 #include "script/globals.h"
 #include "script/native.h"
@@ -19,6 +20,7 @@ namespace {
 
 constexpr std::uint64_t kFileCost = 100'000;  // instructions that a look at the file system counts as
 constexpr std::size_t kMaxScript = 1u << 20;  // bytes; presets are a page long
+constexpr std::size_t kMaxScripts = 16u << 20;  // of one state: their texts live outside of Lua's memory
 const char kModules = 0;                      // registry key of the cache of modules
 
 // Marks a name as being loaded, for the life of the object.
@@ -69,10 +71,15 @@ fs::path find_module(const Runtime& runtime, const std::string& name) {
 int do_require(lua_State* lua) {
   Runtime& runtime = Runtime::of(lua);
   if (lua_type(lua, 1) != LUA_TSTRING) throw failure("require: the name of a module must be a text");
-  const std::string name = lua_tostring(lua, 1);
-  lua_settop(lua, 0);
+  std::size_t size = 0;
+  const char* text = lua_tolstring(lua, 1, &size);
+  const std::string name(text, size);  // with any NUL in it, which no module's name has
   lua_rawgetp(lua, LUA_REGISTRYINDEX, &kModules);
-  if (lua_getfield(lua, 1, name.c_str()) != LUA_TNIL) return 1;
+  lua_replace(lua, 1);
+  lua_settop(lua, 1);
+  lua_pushlstring(lua, name.data(), name.size());
+  if (lua_rawget(lua, 1) != LUA_TNIL) return 1;
+  lua_settop(lua, 1);
   if (!runtime.declaring) throw failure("require: can only be used while a script loads");
   const fs::path file = find_module(runtime, name);
   const Loading loading(runtime, name);
@@ -138,16 +145,6 @@ bool is_identifier(const std::string& name) {
   return std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
 }
 
-bool lies_in(const fs::path& file, const fs::path& folder) {
-  std::error_code ec;
-  const fs::path real_file = fs::canonical(file, ec);
-  if (ec) return false;
-  const fs::path real_folder = fs::canonical(folder.empty() ? fs::path(".") : folder, ec);
-  if (ec) return false;
-  const auto [end, ignored] = std::mismatch(real_folder.begin(), real_folder.end(), real_file.begin(), real_file.end());
-  return end == real_folder.end();
-}
-
 void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::optional<std::string>& given) {
   Runtime& runtime = Runtime::of(lua);
   Sandbox& box = *runtime.box;
@@ -157,6 +154,11 @@ void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::o
     const Sandbox::Pause pause(box);
     auto text = given ? Result<std::string>(*given) : read_file(file, kMaxScript);
     if (!text) throw ScriptError{{ErrorKind::script, text.error().message, file.string()}};
+    std::size_t bytes = text->size();
+    for (const Source& source : box.sources()) bytes += source.text.size();
+    if (bytes > kMaxScripts)
+      throw ScriptError{
+          {ErrorKind::script, fmt::format("the scripts of this preset have more than {} MiB together", kMaxScripts >> 20), file.string()}};
     index = box.add_source({file.string(), std::move(*text), library});
   }
   std::string_view text = box.sources()[static_cast<std::size_t>(index)].text;

@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "script/entry_run.h"
 #include "script/graph_binding.h"
+#include "script/hold_reader.h"
 #include "script/injection.h"
 #include "script/native.h"
 #include "script/object.h"
@@ -222,6 +223,17 @@ Result<Graph> Preset::build(const BuildContext& context, Diagnostics& diagnostic
   box.diagnostics = nullptr;
   if (error) return with_entry(std::move(*error), current);
   return graph.finish(image.id);
+}
+
+Result<std::vector<Hold>> Preset::holds(const std::string& entry, Size size) {
+  State& state = *state_;
+  std::vector<Hold> out;
+  auto error = state.runtime->box->run(state.file, [&](lua_State* lua) {
+    for (const auto& run : state.runs)
+      if (run.entry.name == entry) out = holds_of(lua, run, size);
+  });
+  if (error) return std::move(*error);
+  return out;
 }
 
 Result<std::vector<EffectSchema>> list_effects(const SearchPath& path, Diagnostics& diagnostics) {

@@ -47,10 +47,23 @@ struct SettingSchema {
   std::string unit;
 };
 
+/// A promise of an effect about its result (script/holds.h), with its parameters.
+struct Hold {
+  std::string name;
+  std::map<std::string, double> numbers;         ///< NaN: left open
+  std::map<std::string, std::string> settings;  ///< parameters that name a setting
+};
+struct HoldSchema {
+  Hold stated;                        ///< without what is computed
+  std::vector<std::string> computed;  ///< numbers that depend on settings and size
+  bool conditional = false;           ///< holds for some settings or sizes alone
+};
+
 struct EffectSchema {
   std::string name, doc, at;
   int order = 0;
   std::vector<SettingSchema> settings;  ///< in order of declaration
+  std::vector<HoldSchema> holds;        ///< what it promises
   std::filesystem::path file;
   std::vector<std::filesystem::path> shadowed;  ///< files of the same name further down the search path
 };
@@ -124,6 +137,8 @@ class Preset {
   bool may_change() const;
   /// How the settings of the last build came about.
   const Explanation& explanation() const;
+  /// What the entry's effect promises for pictures of this size with the settings of the last build.
+  Result<std::vector<Hold>> holds(const std::string& entry, Size size);
   /// Names of auxiliary inputs that enabled, active effects ask for; where settings may change, those that they could
   /// ask for.
   std::vector<std::string> needs() const;

@@ -29,8 +29,16 @@ struct InputList {
   FunctionRef function;
 };
 
+/// A promise as an effect makes it.
+struct DeclaredHold {
+  HoldSchema schema;
+  FunctionRef when;  ///< not set: always
+  std::map<std::string, FunctionRef> computed;
+};
+
 struct Effect {
   EffectSchema schema;
+  std::vector<DeclaredHold> holds;  ///< parallel to the schema's
   FunctionRef active, build, idle;
   InputList needs, optional;
 };
@@ -109,8 +117,5 @@ bool is_identifier(const std::string& name);
 
 /// Every effect name on the search path, sorted, each once.
 std::vector<std::string> effect_names(const SearchPath& path);
-
-/// Does `file`, links followed, lie in `folder`, links followed?
-bool lies_in(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 }  // namespace afterglow::script

@@ -94,12 +94,16 @@ class Sandbox {
   /// Time that passes while one exists (reading files) does not count.
   class Pause {
    public:
-    explicit Pause(Sandbox& box) : box_(box), begin_(Clock::now()) {}
-    ~Pause() { box_.deadline_ += Clock::now() - begin_; }
+    explicit Pause(Sandbox& box) : box_(box), begin_(Clock::now()), worked_(thread_seconds()) {}
+    ~Pause() {
+      box_.deadline_ += Clock::now() - begin_;
+      box_.began_ += thread_seconds() - worked_;
+    }
 
    private:
     Sandbox& box_;
     std::chrono::steady_clock::time_point begin_;
+    double worked_;
   };
 
   int add_source(Source source);
@@ -123,7 +127,10 @@ class Sandbox {
   using Clock = std::chrono::steady_clock;
   explicit Sandbox(const ScriptLimits& limits) : limits_(limits) {}
   std::optional<Error> run_protected(const std::string& file, lua_CFunction call, void* work);
+  static double thread_seconds();  // what the processor has spent on this thread
   void arm();
+  void look_every(int instructions);
+  bool late();
   bool spent();
   bool interrupted() const {
     return limits_.until && Clock::now().time_since_epoch().count() >= limits_.until->load(std::memory_order_relaxed);
@@ -141,7 +148,9 @@ class Sandbox {
   std::size_t used_ = 0;
   std::size_t allocated_ = 0;       // since the clock was last looked at
   std::uint64_t instructions_ = 0;  // since arm()
-  Clock::time_point deadline_;
+  int step_ = 0;                    // instructions between two looks at the budget
+  Clock::time_point deadline_;      // before it, no script is late
+  double began_ = 0;                // thread_seconds() at arm(), pauses left out
   std::optional<Error> exhausted_;  // sticky until the next arm()
   std::vector<Source> sources_;
   // Raised errors live here and not in Lua, so that raising one needs no Lua memory; few are alive at a time.

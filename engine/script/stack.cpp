@@ -140,7 +140,9 @@ int declare_stack(lua_State* lua) {
 int library_index(lua_State* lua) {
   // __index of the library's own table: called only for names that the library lacks.
   if (lua_type(lua, 2) != LUA_TSTRING) throw failure("fx: the name of an effect must be a text");
-  const std::string name = lua_tostring(lua, 2);
+  std::size_t size = 0;
+  const char* text = lua_tolstring(lua, 2, &size);
+  const std::string name(text, size);  // with any NUL in it, which no effect's name has
   lua_settop(lua, 0);
   if (lua_rawgetp(lua, LUA_REGISTRYINDEX, &kEffects) != LUA_TTABLE) {
     lua_createtable(lua, 0, 8);
@@ -148,7 +150,8 @@ int library_index(lua_State* lua) {
     lua_rawsetp(lua, LUA_REGISTRYINDEX, &kEffects);
     lua_replace(lua, 1);
   }
-  if (lua_getfield(lua, 1, name.c_str()) != LUA_TNIL) return 1;
+  lua_pushlstring(lua, name.data(), name.size());
+  if (lua_rawget(lua, 1) != LUA_TNIL) return 1;
   lua_pushinteger(lua, find_effect(lua, name));
   lua_pushcclosure(lua, (&native<make_entry, "effect">), 1);
   lua_pushvalue(lua, -1);

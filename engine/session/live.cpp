@@ -15,6 +15,7 @@ struct LiveStack::State {
   std::vector<Override> overrides;
   std::string shown;
 
+  std::uint64_t stacks_taken = 0;
   BuiltStack stack;
   mutable std::mutex mutex;
   std::shared_ptr<Heard> heard;  ///< by `stack`, for other threads
@@ -67,7 +68,11 @@ bool LiveStack::update() {
     // Effects that look back go on where they were.
     if (s.stack.stack && parts.structure->stack && !parts.structure->stack->take_histories(*s.stack.stack))
       parts.structure->stack->reset_histories();
+    const bool for_frame = parts.structure->for_frame;
+    if (for_frame && s.stack.stack && parts.structure->stack) parts.structure->stack->keep_programs_of(*s.stack.stack);
+    parts.for_frame = for_frame;
     std::swap(s.stack, *parts.structure);
+    ++s.stacks_taken;
     if (parts.structure->stack) s.builder.release(std::move(*parts.structure));
   }
   if (parts.values) {
@@ -85,6 +90,7 @@ bool LiveStack::update() {
     status.times = parts.times;
     status.times.wait = std::chrono::duration<double, std::milli>(Clock::now() - parts.done).count();
     ++(parts.structure ? counters.structures : counters.values);
+    if (parts.for_frame) ++counters.for_frames;
   });
   return true;
 }
@@ -101,6 +107,13 @@ void LiveStack::set_context(const BuildContext& context, const std::optional<Dis
       },
       build);
 }
+
+void LiveStack::build_for_frame() {
+  state_->builder.change([](LiveRequest& request) { request.for_frame = true; }, true);
+}
+
+std::uint64_t LiveStack::stacks_taken() const { return state_->stacks_taken; }
+bool LiveStack::building() const { return state_->builder.building(); }
 
 void LiveStack::set_overrides(std::vector<Override> overrides) {
   state_->overrides = overrides;

@@ -23,6 +23,9 @@ struct LiveOptions {
   StackOptions stack;  ///< its overrides are the first of `LiveStack::set_overrides`
   /// See Stack::use: source and result will be a FrameRunner's.
   bool own_images = true;
+  /// New kernels are drawn with on another device before they are taken, where the driver would compile them in their
+  /// first frame else (exec/warm_up.h).
+  bool warm_up = false;
   bool follow = true;  ///< watch the files; false: only `LiveStack::reload` looks at them
   WatchOptions watch;
   /// Called on other threads when `update` would change something or `status` has changed: to wake a drawing thread
@@ -36,12 +39,14 @@ struct BuildTimes {
     none,       ///< nothing was built yet
     values,     ///< values alone: no shader, pipeline or memory was touched
     structure,  ///< shaders, passes or images
+    frame,      ///< as before, because the preset has other passes in this frame: no edit
   };
   Kind kind = Kind::none;
   double notice = 0;    ///< from the change on disk (or the call) until the build began
   double script = 0;    ///< the preset, its effects and the graph
   double shader = 0;    ///< GLSL to SPIR-V, and memory for images
   double pipeline = 0;  ///< pipelines
+  double warm_up = 0;   ///< the driver's own compiling, beside the drawing thread
   double wait = 0;      ///< until `update` took it
   int kernels_compiled = 0, pipelines_made = 0;
 };
@@ -77,9 +82,17 @@ class LiveStack {
   /// No submission that uses `stack` may be in flight.
   bool update();
 
+  /// Grows whenever `update` has put another stack in the place of the one before, programs and all.
+  std::uint64_t stacks_taken() const;
+
   /// What the next frames look like: from the first call on, builds are complete with shaders, pipelines and memory
   /// for such a frame. Call it for each frame; cheap when nothing but the time has changed.
   void set_context(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {});
+  /// Builds for the frame that `set_context` said last, whose structure is another one than `stack` has programs for
+  /// (Stack::prepare_if_made). Those it has stay as spare ones.
+  void build_for_frame();
+  /// Whether something is being built, or about to be.
+  bool building() const;
   /// `--set` and the panel's: all of them, later ones win. Those that do not fit the preset are left out with a
   /// warning, and come back when it fits again.
   void set_overrides(std::vector<Override> overrides);
@@ -109,9 +122,11 @@ class LiveStack {
     std::uint64_t failed = 0;
     std::uint64_t values = 0;      ///< taken that touched no shader, pipeline or memory
     std::uint64_t structures = 0;  ///< taken that did
+    std::uint64_t for_frames = 0;  ///< of these, for frames whose structure was another one
     std::uint64_t compiled = 0;    ///< kernels that the compiler made: neither memory nor disk had them
     std::uint64_t pipelines_alive = 0;
     std::uint64_t pipelines = 0;  ///< made so far
+    std::uint64_t images = 0;     ///< between kernels, alive now
     std::uint64_t stacks = 0;     ///< alive now: shown, built, not yet released
   };
   Counters counters() const;  ///< any thread

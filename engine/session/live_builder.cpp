@@ -33,7 +33,11 @@ std::string line_of(const Error& error) {
 
 LiveBuilder::LiveBuilder(Device& device, std::filesystem::path preset, const LiveOptions& options,
                          Diagnostics& diagnostics)
-    : device_(device), preset_(std::move(preset)), options_(options), diagnostics_(diagnostics) {
+    : device_(device),
+      preset_(std::move(preset)),
+      options_(options),
+      diagnostics_(diagnostics),
+      may_warm_up_(options.warm_up && WarmUp::helps(device)) {
   request_.overrides = options.stack.preset.overrides;
   wanted_.request = true;
   wanted_.note(Clock::now());
@@ -116,6 +120,7 @@ void LiveBuilder::run() {
     const Wanted why = std::exchange(wanted_, {});
     busy_ = true;
     const LiveRequest request = request_;
+    if (why.any()) request_.for_frame = false;
     lock.unlock();
     try {
       if (why.any()) work(why, request);
@@ -204,15 +209,15 @@ Result<void> LiveBuilder::build(const LiveRequest& request, BuildTimes& times) {
   follow(std::move(looks));
   times.script = milliseconds_between(start, Clock::now());
   if (!built) return std::move(built).error();
-  if (work && basis_ && same_work(*basis_, *work)) {
+  if (work && basis_ && !request.for_frame && same_work(*basis_, *work)) {
     times.kind = BuildTimes::Kind::values;
     publish(std::move(*built), times);
     return {};
   }
-  times.kind = BuildTimes::Kind::structure;
+  times.kind = request.for_frame ? BuildTimes::Kind::frame : BuildTimes::Kind::structure;
   if (work) {
     if (overtaken() && Clock::now() - published_at_ < kStarving) {
-      give_up();
+      give_up(request.for_frame);
       return {};
     }
     StackShared& shared = *options_.stack.shared;
@@ -224,10 +229,27 @@ Result<void> LiveBuilder::build(const LiveRequest& request, BuildTimes& times) {
     times.shader = std::max(0.0, built->stack->compile_milliseconds() - times.pipeline);
     times.kernels_compiled = shared.compiler.counters().compiled - compiled;
     times.pipelines_made = static_cast<int>(after.made - pipelines.made);
+    if (times.pipelines_made > 0) warm_up(*built->stack, times);
     basis_ = std::move(work);
+    built->for_frame = request.for_frame;
   }
   publish(std::move(*built), times);
   return {};
+}
+
+/// The first stack is not worth it: its first frame is waited for anyway, and its kernels are compiled but once. What
+/// goes wrong here goes wrong again where it counts.
+void LiveBuilder::warm_up(Stack& stack, BuildTimes& times) {
+  if (!may_warm_up_ || !basis_) return;
+  const auto start = Clock::now();
+  if (!warm_up_) {
+    auto made = WarmUp::create(device_);
+    may_warm_up_ = made.ok();
+    if (!made) return;
+    warm_up_ = std::move(made).value();
+  }
+  (void)stack.warm_up(*warm_up_);
+  times.warm_up = milliseconds_between(start, Clock::now());
 }
 
 /// Frames may read what the build did not: other passes at another time.
@@ -284,7 +306,7 @@ void LiveBuilder::publish(BuiltStack built, const BuildTimes& times) {
   BuiltParts old;
   {
     const std::lock_guard lock(mutex_);
-    if (times.kind == BuildTimes::Kind::structure) {
+    if (times.kind != BuildTimes::Kind::values) {
       std::swap(old.structure, parts_.structure);
       parts_.structure = std::move(built);
     }
@@ -300,16 +322,17 @@ void LiveBuilder::publish(BuiltStack built, const BuildTimes& times) {
   notify();
 }
 
-void LiveBuilder::give_up() {
+void LiveBuilder::give_up(bool for_frame) {
   const std::lock_guard lock(mutex_);
   ++counters_.given_up;
+  if (for_frame) request_.for_frame = true;
   wanted_.request = true;
 }
 
 void LiveBuilder::fail(Error error) {
   const bool interrupted = error.kind == ErrorKind::interrupted;
   // A file that was caught half written: the build that follows says what is wrong.
-  if (interrupted || overtaken()) return give_up();
+  if (interrupted || overtaken()) return give_up(false);
   std::string line = line_of(error);
   {
     const std::lock_guard lock(mutex_);
@@ -346,6 +369,11 @@ LiveStatus LiveBuilder::status() const {
   return status;
 }
 
+bool LiveBuilder::building() const {
+  const std::lock_guard lock(mutex_);
+  return busy_ || wanted_.any() || parts_.any();
+}
+
 LiveStack::Counters LiveBuilder::counters() const {
   LiveStack::Counters counters;
   {
@@ -358,6 +386,7 @@ LiveStack::Counters LiveBuilder::counters() const {
   const auto pipelines = shared.pipelines.counters();
   counters.pipelines = pipelines.made;
   counters.pipelines_alive = pipelines.alive;
+  counters.images = shared.images.counters().alive;
   return counters;
 }
 

@@ -22,6 +22,7 @@ struct LiveRequest {
   std::optional<DisplayEncoding> encoding;
   std::vector<Override> overrides;
   std::string shown;
+  bool for_frame = false;  ///< asked for because of `context` alone; the next build takes it
 };
 
 /// What the scripts of one build have said.
@@ -36,12 +37,14 @@ struct BuiltStack {
   std::shared_ptr<Heard> heard;
   std::unique_ptr<Diagnostics> diagnostics;
   std::unique_ptr<Stack> stack;
+  bool for_frame = false;  ///< see LiveRequest
 };
 
 /// Builds that have not been taken yet: a stack, and newer scripts for it or for the one that is shown.
 struct BuiltParts {
   std::optional<BuiltStack> structure, values;
   BuildTimes times;
+  bool for_frame = false;  ///< of the structure that was taken
   std::chrono::steady_clock::time_point done;
   bool any() const { return structure || values; }
 };
@@ -61,6 +64,7 @@ class LiveBuilder {
   void release(BuiltStack stack);  ///< destroys it on the builder's thread
   void forward(const std::function<void(LiveStatus&, LiveStack::Counters&)>& apply);
   LiveStatus status() const;
+  bool building() const;
   LiveStack::Counters counters() const;
 
  private:
@@ -83,7 +87,8 @@ class LiveBuilder {
   BuiltStack new_stack();
   void publish(BuiltStack built, const BuildTimes& times);
   void fail(Error error);
-  void give_up();
+  void give_up(bool for_frame);
+  void warm_up(Stack& stack, BuildTimes& times);
   bool overtaken() const;
   void follow(FileLooks looks);
   void take_new_looks();
@@ -101,6 +106,8 @@ class LiveBuilder {
   FileLooks later_looks_;           ///< of frames since
   std::optional<StackWork> basis_;  ///< of the newest stack that was built
   Clock::time_point published_at_{};
+  std::unique_ptr<WarmUp> warm_up_;
+  bool may_warm_up_;
 
   mutable std::mutex mutex_;  // for all below
   std::condition_variable changed_;

@@ -31,6 +31,20 @@ class LiveSession {
   Result<void> process(const Picture& picture, const BuildContext& frame = {},
                        KernelTiming timing = KernelTiming::none);
 
+  /// Frames whose structure is another one than there are programs for: from now on built beside the drawing thread
+  /// (true), while `process` leaves the images as they were and `waits` says so; or in `process` itself (false, as at
+  /// first). What moves faster than it can be built is built in `process` all the same, every few frames.
+  void build_aside(bool aside);
+  /// The last `process` made nothing of its frame: its structure is being built. LiveOptions::notify tells when it is.
+  bool waits() const;
+  /// One kernel of the last frame, another one each time, is run once more by itself and timed; false when there is
+  /// nothing to time. Whoever reads `images` must be done with them. Errors: device.
+  Result<bool> time_a_kernel();
+  /// What `time_a_kernel` has found, of the kernels that it has met.
+  std::vector<KernelTime> kernel_times() const;
+  /// Whether all kernels of the last frame's program have been timed since it was made.
+  bool all_timed() const;
+
   /// Of the last `process`. See FrameRunner::images.
   DeviceImages images() const;
   /// Reads the result back; an error when nothing had to run (`images().ran`). See FrameRunner::read_result.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <utility>
 
 #include "exec/histories.h"
 #include "graph/history.h"
@@ -65,6 +67,16 @@ struct Stack::State {
   std::shared_ptr<Histories> histories = std::make_shared<Histories>();
   std::unique_ptr<Program> program;
   IdlePrograms idle;
+  /// Of other structures, the one used last first.
+  struct Spare {
+    Graph graph;
+    Hash texts;
+    std::optional<Rect> region;
+    bool encoded = false;
+    std::unique_ptr<Program> program;
+    IdlePrograms idle;
+  };
+  std::vector<Spare> spares;
   double script_ms = 0, compile_ms = 0;
 
   /// Before the programs are made: what earlier frames handed on stays where it still means the same.
@@ -85,12 +97,27 @@ struct Stack::State {
     out.keep_images = options.keep_images;
     out.max_memory = options.max_memory;
     out.pipelines = &shared->pipelines;
+    out.images = &shared->images;
     out.histories = histories;
     return out;
   }
 
   Result<Graph> build(const BuildContext& context, const std::optional<DisplayEncoding>& encoding);
   Result<void> make();
+  /// What `prepare` would do.
+  struct Next {
+    Graph graph;
+    std::optional<Rect> region;
+    bool encoded = false;
+    bool present = false;       ///< the present program will do
+    std::optional<Hash> texts;  ///< where they were looked at
+    std::vector<Spare>::iterator spare;
+  };
+  Result<Next> look_ahead(const BuildContext& context, const std::optional<DisplayEncoding>& encoding,
+                          const std::optional<Rect>& region);
+  Result<void> take(Next next, const BuildContext& context);
+  void put_aside();
+  void drop_spares();
   void cut(Graph& built);
   Result<Hash> texts_of(const Graph& built);
 };
@@ -165,6 +192,7 @@ void Stack::State::cut(Graph& built) {
     return;
   }
   built.result = found == images.begin() ? built.source : built.passes[found - images.begin() - 1].output;
+  separate_result(built);
 }
 
 Result<Graph> Stack::State::build(const BuildContext& context, const std::optional<DisplayEncoding>& encoding) {
@@ -243,39 +271,115 @@ void Stack::use(Device& device, bool own_images) {
     device.use_pipeline_cache((cache / "pipelines").string());
 }
 
+Result<Stack::State::Next> Stack::State::look_ahead(const BuildContext& context,
+                                                    const std::optional<DisplayEncoding>& encoding,
+                                                    const std::optional<Rect>& wanted_region) {
+  Next next{.spare = spares.end()};
+  AFTERGLOW_TRY(next.graph, build(context, encoding));
+  next.region = wanted_region;
+  next.encoded = encoding && !options.reference && next.graph.result != next.graph.source;
+  const auto fits = [&](const Graph& made_for, const std::optional<Rect>& made_region) {
+    return made_region == wanted_region && (!wanted_region || same_reach(made_for, next.graph)) &&
+           same_structure(made_for, next.graph);
+  };
+  next.present = prepared && fits(graph, region);
+  if ((options.shared || options.spare_programs > 0) && (adopted || !next.present)) {
+    AFTERGLOW_TRY(next.texts, texts_of(next.graph));
+    next.present = next.present && texts == next.texts;
+  }
+  if (!next.present && next.texts)
+    next.spare = std::ranges::find_if(spares, [&](const Spare& spare) {
+      return spare.texts == *next.texts && spare.encoded == next.encoded && fits(spare.graph, spare.region);
+    });
+  return next;
+}
+
+/// The present program becomes a spare one, if it may be wanted again.
+void Stack::State::put_aside() {
+  if (options.spare_programs > 0 && prepared && program && texts)
+    spares.insert(spares.begin(), {std::move(graph), *texts, region, encoded, std::exchange(program, nullptr),
+                                   std::exchange(idle, {})});
+}
+
+/// As many as may stay, within the memory that the stack may have.
+void Stack::State::drop_spares() {
+  std::uint64_t bytes = program ? program->memory().arena : 0;
+  std::size_t stay = 0;
+  while (stay < spares.size() && stay < static_cast<std::size_t>(options.spare_programs)) {
+    bytes += spares[stay].program->memory().arena;
+    if (bytes > options.max_memory) break;
+    ++stay;
+  }
+  spares.erase(spares.begin() + static_cast<std::ptrdiff_t>(stay), spares.end());
+}
+
+Result<void> Stack::State::take(Next next, const BuildContext& context) {
+  std::optional<Spare> found;
+  if (next.spare != spares.end()) {
+    found = std::move(*next.spare);
+    spares.erase(next.spare);
+  }
+  if (!next.present) put_aside();
+  if (next.texts) texts = next.texts, adopted = false;
+  region = next.region;
+  encoded = next.encoded;
+  graph = std::move(next.graph);
+  prepared = true;
+  if (found) {
+    program = std::move(found->program);
+    idle = std::move(found->idle);
+    AFTERGLOW_CHECK(fit_histories());
+    AFTERGLOW_CHECK(program->use(histories));
+    AFTERGLOW_CHECK(idle.use(histories));
+  } else if (!next.present) {
+    AFTERGLOW_CHECK(make());
+  }
+  if (found || next.present) {
+    if (program) program->set_parameters(graph);
+    idle.set_parameters(graph);
+  }
+  drop_spares();
+  if (graph.result != graph.source)
+    histories->begin(context.frame, context.step, context.restart);
+  else
+    histories->reset();
+  return {};
+}
+
 Result<void> Stack::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding,
                             const std::optional<Rect>& region) {
-  AFTERGLOW_TRY(Graph graph, state_->build(context, encoding));
-  const bool encoded = encoding && !state_->options.reference && graph.result != graph.source;
-  const bool same_region = state_->region == region && (!region || same_reach(state_->graph, graph));
-  bool reusable = state_->prepared && same_region && same_structure(state_->graph, graph);
-  if (state_->options.shared && (state_->adopted || !reusable)) {
-    AFTERGLOW_TRY(const Hash texts, state_->texts_of(graph));
-    reusable = reusable && state_->texts == texts;
-    state_->texts = texts;
-    state_->adopted = false;
-  }
-  state_->region = region;
-  state_->encoded = encoded;
-  state_->graph = std::move(graph);
-  state_->prepared = true;
-  if (!reusable) {
-    AFTERGLOW_CHECK(state_->make());
-  } else {
-    if (state_->program) state_->program->set_parameters(state_->graph);
-    state_->idle.set_parameters(state_->graph);
-  }
-  if (runs())
-    state_->histories->begin(context.frame, context.step, context.restart);
-  else
-    state_->histories->reset();
-  return {};
+  AFTERGLOW_TRY(auto next, state_->look_ahead(context, encoding, region));
+  return state_->take(std::move(next), context);
+}
+
+Result<bool> Stack::prepare_if_made(const BuildContext& context) {
+  AFTERGLOW_TRY(auto next, state_->look_ahead(context, {}, {}));
+  const bool made =
+      next.present || next.spare != state_->spares.end() || next.graph.result == next.graph.source || !state_->prepared;
+  if (made) AFTERGLOW_CHECK(state_->take(std::move(next), context));
+  return made;
+}
+
+void Stack::keep_programs_of(Stack& other) {
+  State &s = *state_, &from = *other.state_;
+  from.put_aside();
+  std::ranges::move(from.spares, std::back_inserter(s.spares));
+  from.spares.clear();
+  s.drop_spares();
+}
+
+Result<void> Stack::warm_up(WarmUp& on) {
+  if (!runs()) return {};
+  return on.draw(*state_->scripts.shaders, state_->shared->compiler, state_->graph, state_->options_of_programs());
 }
 
 /// The program of `graph`.
 Result<void> Stack::State::make() {
-  program.reset();
+  // Images that programs share go with the last of them: where they are kept, the program before stays until the new
+  // one is there.
+  std::unique_ptr<Program> before = std::exchange(program, nullptr);
   idle = {};
+  if (!options.keep_images) before.reset();
   if (graph.result == graph.source) return {};
   const auto start = Clock::now();
   AFTERGLOW_CHECK(fit_histories());

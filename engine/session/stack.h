@@ -13,8 +13,10 @@
 #include "core/result.h"
 #include "exec/choice.h"
 #include "exec/idle_programs.h"
+#include "exec/image_pool.h"
 #include "exec/pipeline_pool.h"
 #include "exec/program.h"
+#include "exec/warm_up.h"
 #include "gpu/device.h"
 #include "script/preset.h"
 #include "session/display_encoding.h"
@@ -29,6 +31,7 @@ struct StackShared {
   explicit StackShared(std::filesystem::path cache_folder) : compiler(std::move(cache_folder)) {}
   KernelCompiler compiler;
   PipelinePool pipelines;
+  ImagePool images;  ///< of those that keep them: they must be run on one thread
 };
 
 struct StackOptions {
@@ -39,6 +42,9 @@ struct StackOptions {
   bool skip_idle = true;  ///< run frames without the effects that their content makes idle (never with `reference`)
   bool flag_non_finite = false;  ///< the result's alpha tells of colours that were not finite: see ProgramOptions
   bool keep_images = false;      ///< images between passes stay, so that after an edit only what it changes runs again
+  /// Programs of other structures that stay besides the present one, for presets whose structure moves with the frame;
+  /// with their images, within `max_memory` altogether.
+  int spare_programs = 0;
   std::uint64_t max_memory = 6ull << 30;  ///< bytes of device memory for images
   std::filesystem::path cache_folder;     ///< for shaders and pipelines; empty: no disk caches
   /// At most so many rows an invocation, whatever calibration says. Fewer make large frames slower and shaders faster
@@ -102,6 +108,9 @@ class Stack {
   /// and within it, only that part of the result is made.
   Result<void> prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {},
                        const std::optional<Rect>& region = {});
+  /// As `prepare`, where programs are there that will do: those of the last structure or spare ones. False when
+  /// shaders, pipelines or memory would have to be made: then nothing is changed.
+  Result<bool> prepare_if_made(const BuildContext& context);
   /// The first half of `prepare`: builds the graph and makes nothing yet. Touches no device.
   Result<StackWork> build(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {});
   /// The second half: makes what the last `build` has found.
@@ -109,6 +118,12 @@ class Stack {
   /// Takes over the scripts of a stack that was loaded later with the same StackShared, with all that they say, and
   /// gives it its own. Programs stay, and the next `prepare` keeps those that still do. Touches no device.
   void adopt(Stack& later);
+  /// What `other`, which is not used any more, has made for its structures becomes spare here. Same StackShared and
+  /// options.
+  void keep_programs_of(Stack& other);
+  /// A pixel of each kernel of the last `prepare`, on another device. Touches none of this stack's. Errors: those of
+  /// `prepare`.
+  Result<void> warm_up(WarmUp& on);
   /// False when no effect has anything to do: the result *is* the source, and `record` records nothing.
   bool runs() const;
   /// The program of the last `prepare`; null before it, and when nothing runs.

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <system_error>
 
+#include "core/cache_folder.h"
 #include "core/file.h"
 #include "shader/glsl.h"
 #include "shader/interleave.h"
@@ -31,6 +32,7 @@ struct KernelCompiler::State {
   std::mutex mutex;
   std::map<Hash, std::shared_ptr<Entry>> entries;
   std::uint64_t asked = 0;
+  std::atomic<std::uint64_t> saved = 0;
   std::atomic<int> compiled = 0, from_disk = 0, from_memory = 0;
 
   fs::path file_for(const Hash& text) const {
@@ -58,21 +60,26 @@ struct KernelCompiler::State {
 
   std::shared_ptr<const KernelFile> load(const AssembledKernel& assembled) const {
     if (folder.empty()) return nullptr;
-    auto bytes = read_file(file_for(assembled.hash));
+    const fs::path file = file_for(assembled.hash);
+    auto bytes = read_file(file);
     if (!bytes) return nullptr;
     auto kernel = decode(*bytes);
     if (!kernel || kernel->text != assembled.hash || kernel->offsets.size() != assembled.params.size()) return nullptr;
+    note_cache_use(file);
     return std::make_shared<const KernelFile>(std::move(*kernel));
   }
 
   /// A cache that cannot be written is no cache, and no error.
-  void save(const KernelFile& kernel) const {
+  void save(const KernelFile& kernel) {
     if (folder.empty()) return;
     std::error_code ec;
     fs::create_directories(folder, ec);
     if (ec) return;
     const auto written = write_file_atomically(file_for(kernel.text), encode(kernel));
     static_cast<void>(written.ok());
+    // Each edit of a shader leaves a file behind. Most processes write none, and need not look.
+    constexpr std::uint64_t kTrimEvery = 128;
+    if (saved++ % kTrimEvery == 0) trim_cache(folder, ".kernel");
   }
 };
 

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/file.h"
+#include "core/inside.h"
 #include "core/text.h"
 
 namespace afterglow {
@@ -56,6 +57,7 @@ class Resolver {
 
   Result<std::size_t> add(const fs::path& path, const IncludeLine& line, int depth) {
     ShaderSource::Include include{line.name, path, {}, {}, {}};
+    AFTERGLOW_CHECK(check_inside(search_, path));
     AFTERGLOW_TRY(include.text, read_shader(path));
     bytes_ += include.text.size();
     if (bytes_ > kMaxIncludeBytes)
@@ -148,6 +150,13 @@ bool is_safe_name(const std::string& name) {
   for (const auto& part : split(name, '/'))
     if (part.empty() || part == "." || part == "..") return false;
   return true;
+}
+
+Result<void> check_inside(const SearchPath& search, const fs::path& file) {
+  for (const auto& root : search.user)
+    if (file.lexically_normal().string().starts_with((root / "").lexically_normal().string()) && !lies_in(file, root))
+      return shader_error(file.string(), 0, fmt::format("is a link that leads out of {}", root.string()));
+  return {};
 }
 
 Result<std::string> read_shader(const fs::path& path) {

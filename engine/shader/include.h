@@ -19,6 +19,10 @@ inline constexpr std::size_t kMaxIncludeBytes = 2u << 20;  ///< of all files tog
 /// True for a name that stays below the folder it is looked up in: relative, no "..", no odd characters.
 bool is_safe_name(const std::string& name);
 
+/// What comes with a preset may not reach out of its folder by a link; an installation may be made of links. Errors:
+/// script.
+Result<void> check_inside(const SearchPath& search, const std::filesystem::path& file);
+
 /// Reads one file of GLSL, without a byte order mark. Errors: script.
 Result<std::string> read_shader(const std::filesystem::path& path);
 

@@ -118,7 +118,8 @@ std::optional<LinesRead> lines_shared(const Filter& filter, AxisRatio ratio_y, i
 Result<AssembledKernel> assemble(const KernelDesc& kernel);
 
 /// GLSL → SPIR-V with glslang, reflected with SPIRV-Cross, cached on disk by the hash of the assembled text and the
-/// compiler version. Corrupt cache files are ignored and rebuilt. Thread-safe.
+/// compiler version. Corrupt cache files are ignored and rebuilt; the folder is held within CacheLimits
+/// (core/cache_folder.h). Thread-safe.
 class KernelCompiler {
  public:
   explicit KernelCompiler(std::filesystem::path cache_folder);  ///< empty: no disk cache

@@ -74,6 +74,7 @@ Result<std::shared_ptr<const ShaderSource>> ShaderLibrary::find(const std::strin
     error.nearest = nearest_name(name, names());
     return error;
   }
+  AFTERGLOW_CHECK(check_inside(path_, hits.front()));
   AFTERGLOW_TRY(auto source, load(path_, name, hits.front()));
   sources_[name] = source;
   return source;

@@ -6,9 +6,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <mutex>
+#include <thread>
+#include <utility>
 
 #include "gpu/error.h"
 
@@ -32,10 +37,30 @@ Error no_display(const std::string& why) {
   return error;
 }
 
-/// Xlib ends the process when its server goes away, with exit code 1 and no word of ours: say so, and end as a lost
-/// device does. Nothing can be shown or asked any more, and what is written to files is written atomically.
+/// The main thread has it but while it waits for events: then others may do its work.
+struct MainThread {
+  std::thread::id id;
+  std::timed_mutex busy;
+  std::function<void()> last_words;
+};
+MainThread& main_thread() {
+  static MainThread only;
+  return only;
+}
+
+/// Xlib ends the process when its server goes away, with exit code 1 and no word of ours, and does not allow to go on:
+/// write what is to be written, say so, and end as a lost device does. The call that failed may be the main thread's or
+/// that of a thread that wakes it.
 int on_display_lost(void*) {
+  constexpr std::chrono::seconds kPatience{5};  // with a frame that is being made
+  MainThread& thread = main_thread();
+  static std::atomic_flag told;
+  while (told.test_and_set()) std::this_thread::sleep_for(kPatience);  // another thread is at it, and ends the process
+  const bool here = std::this_thread::get_id() == thread.id;
   std::fputs("error: the connection to the display was lost\n", stderr);
+  if (here || thread.busy.try_lock_for(kPatience)) {
+    if (const auto say = std::exchange(thread.last_words, nullptr)) say();
+  }
   std::fflush(nullptr);
   std::_Exit(static_cast<int>(ErrorKind::device));
 }
@@ -57,6 +82,8 @@ DesktopWindow& self(GLFWwindow* window) { return *static_cast<DesktopWindow*>(gl
 Result<std::unique_ptr<DesktopWindow>> DesktopWindow::create(const std::string& title, Size size) {
   if (glfwInit() != GLFW_TRUE) return no_display(glfw_reason());
   std::unique_ptr<DesktopWindow> out(new DesktopWindow);  // from here on its destructor ends GLFW
+  main_thread().id = std::this_thread::get_id();
+  main_thread().busy.lock();
   watch_display();
   if (glfwVulkanSupported() != GLFW_TRUE) return no_display(glfw_reason());
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
@@ -80,6 +107,8 @@ Result<std::unique_ptr<DesktopWindow>> DesktopWindow::create(const std::string& 
 DesktopWindow::~DesktopWindow() {
   if (window_) glfwDestroyWindow(window_);
   glfwTerminate();
+  main_thread().last_words = nullptr;
+  main_thread().busy.unlock();
 }
 
 void DesktopWindow::listen() {
@@ -161,14 +190,20 @@ void DesktopWindow::set_full_screen(bool on) {
 
 void DesktopWindow::set_clipboard(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }
 
+void DesktopWindow::set_last_words(std::function<void()> say) { main_thread().last_words = std::move(say); }
+
 void DesktopWindow::wait(double seconds) {
   if (seconds <= 0) {
     glfwPollEvents();
-  } else if (std::isfinite(seconds)) {
+    return;
+  }
+  main_thread().busy.unlock();
+  if (std::isfinite(seconds)) {
     glfwWaitEventsTimeout(seconds);
   } else {
     glfwWaitEvents();
   }
+  main_thread().busy.lock();
 }
 
 WindowEvents DesktopWindow::take_events() { return std::exchange(events_, {}); }

@@ -51,6 +51,10 @@ class DesktopWindow {
   void set_full_screen(bool on);
   bool full_screen() const { return full_screen_; }
   void set_clipboard(const std::string& text);
+  /// Called once when the display goes away, with no other work of the main thread under way; then the process ends
+  /// with exit code 5, because neither Xlib nor GLFW can go on without it. For what has to be written. It must not use
+  /// the window.
+  void set_last_words(std::function<void()> say);
 
   /// Handles events; blocks until one comes, `wake` is called or `seconds` have passed (0: not at all; infinity: as
   /// long as it takes).

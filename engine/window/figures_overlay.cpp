@@ -25,6 +25,7 @@ void draw_stats_overlay(const Player& player, const Ui& ui, const OverlayArea& a
   row("shown", fmt::format("{}", stats.shown));
   row("dropped", fmt::format("{}", stats.dropped), stats.dropped > 0 ? ui_color::kWarning : ui_color::kText);
   row("late", fmt::format("{}", stats.late), stats.late > 0 ? ui_color::kWarning : ui_color::kText);
+  if (stats.rebuilding > 0) row("building", fmt::format("{}", stats.rebuilding), ui_color::kWarning);
   row("reloads", fmt::format("{}", stats.reloads));
   if (!stats.latencies.empty()) {
     const ReloadLatency& last = stats.latencies.back();
@@ -34,6 +35,7 @@ void draw_stats_overlay(const Player& player, const Ui& ui, const OverlayArea& a
     row("script", fmt::format("{:.1f}", last.build.script));
     row("shader", fmt::format("{:.1f}", last.build.shader));
     row("pipeline", fmt::format("{:.1f}", last.build.pipeline));
+    row("warm-up", fmt::format("{:.1f}", last.build.warm_up));
     row("wait", fmt::format("{:.1f}", last.build.wait));
     row("execute", fmt::format("{:.1f}", last.execute));
     row("present", fmt::format("{:.1f}", last.present));

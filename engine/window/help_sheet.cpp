@@ -57,7 +57,8 @@ void draw_help_sheet(Ui& ui, ImVec2 area) {
     }
     ImGui::EndGroup();
     ImGui::TextDisabled(
-        "Wheel: zoom at the pointer. Middle button or Alt+drag: move the picture. Ctrl+click a slider: type a value.");
+        "Wheel: zoom at the pointer. Drag: move the picture, or the wipe's border. Double click: between fit and 1:1.\n"
+        "Ctrl+click a slider: type a value. Right click a setting: as in the file, or its default.");
   }
   ImGui::End();
 }

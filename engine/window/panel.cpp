@@ -77,10 +77,10 @@ SettingValue boolean(bool on) { return {SettingType::boolean, {on ? 1.0 : 0.0}, 
 
 }  // namespace
 
-double cost_of(const std::string& entry, const FrameTimes& times) {
+double cost_of(const std::string& entry, const std::vector<KernelTime>& times) {
   double sum = 0;
   bool known = false;
-  for (const auto& kernel : times.kernels) {
+  for (const auto& kernel : times) {
     const auto passes = split(kernel.name, '+');
     const auto own = std::count_if(passes.begin(), passes.end(),
                                    [&](const std::string& pass) { return pass.substr(0, pass.find('.')) == entry; });

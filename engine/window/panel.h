@@ -45,6 +45,6 @@ class Panel {
 
 /// Milliseconds that the passes of an entry took; a kernel that several effects share counts evenly for each. Negative:
 /// not known.
-double cost_of(const std::string& entry, const FrameTimes& times);
+double cost_of(const std::string& entry, const std::vector<KernelTime>& times);
 
 }  // namespace afterglow

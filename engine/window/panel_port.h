@@ -22,7 +22,7 @@ class PanelPort {
   virtual const Preset* preset() = 0;  ///< of the stack that is shown; null: there was no good one yet
   virtual LiveStatus status() = 0;
   virtual const std::vector<Skipped>& skipped() = 0;  ///< effects that the last frame left out, with reasons
-  virtual const FrameTimes& times() = 0;              ///< of the last frame
+  virtual std::vector<KernelTime> times() = 0;        ///< of kernels, as far as they are known
 
   virtual const SettingEdits& edits() = 0;
   virtual void set(const std::string& entry, const std::string& setting, const SettingValue& value) = 0;

@@ -11,14 +11,13 @@ PlayParts::PlayParts(Player& player, const std::filesystem::path& preset, const 
 }
 
 void PlayParts::draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) const {
-  const PlayerStats stats = player.stats();
   TransportBarState state{.transport = player.transport(),
                           .now = player.now(),
                           .shown = player.shown().position,
                           .number = [&player](int position) { return player.footage().frame(position).number; },
                           .cached = [&player](int position) { return player.in_memory(position); },
-                          .fps = stats.fps,
-                          .late = stats.late,
+                          .fps = player.fps(),
+                          .late = player.late(),
                           .picture = player.shown().name};
   draw_transport_bar(ui, state, place, size);
 }
@@ -32,6 +31,11 @@ void PlayParts::add_to(WindowOptions& options) {
   options.transport_height = [](const Ui& ui) { return transport_bar_height(ui); };
   options.help = [](Player&, Ui& ui, ImVec2, ImVec2 size) { draw_help_sheet(ui, size); };
   options.save = [this](Player&, Ui&) { panel_->save(port_); };
+  options.undo_save = [this](Player&, Ui& ui) {
+    if (!panel_->saving().can_undo()) return ui.say("nothing was saved");
+    panel_->undo_save(port_);
+  };
+  options.search = [this](Player&, Ui&) { panel_->search(); };
   options.preset_opened = [this](const std::filesystem::path& preset) { panel_.emplace(preset, preset_options_); };
 }
 

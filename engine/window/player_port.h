@@ -14,7 +14,7 @@ class PlayerPort final : public PanelPort {
   const Preset* preset() override;
   LiveStatus status() override { return player_.live().status(); }
   const std::vector<Skipped>& skipped() override;
-  const FrameTimes& times() override { return player_.last_times(); }
+  std::vector<KernelTime> times() override { return player_.kernel_times(); }
 
   const SettingEdits& edits() override { return player_.edits(); }
   void set(const std::string& entry, const std::string& setting, const SettingValue& value) override {

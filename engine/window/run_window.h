@@ -28,6 +28,8 @@ struct WindowOptions {
   std::function<float(const Ui&)> transport_height;  ///< that it wants
   Part help;                                         ///< over everything
   std::function<void(Player&, Ui&)> save;            ///< Ctrl+S; empty: there is no such thing
+  std::function<void(Player&, Ui&)> undo_save;       ///< takes back the last `save`
+  std::function<void(Player&, Ui&)> search;          ///< the keyboard goes to the panel's search
   std::function<void(Player&, Ui&)> hidden_panel;    ///< called in place of `panel` while that is hidden
   /// Another preset is being played from here on.
   std::function<void(const std::filesystem::path&)> preset_opened;

@@ -59,6 +59,11 @@ constexpr Shortcut kShortcuts[] = {
     {Action::redo, GLFW_KEY_Z, kBoth, "Ctrl+Shift+Z", "Preset", "Redo", true},
     {Action::save, GLFW_KEY_S, kControl, "Ctrl+S", "Preset", "Write the changed settings into the preset"},
 
+    {Action::undo_save, GLFW_KEY_S, kBoth, "Ctrl+Shift+S", "Preset",
+     "The preset's file as it was before the last save"},
+    {Action::reset_all, GLFW_KEY_BACKSPACE, kControl, "Ctrl+Backspace", "Preset", "All settings as the file has them"},
+    {Action::search, GLFW_KEY_F, kControl, "Ctrl+F", "Preset", "Search settings"},
+
     {Action::panel, GLFW_KEY_TAB, kNone, "Tab", "Window", "Settings panel"},
     {Action::transport, GLFW_KEY_T, kNone, "T", "Window", "Transport bar"},
     {Action::stats, GLFW_KEY_S, kNone, "S", "Window", "Frame times and reload latency"},
@@ -66,7 +71,7 @@ constexpr Shortcut kShortcuts[] = {
     {Action::screenshot, GLFW_KEY_F12, kNone, "F12", "Window", "Write the window's contents to a PNG file"},
     {Action::help, GLFW_KEY_F1, kNone, "F1", "Window", "This sheet"},
     {Action::help, GLFW_KEY_SLASH, kShift, "?", "Window", "This sheet"},
-    {Action::escape, GLFW_KEY_ESCAPE, kNone, "Esc", "Window", "Close the sheet; leave full screen"},
+    {Action::escape, GLFW_KEY_ESCAPE, kNone, "Esc", "Window", "Close the sheet, else leave full screen"},
     {Action::quit, GLFW_KEY_Q, kNone, "Q", "Window", "Quit"},
     {Action::quit, GLFW_KEY_Q, kControl, "Ctrl+Q", "Window", "Quit"},
 };

@@ -228,6 +228,20 @@ bool WindowApp::act_on_preset(Action action) {
     case Action::save:
       if (options_.save) options_.save(player_, ui);
       return true;
+    case Action::undo_save:
+      if (options_.undo_save) options_.undo_save(player_, ui);
+      return true;
+    case Action::reset_all: {
+      const bool edited = !player_.edits().edits().empty();
+      player_.end_gesture();
+      player_.reset_all();
+      ui.say(edited ? "all settings as the file has them" : "no setting was changed");
+      return true;
+    }
+    case Action::search:
+      ui.show_panel = true;
+      if (options_.search) options_.search(player_, ui);
+      return true;
     default:
       return false;
   }

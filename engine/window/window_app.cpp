@@ -52,6 +52,7 @@ Result<void> WindowApp::run() {
     take_events();
     quit_ = quit_ || options_.interrupted();
   }
+  diagnostics_.note(fmt::format("window closed: {} frames drawn", painter_->swapchain().counters().presented));
   return {};
 }
 
@@ -66,6 +67,7 @@ Result<Step> WindowApp::step() {
     step_shown_ = false;
     redraw_ = std::max(redraw_, 1);
   }
+  if (turn.timed && player_.session().all_timed()) redraw_ = std::max(redraw_, 1);
   return turn;
 }
 
@@ -206,6 +208,7 @@ void WindowApp::draw_parts(Size window) {
   const float panel = options_.panel && ui.show_panel ? std::min(ui.px(kPanelWidth), width * 0.6f) : 0;
   const float wanted = options_.transport_height ? options_.transport_height(ui) : ui.px(kTransportHeight);
   const float bar = options_.transport && ui.show_transport ? std::min(wanted, height * 0.5f) : 0;
+  player_.time_kernels(panel > 0);  // it shows what effects cost
   if (panel > 0) {
     options_.panel(player_, ui, {width - panel, 0}, {panel, height});
   } else if (options_.hidden_panel) {

@@ -19,6 +19,11 @@ return fx.effect {
     return s.tint[1] > 0 or s.tint[2] > 0 or s.tint[3] > 0, "tint is black"
   end,
 
+  holds = {
+    "black", "constant", "mirror", "turn_180", "monotone",
+    continuous = function(s) return 1 + s.intensity * math.max(s.tint[1], s.tint[2], s.tint[3]) end,
+    error = { when = function(s) return s.intensity * math.max(s.tint[1], s.tint[2], s.tint[3]) <= 1e5 end },
+  },
   build = function(g, s, source)
     local image = g:filter { source = source, size = { math.max(source.width // 2, 1), math.max(source.height // 2, 1) },
                              filter = fx.filters.bilinear(), name = "half" }

@@ -30,6 +30,7 @@ return fx.effect {
     speed_up = fx.float { min = 0.01, max = 1000, default = 4, unit = "EV/s", doc = "How fast the exposure follows when the scene gets brighter." },
     speed_down = fx.float { min = 0.01, max = 1000, default = 2, unit = "EV/s", doc = "How fast it follows when the scene gets darker." },
   },
+  holds = { "black", "constant" },
   build = function(g, s, source)
     if s.high_percentile <= s.low_percentile then error("high_percentile must be above low_percentile", 0) end
     if s.max_ev < s.min_ev then error("max_ev must not be below min_ev", 0) end

@@ -19,9 +19,16 @@ local function knee_vector(s)
   return { t, tk - t, 2 * tk, 0.25 / (tk + 1e-5) }
 end
 
--- The picture as it would be at that height: halved while that leaves at least as much, then the mean over what is left.
-local function scaled(g, source, height)
-  local width = math.max(1, (2 * source.width * height + source.height) // (2 * source.height))
+-- Size of the picture whose glow is made: of the source, or as it would be at reference_height.
+local function size_of(s, source)
+  if s.reference_height == 0 then return source.width, source.height end
+  local height = s.reference_height
+  return math.max(1, (2 * source.width * height + source.height) // (2 * source.height)), height
+end
+
+-- The picture of that size: halved while that leaves at least as much, then the mean over what is left.
+local function scaled(g, s, source)
+  local width, height = size_of(s, source)
   local image, i = source, 0
   local function to(size, filter)
     image = g:filter { source = image, size = size, filter = filter, name = ("scaled[%d]"):format(i) }
@@ -35,6 +42,33 @@ local function scaled(g, source, height)
   end
   return image
 end
+
+-- Levels of the pyramid for a picture, and whether every size on the way down is half of the one before.
+local function pyramid(s, source)
+  local width, height = size_of(s, source)
+  local levels, even = 0, s.reference_height == 0 and width % 2 == 0 and height % 2 == 0
+  width, height = width // 2, height // 2
+  if width < 2 * s.downscale_limit or height < 2 * s.downscale_limit then return 0, true end
+  even = even and width % 2 == 0 and height % 2 == 0
+  width, height = width // 2, height // 2
+  while levels < s.max_iterations and width >= s.downscale_limit and height >= s.downscale_limit do
+    levels = levels + 1
+    even = even and (levels == s.max_iterations or width % 2 == 0 and height % 2 == 0 or width // 2 < s.downscale_limit or height // 2 < s.downscale_limit)
+    width, height = width // 2, height // 2
+  end
+  return levels, even
+end
+
+local function is_even(s, source)
+  local _, even = pyramid(s, source)
+  return even
+end
+
+-- Pixels that light reaches, generously: nine reads two texels apart at each level, and four on the way up.
+local function reach(s, source) return 24 * 2 ^ pyramid(s, source) end
+
+local function passes_all(s) return s.threshold == 0 and not s.fade_fireflies end
+local function scatters(s) return s.mode == "scattering" end
 
 return fx.effect {
   name = "bloom",
@@ -75,8 +109,24 @@ return fx.effect {
     return { brightest = -knee[2] * (1 - slack) }
   end,
 
+  holds = {
+    "black", "constant", "mirror", "turn_180",
+    mean = { within = 1e-4, margin = reach, when = function(s, source) return scatters(s) and passes_all(s) and is_even(s, source) end },
+    no_added_light = { within = 1e-4, margin = reach, when = function(s, source) return scatters(s) and is_even(s, source) end },
+    bounded = { when = scatters },
+    monotone = { when = function(s) return not s.fade_fireflies end },
+    continuous = { slope = function(s, source)
+      local gain = scatters(s) and math.min(s.intensity, kScatterLimit) or s.intensity * pyramid(s, source)
+      return 1 + gain * (s.fade_fireflies and 6 or 1)
+    end },
+    linear = { within = 1e-3, when = function(s) return passes_all(s) and s.intensity <= 1 end },
+    proportional = { setting = "intensity", up_to = function(s) return scatters(s) and kScatterLimit or 10 end },
+    turn_90 = { margin = reach, when = is_even },
+    shift = { by = function(s, source) return 2 ^ (pyramid(s, source) + 1) end, margin = reach, when = is_even },
+    error = { fp32 = 1e-5, fp16 = 2e-3, levels = "max_iterations" },
+  },
   build = function(g, s, source)
-    local picture = s.reference_height > 0 and scaled(g, source, s.reference_height) or source
+    local picture = s.reference_height > 0 and scaled(g, s, source) or source
     local width, height = picture.width // 2, picture.height // 2
     if width < 2 * s.downscale_limit or height < 2 * s.downscale_limit then
       g:skip(("the picture is too small: %dx%d, downscale_limit %d needs %d on each side"):format(

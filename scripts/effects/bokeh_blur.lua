@@ -38,6 +38,13 @@ return fx.effect {
       doc = "Makes bright points count for more, where the picture lost their true light (8 bits); HDR pictures need none." },
   },
   active = function(s) return s.radius > 0, "radius is 0" end,
+  holds = {
+    "black", "constant",
+    "bounded", monotone = { when = function(s) return s.highlights == 0 end },
+    linear = { when = function(s) return s.highlights == 0 end },
+    continuous = { slope = 1, when = function(s) return s.highlights == 0 end },
+    error = { fp32 = 5e-4, fp16 = 4e-3, up_to = 50 },
+  },
   build = function(g, s, source)
     local spacing = s.radius / (kRings + 0.5)
     local image = source

@@ -17,6 +17,11 @@ return fx.effect {
   -- The weights of luma add up to 1 but for their rounding.
   idle = function(s) return { brightest = s.threshold * (s.brightness == "max" and 1 or 1 - 1e-6) } end,
 
+  holds = {
+    "black", "constant", "mirror", "turn_180", "monotone", "turn_90",
+    continuous = function(s) return 1 + math.max(s.blur_iterations - 1, 1) end,
+    error = { fp32 = 1e-5, fp16 = 2e-3, levels = "blur_iterations" },
+  },
   build = function(g, s, source)
     local blur = s.pattern == "plus" and fx.filters.plus(1) or fx.filters.box(1)
     local image = g:pass { shader = "box_bloom/threshold", source = source, threshold = s.threshold, luma = s.brightness == "luma", name = "threshold" }

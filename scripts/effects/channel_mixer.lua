@@ -32,6 +32,19 @@ return fx.effect {
     return false, "all settings are neutral"
   end,
 
+  holds = {
+    "black", "constant", "mirror", "turn_180", "turn_90", shift = 1,
+    continuous = 6,
+    linear = { when = function(s)
+      for _, row in ipairs(rows(s)) do
+        for _, percent in ipairs(row) do
+          if percent < 0 then return false end
+        end
+      end
+      return true
+    end },
+    error = 1e-5,
+  },
   build = function(g, s, source)
     local m = rows(s)
     for _, row in ipairs(m) do

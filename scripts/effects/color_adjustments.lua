@@ -35,6 +35,11 @@ return fx.effect {
     return false, "all settings are neutral"
   end,
 
+  holds = { "constant", "mirror", "turn_180", "turn_90", shift = 1, 
+    error = { fp32 = 1e-4, fp16 = 1e-2, up_to = 60, when = function(s)
+      return math.abs(s.post_exposure) <= 20 and math.max(s.color_filter[1], s.color_filter[2], s.color_filter[3]) <= 1e5
+    end },
+  },
   build = function(g, s, source)
     local use = steps(s)
     local sextants = s.hue_shift / 60

@@ -10,5 +10,6 @@ return fx.effect {
     intensity = fx.float { min = 0, max = 2, default = 0, doc = "Factor of green; 0: the effect does not run." },
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
+  holds = { "black", "monotone", "linear", "constant", "mirror", "turn_180", "turn_90", shift = 1, continuous = 2, error = 1e-5 },
   build = function(g, s, source) return g:pass { shader = "color_blit/green", source = source, intensity = s.intensity } end,
 }

@@ -23,6 +23,7 @@ return fx.effect {
   },
   needs = { "depth" },
 
+  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = { fp32 = 5e-4, fp16 = 1, up_to = 50 } },
   build = function(g, s, source)
     local f = s.focal_length / 1000
     local d = math.max(s.focus_distance, 1.01 * f)  -- nearer nothing is ever sharp

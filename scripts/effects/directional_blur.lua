@@ -21,6 +21,7 @@ return fx.effect {
     angle = fx.float { min = -180, max = 180, default = 0, unit = "degrees", doc = "Direction: 0 across, 90 up and down, 45 rising to the right." },
   },
   active = function(s) return s.distance > 0, "distance is 0" end,
+  holds = { "black", "constant", "bounded", "monotone", "linear", "turn_180", continuous = 1, error = { fp32 = 5e-4, fp16 = 1, up_to = 50 } },
   build = function(g, s, source)
     local radians = s.angle * math.pi / 180
     local x, y = math.cos(radians), -math.sin(radians)

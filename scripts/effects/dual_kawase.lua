@@ -12,6 +12,7 @@ return fx.effect {
   },
   active = function(s) return s.iterations > 0, "iterations is 0" end,
 
+  holds = { "black", "constant", "bounded", "monotone", "linear", "mirror", "turn_180", "turn_90", continuous = 1, error = { fp32 = 1e-5, fp16 = 2e-3, levels = "iterations" } },
   build = function(g, s, source)
     local o = s.offset
     local down = { taps = { { 0, 0, 1 / 2 }, { -o, -o, 1 / 8 }, { o, -o, 1 / 8 }, { -o, o, 1 / 8 }, { o, o, 1 / 8 } } }

@@ -2,6 +2,11 @@
 -- from black to white is 1. For lines of objects instead of brightness see `outline`.
 local fx = require "afterglow"
 
+-- Lines are `intensity` times as sensitive as gradients are, and the ink may be much brighter than the picture.
+local function rounding(s)
+  return 1e-5 + 3e-5 * s.intensity * math.max(1, s.color[1], s.color[2], s.color[3], s.background[1], s.background[2], s.background[3])
+end
+
 return fx.effect {
   name = "edge_detection",
   doc = "Draws lines where brightness changes: Sobel, Scharr or Roberts.",
@@ -16,6 +21,11 @@ return fx.effect {
     background_opacity = fx.float { min = 0, max = 1, default = 0, doc = "0: lines over the picture. 1: lines over the background alone." },
   },
   active = function(s) return s.intensity > 0 or s.background_opacity > 0, "intensity and background_opacity are 0" end,
+  holds = {
+    "constant",
+    mirror = { within = rounding, when = function(s) return s.operator ~= "roberts" end },
+    error = { fp32 = rounding, fp16 = function(s) return 2e-3 + 500 * rounding(s) end },
+  },
   build = function(g, s, source)
     return g:pass { shader = "edge_detection/lines", source = source, operator = ({ sobel = 0, scharr = 1, roberts = 2 })[s.operator],
                     intensity = s.intensity, threshold = s.threshold, ink = s.color, paper = s.background, opacity = s.background_opacity }

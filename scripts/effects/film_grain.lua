@@ -14,6 +14,7 @@ return fx.effect {
     seed = fx.int { min = 0, default = 0, doc = "Another number, other grain." },
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
+  holds = { "black", error = 1e-5 },
   build = function(g, s, source)
     return g:pass { shader = "film_grain/grain", source = source, strength = 0.25 * s.intensity, response = s.response,
                     size_of_grain = s.size, colored = s.colored, frame = math.floor(g.frame) & 0x7fffffff, seed = s.seed, fine = s.size == 1 }

@@ -17,6 +17,7 @@ return fx.effect {
       doc = "Where there are no earlier frames. keep: everything stays. clamp: single bright pixels go, small lights too." },
   },
   idle = function(s) return { brightest = s.threshold } end,
+  holds = { "black", "constant", "mirror", "turn_180", no_added_light = 1e-6 },
   build = function(g, s, source)
     -- The brightness of the last four frames in the four channels: what was before the first one counts as bright or as dark.
     local unknown = s.first_frame == "keep" and 1e30 or 0

@@ -12,6 +12,8 @@ return fx.effect {
     subpixel_blending = fx.float { min = 0, max = 1, default = 0.75, doc = "How much single pixels and thin lines are smoothed; softens the picture." },
     quality = fx.enum { "low", "medium", "high", default = "high", doc = "How far the ends of an edge are looked for: low 6.5 pixels, medium and high 18.5, high with finer steps." },
   },
+  -- It decides by comparing; where two things are equally likely, rounding does.
+  holds = { "black", "constant", "bounded", error = { fp32 = 0.1, fp16 = 1 } },
   build = function(g, s, source)
     local luma = g:pass { shader = "fxaa/luma", source = source, name = "luma" }
     return g:pass { shader = "fxaa/smooth_edges", source = source, luma = luma, quality = ({ low = 0, medium = 1, high = 2 })[s.quality],

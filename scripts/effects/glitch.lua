@@ -17,6 +17,7 @@ return fx.effect {
   active = function(s)
     return s.scan_line_jitter > 0 or s.horizontal_shake > 0 or s.rgb_split > 0 or s.vertical_roll ~= 0, "all settings are 0"
   end,
+  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = 1e-5 },
   build = function(g, s, source)
     local jitter = s.scan_line_jitter
     return g:pass {

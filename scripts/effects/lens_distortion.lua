@@ -17,6 +17,9 @@ return fx.effect {
     local bends = s.intensity ~= 0 and (s.x_multiplier > 0 or s.y_multiplier > 0)
     return bends or s.scale ~= 1, "nothing bends and scale is 1"
   end,
+  -- Positions between pixels are rounded: the more, the larger the picture; so what is read at a hard edge is off by as much.
+  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1,
+            error = { fp32 = function(_, source) return 1e-3 + 2e-5 * math.max(source.width, source.height) end, fp16 = function(_, source) return 4e-3 + 2e-5 * math.max(source.width, source.height) end, up_to = 1 } },
   build = function(g, s, source)
     local theta = math.min(1.6 * math.max(math.abs(s.intensity) * 100, 1), 160) * math.pi / 180
     return g:pass {

@@ -24,6 +24,12 @@ end
 
 local function all(c, value) return c[1] == value and c[2] == value and c[3] == value end
 
+local function brightest(s)
+  local most = 0
+  for _, color in ipairs { s.lift, s.gamma, s.gain } do most = math.max(most, color[1], color[2], color[3]) end
+  return most
+end
+
 return fx.effect {
   name = "lift_gamma_gain",
   doc = "The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.",
@@ -37,6 +43,7 @@ return fx.effect {
     local lift, power, gain = values(s)
     return not (all(lift, 0) and all(power, 1) and all(gain, 1)), "all settings are neutral"
   end,
+  holds = { "constant", "mirror", "turn_180", "turn_90", shift = 1, "monotone", error = { when = function(s) return brightest(s) <= 1e5 end } },
   build = function(g, s, source)
     local lift, power, gain = values(s)
     return g:pass { shader = "lift_gamma_gain/grade", source = source, lift = lift, power = power, gain = gain }

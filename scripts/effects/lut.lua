@@ -24,6 +24,7 @@ return fx.effect {
     if s.file == "" then return false, "file is not given" end
     return s.intensity > 0, "intensity is 0"
   end,
+  holds = { "constant", "mirror", "turn_180", "turn_90", shift = 1 },
   build = function(g, s, source)
     local lookup = g:lookup { file = s.file }
     local output = s.output == "same" and s.input or s.output

@@ -56,6 +56,12 @@ return fx.effect {
     return true
   end,
 
+  -- An edge is `contrast` times as steep; what is bright shines through ink that is not quite opaque.
+  holds = {
+    error = { fp32 = function(s) return 1e-4 * math.max(1, s.contrast) end, fp16 = 1, when = function(s)
+      return s.contrast <= 100 and math.abs(s.depth_scale) <= 100 and math.abs(s.normal_scale) <= 100 and s.divide_factor >= 1e-3
+    end },
+  },
   build = function(g, s, source)
     if s.source == "device_depth" and s.depth_space ~= "device" then
       error('source = "device_depth" requires depth_space = "device"', 0)

@@ -10,6 +10,7 @@ return fx.effect {
     size = fx.int { min = 1, max = 1024, default = 8, unit = "px", doc = "Side of a square. 1: the picture as it is." },
   },
   active = function(s) return s.size > 1, "size is 1" end,
+  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = 1e-5 },
   build = function(g, s, source)
     local across, down = (source.width + s.size - 1) // s.size, (source.height + s.size - 1) // s.size
     local rows = g:pass { shader = "pixelate/mean", source = source, size = { across, source.height }, block = s.size, down = false, name = "rows" }

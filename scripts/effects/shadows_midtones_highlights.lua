@@ -19,6 +19,12 @@ local function is_white(c) return c[1] == 1 and c[2] == 1 and c[3] == 1 end
 -- smoothstep needs limits that differ, in 32 bits too.
 local function beyond(limit, start) return math.max(limit, start * 1.0001 + 1e-5) end
 
+local function brightest(s)
+  local most = 0
+  for _, color in ipairs { s.shadows, s.midtones, s.highlights } do most = math.max(most, color[1], color[2], color[3]) end
+  return most
+end
+
 return fx.effect {
   name = "shadows_midtones_highlights",
   doc = "Colours and brightens shadows, midtones and highlights, each by itself.",
@@ -36,6 +42,7 @@ return fx.effect {
     return not (is_white(factor(s.shadows, s.shadows_offset)) and is_white(factor(s.midtones, s.midtones_offset))
                 and is_white(factor(s.highlights, s.highlights_offset))), "all factors are 1"
   end,
+  holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1, error = { when = function(s) return brightest(s) <= 1e5 end } },
   build = function(g, s, source)
     return g:pass {
       shader = "shadows_midtones_highlights/scale", source = source,

@@ -11,6 +11,7 @@ return fx.effect {
     contrast = fx.float { min = 0, max = 1, default = 0, doc = "How much is sharpened: 0 CAS at its softest, 1 at its strongest." },
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
+  holds = { "black", "constant", "mirror", "turn_180", "turn_90", error = 1e-5 },
   build = function(g, s, source)
     return g:pass { shader = "sharpen/contrast_adaptive", source = source, amount = s.intensity, peak = 1 / (8 - 3 * s.contrast) }
   end,

@@ -16,6 +16,13 @@ return fx.effect {
     if s.intensity <= 0 then return false, "intensity is 0" end
     return s.color[1] ~= 1 or s.color[2] ~= 1 or s.color[3] ~= 1, "color is white"
   end,
+  holds = {
+    "black", "monotone",
+    linear = 1e-5, continuous = function(s) return math.max(1, s.color[1], s.color[2], s.color[3]) end,
+    mirror = { when = function(s) return s.center[1] == 0.5 and s.center[2] == 0.5 end },
+    turn_180 = { when = function(s) return s.center[1] == 0.5 and s.center[2] == 0.5 end },
+    error = { when = function(s) return math.max(s.color[1], s.color[2], s.color[3]) <= 1e5 end },
+  },
   build = function(g, s, source)
     local aspect = s.rounded and source.width / source.height or 1
     return g:pass { shader = "vignette/darken", source = source, center = s.center, extent = { 3 * s.intensity * aspect, 3 * s.intensity },

@@ -198,13 +198,116 @@ TEST_F(PlayWindow, APresetThatAppearsLater) {
   expect_clean_end();
 }
 
-TEST_F(PlayWindow, LosingTheDisplayEndsWithACleanError) {
+TEST_F(PlayWindow, LosingTheDisplayEndsWithACleanErrorAndTheReport) {
+  write_preset("{ 1, 0, 0 }");
+  for (const bool playing : {false, true}) {
+    std::vector<std::string> arguments{"look.lua", "shot.####.exr", "--stats", "--report", "play.json"};
+    if (!playing) arguments.emplace_back("--paused");
+    Xvfb display;
+    ASSERT_TRUE(display.runs());
+    program_ = std::make_unique<PlayedWindow>(display.display(), folder_, std::move(arguments));
+    ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+    if (playing) {
+      ASSERT_TRUE(program_->wait_for("shown shot.0003.exr"));
+    }
+    display.kill();
+    EXPECT_EQ(program_->finish(), 5);
+    EXPECT_NE(program_->printed().find("error: the connection to the display was lost"), std::string::npos);
+    EXPECT_NE(program_->printed().find("frames: "), std::string::npos);
+    const auto report = read_file(folder_ / "play.json");
+    ASSERT_TRUE(report) << report.error().text();
+    EXPECT_NE(report->find("the connection to the display was lost"), std::string::npos);
+    fs::remove(folder_ / "play.json");
+  }
+}
+
+TEST_F(PlayWindow, FillsTheScreenAndGoesBack) {
   write_preset("{ 1, 0, 0 }");
   play({"look.lua", "shot.0001.exr"});
   ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
-  xvfb_.kill();
-  EXPECT_EQ(program_->finish(), 5);
-  EXPECT_NE(program_->printed().find("error: the connection to the display was lost"), std::string::npos);
+  const auto has_size = [&](const std::string& size) {
+    return until([&] {
+      std::string geometry;
+      run_on(xvfb_.display(), "xdotool search --class afterglow getwindowgeometry", &geometry);
+      return geometry.find("Geometry: " + size) != std::string::npos;
+    });
+  };
+  ASSERT_TRUE(user("search --class afterglow windowsize 600 400"));
+  EXPECT_TRUE(has_size("600x400"));
+  ASSERT_TRUE(user("mousemove 100 100 key F11"));
+  EXPECT_TRUE(has_size("1280x800"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  ASSERT_TRUE(user("key Escape"));
+  EXPECT_TRUE(has_size("600x400"));
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
+TEST_F(PlayWindow, TheMessageCanBeCopied) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.0001.exr"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  std::ofstream(folder_ / "look.lua") << "local fx = require \"afterglow\"\nreturn fx.stack {\n  fx.blom { },\n}\n";
+  ASSERT_TRUE(program_->wait_for("reload: failed"));
+  ASSERT_TRUE(user("mousemove 400 300 key ctrl+c"));
+  std::string copied;
+  EXPECT_TRUE(until([&] {
+    copied.clear();
+    return run_on(xvfb_.display(), "timeout 5 xclip -selection clipboard -o", &copied) == 0 && !copied.empty();
+  }));
+  EXPECT_NE(copied.find("look.lua:3: error"), std::string::npos) << copied;
+  EXPECT_NE(copied.find("fx.blom"), std::string::npos) << copied;
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
+TEST_F(PlayWindow, TheWipeFollowsTheHand) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.0001.exr"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  ASSERT_TRUE(user("mousemove 400 300 key w"));
+  EXPECT_TRUE(until_color(0.3, kY, kGray));
+  const int middle = (1280 - 376) / 2;  // of the picture, which is as wide as the window without the panel
+  ASSERT_TRUE(user("mousemove " + std::to_string(middle) + " 300"));
+  ASSERT_TRUE(user("mousedown 1"));
+  ASSERT_TRUE(user("mousemove 300 300"));
+  ASSERT_TRUE(user("mousemove 200 300"));
+  EXPECT_TRUE(until_color(0.3, kY, kRed));
+  EXPECT_TRUE(has_color(shot(), 0.1, kY, kGray));
+  ASSERT_TRUE(user("mouseup 1"));
+  ASSERT_TRUE(user("mousemove 400 300 key q"));
+  expect_clean_end();
+}
+
+TEST_F(PlayWindow, WhatIsTypedIntoTheSearchIsNoShortcut) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.0001.exr"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  const Screen before = shot();
+  ASSERT_TRUE(user("mousemove 400 300 key ctrl+f"));
+  EXPECT_TRUE(until([&] { return shot().rgb != before.rgb; }));  // the cursor stands in the field
+  ASSERT_TRUE(user("type gyq"));                                 // channels, and the end, if they were shortcuts
+  ASSERT_TRUE(user("key Escape"));
+  ASSERT_TRUE(user("mousemove 400 300 key w"));
+  EXPECT_TRUE(until_color(0.1, kY, kGray));  // keys are shortcuts again
+  EXPECT_TRUE(has_color(shot(), 0.6, kY, kRed)) << "all channels are shown";
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
+TEST_F(PlayWindow, DrawsNothingWhileNothingChanges) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.0001.exr"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  for (int i = 0; i < 8; ++i) shot();  // each takes many frames' time
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+  const std::string printed = program_->printed();
+  const auto at = printed.find("window closed: ");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_LT(std::stoi(printed.substr(at + 15)), 60);
 }
 
 TEST_F(PlayWindow, WithoutADisplayItNamesHeadless) {

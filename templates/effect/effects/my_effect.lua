@@ -8,6 +8,8 @@ return fx.effect {
     color    = fx.color { default = { 1, 0.5, 0.2 }, doc = "The colour, scene-linear." },
   },
   active = function(s) return s.strength > 0, "strength is 0" end,
+  -- What `afterglow stress --effect my_effect --path .` holds it to.
+  holds = { "constant", "mirror", "turn_90", "monotone", shift = 1, continuous = 1 },
   build = function(g, s, source)
     return g:pass { shader = "my_effect/my_effect", source = source, strength = s.strength, tint = s.color }
   end,

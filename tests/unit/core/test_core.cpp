@@ -26,6 +26,18 @@ TEST(Error, PrintsOneLineWithPlaceAllowedAndNearest) {
   EXPECT_EQ(Error{.message = "plain"}.text(), "error: plain");
 }
 
+TEST(Error, TextsNeverReachTheTerminalAsEscapes) {
+  Error error{ErrorKind::io, "layer 'a\x1b]0;owned\a\r\nb' \x7f", "x\x1b[2J.exr", 3, "\t", "\xc2\x9b""31m"};
+  error.trail = {"in \x1b[1m"};
+  EXPECT_EQ(error.text(),
+            "x [2J.exr:3: error: layer 'a ]0;owned   b'  ; allowed:  ; did you mean ' 31m'?\n  in  [1m");
+  EXPECT_EQ((Error{ErrorKind::io, "größer: 3×4 → …"}).text(), "error: größer: 3×4 → …");
+  std::string shown;
+  Diagnostics diagnostics([&](Severity, const std::string& text) { shown = text; });
+  diagnostics.warn("one\x1b[2J\n  two");
+  EXPECT_EQ(shown, "one [2J\n  two");
+}
+
 Result<int> half(int x) {
   if (x % 2) return Error{.message = "odd"};
   return x / 2;

@@ -106,15 +106,29 @@ TEST(History, ARegionNeedsAllThatIsKept) {
   EXPECT_EQ(parts.kernels[1], (Rect{4, 4, 2, 2}));
 }
 
-TEST(History, AnotherFrameRunsItsReaders) {
+TEST(History, WhatItHoldsReachesItsReaders) {
+  const auto changed = [](const Graph& graph, const Plan& plan, ImageId image, bool first_kernel) {
+    std::vector<Hash> own(plan.kernels.size());
+    const auto before = content_keys(graph, plan, own, [](ImageId) { return Hash{}; });
+    if (first_kernel) own[0] = {1, 1};
+    const auto after = content_keys(graph, plan, own, [&](ImageId id) { return Hash{id == image ? 1u : 0u, 0}; });
+    std::vector<bool> out;
+    for (std::size_t i = 0; i < before.size(); ++i) out.push_back(before[i] != after[i]);
+    return out;
+  };
   const Trail t;
   const Plan plan = make_plan(t.b.graph, {});
-  EXPECT_EQ(kernels_to_run(t.b.graph, plan, {false, false}, {t.before}), (std::vector<bool>{true, true}));
-  EXPECT_EQ(kernels_to_run(t.b.graph, plan, {false, false}, {}), (std::vector<bool>{false, false}));
+  EXPECT_EQ(changed(t.b.graph, plan, t.before, false), (std::vector<bool>{true, true}));
   // Through a first image, what makes that counts too.
   const Trail first(true);
   const Plan longer = make_plan(first.b.graph, {});
-  EXPECT_EQ(kernels_to_run(first.b.graph, longer, {true, false, false}, {}), (std::vector<bool>{true, true, true}));
+  EXPECT_EQ(changed(first.b.graph, longer, kNoImage, true), (std::vector<bool>{true, true, true}));
+}
+
+TEST(History, WhatIsHandedOnRuns) {
+  const Trail t;
+  const Plan plan = make_plan(t.b.graph, {});
+  EXPECT_EQ(kernels_to_run(t.b.graph, plan, {true, false}), (std::vector<bool>{true, false}));
 }
 
 TEST(History, IdleEffectsKeepWhatMakesTheirHistories) {

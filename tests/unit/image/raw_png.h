@@ -1,6 +1,8 @@
 // PNG files byte by byte: what OpenImageIO does not write.
 #pragma once
 
+#include <zlib.h>
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,10 +11,10 @@ namespace afterglow {
 
 class RawPng {
  public:
-  RawPng(int width, int height, int bits, int type) : bytes_("\x89PNG\r\n\x1a\n", 8) {
+  RawPng(int width, int height, int bits, int type, bool interlaced = false) : bytes_("\x89PNG\r\n\x1a\n", 8) {
     std::string head;
     for (const int side : {width, height}) head += big_endian(static_cast<std::uint32_t>(side));
-    head += {static_cast<char>(bits), static_cast<char>(type), 0, 0, 0};
+    head += {static_cast<char>(bits), static_cast<char>(type), 0, 0, static_cast<char>(interlaced)};
     chunk("IHDR", head);
   }
   static std::string big_endian(std::uint32_t v) {
@@ -50,5 +52,15 @@ class RawPng {
   }
   std::string bytes_;
 };
+
+/// As zlib packs it, at its best.
+inline std::string deflated(const std::string& data) {
+  uLongf size = compressBound(static_cast<uLong>(data.size()));
+  std::string out(size, '\0');
+  compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(data.data()),
+            static_cast<uLong>(data.size()), 9);
+  out.resize(size);
+  return out;
+}
 
 }  // namespace afterglow

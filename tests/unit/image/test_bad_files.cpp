@@ -1,13 +1,13 @@
 // Missing, damaged and hostile files: one clear error, no crash, nothing large allocated.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <cstring>
 #include <random>
 
 #include "make_files.h"
+#include "memory_cap.h"
 #include "raw_png.h"
 #include "temporary_folder.h"
 
@@ -134,27 +134,6 @@ INSTANTIATE_TEST_SUITE_P(All, Damaged,
                            std::replace(name.begin(), name.end(), '.', '_');
                            return name;
                          });
-
-/// Refuses allocations above 512 MiB more than are in use while it lives.
-class MemoryCap {
- public:
-  MemoryCap() {
-    getrlimit(RLIMIT_AS, &before_);
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    return;  // sanitizers reserve terabytes
-#endif
-    std::ifstream statm("/proc/self/statm");
-    std::size_t pages = 0;
-    statm >> pages;
-    rlimit cap = before_;
-    cap.rlim_cur = pages * 4096 + (512u << 20);
-    setrlimit(RLIMIT_AS, &cap);
-  }
-  ~MemoryCap() { setrlimit(RLIMIT_AS, &before_); }
-
- private:
-  rlimit before_{};
-};
 
 class Bombs : public testing::Test {
  protected:

@@ -40,6 +40,11 @@ TEST(Sanitize, CountsAndMends) {
   SanitizeCounts counts;
   decode_color(linear, rgba.data(), 3, counts);
   EXPECT_EQ(rgba, (std::vector<float>{0, 0, 1e30f, 1, 0, 1e30f, 0.5f, 1, 0, 1e30f, 7, -0.25f}));
+  std::vector<float> heavy{1, 1, 1, 3e38f, 1, 1, 1, -1e30f};  // sums of such alphas would overflow
+  SanitizeCounts of_heavy;
+  decode_color(linear, heavy.data(), 2, of_heavy);
+  EXPECT_EQ(heavy, (std::vector<float>{1, 1, 1, 1, 1, 1, 1, -1e30f}));
+  EXPECT_EQ(of_heavy.alpha, 1u);
   EXPECT_EQ(counts.nan, 1u);
   EXPECT_EQ(counts.negative, 2u);
   EXPECT_EQ(counts.too_large, 2u);

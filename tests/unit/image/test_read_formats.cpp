@@ -40,6 +40,7 @@ const Case kCases[] = {
     {"Hdr", "hdr", OIIO::TypeFloat, {"R", "G", "B"}, 0, 1.0 / 128},
     {"Bmp", "bmp", OIIO::TypeUInt8, {"R", "G", "B"}, 255, 0.5 / 255},
     {"Targa", "tga", OIIO::TypeUInt8, {"R", "G", "B"}, 255, 0.5 / 255},
+    {"Sgi", "sgi", OIIO::TypeUInt8, {"R", "G", "B"}, 255, 0.5 / 255},
 };
 
 class Formats : public testing::TestWithParam<std::tuple<Case, Size>> {};

@@ -343,6 +343,70 @@ TEST_F(PlayerTest, EditsAreMeasuredFromNoticeToPresent) {
   EXPECT_NEAR(player.stats().latencies.back().present, 7, 1e-6) << "once";
 }
 
+/// A look with one pass more in every second frame.
+constexpr const char* kBlinking = R"(local fx = require "afterglow"
+return fx.effect {
+  name = "blink", at = "post_process", settings = {},
+  build = function(g, s, source)
+    local at = g:pass { shader = "blink/twice", source = source, name = "first" }
+    if g.frame % 2 == 0 then at = g:pass { shader = "blink/twice", source = at, name = "second" } end
+    return at
+  end,
+})";
+constexpr const char* kTwice =
+    "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return vec4(fetch(source, p).rgb * 2.0, 1); }\n";
+
+TEST_F(PlayerTest, PassesThatComeAndGoAreBuiltBesideThePlaying) {
+  write_sequence(3);
+  fs::create_directories(folder_ / "effects");
+  fs::create_directories(folder_ / "shaders" / "blink");
+  write("effects/blink.lua", kBlinking);
+  write("shaders/blink/twice.glsl", kTwice);
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.blink {} }\n");
+  Player& player = open();
+  turn();
+  EXPECT_EQ(result(), 0.25f);
+  player.transport().play(player.now());
+  turn();
+  seconds_ += 0.1;
+  EXPECT_FALSE(turn().changed) << "the second frame has another pass, which is being built";
+  EXPECT_EQ(player.shown().position, 0);
+  EXPECT_EQ(result(), 0.25f);
+  EXPECT_EQ(player.stats().rebuilding, 1u);
+  EXPECT_TRUE(turn().changed);
+  EXPECT_EQ(player.shown().position, 1);
+  EXPECT_EQ(result(), 1.f);
+  seconds_ += 0.1;
+  EXPECT_TRUE(turn().changed);
+  EXPECT_EQ(result(), 0.75f);
+  for (int i = 0; i < 6; ++i) {  // from here on both are there
+    seconds_ += 0.1;
+    EXPECT_TRUE(turn().changed);
+  }
+  EXPECT_EQ(player.stats().rebuilding, 1u);
+  EXPECT_EQ(player.stats().reloads, 0u) << "nothing was edited";
+  EXPECT_EQ(player.stats().dropped, 0u);
+}
+
+TEST_F(PlayerTest, KernelsAreTimedWhenNothingElseIsToDo) {
+  write_sequence(2);
+  fs::create_directories(folder_ / "effects");
+  fs::create_directories(folder_ / "shaders" / "blink");
+  write("effects/blink.lua", kBlinking);
+  write("shaders/blink/twice.glsl", kTwice);
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.blink {} }\n");
+  Player& player = open();
+  turn();
+  const float before = result();
+  EXPECT_TRUE(player.kernel_times().empty()) << "nobody has asked";
+  player.time_kernels(true);
+  int timed = 0;
+  for (Step step = turn(); step.next <= player.now() || step.timed; step = turn()) timed += step.timed ? 1 : 0;
+  EXPECT_EQ(timed, static_cast<int>(player.session().kernels().size()));
+  EXPECT_EQ(player.kernel_times().size(), player.session().kernels().size());
+  EXPECT_EQ(result(), before);
+}
+
 TEST_F(PlayerTest, PlaysSomethingElse) {
   write_sequence(2);
   Player& player = open();

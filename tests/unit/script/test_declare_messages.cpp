@@ -20,8 +20,8 @@ std::string setting(const std::string& type) { return declared("  settings = {\n
 
 TEST(DeclareMessages, Effects) {
   EXPECT_EQ(declared("  odrer = 3,"),
-            "effects/glow.lua:3: error: fx.effect has no 'odrer'; allowed: active, at, build, doc, idle, name, needs, "
-            "optional, order, "
+            "effects/glow.lua:3: error: fx.effect has no 'odrer'; allowed: active, at, build, doc, holds, idle, name, "
+            "needs, optional, order, "
             "settings; did you mean 'order'?");
   EXPECT_EQ(declared("\n  at = \"post\","),
             "effects/glow.lua:4: error: fx.effect: unknown injection point 'post'; allowed: after_opaque_and_sky, "
@@ -42,7 +42,7 @@ TEST(DeclareMessages, Effects) {
   EXPECT_EQ(
       declared("  7,"),
       "effects/glow.lua:3: error: fx.effect has a value without a name at position 1; allowed: active, at, build, doc, "
-      "idle, name, needs, optional, order, settings");
+      "holds, idle, name, needs, optional, order, settings");
 }
 
 TEST(DeclareMessages, EffectFiles) {

@@ -191,6 +191,18 @@ TEST_F(HistoriesOfFrames, AnIdleEffectStillHandsOnItsImages) {
   EXPECT_EQ(run(*session, 3, 1), 1003.25f);
 }
 
+TEST_F(HistoriesOfFrames, AnImageThatIsKeptCanBeShown) {
+  look("fx.trail {}, fx.other { factor = 4 }");
+  const auto session = open();
+  session->stack().show("trail.now");
+  EXPECT_EQ(run(*session, 1, 1), 9);
+  EXPECT_EQ(run(*session, 2, 1), 5.5f);
+  session->stack().show("source");
+  EXPECT_EQ(run(*session, 3, 1), 1);
+  session->stack().show("");
+  EXPECT_EQ(run(*session, 4, 1), 4 * (1 + (1 + 5.5f / 2) / 2)) << "histories went on while the source was shown";
+}
+
 TEST_F(HistoriesOfFrames, ARegionIsTheCropOfTheWhole) {
   const auto session = open();
   const Rect left{2, 3, 4, 5}, right{12, 1, 8, 8};

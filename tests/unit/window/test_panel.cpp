@@ -47,7 +47,7 @@ class Port : public PanelPort {
   const Preset* preset() override { return preset_.get(); }
   LiveStatus status() override { return {}; }
   const std::vector<Skipped>& skipped() override { return skips; }
-  const FrameTimes& times() override { return frame_times; }
+  std::vector<KernelTime> times() override { return frame_times.kernels; }
   const SettingEdits& edits() override { return changes; }
   void set(const std::string& entry, const std::string& setting, const SettingValue& value) override {
     ++sets;

@@ -1,0 +1,22 @@
+// Reads what effects promise, and asks them what holds for a frame.
+#pragma once
+
+#include <lua.hpp>
+#include <vector>
+
+#include "script/holds.h"
+
+namespace afterglow::script {
+
+class TableReader;
+struct Effect;
+struct EntryRun;
+
+/// Reads `holds` of the table of fx.effect into the effect; failures are noted in `table`.
+void read_holds(lua_State* lua, TableReader& table, Effect& effect);
+
+/// The promises that hold for the settings of an entry and a picture of this size. Throws ScriptError: a function of
+/// them fails, or returns no boolean or number.
+std::vector<Hold> holds_of(lua_State* lua, const EntryRun& run, Size size);
+
+}  // namespace afterglow::script

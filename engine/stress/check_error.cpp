@@ -1,0 +1,46 @@
+// The promise about the error against double precision.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "stress/check.h"
+#include "stress/truth.h"
+
+namespace afterglow::stress {
+namespace {
+
+Result<Outcome> check_error(Lab& lab, const Situation& s, const Hold& hold, bool half) {
+  const float largest = *std::ranges::max_element(s.picture.color.pixels);
+  if (largest > hold.numbers.at("up_to") || (half && !exact_in_halves(s.picture.color))) return not_applicable();
+  AFTERGLOW_TRY(const LookFacts facts, lab.facts(s.look, s.picture.color.size(), s.frame));
+  const auto truth = truth_of(facts, s.picture, s.frame);
+  if (!truth) return not_applicable();
+  const double allowed = hold.numbers.at(half ? "fp16" : "fp32");
+  Way way = usual_way(lab);
+  if (half) way.choice.storage = Storage::fp16;
+  AFTERGLOW_TRY(const Made made, lab.run(s.look, s.picture, s.frame, way));
+  const ErrorMeasure error = error_against(made.image, *truth, half);
+  const std::size_t sample = error.worst_index / 3 * 4 + error.worst_index % 3;
+  Outcome out{.holds = within(error, allowed), .measured = std::max(error.percentile, error.worst / 50), .allowed = allowed, .what = {}};
+  if (!out.holds)
+    out.what = fmt::format("{}: error {:.3g} (99.99 %), {:.3g} (worst, {}: {:.9g}, in double precision {:.9g}), allowed {:.3g}",
+                           way.name(), error.percentile, error.worst, place_of(made.image, sample), made.image.pixels[sample],
+                           (*truth)[error.worst_index], allowed);
+  return out;
+}
+
+Result<Outcome> error_fp32(Lab& lab, const Situation& s, const Hold& hold) { return check_error(lab, s, hold, false); }
+Result<Outcome> error_fp16(Lab& lab, const Situation& s, const Hold& hold) { return check_error(lab, s, hold, true); }
+
+constexpr long long kLargeForOracle = 1 << 17;
+
+constexpr Check kChecks[] = {
+    {"error_fp32", "error", "the error against double precision, in full floats", error_fp32, kLargeForOracle},
+    {"error_fp16", "error", "the same with images in half floats", error_fp16, kLargeForOracle},
+};
+
+}  // namespace
+
+std::span<const Check> exact_checks() { return kChecks; }
+
+}  // namespace afterglow::stress

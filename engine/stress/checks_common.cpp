@@ -1,0 +1,173 @@
+// What every stack must stand, whatever its effects promise.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "exec/half.h"
+#include "stress/check.h"
+
+namespace afterglow::stress {
+namespace {
+
+/// Ways that must make the same numbers; the usual one is compared with the plain one in any case.
+const std::vector<Choice>& other_choices() {
+  static const std::vector<Choice> all{
+      {.joining = Joining::none},
+      {.joining = Joining::heads, .share_memory = false},
+      {.joining = Joining::all, .storage_reads = true},
+      {.joining = Joining::all, .share_memory = false, .rows = 3},
+      {.joining = Joining::all, .storage_reads = true, .rows = 8},
+      {.joining = Joining::heads, .storage_reads = true, .rows = 4},
+  };
+  return all;
+}
+
+constexpr double kSame = 1e-6;  // between ways of execution, by the measure of math.md §13
+
+Way half_way(const Lab& lab) {
+  Way way = usual_way(lab);
+  way.choice.storage = Storage::fp16;
+  return way;
+}
+
+Outcome all_finite(const Image& image, double largest, const std::string& what) {
+  std::size_t bad = 0, first = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    if (!(std::abs(image.pixels[i]) <= largest) && bad++ == 0) first = i;
+  if (bad == 0) return {};
+  return {.holds = false,
+          .measured = static_cast<double>(bad),
+          .allowed = 0,
+          .what = fmt::format("{}: {} samples are not finite or above {:g}, first {}: {:g}", what, bad, largest,
+                              place_of(image, first), image.pixels[first])};
+}
+
+/// What reading must have made of whatever the file held.
+Outcome source_is_sound(const Picture& picture) {
+  for (std::size_t i = 0; i < picture.color.pixels.size(); ++i) {
+    const float v = picture.color.pixels[i];
+    if (!std::isfinite(v) || (i % 4 < 3 && (v < 0 || v > 1e30f)))
+      return {.holds = false, .measured = 1, .allowed = 0, .what = fmt::format("the source: {} is {:g}", place_of(picture.color, i), v)};
+  }
+  return {};
+}
+
+Result<Outcome> finite(Lab& lab, const Situation& s, const Hold&) {
+  if (auto sound = source_is_sound(s.picture); !sound.holds) return sound;
+  AFTERGLOW_TRY(const auto images, lab.images(s.look, s.picture, s.frame));
+  for (const auto& [name, image] : images)
+    if (auto outcome = all_finite(image, std::numeric_limits<float>::max(), "image " + name); !outcome.holds) return outcome;
+  return Outcome{};
+}
+
+/// As users run it, in full and in half floats, and one of the images in between.
+Result<Outcome> finite_joined(Lab& lab, const Situation& s, const Hold&) {
+  AFTERGLOW_TRY(const LookFacts facts, lab.facts(s.look, s.picture.color.size(), s.frame));
+  Random random(s.seed);
+  const std::string between = facts.images.empty() ? "" : random.pick(facts.images);
+  for (const bool half : {false, true})
+    for (const std::string& shown : {std::string(), between}) {
+      Way way = half ? half_way(lab) : usual_way(lab);
+      way.show = shown;
+      AFTERGLOW_TRY(const Made made, lab.run(s.look, s.picture, s.frame, way));
+      // Only what is stored in half floats ends at their largest.
+      const bool stored = half && facts.runs;
+      const double largest = stored ? kMaxHalf : std::numeric_limits<float>::max();
+      if (auto outcome = all_finite(made.image, largest, way.name()); !outcome.holds) return outcome;
+      if (between.empty()) break;
+    }
+  return Outcome{};
+}
+
+Result<Outcome> alpha(Lab& lab, const Situation& s, const Hold&) {
+  for (const bool plain : {false, true}) {
+    Way way = usual_way(lab);
+    way.plain = plain;
+    AFTERGLOW_TRY(Made made, lab.run(s.look, s.picture, s.frame, way));
+    Image wanted = made.image;
+    for (std::size_t i = 3; i < wanted.pixels.size(); i += 4) wanted.pixels[i] = s.picture.color.pixels[i];
+    if (auto outcome = compare(made.image, wanted, 0, "alpha, " + way.name()); !outcome.holds) return outcome;
+  }
+  return Outcome{};
+}
+
+/// The same picture again, after another one has been through the same memory.
+Result<Outcome> repeated(Lab& lab, const Situation& s, const Hold&) {
+  Random random(s.seed);
+  const Way way = random.chance(0.5) ? half_way(lab) : usual_way(lab);
+  const Picture picture = changed(s.picture);  // so that it does run again
+  AFTERGLOW_TRY(const Made first, lab.run(s.look, picture, s.frame, way));
+  Picture other = picture;
+  for (float& v : other.color.pixels) v = 0.7f * (v > 0.5f ? 0.0f : 3.0f);
+  AFTERGLOW_TRY(const Made between, lab.run(s.look, other, s.frame, way));
+  (void)between;
+  AFTERGLOW_TRY(const Made second, lab.run(s.look, picture, s.frame, way));
+  return compare(second.image, first.image, 0, "the same picture again, " + way.name());
+}
+
+Result<Outcome> same_ways(Lab& lab, const Situation& s, const Hold&) {
+  Random random(s.seed);
+  AFTERGLOW_TRY(const Made plain, lab.run(s.look, s.picture, s.frame, {.plain = true}));
+  Outcome worst;
+  for (const Choice& choice : {lab.usual(), random.pick(other_choices())}) {
+    const Way way{.choice = choice};
+    AFTERGLOW_TRY(const Made made, lab.run(s.look, s.picture, s.frame, way));
+    Outcome outcome = compare(made.image, plain.image, kSame, way.name() + " against plain");
+    if (!outcome.holds) return outcome;
+    if (outcome.measured >= worst.measured) worst = std::move(outcome);
+  }
+  return worst;
+}
+
+Rect random_part(Size size, Random& random) {
+  Rect part;
+  part.width = random.between(1, std::max(1, size.width / 2));
+  part.height = random.between(1, std::max(1, size.height / 2));
+  part.x = random.between(0, size.width - part.width);
+  part.y = random.between(0, size.height - part.height);
+  return part;
+}
+
+Image crop(const Image& image, const Rect& part) {
+  Image out(part.width, part.height, image.channels);
+  for (int y = 0; y < part.height; ++y)
+    std::copy_n(image.at(part.x, part.y + y), static_cast<std::ptrdiff_t>(part.width) * image.channels, out.at(0, y));
+  return out;
+}
+
+/// A region is the crop of the whole, bit for bit. What is not read of the source must not matter.
+Result<Outcome> region(Lab& lab, const Situation& s, const Hold&) {
+  Random random(s.seed);
+  Way way = random.chance(0.3) ? half_way(lab) : usual_way(lab);
+  AFTERGLOW_TRY(const Made whole, lab.run(s.look, s.picture, s.frame, way));
+  way.region = random_part(s.picture.color.size(), random);
+  AFTERGLOW_TRY(const Made part, lab.run(s.look, s.picture, s.frame, way));
+  return compare(crop(part.image, *way.region), crop(whole.image, *way.region), 0, way.name());
+}
+
+/// Effects that the content makes idle: as if they had run.
+Result<Outcome> idle(Lab& lab, const Situation& s, const Hold&) {
+  Way way = usual_way(lab);
+  AFTERGLOW_TRY(const Made all, lab.run(s.look, s.picture, s.frame, way));
+  way.skip_idle = true;
+  AFTERGLOW_TRY(const Made some, lab.run(s.look, s.picture, s.frame, way));
+  return compare(some.image, all.image, 0, way.name());
+}
+
+constexpr Check kChecks[] = {
+    {"finite", nullptr, "nothing non-finite leaves any pass, each on its own in full floats", finite},
+    {"finite_joined", nullptr, "nor as users run it, in full and half floats, nor any image in between", finite_joined},
+    {"alpha", nullptr, "alpha is the source's, bit for bit", alpha},
+    {"repeated", nullptr, "the same picture again gives the same bits", repeated},
+    {"same_ways", nullptr, "joined or not, whatever the layout of memory: within 1e-6 of plain passes in full floats", same_ways},
+    {"region", nullptr, "a region is the crop of the whole, bit for bit", region},
+    {"idle", nullptr, "frames without idle effects are as if they had run, bit for bit", idle},
+};
+
+}  // namespace
+
+std::span<const Check> common_checks() { return kChecks; }
+
+}  // namespace afterglow::stress

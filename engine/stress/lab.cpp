@@ -1,0 +1,189 @@
+#include "stress/lab.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/oracle.h"
+#include "session/calibration.h"
+#include "session/picture_inputs.h"
+
+namespace afterglow::stress {
+namespace {
+
+constexpr int kStacksUntilFresh = 4000;  ///< made with the same pipelines: specialised ones add up
+
+struct Prepared {
+  std::unique_ptr<Stack> stack;
+  std::unique_ptr<FrameRunner> runner;
+};
+
+BuildContext context_for(Size size, double frame) {
+  BuildContext context{.size = size, .auxiliary = {{"depth", size}, {"normal", size}, {"motion", size}}};
+  context.frame = frame;
+  context.time = (frame - 1) / context.fps;
+  context.restart = true;
+  return context;
+}
+
+/// The source itself, where nothing runs.
+Made untouched(const Picture& picture) { return {.image = picture.color}; }
+
+}  // namespace
+
+std::string Way::name() const {
+  std::string out = plain ? "plain" : choice_name(choice);
+  if (skip_idle) out += ", idle effects left out";
+  if (region) out += fmt::format(", region {},{},{},{}", region->x, region->y, region->width, region->height);
+  if (!show.empty()) out += ", image " + show;
+  return out;
+}
+
+struct Lab::State {
+  Device* device = nullptr;
+  Diagnostics* diagnostics = nullptr;
+  std::filesystem::path cache;
+  std::shared_ptr<StackShared> shared;
+  std::map<std::string, Prepared> prepared;  ///< by look, way and size
+  std::map<std::string, Made> results;       ///< by look, way, frame and content of the picture
+  std::map<std::string, Result<LookFacts>> known;
+  Choice usual;
+  int stacks = 0;
+
+  StackOptions options(const Look& look, const Way& way) const {
+    StackOptions out;
+    out.preset.text = look.text();
+    out.preset.paths = look.paths;
+    out.reference = way.plain;
+    if (!way.plain) out.choice = way.choice;
+    out.skip_idle = way.skip_idle;
+    out.shared = shared;
+    out.max_memory = 16ull << 30;
+    return out;
+  }
+  Result<Made> run(const Look& look, const Picture& picture, double frame, const Way& way);
+  Result<LookFacts> find_facts(const Look& look, Size size, double frame);
+  Result<Prepared*> prepare(const Look& look, const Way& way, const Picture& picture, double frame);
+};
+
+Lab::Lab(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Lab::~Lab() = default;
+Device& Lab::device() { return *state_->device; }
+const Choice& Lab::usual() const { return state_->usual; }
+int Lab::stacks_made() const { return state_->stacks; }
+
+Result<std::unique_ptr<Lab>> Lab::create(Device& device, const std::filesystem::path& cache, Diagnostics& diagnostics) {
+  auto state = std::make_unique<State>();
+  state->device = &device;
+  state->diagnostics = &diagnostics;
+  state->cache = cache.empty() ? cache : cache / "shaders";
+  state->shared = std::make_shared<StackShared>(state->cache);
+  AFTERGLOW_TRY(const Calibration calibration, Calibration::shipped());
+  state->usual = calibration.find(device.info(), 0).choice;
+  state->usual.storage = Storage::fp32;
+  state->usual.hardware_filter = false;
+  return std::unique_ptr<Lab>(new Lab(std::move(state)));
+}
+
+void Lab::forget() {
+  state_->prepared.clear();
+  state_->results.clear();
+  state_->known.clear();
+  if (state_->stacks < kStacksUntilFresh) return;
+  state_->stacks = 0;
+  state_->shared = std::make_shared<StackShared>(state_->cache);
+}
+
+Result<Prepared*> Lab::State::prepare(const Look& look, const Way& way, const Picture& picture, double frame) {
+  const Size size = picture.color.size();
+  const std::string key = fmt::format("{}\n{}\n{}x{}", look.text(), way.name(), size.width, size.height);
+  Prepared& one = prepared[key];
+  if (!one.stack) {
+    // The file need not exist: the text takes its place, and effects are found along the paths.
+    AFTERGLOW_TRY(one.stack, Stack::load("stress.lua", options(look, way), *diagnostics));
+    one.stack->use(*device, true);
+    one.stack->show(way.show);
+    AFTERGLOW_TRY(one.runner, FrameRunner::create(*device, 16ull << 30));
+    ++stacks;
+  }
+  AFTERGLOW_CHECK(one.stack->prepare(context_for(size, frame), {}, way.region));
+  return &one;
+}
+
+Result<Made> Lab::run(const Look& look, const Picture& picture, double frame, const Way& way) {
+  if (picture.content.empty()) return state_->run(look, picture, frame, way);
+  std::string key = fmt::format("{}\n{}\n{}", look.text(), way.name(), frame);
+  for (const auto& [name, hash] : picture.content) key += hash.hex();
+  if (const auto found = state_->results.find(key); found != state_->results.end()) return found->second;
+  AFTERGLOW_TRY(Made made, state_->run(look, picture, frame, way));
+  return state_->results[key] = std::move(made);
+}
+
+Result<Made> Lab::State::run(const Look& look, const Picture& picture, double frame, const Way& way) {
+  AFTERGLOW_TRY(Prepared* const one, prepare(look, way, picture, frame));
+  if (!one->stack->runs()) return untouched(picture);
+  FrameRunner::Choose choose;
+  if (way.skip_idle && one->stack->depends_on_content())
+    choose = [&](float brightest) -> Result<Program*> {
+      AFTERGLOW_TRY(const IdlePrograms::Choice choice, one->stack->program_for(brightest));
+      return choice.program;
+    };
+  auto inputs = picture_inputs(picture, one->stack->prepared_graph());
+  for (auto& [name, input] : inputs) input.content.reset();  // it is to run, whatever ran before
+  HostResult result;
+  AFTERGLOW_TRY(const FrameTimes times, one->runner->run(*one->stack->program(), inputs, result, KernelTiming::none, choose));
+  (void)times;
+  const Size size = one->stack->prepared_graph().images[one->stack->prepared_graph().result].size;
+  Made made{.image = {}, .clamped = result.clamped, .shown = one->stack->shows()};
+  made.image.width = size.width;
+  made.image.height = size.height;
+  made.image.channels = 4;
+  made.image.pixels = std::move(result.pixels);
+  return made;
+}
+
+Result<std::vector<std::pair<std::string, Image>>> Lab::images(const Look& look, const Picture& picture, double frame) {
+  AFTERGLOW_TRY(const Made result, state_->run(look, picture, frame, {.plain = true}));
+  AFTERGLOW_TRY(Prepared* const one, state_->prepare(look, {.plain = true}, picture, frame));
+  std::vector<std::pair<std::string, Image>> out;
+  if (!one->stack->runs()) return out;
+  const Graph& graph = one->stack->prepared_graph();
+  for (const auto& pass : graph.passes) {
+    const auto& made = graph.images[static_cast<std::size_t>(pass.output)];
+    Image image(made.size.width, made.size.height, 4);
+    if (pass.output == graph.result) {
+      image = result.image;
+    } else if (const auto held = one->stack->program()->transient(pass.output); held && held->kept) {
+      AFTERGLOW_TRY(HostResult pixels, one->runner->read_image(*one->stack->program(), pass.output));
+      image.pixels = std::move(pixels.pixels);
+    } else {
+      continue;  // nobody reads it, so nothing makes it
+    }
+    out.emplace_back(pass.name, std::move(image));
+  }
+  return out;
+}
+
+Result<LookFacts> Lab::facts(const Look& look, Size size, double frame) {
+  const std::string key = fmt::format("{}\n{}x{}\n{}", look.text(), size.width, size.height, frame);
+  const auto found = state_->known.find(key);
+  return found != state_->known.end() ? found->second
+                                      : state_->known.emplace(key, state_->find_facts(look, size, frame)).first->second;
+}
+
+Result<LookFacts> Lab::State::find_facts(const Look& look, Size size, double frame) {
+  AFTERGLOW_TRY(const auto stack, Stack::load("stress.lua", options(look, {.plain = true}), *diagnostics));
+  AFTERGLOW_TRY(const Graph graph, stack->graph(context_for(size, frame)));
+  LookFacts facts{.entries = bench::oracle_entries(stack->preset(), graph), .holds = {}, .runs = graph.result != graph.source, .passes = 0, .images = {}};
+  facts.passes = graph.passes.size();
+  for (const auto& pass : graph.passes) {
+    const GraphImage& image = graph.images[static_cast<std::size_t>(pass.output)];
+    if (pass.output != graph.result && image.size == size) facts.images.push_back(image.name);
+  }
+  if (const auto& entries = stack->preset().entries(); entries.size() == 1) {
+    AFTERGLOW_TRY(facts.holds, stack->preset().holds(entries.front().name, size));
+  }
+  return facts;
+}
+
+}  // namespace afterglow::stress

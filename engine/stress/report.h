@@ -1,0 +1,36 @@
+// What the programme found, for people and for other programs.
+#pragma once
+
+#include <string>
+
+#include "stress/growth.h"
+#include "stress/programme.h"
+
+namespace afterglow::stress {
+
+/// Trials that other processes made otherwise.
+struct ProcessCheck {
+  std::string how;  ///< "LP_NUM_THREADS=1"
+  std::uint64_t compared = 0;
+  std::vector<std::uint64_t> different;  ///< numbers of trials
+};
+
+struct StressReport {
+  std::string version, device, driver;
+  std::uint64_t seed = 0;
+  Summary summary;
+  std::vector<ProcessCheck> processes;
+  std::vector<GrowthRow> growth;
+  /// Nothing failed anywhere.
+  bool clean() const;
+};
+
+/// Cases and failures by check, with what came nearest to its bound; then findings, other processes, growth of errors.
+std::string report_text(const StressReport& report);
+std::string report_json(const StressReport& report);
+
+/// "NUMBER HASH" lines, as another process is asked for them. Errors (other): a line that is none.
+std::string digests_text(const std::map<std::uint64_t, Hash>& digests);
+Result<ProcessCheck> compare_digests(const std::string& how, const std::map<std::uint64_t, Hash>& own, const std::string& theirs);
+
+}  // namespace afterglow::stress

@@ -1,0 +1,75 @@
+#include "stress/trial.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/text.h"
+#include "stress/settings.h"
+
+namespace afterglow::stress {
+namespace {
+
+constexpr int kPicturesPerTrial = 3;
+
+/// Small ones come often: they are quick, and hold as many edges.
+Size random_size(Random& random) {
+  static const std::vector<Size> kSmall{{1, 1},   {1, 2},   {2, 1},   {2, 2},   {3, 3},   {5, 3},   {1, 17},
+                                        {23, 1},  {7, 11},  {8, 8},   {13, 17}, {16, 16}, {31, 37}, {32, 32},
+                                        {64, 64}, {33, 65}, {17, 5},  {9, 64},  {63, 62}, {48, 20}};
+  static const std::vector<Size> kMiddle{{128, 128}, {101, 57}, {97, 61}, {240, 135}, {128, 64}, {256, 256}, {160, 90}};
+  static const std::vector<Size> kLong{{1, 4099}, {4099, 1}, {16384, 2}, {2, 16384}, {1021, 7}};
+  const double kind = random.unit();
+  return random.pick(kind < 0.62 ? kSmall : kind < 0.95 ? kMiddle : kLong);
+}
+
+}  // namespace
+
+std::uint64_t Trials::round() const {
+  std::size_t most = 0;
+  for (const auto& subject : subjects_) most = std::max(most, subject.looks.size());
+  return most * subjects_.size();
+}
+
+Trial Trials::at(std::uint64_t index) const {
+  const Subject& subject = subjects_[index % subjects_.size()];
+  const std::uint64_t turn = index / subjects_.size();
+  Random random(seed_, index);
+  Trial trial{.index = index, .subject = subject.name, .look = subject.looks.front()};
+  if (turn < subject.looks.size())
+    trial.look = subject.looks[turn];
+  else if (subject.effect)
+    trial.look.entries = {random_entry(*subject.effect, path_, random)};
+  trial.size = random_size(random);
+  trial.frame = random.chance(0.5) ? 1 : random.between(2, 5000);
+  const auto kinds = picture_kinds();
+  // One kind after the other, so that each subject meets them all; the rest by chance.
+  for (int i = 0; i < kPicturesPerTrial; ++i) {
+    const std::size_t kind = i == 0 ? (turn + index) % kinds.size() : random.below(kinds.size());
+    trial.pictures.push_back({kinds[kind].name, trial.size, random.next()});
+  }
+  trial.seed = random.next();
+  return trial;
+}
+
+Result<std::vector<Subject>> subjects_of_effects(const std::vector<std::string>& names,
+                                                 const std::vector<std::filesystem::path>& paths, Diagnostics& diagnostics) {
+  const SearchPath path = search_path_for({}, paths);
+  AFTERGLOW_TRY(auto effects, list_effects(path, diagnostics));
+  std::vector<std::string> known;
+  for (const auto& effect : effects) known.push_back(effect.name);
+  for (const auto& name : names)
+    if (std::ranges::find(known, name) == known.end())
+      return Error{ErrorKind::usage, fmt::format("unknown effect '{}'", name), {}, 0, join(known), nearest_name(name, known)};
+  std::vector<Subject> out;
+  for (auto& effect : effects) {
+    if (!names.empty() && std::ranges::find(names, effect.name) == names.end()) continue;
+    Subject subject{.name = effect.name, .looks = {}, .effect = {}};
+    for (auto& entry : hard_entries(effect, path)) subject.looks.push_back({{std::move(entry)}, paths});
+    subject.effect = std::move(effect);
+    out.push_back(std::move(subject));
+  }
+  return out;
+}
+
+}  // namespace afterglow::stress

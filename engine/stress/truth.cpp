@@ -1,0 +1,52 @@
+#include "stress/truth.h"
+
+#include <algorithm>
+#include <exception>
+
+#include "exec/half.h"
+#include "stress/pictures.h"
+
+namespace afterglow::stress {
+namespace {
+
+reference::DoubleImage as_double(const Image& image) {
+  return reference::from_floats(image.pixels.data(), image.size(), image.channels);
+}
+
+}  // namespace
+
+std::optional<std::vector<double>> truth_of(const LookFacts& facts, const Picture& picture, double frame) {
+  if (!reference::effect_without_oracle(facts.entries).empty()) return std::nullopt;
+  const auto depth = as_double(picture.auxiliary.at("depth")), normal = as_double(picture.auxiliary.at("normal")),
+             motion = as_double(picture.auxiliary.at("motion"));
+  reference::Inputs inputs{.depth = &depth, .normal = &normal, .motion = &motion};
+  inputs.frame = frame;
+  inputs.time = (frame - 1) / BuildContext{}.fps;
+  try {
+    const auto result = reference::evaluate(as_double(picture.color), inputs, facts.entries);
+    std::vector<double> rgb;
+    rgb.reserve(result.pixels.size() * 3);
+    for (const auto& p : result.pixels) rgb.insert(rgb.end(), {p.r, p.g, p.b});
+    return rgb;
+  } catch (const std::exception&) {  // an effect of the user's that has the name of another, with settings of its own
+    return std::nullopt;
+  }
+}
+
+ErrorMeasure error_against(const Image& image, std::vector<double> truth, bool half) {
+  std::vector<float> rgb;
+  rgb.reserve(truth.size());
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    if (i % 4 < 3) rgb.push_back(image.pixels[i]);
+  if (half)
+    for (double& v : truth) v = std::clamp(v, -static_cast<double>(kMaxHalf), static_cast<double>(kMaxHalf));
+  return measure_error(rgb, std::span<const double>(truth));
+}
+
+bool exact_in_halves(const Image& rgba) {
+  Image rounded = rgba;
+  round_to_halves(rounded);
+  return rounded.pixels == rgba.pixels;
+}
+
+}  // namespace afterglow::stress

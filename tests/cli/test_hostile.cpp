@@ -1,0 +1,73 @@
+// What strangers' files make the program say and do: exit codes of the README, one line, nothing for the terminal to obey.
+#include <OpenImageIO/imageio.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli_test.h"
+
+namespace afterglow::test {
+namespace {
+
+class Hostile : public CliTest {};
+
+TEST_F(Hostile, ClaimsThatTheFileCannotHold) {
+  make_preset("look.lua");
+  OIIO::ImageSpec spec(16, 16, 3, OIIO::TypeDesc::UINT8);
+  auto out = OIIO::ImageOutput::create(text("small.jpg"));
+  ASSERT_TRUE(out->open(text("small.jpg"), spec));
+  const std::vector<unsigned char> pixels(16 * 16 * 3, 100);
+  ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, pixels.data()));
+  ASSERT_TRUE(out->close());
+  std::string jpeg = read("small.jpg");
+  const std::size_t frame = jpeg.find("\xff\xc0");
+  ASSERT_NE(frame, std::string::npos);
+  jpeg[frame + 5] = jpeg[frame + 7] = 0x3f;  // 16144 × 16144 pixels in some hundred bytes
+  write("bomb.jpg", jpeg);
+  const Outcome outcome = run({"run", "look.lua", "bomb.jpg", "-o", "out.png"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_TRUE(is_one_error_line(outcome.err));
+  EXPECT_THAT(outcome.err, HasSubstr("cannot hold its pixels"));
+}
+
+TEST_F(Hostile, UnknownFormatsAreNamedWithThoseThatAreRead) {
+  make_preset("look.lua");
+  write("list.mp4", "#EXTM3U\n#EXTINF:1,\nhttp://127.0.0.1:1/x.ts\n");
+  const Outcome outcome = run({"run", "look.lua", "list.mp4", "-o", "out.png"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_THAT(outcome.err, HasSubstr("is not a picture in a format that is known; allowed: EXR, PNG, JPEG"));
+}
+
+TEST_F(Hostile, EscapesOfScriptsAndNamesNeverReachTheTerminal) {
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { [\"\\27]0;owned\\a\"] = 1 }\n");
+  const Outcome outcome = run({"check", "look.lua"});
+  EXPECT_EQ(outcome.exit_code, kScript);
+  EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos) << outcome.err;
+  write("name.lua", "local fx = require \"afterglow\"\nreturn fx.stack { name = \"a\\27[2Jb\", fx.tone_mapping {} }\n");
+  for (const char* command : {"check", "explain"}) {
+    const Outcome printed = run({command, "name.lua"});
+    EXPECT_EQ(printed.exit_code, kDone) << printed.err;
+    EXPECT_EQ(printed.out.find('\x1b'), std::string::npos) << printed.out;
+  }
+  const Outcome named = run({"check", "no\x1b[2Jsuch.lua"});
+  EXPECT_EQ(named.exit_code, kScript);
+  EXPECT_EQ(named.err.find('\x1b'), std::string::npos) << named.err;
+}
+
+TEST_F(Hostile, NamesThatAreNoUtf8GoIntoJson) {
+  write("look\xff.lua", "local fx = require \"afterglow\"\nreturn fx.stack { name = \"a\\xFFb\", fx.tone_mapping {} }\n");
+  const Outcome outcome = run({"check", "look\xff.lua", "--json"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out, nullptr, false);
+  ASSERT_TRUE(json.is_object()) << outcome.out;
+  EXPECT_EQ(json["name"], "a\xEF\xBF\xBD" "b");
+}
+
+TEST_F(Hostile, AScriptThatNothingInterruptsEndsAllTheSame) {
+  write("look.lua", "local s = (\"\"):rep(math.maxinteger)\nreturn require(\"afterglow\").stack {}\n");
+  EXPECT_EQ(run({"check", "look.lua"}).exit_code, kDone);
+  write("look.lua", "local m = {} local t = setmetatable({}, m) m.__call = t t()\n");
+  EXPECT_EQ(run({"check", "look.lua"}).exit_code, kScript);
+}
+
+}  // namespace
+}  // namespace afterglow::test

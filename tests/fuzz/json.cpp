@@ -1,0 +1,44 @@
+// Every JSON file that the program reads: calibrations, locks, goals, earlier reports of bench.
+#include <cmath>
+
+#include "apps/lock.h"
+#include "bench/goals.h"
+#include "bench/report.h"
+#include "fuzz.h"
+#include "session/calibration.h"
+
+using namespace afterglow;
+
+namespace {
+
+template <class T>
+void check(const Result<T>& read) {
+  if (!read) fuzz::check_error(read.error(), {ErrorKind::io, ErrorKind::usage});
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(fuzz::text_of(data, size));
+  const auto file = fuzz::write("file.json", text);
+  if (const auto table = Calibration::parse(text, file.string()); !table) {
+    check(table);
+  } else {
+    for (const auto& entry : table->entries)
+      for (const auto& choice : entry.choices) FUZZ_CLAIM(choice.max_error >= 0, entry.name());
+    (void)table->find({.name = "llvmpipe", .type = "cpu", .driver = "Mesa"}, 2e-3);
+  }
+  if (const auto lock = read_lock(file)) {
+    Diagnostics silent;
+    const auto held = hold_against(*lock, {}, file, silent);
+    if (!held) fuzz::check_error(held.error(), {ErrorKind::script});
+    fuzz::write("again.json", lock_text(*lock));
+    const auto again = read_lock(fuzz::scratch() / "again.json");
+    FUZZ_CLAIM(again.ok() && again->files == lock->files && again->options == lock->options, text);
+  } else {
+    check(lock);
+  }
+  check(bench::load_goals(file));
+  check(bench::compare_reports(text, file.string(), {}));
+  return 0;
+}

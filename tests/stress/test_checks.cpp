@@ -1,0 +1,144 @@
+// Each check catches an effect that breaks just that, and lets a good one pass.
+#include <algorithm>
+
+#include "bad_effects.h"
+#include "script/holds.h"
+
+namespace afterglow::stress {
+namespace {
+
+struct BadEffect {
+  const char* check;  ///< that must fail
+  const char* glsl;
+  const char* holds = "";       ///< what it promises falsely
+  const char* pass = "";        ///< further keys of g:pass
+  const char* picture = "render";
+  Size size{33, 18};
+};
+
+const BadEffect kBad[] = {
+    {"finite", "vec4 apply(vec4 color) { return vec4(color.rgb / max(color.r - 0.5, 0.0), color.a); }"},
+    {"finite_joined", "vec4 apply(vec4 color) { return vec4(sqrt(0.5 - color.rgb), color.a); }"},
+    {"alpha", "vec4 apply(vec4 color) { return color * 0.5; }"},
+    {"region", "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return fetch(source, p + ivec2(9, 5)); }", "", "reach = 1", "render", {64, 64}},
+    {"idle", "vec4 apply(vec4 color) { return vec4(color.rgb * 0.5, color.a); }"},
+    {"black", "vec4 apply(vec4 color) { return vec4(color.rgb + 1e-6, color.a); }", "\"black\""},
+    {"constant", "vec4 apply(vec4 color, ivec2 p) { return vec4(color.rgb * (1.0 + 0.001 * float(p.x)), color.a); }", "\"constant\""},
+    {"mean", "vec4 apply(vec4 color) { return vec4(color.rgb * 0.999, color.a); }", "mean = 1e-4"},
+    {"no_added_light", "vec4 apply(vec4 color) { return vec4(color.rgb * 1.001, color.a); }", "no_added_light = 1e-4"},
+    {"monotone", "vec4 apply(vec4 color) { return vec4(1.0 / (1.0 + color.rgb), color.a); }", "\"monotone\""},
+    {"bounded", "vec4 apply(vec4 color) { return vec4(color.rgb * 1.01, color.a); }", "\"bounded\""},
+    {"bounded", "vec4 apply(vec4 color) { return color; }", "bounded = { from = 0, to = 1 }"},
+    {"continuous", "vec4 apply(vec4 color) { return vec4(color.rgb + 0.01 * step(1.37, color.rgb), color.a); }", "continuous = 1.01"},
+    {"linear", "vec4 apply(vec4 color) { return vec4(color.rgb * (1.0 + 1e-3 * color.rgb), color.a); }", "\"linear\""},
+    {"proportional", "vec4 apply(vec4 color) { return vec4(color.rgb * (1.0 + strength * strength), color.a); }",
+     "proportional = { setting = \"strength\", up_to = 1 }"},
+    {"mirror", "vec4 apply(vec4 color, ivec2 p) { return vec4(color.rgb * (1.0 + 0.001 * float(p.y)), color.a); }", "\"mirror\""},
+    {"turn_180", "vec4 apply(vec4 color, ivec2 p) { return vec4(color.rgb * (1.0 + 0.001 * float(p.x)), color.a); }", "\"turn_180\""},
+    {"turn_90", "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return 0.5 * (fetch(source, p + ivec2(1, 0)) + fetch(source, p - ivec2(1, 0))); }",
+     "\"turn_90\""},
+    {"shift", "vec4 apply(vec4 color, ivec2 p) { return p.x % 2 == 0 ? color : vec4(color.rgb * 0.5, color.a); }", "shift = 1"},
+};
+
+void PrintTo(const BadEffect& bad, std::ostream* out) { *out << bad.check << ": " << bad.glsl; }
+
+class BadEffects : public testing::TestWithParam<BadEffect> {};
+
+/// Some seed brings it out: a check may choose where it looks.
+Outcome worst_of(const Look& look, const BadEffect& bad) {
+  Outcome last;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    last = outcome_of(situation(look, bad.check, {bad.picture, bad.size, seed}, seed));
+    EXPECT_TRUE(last.applies) << bad.check;
+    if (!last.holds) break;
+  }
+  return last;
+}
+
+TEST_P(BadEffects, AreCaught) {
+  const BadEffect& bad = GetParam();
+  const EffectFolder folder;
+  std::string holds = std::string("holds = { ") + bad.holds + " },";
+  if (std::string(bad.check) == "idle") holds = "idle = function() return { brightest = 50 } end,";
+  folder.effect("broken", bad.glsl, holds, bad.pass);
+  const Outcome outcome = worst_of(folder.look("broken"), bad);
+  EXPECT_FALSE(outcome.holds);
+  EXPECT_GT(outcome.measured, outcome.allowed);
+  EXPECT_FALSE(outcome.what.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(, BadEffects, testing::ValuesIn(kBad));
+
+constexpr const char* kEverything =
+    "holds = { \"black\", \"constant\", \"monotone\", \"bounded\", \"linear\", \"mirror\", \"turn_180\", \"turn_90\", mean = 1e-6, "
+    "no_added_light = 1e-6, continuous = 1, shift = 1, proportional = { setting = \"strength\", up_to = 1 } },";
+
+TEST(StressChecks, AGoodEffectPassesAll) {
+  const EffectFolder folder;
+  folder.effect("honest", "vec4 apply(vec4 color) { return color * (0.999999 + 1e-6 * min(strength + level, 1.0)); }", kEverything);
+  const Look look = folder.look("honest");
+  for (const auto& kind : picture_kinds())
+    for (const Check& check : checks()) {
+      if (!kind.gentle || std::string(check.name).starts_with("error")) continue;
+      const Outcome outcome = outcome_of(situation(look, check.name, {kind.name, {24, 24}, 3}));
+      EXPECT_TRUE(outcome.applies) << check.name;
+      EXPECT_TRUE(outcome.holds) << check.name << " on " << kind.name << ": " << outcome.what;
+    }
+  EXPECT_EQ(validation_errors(), 0);
+}
+
+TEST(StressChecks, EveryPromiseHasACheckAndEveryCheckABreaker) {
+  for (const auto& kind : hold_kinds())
+    EXPECT_TRUE(std::ranges::any_of(checks(), [&](const Check& c) { return c.promise && kind.name == c.promise; })) << kind.name;
+  for (const Check& check : checks()) {
+    // What no effect can break; errors have a test of their own.
+    const std::string name = check.name;
+    if (name == "repeated" || name == "same_ways" || name.starts_with("error")) continue;
+    EXPECT_TRUE(std::ranges::any_of(kBad, [&](const BadEffect& bad) { return name == bad.check; })) << name;
+  }
+}
+
+TEST(StressChecks, ImagesAreComparedToTheBitOrByTheMeasure) {
+  Image a(3, 2, 4), b = a;
+  EXPECT_TRUE(compare(a, b, 0, "x").holds);
+  b.pixels[7] = 1e-9f;  // alpha counts, to the bit
+  const Outcome bits = compare(b, a, 0, "x");
+  EXPECT_FALSE(bits.holds);
+  EXPECT_THAT(bits.what, testing::HasSubstr("1 of 24 samples differ, first pixel 1 0 alpha"));
+  EXPECT_TRUE(compare(b, a, 1e-6, "x").holds);
+  b.pixels[4] = 1e-4f;
+  EXPECT_FALSE(compare(b, a, 1e-6, "x").holds);
+  b.pixels[4] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(compare(b, a, 1, "x").holds);
+  EXPECT_FALSE(compare(Image(2, 3, 4), a, 1, "x").holds);
+}
+
+/// An effect of the name of one with an oracle, with its settings, but another result.
+TEST(StressChecks, AFalseBoundOfTheErrorIsCaught) {
+  const EffectFolder folder;
+  folder.write("effects/color_blit.lua", R"(local fx = require "afterglow"
+return fx.effect { name = "color_blit", settings = { intensity = fx.float { min = 0, max = 2, default = 1 } }, holds = { error = 1e-5 },
+  build = function(g, s, source) return g:pass { shader = "wrong", source = source, intensity = s.intensity } end }
+)");
+  folder.write("shaders/wrong.glsl", "uniform float intensity;\nvec4 apply(vec4 color) { return vec4(0.0, color.g * intensity * 1.0001, 0.0, color.a); }\n");
+  const Outcome wrong = outcome_of(situation(folder.look("color_blit"), "error_fp32", {"render", {16, 16}, 1}));
+  EXPECT_TRUE(wrong.applies);
+  EXPECT_FALSE(wrong.holds);
+  folder.write("shaders/wrong.glsl", "uniform float intensity;\nvec4 apply(vec4 color) { return vec4(0.0, color.g * intensity, 0.0, color.a); }\n");
+  const Outcome right = outcome_of(situation(folder.look("color_blit"), "error_fp32", {"render", {16, 16}, 1}));
+  EXPECT_TRUE(right.applies && right.holds) << right.what;
+}
+
+TEST(StressChecks, PromisesOfOtherSettingsDoNotApply) {
+  const EffectFolder folder;
+  folder.effect("sometimes", "vec4 apply(vec4 color) { return vec4(color.rgb + level * 0.0 + strength, color.a); }",
+                "holds = { black = { when = function(s) return s.strength == 0 end } },");
+  Look look = folder.look("sometimes");
+  EXPECT_FALSE(outcome_of(situation(look, "black", {"render", {8, 8}, 1})).applies);
+  look.entries.front().set("strength", {.type = SettingType::number, .number = {0, 0, 0}});
+  const Outcome outcome = outcome_of(situation(look, "black", {"render", {8, 8}, 1}));
+  EXPECT_TRUE(outcome.applies && outcome.holds);
+}
+
+}  // namespace
+}  // namespace afterglow::stress

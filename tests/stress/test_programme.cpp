@@ -1,0 +1,146 @@
+// The programme as a whole: what it tries, what it finds, how it ends.
+#include <nlohmann/json.hpp>
+
+#include "bad_effects.h"
+#include "stress/growth.h"
+#include "stress/processes.h"
+#include "stress/report.h"
+
+namespace afterglow::stress {
+namespace {
+
+constexpr const char* kBroken =
+    "vec4 apply(vec4 color) { return strength > 0.99 && color.g > 3.0 ? vec4(1.0 / vec3(color.r - color.r), color.a) : vec4(color.rgb * level, color.a); }";
+
+Trials trials_of(const EffectFolder& folder, const std::vector<std::string>& effects, std::uint64_t seed) {
+  lab();
+  Diagnostics quiet;
+  auto subjects = subjects_of_effects(effects, {folder.path()}, quiet);
+  EXPECT_TRUE(subjects);
+  return Trials(std::move(*subjects), search_path_for({}, {folder.path()}), seed);
+}
+
+Result<void> go_on(const Summary&) { return {}; }
+
+TEST(StressProgramme, TrialsAreMadeFromSeedAndNumberAlone) {
+  const EffectFolder folder;
+  folder.effect("good", "vec4 apply(vec4 color) { return color * (strength + level); }");
+  const Trials a = trials_of(folder, {"good"}, 5), b = trials_of(folder, {"good"}, 5), c = trials_of(folder, {"good"}, 6);
+  int different = 0;
+  for (const std::uint64_t index : {0u, 3u, 50u, 1000u}) {
+    const Trial x = a.at(index), y = b.at(index);
+    EXPECT_EQ(x.look.text(), y.look.text());
+    EXPECT_EQ(x.size, y.size);
+    EXPECT_EQ(x.seed, y.seed);
+    ASSERT_EQ(x.pictures.size(), y.pictures.size());
+    for (std::size_t i = 0; i < x.pictures.size(); ++i) EXPECT_EQ(x.pictures[i].seed, y.pictures[i].seed);
+    different += x.seed != c.at(index).seed;
+  }
+  EXPECT_EQ(different, 4);
+  EXPECT_EQ(a.at(0).look.line(), "fx.good {}");
+}
+
+TEST(StressProgramme, FindsShrinksAndKeepsAFault) {
+  const EffectFolder folder;
+  folder.effect("broken", kBroken);
+  const Trials trials = trials_of(folder, {"broken"}, 3);
+  ProgrammeOptions options{.seed = 3, .cases = 400, .out = folder.path() / "found"};
+  Diagnostics quiet;
+  int reported = 0;
+  const auto summary = run_programme(lab(), trials, options, quiet, go_on, [&](const Finding&) { ++reported; });
+  ASSERT_TRUE(summary) << summary.error().text();
+  EXPECT_GE(summary->cases, 400u);
+  EXPECT_GT(summary->failures, 0u);
+  ASSERT_FALSE(summary->findings.empty());
+  EXPECT_EQ(reported, static_cast<int>(summary->findings.size()));
+  const Finding& first = summary->findings.front();
+  EXPECT_EQ(first.subject, "broken");
+  EXPECT_EQ(first.check, "finite");
+  EXPECT_THAT(first.stack, testing::HasSubstr("{ strength = "));
+  EXPECT_LE(first.size.area(), 2);
+  const auto again = read_reproducer(first.folder, quiet);
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_FALSE(outcome_of(*again).holds);
+  // Mended, the same case holds.
+  folder.write("shaders/broken/broken.glsl", "uniform float strength;\nuniform float level;\nvec4 apply(vec4 color) { return vec4(color.rgb * level * (0.5 + 0.5 * strength), color.a); }\n");
+  EXPECT_TRUE(outcome_of(*again).holds);
+}
+
+TEST(StressProgramme, EndsInOrderWhenInterrupted) {
+  const EffectFolder folder;
+  folder.effect("good", "vec4 apply(vec4 color) { return color * (strength + level); }");
+  const Trials trials = trials_of(folder, {"good"}, 1);
+  Diagnostics quiet;
+  const auto summary = run_programme(
+      lab(), trials, {.seed = 1}, quiet,
+      [](const Summary& so_far) -> Result<void> { return so_far.trials < 2 ? Result<void>() : Result<void>(Error{ErrorKind::interrupted, "now"}); },
+      [](const Finding&) {});
+  ASSERT_TRUE(summary);
+  EXPECT_TRUE(summary->interrupted);
+  EXPECT_EQ(summary->trials, 2u);
+  EXPECT_GT(summary->cases, 0u);
+}
+
+TEST(StressProgramme, ABrokenDefaultIsAnError) {
+  const EffectFolder folder;
+  folder.effect("refuses", "vec4 apply(vec4 color) { return color * strength * level; }", "active = function() error(\"never\", 0) end,");
+  const Trials trials = trials_of(folder, {"refuses"}, 1);
+  Diagnostics quiet;
+  const auto summary = run_programme(lab(), trials, {.seed = 1}, quiet, go_on, [](const Finding&) {});
+  ASSERT_FALSE(summary);
+  EXPECT_THAT(summary.error().text(), testing::HasSubstr("never"));
+}
+
+TEST(StressProgramme, OtherProcessesAreCompared) {
+  const std::map<std::uint64_t, Hash> own{{3, {1, 2}}, {8, {3, 4}}};
+  const auto same = compare_digests("x", own, digests_text(own));
+  ASSERT_TRUE(same);
+  EXPECT_EQ(same->compared, 2u);
+  EXPECT_TRUE(same->different.empty());
+  const auto other = compare_digests("x", own, digests_text({{3, {1, 2}}, {8, {3, 5}}}));
+  ASSERT_TRUE(other);
+  EXPECT_THAT(other->different, testing::ElementsAre(8));
+  EXPECT_FALSE(compare_digests("x", own, "3 zz\n8"));
+  EXPECT_FALSE(compare_digests("x", own, digests_text({{3, {1, 2}}})));
+  StressReport report;
+  report.processes = {*other};
+  EXPECT_FALSE(report.clean());
+}
+
+TEST(StressProgramme, OutputOfAProgram) {
+  const auto said = output_of("/bin/sh", {"-c", "printf %s \"$AFTERGLOW_TRIAL\""}, {{"AFTERGLOW_TRIAL", "seven"}});
+  ASSERT_TRUE(said) << said.error().text();
+  EXPECT_EQ(*said, "seven");
+  EXPECT_THAT(output_of("/bin/sh", {"-c", "exit 4"}, {}).error().text(), testing::HasSubstr("exit code 4"));
+  EXPECT_THAT(output_of("/nowhere/at all", {}, {}).error().text(), testing::HasSubstr("cannot be started"));
+}
+
+TEST(StressProgramme, ReportsErrorsLevelByLevel) {
+  lab();
+  Diagnostics quiet;
+  auto subjects = subjects_of_effects({"bloom", "vignette"}, {}, quiet);
+  ASSERT_TRUE(subjects);
+  const auto rows = error_growth(lab(), *subjects, {64, 64}, true, 1, [] { return Result<void>(); });
+  ASSERT_TRUE(rows) << rows.error().text();
+  std::set<int> levels;
+  for (const auto& row : *rows) {
+    EXPECT_EQ(row.effect, "bloom");
+    EXPECT_GT(row.fp32.worst, 0);
+    EXPECT_LT(row.fp32.percentile, 1e-5);
+    if (row.has_fp16) {
+      EXPECT_GT(row.fp16.percentile, row.fp32.percentile);
+    }
+    levels.insert(row.levels);
+  }
+  EXPECT_THAT(levels, testing::ElementsAre(1, 2, 3, 4));  // 16, 8, 4, 2 pixels
+  StressReport report;
+  report.growth = *rows;
+  report.summary.checks["finite"].add({});
+  const auto json = nlohmann::json::parse(report_json(report));
+  EXPECT_EQ(json["error_growth"].size(), rows->size());
+  EXPECT_EQ(json["checks"]["finite"]["cases"], 1);
+  EXPECT_THAT(report_text(report), testing::HasSubstr("bloom"));
+}
+
+}  // namespace
+}  // namespace afterglow::stress

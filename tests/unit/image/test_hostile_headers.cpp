@@ -1,0 +1,271 @@
+// Headers that ask for more than they bring, one test a trick: refused before memory is taken, in words that are true.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <map>
+#include <stdexcept>
+
+#include "image/exr_header.h"
+#include "image/picture_format.h"
+#include "make_files.h"
+#include "memory_cap.h"
+#include "raw_exr.h"
+#include "raw_png.h"
+#include "temporary_folder.h"
+
+namespace afterglow {
+namespace {
+using testing::AnyOf;
+using testing::HasSubstr;
+
+class HostileHeaders : public testing::Test {
+ protected:
+  Error refused(const std::string& bytes, const ReadOptions& options = {}) {
+    write_bytes(folder_ / "hostile", bytes);
+    const MemoryCap cap;
+    Diagnostics silent;
+    const auto picture = read_picture(folder_ / "hostile", options, silent);
+    EXPECT_FALSE(picture);
+    if (picture) return {};
+    EXPECT_EQ(picture.error().kind, ErrorKind::io);
+    EXPECT_EQ(picture.error().file, (folder_ / "hostile").string());
+    return picture.error();
+  }
+  TemporaryFolder folder_;
+};
+
+// ---- OpenEXR
+
+TEST_F(HostileHeaders, ExrTileSizesWhoseProductRunsOver) {
+  // 2²⁹ · 2²⁹ pixels of 2⁶ bytes are 2⁶⁴: nothing at all, to a counter of 64 bits.
+  RawExr exr;
+  exr.windows(0, 0, 7, 7).channels(16, ExrChannelType::float32).tiles(1 << 29, 1 << 29);
+  EXPECT_THAT(refused(exr.single(true)).message, HasSubstr("to decode, more than the 6144 MiB allowed"));
+}
+
+TEST_F(HostileHeaders, ExrTablesOfTilesThatTheFileDoesNotHold) {
+  // 2²⁸ tiles of one pixel: OpenEXR would take 2 GiB for their places before it reads the first.
+  RawExr exr;
+  exr.windows(0, 0, 16383, 16383).compression(4).tiles(1, 1);
+  EXPECT_THAT(refused(exr.single(true)).message, HasSubstr("cannot hold its pixels"));
+}
+
+TEST_F(HostileHeaders, ExrDeepPartsCountThoughTheyAreNeverRead) {
+  RawExr plain, deep;
+  plain.windows(0, 0, 3, 3).name("plain", "scanlineimage");
+  deep.windows(0, 0, 1 << 28, 1 << 28).tiles(1, 1).name("deep", "deeptile");
+  EXPECT_THAT(refused(RawExr::multi({plain, deep})).message, HasSubstr("cannot hold its pixels"));
+}
+
+TEST_F(HostileHeaders, ExrManyPartsTogether) {
+  // Each could be there, all of them cannot.
+  std::vector<RawExr> parts;
+  for (int i = 0; i < 500; ++i) {
+    RawExr part;
+    part.windows(0, 0, 3, 16383).compression(0).name("p" + std::to_string(i), "scanlineimage");
+    parts.push_back(part);
+  }
+  EXPECT_THAT(refused(RawExr::multi(parts)).message, HasSubstr("cannot hold its pixels"));
+  parts.assign(5000, parts[0]);
+  EXPECT_THAT(refused(RawExr::multi(parts)).message, HasSubstr("has more than 4096 parts"));
+}
+
+TEST_F(HostileHeaders, ExrAMillionChannels) {
+  RawExr exr;
+  exr.windows(0, 0, 7, 7).channels(1'000'000, ExrChannelType::half);
+  EXPECT_THAT(refused(exr.single(false)).message, HasSubstr("has more than 4096 channels"));
+  RawExr few;
+  few.windows(0, 0, 7, 7).channels(5000, ExrChannelType::half);
+  EXPECT_THAT(refused(few.single(false)).message, HasSubstr("has more than 4096 channels"));
+}
+
+TEST_F(HostileHeaders, ExrWindowsTurnedInsideOut) {
+  RawExr exr;
+  exr.windows(8, 8, -8, -8);
+  EXPECT_THAT(refused(exr.single(false)).message, HasSubstr("the data window is empty"));
+  RawExr far;
+  far.windows(-2147483647 - 1, 0, 2147483647, 0);
+  EXPECT_THAT(refused(far.single(false)).message, HasSubstr("out of range"));
+}
+
+/// Where the table of places begins: its first entry is the place right behind it.
+std::size_t table_of(const std::string& bytes, std::size_t chunks) {
+  for (std::size_t at = 0; at + 8 * chunks < bytes.size(); ++at) {
+    std::uint64_t first = 0;
+    std::memcpy(&first, &bytes[at], sizeof first);
+    if (first == at + 8 * chunks) return at;
+  }
+  throw std::runtime_error("no table of chunks");
+}
+
+TEST_F(HostileHeaders, ExrTablesThatPointInCircles) {
+  for (const bool tiled : {false, true}) {
+    OIIO::ImageSpec spec = make_spec(40, 40, {"R", "G", "B"}, OIIO::TypeHalf);
+    if (tiled) spec.tile_width = spec.tile_height = 8;
+    make_file(folder_ / "whole.exr", {spec}, {marks(40, 40, 3)});
+    const std::string whole = file_bytes(folder_ / "whole.exr");
+    const auto header = read_exr_header(folder_ / "whole.exr");
+    ASSERT_TRUE(header);
+    const std::size_t chunks = header.value()[0].chunks();
+    ASSERT_EQ(chunks, tiled ? 25u : 3u);
+    const std::size_t table = table_of(whole, chunks);
+    // Every place is that of the first chunk; of the table itself; beyond the end.
+    for (const std::uint64_t place : {std::uint64_t{table + 8 * chunks}, std::uint64_t{table}, std::uint64_t{1} << 60}) {
+      std::string bytes = whole;
+      for (std::size_t i = 0; i < chunks; ++i) std::memcpy(&bytes[table + 8 * i], &place, sizeof place);
+      write_bytes(folder_ / "circle.exr", bytes);
+      Diagnostics silent;
+      const auto picture = read_picture(folder_ / "circle.exr", {}, silent);
+      // OpenEXR finds the chunks of some without their table; what it gives then is the picture itself.
+      if (picture)
+        EXPECT_EQ(picture->color.pixels, read_or_fail(folder_ / "whole.exr").color.pixels) << "at " << place;
+      else
+        EXPECT_THAT(picture.error().message, HasSubstr("cannot be read"));
+    }
+  }
+}
+
+TEST_F(HostileHeaders, ExrChunksThatGrow) {
+  // The lines of the one chunk are 16 MiB of zeros, packed into 16 KiB.
+  make_file(folder_ / "whole.exr", 64, 16, {"R"}, OIIO::TypeHalf);
+  std::string bytes = file_bytes(folder_ / "whole.exr");
+  const std::size_t chunk = table_of(bytes, 1) + 8;
+  const std::string bomb = deflated(std::string(16u << 20, '\0'));
+  const auto size = static_cast<std::int32_t>(bomb.size());
+  bytes.resize(chunk + 8);
+  std::memcpy(&bytes[chunk + 4], &size, sizeof size);
+  EXPECT_THAT(refused(bytes + bomb).message, HasSubstr("cannot be read"));
+}
+
+// ---- PNG, JPEG
+
+TEST_F(HostileHeaders, InterlacedPngCountsItsWholePicture) {
+  ReadOptions options;
+  options.max_bytes = 1000 * 1000 * 16 + (1u << 20);  // enough for the picture and some rows
+  std::string png = RawPng(1000, 1000, 16, 6).chunk("IDAT", std::string(4000, 'x')).finish();
+  EXPECT_THAT(refused(png, options).message, testing::Not(HasSubstr("--max-memory"))) << "row by row it fits";
+  png = RawPng(1000, 1000, 16, 6, true).chunk("IDAT", std::string(4000, 'x')).finish();
+  EXPECT_THAT(refused(png, options).message, HasSubstr("--max-memory"));
+}
+
+TEST_F(HostileHeaders, PngChunksThatGrow) {
+  // A text and a profile of 16 MiB of zeros each, and rows that go on after the last one.
+  const std::string bomb = deflated(std::string(16u << 20, '\0'));
+  ASSERT_LT(bomb.size(), 20'000u);
+  const std::string rows = deflated(std::string(16u << 20, '\0'));
+  const std::string png = RawPng(4, 4, 8, 2)
+                              .chunk("iCCP", std::string("x\0\0", 3) + bomb)
+                              .chunk("zTXt", std::string("x\0\0", 3) + bomb)
+                              .chunk("IDAT", rows)
+                              .finish();
+  write_bytes(folder_ / "grow.png", png);
+  const MemoryCap cap;
+  Diagnostics silent;
+  const auto picture = read_picture(folder_ / "grow.png", {}, silent);  // read or refused; nothing large is taken
+  if (!picture) {
+    EXPECT_EQ(picture.error().kind, ErrorKind::io);
+  }
+}
+
+TEST_F(HostileHeaders, JpegThatIsTooSmallForItsPixels) {
+  make_file(folder_ / "a.jpg", 16, 16, {"R", "G", "B"}, OIIO::TypeUInt8);
+  std::string jpeg = file_bytes(folder_ / "a.jpg");
+  const std::size_t frame = jpeg.find("\xff\xc0");
+  ASSERT_NE(frame, std::string::npos);
+  jpeg[frame + 5] = jpeg[frame + 7] = 0x3f;
+  EXPECT_THAT(refused(jpeg).message, HasSubstr("cannot hold its pixels"));
+  // A second frame header, which decoders do not look at, does not hide the first.
+  std::string twice = jpeg;
+  twice.insert(frame + 19, jpeg.substr(frame, 19));
+  twice[frame + 19 + 5] = twice[frame + 19 + 7] = 0;
+  EXPECT_THAT(refused(twice).message, HasSubstr("malformed JPEG"));
+}
+
+TEST_F(HostileHeaders, ProgressiveJpegCountsItsCoefficients) {
+  OIIO::ImageSpec spec = make_spec(600, 600, {"R", "G", "B"}, OIIO::TypeUInt8);
+  make_file(folder_ / "plain.jpg", {spec}, {marks(600, 600, 3)});
+  spec.attribute("jpeg:progressive", 1);
+  make_file(folder_ / "progressive.jpg", {spec}, {marks(600, 600, 3)});
+  ReadOptions options;
+  options.max_bytes = 600 * 600 * 16 + 600 * 3 * 64 + 1000;
+  Diagnostics silent;
+  EXPECT_TRUE(read_picture(folder_ / "plain.jpg", options, silent));
+  EXPECT_THAT(refused(file_bytes(folder_ / "progressive.jpg"), options).message, HasSubstr("--max-memory"));
+  EXPECT_TRUE(read_picture(folder_ / "progressive.jpg", {}, silent));
+}
+
+// ---- what OpenImageIO reads
+
+std::string little(std::uint64_t value, int bytes) {
+  std::string out;
+  for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i));
+  return out;
+}
+
+/// A TIFF of one directory: tag, type (3 short, 4 long), value.
+std::string tiff(const std::vector<std::array<std::uint32_t, 3>>& tags) {
+  std::string out = "II*" + std::string(1, '\0') + little(8, 4) + little(tags.size(), 2);
+  for (const auto& [tag, type, value] : tags) out += little(tag, 2) + little(type, 2) + little(1, 4) + little(value, 4);
+  return out + little(0, 4) + std::string(64, '\0');
+}
+
+TEST_F(HostileHeaders, TiffSidesTilesAndSamples) {
+  const auto with = [](std::uint32_t width, std::uint32_t height, std::uint32_t samples, std::uint32_t tile) {
+    std::vector<std::array<std::uint32_t, 3>> tags{{256, 4, width},   {257, 4, height}, {258, 3, 8}, {259, 3, 1},
+                                                   {262, 3, 1}, {277, 3, samples}};
+    if (tile > 0) {
+      tags.push_back({322, 4, tile});
+      tags.push_back({323, 4, tile});
+      tags.push_back({324, 4, 8});
+      tags.push_back({325, 4, 100});
+    } else {
+      tags.insert(tags.begin() + 5, {273, 4, 8});
+      tags.push_back({278, 4, height});
+      tags.push_back({279, 4, 100});
+    }
+    return tiff(tags);
+  };
+  EXPECT_THAT(refused(with(1u << 30, 4, 1, 0)).message, AnyOf(HasSubstr("larger than 16384"), HasSubstr("cannot be read")));
+  EXPECT_THAT(refused(with(0xffffffff, 0xffffffff, 1, 0)).message,
+              AnyOf(HasSubstr("larger than 16384"), HasSubstr("cannot be read"), HasSubstr("no pixels")));
+  EXPECT_THAT(refused(with(64, 64, 65535, 0)).message, HasSubstr(""));
+  EXPECT_THAT(refused(with(64, 64, 1, 1u << 30)).message, AnyOf(HasSubstr("--max-memory"), HasSubstr("cannot be read")));
+  EXPECT_THAT(refused(with(64, 64, 60000, 1u << 30)).message, AnyOf(HasSubstr("--max-memory"), HasSubstr("cannot be read")));
+}
+
+TEST_F(HostileHeaders, HugeSidesInTheOtherFormats) {
+  const std::string huge = little(0x7ffffff0, 4);
+  const std::map<std::string, std::string> files{
+      {"bmp", "BM" + little(100, 4) + little(0, 4) + little(54, 4) + little(40, 4) + huge + huge + little(1, 2) +
+                  little(24, 2) + little(0, 24) + std::string(64, 'x')},
+      {"pnm", "P6\n2000000000 2000000000\n255\nxxxxxxxxxxxxxxxx"},
+      {"pfm", "PF\n2000000000 2000000000\n-1.0\nxxxxxxxxxxxxxxx"},
+      {"hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2000000000 +X 2000000000\nxxxxxxxx"},
+      {"gif", "GIF89a\xff\xff\xff\xff" + std::string("\0\0\0,\0\0\0\0\xff\xff\xff\xff\0\x02", 14) + std::string(20, 'x')},
+      {"sgi", std::string("\x01\xda\x00\x01\x00\x03\xff\xff\xff\xff\x00\x03", 12) + std::string(600, '\0')},
+      {"dpx", "SDPX" + std::string(764, '\0') + std::string("\0\0\0\1\x7f\xff\xff\xff\x7f\xff\xff\xff", 12) +
+                  std::string(2000, '\0')},
+      {"webp", "RIFF" + little(60, 4) + "WEBPVP8L" + little(40, 4) + "\x2f\xff\xff\xff\xff" + std::string(40, 'x')},
+      {"targa", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\xff\xff\xff\xff\x18\0", 18) + "TRUEVISION-XFILE." + std::string(1, '\0')},
+  };
+  for (const auto& [name, bytes] : files) {
+    SCOPED_TRACE(name);
+    EXPECT_THAT(refused(bytes).message,
+                AnyOf(HasSubstr("larger than 16384"), HasSubstr("cannot be read"), HasSubstr("no pixels"), HasSubstr("--max-memory")));
+  }
+}
+
+TEST_F(HostileHeaders, OnlyKnownFormatsReachALibrary) {
+  // Formats of old and odd programs, playlists that name other files, and configurations that look like file names.
+  for (const std::string bytes : {"DDS |\0\0\0", "FORM....ILBM", "SIMPLE  =                    T", "\x53\x80\xf6\x34", "#EXTM3U\nhttp://x/",
+                                  "ffconcat version 1.0\nfile /etc/passwd", "v=0\nc=IN IP4 1.2.3.4\n", "<svg/>", "P7\nWIDTH 1\n", "8BPS"}) {
+    const Error error = refused(bytes + std::string(600, ' '));
+    EXPECT_EQ(error.message, "is not a picture in a format that is known") << bytes;
+    EXPECT_EQ(error.allowed, kPictureFormats);
+  }
+}
+
+}  // namespace
+}  // namespace afterglow
