@@ -13,8 +13,8 @@ namespace afterglow {
 /// "1920x1080,3840x2160". Errors: usage.
 Result<std::vector<Size>> parse_sizes(const std::string& text);
 
-/// "plain16f,joined fp32+storage-reads,chosen": choices, "chosen" for what `run` would do, "watched" for that with values
-/// that are not finite looked for, as `run` does. Errors: usage.
+/// "plain16f,joined fp32+storage-reads,chosen": choices, "chosen" for what `run` would do, "watched" for that with
+/// values that are not finite looked for, as `run` does. Errors: usage.
 Result<std::vector<bench::Variant>> parse_variants(const std::string& text);
 
 /// Each variant with each combination of the values of `vary` ("glow.scatter=0.5,0.7", one text a setting). Errors:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kRadii[] = {0.25, 0.5, 1, 2, 4, 8};  ///< pixels
 constexpr Size kSize{640, 360}, kQuickSize{160, 90};
-constexpr int kFrames = 34, kQuickFrames = 6;  ///< 32 that count: four pixels, a texel of the finest bloom level
+constexpr int kFrames = 34, kQuickFrames = 6;  ///< 32 that count: a way of four pixels
 
 struct Shot {
   std::string scene;
@@ -42,7 +42,8 @@ Result<std::vector<Shot>> shots_of(const StabilityRequest& request, Diagnostics&
   }
   for (const double radius : kRadii)
     out.push_back({fmt::format("highlight of {:g} px", radius), radius,
-                   bench::drifting_highlight(request.quick ? kQuickSize : kSize, radius, request.quick ? kQuickFrames : kFrames)});
+                   bench::drifting_highlight(request.quick ? kQuickSize : kSize, radius,
+                                             request.quick ? kQuickFrames : kFrames)});
   return out;
 }
 
@@ -74,7 +75,8 @@ Result<void> measure_stability(const StabilityRequest& request, bench::Report& r
                                                       shot.frames, diagnostics, step));
         report.temporal.push_back(std::move(curve));
       }
-      AFTERGLOW_TRY(const auto points, bench::measure_resolutions(preset, request.options, variant, request.sizes, diagnostics, step));
+      AFTERGLOW_TRY(const auto points,
+                    bench::measure_resolutions(preset, request.options, variant, request.sizes, diagnostics, step));
       report.resolutions.insert(report.resolutions.end(), points.begin(), points.end());
     }
   return {};
@@ -86,9 +88,10 @@ std::string stability_text(const bench::Report& report) {
     shots.add({look_name(c.preset, c.settings), c.scene, percent(c.swing), percent(c.flicker), percent(c.pixels)});
   Table sizes({"look", "size", "largest difference", "RMS"});
   for (const auto& p : report.resolutions)
-    sizes.add({look_name(p.preset, p.settings), fmt::format("{}×{}", p.size.width, p.size.height), percent(p.worst), percent(p.rms)});
-  return "light that is added, over the frames\n" + shots.text("  ") + "\nlight that is added, against the first size\n" +
-         sizes.text("  ");
+    sizes.add({look_name(p.preset, p.settings), fmt::format("{}×{}", p.size.width, p.size.height), percent(p.worst),
+               percent(p.rms)});
+  return "light that is added, over the frames\n" + shots.text("  ") +
+         "\nlight that is added, against the first size\n" + sizes.text("  ");
 }
 
 }  // namespace afterglow

@@ -210,7 +210,8 @@ Result<void> measure_all_reloads(Bench& bench) {
 /// --temporal: shots and resolutions instead of times.
 Result<void> measure_steadiness(Bench& bench) {
   const Arguments& a = bench.arguments;
-  StabilityRequest request{.presets = {}, .options = {}, .variants = {}, .sizes = {}, .shot = a.picture, .quick = a.quick};
+  StabilityRequest request{
+      .presets = {}, .options = {}, .variants = {}, .sizes = {}, .shot = a.picture, .quick = a.quick};
   for (const auto& name : a.presets) {
     AFTERGLOW_TRY(const fs::path preset, find_preset_file(name, {a.paths.begin(), a.paths.end()}));
     request.presets.push_back(preset);
@@ -222,12 +223,13 @@ Result<void> measure_steadiness(Bench& bench) {
   AFTERGLOW_TRY(request.sizes, parse_sizes(!a.sizes.empty() ? a.sizes : a.quick ? kQuickResolutions : kResolutions));
   bench.device.reset();  // sessions open their own
   std::size_t done = 0;
-  auto measured = measure_stability(request, bench.report, bench.console.diagnostics(), [&](const std::string& what) -> Result<void> {
-    if (interrupted()) return interrupt_error();
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - bench.start;
-    bench.console.progress(done++, steps_of(request), what, seconds.count());
-    return {};
-  });
+  auto measured = measure_stability(
+      request, bench.report, bench.console.diagnostics(), [&](const std::string& what) -> Result<void> {
+        if (interrupted()) return interrupt_error();
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - bench.start;
+        bench.console.progress(done++, steps_of(request), what, seconds.count());
+        return {};
+      });
   bench.console.end_progress();
   if (!measured) return measured;
   AFTERGLOW_CHECK(bench::write_report(bench.report, a.out));
@@ -279,9 +281,9 @@ void add_options(CLI::App& app, Arguments& a) {
   };
   app.add_option("PRESET", a.presets, "Looks to measure");
   app.add_option("--sizes", a.sizes, "Sizes of the picture (default 1920x1080,3840x2160)")->type_name("WxH,…");
-  app.add_option(
-         "--variants", a.variants,
-         "Ways of execution, as `devices` and --report name them, or plain16f, plain32f, chosen (what `run` does), watched (the same, looking for values that are not finite, as `run` does)")
+  app.add_option("--variants", a.variants,
+                 "Ways of execution, as `devices` and --report name them, or plain16f, plain32f, chosen (what `run` "
+                 "does), watched (the same, looking for values that are not finite, as `run` does)")
       ->type_name("NAME,…");
   list("--set", a.overrides, "Overrides one setting for all that is measured (repeatable)", "EFFECT.SETTING=VALUE");
   list("--vary", a.vary, "Measures each value of a setting; errors are against the preset as it is (repeatable)",

@@ -61,9 +61,10 @@ void add_files(CLI::App& app, Arguments& a) {
       ->type_name("FILE[:LAYER]")
       ->group(input);
   app.add_option("--size", a.size, "Scale the picture first, for a quick look")->type_name("WxH")->group(input);
-  app.add_option("--nan-policy", a.nan_policy,
-                 "For values that are not finite, in pictures or made by passes: zero (default), neighbour (the mean of "
-                 "finite neighbours) or fail (end with an error; every pass is looked at)")
+  app.add_option(
+         "--nan-policy", a.nan_policy,
+         "For values that are not finite, in pictures or made by passes: zero (default), neighbour (the mean of "
+         "finite neighbours) or fail (end with an error; every pass is looked at)")
       ->check(CLI::IsMember({"zero", "neighbour", "fail"}))
       ->type_name("POLICY")
       ->group(input);

@@ -221,10 +221,11 @@ Result<void> FrameLoop::process(Reading& reading) {
 /// Runs the stack. A frame in which something was not finite is made once more from its file, pass by pass and mended.
 Result<void> FrameLoop::make(Reading& reading, Picture& picture) {
   if (options_.nan_policy == NanPolicy::fail) {
-    AFTERGLOW_TRY(const Trace trace, session_.trace(picture, reading.context, reading.encoding, reading.part,
-                                                    options_.nan_policy));
+    AFTERGLOW_TRY(const Trace trace,
+                  session_.trace(picture, reading.context, reading.encoding, reading.part, options_.nan_policy));
     take_findings(reading.frame->non_finite, trace, picture);
-    if (!trace.passes.empty()) return non_finite_error(reading.frame->non_finite.passes.front(), reading.frame->job.input);
+    if (!trace.passes.empty())
+      return non_finite_error(reading.frame->non_finite.passes.front(), reading.frame->job.input);
   }
   AFTERGLOW_CHECK(session_.process(picture, reading.context, reading.encoding, reading.part));
   const SessionReport report = session_.report();
@@ -233,14 +234,25 @@ Result<void> FrameLoop::make(Reading& reading, Picture& picture) {
   return mend(reading, picture);
 }
 
+/// Traces the frame from its file: its source is gone, the result took its place.
+Result<Trace> FrameLoop::trace_again(const Reading& reading) {
+  Diagnostics quiet;  // reading has said all there is to say
+  AFTERGLOW_TRY(Picture source, read_picture(reading.frame->job.input, reading.options, quiet));
+  if (options_.size) scale_picture(source, *options_.size);
+  return session_.trace(source, reading.context, reading.encoding, reading.part, options_.nan_policy);
+}
+
 Result<void> FrameLoop::mend(Reading& reading, Picture& picture) {
   FrameRecord& frame = *reading.frame;
   const bool flagged = session_.report().flagged;
-  Diagnostics quiet;
-  AFTERGLOW_TRY(Picture source, read_picture(frame.job.input, reading.options, quiet));
-  if (options_.size) scale_picture(source, *options_.size);
-  AFTERGLOW_TRY(Trace trace, session_.trace(source, reading.context, reading.encoding,
-                                             reading.part, options_.nan_policy));
+  auto traced = trace_again(reading);
+  if (!traced && !flagged) return {};  // only a name is missing
+  if (!traced) {
+    Error error = std::move(traced).error();
+    error.message = "values that are not finite came up; the frame could not be made pass by pass: " + error.message;
+    return error;
+  }
+  Trace trace = std::move(traced).value();
   if (trace.overflow) non_finite_.tell_overflow(*trace.overflow, frame.job.input, console_.diagnostics());
   if (!flagged) return {};
   take_findings(frame.non_finite, trace, picture);

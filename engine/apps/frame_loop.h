@@ -29,7 +29,7 @@ struct FrameLoopOptions {
   std::optional<Hash> record_look;  ///< leave notes for --resume
   bool fail_fast = false;
   NanPolicy nan_policy = NanPolicy::zero;  ///< fail: every pass of every frame is looked at, and nothing mended
-  bool histories = false;  ///< pictures depend on the frames before them
+  bool histories = false;                  ///< pictures depend on the frames before them
 };
 
 class FrameLoop {
@@ -60,6 +60,7 @@ class FrameLoop {
   void place_in_time(Reading& reading);
   Result<void> process(Reading& reading);
   Result<void> make(Reading& reading, Picture& picture);
+  Result<Trace> trace_again(const Reading& reading);
   Result<void> mend(Reading& reading, Picture& picture);
   void begin_writing(FrameRecord& frame, Picture picture);
   Result<void> finish_writing();

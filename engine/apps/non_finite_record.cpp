@@ -29,7 +29,8 @@ void take_findings(FrameNonFinite& frame, const Trace& trace, const Picture& pic
 }
 
 Error non_finite_error(const PassFinding& finding, const std::filesystem::path& input) {
-  return {ErrorKind::script, fmt::format("{}, in {} (--nan-policy fail)", finding_text(finding), input.string()), finding.file, finding.line};
+  return {ErrorKind::script, fmt::format("{}, in {} (--nan-policy fail)", finding_text(finding), input.string()),
+          finding.file, finding.line};
 }
 
 void NonFiniteRecord::add(const FrameNonFinite& frame) {
@@ -47,16 +48,16 @@ void NonFiniteRecord::tell(const FrameNonFinite& frame, const std::filesystem::p
     diagnostics.warn_once("not finite: " + finding.pass,
                           fmt::format("{}{}; {}, in {}", where, finding_text(finding), mended, input.string()));
   }
-  if (frame.untraced)
-    diagnostics.warn_once("not finite, untraced", fmt::format("{}: {}", input.string(), kUntraced));
+  if (frame.untraced) diagnostics.warn_once("not finite, untraced", fmt::format("{}: {}", input.string(), kUntraced));
 }
 
 void NonFiniteRecord::tell_overflow(const PassOverflow& overflow, const std::filesystem::path& input,
                                     Diagnostics& diagnostics) {
   overflow_told_ = true;
-  diagnostics.warn(fmt::format("{}: pass '{}' overflows half floats: {} samples above 65504, first at {}; --precision fp32 "
-                               "keeps them",
-                               input.string(), overflow.pass, overflow.samples, overflow.first.text()));
+  diagnostics.warn(
+      fmt::format("{}: pass '{}' overflows half floats: {} samples above 65504, first at {}; --precision fp32 "
+                  "keeps them",
+                  input.string(), overflow.pass, overflow.samples, overflow.first.text()));
 }
 
 void NonFiniteRecord::sum_up(Diagnostics& diagnostics) const {

@@ -17,7 +17,7 @@ namespace afterglow {
 struct FrameNonFinite {
   std::map<std::string, NonFinite> input;  ///< by layer
   std::vector<PassFinding> passes;         ///< in their order
-  bool untraced = false;  ///< something was not finite, but nothing is when every pass runs by itself
+  bool untraced = false;                   ///< something was not finite, but nothing is when every pass runs by itself
 };
 
 /// What stands in a message where no pass is to blame.

@@ -25,7 +25,8 @@ Json value_json(float value) {
 
 Json counts_json(const NonFinite& found) {
   Json value = Json::array();
-  for (int c = 0; c < found.first->channels; ++c) value.push_back(value_json(found.first->values[static_cast<std::size_t>(c)]));
+  for (int c = 0; c < found.first->channels; ++c)
+    value.push_back(value_json(found.first->values[static_cast<std::size_t>(c)]));
   return {{"nan", found.nan},
           {"plus_infinity", found.plus_infinity},
           {"minus_infinity", found.minus_infinity},

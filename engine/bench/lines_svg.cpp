@@ -58,16 +58,19 @@ std::string temporal_svg(const Report& report) {
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n"
-      "<text x=\"{2}\" y=\"18\" font-size=\"14\">A highlight that drifts by parts of a pixel: how far the light around it "
+      "<text x=\"{2}\" y=\"18\" font-size=\"14\">A highlight that drifts by parts of a pixel: how far the light around "
+      "it "
       "swings</text>\n<text x=\"{2}\" y=\"34\" fill=\"#666\">largest less smallest, % of the mean; {3}</text>\n",
       kWidth, kHeight, kLeft, escaped(report.device));
   for (double x = least; x <= most * 1.001; x *= 2)
     out += fmt::format(
-        "<path d=\"M{0:.1f} {1}V{2}\" stroke=\"#ddd\"/><text x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\">{4:g}</text>\n",
+        "<path d=\"M{0:.1f} {1}V{2}\" stroke=\"#ddd\"/><text x=\"{0:.1f}\" y=\"{3}\" "
+        "text-anchor=\"middle\">{4:g}</text>\n",
         across(x), kTop, kHeight - kBottom, kHeight - kBottom + 16, x);
   for (int i = 0; i <= 4; ++i)
     out += fmt::format(
-        "<path d=\"M{1} {0:.1f}H{2}\" stroke=\"#ddd\"/><text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:.3g}</text>\n",
+        "<path d=\"M{1} {0:.1f}H{2}\" stroke=\"#ddd\"/><text x=\"{3}\" y=\"{4:.1f}\" "
+        "text-anchor=\"end\">{5:.3g}</text>\n",
         up(highest * i / 4), kLeft, kWidth - kRight, kLeft - 6, up(highest * i / 4) + 4, highest * i / 4);
   out += fmt::format("<text x=\"{:.0f}\" y=\"{}\" text-anchor=\"middle\">radius of the highlight, pixels</text>\n",
                      (kLeft + kWidth - kRight) / 2, kHeight - 14);

@@ -76,15 +76,15 @@ Json goal_json(const GoalResult& goal) {
 }
 
 Json temporal_json(const TemporalCurve& curve) {
-  return {{"preset", curve.preset},       {"settings", curve.settings}, {"scene", curve.scene},
-          {"width", curve.size.width},    {"height", curve.size.height}, {"radius", curve.radius},
-          {"light", curve.light},         {"swing", curve.swing},       {"flicker", curve.flicker},
+  return {{"preset", curve.preset},    {"settings", curve.settings},  {"scene", curve.scene},
+          {"width", curve.size.width}, {"height", curve.size.height}, {"radius", curve.radius},
+          {"light", curve.light},      {"swing", curve.swing},        {"flicker", curve.flicker},
           {"pixels", curve.pixels}};
 }
 
 Json resolution_json(const ResolutionPoint& point) {
-  return {{"preset", point.preset}, {"settings", point.settings}, {"width", point.size.width},
-          {"height", point.size.height}, {"worst", point.worst}, {"rms", point.rms}};
+  return {{"preset", point.preset},      {"settings", point.settings}, {"width", point.size.width},
+          {"height", point.size.height}, {"worst", point.worst},       {"rms", point.rms}};
 }
 
 std::string key(const std::string& preset, int width, int height, const std::string& label, const std::string& choice,

@@ -59,7 +59,7 @@ struct GoalResult {
 /// How steady what a look adds is over the frames of a shot. Shares are of the mean over the frames.
 struct TemporalCurve {
   std::string preset, settings;
-  std::string scene;          ///< "highlight of 0.5 px", or the files
+  std::string scene;  ///< "highlight of 0.5 px", or the files
   Size size;
   double radius = 0;          ///< of the highlight, pixels; 0: another scene
   std::vector<double> light;  ///< frame by frame, from the third on: the light that was added, its mean being 1

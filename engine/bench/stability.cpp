@@ -106,7 +106,8 @@ std::vector<double> averaged(const std::vector<double>& light, Size from, Size t
       for (std::size_t j = 0; j < rows.size(); ++j)
         for (std::size_t i = 0; i < columns.size(); ++i)
           sum += rows[j] * columns[i] *
-                 light[(static_cast<std::size_t>(v) + j) * static_cast<std::size_t>(from.width) + static_cast<std::size_t>(u) + i];
+                 light[(static_cast<std::size_t>(v) + j) * static_cast<std::size_t>(from.width) +
+                       static_cast<std::size_t>(u) + i];
       out[static_cast<std::size_t>(y) * static_cast<std::size_t>(to.width) + static_cast<std::size_t>(x)] = sum;
     }
   }
@@ -187,17 +188,20 @@ Result<TemporalCurve> measure_shot(const ShotRequest& request, const std::vector
   return curve;
 }
 
-Result<std::vector<ResolutionPoint>> measure_resolutions(const std::filesystem::path& preset, const SessionOptions& options,
-                                                         const Variant& variant, const std::vector<Size>& sizes,
-                                                         Diagnostics& diagnostics, const Step& step) {
+Result<std::vector<ResolutionPoint>> measure_resolutions(const std::filesystem::path& preset,
+                                                         const SessionOptions& options, const Variant& variant,
+                                                         const std::vector<Size>& sizes, Diagnostics& diagnostics,
+                                                         const Step& step) {
   AFTERGLOW_TRY(const auto session, open(preset, options, variant, diagnostics));
   const Size least = *std::ranges::min_element(sizes, {}, [](Size s) { return s.area(); });
   std::vector<double> first;
   std::vector<ResolutionPoint> out;
   for (const Size size : sizes) {
     if (static_cast<long long>(size.width) * least.height != static_cast<long long>(size.height) * least.width)
-      return Error{ErrorKind::usage, fmt::format("{}x{} has another shape than {}x{}", size.width, size.height, least.width, least.height),
-                   "--sizes", 0, "sizes of one aspect ratio"};
+      return Error{
+          ErrorKind::usage,
+          fmt::format("{}x{} has another shape than {}x{}", size.width, size.height, least.width, least.height),
+          "--sizes", 0, "sizes of one aspect ratio"};
     AFTERGLOW_CHECK(step(fmt::format("{}x{} {}", size.width, size.height, variant.settings)));
     AFTERGLOW_TRY(const auto light, added_light(*session, lamps(size), 1));
     const auto glow = averaged(light, size, least);

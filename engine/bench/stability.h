@@ -23,8 +23,8 @@ struct ShotRequest {
   std::filesystem::path preset;
   SessionOptions options;  ///< the variant's overrides are added
   Variant variant;
-  std::string scene;       ///< for the report
-  double radius = 0;       ///< of the highlight, for the report; 0: not that scene
+  std::string scene;  ///< for the report
+  double radius = 0;  ///< of the highlight, for the report; 0: not that scene
 };
 /// What the look adds to the pixels that do not change from frame to frame in the source (to all, where hardly any are
 /// so). The first two frames are those that effects with a history begin with: they are run and not counted. Errors:
@@ -34,8 +34,9 @@ Result<TemporalCurve> measure_shot(const ShotRequest& request, const std::vector
 
 /// What the look adds to `lamps` at each size, against the first: both as means over the pixels of the smallest, which
 /// all must have the shape of. Errors: those of Session; usage (shapes differ).
-Result<std::vector<ResolutionPoint>> measure_resolutions(const std::filesystem::path& preset, const SessionOptions& options,
-                                                         const Variant& variant, const std::vector<Size>& sizes,
-                                                         Diagnostics& diagnostics, const Step& step);
+Result<std::vector<ResolutionPoint>> measure_resolutions(const std::filesystem::path& preset,
+                                                         const SessionOptions& options, const Variant& variant,
+                                                         const std::vector<Size>& sizes, Diagnostics& diagnostics,
+                                                         const Step& step);
 
 }  // namespace afterglow::bench

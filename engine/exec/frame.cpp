@@ -284,8 +284,8 @@ Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string
     return times;
   }
   const auto start = Clock::now();
-  AFTERGLOW_TRY(const std::uint64_t held, state_->result.download(state_->staging, *state_->shown, out,
-                                                                          ran->flags_non_finite()));
+  AFTERGLOW_TRY(const std::uint64_t held,
+                state_->result.download(state_->staging, *state_->shown, out, ran->flags_non_finite()));
   out.clamped += held;
   times.readback = milliseconds_since(start);
   return times;

@@ -41,7 +41,7 @@ struct HostResult {
   std::uint64_t clamped = 0;        ///< half storage: source or result samples held at ±65504
   /// Of a program with ProgramOptions::flag_non_finite: some alpha is 0. Such a program's `pixels` have no other alpha.
   bool flagged = false;
-  bool keep_alpha = false;          ///< write R, G and B alone where `pixels` has the size of the result already
+  bool keep_alpha = false;  ///< write R, G and B alone where `pixels` has the size of the result already
 };
 
 /// An image of a FrameRunner between frames. It may be sampled in fragment shaders of later submissions to the device's

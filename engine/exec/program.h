@@ -46,7 +46,7 @@ struct ProgramOptions {
   /// CPU devices. More than 1 makes the images between kernels linear.
   int rows = 1;
   WorthAKernel worth;
-  bool codes = false;           ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
+  bool codes = false;  ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
   /// The result's alpha is 0 where a colour that was not finite came up in a pass and no pass of another kernel that
   /// reads around its pixel made it finite again; elsewhere 1 (`codes`: what the last pass gave). See Watch.
   bool flag_non_finite = false;

@@ -210,7 +210,8 @@ std::string non_finite_text(const Picture& picture) {
 }
 
 Error non_finite_error(const Picture& picture, const fs::path& file) {
-  return {ErrorKind::io, fmt::format("the picture has values that are not finite (--nan-policy fail): {}", non_finite_text(picture)),
+  return {ErrorKind::io,
+          fmt::format("the picture has values that are not finite (--nan-policy fail): {}", non_finite_text(picture)),
           file.string()};
 }
 
@@ -230,8 +231,9 @@ void report(const Picture& picture, NanPolicy policy, const fs::path& file, Diag
   std::vector<std::string> said;
   if (!parts.empty()) said.push_back("samples made finite and not negative: " + join(parts));
   if (!picture.non_finite.empty())
-    said.push_back((policy == NanPolicy::neighbour ? "not finite, replaced by the mean of neighbours: " : "not finite: ") +
-                   non_finite_text(picture));
+    said.push_back(
+        (policy == NanPolicy::neighbour ? "not finite, replaced by the mean of neighbours: " : "not finite: ") +
+        non_finite_text(picture));
   if (said.empty()) return;
   const std::string text = fmt::format("{}: {}", file.string(), join(said, "; "));
   // Told once: those who run sequences sum up at the end.

@@ -25,7 +25,8 @@ OpenedDevice open_device(const DeviceOptions& options, Diagnostics& diagnostics)
 bool lost_alpha(const Picture& picture, const Rect& part) {
   for (int y = part.y; y < part.y + part.height; ++y)
     for (int x = part.x; x < part.x + part.width; ++x) {
-      const std::size_t alpha = 4 * (static_cast<std::size_t>(y) * picture.color.width + static_cast<std::size_t>(x)) + 3;
+      const std::size_t alpha =
+          4 * (static_cast<std::size_t>(y) * picture.color.width + static_cast<std::size_t>(x)) + 3;
       if (picture.codes[alpha] == 0 && picture.color.pixels[alpha] >= 1.0f / 255) return true;
     }
   return false;
@@ -124,8 +125,7 @@ Result<Trace> Session::trace(const Picture& picture, const BuildContext& frame,
                              const std::optional<DisplayEncoding>& encoding, const std::optional<Rect>& region,
                              NanPolicy policy) {
   AFTERGLOW_CHECK(state_->stack->prepare(context_of(picture, frame), encoding, region));
-  if (!state_->tracer)
-    state_->tracer = std::make_unique<Tracer>(*state_->device, state_->options.stack.max_memory);
+  if (!state_->tracer) state_->tracer = std::make_unique<Tracer>(*state_->device, state_->options.stack.max_memory);
   return state_->tracer->run(*state_->stack, picture, frame, region, policy);
 }
 

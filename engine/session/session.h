@@ -36,8 +36,8 @@ struct SessionReport {
   std::vector<std::string> kernels;  ///< what ran in the last frame, joined passes as "a+b"
   ProgramMemory memory;
   std::uint64_t clamped = 0;  ///< half storage: samples of the last frame held at ±65504
-  /// With StackOptions::flag_non_finite: the last frame met a colour that is not finite, see ProgramOptions. Pixels whose
-  /// alpha rounds to 0 of 255 are not seen where the result is codes with straight alpha.
+  /// With StackOptions::flag_non_finite: the last frame met a colour that is not finite, see ProgramOptions. Pixels
+  /// whose alpha rounds to 0 of 255 are not seen where the result is codes with straight alpha.
   bool flagged = false;
   SessionTimes times;
   struct Counters {
@@ -70,9 +70,8 @@ class Session {
                        const std::optional<DisplayEncoding>& encoding = {}, const std::optional<Rect>& region = {});
   /// Which passes make what is not finite in a frame, and its mended result: see session/trace.h. The frame that was
   /// processed last, or the next one that will be; arguments are those of `process`.
-  Result<Trace> trace(const Picture& picture, const BuildContext& frame,
-                      const std::optional<DisplayEncoding>& encoding, const std::optional<Rect>& region,
-                      NanPolicy policy);
+  Result<Trace> trace(const Picture& picture, const BuildContext& frame, const std::optional<DisplayEncoding>& encoding,
+                      const std::optional<Rect>& region, NanPolicy policy);
   SessionReport report() const;
 
  private:

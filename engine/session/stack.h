@@ -39,9 +39,9 @@ struct StackOptions {
   Precision precision = Precision::automatic;
   std::optional<double> max_error;  ///< E of math.md §13; default: the preset's, else 2e-3
   bool reference = false;           ///< every pass on its own in fp32 with computed weights: the slow truth
-  bool skip_idle = true;     ///< run frames without the effects that their content makes idle (never with `reference`)
+  bool skip_idle = true;  ///< run frames without the effects that their content makes idle (never with `reference`)
   bool flag_non_finite = false;  ///< the result's alpha tells of colours that were not finite: see ProgramOptions
-  bool keep_images = false;  ///< images between passes stay, so that after an edit only what it changes runs again
+  bool keep_images = false;      ///< images between passes stay, so that after an edit only what it changes runs again
   /// Programs of other structures that stay besides the present one, for presets whose structure moves with the frame;
   /// with their images, within `max_memory` altogether.
   int spare_programs = 0;

@@ -1,6 +1,6 @@
 // Finds out which passes of a frame make values that are not finite, and makes the frame without them: every pass runs
-// by itself, in full floats where that means the same, with a pass behind it that mends what it made. So each pass reads
-// finite values alone, and what it makes that is not finite is its own doing.
+// by itself, in full floats where that means the same, with a pass behind it that mends what it made. So each pass
+// reads finite values alone, and what it makes that is not finite is its own doing.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,9 @@ struct PassFinding {
   std::string effect;  ///< name of the effect's entry
   std::string file;    ///< the script that asked for the pass, and where
   int line = 0;
-  std::string shader;      ///< file; empty for filters
-  Size size;               ///< of its image
-  NonFinite found;         ///< places are pixels of that image
+  std::string shader;  ///< file; empty for filters
+  Size size;           ///< of its image
+  NonFinite found;     ///< places are pixels of that image
 };
 
 /// Finite values that half floats cannot hold.
@@ -36,13 +36,13 @@ struct PassOverflow {
 };
 
 struct Trace {
-  std::vector<PassFinding> passes;         ///< in their order
-  std::optional<PassOverflow> overflow;    ///< the first pass with values above 65504
-  Image result;                            ///< RGB mended; A that of the source
+  std::vector<PassFinding> passes;       ///< in their order
+  std::optional<PassOverflow> overflow;  ///< the first pass with values above 65504
+  Image result;                          ///< RGB mended; A that of the source
 };
 
-/// The graph with a pass behind each that makes what is not finite 0, or a mean of neighbours. `made[i]`: the image that
-/// pass i of `graph` makes in the new one, before it is mended.
+/// The graph with a pass behind each that makes what is not finite 0, or a mean of neighbours. `made[i]`: the image
+/// that pass i of `graph` makes in the new one, before it is mended.
 struct GuardedGraph {
   Graph graph;
   std::vector<ImageId> made;

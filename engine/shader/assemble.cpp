@@ -37,9 +37,7 @@ vec4 ag_round_to_half(vec4 v) {
 
 /// Of a kernel that watches. A NaN or an infinity stays in a sum, whatever a later stage makes of it: no branch, and no
 /// comparison until the end.
-std::string add_light(const std::string& color) {
-  return fmt::format("  ag_light += {0}.r + {0}.g + {0}.b;\n", color);
-}
+std::string add_light(const std::string& color) { return fmt::format("  ag_light += {0}.r + {0}.g + {0}.b;\n", color); }
 
 class Assembler {
  public:

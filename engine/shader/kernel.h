@@ -36,8 +36,9 @@ enum class ImageRead { sampled, storage_rgba32f, storage_rgba16f };
 /// 0…1.
 enum class KernelTarget { float32, float16, codes8 };
 
-/// What a kernel does where a colour on its way is not finite: that of the head, one that a stage reads at its own pixel,
-/// or what a stage made of them, whatever later stages make of it. (Finite ones whose sum is above 1e38 count as such.)
+/// What a kernel does where a colour on its way is not finite: that of the head, one that a stage reads at its own
+/// pixel, or what a stage made of them, whatever later stages make of it. (Finite ones whose sum is above 1e38 count as
+/// such.)
 enum class Watch {
   none,
   hand_on,  ///< it writes NaN there, so that later kernels see it

@@ -54,7 +54,8 @@ class NonFiniteValues : public CliTest {
     write("shaders/broken/apply.glsl", glsl);
     write("effects/broken.lua",
           "local fx = require \"afterglow\"\n"
-          "return fx.effect { name = \"broken\", at = \"before_post_process\", settings = {}, build = function(g, s, source)\n"
+          "return fx.effect { name = \"broken\", at = \"before_post_process\", settings = {}, build = function(g, s, "
+          "source)\n"
           "  return g:pass { shader = \"broken/apply\", source = source, name = \"apply\" }\n"
           "end }\n");
     write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { " + before + "fx.broken {}" + more + " }\n");
@@ -86,8 +87,9 @@ TEST_F(NonFiniteValues, APassThatDividesByZeroIsNamedAndMended) {
   for (const std::string output : {"o.exr", "o.png"}) {
     const Outcome outcome = run_look({}, output);
     EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("effects/broken.lua:3: pass 'broken.apply' made 15 NaN, 15 +Inf, first at pixel 5,3: "
-                                       "(0.21, nan, 0.23, 1) of 32x18"));
+    EXPECT_THAT(outcome.err,
+                HasSubstr("effects/broken.lua:3: pass 'broken.apply' made 15 NaN, 15 +Inf, first at pixel 5,3: "
+                          "(0.21, nan, 0.23, 1) of 32x18"));
     EXPECT_THAT(outcome.err, HasSubstr("shaders/broken/apply.glsl"));
     EXPECT_THAT(outcome.err, HasSubstr("replaced by 0, in a.exr"));
     const Json pass = non_finite()["passes"][0];
@@ -115,7 +117,8 @@ TEST_F(NonFiniteValues, NeighboursStandIn) {
   const auto made = load("o.exr");
   // The column left and right of x = 5, and its own pixels above row 3.
   EXPECT_NEAR(made[at(5, 10, 1)],
-              (ramp(4, 9, 1) + ramp(4, 10, 1) + ramp(4, 11, 1) + ramp(6, 9, 1) + ramp(6, 10, 1) + ramp(6, 11, 1)) / 6, 1e-6);
+              (ramp(4, 9, 1) + ramp(4, 10, 1) + ramp(4, 11, 1) + ramp(6, 9, 1) + ramp(6, 10, 1) + ramp(6, 11, 1)) / 6,
+              1e-6);
   EXPECT_NEAR(made[at(5, 17, 1)], (ramp(4, 16, 1) + ramp(4, 17, 1) + ramp(6, 16, 1) + ramp(6, 17, 1)) / 4, 1e-6);
 }
 
@@ -132,8 +135,9 @@ TEST_F(NonFiniteValues, FailEndsTheRunAndWritesNothing) {
   const Outcome input = run_look({"--nan-policy", "fail"});
   EXPECT_EQ(input.exit_code, kFiles);
   EXPECT_TRUE(is_one_error_line(input.err)) << input.err;
-  EXPECT_THAT(input.err, HasSubstr("a.exr: error: the picture has values that are not finite (--nan-policy fail): color: 1 "
-                                   "-Inf, first at pixel 7,4: (0.25, 0.26, -inf, 1)"));
+  EXPECT_THAT(input.err,
+              HasSubstr("a.exr: error: the picture has values that are not finite (--nan-policy fail): color: 1 "
+                        "-Inf, first at pixel 7,4: (0.25, 0.26, -inf, 1)"));
   EXPECT_FALSE(fs::exists(path("o.exr")));
 }
 
@@ -155,9 +159,10 @@ TEST_F(NonFiniteValues, WhatLaterPassesHideIsSeen) {
 
 TEST_F(NonFiniteValues, WhatAnotherKernelSwallowsIsSeenByFail) {
   make("a.exr", {});
-  make_effect("uniform sampler2D source;\n"
-              "vec4 sample_at(ivec2 p) { vec4 c = fetch(source, p);\n"
-              "  return p.x == 9 ? log(-c) : c; }\n");
+  make_effect(
+      "uniform sampler2D source;\n"
+      "vec4 sample_at(ivec2 p) { vec4 c = fetch(source, p);\n"
+      "  return p.x == 9 ? log(-c) : c; }\n");
   write("shaders/broken/swallow.glsl",
         "uniform sampler2D source;\n"
         "vec4 sample_at(ivec2 p) { vec4 c = fetch(source, p);\n"
@@ -196,8 +201,8 @@ TEST_F(NonFiniteValues, PicturesSayWhatAndWhere) {
   ASSERT_EQ(run_look({"--nan-policy", "neighbour"}).exit_code, kDone);
   const auto mean = load("o.exr");
   EXPECT_NEAR(mean[at(0, 0, 0)], (ramp(1, 0, 0) + ramp(0, 1, 0) + ramp(1, 1, 0)) / 3, 1e-6);
-  EXPECT_NEAR(mean[at(31, 9, 1)], (ramp(31, 8, 1) + ramp(31, 10, 1) + ramp(30, 8, 1) + ramp(30, 9, 1) + ramp(30, 10, 1)) / 5,
-              1e-6);
+  EXPECT_NEAR(mean[at(31, 9, 1)],
+              (ramp(31, 8, 1) + ramp(31, 10, 1) + ramp(30, 8, 1) + ramp(30, 9, 1) + ramp(30, 10, 1)) / 5, 1e-6);
   EXPECT_NEAR(mean[at(12, 8, 2)], ramp(12, 8, 2), 1e-6);
   EXPECT_EQ(mean[at(31, 17, 3)], 1);
 }
@@ -238,14 +243,17 @@ TEST_F(NonFiniteValues, OverflowOfHalfFloatsIsNamed) {
   make_effect("vec4 apply(vec4 color, ivec2 p) { return p == ivec2(4, 9) ? vec4(70000.0, color.gba) : color; }\n");
   const Outcome outcome = run_look({"--precision", "fp16"});
   EXPECT_EQ(outcome.exit_code, kDone);
-  EXPECT_THAT(outcome.err, HasSubstr("pass 'broken.apply' overflows half floats: 1 samples above 65504, first at pixel 4,9: "
-                                     "(70000, 0.33, 0.34, 1)"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("pass 'broken.apply' overflows half floats: 1 samples above 65504, first at pixel 4,9: "
+                        "(70000, 0.33, 0.34, 1)"));
   EXPECT_THAT(run_look({"--precision", "fp32"}).err, IsEmpty());
 }
 
 TEST_F(NonFiniteValues, TransparentPicturesTellToo) {
   make("a.exr", {{5, 12, 3, 0.25f}, {20, 4, 3, 0.0f}});
-  make_effect("vec4 apply(vec4 color, ivec2 p) { return p == ivec2(5, 12) ? vec4(color.rgb / (color.a - 0.25), color.a) : color; }\n");
+  make_effect(
+      "vec4 apply(vec4 color, ivec2 p) { return p == ivec2(5, 12) ? vec4(color.rgb / (color.a - 0.25), color.a) : "
+      "color; }\n");
   EXPECT_THAT(run_look({}, "o.png").err, HasSubstr("made 3 +Inf, first at pixel 5,12"));
   make_effect(kSame);
   const Outcome clean = run_look({}, "o.png");
@@ -254,14 +262,16 @@ TEST_F(NonFiniteValues, TransparentPicturesTellToo) {
 }
 
 TEST_F(NonFiniteValues, SequencesTellOnceAndSumUp) {
-  for (int frame = 1; frame <= 4; ++frame) make("in/a.000" + std::to_string(frame) + ".exr", {{1, 1, 0, frame % 2 ? kNan : 1.0f}});
+  for (int frame = 1; frame <= 4; ++frame)
+    make("in/a.000" + std::to_string(frame) + ".exr", {{1, 1, 0, frame % 2 ? kNan : 1.0f}});
   make_effect(kDivide);
   fs::create_directory(path("out"));
   const Outcome outcome = run({"run", "look.lua", "in/a.####.exr", "-o", "out/a.####.exr", "--report", "report.json"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
   EXPECT_EQ(outcome.err.find("pass 'broken.apply' made"), outcome.err.rfind("pass 'broken.apply' made"));
-  EXPECT_THAT(outcome.err, HasSubstr("samples that were not finite, in 4 of 4 frames: 2 from input color, 120 from pass "
-                                     "broken.apply"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("samples that were not finite, in 4 of 4 frames: 2 from input color, 120 from pass "
+                        "broken.apply"));
   for (int frame = 0; frame < 4; ++frame) {
     EXPECT_EQ(non_finite(frame)["passes"][0]["nan"], 15);
     EXPECT_EQ(non_finite(frame).contains("input"), frame % 2 == 0);
@@ -273,19 +283,22 @@ TEST_F(NonFiniteValues, HistoriesGoOnMended) {
   write("shaders/keeps/add.glsl",
         "uniform float frame;\nuniform sampler2D source, before;\n"
         "vec4 sample_at(ivec2 p) { vec4 c = fetch(source, p) + fetch(before, p);\n"
-        "  return frame == 2.0 && p == ivec2(8, 8) ? vec4(c.rgb / (fetch(source, p).a - 1.0), 1.0) : vec4(c.rgb, 1.0); }\n");
+        "  return frame == 2.0 && p == ivec2(8, 8) ? vec4(c.rgb / (fetch(source, p).a - 1.0), 1.0) : vec4(c.rgb, 1.0); "
+        "}\n");
   write("shaders/keeps/show.glsl", "vec4 apply(vec4 color, vec4 kept) { return vec4(kept.rgb, color.a); }\n");
   write("effects/keeps.lua",
         "local fx = require \"afterglow\"\n"
         "return fx.effect { name = \"keeps\", settings = {}, build = function(g, s, source)\n"
         "  local before = g:history { size = source, pre_roll = 1 }\n"
-        "  local sum = g:pass { shader = \"keeps/add\", source = source, before = before, frame = g.frame, size = source, name = \"add\" }\n"
+        "  local sum = g:pass { shader = \"keeps/add\", source = source, before = before, frame = g.frame, size = "
+        "source, name = \"add\" }\n"
         "  g:keep(before, sum)\n"
         "  return g:pass { shader = \"keeps/show\", source = source, kept = sum, name = \"show\" }\n"
         "end }\n");
   write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.keeps {} }\n");
   fs::create_directory(path("out"));
-  const Outcome outcome = run({"run", "look.lua", "in/a.####.exr", "-o", "out/a.####.exr", "--type", "float", "--report", "report.json"});
+  const Outcome outcome =
+      run({"run", "look.lua", "in/a.####.exr", "-o", "out/a.####.exr", "--type", "float", "--report", "report.json"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("pass 'keeps.add' made 3 +Inf, first at pixel 8,8"));
   EXPECT_TRUE(non_finite(0).empty());

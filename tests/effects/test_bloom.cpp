@@ -34,10 +34,10 @@ void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& 
   if (s.reference_height > 0)
     EXPECT_TRUE(agrees(interleaved_floats(picture), bloom_scaled(scene.source, s.reference_height), kFullFloat, kRgb))
         << "scaled";
-  EXPECT_TRUE(agrees(
-      made.pixels("bloom.prefilter"),
-      s.fade_fireflies ? bloom_prefilter_fireflies(picture, threshold) : bloom_prefilter(picture, threshold),
-      kFullFloat, kRgb))
+  EXPECT_TRUE(
+      agrees(made.pixels("bloom.prefilter"),
+             s.fade_fireflies ? bloom_prefilter_fireflies(picture, threshold) : bloom_prefilter(picture, threshold),
+             kFullFloat, kRgb))
       << "prefilter";
   std::size_t levels = 0;
   for (std::string before = "bloom.prefilter"; made.has(level("vertical", levels));

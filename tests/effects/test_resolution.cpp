@@ -17,17 +17,19 @@ Scene lamps(Size size) {
     double x, y, radius, light;
   } kLamps[] = {{0.31, 0.42, 0.05, 8}, {0.92, 0.3, 0.012, 30}, {1.31, 0.71, 0.1, 3}, {0.63, 0.83, 0.02, 12}};
   const double h = size.height;
-  return {fmt::format("lamps {}", size.height), in_floats(generate(size, [&](int x, int y) {
-            double sum = 0;
-            for (int i = 0; i < 64; ++i) {
-              const double px = (x + (i % 8 + 0.5) / 8) / h, py = (y + (i / 8 + 0.5) / 8) / h;
-              double light = 0.05;
-              for (const auto& lamp : kLamps)
-                if (std::hypot(px - lamp.x, py - lamp.y) < lamp.radius) light = lamp.light;
-              sum += light;
-            }
-            return Rgba(sum / 64, 0.8 * sum / 64, 0.6 * sum / 64, 1);
-          })),
+  return {fmt::format("lamps {}", size.height),
+          in_floats(generate(size,
+                             [&](int x, int y) {
+                               double sum = 0;
+                               for (int i = 0; i < 64; ++i) {
+                                 const double px = (x + (i % 8 + 0.5) / 8) / h, py = (y + (i / 8 + 0.5) / 8) / h;
+                                 double light = 0.05;
+                                 for (const auto& lamp : kLamps)
+                                   if (std::hypot(px - lamp.x, py - lamp.y) < lamp.radius) light = lamp.light;
+                                 sum += light;
+                               }
+                               return Rgba(sum / 64, 0.8 * sum / 64, 0.6 * sum / 64, 1);
+                             })),
           {},
           {}};
 }
@@ -50,15 +52,16 @@ std::vector<double> glow(const std::string& entries, Size size, int factor) {
   return out;
 }
 
-/// The largest difference, as a share of the largest glow. Pixels at the edge of a lamp do not count: there the light of a
-/// pixel is a mean of the lamp's and the ground's, and a threshold of a mean is no mean of thresholds.
+/// The largest difference, as a share of the largest glow. Pixels at the edge of a lamp do not count: there the light
+/// of a pixel is a mean of the lamp's and the ground's, and a threshold of a mean is no mean of thresholds.
 double worst(const std::vector<double>& a, const std::vector<double>& b, Size size) {
   const Scene scene = lamps(size);
   double most = 0, largest = 0;
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) {
       bool even = true;
-      for (int i = 0; i < 9; ++i) even = even && scene.source.clamped(x + i % 3 - 1, y + i / 3 - 1) == scene.source.at(x, y);
+      for (int i = 0; i < 9; ++i)
+        even = even && scene.source.clamped(x + i % 3 - 1, y + i / 3 - 1) == scene.source.at(x, y);
       const auto at = static_cast<std::size_t>(y * size.width + x);
       if (even) most = std::max(most, std::abs(a[at] - b[at]));
       largest = std::max(largest, std::abs(b[at]));
@@ -70,7 +73,8 @@ TEST_F(Effects, AReferenceHeightMakesTheGlowThatOfEveryResolution) {
   constexpr double kBound = 0.02;  // docs/benchmarks/stability.md
   for (const std::string mode : {"additive", "scattering"}) {
     const std::string plain = fmt::format("fx.bloom {{ mode = \"{}\", intensity = 0.5 }}", mode);
-    const std::string fixed = fmt::format("fx.bloom {{ mode = \"{}\", intensity = 0.5, reference_height = 135 }}", mode);
+    const std::string fixed =
+        fmt::format("fx.bloom {{ mode = \"{}\", intensity = 0.5, reference_height = 135 }}", mode);
     const Size base{240, 135};
     const auto small = glow(fixed, base, 1), before = glow(plain, base, 1);
     for (const int factor : {2, 3}) {

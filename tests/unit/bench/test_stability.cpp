@@ -47,8 +47,9 @@ class StabilityOnADevice : public testing::Test {
   TemporalCurve shot(const std::vector<Override>& overrides, double radius) {
     Variant variant;
     variant.overrides = overrides;
-    auto curve = measure_shot({.preset = folder_ / "look.lua", .options = {}, .variant = variant, .scene = "x", .radius = radius},
-                              drifting_highlight({256, 128}, radius, 18), diagnostics_, nothing);
+    auto curve = measure_shot(
+        {.preset = folder_ / "look.lua", .options = {}, .variant = variant, .scene = "x", .radius = radius},
+        drifting_highlight({256, 128}, radius, 18), diagnostics_, nothing);
     EXPECT_TRUE(curve) << curve.error().text();
     return *curve;
   }
@@ -84,8 +85,10 @@ TEST_F(StabilityOnADevice, ResolutionsDifferUntilTheyHaveAReference) {
 
 TEST(Stability, ReportsHoldTheCurves) {
   Report report;
-  report.temporal.push_back({.preset = "a", .settings = "b=1", .scene = "s", .size = {4, 2}, .radius = 0.5, .light = {0.5, 1.5}, .swing = 1});
-  report.temporal.push_back({.preset = "a", .settings = "b=1", .scene = "t", .size = {4, 2}, .radius = 2, .light = {1}, .swing = 0.25});
+  report.temporal.push_back(
+      {.preset = "a", .settings = "b=1", .scene = "s", .size = {4, 2}, .radius = 0.5, .light = {0.5, 1.5}, .swing = 1});
+  report.temporal.push_back(
+      {.preset = "a", .settings = "b=1", .scene = "t", .size = {4, 2}, .radius = 2, .light = {1}, .swing = 0.25});
   report.resolutions.push_back({.preset = "a", .settings = "", .size = {8, 4}, .worst = 0.125, .rms = 0.0625});
   const auto json = nlohmann::json::parse(report_json(report));
   EXPECT_EQ(json["temporal"][0]["light"][1], 1.5);
