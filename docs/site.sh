@@ -16,6 +16,7 @@ pages=(
   "docs/composition.md|Composing looks"
   "docs/writing_effects.md|Writing an effect"
   "docs/determinism.md|The same pixels"
+  "docs/reliability.md|What one can rely on"
   "docs/math.md|The mathematics"
   "docs/benchmarks/README.md|Benchmarks"
   "docs/benchmarks/flicker.md|Flicker"

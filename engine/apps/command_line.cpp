@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <new>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
+#include "core/exception.h"
 #include "core/text.h"
 
 namespace afterglow {
@@ -24,13 +24,6 @@ constexpr const char* kFooter =
     "between),\n"
     "             AFTERGLOW_CACHE folder for caches, AFTERGLOW_VALIDATE=1 Vulkan validation, NO_COLOR no colours.\n"
     "`afterglow COMMAND --help` tells the rest.";
-
-/// Error texts of the parser, in one line.
-std::string one_line(std::string text) {
-  for (auto& c : text)
-    if (c == '\n') c = ' ';
-  return trim(text);
-}
 
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
@@ -107,26 +100,11 @@ std::optional<int> parse(CLI::App& program, const std::vector<Command>& commands
       }
     }
     const std::string where = command ? "afterglow " + command->options->get_name() : "afterglow";
-    return fail(console, {ErrorKind::usage, one_line(error.what()), where});
+    return fail(console, {ErrorKind::usage, exception_text(error), where});
   }
 }
 
-Result<void> run(const Command& command, Console& console) {
-  try {
-    return command.run(console);
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorKind::io, "out of memory"};
-  } catch (const std::exception& exception) {
-    return Error{ErrorKind::other, fmt::format("internal error: {}", one_line(exception.what()))};
-  }
-}
-
-}  // namespace
-
-int run_command_line(int argc, char** argv) {
-  Console console;
-  install_interrupt_handler();
-
+int run(Console& console, int argc, char** argv) {
   CLI::App program("Finishes rendered pictures: Lua looks on Vulkan.", "afterglow");
   program.set_version_flag("--version", "afterglow " AFTERGLOW_VERSION);
   program.require_subcommand(1);
@@ -143,8 +121,20 @@ int run_command_line(int argc, char** argv) {
 
   if (const auto exit_code = parse(program, commands, argc, argv, console)) return *exit_code;
   messages.apply(console);
-  const auto done = run(*parsed_command(commands), console);
+  const auto done = parsed_command(commands)->run(console);
   return done ? 0 : fail(console, done.error());
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  Console console;
+  install_interrupt_handler();
+  try {
+    return run(console, argc, argv);
+  } catch (const std::exception& exception) {
+    return fail(console, exception_error(exception));
+  }
 }
 
 }  // namespace afterglow

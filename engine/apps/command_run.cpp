@@ -243,6 +243,8 @@ Result<void> prepare_resume(Run& run) {
   AFTERGLOW_TRY(const Hash look, look_hash(run.session->preset(), graph, options));
   run.loop.record_look = look;
   if (!a.resume) return {};
+  if (const int left = remove_leftovers(run.report.frames))
+    run.console.note(fmt::format("removed {} half-written files of runs that were killed", left));
   for (auto& frame : run.report.frames)
     if (is_up_to_date(frame.job, look)) {
       frame.state = FrameRecord::State::up_to_date;

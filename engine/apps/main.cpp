@@ -1,3 +1,14 @@
-#include "apps/command_line.h"
+#include <cstdio>
+#include <exception>
 
-int main(int argc, char** argv) { return afterglow::run_command_line(argc, argv); }
+#include "apps/command_line.h"
+#include "core/result.h"
+
+int main(int argc, char** argv) {
+  try {
+    return afterglow::run_command_line(argc, argv);
+  } catch (const std::exception& exception) {  // not even the message could be made
+    std::fprintf(stderr, "error: %s\n", exception.what());
+    return static_cast<int>(afterglow::ErrorKind::other);
+  }
+}

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <system_error>
 
 #include "core/file.h"
+#include "core/temporary.h"
 #include "core/text.h"
 #include "shader/library.h"
 
@@ -50,6 +52,15 @@ bool is_up_to_date(const FrameJob& job, const Hash& look) {
   }
   const auto record = read_file(record_file(job.output), 1024);
   return record && trim(*record) == look.hex();
+}
+
+int remove_leftovers(const std::vector<FrameRecord>& frames) {
+  std::set<fs::path> folders;
+  for (const auto& frame : frames) folders.insert(frame.job.output.parent_path());
+  int removed = 0;
+  for (const auto& folder : folders)
+    removed += remove_abandoned_temporaries(folder) + remove_abandoned_temporaries(folder / ".afterglow");
+  return removed;
 }
 
 Result<void> record_made(const FrameJob& job, const Hash& look) {

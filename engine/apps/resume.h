@@ -7,8 +7,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "apps/frame_list.h"
+#include "apps/run_report.h"
 #include "core/hash.h"
 #include "core/result.h"
 #include "graph/graph.h"
@@ -22,6 +24,9 @@ Result<Hash> look_hash(const Preset& preset, const Graph& graph, const std::stri
 
 /// True when the output exists, was made by the look with this hash, and is newer than its inputs.
 bool is_up_to_date(const FrameJob& job, const Hash& look);
+/// Removes what killed runs on this machine have left half-written in the folders of these outputs; returns how many
+/// files.
+int remove_leftovers(const std::vector<FrameRecord>& frames);
 /// Notes that the output was made by this look. Errors: io.
 Result<void> record_made(const FrameJob& job, const Hash& look);
 

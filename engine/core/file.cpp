@@ -1,15 +1,14 @@
 #include "core/file.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <system_error>
 
 #include "core/file_trace.h"
+#include "core/temporary.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -38,13 +37,6 @@ Result<std::string> read_file(const fs::path& path, std::size_t limit) {
   if (in.bad()) return Error{ErrorKind::io, "read error", path.string()};
   reading.done(content);
   return content;
-}
-
-fs::path temporary_beside(const fs::path& path) {
-  static std::atomic<unsigned> counter{0};
-  const auto name =
-      fmt::format(".{}.{}-{}.tmp{}", path.stem().string(), getpid(), counter++, path.extension().string());
-  return path.parent_path() / name;
 }
 
 Result<void> commit_file(const fs::path& from, const fs::path& to) {

@@ -17,10 +17,6 @@ Result<std::string> read_file(const std::filesystem::path& path, std::size_t lim
 /// Is there a file (links are followed)?
 bool is_file(const std::filesystem::path& path);
 
-/// A name in the same folder that no other process or thread uses, hidden and ending in the same extension
-/// (image libraries choose the format by it).
-std::filesystem::path temporary_beside(const std::filesystem::path& path);
-
 /// Writes to a temporary file beside `path`, then renames. On error nothing is left behind.
 Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view content);
 

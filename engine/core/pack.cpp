@@ -14,6 +14,7 @@
 
 #include "core/file.h"
 #include "core/hash.h"
+#include "core/temporary.h"
 #include "core/text.h"
 
 namespace afterglow {

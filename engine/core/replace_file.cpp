@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "core/file.h"
+#include "core/temporary.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <condition_variable>
 #include <cstring>
+#include <exception>
 #include <map>
 #include <mutex>
 #include <set>
@@ -91,6 +92,7 @@ struct Watcher::State {
   void read_events();
   void handle(const inotify_event& event, const char* name);
   int timeout() const;
+  void turn(std::unique_lock<std::mutex>& lock);
   void run();
   void poke() const {
     const std::uint64_t one = 1;
@@ -160,29 +162,39 @@ int Watcher::State::timeout() const {
   return static_cast<int>(std::max<std::int64_t>(left.count(), 0));
 }
 
+/// Waits for something to happen, and acts on it.
+void Watcher::State::turn(std::unique_lock<std::mutex>& lock) {
+  std::array<pollfd, 2> wait{{{wake.get(), POLLIN, 0}, {events.get(), POLLIN, 0}}};
+  const int milliseconds = timeout();
+  lock.unlock();
+  poll(wait.data(), wait.size(), milliseconds);
+  lock.lock();
+  if (ends) return;
+  std::uint64_t count = 0;
+  static_cast<void>(read(wake.get(), &count, sizeof count));
+  read_events();
+  const auto now = Clock::now();
+  const bool signs = gathering.due() && now >= *gathering.due();
+  const bool polls = !why_polling.empty() && now >= next_poll;
+  if (!signs && !polls) return;
+  const bool polled = !gathering.due();
+  const auto since = polled ? now : gathering.take();
+  refresh();
+  lock.unlock();
+  look(since, polled);
+  lock.lock();
+  next_poll = Clock::now() + options.interval;
+}
+
 void Watcher::State::run() {
   std::unique_lock lock(mutex);
   while (!ends) {
-    std::array<pollfd, 2> wait{{{wake.get(), POLLIN, 0}, {events.get(), POLLIN, 0}}};
-    const int milliseconds = timeout();
-    lock.unlock();
-    poll(wait.data(), wait.size(), milliseconds);
-    lock.lock();
-    if (ends) return;
-    std::uint64_t count = 0;
-    static_cast<void>(read(wake.get(), &count, sizeof count));
-    read_events();
-    const auto now = Clock::now();
-    const bool signs = gathering.due() && now >= *gathering.due();
-    const bool polls = !why_polling.empty() && now >= next_poll;
-    if (!signs && !polls) continue;
-    const bool polled = !gathering.due();
-    const auto since = polled ? now : gathering.take();
-    refresh();
-    lock.unlock();
-    look(since, polled);
-    lock.lock();
-    next_poll = Clock::now() + options.interval;
+    try {
+      turn(lock);
+    } catch (const std::exception&) {  // out of memory: whatever happened, look again
+      if (!lock.owns_lock()) lock.lock();
+      gathering.whole(Clock::now());
+    }
   }
 }
 

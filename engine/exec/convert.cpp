@@ -5,8 +5,8 @@
 #include <atomic>
 #include <cstring>
 
+#include "core/parallel.h"
 #include "exec/half.h"
-#include "exec/parallel.h"
 
 namespace afterglow {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "exec/parallel.h"
+#include "core/parallel.h"
 #include "graph/history.h"
 
 namespace afterglow {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <optional>
 
-#include "exec/parallel.h"
+#include "core/parallel.h"
 #include "gpu/fullscreen_vertex.h"
 
 namespace afterglow {

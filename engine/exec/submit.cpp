@@ -1,8 +1,7 @@
 #include "exec/submit.h"
 
-#include <limits>
-
 #include "gpu/error.h"
+#include "gpu/fence.h"
 
 namespace afterglow {
 
@@ -69,11 +68,8 @@ Result<void> Submitter::submit_again(int which) {
 Result<void> Submitter::wait() {
   if (!pending_) return {};
   const VkFence fence = fence_.get();
-  // Drivers end a submission that hangs, as "device lost"; there is nothing useful to do after a shorter time.
-  const VkResult result =
-      vkWaitForFences(device_->handle(), 1, &fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
   pending_ = false;
-  AFTERGLOW_VK(result, "the device did not finish");
+  AFTERGLOW_VK(wait_for_fence(*device_, fence), "the device did not finish");
   AFTERGLOW_VK(vkResetFences(device_->handle(), 1, &fence), "cannot reset a fence");
   return {};
 }

@@ -15,7 +15,7 @@ std::string result_name(VkResult result);
 /// A `device` error: "WHAT: out of device memory (VK_ERROR_OUT_OF_DEVICE_MEMORY)".
 Error vulkan_error(VkResult result, std::string_view what);
 
-/// "1.5 GiB", "130 MiB", "12 KiB": for messages.
+/// "1.5 GiB", "130 MiB", "12 KiB", "640 bytes": for messages.
 std::string bytes_text(unsigned long long bytes);
 
 /// Returns the error of a Vulkan call that did not succeed.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "gpu/error.h"
+#include "gpu/fence.h"
 #include "gpu/image.h"
 
 namespace afterglow {
@@ -309,7 +310,7 @@ void Swapchain::note_suboptimal() {
 Result<void> Swapchain::wait(Slot& slot) {
   if (!slot.pending) return {};
   const VkFence fence = slot.done.get();
-  AFTERGLOW_VK(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, kForever), "the device did not finish a frame");
+  AFTERGLOW_VK(wait_for_fence(device_, fence), "the device did not finish a frame");
   slot.pending = false;
   frames_done_ = std::max(frames_done_, slot.frame);
   proven_chain_ = std::max(proven_chain_, slot.proves_chain);

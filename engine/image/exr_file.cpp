@@ -16,6 +16,7 @@
 #include <optional>
 #include <thread>
 
+#include "core/exception.h"
 #include "image/exr_metadata.h"
 
 namespace afterglow {
@@ -67,7 +68,7 @@ class ExrFile : public PictureFile {
       read_chroma(part, targets);
       return {};
     } catch (const std::exception& error) {
-      return failed("cannot be read: " + exr_message(error));
+      return failed("cannot be read: " + exception_text(error));
     }
   }
 
@@ -117,7 +118,7 @@ class ExrFile : public PictureFile {
       file_ = std::make_unique<Imf::MultiPartInputFile>(path_.c_str());
       if (file_->parts() != static_cast<int>(header_.size())) return failed("changed while it was read");
     } catch (const std::exception& error) {
-      return failed("cannot be read: " + exr_message(error));
+      return failed("cannot be read: " + exception_text(error));
     }
     return {};
   }
@@ -233,13 +234,6 @@ void use_exr_threads() {
     if (Imf::globalThreadCount() == 0)
       Imf::setGlobalThreadCount(std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads));
   });
-}
-
-std::string exr_message(const std::exception& error) {
-  std::string text = error.what();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
-  return text;
 }
 
 Result<std::unique_ptr<PictureFile>> open_exr(const std::filesystem::path& file, std::vector<ExrPart> header) {

@@ -17,7 +17,4 @@ Result<std::unique_ptr<PictureFile>> open_exr(const std::filesystem::path& file,
 /// core (16 at most); a count that the program has chosen is left alone.
 void use_exr_threads();
 
-/// What an exception of OpenEXR says, on one line.
-std::string exr_message(const std::exception& error);
-
 }  // namespace afterglow

@@ -8,6 +8,7 @@
 #include <limits>
 #include <mutex>
 
+#include "core/exception.h"
 #include "image/lut_file.h"
 
 namespace OCIO = OCIO_NAMESPACE;
@@ -205,7 +206,7 @@ Result<Lut> read(const std::filesystem::path& file) {
   } catch (const Unsupported& why) {
     return Error{ErrorKind::script, why.what, file.string()};
   } catch (const std::exception& error) {
-    return error_of(file.string(), error.what());
+    return error_of(file.string(), exception_text(error));
   }
 }
 

@@ -5,10 +5,10 @@
 #include <array>
 #include <cstring>
 #include <fstream>
-#include <new>
 #include <string_view>
 #include <vector>
 
+#include "core/exception.h"
 #include "core/text.h"
 #include "image/facts.h"
 
@@ -119,8 +119,8 @@ Result<Picture> Movie::read(int frame) {
     }
     decode_color(encoding_, picture.color, picture.sanitized);
     return picture;
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorKind::io, "there is not enough memory to read it", name};
+  } catch (const std::exception& error) {
+    return Error{ErrorKind::io, "cannot be read: " + exception_text(error), name};
   }
 }
 

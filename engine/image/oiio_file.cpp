@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/exception.h"
 #include "core/text.h"
 #include "image/icc_profile.h"
 #include "image/oiio_metadata.h"
@@ -16,9 +17,10 @@ namespace {
 constexpr std::size_t kMaxParts =
     64;  // pages of a TIFF; other formats' further images are animation frames or thumbnails
 
-std::string message_of(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  text = trim(text);
+/// What the library says: its first line, when there are several of a kind (one for each strip of a TIFF).
+std::string message_of(const std::string& said) {
+  std::string text = trim(said);
+  text = trim(text.substr(0, text.find('\n')));
   while (!text.empty() && text.back() == '.') text.pop_back();
   return text.empty() ? "cannot be read" : "cannot be read: " + text;
 }
@@ -45,7 +47,7 @@ class OiioFile : public PictureFile {
       AFTERGLOW_CHECK(add_parts(limits));
       if (specs_.front().get_int_attribute("oiio:Movie", 0) != 0) note_movie(specs_.front());
     } catch (const std::exception& error) {
-      return failed(message_of(error.what()));
+      return failed("cannot be read: " + exception_text(error));
     }
     return {};
   }
@@ -76,7 +78,7 @@ class OiioFile : public PictureFile {
         i = end;
       }
     } catch (const std::exception& error) {
-      return failed(message_of(error.what()));
+      return failed("cannot be read: " + exception_text(error));
     }
     return {};
   }
@@ -170,9 +172,12 @@ class OiioFile : public PictureFile {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
     const auto x_stride = static_cast<OIIO::stride_t>(first.pixel_stride * sizeof(float));
     const auto y_stride = static_cast<OIIO::stride_t>(first.row_stride * sizeof(float));
-    if (!input_->read_image(part + frame_, 0, first.channel, first.channel + channels, OIIO::TypeFloat, first.base,
-                            x_stride, y_stride, y_stride * spec.height))
-      return failed(message_of(input_->geterror()));
+    static_cast<void>(input_->geterror());  // of earlier calls that succeeded another way
+    const bool read = input_->read_image(part + frame_, 0, first.channel, first.channel + channels, OIIO::TypeFloat,
+                                         first.base, x_stride, y_stride, y_stride * spec.height);
+    // OpenImageIO 2.4 returns true, and black, for strips of a TIFF that are damaged or missing; but it says so.
+    const std::string why = input_->geterror();
+    if (!read || !why.empty()) return failed(message_of(why));
     return {};
   }
 

@@ -18,8 +18,8 @@ namespace afterglow {
 struct OiioModule {
   Result<std::unique_ptr<PictureFile>> (*open)(const std::filesystem::path& file, const ContainerFacts& container,
                                                const SizeLimits& limits);
-  /// JPEG, TIFF, HDR. With `out` null the library opens file `name` itself, and what it wrote is read back.
-  Result<void> (*write)(const Picture& picture, const OutputFormat& format, OutputFile* out, const std::string& name,
+  /// JPEG, TIFF, HDR; `name` is for messages.
+  Result<void> (*write)(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                         const WriteOptions& options);
   /// See visible_difference.h.
   Result<double> (*visible_difference)(const Image& a, const Image& b);

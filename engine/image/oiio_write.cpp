@@ -5,12 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <vector>
 
+#include "core/exception.h"
 #include "core/text.h"
 #include "image/facts.h"
 #include "image/icc_profile.h"
+#include "image/memory_file.h"
 #include "image/oiio_metadata.h"
 #include "image/output_metadata.h"
 #include "image/strips.h"
@@ -104,38 +105,56 @@ Result<void> read_back(const std::string& name) {
   if (!input) return Error{ErrorKind::io, "cannot be written: reading it back failed: " + trim(OIIO::geterror())};
   const OIIO::ImageSpec spec = input->spec();
   std::vector<std::uint8_t> rows(spec.scanline_bytes() * kRows);
-  for (int y = 0; y < spec.height; y += kRows)
-    if (!input->read_scanlines(0, 0, y, std::min(y + kRows, spec.height), 0, 0, spec.nchannels, spec.format,
-                               rows.data()))
-      return Error{ErrorKind::io, "cannot be written: reading it back failed: " + trim(input->geterror())};
+  static_cast<void>(input->geterror());
+  for (int y = 0; y < spec.height; y += kRows) {
+    const bool read = input->read_scanlines(0, 0, y, std::min(y + kRows, spec.height), 0, 0, spec.nchannels,
+                                            spec.format, rows.data());
+    const std::string why = trim(input->geterror());  // may be all that it says
+    if (!read || !why.empty()) return Error{ErrorKind::io, "cannot be written: reading it back failed: " + why};
+  }
   return {};
+}
+
+/// Writes to `name`, or to `proxy` where there is one.
+Result<void> write_rows(const Picture& picture, const OutputFormat& format, const std::string& name, OiioOutput* proxy,
+                        const WriteOptions& options) {
+  const StripForm form{sample_type(format, options, picture.facts.get()), picture.has_alpha && format.alpha,
+                       options.dither, options.dither_x, options.dither_y};
+  const OIIO::ImageSpec spec = spec_for(picture, format, form.type, form.alpha, options);
+  const auto output = OIIO::ImageOutput::create(format.name);
+  if (!output) return Error{ErrorKind::io, fmt::format("cannot be written: OpenImageIO has no {} writer", format.name)};
+  if (proxy) output->set_ioproxy(proxy);
+  if (!output->open(name, spec)) return library_failed(*output);
+  std::vector<std::uint8_t> strip(form.row_bytes(picture) * kRows);
+  for (int y = 0; y < spec.height; y += kRows) {
+    const int rows = std::min(kRows, spec.height - y);
+    encode_strip(picture, form, y, rows, strip.data());
+    if (!output->write_scanlines(y, y + rows, 0, oiio_type(form.type), strip.data())) return library_failed(*output);
+  }
+  if (!output->close()) return library_failed(*output);
+  return {};
+}
+
+/// libtiff opens its file itself: OpenImageIO 2.4 cannot look back at a TIFF that goes through a proxy, and then
+/// damages it where Exif data is to be written. A disk that fails may crash libtiff, or go unnoticed.
+Result<void> write_through_memory(const Picture& picture, const OutputFormat& format, OutputFile& out,
+                                  const WriteOptions& options) {
+  AFTERGLOW_TRY(const MemoryFile file, MemoryFile::create());
+  AFTERGLOW_CHECK(write_rows(picture, format, file.name(), nullptr, options));
+  AFTERGLOW_CHECK(read_back(file.name()));
+  return file.copy_to(out);
 }
 
 }  // namespace
 
-Result<void> write_with_oiio(const Picture& picture, const OutputFormat& format, OutputFile* out,
+Result<void> write_with_oiio(const Picture& picture, const OutputFormat& format, OutputFile& out,
                              const std::string& name, const WriteOptions& options) {
   try {
-    const StripForm form{sample_type(format, options, picture.facts.get()), picture.has_alpha && format.alpha,
-                         options.dither, options.dither_x, options.dither_y};
-    const OIIO::ImageSpec spec = spec_for(picture, format, form.type, form.alpha, options);
-    const auto output = OIIO::ImageOutput::create(format.name);
-    if (!output)
-      return Error{ErrorKind::io, fmt::format("cannot be written: OpenImageIO has no {} writer", format.name)};
-    std::optional<OiioOutput> proxy;
-    if (out) output->set_ioproxy(&proxy.emplace(*out, name));
-    if (!output->open(name, spec)) return library_failed(*output);
-    std::vector<std::uint8_t> strip(form.row_bytes(picture) * kRows);
-    for (int y = 0; y < spec.height; y += kRows) {
-      const int rows = std::min(kRows, spec.height - y);
-      encode_strip(picture, form, y, rows, strip.data());
-      if (!output->write_scanlines(y, y + rows, 0, oiio_type(form.type), strip.data()) || (out && out->failure()))
-        return library_failed(*output);
-    }
-    if (!output->close()) return library_failed(*output);
-    return out ? Result<void>() : read_back(name);
+    if (format.kind == OutputKind::tiff) return write_through_memory(picture, format, out, options);
+    OiioOutput proxy(out, name);
+    return write_rows(picture, format, name, &proxy, options);
   } catch (const std::exception& error) {
-    return Error{ErrorKind::io, fmt::format("cannot be written: {}", error.what())};
+    return Error{ErrorKind::io, fmt::format("cannot be written: {}", exception_text(error))};
   }
 }
 

@@ -8,7 +8,7 @@
 namespace afterglow {
 
 /// See OiioModule::write.
-Result<void> write_with_oiio(const Picture& picture, const OutputFormat& format, OutputFile* out,
+Result<void> write_with_oiio(const Picture& picture, const OutputFormat& format, OutputFile& out,
                              const std::string& name, const WriteOptions& options);
 
 }  // namespace afterglow

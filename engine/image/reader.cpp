@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <new>
 #include <utility>
 
+#include "core/exception.h"
+#include "core/file_trace.h"
 #include "core/text.h"
 #include "image/color_encoding.h"
 #include "image/orientation.h"
@@ -291,24 +292,45 @@ Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& optio
     header.host_bytes = host_bytes(plan, options.auxiliary);
     return header;
   } catch (const std::exception& error) {
-    return Error{ErrorKind::io, fmt::format("cannot be read: {}", error.what()), file.string()};
+    return Error{ErrorKind::io, fmt::format("cannot be read: {}", exception_text(error)), file.string()};
   }
 }
 
-Result<Picture> read_picture(const fs::path& file, const ReadOptions& options, Diagnostics& diagnostics) {
+namespace {
+
+void note_stamp(const fs::path& file, FileLooks& looks) {
+  FileTrace trace;
+  FileTrace::note(file, FileLook::Kind::stamp);
+  looks.merge(FileLooks(trace.looks()));
+}
+
+/// Notes in `looks` what the files are before they are read.
+Result<Picture> read_noting(const fs::path& file, const ReadOptions& options, Diagnostics& diagnostics,
+                            FileLooks& looks) {
   try {
+    note_stamp(file, looks);
     AFTERGLOW_TRY(Plan plan, make_plan(file, options, options.auxiliary));
+    for (const AuxiliaryPlan& extra : plan.auxiliary) note_stamp(plan.file_of(extra).path(), looks);
     if (const std::uint64_t bytes = host_bytes(plan, options.auxiliary); bytes > options.max_bytes)
       return Error{ErrorKind::io,
                    fmt::format("needs {} MiB of memory, more than the {} MiB allowed (--max-memory)", bytes >> 20,
                                options.max_bytes >> 20),
                    file.string()};
     return read_planned(plan, diagnostics);
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorKind::io, "there is not enough memory to read it", file.string()};
   } catch (const std::exception& error) {
-    return Error{ErrorKind::io, fmt::format("cannot be read: {}", error.what()), file.string()};
+    return Error{ErrorKind::io, fmt::format("cannot be read: {}", exception_text(error)), file.string()};
   }
+}
+
+}  // namespace
+
+Result<Picture> read_picture(const fs::path& file, const ReadOptions& options, Diagnostics& diagnostics) {
+  FileLooks looks;
+  auto picture = read_noting(file, options, diagnostics, looks);
+  // Whatever was read then, it is neither the old picture nor the new one.
+  if (const auto changed = first_changed(looks))
+    return Error{ErrorKind::io, "changed while it was read", changed->string()};
+  return picture;
 }
 
 }  // namespace afterglow

@@ -6,7 +6,9 @@
 #include <cerrno>
 #include <cstring>
 
+#include "core/exception.h"
 #include "core/file.h"
+#include "core/temporary.h"
 #include "image/exr_file.h"
 #include "image/oiio_module.h"
 #include "image/output_file.h"
@@ -48,21 +50,14 @@ class Temporary {
   bool committed_ = false;
 };
 
-/// OpenImageIO 2.4 cannot look back at a TIFF that goes through a proxy, and then damages it where Exif data is to be
-/// written.
-bool opened_by_library(const OutputFormat& format) { return format.kind == OutputKind::tiff; }
-
-Result<void> write_by_module(const Picture& picture, const OutputFormat& format, OutputFile* out,
-                             const std::string& name, const WriteOptions& options) {
-  AFTERGLOW_TRY(const OiioModule* module, oiio_module());
-  return module->write(picture, format, out, name, options);
-}
-
 Result<void> write_format(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                           const WriteOptions& options, Diagnostics& diagnostics) {
   if (format.kind == OutputKind::png)
     return write_png(picture, sample_type(format, options, picture.facts.get()), out, options);
-  if (format.kind != OutputKind::exr) return write_by_module(picture, format, &out, name, options);
+  if (format.kind != OutputKind::exr) {
+    AFTERGLOW_TRY(const OiioModule* module, oiio_module());
+    return module->write(picture, format, out, name, options);
+  }
   use_exr_threads();
   if (options.keep_layers) return write_exr_with_layers(picture, out, name, options, diagnostics);
   return write_exr(picture, out, name, options, diagnostics);
@@ -84,7 +79,7 @@ Result<void> write_through(const Picture& picture, const OutputFormat& format, c
   try {
     if (!out.failure()) written = write_format(picture, format, out, temporary.string(), options, diagnostics);
   } catch (const std::exception& error) {
-    written = Error{ErrorKind::io, "cannot be written: " + exr_message(error)};
+    written = Error{ErrorKind::io, "cannot be written: " + exception_text(error)};
   }
   AFTERGLOW_CHECK(out.close());
   AFTERGLOW_CHECK(written);
@@ -100,11 +95,7 @@ Result<void> write_checked(const Picture& picture, const OutputFormat& format, c
   if (picture.has_alpha && !format.alpha && has_transparency(picture))
     diagnostics.warn(
         fmt::format("{} files have no alpha; the picture is put on black", format.extensions[0].substr(1)));
-  if (opened_by_library(format)) {
-    AFTERGLOW_CHECK(write_by_module(picture, format, nullptr, temporary.string(), options));
-  } else {
-    AFTERGLOW_CHECK(write_through(picture, format, temporary, options, diagnostics));
-  }
+  AFTERGLOW_CHECK(write_through(picture, format, temporary, options, diagnostics));
   // An OutputFile has seen every byte go out; what it cannot see is a library that stopped early without saying so.
   if (format.kind == OutputKind::png || options.keep_layers) return {};
   ReadOptions anything;
@@ -170,7 +161,7 @@ Result<void> write_picture(const Picture& picture, const fs::path& file, const W
     }
     return temporary.commit(target);
   } catch (const std::exception& error) {
-    return Error{ErrorKind::io, fmt::format("cannot be written: {}", error.what()), file.string()};
+    return Error{ErrorKind::io, fmt::format("cannot be written: {}", exception_text(error)), file.string()};
   }
 }
 

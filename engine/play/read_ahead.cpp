@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <exception>
 #include <list>
 #include <map>
 #include <mutex>
@@ -47,6 +48,7 @@ struct ReadAhead::State {
   bool make_room(std::uint64_t more, std::size_t before);
   void drop(int key);
   void take(std::shared_ptr<const ReadPicture> picture);
+  void read_next(std::unique_lock<std::mutex>& lock, int key);
   void run();
 };
 
@@ -119,33 +121,44 @@ void ReadAhead::State::run() {
     std::optional<int> key;
     work.wait(lock, [&] { return ending || (key = next()); });
     if (ending) return;
-    reading.insert(*key);
-    const std::uint64_t began_in = epoch;
-    // Before it is read, so that the bound holds while both exist.
-    make_room(expected * reading.size(), rank(*key));
-    lock.unlock();
-    auto made = std::make_shared<ReadPicture>();
-    made->key = *key;
-    const auto start = Clock::now();
-    auto result = read(*key);
-    made->milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    if (result) {
-      made->picture = std::move(result).value();
-      made->bytes = bytes_of(made->picture);
-    } else {
-      made->error = std::move(result).error();
-    }
-    lock.lock();
-    if (began_in == epoch) {
+    try {
+      read_next(lock, *key);
+    } catch (const std::exception&) {  // out of memory: it is still wanted, and tried again when others have had a turn
+      constexpr std::chrono::milliseconds kPause{20};
+      if (!lock.owns_lock()) lock.lock();
       reading.erase(*key);
-      take(std::move(made));
+      work.wait_for(lock, kPause, [&] { return ending; });
     }
-    lock.unlock();
-    done.notify_all();
-    work.notify_all();
-    if (arrived) arrived();
-    lock.lock();
   }
+}
+
+void ReadAhead::State::read_next(std::unique_lock<std::mutex>& lock, int key) {
+  reading.insert(key);
+  const std::uint64_t began_in = epoch;
+  // Before it is read, so that the bound holds while both exist.
+  make_room(expected * reading.size(), rank(key));
+  lock.unlock();
+  auto made = std::make_shared<ReadPicture>();
+  made->key = key;
+  const auto start = Clock::now();
+  auto result = read(key);
+  made->milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  if (result) {
+    made->picture = std::move(result).value();
+    made->bytes = bytes_of(made->picture);
+  } else {
+    made->error = std::move(result).error();
+  }
+  lock.lock();
+  if (began_in == epoch) {
+    reading.erase(key);
+    take(std::move(made));
+  }
+  lock.unlock();
+  done.notify_all();
+  work.notify_all();
+  if (arrived) arrived();
+  lock.lock();
 }
 
 ReadAhead::ReadAhead(Read read, const ReadAheadOptions& options, std::function<void()> arrived)

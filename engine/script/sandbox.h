@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/diagnostics.h"
+#include "core/exception.h"
 #include "core/result.h"
 #include "script/preset.h"
 #include "script/script_error.h"
@@ -74,7 +75,7 @@ class Sandbox {
     } catch (ScriptError& e) {
       error = std::move(e.error);
     } catch (const std::exception& e) {
-      error = Error{ErrorKind::script, std::string("internal error: ") + e.what()};
+      error = exception_error(e);
     }
     if (error) of(lua).raise(std::move(*error));
   }

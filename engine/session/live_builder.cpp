@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/exception.h"
 #include "core/file.h"
 #include "core/text.h"
 
@@ -121,7 +122,11 @@ void LiveBuilder::run() {
     const LiveRequest request = request_;
     if (why.any()) request_.for_frame = false;
     lock.unlock();
-    if (why.any()) work(why, request);
+    try {
+      if (why.any()) work(why, request);
+    } catch (const std::exception& exception) {  // out of memory
+      fail(exception_error(exception));
+    }
     dead.clear();
     lock.lock();
     busy_ = false;

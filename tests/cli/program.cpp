@@ -24,7 +24,6 @@ namespace {
   if (options.largest_file > 0) {
     const rlimit limit{static_cast<rlim_t>(options.largest_file), static_cast<rlim_t>(options.largest_file)};
     setrlimit(RLIMIT_FSIZE, &limit);
-    signal(SIGXFSZ, SIG_IGN);  // write fails with EFBIG instead, as on a full disk
   }
   const std::string program = options.program.empty() ? AFTERGLOW_PROGRAM : options.program;
   std::vector<char*> argv{const_cast<char*>(program.c_str())};

@@ -86,13 +86,6 @@ TEST_F(Folder, ReadErrorsSayWhy) {
   EXPECT_FALSE(read_file(folder_ / "big", 10));
 }
 
-TEST_F(Folder, TemporaryNamesKeepTheExtension) {
-  const auto name = temporary_beside(folder_ / "a.exr");
-  EXPECT_EQ(name.extension(), ".exr");
-  EXPECT_EQ(name.parent_path(), folder_);
-  EXPECT_NE(name, temporary_beside(folder_ / "a.exr"));
-}
-
 TEST_F(Folder, SearchPathPrefersTheUser) {
   fs::create_directories(folder_ / "user" / "effects");
   fs::create_directories(folder_ / "home" / "scripts" / "effects");

@@ -7,9 +7,9 @@
 #include <limits>
 #include <random>
 
+#include "core/parallel.h"
 #include "exec/convert.h"
 #include "exec/half.h"
-#include "exec/parallel.h"
 
 namespace afterglow {
 namespace {

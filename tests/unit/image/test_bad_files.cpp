@@ -64,9 +64,14 @@ class Damaged : public testing::TestWithParam<const char*> {
     } else if (name == "chroma.exr") {
       std::filesystem::copy_file(test_image("openexr/Chromaticities_Rec709_YC.exr"), file);
     } else {
-      const bool integer = extension() != ".exr" && extension() != ".hdr";
-      OIIO::ImageSpec spec = make_spec(61, 47, {"R", "G", "B"}, integer ? OIIO::TypeUInt8 : OIIO::TypeHalf);
+      const bool floats = name.find("float") != std::string::npos;
+      const bool integer = extension() != ".exr" && extension() != ".hdr" && !floats;
+      OIIO::ImageSpec spec = make_spec(61, 47, {"R", "G", "B"},
+                                       integer  ? OIIO::TypeUInt8
+                                       : floats ? OIIO::TypeFloat
+                                                : OIIO::TypeHalf);
       if (name.find("tiled") != std::string::npos) spec.tile_width = spec.tile_height = 16;
+      if (name.find("stored") != std::string::npos) spec.attribute("compression", "none");
       if (name.find("piz") != std::string::npos) spec.attribute("compression", "piz");
       if (name.find("dwaa") != std::string::npos) spec.attribute("compression", "dwaa");
       ASSERT_NO_FATAL_FAILURE(make_file(file, {spec}, {marks(61, 47, 3)}));
@@ -122,8 +127,8 @@ TEST_P(Damaged, SpoiltBytesNeverCrash) {
 
 INSTANTIATE_TEST_SUITE_P(All, Damaged,
                          testing::Values("zip.exr", "piz.exr", "dwaa.exr", "tiled.exr", "parts.exr", "chroma.exr",
-                                         "plain.png", "plain.jpg", "plain.tif", "tiled.tif", "plain.hdr", "plain.bmp",
-                                         "plain.tga"),
+                                         "plain.png", "plain.jpg", "plain.tif", "tiled.tif", "float.tif",
+                                         "stored_float.tif", "plain.hdr", "plain.bmp", "plain.tga"),
                          [](const auto& info) {
                            std::string name = info.param;
                            std::replace(name.begin(), name.end(), '.', '_');

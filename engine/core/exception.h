@@ -1,0 +1,18 @@
+// What exceptions become where they leave code that throws: see result.h.
+#pragma once
+
+#include <exception>
+#include <string>
+
+#include "core/result.h"
+
+namespace afterglow {
+
+/// What the exception of a library says, as house messages are: one line without a full stop; "out of memory" for
+/// std::bad_alloc.
+std::string exception_text(const std::exception& exception);
+
+/// An exception that nobody expects: io for the lack of memory, else other ("internal error: …").
+Error exception_error(const std::exception& exception);
+
+}  // namespace afterglow

@@ -1,0 +1,74 @@
+#include "core/temporary.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <charconv>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "core/hash.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kMachineDigits = 8;
+
+/// Processes with the same one can tell by their numbers whether they live: they share a running kernel and its
+/// numbers.
+const std::string& machine() {
+  static const std::string name = [] {
+    std::string boot;
+    std::ifstream("/proc/sys/kernel/random/boot_id") >> boot;
+    struct stat numbers {};
+    if (stat("/proc/self/ns/pid", &numbers) != 0) numbers.st_ino = 0;
+    return Hasher().add(boot).add(static_cast<std::uint64_t>(numbers.st_ino)).finish().hex().substr(0, kMachineDigits);
+  }();
+  return name;
+}
+
+/// The process of a name that temporary_beside made on this machine; 0: it is none.
+pid_t process_of(std::string_view name) {
+  const std::size_t end = name.rfind(".tmp");
+  const std::string mark = "." + machine() + "-";
+  const std::size_t begin = name.substr(0, end).rfind(mark);
+  if (!name.starts_with('.') || end == std::string_view::npos || begin == std::string_view::npos) return 0;
+  const std::string_view numbers = name.substr(begin + mark.size(), end - begin - mark.size());
+  pid_t process = 0;
+  unsigned count = 0;
+  const auto first = std::from_chars(numbers.data(), numbers.data() + numbers.size(), process);
+  if (first.ec != std::errc() || first.ptr == numbers.data() + numbers.size() || *first.ptr != '-') return 0;
+  const auto second = std::from_chars(first.ptr + 1, numbers.data() + numbers.size(), count);
+  return second.ec == std::errc() && second.ptr == numbers.data() + numbers.size() ? process : 0;
+}
+
+bool lives(pid_t process) { return kill(process, 0) == 0 || errno != ESRCH; }
+
+}  // namespace
+
+fs::path temporary_beside(const fs::path& path) {
+  static std::atomic<unsigned> counter{0};
+  const auto name = fmt::format(".{}.{}-{}-{}.tmp{}", path.stem().string(), machine(), getpid(), counter++,
+                                path.extension().string());
+  return path.parent_path() / name;
+}
+
+int remove_abandoned_temporaries(const fs::path& folder) {
+  int removed = 0;
+  std::error_code ec, ignored;
+  for (fs::directory_iterator it(folder.empty() ? fs::path(".") : folder, ec), end; !ec && it != end;
+       it.increment(ec)) {
+    const pid_t process = process_of(it->path().filename().string());
+    if (process > 0 && !lives(process) && it->is_regular_file(ignored) && fs::remove(it->path(), ignored)) ++removed;
+  }
+  return removed;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,16 @@
+// Files that become others when they are whole.
+#pragma once
+
+#include <filesystem>
+
+namespace afterglow {
+
+/// A name in the same folder that no other process or thread uses, hidden and ending in the same extension (image
+/// libraries choose the format by it): `.NAME.MACHINE-PROCESS-COUNT.tmp.EXT`.
+std::filesystem::path temporary_beside(const std::filesystem::path& path);
+
+/// Removes files with such names from `folder` whose processes ran on this machine and live no more: they were killed.
+/// Returns how many.
+int remove_abandoned_temporaries(const std::filesystem::path& folder);
+
+}  // namespace afterglow

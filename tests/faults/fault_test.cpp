@@ -1,0 +1,107 @@
+#include "fault_test.h"
+
+#include <cstdlib>
+#include <sstream>
+
+namespace afterglow::test {
+namespace {
+
+std::string preload(const char* library) {
+  // Under AddressSanitizer its own library would have to come first.
+  const char* before = std::getenv("LD_PRELOAD");
+  return before && *before ? std::string(before) + ":" + library : library;
+}
+
+}  // namespace
+
+Fault vulkan_fault(const std::string& code) {
+  return {"vulkan " + code,
+          {{"VK_ADD_LAYER_PATH", AFTERGLOW_FAULT_LAYER_FOLDER},
+           {"VK_INSTANCE_LAYERS", "VK_LAYER_AFTERGLOW_fault"},
+           {"AFTERGLOW_FAULT_CODE", code}}};
+}
+
+Fault memory_fault() { return {"memory", {{"LD_PRELOAD", preload(AFTERGLOW_MEMORY_PRELOAD)}}}; }
+
+Fault file_fault(const std::string& kind, const fs::path& root) {
+  return {"file " + kind,
+          {{"LD_PRELOAD", preload(AFTERGLOW_FILE_PRELOAD)},
+           {"AFTERGLOW_FAULT_KIND", kind},
+           {"AFTERGLOW_FAULT_ROOT", root.string()}}};
+}
+
+Outcome FaultTest::run_with(const std::vector<std::string>& arguments, const Fault& fault, long place) const {
+  RunOptions options;
+  options.environment = environment_;
+  options.environment.insert(fault.environment.begin(), fault.environment.end());
+  options.environment["AFTERGLOW_FAULT_CALL"] = std::to_string(place);
+  return run(arguments, options);
+}
+
+long FaultTest::places(const std::vector<std::string>& arguments, const Fault& fault, int expected) const {
+  RunOptions options;
+  const fs::path log = path("places.log");
+  fs::remove(log);
+  options.environment = environment_;
+  options.environment.insert(fault.environment.begin(), fault.environment.end());
+  options.environment["AFTERGLOW_FAULT_CALL"] = "0";
+  options.environment["AFTERGLOW_FAULT_LOG"] = log.string();
+  const Outcome outcome = run(arguments, options);
+  EXPECT_EQ(outcome.exit_code, expected) << outcome.err;
+  std::istringstream lines(read("places.log"));
+  fs::remove(log);
+  long count = 0;
+  for (std::string line; std::getline(lines, line);) count = std::atol(line.c_str());
+  EXPECT_GT(count, 0) << "the faults do not reach the program";
+  return count;
+}
+
+std::vector<long> FaultTest::some(long first, long last, long most) {
+  const char* wanted = std::getenv("AFTERGLOW_FAULTS");
+  if (wanted && *wanted) most = std::string(wanted) == "every" ? last - first + 1 : std::atol(wanted);
+  std::set<long> places;
+  for (long i = 0; i < most && most > 1; ++i) places.insert(first + (last - first) * i / (most - 1));
+  return {places.begin(), places.end()};
+}
+
+void FaultTest::take_reference(const std::vector<std::string>& outputs) {
+  reference_.clear();
+  for (const auto& name : outputs) {
+    reference_[name] = read(name);
+    EXPECT_FALSE(reference_[name].empty()) << name;
+  }
+  remove_outputs();
+}
+
+void FaultTest::remove_outputs() const {
+  for (const auto& [name, bytes] : reference_) {
+    fs::remove(path(name));
+    fs::remove_all(path(name).parent_path() / ".afterglow");
+  }
+}
+
+int FaultTest::expect_whole_or_absent() const {
+  int there = 0;
+  for (const auto& [name, bytes] : reference_) {
+    if (!fs::exists(path(name))) continue;
+    ++there;
+    EXPECT_TRUE(read(name) == bytes) << name << " is neither whole nor absent";
+  }
+  return there;
+}
+
+void FaultTest::expect_nothing_left_over() const {
+  for (const auto& name : files()) EXPECT_EQ(name.find(".tmp"), std::string::npos) << name << " was left";
+}
+
+void FaultTest::expect_clean_end(const Outcome& outcome) {
+  EXPECT_THAT(outcome.exit_code, ::testing::AnyOf(kDone, kOther, kScript, kFiles, kDevice)) << outcome.err;
+  if (outcome.exit_code != kDone) {
+    EXPECT_THAT(outcome.err, HasSubstr("error: "));
+  }
+  EXPECT_THAT(outcome.err, Not(HasSubstr("internal error")));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("terminate called")));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("validation")));
+}
+
+}  // namespace afterglow::test

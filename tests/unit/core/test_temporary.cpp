@@ -1,0 +1,66 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "core/temporary.h"
+
+namespace afterglow {
+namespace {
+namespace fs = std::filesystem;
+
+class Temporaries : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "afterglow-temporary-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename().string());
+    return names;
+  }
+  void touch(const fs::path& file) const { std::ofstream(file) << "half"; }
+
+  fs::path folder_;
+};
+
+TEST_F(Temporaries, NamesAreHiddenUniqueAndKeepTheExtension) {
+  const fs::path a = temporary_beside(folder_ / "shot.0001.exr"), b = temporary_beside(folder_ / "shot.0001.exr");
+  EXPECT_NE(a, b);
+  EXPECT_EQ(a.parent_path(), folder_);
+  EXPECT_EQ(a.extension(), ".exr");
+  EXPECT_TRUE(a.filename().string().starts_with(".shot.0001."));
+}
+
+TEST_F(Temporaries, ThoseOfDeadProcessesAreRemovedAndNoOthers) {
+  const fs::path alive = temporary_beside(folder_ / "alive.exr");
+  touch(alive);
+  const pid_t child = fork();
+  if (child == 0) {
+    touch(temporary_beside(folder_ / "dead.0001.exr"));
+    touch(temporary_beside(folder_ / "dead.png.made"));
+    _exit(0);
+  }
+  ASSERT_EQ(waitpid(child, nullptr, 0), child);
+  const std::string number = std::to_string(child);
+  // Names that are somebody else's: of another machine, not hidden, not whole.
+  const std::string theirs[] = {".x.00000000-" + number + "-0.tmp.exr", "x.tmp.exr", ".x.tmp", ".tmp",
+                                alive.filename().string().substr(1)};
+  for (const auto& name : theirs) touch(folder_ / name);
+  EXPECT_EQ(files().size(), 8u);
+  EXPECT_EQ(remove_abandoned_temporaries(folder_), 2);
+  std::set<std::string> left(std::begin(theirs), std::end(theirs));
+  left.insert(alive.filename().string());
+  EXPECT_EQ(files(), left);
+  EXPECT_EQ(remove_abandoned_temporaries(folder_ / "missing"), 0);
+}
+
+}  // namespace
+}  // namespace afterglow
