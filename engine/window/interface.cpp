@@ -80,7 +80,16 @@ void Interface::load_fonts() {
   io.Fonts->Build();
 }
 
+void Interface::note_press(int key) { pressed_.push_back(key); }
+
 void Interface::begin(Size size, float seconds) {
+  auto& down = ImGui::GetIO().KeysDown;
+  for (const int key : pressed_) {
+    if (key < 0 || key >= IM_ARRAYSIZE(ImGui::GetIO().KeysDown) || down[key]) continue;
+    down[key] = true;
+    held_.push_back(key);
+  }
+  pressed_.clear();
   if (has_window_) {
     ImGui_ImplGlfw_NewFrame();
   } else {
@@ -94,6 +103,8 @@ void Interface::begin(Size size, float seconds) {
 
 const ImDrawData& Interface::end() {
   ImGui::Render();
+  for (const int key : held_) ImGui::GetIO().KeysDown[key] = false;
+  held_.clear();
   return *ImGui::GetDrawData();
 }
 

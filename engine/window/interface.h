@@ -31,6 +31,10 @@ class Interface {
   void begin(Size size = {}, float seconds = 1.0f / 60);
   const ImDrawData& end();
 
+  /// A key (GLFW_KEY_…) went down: the next frame sees it so, though it may be up again by then. Dear ImGui looks at
+  /// keys once a frame, and a frame may take longer than a press.
+  void note_press(int key);
+
   Ui& ui() { return ui_; }
   bool wants_keyboard() const;  ///< a text is being typed: keys are no shortcuts
   bool wants_mouse() const;     ///< the pointer is on the interface, or holds a part of it
@@ -39,6 +43,7 @@ class Interface {
   void load_fonts();
   ImGuiContext* context_ = nullptr;
   bool has_window_ = false;
+  std::vector<int> pressed_, held_;  ///< since the last frame; only for this one
   Ui ui_;
 };
 

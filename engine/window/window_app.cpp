@@ -112,6 +112,7 @@ void WindowApp::take_events() {
   if (events.any) redraw_ = kSettle;
   if (events.close) quit_ = true;
   for (const KeyPress& press : events.keys) {
+    interface_->note_press(press.key);
     if (interface_->wants_keyboard()) continue;
     if (const auto action = action_of(press)) act(*action);
   }
