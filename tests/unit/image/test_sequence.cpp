@@ -30,6 +30,9 @@ TEST(Frames, Refused) {
   }
   EXPECT_EQ(parse_frames("1-1000000").value().size(), 1000000u);
   EXPECT_FALSE(parse_frames("1-1000000,2000000"));
+  std::string again = "1-1000000";  // the same frames, a hundred thousand times
+  for (int i = 0; i < 100'000; ++i) again += ",1-1000000";
+  EXPECT_FALSE(parse_frames(again));
 }
 
 TEST(Pattern, PlacesForNumbers) {
