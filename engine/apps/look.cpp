@@ -34,7 +34,8 @@ Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& a
 namespace {
 
 // As `run` chooses on a CPU device, the one that is always there.
-constexpr DescribeOptions kAssumed{.storage_reads = true, .source_is_storage = true, .rows = kMaxRows};
+constexpr DescribeOptions kAssumed{
+    .flag_non_finite = true, .storage_reads = true, .source_is_storage = true, .rows = kMaxRows};
 
 /// Compiles each distinct kernel once and gathers what is wrong.
 class ShaderCheck {

@@ -35,7 +35,8 @@ Result<void> play_headless(Player& player, const HeadlessOptions& options) {
   transport.set_pacing(options.fast ? Pacing::every_frame : Pacing::real_time, player.now());
   if (!options.count) transport.set_loop(LoopMode::once, player.now());
   AFTERGLOW_CHECK(show_first(player));
-  if (!options.count || *options.count > 1) transport.play(player.now());
+  const bool moves = transport.first() != transport.last();  // one frame stands still however long it is played
+  if (moves && (!options.count || *options.count > 1)) transport.play(player.now());
   while (transport.playing()) {
     if (interrupted()) return interrupt_error();
     AFTERGLOW_TRY(const Step step, player.step());

@@ -20,8 +20,7 @@ constexpr std::uint64_t saturated_product(std::initializer_list<std::uint64_t> n
   std::uint64_t product = 1;
   for (const std::uint64_t number : numbers)
     if (number == 0) return 0;
-  for (const std::uint64_t number : numbers)
-    product = product > kSaturated / number ? kSaturated : product * number;
+  for (const std::uint64_t number : numbers) product = product > kSaturated / number ? kSaturated : product * number;
   return product;
 }
 

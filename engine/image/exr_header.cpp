@@ -191,7 +191,9 @@ std::uint64_t ExrPart::pixel_bytes() const {
 }
 
 std::uint64_t ExrPart::chunks() const {
-  const auto pieces = [](int side, int piece) { return (std::uint64_t(side) + std::uint64_t(piece) - 1) / std::uint64_t(piece); };
+  const auto pieces = [](int side, int piece) {
+    return (std::uint64_t(side) + std::uint64_t(piece) - 1) / std::uint64_t(piece);
+  };
   if (tiled) return pieces(data_window.width, tile.width) * pieces(data_window.height, tile.height);
   return pieces(data_window.height, lines_per_chunk(compression));
 }
@@ -221,7 +223,8 @@ std::uint64_t ExrPart::least_file_bytes() const {
 }
 
 std::uint64_t ExrPart::buffer_bytes(int threads) const {
-  const std::uint64_t buffers = 4 * static_cast<std::uint64_t>(std::max(threads, 1));  // two a thread, packed and unpacked
+  const std::uint64_t buffers =
+      4 * static_cast<std::uint64_t>(std::max(threads, 1));  // two a thread, packed and unpacked
   const auto width = static_cast<std::uint64_t>(data_window.width);
   if (!tiled) {
     const int lines = std::min(lines_per_chunk(compression), data_window.height);

@@ -1,6 +1,7 @@
 // Which of OpenImageIO's readers a file is given to. Left to itself it tries all that it has, those of old and odd
 // formats too, whose parsers were never written for files of strangers; FFmpeg among them follows playlists to other
-// files, and that of Photoshop's layers takes whatever memory 500 bytes ask for before anyone can look. So the content names the reader, and what no name is known for is not read.
+// files, and that of Photoshop's layers takes whatever memory 500 bytes ask for before anyone can look. So the content
+// names the reader, and what no name is known for is not read.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +15,8 @@ std::string picture_format(const std::filesystem::path& file);
 
 /// What messages say is allowed.
 inline constexpr const char* kPictureFormats =
-    "EXR, PNG, JPEG, TIFF, Radiance HDR, PNM and PFM, DPX, Cineon, Targa, BMP, WebP, JPEG 2000, HEIF and AVIF, SGI, GIF, "
+    "EXR, PNG, JPEG, TIFF, Radiance HDR, PNM and PFM, DPX, Cineon, Targa, BMP, WebP, JPEG 2000, HEIF and AVIF, SGI, "
+    "GIF, "
     "MP4, QuickTime, AVI";
 
 }  // namespace afterglow

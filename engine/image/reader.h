@@ -1,5 +1,6 @@
-// Reads any picture that OpenImageIO reads and makes it ready for a stack: layers picked, colour decoded to
-// scene-linear Rec.709, alpha associated, orientation applied, values made finite. All functions are thread-safe.
+// Reads pictures of the formats that picture_format.h names and makes them ready for a stack: layers picked, colour
+// decoded to scene-linear Rec.709, alpha associated, orientation applied, values made finite. All functions are
+// thread-safe.
 // Errors: io (file named), usage (bad option text).
 #pragma once
 

@@ -143,7 +143,9 @@ int table_unpack(lua_State* lua) {
   const lua_Integer first = luaL_optinteger(lua, 2, 1);
   const lua_Integer last = lua_isnoneornil(lua, 3) ? luaL_len(lua, 1) : luaL_checkinteger(lua, 3);
   // Ranges that run over an integer are too long for Lua's own, which says so.
-  if (first <= last) Sandbox::of(lua).charge(std::min<std::uint64_t>(static_cast<std::uint64_t>(last) - static_cast<std::uint64_t>(first), 1u << 20));
+  if (first <= last)
+    Sandbox::of(lua).charge(
+        std::min<std::uint64_t>(static_cast<std::uint64_t>(last) - static_cast<std::uint64_t>(first), 1u << 20));
   lua_settop(lua, 3);
   lua_pushvalue(lua, lua_upvalueindex(1));
   lua_insert(lua, 1);

@@ -9,9 +9,10 @@ namespace {
 
 const char kCopy = 0;  // its address is a key of each copy
 
-constexpr std::array kEvents{"__index",  "__newindex", "__call", "__tostring", "__name", "__len",  "__eq",   "__lt", "__le",
-                             "__concat", "__unm",      "__add",  "__sub",      "__mul",  "__div",  "__mod",  "__pow", "__idiv",
-                             "__band",   "__bor",      "__bxor", "__shl",      "__shr",  "__bnot", "__close"};
+constexpr std::array kEvents{"__index", "__newindex", "__call",   "__tostring", "__name", "__len", "__eq",
+                             "__lt",    "__le",       "__concat", "__unm",      "__add",  "__sub", "__mul",
+                             "__div",   "__mod",      "__pow",    "__idiv",     "__band", "__bor", "__bxor",
+                             "__shl",   "__shr",      "__bnot",   "__close"};
 
 void refuse(lua_State* lua, int metatable, const char* event, const char* why) {
   lua_pushstring(lua, event);

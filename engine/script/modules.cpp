@@ -18,10 +18,10 @@ namespace afterglow::script {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::uint64_t kFileCost = 100'000;  // instructions that a look at the file system counts as
-constexpr std::size_t kMaxScript = 1u << 20;  // bytes; presets are a page long
+constexpr std::uint64_t kFileCost = 100'000;    // instructions that a look at the file system counts as
+constexpr std::size_t kMaxScript = 1u << 20;    // bytes; presets are a page long
 constexpr std::size_t kMaxScripts = 16u << 20;  // of one state: their texts live outside of Lua's memory
-const char kModules = 0;                      // registry key of the cache of modules
+const char kModules = 0;                        // registry key of the cache of modules
 
 // Marks a name as being loaded, for the life of the object.
 class Loading {
@@ -157,8 +157,9 @@ void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::o
     std::size_t bytes = text->size();
     for (const Source& source : box.sources()) bytes += source.text.size();
     if (bytes > kMaxScripts)
-      throw ScriptError{
-          {ErrorKind::script, fmt::format("the scripts of this preset have more than {} MiB together", kMaxScripts >> 20), file.string()}};
+      throw ScriptError{{ErrorKind::script,
+                         fmt::format("the scripts of this preset have more than {} MiB together", kMaxScripts >> 20),
+                         file.string()}};
     index = box.add_source({file.string(), std::move(*text), library});
   }
   std::string_view text = box.sources()[static_cast<std::size_t>(index)].text;

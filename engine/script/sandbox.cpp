@@ -11,11 +11,11 @@
 namespace afterglow::script {
 namespace {
 
-constexpr int kStep = 200;                         // instructions between two looks at the budget
-constexpr int kShortStep = 4;                      // the same once there are texts that one instruction is long busy with
-constexpr std::size_t kLongText = 256u << 10;      // bytes of such a text
-constexpr int kMaxDepth = 10'000;                  // nested calls
-constexpr std::size_t kLookEvery = 1u << 20;       // bytes allocated between two looks at the clock
+constexpr int kStep = 200;                     // instructions between two looks at the budget
+constexpr int kShortStep = 4;                  // the same once there are texts that one instruction is long busy with
+constexpr std::size_t kLongText = 256u << 10;  // bytes of such a text
+constexpr int kMaxDepth = 10'000;              // nested calls
+constexpr std::size_t kLookEvery = 1u << 20;   // bytes allocated between two looks at the clock
 constexpr std::uint64_t kRefusalCost = 1'000'000;  // a refused allocation costs a full collection
 
 }  // namespace
@@ -50,7 +50,8 @@ Sandbox::~Sandbox() {
 void* Sandbox::allocate(void* self, void* block, std::size_t old_size, std::size_t new_size) {
   auto& box = *static_cast<Sandbox*>(self);
   if (!block) {
-    if (old_size == LUA_TSTRING && new_size > kLongText && box.step_ == kStep && !box.exhausted_) box.look_every(kShortStep);
+    if (old_size == LUA_TSTRING && new_size > kLongText && box.step_ == kStep && !box.exhausted_)
+      box.look_every(kShortStep);
     old_size = 0;  // Lua passes the type of the new object there
   }
   if (new_size == 0) {
@@ -83,7 +84,8 @@ void Sandbox::arm() {
   allocated_ = 0;
   printed = 0;
   began_ = thread_seconds();
-  deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits_.seconds));
+  deadline_ =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits_.seconds));
   look_every(step_ == kShortStep ? kShortStep : kStep);  // long texts may have been kept
 }
 

@@ -53,7 +53,7 @@ TEST_F(BadInput, Empty) {
 
 TEST_F(BadInput, NoPicture) {
   write("text.exr", std::string(4000, 'x'));
-  expect_refusal("text.exr", "not an OpenEXR file");
+  expect_refusal("text.exr", "is not a picture in a format that is known; allowed: EXR");
 }
 
 TEST_F(BadInput, Folder) {

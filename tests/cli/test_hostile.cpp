@@ -1,4 +1,5 @@
-// What strangers' files make the program say and do: exit codes of the README, one line, nothing for the terminal to obey.
+// What strangers' files make the program say and do: exit codes of the README, one line, nothing for the terminal to
+// obey.
 #include <OpenImageIO/imageio.h>
 
 #include <nlohmann/json.hpp>
@@ -54,12 +55,15 @@ TEST_F(Hostile, EscapesOfScriptsAndNamesNeverReachTheTerminal) {
 }
 
 TEST_F(Hostile, NamesThatAreNoUtf8GoIntoJson) {
-  write("look\xff.lua", "local fx = require \"afterglow\"\nreturn fx.stack { name = \"a\\xFFb\", fx.tone_mapping {} }\n");
+  write("look\xff.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { name = \"a\\xFFb\", fx.tone_mapping {} }\n");
   const Outcome outcome = run({"check", "look\xff.lua", "--json"});
   ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out, nullptr, false);
   ASSERT_TRUE(json.is_object()) << outcome.out;
-  EXPECT_EQ(json["name"], "a\xEF\xBF\xBD" "b");
+  EXPECT_EQ(json["name"],
+            "a\xEF\xBF\xBD"
+            "b");
 }
 
 TEST_F(Hostile, AScriptThatNothingInterruptsEndsAllTheSame) {

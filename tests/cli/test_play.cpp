@@ -59,6 +59,12 @@ TEST_F(Play, ByTheClockUntilSoManyWereShown) {
   EXPECT_EQ(json.at("playing").at("loop"), "ping-pong");
 }
 
+TEST_F(Play, OnePictureStandsStillHoweverLongItIsPlayed) {
+  const Outcome outcome = play({"in/shot.0001.exr", "--headless", "--fast", "--count", "5", "--report", "play.json"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_EQ(report().at("frames").at("shown"), 1);
+}
+
 TEST_F(Play, TheScreenshotIsWhatRunWrites) {
   const std::vector<std::string> set{"--set", "tone_mapping.mode=reinhard"};
   ASSERT_EQ(run({"run", "look.lua", "in/shot.0003.exr", "-o", "run.exr", set[0], set[1]}).exit_code, kDone);

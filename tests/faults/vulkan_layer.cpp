@@ -1,9 +1,10 @@
 // VK_LAYER_AFTERGLOW_fault: between the program and the driver, lets one Vulkan call fail that may.
 //
 //   AFTERGLOW_FAULT_CALL=N     the Nth such call fails (from 1; 0: none)
-//   AFTERGLOW_FAULT_CODE=C     host (VK_ERROR_OUT_OF_HOST_MEMORY), device (…_DEVICE_MEMORY) or lost
-//   (VK_ERROR_DEVICE_LOST);
-//                              counts, and fails, only calls that may return it. A lost device stays lost.
+//   AFTERGLOW_FAULT_CODE=C     host (VK_ERROR_OUT_OF_HOST_MEMORY), device (VK_ERROR_OUT_OF_DEVICE_MEMORY), lost
+//                              (VK_ERROR_DEVICE_LOST), surface (VK_ERROR_SURFACE_LOST_KHR) or date
+//                              (VK_ERROR_OUT_OF_DATE_KHR). Counts, and fails, only calls that may return it. A lost
+//                              device stays lost.
 //   AFTERGLOW_FAULT_LOG=FILE   written at each such call: its number and its name
 //
 // One device at a time, as the program has it.
@@ -19,7 +20,7 @@
 
 namespace {
 
-enum Codes : unsigned { kHost = 1, kDevice = 2, kLost = 4 };
+enum Codes : unsigned { kHost = 1, kDevice = 2, kLost = 4, kSurface = 8, kDate = 16 };
 
 struct Wanted {
   long call = 0;
@@ -33,6 +34,8 @@ struct Wanted {
     const std::string_view wanted = name ? name : "";
     if (wanted == "device") code = kDevice, result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
     if (wanted == "lost") code = kLost, result = VK_ERROR_DEVICE_LOST;
+    if (wanted == "surface") code = kSurface, result = VK_ERROR_SURFACE_LOST_KHR;
+    if (wanted == "date") code = kDate, result = VK_ERROR_OUT_OF_DATE_KHR;
     if (const char* file = std::getenv("AFTERGLOW_FAULT_LOG")) log = std::fopen(file, "we");
   }
 };
@@ -65,7 +68,8 @@ bool strikes(const char* name, unsigned codes) {
 // Calls that may fail, with what they may return by the Vulkan specification.
 #define INSTANCE_CALLS(call)                                                                                \
   call(EnumeratePhysicalDevices, kHost | kDevice) call(EnumerateDeviceExtensionProperties, kHost | kDevice) \
-      call(GetPhysicalDeviceImageFormatProperties, kHost | kDevice)
+      call(GetPhysicalDeviceSurfaceCapabilitiesKHR, kHost | kDevice | kSurface)                             \
+          call(GetPhysicalDeviceImageFormatProperties, kHost | kDevice)
 
 #define DEVICE_CALLS(call)                                                                                             \
   call(AllocateMemory, kHost | kDevice) call(MapMemory, kHost | kDevice)                                               \
@@ -89,8 +93,10 @@ bool strikes(const char* name, unsigned codes) {
                                                           call(DeviceWaitIdle, kHost | kDevice | kLost)                \
                                                               call(GetQueryPoolResults, kHost | kDevice | kLost) call( \
                                                                   CreateSwapchainKHR, kHost | kDevice | kLost)         \
-                                                                  call(AcquireNextImageKHR, kHost | kDevice | kLost)   \
-                                                                      call(QueuePresentKHR, kHost | kDevice | kLost)
+                                                                  call(AcquireNextImageKHR,                            \
+                                                                       kHost | kDevice | kLost | kSurface | kDate)     \
+                                                                      call(QueuePresentKHR,                            \
+                                                                           kHost | kDevice | kLost | kSurface | kDate)
 
 /// The function that the program gets instead of the next one below.
 template <int kNumber, typename Function>

@@ -26,7 +26,8 @@ void check_kernel(const std::string& bytes) {
   FUZZ_CLAIM(kernel->spirv.size() * 4 <= bytes.size() && kernel->offsets.size() * 4 <= bytes.size(), "");
   const std::string again = encode(*kernel);
   const auto twice = decode(again);
-  FUZZ_CLAIM(twice && twice->spirv == kernel->spirv && twice->offsets == kernel->offsets && again.size() == bytes.size(), "");
+  FUZZ_CLAIM(
+      twice && twice->spirv == kernel->spirv && twice->offsets == kernel->offsets && again.size() == bytes.size(), "");
 }
 
 void check_pipelines(const std::string& bytes) {

@@ -42,7 +42,7 @@ void check_error(const Error& error, std::initializer_list<ErrorKind> kinds);
 }  // namespace afterglow::fuzz
 
 /// What must hold for every input.
-#define FUZZ_CLAIM(condition, detail) \
-  do {                                \
+#define FUZZ_CLAIM(condition, detail)                              \
+  do {                                                             \
     if (!(condition)) afterglow::fuzz::broken(#condition, detail); \
   } while (false)

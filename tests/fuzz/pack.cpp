@@ -1,8 +1,9 @@
 // Zips: what is unpacked lies inside of the cache and within the limits.
+#include "core/pack.h"
+
 #include <algorithm>
 #include <cstdlib>
 
-#include "core/pack.h"
 #include "core/paths.h"
 #include "fuzz.h"
 

@@ -1,10 +1,11 @@
 // A preset with effects, modules and shaders beside it: loaded and built, without a device.
+#include "script/preset.h"
+
 #include <fmt/format.h>
 
 #include "fuzz.h"
 #include "graph/plan.h"
 #include "script/explanation.h"
-#include "script/preset.h"
 
 using namespace afterglow;
 

@@ -1,4 +1,6 @@
 // Frame lists and patterns of numbered files.
+#include "image/sequence.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 
 #include "fuzz.h"
 #include "image/reader.h"
-#include "image/sequence.h"
 
 using namespace afterglow;
 
@@ -25,7 +26,8 @@ void check_frames(const std::string& text) {
 
 void make_frames() {
   static const bool made = [] {
-    for (const char* name : {"shot.0001.exr", "shot.0002.exr", "shot.12.exr", "shot.-3.exr", "shot.99999999999.exr", "plain7.png", "a%d.exr"})
+    for (const char* name : {"shot.0001.exr", "shot.0002.exr", "shot.12.exr", "shot.-3.exr", "shot.99999999999.exr",
+                             "plain7.png", "a%d.exr"})
       fuzz::write(name, "");
     return true;
   }();

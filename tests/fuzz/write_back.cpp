@@ -1,5 +1,7 @@
 // Settings written back into text: any text as tokens, constructors and calls; and, where it is a preset that loads,
 // whole rewrites, one `ENTRY.SETTING=VALUE` or `ENTRY.SETTING` a line behind "=== edits".
+#include "script/write_back.h"
+
 #include <fmt/format.h>
 
 #include "core/text.h"
@@ -7,7 +9,6 @@
 #include "script/key_finder.h"
 #include "script/literal.h"
 #include "script/table_edit.h"
-#include "script/write_back.h"
 
 using namespace afterglow;
 

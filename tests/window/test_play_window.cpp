@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "core/file.h"
 #include "image/writer.h"
@@ -218,6 +219,49 @@ TEST_F(PlayWindow, LosingTheDisplayEndsWithACleanErrorAndTheReport) {
     ASSERT_TRUE(report) << report.error().text();
     EXPECT_NE(report->find("the connection to the display was lost"), std::string::npos);
     fs::remove(folder_ / "play.json");
+  }
+}
+
+/// Sets variables while it lives.
+class Environment {
+ public:
+  explicit Environment(std::map<std::string, std::string> variables) : variables_(std::move(variables)) {
+    for (const auto& [name, value] : variables_) setenv(name.c_str(), value.c_str(), 1);
+  }
+  ~Environment() {
+    for (const auto& [name, value] : variables_) unsetenv(name.c_str());
+  }
+
+ private:
+  std::map<std::string, std::string> variables_;
+};
+
+TEST_F(PlayWindow, ASurfaceThatIsLostIsMadeAnew) {
+  for (const char* code : {"surface", "date"}) {
+    for (int call = 1; call <= 8; ++call) {
+      SCOPED_TRACE(std::string(code) + ", call " + std::to_string(call));
+      write_preset("{ 1, 0, 0 }");
+      {
+        const Environment fault({{"VK_ADD_LAYER_PATH", AFTERGLOW_FAULT_LAYER_FOLDER},
+                                 {"VK_INSTANCE_LAYERS", "VK_LAYER_AFTERGLOW_fault"},
+                                 {"AFTERGLOW_FAULT_CODE", code},
+                                 {"AFTERGLOW_FAULT_CALL", std::to_string(call)},
+                                 {"AFTERGLOW_FAULT_LOG", (folder_ / "calls.log").string()}});
+        play({"look.lua", "shot.####.exr", "--paused"});
+      }
+      ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+      EXPECT_TRUE(until_color(kX, kY, kRed));
+      write_preset("{ 0, 1, 0 }");
+      EXPECT_TRUE(until_color(kX, kY, kGreen));
+      write_preset("{ 0, 0, 1 }");
+      EXPECT_TRUE(until_color(kX, kY, kBlue));
+      ASSERT_TRUE(user("mousemove 400 300 key q"));
+      expect_clean_end();
+      const auto calls = read_file(folder_ / "calls.log");
+      ASSERT_TRUE(calls) << "the layer is not there";
+      EXPECT_NE(calls->find("\n" + std::to_string(call + 1) + " "), std::string::npos) << "it never struck";
+      fs::remove(folder_ / "calls.log");
+    }
   }
 }
 

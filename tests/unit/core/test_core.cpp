@@ -27,10 +27,15 @@ TEST(Error, PrintsOneLineWithPlaceAllowedAndNearest) {
 }
 
 TEST(Error, TextsNeverReachTheTerminalAsEscapes) {
-  Error error{ErrorKind::io, "layer 'a\x1b]0;owned\a\r\nb' \x7f", "x\x1b[2J.exr", 3, "\t", "\xc2\x9b""31m"};
+  Error error{ErrorKind::io,
+              "layer 'a\x1b]0;owned\a\r\nb' \x7f",
+              "x\x1b[2J.exr",
+              3,
+              "\t",
+              "\xc2\x9b"
+              "31m"};
   error.trail = {"in \x1b[1m"};
-  EXPECT_EQ(error.text(),
-            "x [2J.exr:3: error: layer 'a ]0;owned   b'  ; allowed:  ; did you mean ' 31m'?\n  in  [1m");
+  EXPECT_EQ(error.text(), "x [2J.exr:3: error: layer 'a ]0;owned   b'  ; allowed:  ; did you mean ' 31m'?\n  in  [1m");
   EXPECT_EQ((Error{ErrorKind::io, "größer: 3×4 → …"}).text(), "error: größer: 3×4 → …");
   std::string shown;
   Diagnostics diagnostics([&](Severity, const std::string& text) { shown = text; });

@@ -20,7 +20,8 @@ class RawExr {
   RawExr& channels(int count, ExrChannelType type) {
     std::string list;
     for (int i = 0; i < count; ++i)
-      list += "c" + std::to_string(i) + '\0' + number(static_cast<std::int32_t>(type)) + number(0) + number(1) + number(1);
+      list +=
+          "c" + std::to_string(i) + '\0' + number(static_cast<std::int32_t>(type)) + number(0) + number(1) + number(1);
     has_channels_ = true;
     return attribute("channels", "chlist", list + '\0');
   }
@@ -32,7 +33,9 @@ class RawExr {
     return attribute("tiles", "tiledesc", number(width) + number(height) + '\0');
   }
   RawExr& name(const std::string& part, const std::string& type) {
-    return attribute("name", "string", part).attribute("type", "string", type).attribute("chunkCount", "int", number(1));
+    return attribute("name", "string", part)
+        .attribute("type", "string", type)
+        .attribute("chunkCount", "int", number(1));
   }
   RawExr& attribute(const std::string& key, const std::string& type, const std::string& value) {
     text_ += key + '\0' + type + '\0' + number(static_cast<std::int32_t>(value.size())) + value;

@@ -112,7 +112,8 @@ TEST_F(HostileHeaders, ExrTablesThatPointInCircles) {
     ASSERT_EQ(chunks, tiled ? 25u : 3u);
     const std::size_t table = table_of(whole, chunks);
     // Every place is that of the first chunk; of the table itself; beyond the end.
-    for (const std::uint64_t place : {std::uint64_t{table + 8 * chunks}, std::uint64_t{table}, std::uint64_t{1} << 60}) {
+    for (const std::uint64_t place :
+         {std::uint64_t{table + 8 * chunks}, std::uint64_t{table}, std::uint64_t{1} << 60}) {
       std::string bytes = whole;
       for (std::size_t i = 0; i < chunks; ++i) std::memcpy(&bytes[table + 8 * i], &place, sizeof place);
       write_bytes(folder_ / "circle.exr", bytes);
@@ -213,8 +214,8 @@ std::string tiff(const std::vector<std::array<std::uint32_t, 3>>& tags) {
 
 TEST_F(HostileHeaders, TiffSidesTilesAndSamples) {
   const auto with = [](std::uint32_t width, std::uint32_t height, std::uint32_t samples, std::uint32_t tile) {
-    std::vector<std::array<std::uint32_t, 3>> tags{{256, 4, width},   {257, 4, height}, {258, 3, 8}, {259, 3, 1},
-                                                   {262, 3, 1}, {277, 3, samples}};
+    std::vector<std::array<std::uint32_t, 3>> tags{{256, 4, width}, {257, 4, height}, {258, 3, 8},
+                                                   {259, 3, 1},     {262, 3, 1},      {277, 3, samples}};
     if (tile > 0) {
       tags.push_back({322, 4, tile});
       tags.push_back({323, 4, tile});
@@ -227,12 +228,15 @@ TEST_F(HostileHeaders, TiffSidesTilesAndSamples) {
     }
     return tiff(tags);
   };
-  EXPECT_THAT(refused(with(1u << 30, 4, 1, 0)).message, AnyOf(HasSubstr("larger than 16384"), HasSubstr("cannot be read")));
+  EXPECT_THAT(refused(with(1u << 30, 4, 1, 0)).message,
+              AnyOf(HasSubstr("larger than 16384"), HasSubstr("cannot be read")));
   EXPECT_THAT(refused(with(0xffffffff, 0xffffffff, 1, 0)).message,
               AnyOf(HasSubstr("larger than 16384"), HasSubstr("cannot be read"), HasSubstr("no pixels")));
   EXPECT_THAT(refused(with(64, 64, 65535, 0)).message, HasSubstr(""));
-  EXPECT_THAT(refused(with(64, 64, 1, 1u << 30)).message, AnyOf(HasSubstr("--max-memory"), HasSubstr("cannot be read")));
-  EXPECT_THAT(refused(with(64, 64, 60000, 1u << 30)).message, AnyOf(HasSubstr("--max-memory"), HasSubstr("cannot be read")));
+  EXPECT_THAT(refused(with(64, 64, 1, 1u << 30)).message,
+              AnyOf(HasSubstr("--max-memory"), HasSubstr("cannot be read")));
+  EXPECT_THAT(refused(with(64, 64, 60000, 1u << 30)).message,
+              AnyOf(HasSubstr("--max-memory"), HasSubstr("cannot be read")));
 }
 
 TEST_F(HostileHeaders, HugeSidesInTheOtherFormats) {
@@ -243,24 +247,27 @@ TEST_F(HostileHeaders, HugeSidesInTheOtherFormats) {
       {"pnm", "P6\n2000000000 2000000000\n255\nxxxxxxxxxxxxxxxx"},
       {"pfm", "PF\n2000000000 2000000000\n-1.0\nxxxxxxxxxxxxxxx"},
       {"hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2000000000 +X 2000000000\nxxxxxxxx"},
-      {"gif", "GIF89a\xff\xff\xff\xff" + std::string("\0\0\0,\0\0\0\0\xff\xff\xff\xff\0\x02", 14) + std::string(20, 'x')},
+      {"gif",
+       "GIF89a\xff\xff\xff\xff" + std::string("\0\0\0,\0\0\0\0\xff\xff\xff\xff\0\x02", 14) + std::string(20, 'x')},
       {"sgi", std::string("\x01\xda\x00\x01\x00\x03\xff\xff\xff\xff\x00\x03", 12) + std::string(600, '\0')},
       {"dpx", "SDPX" + std::string(764, '\0') + std::string("\0\0\0\1\x7f\xff\xff\xff\x7f\xff\xff\xff", 12) +
                   std::string(2000, '\0')},
       {"webp", "RIFF" + little(60, 4) + "WEBPVP8L" + little(40, 4) + "\x2f\xff\xff\xff\xff" + std::string(40, 'x')},
-      {"targa", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\xff\xff\xff\xff\x18\0", 18) + "TRUEVISION-XFILE." + std::string(1, '\0')},
+      {"targa",
+       std::string("\0\0\2\0\0\0\0\0\0\0\0\0\xff\xff\xff\xff\x18\0", 18) + "TRUEVISION-XFILE." + std::string(1, '\0')},
   };
   for (const auto& [name, bytes] : files) {
     SCOPED_TRACE(name);
-    EXPECT_THAT(refused(bytes).message,
-                AnyOf(HasSubstr("larger than 16384"), HasSubstr("cannot be read"), HasSubstr("no pixels"), HasSubstr("--max-memory")));
+    EXPECT_THAT(refused(bytes).message, AnyOf(HasSubstr("larger than 16384"), HasSubstr("cannot be read"),
+                                              HasSubstr("no pixels"), HasSubstr("--max-memory")));
   }
 }
 
 TEST_F(HostileHeaders, OnlyKnownFormatsReachALibrary) {
   // Formats of old and odd programs, playlists that name other files, and configurations that look like file names.
-  for (const std::string bytes : {"DDS |\0\0\0", "FORM....ILBM", "SIMPLE  =                    T", "\x53\x80\xf6\x34", "#EXTM3U\nhttp://x/",
-                                  "ffconcat version 1.0\nfile /etc/passwd", "v=0\nc=IN IP4 1.2.3.4\n", "<svg/>", "P7\nWIDTH 1\n", "8BPS"}) {
+  for (const std::string bytes :
+       {"DDS |\0\0\0", "FORM....ILBM", "SIMPLE  =                    T", "\x53\x80\xf6\x34", "#EXTM3U\nhttp://x/",
+        "ffconcat version 1.0\nfile /etc/passwd", "v=0\nc=IN IP4 1.2.3.4\n", "<svg/>", "P7\nWIDTH 1\n", "8BPS"}) {
     const Error error = refused(bytes + std::string(600, ' '));
     EXPECT_EQ(error.message, "is not a picture in a format that is known") << bytes;
     EXPECT_EQ(error.allowed, kPictureFormats);

@@ -131,7 +131,7 @@ TEST_F(BuildMessages, Filters) {
             "effects/probe.lua:4: error: effect 'probe': g:filter has no 'siez'; allowed: filter, name, size, source; "
             "did you mean 'size'?");
   EXPECT_EQ(error("local fx = require \"afterglow\"\nreturn fx.filters.gausian_vertical()"),
-            "effects/probe.lua:5: error: unknown filter \"gausian_vertical\"; allowed: bilinear, box, bspline, "
+            "effects/probe.lua:5: error: unknown filter \"gausian_vertical\"; allowed: area, bilinear, box, bspline, "
             "gaussian_halving, "
             "gaussian_vertical, plus, tent; did you mean 'gaussian_vertical'?");
   EXPECT_EQ(error("local fx = require \"afterglow\"\nlocal f = fx.filters.box(0)"),

@@ -23,8 +23,10 @@ std::string run(const std::string& statements) {
 std::string build(const std::string& statements, const std::string& settings = "") {
   Scene scene;
   scene.options.limits = {16u << 20, 2'000'000, 60};
-  scene.effect("glow", "settings = {" + settings + "},\nbuild = function(g, s, source)\n" + statements + "\nreturn source end,");
-  scene.write("shaders/glow/mix.glsl", "uniform float strength;\nvec4 apply(vec4 color) { return color * strength; }\n");
+  scene.effect(
+      "glow", "settings = {" + settings + "},\nbuild = function(g, s, source)\n" + statements + "\nreturn source end,");
+  scene.write("shaders/glow/mix.glsl",
+              "uniform float strength;\nvec4 apply(vec4 color) { return color * strength; }\n");
   scene.stack("fx.glow {}");
   return scene.build_error();
 }
@@ -37,14 +39,17 @@ const std::string kMemory = "preset.lua: error: memory limit reached: more than 
 TEST(Escapes, NothingRepeatedForEver) {
   EXPECT_EQ(run("assert((\"\"):rep(math.maxinteger) == \"\")"), "");
   EXPECT_EQ(run("assert(string.rep(\"\", 2^53, \"\") == \"\")"), "");
-  EXPECT_EQ(run("assert((\"\"):rep(3, \",\") == \",,\" and (\"ab\"):rep(2, \"-\") == \"ab-ab\" and (\"x\"):rep(-1) == \"\")"), "");
+  EXPECT_EQ(
+      run("assert((\"\"):rep(3, \",\") == \",,\" and (\"ab\"):rep(2, \"-\") == \"ab-ab\" and (\"x\"):rep(-1) == \"\")"),
+      "");
   EXPECT_EQ(run("local s = (\"\"):rep(1e9, \",\")"), kMemory);
   EXPECT_THAT(run("local s = (\"x\"):rep(math.maxinteger)"), AnyOf(kMemory, HasSubstr("resulting string too large")));
 }
 
 TEST(Escapes, TablesThatCallThemselves) {
   const std::string refused = "preset.lua:2: error: setmetatable: __call must be a function";
-  EXPECT_EQ(run("local m = {} local t = setmetatable({}, m) m.__call = t m.__call = t setmetatable(t, m) t()"), refused);
+  EXPECT_EQ(run("local m = {} local t = setmetatable({}, m) m.__call = t m.__call = t setmetatable(t, m) t()"),
+            refused);
   EXPECT_EQ(run("local t = {} setmetatable(t, { __call = t }) t()"), refused);
   // Later changes of the metatable do not count, so that no chain can be closed behind the check's back.
   EXPECT_EQ(run("local m = {} local t = setmetatable({}, m) m.__call = t t()"),
@@ -60,7 +65,9 @@ TEST(Escapes, WeakTablesAndFinalizers) {
                 "m.__gc = function() ran = true end m.__mode = \"k\"\n"
                 "for i = 1, 200 do local waste = (\"x\"):rep(100000) end assert(not ran)"),
             "");
-  EXPECT_THAT(run("setmetatable({}, setmetatable({}, { __index = function(t, k) return k == \"__gc\" and print or nil end }))"), "");
+  EXPECT_THAT(
+      run("setmetatable({}, setmetatable({}, { __index = function(t, k) return k == \"__gc\" and print or nil end }))"),
+      "");
 }
 
 TEST(Escapes, LongTextsInOneInstruction) {
@@ -80,11 +87,14 @@ TEST(Escapes, MetatablesStayWhatTheyWere) {
   EXPECT_EQ(run("local C = {} C.__index = C function C.new() return setmetatable({}, C) end local c = C.new() function "
                 "C:late() return 7 end assert(c:late() == 7)"),
             "");
-  EXPECT_EQ(run("local t = setmetatable({}, { __metatable = \"mine\" }) assert(getmetatable(t) == \"mine\") setmetatable(t, nil)"),
+  EXPECT_EQ(run("local t = setmetatable({}, { __metatable = \"mine\" }) assert(getmetatable(t) == \"mine\") "
+                "setmetatable(t, nil)"),
             "preset.lua:2: error: setmetatable: this metatable is protected");
   EXPECT_EQ(run("local t = setmetatable({}, {}) rawset(t, 1, 2) table.insert(t, 3) assert(#t == 2)"), "");
-  EXPECT_EQ(run("local t = setmetatable({}, { __eq = function() return true end, __lt = function() return true end, __concat = "
-                "function() return \"c\" end, __len = function() return 9 end }) assert(t == setmetatable({}, getmetatable(t)) and "
+  EXPECT_EQ(run("local t = setmetatable({}, { __eq = function() return true end, __lt = function() return true end, "
+                "__concat = "
+                "function() return \"c\" end, __len = function() return 9 end }) assert(t == setmetatable({}, "
+                "getmetatable(t)) and "
                 "t < t and t .. 1 == \"c\" and #t == 9)"),
             "");
 }
@@ -100,12 +110,14 @@ TEST(Escapes, TheTableOfGlobalsIsOutOfReach) {
 
 TEST(Escapes, MetamethodsOfWhatIsHandedToUs) {
   // Tables are read as they are: nothing that they pretend is believed, nothing of theirs is called.
-  const std::string trap = "local function trap() while true do end end\nlocal m = { __index = trap, __len = trap, __pairs = trap, "
-                           "__newindex = trap, __tostring = trap, __eq = trap, __close = trap }\n";
+  const std::string trap =
+      "local function trap() while true do end end\nlocal m = { __index = trap, __len = trap, __pairs = trap, "
+      "__newindex = trap, __tostring = trap, __eq = trap, __close = trap }\n";
   EXPECT_EQ(run(trap + "fx.stack(setmetatable({}, m))"), "");
   EXPECT_EQ(run(trap + "fx.stack { setmetatable({}, m) }").substr(0, 20), "preset.lua:4: error:");
   EXPECT_EQ(run(trap + "fx.stack { name = setmetatable({}, m) }").substr(0, 20), "preset.lua:4: error:");
-  EXPECT_EQ(run(trap + "fx.bloom(setmetatable({ intensity = setmetatable({}, m) }, m))").substr(0, 20), "preset.lua:4: error:");
+  EXPECT_EQ(run(trap + "fx.bloom(setmetatable({ intensity = setmetatable({}, m) }, m))").substr(0, 20),
+            "preset.lua:4: error:");
   EXPECT_EQ(run(trap + "fx.color { default = setmetatable({ 1, 1, 1 }, m), doc = \"d\" }"), "");
   EXPECT_EQ(run(trap + "table.concat(setmetatable({ 1 }, m))"), "");
   EXPECT_EQ(run(trap + "for k in pairs(setmetatable({}, m)) do end"), "");
@@ -117,22 +129,30 @@ TEST(Escapes, MetamethodsOfWhatIsHandedToUs) {
 
 TEST(Escapes, DepthInEveryLanguage) {
   EXPECT_EQ(run("local t = {} for i = 1, 1e5 do t = { t } end fx.stack(t)").substr(0, 20), "preset.lua:2: error:");
-  EXPECT_EQ(run("local t = {} for i = 1, 1e5 do t = { default = t } end fx.float(t)").substr(0, 20), "preset.lua:2: error:");
+  EXPECT_EQ(run("local t = {} for i = 1, 1e5 do t = { default = t } end fx.float(t)").substr(0, 20),
+            "preset.lua:2: error:");
   EXPECT_EQ(run("local m = {} m.__tostring = function(t) return tostring(t) end tostring(setmetatable({}, m))"),
             "preset.lua:2: error: C stack overflow");
-  EXPECT_EQ(run("local m = {} m.__index = function(t, k) return t[k] end m.__newindex = m.__index local x = setmetatable({}, m).y"),
+  EXPECT_EQ(run("local m = {} m.__index = function(t, k) return t[k] end m.__newindex = m.__index local x = "
+                "setmetatable({}, m).y"),
             "preset.lua:2: error: C stack overflow");
-  EXPECT_EQ(run("local m = {} m.__concat = function(a, b) return a .. b end local t = setmetatable({}, m) local x = t .. t"),
-            "preset.lua:2: error: C stack overflow");
-  EXPECT_EQ(run("local t = {} for i = 1, 3000 do t[i] = i end table.sort(t, function(a, b) table.sort(t) return a < b end)").substr(0, 20),
-            "preset.lua:2: error:");
+  EXPECT_EQ(
+      run("local m = {} m.__concat = function(a, b) return a .. b end local t = setmetatable({}, m) local x = t .. t"),
+      "preset.lua:2: error: C stack overflow");
+  EXPECT_EQ(
+      run("local t = {} for i = 1, 3000 do t[i] = i end table.sort(t, function(a, b) table.sort(t) return a < b end)")
+          .substr(0, 20),
+      "preset.lua:2: error:");
 }
 
 TEST(Escapes, ErrorsFromHandlers) {
-  EXPECT_EQ(run("local function f() error(setmetatable({}, { __tostring = error })) end assert(not pcall(f)) pcall(pcall, f) pcall(error)"), "");
+  EXPECT_EQ(run("local function f() error(setmetatable({}, { __tostring = error })) end assert(not pcall(f)) "
+                "pcall(pcall, f) pcall(error)"),
+            "");
   EXPECT_EQ(run("local x <close> = setmetatable({}, { __close = function() while true do end end }) error(\"x\")"),
             "preset.lua:2: " + kBudget);
-  EXPECT_EQ(run("while true do pcall(error, setmetatable({}, { __tostring = error })) end"), "preset.lua:2: " + kBudget);
+  EXPECT_EQ(run("while true do pcall(error, setmetatable({}, { __tostring = error })) end"),
+            "preset.lua:2: " + kBudget);
   EXPECT_EQ(run("for i = 1, 200 do local ok = pcall(pcall, pcall, error) end pcall(string.rep, \"x\", 1e9)"), kMemory);
 }
 
@@ -142,7 +162,9 @@ TEST(Escapes, ManyValuesAtOnce) {
   EXPECT_THAT(run("select(-math.maxinteger, 1)"), HasSubstr("index out of range"));
   EXPECT_THAT(run("string.char(table.unpack({}, 1, 10))"), HasSubstr("number expected, got nil"));
   EXPECT_EQ(run("while true do select(\"#\", table.unpack({}, 1, 1e5)) end"), "preset.lua:2: " + kBudget);
-  EXPECT_EQ(run("local t = { 1, 2, 3 } local a, b = table.unpack(t, 2) assert(a == 2 and b == 3 and select(\"#\", table.unpack(t, 3, 2)) == 0)"), "");
+  EXPECT_EQ(run("local t = { 1, 2, 3 } local a, b = table.unpack(t, 2) assert(a == 2 and b == 3 and select(\"#\", "
+                "table.unpack(t, 3, 2)) == 0)"),
+            "");
   EXPECT_THAT(run("table.unpack({}, math.mininteger, math.maxinteger)"), HasSubstr("too many results to unpack"));
 }
 
@@ -153,16 +175,21 @@ TEST(Escapes, NumbersThatNoCountCanBe) {
     SCOPED_TRACE(number);
     EXPECT_THAT(run(std::string("fx.bloom { max_iterations = ") + number + " }"), HasSubstr("preset.lua:2: error: "));
     EXPECT_THAT(run(std::string("fx.bloom { scatter = ") + number + " }"), HasSubstr("preset.lua:2: error: "));
-    EXPECT_THAT(build(std::string("g:pass { shader = \"glow/mix\", source = source, strength = 1, size = { ") + number + ", 4 } }"),
+    EXPECT_THAT(build(std::string("g:pass { shader = \"glow/mix\", source = source, strength = 1, size = { ") + number +
+                      ", 4 } }"),
                 HasSubstr("effects/glow.lua:5: error: "));
-    EXPECT_THAT(build(std::string("g:pass { shader = \"glow/mix\", source = source, strength = 1, reach = ") + number + " }"),
-                AnyOf(HasSubstr("effects/glow.lua:5: error: "), testing::IsEmpty()));
-    EXPECT_THAT(build(std::string("g:history { first = source, pre_roll = ") + number + " }"), HasSubstr("effects/glow.lua:5: error: "));
-    EXPECT_THAT(build(std::string("g:filter { source = source, size = { 4, 4 }, filter = fx.filters.plus(") + number + ") }"),
-                HasSubstr("error: "));
+    EXPECT_THAT(
+        build(std::string("g:pass { shader = \"glow/mix\", source = source, strength = 1, reach = ") + number + " }"),
+        AnyOf(HasSubstr("effects/glow.lua:5: error: "), testing::IsEmpty()));
+    EXPECT_THAT(build(std::string("g:history { first = source, pre_roll = ") + number + " }"),
+                HasSubstr("effects/glow.lua:5: error: "));
+    EXPECT_THAT(
+        build(std::string("g:filter { source = source, size = { 4, 4 }, filter = fx.filters.plus(") + number + ") }"),
+        HasSubstr("error: "));
   }
   for (const char* number : {"0/0", "1/0", "-1/0"})
-    EXPECT_THAT(run(std::string("fx.curve { { 0, 1 }, { ") + number + ", 1 } }"), HasSubstr("preset.lua:2: error: ")) << number;
+    EXPECT_THAT(run(std::string("fx.curve { { 0, 1 }, { ") + number + ", 1 } }"), HasSubstr("preset.lua:2: error: "))
+        << number;
   for (const char* number : {"0/0", "1/0", "1e39"})  // more than a 32-bit float holds
     EXPECT_THAT(build(std::string("g:pass { shader = \"glow/mix\", source = source, strength = ") + number + " }"),
                 HasSubstr("effects/glow.lua:5: error: "))
@@ -174,7 +201,8 @@ TEST(Escapes, PassesWithoutEnd) {
               AnyOf(HasSubstr("passes"), HasSubstr(kBudget)));
   EXPECT_THAT(build("for i = 1, 1e9 do g:history { first = source } end"), HasSubstr("error: "));
   EXPECT_THAT(build("for i = 1, 1e9 do pcall(g.pass, g, {}) end"), HasSubstr(kBudget));
-  EXPECT_THAT(build("local t = {} for i = 1, 1e5 do t[i] = { i, 1 } end g:filter { source = source, size = { 4, 4 }, filter = { x = t } }"),
+  EXPECT_THAT(build("local t = {} for i = 1, 1e5 do t[i] = { i, 1 } end g:filter { source = source, size = { 4, 4 }, "
+                    "filter = { x = t } }"),
               HasSubstr("error: "));
 }
 
@@ -199,7 +227,8 @@ TEST(Escapes, PresetsOfOneProcessShareNothing) {
       "local shared = require \"lib.shared\" shared.n = 5 shared.list[1] = 1 leak = 7 string = nil math = nil\n"
       "assert(not pcall(function() require(\"afterglow\").stack = nil end))\nreturn require(\"afterglow\").stack {}");
   second.preset(
-      "local shared = require \"lib.shared\" assert(shared.n == 0 and #shared.list == 0 and leak == nil and string and math)\n"
+      "local shared = require \"lib.shared\" assert(shared.n == 0 and #shared.list == 0 and leak == nil and string and "
+      "math)\n"
       "return require(\"afterglow\").stack {}");
   auto one = first.load();
   ASSERT_TRUE(one) << one.error().text();
@@ -225,10 +254,11 @@ TEST(Escapes, NamesWithZeros) {
 TEST(Escapes, RequireFindsNoWayOut) {
   Scene scene;
   scene.write("../afterglow_secret.lua", "return 1");
-  for (const char* name : {"../afterglow_secret", "..afterglow_secret", "/etc/passwd", "lib/../../x", "a\\\\b", ".", "", "..", "~/x",
-                           "C:\\\\x", "lib..x", "-", "x.lua"}) {
+  for (const char* name : {"../afterglow_secret", "..afterglow_secret", "/etc/passwd", "lib/../../x", "a\\\\b", ".", "",
+                           "..", "~/x", "C:\\\\x", "lib..x", "-", "x.lua"}) {
     scene.preset(std::string("require \"") + name + "\"");
-    EXPECT_THAT(scene.load_error(), AnyOf(HasSubstr("is not the name of a module"), HasSubstr("there is no module"))) << name;
+    EXPECT_THAT(scene.load_error(), AnyOf(HasSubstr("is not the name of a module"), HasSubstr("there is no module")))
+        << name;
   }
   std::filesystem::remove(scene.folder().parent_path() / "afterglow_secret.lua");
 }
@@ -236,7 +266,8 @@ TEST(Escapes, RequireFindsNoWayOut) {
 TEST(Escapes, ShadersFindNoWayOutEither) {
   Scene outside, scene;
   const auto secret = outside.write("secret.glsl", "vec4 apply(vec4 color) { return color; }\n");
-  const std::string lines = "build = function(g, s, source) return g:pass { shader = \"glow/mix\", source = source } end,";
+  const std::string lines =
+      "build = function(g, s, source) return g:pass { shader = \"glow/mix\", source = source } end,";
   scene.effect("glow", lines);
   scene.stack("fx.glow {}");
   scene.write("shaders/glow/other.glsl", "vec4 apply(vec4 color) { return color; }\n");
@@ -250,7 +281,8 @@ TEST(Escapes, ShadersFindNoWayOutEither) {
   scene.write("shaders/glow/mix.glsl", "#include \"part.glsl\"\nvec4 apply(vec4 color) { return color; }\n");
   EXPECT_THAT(scene.build_error(), HasSubstr("is a link that leads out of"));
   for (const char* name : {"../../secret", "/etc/passwd", "glow/../../x", "glow\\0/mix"}) {
-    scene.effect("glow", std::string("build = function(g, s, source) return g:pass { shader = \"") + name + "\", source = source } end,");
+    scene.effect("glow", std::string("build = function(g, s, source) return g:pass { shader = \"") + name +
+                             "\", source = source } end,");
     EXPECT_THAT(scene.build_error(), HasSubstr("unknown shader")) << name;
   }
 }
