@@ -20,7 +20,7 @@ return fx.effect {
   needs = { "motion" },
   optional = { "depth" },
   active = function(s) return s.shutter_angle > 0, "shutter_angle is 0" end,
-  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = { fp32 = 5e-4, fp16 = false, up_to = 50 } },
+  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = { fp32 = 1e-3, fp16 = false, up_to = 50 } },
   build = function(g, s, source)
     local depth = g:input("depth")
     local shutter = 0.5 * s.shutter_angle / 360

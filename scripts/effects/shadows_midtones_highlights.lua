@@ -42,7 +42,7 @@ return fx.effect {
     return not (is_white(factor(s.shadows, s.shadows_offset)) and is_white(factor(s.midtones, s.midtones_offset))
                 and is_white(factor(s.highlights, s.highlights_offset))), "all factors are 1"
   end,
-  holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1, error = { when = function(s) return brightest(s) <= 1e5 end } },
+  holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1, error = { fp32 = 5e-5, when = function(s) return brightest(s) <= 1e5 end } },
   build = function(g, s, source)
     return g:pass {
       shader = "shadows_midtones_highlights/scale", source = source,

@@ -26,7 +26,7 @@ return fx.effect {
   },
   active = function(s) return s.temperature ~= 0 or s.tint ~= 0, "all settings are neutral" end,
 
-  holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1, continuous = 20, error = 1e-5 },
+  holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1, continuous = 20, error = 3e-5 },
   build = function(g, s, source)
     local cones = cones_of_white(s.temperature, s.tint)
     local rows = {}
