@@ -13,9 +13,11 @@
 #include "gpu/error.h"
 
 #if defined(__SANITIZE_ADDRESS__)
-// The validation layer leaks a few KiB of its own.
+// The validation layer leaks a few KiB of its own, and OpenImageIO's reader of videos a frame of FFmpeg's.
 extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:libVkLayer_khronos_validation.so\n"; }
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libVkLayer_khronos_validation.so\nleak:libavutil.so\n";
+}
 #endif
 
 namespace afterglow {

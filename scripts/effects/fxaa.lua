@@ -13,7 +13,8 @@ return fx.effect {
     quality = fx.enum { "low", "medium", "high", default = "high", doc = "How far the ends of an edge are looked for: low 6.5 pixels, medium and high 18.5, high with finer steps." },
   },
   -- It decides by comparing; where two things are equally likely, rounding does.
-  holds = { "black", "constant", "bounded", error = { fp32 = 0.1, fp16 = false } },
+  -- No bound on the error: where two edges are equally strong, rounding decides which one is followed.
+  holds = { "black", "constant", "bounded" },
   build = function(g, s, source)
     local luma = g:pass { shader = "fxaa/luma", source = source, name = "luma" }
     return g:pass { shader = "fxaa/smooth_edges", source = source, luma = luma, quality = ({ low = 0, medium = 1, high = 2 })[s.quality],
