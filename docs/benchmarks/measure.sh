@@ -4,7 +4,7 @@
 #   docs/benchmarks/measure.sh [FOLDER]
 #
 # FOLDER (default docs/benchmarks) gets bench.json, bench.csv, bench.html, front.svg (the goals are in them) and calibration.json;
-# commands.txt comes from commands.sh. A bench.json that is there already is compared with: the last lines are the ratios, and the exit
+# commands.txt comes from commands.sh, pacing.txt from pacing.sh. A bench.json that is there already is compared with: the last lines are the ratios, and the exit
 # code is 1 when something has become more than 1.15 times as slow.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -15,6 +15,7 @@ mkdir -p "$folder"
 ./dev calibrate -o "$folder/calibration.json"
 docs/benchmarks/commands.sh >/dev/null
 ./dev bench presets/neon_night.lua --reload -o "$folder" >"$folder/reload.txt"
+docs/benchmarks/pacing.sh >/dev/null
 
 compare=()
 if [[ -f $folder/bench.json ]]; then

@@ -35,6 +35,7 @@ TEST_F(LiveMemory, TenThousandReloads) {
   const auto before = live().counters();
   const auto bytes = resident();
   for (int i = 0; i < 10'000; ++i) value_edit(i);
+  live().settle();
   const auto after = live().counters();
   EXPECT_EQ(after.values, before.values + 10'000);
   EXPECT_EQ(after.structures, before.structures);
@@ -48,6 +49,7 @@ TEST_F(LiveMemory, TenThousandReloads) {
 TEST_F(LiveMemory, ManyShaderEdits) {
   open_unwatched();
   for (int i = 0; i < 40; ++i) shader_edit(i);
+  live().settle();  // what was replaced is gone
   const auto before = live().counters();
   const auto bytes = resident();
   for (int i = 0; i < 150; ++i) shader_edit(1000 + i);
