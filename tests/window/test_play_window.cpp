@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <utility>
 
 #include "core/file.h"
 #include "image/writer.h"
@@ -344,8 +345,11 @@ TEST_F(PlayWindow, WhatIsTypedIntoTheSearchIsNoShortcut) {
   play({"look.lua", "shot.0001.exr"});
   ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
   EXPECT_TRUE(until_color(kX, kY, kRed));
-  const Screen before = shot();
-  ASSERT_TRUE(user("mousemove 400 300 key ctrl+f"));
+  Screen before = shot();
+  ASSERT_TRUE(user("mousemove 400 300"));
+  EXPECT_TRUE(until([&] { return shot().rgb != before.rgb; }));  // the pixel's values are shown
+  EXPECT_TRUE(until([&] { return std::exchange(before, shot()).rgb == before.rgb; }));
+  ASSERT_TRUE(user("key ctrl+f"));
   EXPECT_TRUE(until([&] { return shot().rgb != before.rgb; }));  // the cursor stands in the field
   ASSERT_TRUE(user("type gyq"));                                 // channels, and the end, if they were shortcuts
   ASSERT_TRUE(user("key Escape"));
