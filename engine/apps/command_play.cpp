@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 
@@ -13,14 +12,13 @@
 #include "apps/play_window.h"
 #include "core/file.h"
 #include "core/paths.h"
+#include "core/stopwatch.h"
 #include "core/text.h"
 #include "image/writer.h"
 #include "play/player.h"
 
 namespace afterglow {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct Arguments {
   PresetArguments preset;
@@ -157,9 +155,6 @@ Result<void> check_shown(const Arguments& a, Player& player) {
 
 Result<void> play_without_window(const Arguments& a, const PlayerOptions& options, Console& console) {
   const auto start = Clock::now();
-  const auto passed = [](Clock::time_point since) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
-  };
   AFTERGLOW_TRY(const auto device, Device::create(a.device.options(), console.diagnostics()));
   AFTERGLOW_TRY(const auto player, Player::open(*device, options, console.diagnostics()));
   player->transport().set_speed(a.speed, player->now());
@@ -171,11 +166,11 @@ Result<void> play_without_window(const Arguments& a, const PlayerOptions& option
                     .device = device->info().name,
                     .driver = device->info().driver,
                     .mode = a.fast ? "fast" : "real time",
-                    .startup = passed(start),
+                    .startup = milliseconds_since(start),
                     .error = {}};
   const auto began = Clock::now();
   auto done = play_headless(*player, headless);
-  report.wall = passed(began);
+  report.wall = milliseconds_since(began);
   if (done) done = check_shown(a, *player);
   // Validation goes first: it says what a failure comes from.
   if (device->validation_errors() > 0)

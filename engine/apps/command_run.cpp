@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <set>
@@ -17,6 +16,7 @@
 #include "apps/run_report.h"
 #include "apps/schedule.h"
 #include "core/file.h"
+#include "core/stopwatch.h"
 #include "core/text.h"
 #include "graph/history.h"
 #include "image/reader.h"
@@ -24,8 +24,6 @@
 
 namespace afterglow {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct Arguments {
   PresetArguments preset;
@@ -189,7 +187,7 @@ struct Run {
   RunReport report;
   std::optional<Lock> lock;  ///< of what runs, with --lock or --locked
 
-  double milliseconds() const { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+  double milliseconds() const { return milliseconds_since(start); }
 };
 
 Result<SessionOptions> session_options(const Arguments& a) {

@@ -3,24 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "apps/crop.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
 #include "apps/resume.h"
 #include "apps/scale.h"
+#include "core/stopwatch.h"
 #include "image/camera.h"
 #include "image/facts.h"
 
 namespace afterglow {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// A file that fails spoils its frame; a script, a device or an option that fails would spoil them all.
 bool ends_run(const Error& error) { return error.kind != ErrorKind::io && error.kind != ErrorKind::other; }

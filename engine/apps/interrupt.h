@@ -5,7 +5,8 @@
 
 namespace afterglow {
 
-/// The first SIGINT or SIGTERM sets a flag; the second ends the process at once.
+/// The first SIGINT or SIGTERM sets a flag; the second ends the process at once. A file that grows
+/// beyond the limit of the process (SIGXFSZ) is an error of its writer instead of the end of the process.
 void install_interrupt_handler();
 bool interrupted();
 /// What commands return once `interrupted()` is true; exit code 130.

@@ -13,6 +13,7 @@
 #include "apps/table.h"
 #include "bench/picture.h"
 #include "core/file.h"
+#include "core/stopwatch.h"
 #include "image/writer.h"
 #include "play/player.h"
 
@@ -20,15 +21,10 @@ namespace afterglow {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::seconds kLongest{60};  // an edit that takes longer was not noticed
 constexpr double kForever = std::numeric_limits<double>::infinity();
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// The files that are edited, in a folder that goes with it.
 class Workplace {

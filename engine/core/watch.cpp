@@ -18,13 +18,12 @@
 #include <thread>
 
 #include "core/gathering.h"
+#include "core/stopwatch.h"
 #include "core/watch_places.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kCome = IN_CREATE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF;
 constexpr std::uint32_t kWritten = IN_CLOSE_WRITE | IN_MODIFY | IN_ATTRIB;

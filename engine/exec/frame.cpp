@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 
+#include "core/stopwatch.h"
 #include "exec/convert.h"
 #include "exec/frame_inputs.h"
 #include "exec/frame_result.h"
@@ -18,12 +18,6 @@
 namespace afterglow {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 std::uint64_t image_bytes(const ImageDesc& desc) {
   return static_cast<std::uint64_t>(desc.size.area()) * bytes_per_pixel(desc.format);

@@ -1,9 +1,9 @@
 #include "exec/kernel_pipelines.h"
 
-#include <chrono>
 #include <optional>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "gpu/fullscreen_vertex.h"
 
 namespace afterglow {
@@ -50,7 +50,7 @@ Result<KernelPipelines> KernelPipelines::create(const Device& device, const std:
                                                 PipelinePool* pool) {
   PipelinePool own;
   if (!pool) pool = &own;
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   KernelPipelines out;
   out.pipelines_.resize(kernels.size());
   std::vector<std::size_t> missing;
@@ -77,7 +77,7 @@ Result<KernelPipelines> KernelPipelines::create(const Device& device, const std:
     out.pipelines_[missing[k]] = pool->add(kernel, format_of(kernel, format),
                                            {out.layouts_.at(interface_of(kernel)), std::move(*made[k]).value()});
   }
-  pool->add_time(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  pool->add_time(milliseconds_since(start));
   return out;
 }
 

@@ -11,7 +11,6 @@
 namespace afterglow {
 namespace {
 
-constexpr float kLargest = 1e30f;
 constexpr float kFarDepth = 1e10f;
 
 SanitizeCounts& operator+=(SanitizeCounts& a, const SanitizeCounts& b) {
@@ -77,17 +76,17 @@ void make_finite(float& value, SanitizeCounts& counts) {
   if (std::isnan(value)) {
     value = 0;
     ++counts.nan;
-  } else if (value > kLargest) {
-    value = kLargest;
+  } else if (value > kLargestColor) {
+    value = kLargestColor;
     ++counts.too_large;
-  } else if (value < -kLargest) {  // −infinity would become NaN in a matrix
+  } else if (value < -kLargestColor) {  // −infinity would become NaN in a matrix
     value = 0;
     ++counts.negative;
   }
 }
 
 void make_alpha_finite(float& alpha, SanitizeCounts& counts) {
-  if (std::abs(alpha) <= kLargest) return;
+  if (std::abs(alpha) <= kLargestColor) return;
   alpha = 1;
   ++counts.alpha;
 }
@@ -105,11 +104,11 @@ void sanitize_linear(float* rgba, std::size_t pixels, SanitizeCounts& counts) {
         const float v = pixel[c];
         block_nan += v != v;
         block_negative += v < 0;
-        block_large += v > kLargest;
+        block_large += v > kLargestColor;
         const float positive = v > 0 ? v : 0.0f;  // NaN fails the test
-        pixel[c] = positive < kLargest ? positive : kLargest;
+        pixel[c] = positive < kLargestColor ? positive : kLargestColor;
       }
-      const bool finite = std::abs(pixel[3]) <= kLargest;  // as light: filters sum alpha too, and must not overflow
+      const bool finite = std::abs(pixel[3]) <= kLargestColor;  // as light: filters sum alpha too, and must not overflow
       block_alpha += !finite;
       pixel[3] = finite ? pixel[3] : 1.0f;
     }

@@ -9,16 +9,19 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/saturated.h"
+#include "image/claimed_size.h"
 #include "image/exr_header.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array<unsigned char, 8> kPngMagic{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
 
 std::uint32_t big_endian(const unsigned char* p, int bytes) {
   std::uint32_t value = 0;
@@ -69,8 +72,8 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
       if (type != "IHDR" || length != 13) return malformed(file, "is a malformed PNG");
       if (number(0) < 1 || number(1) < 1) return malformed(file, "has no pixels");
       if (number(0) > 0x7fffffff || number(1) > 0x7fffffff) return malformed(file, "is a malformed PNG");
-      facts.size = {static_cast<int>(number(0)), static_cast<int>(number(1))};
-      const auto area = static_cast<std::uint64_t>(facts.size.area());
+      facts.size = Size{static_cast<int>(number(0)), static_cast<int>(number(1))};
+      const auto area = static_cast<std::uint64_t>(facts.size->area());
       facts.least_file_bytes = area / 8 / 1100;  // a bit a pixel at least, and deflate gains 1032 at most
       const bool interlaced = data[12] != 0, deep = data[8] == 16;
       if (interlaced) facts.decoder_bytes = saturated_product({area, 4, deep ? 2u : 1u});
@@ -118,17 +121,18 @@ Result<ContainerFacts> check_jpeg(const fs::path& file, std::ifstream& in, std::
     }
     const unsigned char marker = bytes[at + 1];
     if (marker == 0xd9) {
-      if (facts.size.width == 0) return malformed(file, "is a malformed JPEG");
+      if (!facts.size) return malformed(file, "is a malformed JPEG");
       return facts;
     }
     if (at + 4 > bytes.size()) break;
     const std::size_t length = big_endian(&bytes[at + 2], 2);
     if (length < 2 || at + 2 + length > bytes.size()) break;
     if (is_frame_header(marker)) {
-      if (length < 8 || facts.size.width > 0) return malformed(file, "is a malformed JPEG");
-      facts.size = {static_cast<int>(big_endian(&bytes[at + 7], 2)), static_cast<int>(big_endian(&bytes[at + 5], 2))};
-      if (facts.size.width < 1 || facts.size.height < 1) return malformed(file, "has no pixels");
-      const auto area = static_cast<std::uint64_t>(facts.size.area());
+      if (length < 8 || facts.size) return malformed(file, "is a malformed JPEG");
+      facts.size =
+          Size{static_cast<int>(big_endian(&bytes[at + 7], 2)), static_cast<int>(big_endian(&bytes[at + 5], 2))};
+      if (facts.size->width < 1 || facts.size->height < 1) return malformed(file, "has no pixels");
+      const auto area = static_cast<std::uint64_t>(facts.size->area());
       // Huffman codes (the first three kinds) take a bit at least for each block of 8×8.
       if (marker <= 0xc2) facts.least_file_bytes = area / 64 / 8;
       if (is_progressive(marker)) facts.decoder_bytes = area * bytes[at + 9] * sizeof(std::int16_t);
@@ -136,6 +140,18 @@ Result<ContainerFacts> check_jpeg(const fs::path& file, std::ifstream& in, std::
     at += 2 + length;
   }
   return malformed(file, "is truncated");
+}
+
+/// OpenImageIO makes room for as many bytes of the user's data as the header claims.
+Result<ContainerFacts> check_dpx(const fs::path& file, std::ifstream& in, std::uint64_t size, bool big) {
+  constexpr std::uint32_t kUndefined = 0xffffffff;
+  std::array<unsigned char, 4> field{};
+  in.seekg(32);
+  if (!fill(in, field.data(), field.size())) return malformed(file, "is truncated");
+  if (!big) std::ranges::reverse(field);
+  const std::uint32_t user_bytes = big_endian(field.data(), 4);
+  if (user_bytes != kUndefined && user_bytes > size) return malformed(file, "is truncated");
+  return ContainerFacts{};
 }
 
 }  // namespace
@@ -154,13 +170,23 @@ Result<ContainerFacts> check_container(const fs::path& file) {
   if (size == 0) return malformed(file, "is empty");
   std::ifstream in(file, std::ios::binary);
   if (!in) return Error{ErrorKind::io, fmt::format("cannot be read: {}", std::strerror(errno)), file.string()};
-  std::array<unsigned char, 8> head{};
-  in.read(reinterpret_cast<char*>(head.data()), head.size());
+  std::array<unsigned char, 4096> bytes{};
+  in.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
+  const auto head = std::span<const unsigned char>(bytes).first(static_cast<std::size_t>(in.gcount()));
   in.clear();
-  if (head == kPngMagic) return check_png(file, in, size);
-  if (head[0] == 0xff && head[1] == 0xd8 && head[2] == 0xff) return check_jpeg(file, in, size);
+  const auto starts_with = [&](std::string_view magic) {
+    return std::string_view(reinterpret_cast<const char*>(head.data()), head.size()).starts_with(magic);
+  };
+  if (starts_with(kPngMagic)) return check_png(file, in, size);
+  if (starts_with("\xff\xd8\xff")) return check_jpeg(file, in, size);
+  if (starts_with("SDPX") || starts_with("XPDS")) return check_dpx(file, in, size, starts_with("SDPX"));
   ContainerFacts facts;
   if (is_exr(file)) facts.kind = ContainerFacts::Kind::exr;
+  if (const auto claimed = claimed_size(head)) {
+    facts.size = claimed->size;
+    facts.decoder_bytes =
+        saturated_product({static_cast<std::uint64_t>(claimed->size.area()), claimed->bytes_per_pixel});
+  }
   return facts;
 }
 

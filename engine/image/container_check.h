@@ -1,4 +1,4 @@
-// What PNG and JPEG files say about themselves, read before a library does: sizes that are lies, files that end too
+// What files say about themselves, read before a library does: sizes that are lies, files that end too
 // early (JPEG decoders invent the missing half), and PNG's colour chunks, which OpenImageIO does not pass on.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace afterglow {
 
 struct ContainerFacts {
   enum class Kind { other, exr, png, jpeg } kind = Kind::other;
-  Size size;                                ///< PNG and JPEG
+  std::optional<Size> size;                 ///< where it can be told before a library opens the file
   std::uint64_t least_file_bytes = 0;       ///< fewer cannot hold the pixels, however well they compress
   std::uint64_t decoder_bytes = 0;          ///< what the decoder keeps of the whole picture (interlaced, progressive)
   bool srgb = false;                        ///< PNG sRGB chunk
@@ -23,7 +23,8 @@ struct ContainerFacts {
   std::optional<Chromaticities> primaries;  ///< PNG cHRM
 };
 
-/// Errors: io (missing, folder, no regular file, empty, unreadable; PNG or JPEG that is malformed or ends too early).
+/// Errors: io (missing, folder, no regular file, empty, unreadable; PNG, JPEG or DPX that is malformed or ends too
+/// early).
 Result<ContainerFacts> check_container(const std::filesystem::path& file);
 
 }  // namespace afterglow

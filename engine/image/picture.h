@@ -14,11 +14,15 @@
 
 namespace afterglow {
 
+/// Colours and alpha are held at ±this, where they are read and behind every pass: sums and products of a few of them
+/// stay finite.
+inline constexpr float kLargestColor = 1e30f;
+
 /// What had to be made finite before the stack (design.md, "The source is made finite").
 struct SanitizeCounts {
   std::uint64_t nan = 0;        ///< NaN colour samples set to 0
   std::uint64_t negative = 0;   ///< negative colour samples set to 0
-  std::uint64_t too_large = 0;  ///< colour samples above 1e30 (or +infinity) set to 1e30
+  std::uint64_t too_large = 0;  ///< colour samples above kLargestColor (or +infinity) set to it
   std::uint64_t alpha = 0;      ///< non-finite alpha samples (NaN and ±infinity) set to 1
   std::uint64_t depth = 0;      ///< non-finite depths set to 1e10
   std::uint64_t normal = 0;     ///< non-finite normals set to 0 0 0

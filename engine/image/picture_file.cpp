@@ -20,17 +20,22 @@ Result<void> check_room(const std::filesystem::path& file, std::uint64_t least) 
   return Error{ErrorKind::io, fmt::format("is truncated: {} bytes cannot hold its pixels", size), file.string()};
 }
 
+/// So is one that makes its decoder take more memory than allowed.
+Result<void> check_decoder(const std::filesystem::path& file, std::uint64_t bytes, const SizeLimits& limits) {
+  if (bytes <= limits.max_bytes) return {};
+  return Error{ErrorKind::io,
+               fmt::format("needs {} MiB to decode, more than the {} MiB allowed (--max-memory)", bytes >> 20,
+                           limits.max_bytes >> 20),
+               file.string()};
+}
+
 Result<std::unique_ptr<PictureFile>> open_checked_exr(const std::filesystem::path& file, const SizeLimits& limits) {
   AFTERGLOW_TRY(std::vector<ExrPart> parts, read_exr_header(file));
   for (const ExrPart& part : parts) {
     if (part.deep) continue;  // never read
     AFTERGLOW_CHECK(check_sides(part.data_window, "data window", limits, file));
     AFTERGLOW_CHECK(check_sides(part.display_window, "display window", limits, file));
-    if (part.buffer_bytes(1) > limits.max_bytes)
-      return Error{ErrorKind::io,
-                   fmt::format("needs {} MiB to decode, more than the {} MiB allowed (--max-memory)",
-                               part.buffer_bytes(1) >> 20, limits.max_bytes >> 20),
-                   file.string()};
+    AFTERGLOW_CHECK(check_decoder(file, part.buffer_bytes(1), limits));
   }
   std::uint64_t least = 0;
   for (const ExrPart& part : parts) least = saturated_sum({least, part.least_file_bytes()});
@@ -43,8 +48,9 @@ Result<std::unique_ptr<PictureFile>> open_checked_exr(const std::filesystem::pat
 Result<std::unique_ptr<PictureFile>> open_picture(const std::filesystem::path& file, const SizeLimits& limits) {
   AFTERGLOW_TRY(const ContainerFacts container, check_container(file));
   if (container.kind == ContainerFacts::Kind::exr) return open_checked_exr(file, limits);
-  if (container.kind == ContainerFacts::Kind::png || container.kind == ContainerFacts::Kind::jpeg)
-    AFTERGLOW_CHECK(check_sides({0, 0, container.size.width, container.size.height}, "picture", limits, file));
+  if (container.size)
+    AFTERGLOW_CHECK(check_sides({0, 0, container.size->width, container.size->height}, "picture", limits, file));
+  AFTERGLOW_CHECK(check_decoder(file, container.decoder_bytes, limits));
   AFTERGLOW_CHECK(check_room(file, container.least_file_bytes));
   const char* container_name = nullptr;
   if (container.kind == ContainerFacts::Kind::other &&

@@ -6,14 +6,13 @@
 #include <limits>
 #include <utility>
 
+#include "core/stopwatch.h"
 #include "image/camera.h"
 #include "image/facts.h"
 #include "play/player_state.h"
 
 namespace afterglow {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 double steady_seconds() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
@@ -158,7 +157,7 @@ Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, 
   second_runs = compare;
   dirty = false;
   shown.size = read->picture.color.size();
-  const double work = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  const double work = milliseconds_since(start);
   if (first->times().kernels_run == 0) ++figures.kept;
   figures.frame_shown(now(), work, transport.playing());
   // The first build is no reload. `process` takes builds too: the generation says what is on screen.

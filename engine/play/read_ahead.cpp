@@ -10,10 +10,10 @@
 #include <set>
 #include <thread>
 
+#include "core/stopwatch.h"
+
 namespace afterglow {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 std::uint64_t bytes_of(const Picture& picture) {
   std::uint64_t bytes = picture.color.bytes() + picture.codes.size();
@@ -142,7 +142,7 @@ void ReadAhead::State::read_next(std::unique_lock<std::mutex>& lock, int key) {
   made->key = key;
   const auto start = Clock::now();
   auto result = read(key);
-  made->milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  made->milliseconds = milliseconds_since(start);
   if (result) {
     made->picture = std::move(result).value();
     made->bytes = bytes_of(made->picture);

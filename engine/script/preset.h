@@ -96,7 +96,7 @@ struct ScriptLimits {
   double seconds = 2.0;                     ///< per load or build
   /// Ends a script that is running from another thread: it fails with ErrorKind::interrupted once the steady clock has
   /// come so far. Null: never.
-  std::shared_ptr<const std::atomic<std::chrono::steady_clock::rep>> until;
+  std::shared_ptr<const std::atomic<std::chrono::steady_clock::rep>> until = {};
 };
 
 struct PresetOptions {

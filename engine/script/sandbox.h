@@ -16,6 +16,7 @@
 #include "core/diagnostics.h"
 #include "core/exception.h"
 #include "core/result.h"
+#include "core/stopwatch.h"
 #include "script/preset.h"
 #include "script/script_error.h"
 
@@ -124,7 +125,6 @@ class Sandbox {
   void* owner = nullptr;  ///< whoever binds more functions
 
  private:
-  using Clock = std::chrono::steady_clock;
   explicit Sandbox(const ScriptLimits& limits) : limits_(limits) {}
   std::optional<Error> run_protected(const std::string& file, lua_CFunction call, void* work);
   static double thread_seconds();  // what the processor has spent on this thread

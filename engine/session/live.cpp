@@ -1,10 +1,9 @@
 #include "session/live.h"
 
+#include "core/stopwatch.h"
 #include "session/live_builder.h"
 
 namespace afterglow {
-
-using Clock = std::chrono::steady_clock;
 
 struct LiveStack::State {
   State(Device& device, const std::filesystem::path& preset, const LiveOptions& options, Diagnostics& diagnostics)
@@ -88,7 +87,7 @@ bool LiveStack::update() {
   s.builder.forward([&](LiveStatus& status, Counters& counters) {
     ++status.generation;
     status.times = parts.times;
-    status.times.wait = std::chrono::duration<double, std::milli>(Clock::now() - parts.done).count();
+    status.times.wait = milliseconds_since(parts.done);
     ++(parts.structure ? counters.structures : counters.values);
     if (parts.for_frame) ++counters.for_frames;
   });

@@ -4,21 +4,16 @@
 
 #include "core/exception.h"
 #include "core/file.h"
+#include "core/stopwatch.h"
 #include "core/text.h"
 
 namespace afterglow {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::chrono::milliseconds kPatience{100};  // with a script whose files have changed meanwhile
 constexpr std::chrono::milliseconds kStarving{250};  // without a new stack: a build is finished, overtaken or not
 
 constexpr Clock::rep kNever = Clock::time_point::max().time_since_epoch().count();
-
-double milliseconds_between(Clock::time_point from, Clock::time_point to) {
-  return std::chrono::duration<double, std::milli>(to - from).count();
-}
 
 /// The line that an error is about, without the space around it.
 std::string line_of(const Error& error) {
@@ -207,7 +202,7 @@ Result<void> LiveBuilder::build(const LiveRequest& request, BuildTimes& times) {
     until_.reset();
   }
   follow(std::move(looks));
-  times.script = milliseconds_between(start, Clock::now());
+  times.script = milliseconds_since(start);
   if (!built) return std::move(built).error();
   if (work && basis_ && !request.for_frame && same_work(*basis_, *work)) {
     times.kind = BuildTimes::Kind::values;
@@ -249,7 +244,7 @@ void LiveBuilder::warm_up(Stack& stack, BuildTimes& times) {
     warm_up_ = std::move(made).value();
   }
   (void)stack.warm_up(*warm_up_);
-  times.warm_up = milliseconds_between(start, Clock::now());
+  times.warm_up = milliseconds_since(start);
 }
 
 /// Frames may read what the build did not: other passes at another time.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/file_trace.h"
+#include "core/stopwatch.h"
 #include "session/live.h"
 
 namespace afterglow {
@@ -68,7 +69,6 @@ class LiveBuilder {
   LiveStack::Counters counters() const;
 
  private:
-  using Clock = std::chrono::steady_clock;
   /// Why a build is wanted.
   struct Wanted {
     bool files = false, request = false;

@@ -1,14 +1,12 @@
 #include "session/session.h"
 
-#include <chrono>
 #include <future>
 
+#include "core/stopwatch.h"
 #include "session/picture_inputs.h"
 
 namespace afterglow {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct OpenedDevice {
   Result<std::unique_ptr<Device>> device;
@@ -18,7 +16,7 @@ struct OpenedDevice {
 OpenedDevice open_device(const DeviceOptions& options, Diagnostics& diagnostics) {
   const auto start = Clock::now();
   auto device = Device::create(options, diagnostics);
-  return {std::move(device), std::chrono::duration<double, std::milli>(Clock::now() - start).count()};
+  return {std::move(device), milliseconds_since(start)};
 }
 
 /// Whether the codes have no alpha somewhere in `part` where the picture has some.

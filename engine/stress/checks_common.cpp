@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "exec/half.h"
+#include "image/picture.h"
 #include "stress/check.h"
 
 namespace afterglow::stress {
@@ -48,7 +49,7 @@ Outcome all_finite(const Image& image, double largest, const std::string& what) 
 Outcome source_is_sound(const Picture& picture) {
   for (std::size_t i = 0; i < picture.color.pixels.size(); ++i) {
     const float v = picture.color.pixels[i];
-    if (!std::isfinite(v) || (i % 4 < 3 && (v < 0 || v > 1e30f)))
+    if (!std::isfinite(v) || (i % 4 < 3 && (v < 0 || v > kLargestColor)))
       return {.holds = false,
               .measured = 1,
               .allowed = 0,

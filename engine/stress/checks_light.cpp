@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "image/picture.h"
 #include "stress/check.h"
 #include "stress/truth.h"
 
@@ -183,7 +184,7 @@ Result<Outcome> linear(Lab& lab, const Situation& s, const Hold& hold) {
   AFTERGLOW_TRY(const Made of_sum, lab.run(s.look, sum, s.frame, usual_way(lab)));
   Image wanted = of_a.image;
   for (std::size_t i = 0; i < wanted.pixels.size(); ++i)
-    wanted.pixels[i] = std::min(wanted.pixels[i] + of_b.image.pixels[i], static_cast<float>(kLargestResult));
+    wanted.pixels[i] = std::min(wanted.pixels[i] + of_b.image.pixels[i], kLargestColor);
   return compare(of_sum.image, wanted, hold.numbers.at("within"), "the result of a sum against the sum of results");
 }
 

@@ -6,13 +6,13 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "core/stopwatch.h"
 #include "core/text.h"
 
 namespace afterglow::stress {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 /// A folder of this process for pictures that go through a file.
 const fs::path& scratch() {

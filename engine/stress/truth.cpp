@@ -38,7 +38,7 @@ ErrorMeasure error_against(const Image& image, std::vector<double> truth, bool h
   rgb.reserve(truth.size());
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     if (i % 4 < 3) rgb.push_back(image.pixels[i]);
-  const double largest = half ? static_cast<double>(kMaxHalf) : kLargestResult;
+  const double largest = half ? static_cast<double>(kMaxHalf) : static_cast<double>(kLargestColor);
   for (double& v : truth) v = std::clamp(v, -largest, largest);
   return measure_error(rgb, std::span<const double>(truth));
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "image/metrics.h"
+#include "image/picture.h"
 #include "stress/lab.h"
 
 namespace afterglow::stress {
@@ -12,10 +13,7 @@ namespace afterglow::stress {
 /// R, G and B of the stack's result by engine/reference; nothing when an effect of it has no oracle there.
 std::optional<std::vector<double>> truth_of(const LookFacts& facts, const Picture& picture, double frame);
 
-/// Results are held at this, so that what follows stays finite.
-inline constexpr double kLargestResult = 1e30f;
-
-/// How far a result is from it. Values beyond kLargestResult, or with `half` beyond what half floats hold, count as
+/// How far a result is from it. Values beyond kLargestColor, or with `half` beyond what half floats hold, count as
 /// held there.
 ErrorMeasure error_against(const Image& image, std::vector<double> truth, bool half);
 

@@ -1,6 +1,7 @@
 #include "fault_test.h"
 
 #include <cstdlib>
+#include <numeric>
 #include <sstream>
 
 namespace afterglow::test {
@@ -30,38 +31,51 @@ Fault file_fault(const std::string& kind, const fs::path& root) {
            {"AFTERGLOW_FAULT_ROOT", root.string()}}};
 }
 
-Outcome FaultTest::run_with(const std::vector<std::string>& arguments, const Fault& fault, long place) const {
+RunOptions FaultTest::options_at(const Fault& fault, long place) const {
   RunOptions options;
   options.environment = environment_;
   options.environment.insert(fault.environment.begin(), fault.environment.end());
   options.environment["AFTERGLOW_FAULT_CALL"] = std::to_string(place);
-  return run(arguments, options);
+  return options;
 }
 
-long FaultTest::places(const std::vector<std::string>& arguments, const Fault& fault, int expected) const {
-  RunOptions options;
+Outcome FaultTest::run_with(const std::vector<std::string>& arguments, const Fault& fault, long place) const {
+  return run(arguments, options_at(fault, place));
+}
+
+std::vector<long> FaultTest::distinct_places(const std::vector<std::string>& arguments, const Fault& fault,
+                                             int expected) const {
   const fs::path log = path("places.log");
   fs::remove(log);
-  options.environment = environment_;
-  options.environment.insert(fault.environment.begin(), fault.environment.end());
-  options.environment["AFTERGLOW_FAULT_CALL"] = "0";
+  RunOptions options = options_at(fault, 0);
   options.environment["AFTERGLOW_FAULT_LOG"] = log.string();
   const Outcome outcome = run(arguments, options);
   EXPECT_EQ(outcome.exit_code, expected) << outcome.err;
   std::istringstream lines(read("places.log"));
   fs::remove(log);
-  long count = 0;
-  for (std::string line; std::getline(lines, line);) count = std::atol(line.c_str());
-  EXPECT_GT(count, 0) << "the faults do not reach the program";
-  return count;
+  std::vector<long> places;
+  for (std::string line; std::getline(lines, line);) places.push_back(std::atol(line.c_str()));
+  EXPECT_FALSE(places.empty()) << "the faults do not reach the program";
+  return places.empty() ? std::vector<long>{0} : places;
 }
 
-std::vector<long> FaultTest::some(long first, long last, long most) {
+long FaultTest::places(const std::vector<std::string>& arguments, const Fault& fault, int expected) const {
+  return distinct_places(arguments, fault, expected).back();
+}
+
+std::vector<long> FaultTest::some(const std::vector<long>& places, long most) {
+  const auto last = static_cast<long>(places.size()) - 1;
   const char* wanted = std::getenv("AFTERGLOW_FAULTS");
-  if (wanted && *wanted) most = std::string(wanted) == "every" ? last - first + 1 : std::atol(wanted);
-  std::set<long> places;
-  for (long i = 0; i < most && most > 1; ++i) places.insert(first + (last - first) * i / (most - 1));
-  return {places.begin(), places.end()};
+  if (wanted && *wanted) most = std::string(wanted) == "every" ? last + 1 : std::atol(wanted);
+  std::set<long> chosen;
+  for (long i = 0; i < most && most > 1; ++i) chosen.insert(places[last * i / (most - 1)]);
+  return {chosen.begin(), chosen.end()};
+}
+
+std::vector<long> FaultTest::some(long last, long most) {
+  std::vector<long> places(last);
+  std::iota(places.begin(), places.end(), 1);
+  return some(places, most);
 }
 
 void FaultTest::take_reference(const std::vector<std::string>& outputs) {

@@ -32,9 +32,13 @@ class FaultTest : public CliTest {
  protected:
   /// How many places a fault can strike during this command. The command must succeed, or end with `expected`.
   long places(const std::vector<std::string>& arguments, const Fault& fault, int expected = kDone) const;
-  /// `most` places of [first, last], spread evenly. The environment may say otherwise: AFTERGLOW_FAULTS=every or a
-  /// number.
-  static std::vector<long> some(long first, long last, long most);
+  /// Those of them that are worth a strike each, in their order, where the fault's library can tell: of allocations,
+  /// the first and the last one by each way through the program's functions. The last of all in any case.
+  std::vector<long> distinct_places(const std::vector<std::string>& arguments, const Fault& fault,
+                                    int expected = kDone) const;
+  /// `most` of these places, spread evenly. The environment may say otherwise: AFTERGLOW_FAULTS=every or a number.
+  static std::vector<long> some(const std::vector<long>& places, long most);
+  static std::vector<long> some(long last, long most);  ///< of [1, last]
   Outcome run_with(const std::vector<std::string>& arguments, const Fault& fault, long place) const;
 
   /// Keeps the bytes of what the last command has made (files of the test's folder that match), and removes them.
@@ -51,6 +55,7 @@ class FaultTest : public CliTest {
   Environment environment_;  ///< of all runs
 
  private:
+  RunOptions options_at(const Fault& fault, long place) const;
   std::map<std::string, std::string> reference_;
 };
 

@@ -1,7 +1,8 @@
 // Preloaded before the program (LD_PRELOAD): lets one of its allocations fail.
 //
 //   AFTERGLOW_FAULT_CALL=N     the Nth allocation fails with std::bad_alloc (from 1; 0: none)
-//   AFTERGLOW_FAULT_LOG=FILE   the number of allocations, written when the program ends
+//   AFTERGLOW_FAULT_LOG=FILE   where the program asks, written when it ends: the number of the first and of the last
+//                              allocation by each way through its functions, then that of all, a line each
 //
 // Only what the program's own code asks of `operator new` from main() on counts, directly or through libraries that
 // pass exceptions on: compilers inside drivers end the process when they get no memory, and nobody above them can help
@@ -17,7 +18,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <map>
+#include <mutex>
 #include <new>
+#include <set>
+#include <utility>
 
 namespace {
 
@@ -33,7 +38,13 @@ Range program, library, own;  // the executable, libstdc++ and this file
 std::atomic<bool> ready{false};
 std::atomic<long> calls{0};
 long wanted = 0;
+const char* log_name = nullptr;
 thread_local bool inside = false;
+
+/// By their ways: the numbers of the first and the last allocation.
+using Ways = std::map<std::uint64_t, std::pair<long, long>>;
+Ways* ways = nullptr;  // never freed: threads may outlive what is destroyed at the end
+std::mutex ways_mutex;
 
 int note_module(dl_phdr_info* info, std::size_t, void*) {
   Range range{~std::uintptr_t{0}, 0};
@@ -52,16 +63,21 @@ int note_module(dl_phdr_info* info, std::size_t, void*) {
 struct Setting {
   Setting() {
     if (const char* number = std::getenv("AFTERGLOW_FAULT_CALL")) wanted = std::atol(number);
+    log_name = std::getenv("AFTERGLOW_FAULT_LOG");
+    if (log_name) ways = new Ways;
     dl_iterate_phdr(note_module, nullptr);
     void* warm[1];
     backtrace(warm, 1);  // loads what it needs
   }
   ~Setting() {
     ready = false;
-    const char* name = std::getenv("AFTERGLOW_FAULT_LOG");
-    std::FILE* log = name ? std::fopen(name, "we") : nullptr;
+    std::FILE* log = log_name ? std::fopen(log_name, "we") : nullptr;
     if (!log) return;
-    std::fprintf(log, "%ld\n", calls.load());
+    const std::lock_guard lock(ways_mutex);
+    std::set<long> places;
+    for (const auto& [way, numbers] : *ways) places.insert({numbers.first, numbers.second});
+    places.insert(calls);
+    for (const long place : places) std::fprintf(log, "%ld\n", place);
     std::fclose(log);
   }
 } setting;
@@ -86,12 +102,37 @@ bool is_the_programs() {
   return true;
 }
 
+/// What of the program called what, down to main or the thread's first function. Depths of recursion are alike.
+std::uint64_t way_here() {
+  constexpr int kDepth = 96;
+  void* frames[kDepth];
+  const int count = backtrace(frames, kDepth);
+  std::uint64_t way = 14695981039346656037u;  // FNV-1a
+  const void* before = nullptr;
+  for (int i = 0; i < count; ++i) {
+    if (!program.holds(frames[i]) || frames[i] == before) continue;
+    way = (way ^ (reinterpret_cast<std::uintptr_t>(frames[i]) - program.begin)) * 1099511628211u;
+    before = frames[i];
+  }
+  return way;
+}
+
+void note_way(long number) {
+  const std::uint64_t way = way_here();
+  const std::lock_guard lock(ways_mutex);
+  ways->try_emplace(way, number, number).first->second.second = number;
+}
+
 bool strikes() {
   if (!ready || inside) return false;
   inside = true;
-  const bool strike = is_the_programs() && ++calls == wanted;
+  long number = 0;
+  if (is_the_programs()) {
+    number = ++calls;
+    if (ways) note_way(number);
+  }
   inside = false;
-  return strike;
+  return number != 0 && number == wanted;
 }
 
 void* take(std::size_t size, std::size_t alignment) {

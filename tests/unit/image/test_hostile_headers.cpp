@@ -263,6 +263,47 @@ TEST_F(HostileHeaders, HugeSidesInTheOtherFormats) {
   }
 }
 
+TEST_F(HostileHeaders, DpxUserDataThatTheFileDoesNotHold) {
+  // 4 GB of it, found by the fuzzer: the library would make room for them before it reads the first byte.
+  const std::string rest(2012, '\0');
+  EXPECT_EQ(refused("XPDS" + std::string(28, '\0') + std::string("\0\0\0\xf7", 4) + rest).message, "is truncated");
+  EXPECT_EQ(refused("SDPX" + std::string(28, '\0') + std::string("\xf7\0\0\0", 4) + rest).message, "is truncated");
+  EXPECT_EQ(refused("SDPX").message, "is truncated");
+}
+
+TEST_F(HostileHeaders, PicturesThatReadersDecodeWholeWhenTheyOpenThem) {
+  // Sizes that are allowed, of more memory than is: the readers of these formats take it before they tell the size.
+  const std::string vp8 = little(0x2a019d, 3) + little(16000, 2) + little(16000, 2);
+  const std::string heif = std::string(
+                               "\0\0\0\x14"
+                               "ftypavif\0\0\0\0avif",
+                               20) +
+                           std::string(
+                               "\0\0\0\x14"
+                               "ispe\0\0\0\0\0\0\x3e\x80\0\0\x3e\x80",
+                               20);
+  const std::map<std::string, std::string> files{
+      {"gif", "GIF89a" + little(16000, 2) + little(16000, 2) + std::string(40, '\0')},
+      {"webp, lossy", "RIFF" + little(60, 4) + "WEBPVP8 " + little(48, 4) + little(0x000250, 3) + vp8},
+      {"webp, lossless", "RIFF" + little(60, 4) + "WEBPVP8L" + little(48, 4) + "\x2f" + little(15999 | 15999 << 14, 4)},
+      {"webp, extended",
+       "RIFF" + little(60, 4) + "WEBPVP8X" + little(10, 4) + little(0, 4) + little(15999, 3) + little(15999, 3)},
+      {"avif", heif},
+  };
+  ReadOptions options;
+  for (const auto& [name, bytes] : files) {
+    SCOPED_TRACE(name);
+    options.max_bytes = 256u << 20;
+    const Error error = refused(bytes + std::string(64, '\0'), options);
+    EXPECT_THAT(error.message, HasSubstr("to decode, more than the 256 MiB allowed (--max-memory)"));
+    options.max_bytes = 6ull << 30;
+    options.max_side = 15999;
+    EXPECT_EQ(refused(bytes + std::string(64, '\0'), options).message,
+              "its picture is 16000×16000, larger than 15999 a side");
+    options.max_side = 16384;
+  }
+}
+
 TEST_F(HostileHeaders, OnlyKnownFormatsReachALibrary) {
   // Formats of old and odd programs, playlists that name other files, and configurations that look like file names.
   for (const std::string bytes :

@@ -1,0 +1,63 @@
+#include "image/claimed_size.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace afterglow {
+namespace {
+
+std::uint32_t little_endian(const unsigned char* p, int bytes) {
+  std::uint32_t value = 0;
+  for (int i = bytes; i > 0; --i) value = value << 8 | p[i - 1];
+  return value;
+}
+
+Size size_of(std::uint32_t width, std::uint32_t height) {
+  constexpr std::uint32_t kLargest = 0x7fffffff;
+  return {static_cast<int>(std::min(width, kLargest)), static_cast<int>(std::min(height, kLargest))};
+}
+
+/// RFC 9649: the first chunk is VP8X with the canvas, or the picture itself.
+Size webp_size(std::span<const unsigned char> head) {
+  const unsigned char* data = &head[20];
+  const std::string_view chunk(reinterpret_cast<const char*>(&head[12]), 4);
+  if (chunk == "VP8X") return size_of(little_endian(data + 4, 3) + 1, little_endian(data + 7, 3) + 1);
+  if (chunk == "VP8L") {
+    const std::uint32_t bits = little_endian(data + 1, 4);
+    return size_of((bits & 0x3fff) + 1, (bits >> 14 & 0x3fff) + 1);
+  }
+  return size_of(little_endian(data + 6, 2) & 0x3fff, little_endian(data + 8, 2) & 0x3fff);
+}
+
+/// ISO/IEC 23008-12: spatial extents of all items, wherever they are in the tree of boxes.
+std::optional<Size> heif_size(std::string_view head) {
+  std::optional<Size> largest;
+  for (auto at = head.find("ispe"); at != head.npos && at + 16 <= head.size(); at = head.find("ispe", at + 4)) {
+    const auto number = [&](std::size_t offset) {
+      std::uint32_t value = 0;
+      for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(head[at + offset + i]);
+      return value;
+    };
+    const Size size = size_of(number(8), number(12));
+    if (!largest || size.area() > largest->area()) largest = size;
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::optional<ClaimedSize> claimed_size(std::span<const unsigned char> head) {
+  const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
+  // GIF composes frames over a canvas; WebP decodes a frame and composes it.
+  if (text.starts_with("GIF8") && head.size() >= 10)
+    return ClaimedSize{size_of(little_endian(&head[6], 2), little_endian(&head[8], 2)), 4};
+  if (text.starts_with("RIFF") && head.size() >= 30 && text.substr(8, 4) == "WEBP")
+    return ClaimedSize{webp_size(head), 8};
+  constexpr std::array<std::string_view, 4> kStills{"ftypavif", "ftypheic", "ftypheix", "ftypmif1"};
+  if (text.size() >= 12 && std::ranges::find(kStills, text.substr(4, 8)) != kStills.end())
+    if (const auto size = heif_size(text)) return ClaimedSize{*size, 8};
+  return {};
+}
+
+}  // namespace afterglow
