@@ -6,14 +6,18 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 
 #include "core/exception.h"
@@ -47,6 +51,33 @@ int channel_order(const std::string& name) {
   const std::string last = dot == std::string::npos ? name : name.substr(dot + 1);
   const std::size_t index = last.size() == 1 ? kOrder.find(last[0]) : std::string_view::npos;
   return index == std::string_view::npos ? static_cast<int>(kOrder.size()) : static_cast<int>(index);
+}
+
+bool is_window(const Imath::Box2i& box, const Rect& window) {
+  return box.min.x == window.x && box.min.y == window.y && box.max.x - box.min.x + 1 == window.width &&
+         box.max.y - box.min.y + 1 == window.height;
+}
+
+/// Did OpenEXR read from the file what we did? Memory was counted, and is written, by what we read.
+bool same(const Imf::Header& header, const ExrPart& part) {
+  if (!is_window(header.dataWindow(), part.data_window) || !is_window(header.displayWindow(), part.display_window))
+    return false;
+  if (header.compression() != part.compression) return false;
+  if (header.hasType() && Imf::isTiled(header.type()) != part.tiled) return false;
+  if (part.tiled) {
+    const Imf::TileDescription& tiles = header.tileDescription();
+    if (static_cast<int>(tiles.xSize) != part.tile.width || static_cast<int>(tiles.ySize) != part.tile.height)
+      return false;
+  }
+  const Imf::ChannelList& channels = header.channels();
+  std::ptrdiff_t count = 0;
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel) ++count;
+  if (count != std::ssize(part.channels)) return false;
+  return std::ranges::all_of(part.channels, [&](const ExrChannel& channel) {
+    const Imf::Channel* found = channels.findChannel(channel.name);
+    return found && static_cast<int>(found->type) == static_cast<int>(channel.type) &&
+           found->xSampling == channel.x_sampling && found->ySampling == channel.y_sampling;
+  });
 }
 
 class ExrFile : public PictureFile {
@@ -116,7 +147,13 @@ class ExrFile : public PictureFile {
     use_exr_threads();
     try {
       file_ = std::make_unique<Imf::MultiPartInputFile>(path_.c_str());
-      if (file_->parts() != static_cast<int>(header_.size())) return failed("changed while it was read");
+      bool alike = file_->parts() == static_cast<int>(header_.size());
+      for (int i = 0; alike && i < file_->parts(); ++i)
+        alike = same(file_->header(i), header_[static_cast<std::size_t>(i)]);
+      if (!alike) {
+        file_.reset();
+        return failed("has a malformed header, or changed while it was read");
+      }
     } catch (const std::exception& error) {
       return failed("cannot be read: " + exception_text(error));
     }
@@ -205,6 +242,8 @@ class ExrFile : public PictureFile {
     if (wanted.empty()) return;
     Imf::RgbaInputFile input(path_.c_str(), *slots.chroma_layer);
     const Imath::Box2i window = input.dataWindow();
+    if (!is_window(window, header_[static_cast<std::size_t>(part)].data_window))
+      throw std::runtime_error("it changed while it was read");
     const int width = window.max.x - window.min.x + 1;
     std::vector<Imf::Rgba> row(static_cast<std::size_t>(width));
     for (int y = window.min.y; y <= window.max.y; ++y) {

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <set>
+#include <string_view>
 
 #include "core/saturated.h"
 
@@ -24,6 +26,22 @@ constexpr std::size_t kMaxParts = 4096, kMaxAttributes = 65536, kMaxChannels = 4
 constexpr std::int64_t kMaxCoordinate =
     1 << 29;  // half of OpenEXR's limit: differences of two, and sides, stay within an int
 constexpr std::uint64_t kMaxChannelList = 4u << 20;
+
+/// Bytes of values whose types have a size. OpenEXR reads so many of them, whatever the header claims.
+struct TypeSize {
+  std::string_view type;
+  std::int32_t bytes;
+};
+constexpr std::array kTypeSizes{
+    TypeSize{"box2i", 16},      TypeSize{"box2f", 16},    TypeSize{"chromaticities", 32},
+    TypeSize{"compression", 1}, TypeSize{"double", 8},    TypeSize{"deepImageState", 1},
+    TypeSize{"envmap", 1},      TypeSize{"float", 4},     TypeSize{"int", 4},
+    TypeSize{"keycode", 28},    TypeSize{"lineOrder", 1}, TypeSize{"m33f", 36},
+    TypeSize{"m33d", 72},       TypeSize{"m44f", 64},     TypeSize{"m44d", 128},
+    TypeSize{"rational", 8},    TypeSize{"tiledesc", 9},  TypeSize{"timecode", 8},
+    TypeSize{"v2i", 8},         TypeSize{"v2f", 8},       TypeSize{"v2d", 16},
+    TypeSize{"v3i", 12},        TypeSize{"v3f", 12},      TypeSize{"v3d", 24},
+};
 
 struct Malformed {
   std::string why;
@@ -86,6 +104,8 @@ std::vector<ExrChannel> channel_list(const std::vector<char>& value) {
     channel.y_sampling = numbers[3];
     channels.push_back(std::move(channel));
   }
+  // OpenEXR reads on until it finds the end of the list, be it behind the end of the attribute.
+  if (at + 1 != value.size()) throw Malformed{"the channel list is malformed"};
   if (channels.empty()) throw Malformed{"has no channels"};
   return channels;
 }
@@ -98,54 +118,91 @@ Rect window(const std::array<std::int32_t, 4>& box, const char* what) {
   return {box[0], box[1], static_cast<int>(width), static_cast<int>(height)};
 }
 
+/// Reads a value that nobody here needs, with the same steps as OpenEXR, which must end where the attribute does: else
+/// the two would see different headers from there on.
+void pass_over(Bytes& bytes, const std::string& name, std::string_view type, std::int32_t size) {
+  const auto require = [&](bool holds) {
+    if (!holds) throw Malformed{fmt::format("attribute '{}' is malformed", name)};
+  };
+  auto left = static_cast<std::uint64_t>(size);
+  if (type == "floatvector") {
+    require(left % sizeof(float) == 0);
+  } else if (type == "preview") {
+    require(left >= 8);
+    const auto sides = bytes.number<std::array<std::uint32_t, 2>>();
+    left -= 8;
+    require(saturated_product({sides[0], sides[1], 4}) == left);
+  } else if (type == "stringvector") {
+    while (left > 0) {
+      require(left >= 4);
+      const auto length = bytes.number<std::uint32_t>();
+      left -= 4;
+      require(length <= left);
+      bytes.skip(length);
+      left -= length;
+    }
+  } else if (type == "chlist") {
+    require(false);  // no second list
+  }
+  bytes.skip(left);
+}
+
 /// One part's attributes; nothing when the list is empty, which ends a multi-part header.
 std::optional<ExrPart> read_part(Bytes& bytes, std::uint32_t flags) {
   ExrPart part;
   part.tiled = (flags & kTiledFlag) != 0;
   part.deep = (flags & kDeepFlag) != 0;
-  bool has_channels = false, has_data = false, has_display = false;
-  for (std::size_t count = 0;; ++count) {
-    if (count > kMaxAttributes) throw Malformed{"the header has too many attributes"};
+  std::set<std::string> names;
+  while (true) {
+    if (names.size() > kMaxAttributes) throw Malformed{"the header has too many attributes"};
     const std::string name = bytes.text();
     if (name.empty()) {
-      if (count == 0) return std::nullopt;
+      if (names.empty()) return std::nullopt;
       break;
     }
+    if (!names.insert(name).second) throw Malformed{fmt::format("attribute '{}' is there twice", name)};
     const std::string type = bytes.text();
     const auto size = bytes.number<std::int32_t>();
     if (size < 0 || static_cast<std::uint64_t>(size) > bytes.left())
       throw Malformed{fmt::format("attribute '{}' claims more bytes than the file has", name)};
-    const auto expect = [&](const char* wanted, std::int32_t bytes_wanted) {
-      if (type != wanted || (bytes_wanted >= 0 && size != bytes_wanted))
-        throw Malformed{fmt::format("attribute '{}' is malformed", name)};
+    const auto* sized = std::ranges::find(kTypeSizes, type, &TypeSize::type);
+    const auto expect = [&](const char* wanted) {
+      if (type != wanted) throw Malformed{fmt::format("attribute '{}' is malformed", name)};
     };
+    if (sized != kTypeSizes.end() && size != sized->bytes)
+      throw Malformed{fmt::format("attribute '{}' is malformed", name)};
     if (name == "channels") {
-      expect("chlist", -1);
+      expect("chlist");
       if (static_cast<std::uint64_t>(size) > kMaxChannelList)
         throw Malformed{fmt::format("has more than {} channels", kMaxChannels)};
       std::vector<char> value(static_cast<std::size_t>(size));
       bytes.read(value.data(), value.size());
       part.channels = channel_list(value);
-      has_channels = true;
     } else if (name == "dataWindow" || name == "displayWindow") {
-      expect("box2i", 16);
+      expect("box2i");
       const bool data = name == "dataWindow";
       (data ? part.data_window : part.display_window) =
           window(bytes.number<std::array<std::int32_t, 4>>(), data ? "data" : "display");
-      (data ? has_data : has_display) = true;
     } else if (name == "compression") {
-      expect("compression", 1);
+      expect("compression");
       part.compression = bytes.number<unsigned char>();
     } else if (name == "tiles") {
-      expect("tiledesc", 9);
+      expect("tiledesc");
       const auto sides = bytes.number<std::array<std::uint32_t, 2>>();
       if (sides[0] < 1 || sides[1] < 1 || sides[0] > kMaxCoordinate || sides[1] > kMaxCoordinate)
         throw Malformed{"the tile size is out of range"};
       part.tile = {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
       bytes.skip(1);
-    } else if (name == "Orientation" && type == "int" && size == 4) {
+    } else if (name == "Orientation" && type == "int") {
       part.orientation = std::clamp(bytes.number<std::int32_t>(), 1, 8);
-    } else if ((name == "name" || name == "type") && type == "string") {
+    } else if (name == "chunkCount") {
+      // OpenEXR takes memory for the places of so many, where it does not know the type of the part.
+      expect("int");
+      const auto chunks = bytes.number<std::int32_t>();
+      if (chunks < 0 || static_cast<std::uint64_t>(chunks) > bytes.left())
+        throw Malformed{"the header claims more chunks than the file has"};
+    } else if (name == "name" || name == "type") {
+      expect("string");
       if (size > 4096) throw Malformed{fmt::format("attribute '{}' is malformed", name)};
       std::string value(static_cast<std::size_t>(size), '\0');
       bytes.read(value.data(), value.size());
@@ -156,10 +213,11 @@ std::optional<ExrPart> read_part(Bytes& bytes, std::uint32_t flags) {
         part.deep = value == "deepscanline" || value == "deeptile";
       }
     } else {
-      bytes.skip(static_cast<std::uint64_t>(size));
+      pass_over(bytes, name, type, size);
     }
   }
-  if (!has_channels || !has_data || !has_display) throw Malformed{"the header lacks its channels or windows"};
+  for (const char* needed : {"channels", "dataWindow", "displayWindow"})
+    if (!names.contains(needed)) throw Malformed{"the header lacks its channels or windows"};
   if (part.tiled && part.tile.width == 0) throw Malformed{"the header lacks its tile size"};
   return part;
 }

@@ -20,6 +20,12 @@ namespace {
 using testing::AnyOf;
 using testing::HasSubstr;
 
+std::string little(std::uint64_t value, int bytes) {
+  std::string out;
+  for (int i = 0; i < bytes; ++i, value >>= 8) out += static_cast<char>(value);
+  return out;
+}
+
 class HostileHeaders : public testing::Test {
  protected:
   Error refused(const std::string& bytes, const ReadOptions& options = {}) {
@@ -88,6 +94,44 @@ TEST_F(HostileHeaders, ExrWindowsTurnedInsideOut) {
   RawExr far;
   far.windows(-2147483647 - 1, 0, 2147483647, 0);
   EXPECT_THAT(refused(far.single(false)).message, HasSubstr("out of range"));
+}
+
+TEST_F(HostileHeaders, ExrHeadersThatReadInTwoWays) {
+  // OpenEXR does not look at the sizes of values whose types have one, and reads lists until they end. Who goes by the
+  // sizes sees another header behind such a value: other windows than those that memory was taken for.
+  struct Trick {
+    const char *name, *type;
+    std::string value;
+  };
+  const std::vector<Trick> tricks{{"a", "int", std::string(40, '\0')},
+                                  {"a", "v2f", std::string(4, '\0')},
+                                  {"a", "floatvector", std::string(5, '\0')},
+                                  {"a", "stringvector", little(1 << 30, 4) + "x"},
+                                  {"a", "stringvector", "xy"},
+                                  {"a", "preview", little(65536, 4) + little(16384, 4)},
+                                  {"a", "preview", "x"},
+                                  {"a", "chlist", std::string(1, '\0')},
+                                  {"type", "int", little(1, 4)},
+                                  {"chunkCount", "float", little(1, 4)}};
+  for (const Trick& trick : tricks) {
+    SCOPED_TRACE(std::string(trick.type) + " " + std::to_string(trick.value.size()));
+    RawExr exr;
+    exr.windows(0, 0, 7, 7).attribute(trick.name, trick.type, trick.value);
+    EXPECT_EQ(refused(exr.single(false)).message, std::string("attribute '") + trick.name + "' is malformed");
+  }
+  RawExr twice;
+  twice.windows(0, 0, 7, 7).attribute("dataWindow", "box2i", std::string(16, '\0'));
+  EXPECT_EQ(refused(twice.single(false)).message, "attribute 'dataWindow' is there twice");
+  RawExr chunks;
+  chunks.windows(0, 0, 7, 7).attribute("chunkCount", "int", little(0x7fffffff, 4));
+  EXPECT_EQ(refused(chunks.single(false)).message, "the header claims more chunks than the file has");
+  // A list of channels that goes on behind the end of its attribute.
+  RawExr open;
+  open.windows(0, 0, 7, 7).channels(3, ExrChannelType::half);
+  std::string bytes = open.single(false);
+  const std::size_t size_at = bytes.find(std::string("chlist\0", 7)) + 7;
+  --bytes[size_at];
+  EXPECT_EQ(refused(bytes).message, "the channel list is malformed");
 }
 
 /// Where the table of places begins: its first entry is the place right behind it.
@@ -198,12 +242,6 @@ TEST_F(HostileHeaders, ProgressiveJpegCountsItsCoefficients) {
 }
 
 // ---- what OpenImageIO reads
-
-std::string little(std::uint64_t value, int bytes) {
-  std::string out;
-  for (int i = 0; i < bytes; ++i, value >>= 8) out += static_cast<char>(value);
-  return out;
-}
 
 /// A TIFF of one directory: tag, type (3 short, 4 long), value.
 std::string tiff(const std::vector<std::array<std::uint32_t, 3>>& tags) {
