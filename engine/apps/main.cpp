@@ -2,9 +2,11 @@
 #include <exception>
 
 #include "apps/command_line.h"
+#include "apps/last_words.h"
 #include "core/result.h"
 
 int main(int argc, char** argv) {
+  afterglow::install_last_words();
   try {
     return afterglow::run_command_line(argc, argv);
   } catch (const std::exception& exception) {  // not even the message could be made

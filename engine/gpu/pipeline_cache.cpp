@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <vector>
@@ -18,6 +21,13 @@ namespace {
 constexpr std::size_t kHashDigits = 32;
 constexpr std::size_t kMaxCacheBytes = 64u << 20;
 
+/// VkPipelineCacheHeaderVersionOne as a file may hold it: any version, where Vulkan's enumeration knows one.
+struct StoredHeader {
+  std::uint32_t size, version, vendor, device;
+  std::array<std::uint8_t, VK_UUID_SIZE> uuid;
+};
+static_assert(sizeof(StoredHeader) == sizeof(VkPipelineCacheHeaderVersionOne));
+
 }  // namespace
 
 std::string pipeline_cache_file_content(const std::string& data) { return hash_text(data).hex() + data; }
@@ -26,14 +36,13 @@ std::string read_pipeline_cache(const std::string& file, const VkPhysicalDeviceP
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return {};
   auto content = read_file(file, kMaxCacheBytes);
-  if (!content || content->size() < kHashDigits + sizeof(VkPipelineCacheHeaderVersionOne)) return {};
+  if (!content || content->size() < kHashDigits + sizeof(StoredHeader)) return {};
   std::string data = content->substr(kHashDigits);
   if (hash_text(data).hex() != content->substr(0, kHashDigits)) return {};
-  VkPipelineCacheHeaderVersionOne header{};
+  StoredHeader header{};
   std::memcpy(&header, data.data(), sizeof header);
-  const bool ours = header.headerVersion == VK_PIPELINE_CACHE_HEADER_VERSION_ONE &&
-                    header.vendorID == device.vendorID && header.deviceID == device.deviceID &&
-                    std::memcmp(header.pipelineCacheUUID, device.pipelineCacheUUID, VK_UUID_SIZE) == 0;
+  const bool ours = header.version == VK_PIPELINE_CACHE_HEADER_VERSION_ONE && header.vendor == device.vendorID &&
+                    header.device == device.deviceID && std::ranges::equal(header.uuid, device.pipelineCacheUUID);
   return ours ? data : std::string{};
 }
 
@@ -58,7 +67,7 @@ void Device::save_pipeline_cache() const {
   std::size_t size = 0;
   if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS) return;
   // Caches only grow: the same size means that nothing was added. A bare header (lavapipe's) is not worth a file.
-  if (size == cached_bytes_ || size <= sizeof(VkPipelineCacheHeaderVersionOne)) return;
+  if (size == cached_bytes_ || size <= sizeof(StoredHeader)) return;
   std::string data(size, '\0');
   if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, data.data()) != VK_SUCCESS) return;
   data.resize(size);

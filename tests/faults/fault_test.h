@@ -30,12 +30,11 @@ inline constexpr const char* kLooksBack =
 
 class FaultTest : public CliTest {
  protected:
-  /// How many places a fault can strike during this command. The command must succeed, or end with `expected`.
-  long places(const std::vector<std::string>& arguments, const Fault& fault, int expected = kDone) const;
+  /// How many places a fault can strike during this command. The command must succeed.
+  long places(const std::vector<std::string>& arguments, const Fault& fault) const;
   /// Those of them that are worth a strike each, in their order, where the fault's library can tell: of allocations,
   /// the first and the last one by each way through the program's functions. The last of all in any case.
-  std::vector<long> distinct_places(const std::vector<std::string>& arguments, const Fault& fault,
-                                    int expected = kDone) const;
+  std::vector<long> distinct_places(const std::vector<std::string>& arguments, const Fault& fault) const;
   /// `most` of these places, spread evenly. The environment may say otherwise: AFTERGLOW_FAULTS=every or a number.
   static std::vector<long> some(const std::vector<long>& places, long most);
   static std::vector<long> some(long last, long most);  ///< of [1, last]
