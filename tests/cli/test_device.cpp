@@ -1,7 +1,11 @@
 // Devices: none, the wrong one, and validation-clean presets.
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "cli_test.h"
+#include "image/metrics.h"
 
 namespace afterglow::test {
 namespace {
@@ -61,6 +65,44 @@ TEST_F(Devices, TableAndJsonListTheSame) {
   for (const auto& device : list) {
     EXPECT_THAT(table.out, HasSubstr(device.at("name").get<std::string>()));
     EXPECT_TRUE(device.at("usable").is_boolean());
+  }
+}
+
+/// Processors as lavapipe can be told to see this one; other drivers do not listen, and make the same bytes.
+class Processors : public CliTest {
+ protected:
+  std::vector<float> run_on(const std::string& name, const char* look,
+                            const std::map<std::string, std::string>& processor) const {
+    RunOptions options;
+    options.environment = processor;
+    options.environment["MESA_SHADER_CACHE_DIR"] = text("cache-" + name);
+    const Outcome outcome = run(
+        {"run", preset(look).string(), neon().string(), "-o", name + ".exr", "--type", "float", "--size", "320x180"},
+        options);
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    auto in = OIIO::ImageInput::open(text(name + ".exr"));
+    if (!in) return {};
+    std::vector<float> pixels(static_cast<std::size_t>(in->spec().width) * in->spec().height * in->spec().nchannels);
+    EXPECT_TRUE(in->read_image(0, 0, 0, in->spec().nchannels, OIIO::TypeDesc::FLOAT, pixels.data()));
+    return pixels;
+  }
+};
+
+TEST_F(Processors, MakeTheSameBytesOrNearlyTheSameNumbers) {
+  for (const char* look : {"anamorphic_night.lua", "ldr_glow.lua"}) {
+    SCOPED_TRACE(look);
+    const auto best = run_on("best", look, {});
+    ASSERT_FALSE(best.empty());
+    const auto avx = run_on("avx", look, {{"GALLIUM_OVERRIDE_CPU_CAPS", "avx"}});
+    EXPECT_EQ(run_on("narrow", look, {{"LP_NATIVE_VECTOR_WIDTH", "128"}}), best);
+    const auto sse = run_on("sse", look, {{"GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1"}});
+    ASSERT_EQ(avx.size(), best.size());
+    ASSERT_EQ(sse.size(), best.size());
+    for (const auto& [other, what] : {std::pair(&avx, "AVX"), std::pair(&sse, "SSE 4.1")}) {
+      const ErrorMeasure error = measure_error(*other, best);
+      RecordProperty(std::string(look) + what, fmt::format("{:.2g}, worst {:.2g}", error.percentile, error.worst));
+      EXPECT_TRUE(within(error, 1e-5)) << what << ": " << error.percentile << ", worst " << error.worst;
+    }
   }
 }
 
