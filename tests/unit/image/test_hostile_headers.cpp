@@ -309,6 +309,19 @@ TEST_F(HostileHeaders, DpxUserDataThatTheFileDoesNotHold) {
   EXPECT_EQ(refused("SDPX").message, "is truncated");
 }
 
+TEST_F(HostileHeaders, SgiRowsThatTheFileDoesNotHold) {
+  make_file(folder_ / "whole.sgi", 9, 7, {"R", "G", "B"}, OIIO::TypeUInt8);
+  std::string bytes = file_bytes(folder_ / "whole.sgi");
+  bytes[2] = 1;  // rows are packed, by tables of 21 places and lengths
+  bytes.insert(512, std::string(21 * 8, '\0'));
+  EXPECT_THAT(refused(bytes.substr(0, 512 + 21 * 8 - 1)).message, HasSubstr("is truncated"));
+  std::string length = bytes, place = bytes;
+  length[512 + 21 * 8 - 4] = '\x7f';  // of the last row
+  EXPECT_EQ(refused(length).message, "is truncated");
+  place[512] = '\xff';
+  EXPECT_EQ(refused(place).message, "is truncated");
+}
+
 TEST_F(HostileHeaders, PicturesThatReadersDecodeWholeWhenTheyOpenThem) {
   // Sizes that are allowed, of more memory than is: the readers of these formats take it before they tell the size.
   const std::string vp8 = little(0x2a019d, 3) + little(16000, 2) + little(16000, 2);
