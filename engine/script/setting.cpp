@@ -57,6 +57,10 @@ bool in_range(const SettingSchema& schema, double value) {
   return (!schema.min || value >= *schema.min) && (!schema.max || value <= *schema.max);
 }
 
+// Shaders get 32-bit floats.
+constexpr const char* kTooLarge = "larger than a 32-bit float holds";
+bool fits_float(double value) { return std::isfinite(static_cast<float>(value)); }
+
 // sRGB-encoded 0…1 to scene-linear (IEC 61966-2-1).
 double srgb_to_linear(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
 
@@ -134,6 +138,7 @@ Result<SettingValue> check_setting(const std::string& full_name, const SettingSc
       if (integer && given.number != std::floor(given.number)) return fail("not an integer");
       if (!in_range(schema, given.number) || (integer && std::abs(given.number) > kMaxInteger))
         return fail("out of range");
+      if (!fits_float(given.number)) return fail(kTooLarge);
       value.number[0] = given.number + 0.0;  // −0 becomes 0
       return value;
     }
@@ -167,6 +172,7 @@ Result<SettingValue> check_setting(const std::string& full_name, const SettingSc
         const double c = given.list[static_cast<std::size_t>(i)];
         if (!std::isfinite(c)) return fail("not finite");
         if (!in_range(schema, c) || (color && c < 0)) return fail("out of range");
+        if (!fits_float(c)) return fail(kTooLarge);
         value.number[static_cast<std::size_t>(i)] = c + 0.0;
       }
       return value;

@@ -13,8 +13,8 @@ namespace afterglow::script {
 /// What a setting allows, for messages and tables: "0…1", "integer ≥ 1", "additive, scattering", "true, false".
 std::string allowed_text(const SettingSchema& schema);
 
-/// Errors (script, without file and line): wrong type, out of range, not finite, unknown choice (with the nearest).
-/// `full_name` is what the message calls it: "glow.knee".
+/// Errors (script, without file and line): wrong type, out of range, not finite (or not in a 32-bit float), unknown
+/// choice (with the nearest). `full_name` is what the message calls it: "glow.knee".
 Result<SettingValue> check_setting(const std::string& full_name, const SettingSchema& schema, const Value& value);
 
 /// Has the file one of the extensions that the setting allows?

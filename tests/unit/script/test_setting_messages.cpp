@@ -103,6 +103,12 @@ TEST_F(SettingMessages, NotFinite) {
   EXPECT_EQ(
       error("fx.glow { tint = { 1, 1/0, 1 } }"),
       "preset.lua:3: error: glow.tint = {1, inf, 1} is not finite; allowed: {r, g, b} with numbers ≥ 0, \"#rrggbb\"");
+  EXPECT_EQ(error("fx.glow { gain = 9e57 }"),
+            "preset.lua:3: error: glow.gain = 9e+57 is larger than a 32-bit float holds; allowed: ≥ 0");
+  EXPECT_EQ(
+      error("fx.glow { tint = { 1, 1e39, 1 } }"),
+      "preset.lua:3: error: glow.tint = {1, 1e+39, 1} is larger than a 32-bit float holds; allowed: {r, g, b} with "
+      "numbers ≥ 0, \"#rrggbb\"");
 }
 
 TEST_F(SettingMessages, EntryKeys) {
