@@ -17,14 +17,27 @@ void say(const char* text) {
   if (write(STDERR_FILENO, text, std::strlen(text)) < 0) return;
 }
 
+thread_local bool t_no_memory = false;
+
+void on_no_memory() {
+  t_no_memory = true;
+  throw std::bad_alloc();
+}
+
+[[noreturn]] void end_without_memory() {
+  say("error: out of memory\n");
+  std::_Exit(static_cast<int>(ErrorKind::io));
+}
+
 /// Takes no memory: there may be none.
 [[noreturn]] void on_terminate() {
   try {
     if (const auto exception = std::current_exception()) std::rethrow_exception(exception);
+    // Functions that are compiled not to throw end the process before an exception counts as caught.
+    if (t_no_memory) end_without_memory();
     say("error: internal error\n");
   } catch (const std::bad_alloc&) {
-    say("error: out of memory\n");
-    std::_Exit(static_cast<int>(ErrorKind::io));
+    end_without_memory();
   } catch (const std::exception& exception) {
     say("error: internal error: ");
     say(exception.what());
@@ -37,6 +50,9 @@ void say(const char* text) {
 
 }  // namespace
 
-void install_last_words() { std::set_terminate(on_terminate); }
+void install_last_words() {
+  std::set_new_handler(on_no_memory);
+  std::set_terminate(on_terminate);
+}
 
 }  // namespace afterglow

@@ -144,6 +144,7 @@ void* take(std::size_t size, std::size_t alignment) {
 
 void* take_or_throw(std::size_t size, std::size_t alignment) {
   if (void* memory = take(size, alignment)) return memory;
+  if (const auto handler = std::get_new_handler()) handler();
   throw std::bad_alloc();
 }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <exception>
 #include <new>
 #include <stdexcept>
 #include <thread>
@@ -9,28 +10,37 @@
 namespace afterglow {
 namespace {
 
-template <class Exception>
-void throw_where_nothing_may(const Exception& exception) noexcept {
-  throw exception;  // NOLINT(bugprone-exception-escape): what is tested
+void throw_where_nothing_may(const std::exception_ptr& exception) noexcept {
+  std::rethrow_exception(exception);  // NOLINT(bugprone-exception-escape): what is tested
 }
 
 TEST(LastWords, AreAnErrorAndAnExitCodeOfTheHouse) {
   EXPECT_EXIT(
       {
         install_last_words();
-        throw_where_nothing_may(std::bad_alloc());
+        throw_where_nothing_may(std::make_exception_ptr(std::bad_alloc()));
       },
       testing::ExitedWithCode(4), "^error: out of memory\n$");
   EXPECT_EXIT(
       {
         install_last_words();
-        throw_where_nothing_may(std::runtime_error("why"));
+        try {
+          (*std::get_new_handler())();
+        } catch (const std::bad_alloc&) {
+        }
+        std::terminate();  // as libstdc++ does without catching
+      },
+      testing::ExitedWithCode(4), "^error: out of memory\n$");
+  EXPECT_EXIT(
+      {
+        install_last_words();
+        throw_where_nothing_may(std::make_exception_ptr(std::runtime_error("why")));
       },
       testing::ExitedWithCode(1), "^error: internal error: why\n$");
   EXPECT_EXIT(
       {
         install_last_words();
-        throw_where_nothing_may(1);
+        throw_where_nothing_may(std::make_exception_ptr(1));
       },
       testing::ExitedWithCode(1), "^error: internal error\n$");
   EXPECT_EXIT(
