@@ -3,7 +3,7 @@
 #
 #   run.sh FOLDER all|HARNESS… [SECONDS]   fuzz each for so long (60); FOLDER is the build folder, where the grown
 #                                          corpora, findings and the ledger of all runs lie
-#   run.sh FOLDER merge [HARNESS…]         what the grown corpora reach, with the fewest inputs, into tests/fuzz/corpus
+#   run.sh FOLDER merge [HARNESS…]         adds the few inputs to tests/fuzz/corpus that reach all edges of the grown corpora
 #   run.sh FOLDER report                   minutes, executions and coverage of each harness over all runs
 #
 # Exit code 1 when something was found.
@@ -61,13 +61,16 @@ fuzz_one() {
 }
 
 merge_one() {
-  local name=$1 small
-  small=$(mktemp -d "$work/merge.XXXXXX")
-  "$work/tests/fuzz/fuzz_$name" -merge=1 -timeout=60 -rss_limit_mb=2048 -close_fd_mask=1 $(limits "$name") "$small" "$here/corpus/$name" "$work/fuzz-corpus/$name" \
-    >"$work/fuzz-merge.log" 2>&1
-  cp -n "$small"/* "$here/corpus/$name/"
-  printf '%s: %s inputs\n' "$name" "$(find "$small" -type f | wc -l)"
-  rm -rf "$small"
+  local name=$1 both before
+  both=$(mktemp -d "$work/merge.XXXXXX")
+  cp "$here/corpus/$name"/* "$both"
+  before=$(find "$both" -type f | wc -l)
+  # shellcheck disable=SC2046
+  "$work/tests/fuzz/fuzz_$name" -set_cover_merge=1 -use_counters=0 -timeout=60 -rss_limit_mb=2048 -close_fd_mask=1 $(limits "$name") \
+    "$both" "$work/fuzz-corpus/$name" >"$work/fuzz-merge.log" 2>&1
+  cp -n "$both"/* "$here/corpus/$name/"
+  printf '%s: %s inputs, %s of them new\n' "$name" "$(find "$both" -type f | wc -l)" "$(($(find "$both" -type f | wc -l) - before))"
+  rm -rf "$both"
 }
 
 report() {
