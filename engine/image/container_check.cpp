@@ -86,10 +86,9 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
     } else if (type == "cHRM" && length == 32) {
       const auto xy = [&](int i) { return std::array<double, 2>{number(2 * i) / 1e5, number(2 * i + 1) / 1e5}; };
       facts.primaries = Chromaticities{xy(1), xy(2), xy(3), xy(0)};
-    } else if (type == "IEND") {
-      return facts;
     }
     AFTERGLOW_CHECK(check_sum(file, in, at, length));
+    if (type == "IEND") return facts;
     at += 12 + length;
   }
 }

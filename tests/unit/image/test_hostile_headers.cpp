@@ -195,6 +195,15 @@ TEST_F(HostileHeaders, InterlacedPngCountsItsWholePicture) {
   EXPECT_THAT(refused(png, options).message, HasSubstr("--max-memory"));
 }
 
+TEST_F(HostileHeaders, PngChunksAreHeldToTheirChecksumsToTheLast) {
+  const std::string whole = RawPng(1, 1, 8, 0).pixels({"x"}).finish();
+  for (const char* type : {"IHDR", "IDAT", "IEND"}) {
+    std::string bytes = whole;
+    bytes[bytes.find(type) + 4] ^= 1;  // data of the chunk, or its checksum
+    EXPECT_THAT(refused(bytes).message, HasSubstr("a checksum is wrong")) << type;
+  }
+}
+
 TEST_F(HostileHeaders, PngChunksThatGrow) {
   // A text and a profile of 16 MiB of zeros each, and rows that go on after the last one.
   const std::string bomb = deflated(std::string(16u << 20, '\0'));
