@@ -1,16 +1,30 @@
 #include "fault_test.h"
 
+#include <link.h>
+
 #include <cstdlib>
+#include <cstring>
 #include <numeric>
 #include <sstream>
 
 namespace afterglow::test {
 namespace {
 
-std::string preload(const char* library) {
-  // Under AddressSanitizer its own library would have to come first.
-  const char* before = std::getenv("LD_PRELOAD");
-  return before && *before ? std::string(before) + ":" + library : library;
+/// The runtime of the sanitizer that tests and program are built with, if any: it must be the first to be loaded.
+std::string sanitizer_runtime() {
+  std::string found;
+  const auto look = [](dl_phdr_info* info, std::size_t, void* into) {
+    for (const char* name : {"libasan.so", "libtsan.so"})
+      if (std::strstr(info->dlpi_name, name)) *static_cast<std::string*>(into) = info->dlpi_name;
+    return 0;
+  };
+  dl_iterate_phdr(look, &found);
+  return found;
+}
+
+std::string preload(const std::string& library) {
+  const std::string first = sanitizer_runtime();
+  return first.empty() ? library : first + ":" + library;
 }
 
 }  // namespace
