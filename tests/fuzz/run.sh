@@ -51,9 +51,9 @@ fuzz_one() {
     "$grown" "$here/corpus/$name" >"$log" 2>&1; } 2>&1) || status=$?
   local runs cov features
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
-  [[ -n $runs ]] || runs=$(grep -oE '^#[0-9]+' "$log" | tail -n 1 | tr -d '#')
-  cov=$(grep -oE 'cov: [0-9]+' "$log" | tail -n 1 | cut -d' ' -f2)
-  features=$(grep -oE 'ft: [0-9]+' "$log" | tail -n 1 | cut -d' ' -f2)
+  [[ -n $runs ]] || runs=$(grep -aoE '^#[0-9]+' "$log" | tail -n 1 | tr -d '#')
+  cov=$(grep -aoE 'cov: [0-9]+' "$log" | tail -n 1 | cut -d' ' -f2)
+  features=$(grep -aoE 'ft: [0-9]+' "$log" | tail -n 1 | cut -d' ' -f2)
   printf '%s\t%s\t%s\t%s\t%s\t%s\t%s\n' "$name" "$(($(date +%s) - started))" "$(awk '{print $1 + $2}' <<<"$cpu")" "${runs:-0}" "${cov:-0}" "${features:-0}" \
     "$status" >>"$ledger"
   printf '%s: %s executions, coverage %s%s\n' "$name" "${runs:-0}" "${cov:-0}" "$([[ $status -eq 0 ]] || echo ", FINDING: see $log")"
