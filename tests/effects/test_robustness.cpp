@@ -26,7 +26,7 @@ Scene stress_scene(Size size) {
 
 const char* const kExtremes[] = {
     "fx.bloom { threshold = 0, knee = 0, intensity = 1e12 }",
-    "fx.bloom { threshold = 1e300, knee = 1, intensity = 1e300, bicubic_upsampling = false }",
+    "fx.bloom { threshold = 3.4e38, knee = 1, intensity = 3.4e38, bicubic_upsampling = false }",
     "fx.bloom { mode = \"scattering\", threshold = 0, knee = 1, intensity = 1, scatter = 0.95, fade_fireflies = true }",
     "fx.bloom { mode = \"scattering\", threshold = 100, knee = 1, downscale_limit = 1, scatter = 0.05, fade_fireflies "
     "= true }",
@@ -40,12 +40,12 @@ const char* const kExtremes[] = {
     "fx.color_adjustments { post_exposure = -300, contrast = 100 }",
     "fx.color_adjustments { post_exposure = 100, contrast = 100, color_filter = { 1e30, 1e-30, 0 }, hue_shift = 180, "
     "saturation = 100 }",
-    "fx.color_adjustments { contrast = -100, color_filter = { 1e300, 1e-300, 1 }, hue_shift = -180, saturation = -100 "
+    "fx.color_adjustments { contrast = -100, color_filter = { 3.4e38, 1e-300, 1 }, hue_shift = -180, saturation = -100 "
     "}",
     "fx.color_adjustments { contrast = -99.9, hue_shift = 0.001 }",
     "fx.outline {}",
-    "fx.outline { depth_scale = 1e300, normal_scale = -1e300, normal_factor = 0, divide_factor = 1e-6, contrast = "
-    "1e300, width = 1e300 }",
+    "fx.outline { depth_scale = 3.4e38, normal_scale = -3.4e38, normal_factor = 0, divide_factor = 1e-6, contrast = "
+    "3.4e38, width = 3.4e38 }",
     "fx.outline { difference = \"derivative\", combine = \"max\", contrast = 0, color = { 1e30, 1e30, 1e30 }, blend = "
     "\"add\" }",
     "fx.outline { source = \"depth\", depth_space = \"device\", near = 1e-6, far = 1e30, fade_distance = 1e-6 }",
@@ -57,11 +57,12 @@ const char* const kExtremes[] = {
     "-200 }",
     "fx.split_toning { shadows = { 0, 1e30, 0.5 }, highlights = { 1e30, 0, 0 }, balance = -100 }",
     "fx.split_toning { shadows = { 0, 0, 0 }, highlights = { 0, 0, 0 }, balance = 100 }",
-    "fx.shadows_midtones_highlights { shadows = { 1e300, 0, 1 }, midtones_offset = 1, highlights_offset = -1, "
+    "fx.shadows_midtones_highlights { shadows = { 3.4e38, 0, 1 }, midtones_offset = 1, highlights_offset = -1, "
     "shadows_start "
     "= 100, shadows_end = 0, highlights_start = 0, highlights_end = 0 }",
-    "fx.shadows_midtones_highlights { highlights = { 1e300, 1e300, 1e300 } }",
-    "fx.lift_gamma_gain { lift = { 1e300, 0, 0 }, gamma = { 0, 1e300, 0 }, gain = { 0, 0, 1e300 }, lift_offset = 1 }",
+    "fx.shadows_midtones_highlights { highlights = { 3.4e38, 3.4e38, 3.4e38 } }",
+    "fx.lift_gamma_gain { lift = { 3.4e38, 0, 0 }, gamma = { 0, 3.4e38, 0 }, gain = { 0, 0, 3.4e38 }, lift_offset = 1 "
+    "}",
     "fx.lift_gamma_gain { lift_offset = -1, gamma_offset = -1, gain_offset = -1 }",
     "fx.lift_gamma_gain { gamma_offset = 1, gain_offset = 1 }",
     "fx.vignette { intensity = 1, smoothness = 0.01, color = { 1e30, 0, 1e-30 }, center = { 0, 1 }, rounded = true }",
