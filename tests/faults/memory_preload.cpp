@@ -158,6 +158,7 @@ static int main_from_here(int argc, char** argv, char** environment) {
   ready = true;
   return real_main(argc, argv, environment);
 }
+// NOLINTNEXTLINE(bugprone-reserved-identifier): the C library calls main by way of it
 extern "C" EXPORT int __libc_start_main(Main main, int argc, char** argv, void (*init)(), void (*fini)(),
                                         void (*rtld_fini)(), void* stack_end) {
   real_main = main;
