@@ -105,7 +105,7 @@ void sanitize_linear(float* rgba, std::size_t pixels, SanitizeCounts& counts) {
         block_nan += v != v;
         block_negative += v < 0;
         block_large += v > kLargestColor;
-        const float positive = v > 0 ? v : 0.0f;  // NaN fails the test
+        const float positive = v >= kSmallestColor ? v : 0.0f;  // NaN fails the test
         pixel[c] = positive < kLargestColor ? positive : kLargestColor;
       }
       const bool finite = std::abs(pixel[3]) <= kLargestColor;  // as light: filters sum alpha too, and must not overflow

@@ -46,7 +46,8 @@ double normal_edge(const DoubleImage& normal, const Samples& at, const OutlineSe
   return glm::length(n - normal_value(normal, at.right, s)) + glm::length(n - normal_value(normal, at.below, s));
 }
 
-/// Whole pixels to the neighbours of (x, y): the width, faded with distance, rounded.
+/// Whole pixels to the neighbours of (x, y): the width (more than the largest picture counts as that), faded with
+/// distance, rounded.
 int reach(const DoubleImage* depth, int x, int y, const OutlineSettings& s) {
   double fade = 1;
   if (depth) {
@@ -54,7 +55,7 @@ int reach(const DoubleImage* depth, int x, int y, const OutlineSettings& s) {
     const double z = s.device_depth_input ? linear_eye_depth(d, s) : d;
     fade = saturate(1 - z / s.fade_distance);
   }
-  return static_cast<int>(std::floor(fade * s.width + 0.5));
+  return static_cast<int>(std::floor(fade * std::min(s.width, 16384.0) + 0.5));
 }
 
 }  // namespace

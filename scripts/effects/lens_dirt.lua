@@ -17,7 +17,7 @@ return fx.effect {
     if s.intensity <= 0 then return false, "intensity is 0" end
     return s.density > 0, "density is 0"
   end,
-  holds = { "black", "monotone", continuous = function(s) return 1 + s.intensity end, error = { fp32 = 3e-3, fp16 = 1e-2 } },
+  holds = { "black", "monotone", continuous = function(s) return 1 + s.intensity end, error = { fp32 = 6e-3, fp16 = 2e-2, up_to = 1e4 } },
   build = function(g, s, source)
     local image = g:filter { source = source, size = { math.max(source.width // 2, 1), math.max(source.height // 2, 1) },
                              filter = fx.filters.bilinear(), name = "half" }

@@ -30,6 +30,17 @@ local function brightest(s)
   return most
 end
 
+-- A power multiplies the relative error of what it is given.
+local function steepest(s)
+  local _, power = values(s)
+  return math.max(power[1], power[2], power[3])
+end
+
+local function least_gain(s)
+  local _, _, gain = values(s)
+  return math.min(gain[1], gain[2], gain[3])
+end
+
 return fx.effect {
   name = "lift_gamma_gain",
   doc = "The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.",
@@ -43,7 +54,9 @@ return fx.effect {
     local lift, power, gain = values(s)
     return not (all(lift, 0) and all(power, 1) and all(gain, 1)), "all settings are neutral"
   end,
-  holds = { "constant", "mirror", "turn_180", "turn_90", shift = 1, "monotone", error = { when = function(s) return brightest(s) <= 1e5 end } },
+  holds = { "constant", "mirror", "turn_180", "turn_90", shift = 1,
+    monotone = { when = function(s) return least_gain(s) >= 0 end },
+    error = { fp32 = function(s) return 1e-5 * math.max(1, steepest(s) / 100) end, when = function(s) return brightest(s) <= 1e5 end } },
   build = function(g, s, source)
     local lift, power, gain = values(s)
     return g:pass { shader = "lift_gamma_gain/grade", source = source, lift = lift, power = power, gain = gain }

@@ -20,7 +20,9 @@ return fx.effect {
   needs = { "motion" },
   optional = { "depth" },
   active = function(s) return s.shutter_angle > 0, "shutter_angle is 0" end,
-  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = { fp32 = 1e-3, fp16 = false, up_to = 50 } },
+  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1,
+    error = { fp32 = 1e-3, fp16 = false, up_to = 50, -- motion that is scaled up a lot turns comparisons of tiles
+      when = function(s) return math.max(math.abs(s.motion_scale[1]), math.abs(s.motion_scale[2])) <= 1000 end } },
   build = function(g, s, source)
     local depth = g:input("depth")
     local shutter = 0.5 * s.shutter_angle / 360

@@ -1,6 +1,9 @@
 -- Tone mapping: one curve per look, chosen by name. Light above 60 counts as 60, as in the sources of all three curves.
 local fx = require "afterglow"
 
+-- The published ACES transform dips below black where greys are below 1e-4, and sums channels of both signs.
+local function by_curve(aces, other) return function(s) return s.mode == "aces" and aces or other end end
+
 return fx.effect {
   name = "tone_mapping",
   doc = "Brings scene-linear light into display range.",
@@ -11,8 +14,10 @@ return fx.effect {
   },
   active = function(s) return s.mode ~= "none", "mode is none" end,
   holds = {
-    "black", "constant", "mirror", "turn_180", "turn_90", "monotone",
-    shift = 1, bounded = { from = 0, to = 1.21, when = function(s) return s.mode ~= "none" end }, continuous = 1.1, error = 1e-5,
+    "black", "constant", "mirror", "turn_180", "turn_90", shift = 1,
+    monotone = { within = by_curve(1e-2, 1e-5) },
+    bounded = { from = by_curve(-1e-4, 0), to = 1.21, when = function(s) return s.mode ~= "none" end },
+    continuous = 1.1, error = { fp32 = by_curve(3e-5, 1e-5) },
   },
   build = function(g, s, source) return g:pass { shader = "tone_mapping/" .. s.mode, source = source, name = s.mode } end,
 }
