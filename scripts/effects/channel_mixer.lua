@@ -13,6 +13,13 @@ local function rows(s)
   }
 end
 
+local function subtracts(s)
+  for _, row in ipairs(rows(s)) do
+    if math.min(row[1], row[2], row[3]) < 0 then return true end
+  end
+  return false
+end
+
 return fx.effect {
   name = "channel_mixer",
   doc = "Mixes red, green and blue into new channels; what would be negative is black.",
@@ -35,15 +42,9 @@ return fx.effect {
   holds = {
     "black", "constant", "mirror", "turn_180", "turn_90", shift = 1,
     continuous = 6,
-    linear = { when = function(s)
-      for _, row in ipairs(rows(s)) do
-        for _, percent in ipairs(row) do
-          if percent < 0 then return false end
-        end
-      end
-      return true
-    end },
-    error = 1e-5,
+    linear = { when = function(s) return not subtracts(s) end },
+    -- What is left of a difference has the error of its terms.
+    error = { fp32 = function(s) return subtracts(s) and 2e-3 or 1e-5 end, up_to = function(s) return subtracts(s) and 50 or 1e6 end },
   },
   build = function(g, s, source)
     local m = rows(s)

@@ -17,7 +17,7 @@ return fx.effect {
     if s.intensity <= 0 then return false, "intensity is 0" end
     return s.density > 0, "density is 0"
   end,
-  holds = { "black", "monotone", continuous = function(s) return 1 + s.intensity end, error = { fp32 = 6e-3, fp16 = 2e-2, up_to = 1e4 } },
+  holds = { "black", "monotone", continuous = function(s) return 1 + s.intensity end, error = { fp32 = 2e-4, fp16 = 5e-3 } },
   build = function(g, s, source)
     local image = g:filter { source = source, size = { math.max(source.width // 2, 1), math.max(source.height // 2, 1) },
                              filter = fx.filters.bilinear(), name = "half" }
@@ -28,7 +28,9 @@ return fx.effect {
       level = level + 1
     end
     local light = g:filter { source = image, size = source, filter = fx.filters.bspline(), name = "light" }
-    local dirt = g:pass { shader = "lens_dirt/spots", size = source, cell = math.max(s.size * source.height, 2), density = s.density,
+    local cell = math.max(s.size * source.height, 2)
+    local coarse = math.floor(cell * 64) / 64
+    local dirt = g:pass { shader = "lens_dirt/spots", size = source, cell = { coarse, cell - coarse }, density = s.density,
                           seed = s.seed, name = "spots" }
     return g:pass { shader = "lens_dirt/add", source = light, high = source, dirt = dirt, intensity = s.intensity, name = "final" }
   end,

@@ -20,9 +20,8 @@ return fx.effect {
   needs = { "motion" },
   optional = { "depth" },
   active = function(s) return s.shutter_angle > 0, "shutter_angle is 0" end,
-  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1,
-    error = { fp32 = 1e-3, fp16 = false, up_to = 50, -- motion that is scaled up a lot turns comparisons of tiles
-      when = function(s) return math.max(math.abs(s.motion_scale[1]), math.abs(s.motion_scale[2])) <= 1000 end } },
+  -- No bound of the error: reads are of whole pixels, and where one lies half way between two, rounding decides.
+  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1 },
   build = function(g, s, source)
     local depth = g:input("depth")
     local shutter = 0.5 * s.shutter_angle / 360

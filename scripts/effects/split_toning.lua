@@ -27,7 +27,7 @@ return fx.effect {
     balance = fx.float { min = -100, max = 100, default = 0, unit = "%", doc = "Above 0 more of the picture counts as highlights, below 0 as shadows." },
   },
   active = function(s) return not (is_grey(encoded(s.shadows)) and is_grey(encoded(s.highlights))), "both tints are grey" end,
-  holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1, error = 1e-5 },
+  holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1, error = { fp32 = 3e-5 } },
   build = function(g, s, source)
     return g:pass { shader = "split_toning/tint", source = source,
                     shadows = encoded(s.shadows), highlights = encoded(s.highlights), balance = s.balance / 100 }
