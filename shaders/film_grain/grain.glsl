@@ -6,7 +6,7 @@ layout(constant_id = 0) const bool fine = true;  // one grain a pixel
 
 uniform float strength;
 uniform float response;
-uniform float size_of_grain;  // pixels, ≥ 1
+uniform vec2 size_of_grain;  // pixels, ≥ 1: in 64ths, and the rest
 uniform float colored;
 uniform int frame, seed;
 
@@ -14,9 +14,11 @@ vec3 grain(ivec2 cell) { return normal_of(pcg3d(uvec3(cell, frame) + uvec3(0u, u
 
 // Between cells it is interpolated; divided by the root of the sum of squared weights the deviation stays 1.
 vec3 coarse_grain(ivec2 pixel) {
-  vec2 p = (vec2(pixel) + 0.5) / size_of_grain;
-  ivec2 cell = ivec2(floor(p));
-  vec2 f = p - floor(p), g = 1.0 - f;
+  // Cells are counted off in pixels: their number times the first part is exact, far from the corner too.
+  vec2 centre = vec2(pixel) + 0.5;
+  float whole = size_of_grain.x + size_of_grain.y;
+  ivec2 cell = ivec2(floor(centre / whole));
+  vec2 f = (centre - vec2(cell) * size_of_grain.x - vec2(cell) * size_of_grain.y) / whole, g = 1.0 - f;
   vec3 n = (grain(cell) * g.x + grain(cell + ivec2(1, 0)) * f.x) * g.y + (grain(cell + ivec2(0, 1)) * g.x + grain(cell + 1) * f.x) * f.y;
   return n * inversesqrt((f.x * f.x + g.x * g.x) * (f.y * f.y + g.y * g.y));
 }
