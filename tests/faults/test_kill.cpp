@@ -78,7 +78,9 @@ TEST_F(Processes, KilledWhileCachesAreMadeTheNextRunIsWell) {
     const int exit_code = run_with(command, fault, place).exit_code;
     killed += exit_code == 128 + 9 ? 1 : 0;
     // Caches are written by several threads: there may be a call less than when they were counted.
-    if (place < last - 2) EXPECT_EQ(exit_code, 128 + 9);
+    if (place < last - 2) {
+      EXPECT_EQ(exit_code, 128 + 9);
+    }
     remove_outputs();
     const Outcome again = run_with(command, {}, 0);
     EXPECT_EQ(again.exit_code, kDone) << again.err;
