@@ -14,11 +14,9 @@ vec3 grain(ivec2 cell) { return normal_of(pcg3d(uvec3(cell, frame) + uvec3(0u, u
 
 // Between cells it is interpolated; divided by the root of the sum of squared weights the deviation stays 1.
 vec3 coarse_grain(ivec2 pixel) {
-  // Cells are counted off in pixels: their number times the first part is exact, far from the corner too.
   vec2 centre = vec2(pixel) + 0.5;
-  float whole = size_of_grain.x + size_of_grain.y;
-  ivec2 cell = ivec2(floor(centre / whole));
-  vec2 f = (centre - vec2(cell) * size_of_grain.x - vec2(cell) * size_of_grain.y) / whole, g = 1.0 - f;
+  ivec2 cell = ivec2(floor(centre / (size_of_grain.x + size_of_grain.y)));
+  vec2 f = place_in_cell(centre, cell, size_of_grain), g = 1.0 - f;
   vec3 n = (grain(cell) * g.x + grain(cell + ivec2(1, 0)) * f.x) * g.y + (grain(cell + ivec2(0, 1)) * g.x + grain(cell + 1) * f.x) * f.y;
   return n * inversesqrt((f.x * f.x + g.x * g.x) * (f.y * f.y + g.y * g.y));
 }

@@ -5,20 +5,16 @@ uniform vec2 cell;  // side of the larger cells, pixels: in 64ths, and the rest
 uniform float density;
 uniform int seed;
 
-// Cells are counted off in pixels: their number times the first part of the side is exact, so that the place within a cell has as many
-// digits far from the corner as next to it.
 float layer(vec2 centre, vec2 side, uint number) {
-  float whole = side.x + side.y;
-  ivec2 home = ivec2(floor(centre / whole));
+  ivec2 home = ivec2(floor(centre / (side.x + side.y)));
   float sum = 0.0;
   for (int i = 0; i < 9; ++i) {
     ivec2 at = home + ivec2(i % 3, i / 3) - 1;
     uvec3 words = pcg3d(uvec3(at, uint(seed) * 2u + number));
     vec3 place = unit_of(words), kind = unit_of(pcg3d(words));
     if (place.z >= density) continue;
-    vec2 from_cell = (centre - vec2(at) * side.x - vec2(at) * side.y) / whole;
     float radius = 0.1 + 0.4 * kind.x;  // of the cell's side
-    float inside = (radius - length(from_cell - place.xy)) / (radius * (0.1 + 0.9 * kind.y));
+    float inside = (radius - length(place_in_cell(centre, at, side) - place.xy)) / (radius * (0.1 + 0.9 * kind.y));
     sum += (0.1 + 0.9 * kind.z * kind.z) * clamp(inside, 0.0, 1.0);
   }
   return sum;

@@ -21,3 +21,7 @@ vec3 normal_of(uvec3 words) {
   uvec3 sum = (words & 255u) + ((words >> 8u) & 255u) + ((words >> 16u) & 255u) + (words >> 24u);
   return (vec3(sum) - 510.0) * 0.00676588;
 }
+
+/// Where `point` (pixels) lies within or beside a cell of a square grid, in sides of a cell: 0…1 within. `side` is the cells' side in
+/// pixels in two parts, the first a multiple of 1/64: a cell's number times that is exact, so that far cells have as many digits as near ones.
+vec2 place_in_cell(vec2 point, ivec2 cell, vec2 side) { return (point - vec2(cell) * side.x - vec2(cell) * side.y) / (side.x + side.y); }
