@@ -95,6 +95,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
                                    const DescribeOptions& options) {
   KernelDesc desc;
   desc.hardware_filter = options.hardware_filter;
+  desc.hide_uniforms = options.hide_uniforms;
   const bool half = options.half_storage && !is_precise(graph, kernel.output);
   desc.target = half ? KernelTarget::float16 : KernelTarget::float32;
   if (options.codes && kernel.output == graph.result) desc.target = KernelTarget::codes8;

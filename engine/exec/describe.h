@@ -21,6 +21,7 @@ struct DescribeOptions {
   bool source_is_storage = false;  ///< the source too
   int rows = 1;                    ///< an invocation may make so many where that pays
   WorthAKernel worth;
+  bool hide_uniforms = false;  ///< see KernelDesc
 };
 
 /// Errors: script (an unknown shader).

@@ -67,7 +67,8 @@ Result<std::vector<KernelDesc>> Program::State::describe(ShaderLibrary& shaders)
                                  .storage_reads = storage_reads,
                                  .source_is_storage = options.source_is_storage,
                                  .rows = options.reference ? 1 : options.rows,
-                                 .worth = options.worth};
+                                 .worth = options.worth,
+                                 .hide_uniforms = device.is_cpu()};
   std::vector<KernelDesc> descs;
   for (const auto& kernel : plan.kernels) {
     AFTERGLOW_TRY(KernelDesc desc, describe_kernel(shaders, graph, kernel, describe));

@@ -58,6 +58,7 @@ class Assembler {
       return error;
     }
     out_.glsl += kHeader;
+    if (kernel_.hide_uniforms) out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
     for (int row = 0; row < kernel_.rows; ++row)
       out_.glsl += fmt::format("layout(location = {0}) out vec4 ag_result{0};\n", row);
     if (!block_.empty()) out_.glsl += "layout(set = 0, binding = 0, std140) uniform ag_Block {\n" + block_ + "};\n";

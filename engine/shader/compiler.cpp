@@ -11,6 +11,7 @@
 #include "core/cache_folder.h"
 #include "core/file.h"
 #include "shader/glsl.h"
+#include "shader/hide_uniforms.h"
 #include "shader/interleave.h"
 #include "shader/kernel.h"
 #include "shader/kernel_file.h"
@@ -86,12 +87,13 @@ struct KernelCompiler::State {
 namespace {
 
 /// Compares what the compiler made with what the assembler promised; a difference is a fault of the engine.
-Result<KernelFile> build(const AssembledKernel& assembled, int rows) {
+Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& desc) {
   constexpr int kTogether = 4;  // rows: more of them would not fit into a processor's registers
   KernelFile kernel;
   kernel.text = assembled.hash;
   AFTERGLOW_TRY(kernel.spirv, compile_glsl(assembled.glsl, assembled.file_names));
-  if (rows > 1) kernel.spirv = interleave_rows(kernel.spirv, kTogether);
+  if (desc.rows > 1) kernel.spirv = interleave_rows(kernel.spirv, kTogether);
+  if (desc.hide_uniforms) kernel.spirv = hide_uniforms(kernel.spirv);
   AFTERGLOW_TRY(const Reflection reflection, reflect(kernel.spirv));
   kernel.block_size = reflection.block_size;
   for (const auto& param : assembled.params) {
@@ -127,7 +129,7 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
     } else if ((entry->made = state_->load(assembled))) {
       ++state_->from_disk;
     } else {
-      AFTERGLOW_TRY(KernelFile kernel, build(assembled, desc.rows));
+      AFTERGLOW_TRY(KernelFile kernel, build(assembled, desc));
       ++state_->compiled;
       state_->save(kernel);
       entry->made = std::make_shared<const KernelFile>(std::move(kernel));

@@ -59,6 +59,9 @@ struct KernelDesc {
   /// Rows of the target that one invocation makes, each its own output location: invocation (x, Y) makes the pixels
   /// (x, rows·Y) … (x, rows·Y + rows − 1). What neighbouring rows both read is read once. 1 … kMaxRows.
   int rows = 1;
+  /// The driver is kept from compiling the kernel again for each value of its parameters, as lavapipe does. Costs an
+  /// instruction a read.
+  bool hide_uniforms = false;
   /// Wished for each image slot, in the order of AssembledKernel::images; those beyond the end are sampled. An input
   /// that an author's shader uses in any other way than by the prelude's functions stays sampled.
   std::vector<ImageRead> reads;

@@ -7,6 +7,17 @@
 #include <fstream>
 
 namespace afterglow {
+namespace {
+
+Image image_of(const reference::DoubleImage& source, int channels = 4) {
+  Image out(source.width, source.height, channels);
+  out.pixels.clear();
+  for (const auto& p : source.pixels)
+    for (int c = 0; c < channels; ++c) out.pixels.push_back(static_cast<float>(p[c]));
+  return out;
+}
+
+}  // namespace
 
 TemporalPlayer::TemporalPlayer(const std::string& entries, bool reference) {
   const auto file = std::filesystem::temp_directory_path() / fmt::format("afterglow_temporal_{}.lua", getpid());
@@ -26,6 +37,10 @@ std::vector<float> TemporalPlayer::play(std::vector<float> pixels, Size size, in
   Picture picture;
   picture.color = Image(size.width, size.height, 4);
   picture.color.pixels = std::move(pixels);
+  return process(std::move(picture), frame, fps);
+}
+
+std::vector<float> TemporalPlayer::process(Picture picture, int frame, double fps) {
   BuildContext context;
   context.frame = frame;
   context.fps = fps;
@@ -36,10 +51,15 @@ std::vector<float> TemporalPlayer::play(std::vector<float> pixels, Size size, in
 }
 
 std::vector<float> TemporalPlayer::play(const reference::DoubleImage& source, int frame, double fps) {
-  std::vector<float> pixels;
-  for (const auto& p : source.pixels)
-    for (int c = 0; c < 4; ++c) pixels.push_back(static_cast<float>(p[c]));
-  return play(std::move(pixels), source.size(), frame, fps);
+  return process({.color = image_of(source)}, frame, fps);
+}
+
+std::vector<float> TemporalPlayer::play(const Scene& scene, int frame, double fps) {
+  Picture picture{.color = image_of(scene.source)};
+  if (scene.depth) picture.auxiliary["depth"] = image_of(*scene.depth, 1);
+  if (scene.normal) picture.auxiliary["normal"] = image_of(*scene.normal, 3);
+  if (scene.motion) picture.auxiliary["motion"] = image_of(*scene.motion, 2);
+  return process(std::move(picture), frame, fps);
 }
 
 }  // namespace afterglow

@@ -21,8 +21,12 @@ class TemporalPlayer {
   /// RGBA in, RGBA out.
   std::vector<float> play(std::vector<float> pixels, Size size, int frame, double fps = 24);
   std::vector<float> play(const reference::DoubleImage& source, int frame, double fps = 24);
+  /// With what it holds besides colour.
+  std::vector<float> play(const Scene& scene, int frame, double fps = 24);
 
  private:
+  std::vector<float> process(Picture picture, int frame, double fps);
+
   Diagnostics diagnostics_;
   std::unique_ptr<Session> session_;
 };
