@@ -23,7 +23,7 @@ return fx.effect {
   active = function(s) return s.intensity > 0 or s.background_opacity > 0, "intensity and background_opacity are 0" end,
   holds = {
     "constant",
-    mirror = { within = rounding, when = function(s) return s.operator ~= "roberts" end },
+    mirror = { within = 1e-6, when = function(s) return s.operator ~= "roberts" end },
     -- Where the ink covers a bright picture nearly whole, what is left of it is rounded as the bright picture is.
     error = { fp32 = function(s) return 4e-4 + 2 * rounding(s) end, fp16 = function(s) return 2e-3 + 500 * rounding(s) end, up_to = 50 },
   },

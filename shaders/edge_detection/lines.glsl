@@ -16,7 +16,8 @@ vec2 gradient(ivec2 pixel) {
   // Roberts' cross: the diagonals of the pixel and its neighbours to the right and below. A straight step shows in both.
   if (operator == 2) return vec2(y[4] - y[8], y[5] - y[7]) * 0.70710678;
   float side = operator == 1 ? 3.0 : 1.0, middle = operator == 1 ? 10.0 : 2.0;
-  return vec2(side * (y[2] - y[0] + y[8] - y[6]) + middle * (y[5] - y[3]), side * (y[6] - y[0] + y[8] - y[2]) + middle * (y[7] - y[1])) /
+  // Differences first: a mirrored picture then gives the same bits.
+  return vec2(side * ((y[2] - y[0]) + (y[8] - y[6])) + middle * (y[5] - y[3]), side * ((y[6] - y[0]) + (y[8] - y[2])) + middle * (y[7] - y[1])) /
          (2.0 * side + middle);
 }
 

@@ -1,21 +1,22 @@
 // Soft light with two tints, shared out by luminance; in gamma 2.2 (Unity's LutBuilder: "Split toning").
 #include "lib/color.glsl"
 
-uniform vec3 shadows;     // display values 0…1, ½ is neutral
+uniform vec3 shadows;     // 1 − 2·display value: 1 darkens most, 0 is neutral, −1 lightens most
 uniform vec3 highlights;
 uniform float balance;    // −1…1
 
-/// Unity's soft light (Color.hlsl): darkens by a parabola, lightens by a root.
-vec3 soft_light(vec3 base, vec3 blend) {
-  vec3 dark = 2.0 * base * blend + base * base * (1.0 - 2.0 * blend);
-  vec3 light = sqrt(base) * (2.0 * blend - 1.0) + 2.0 * base * (1.0 - blend);
-  return min(mix(dark, light, greaterThanEqual(blend, vec3(0.5))), 1e15);
+/// Unity's soft light (Color.hlsl): darkens by a parabola, lightens by a root. `amount` is 1 − 2·blend, which near the neutral grey has
+/// digits that the blend has not.
+vec3 soft_light(vec3 base, vec3 amount) {
+  vec3 dark = base * ((1.0 - amount) + base * amount);
+  vec3 light = base * (1.0 + amount) - sqrt(base) * amount;
+  return min(mix(dark, light, lessThanEqual(amount, vec3(0.0))), 1e15);
 }
 
 vec4 apply(vec4 color) {
   vec3 c = pow(max(color.rgb, 0.0), vec3(1.0 / 2.2));
-  float bright = clamp(luminance(min(c, 1.0)) + balance, 0.0, 1.0);
-  c = soft_light(c, lerp(shadows, vec3(0.5), bright));
-  c = soft_light(c, lerp(vec3(0.5), highlights, bright));
+  float bright = clamp(1.0 - luminance(1.0 - min(c, 1.0)) + balance, 0.0, 1.0);  // 1 for white, to the last digit
+  c = soft_light(c, shadows * (1.0 - bright));
+  c = soft_light(c, highlights * bright);
   return vec4(min(pow(c, vec3(2.2)), kMaxLight), color.a);
 }
