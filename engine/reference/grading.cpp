@@ -76,10 +76,14 @@ DoubleImage split_toning(const DoubleImage& source, const SplitToning& s) {
 DoubleImage shadows_midtones_highlights(const DoubleImage& source, const ShadowsMidtonesHighlights& s) {
   const Rgb shadows = factor(s.shadows, s.shadows_offset), midtones = factor(s.midtones, s.midtones_offset),
             highlights = factor(s.highlights, s.highlights_offset);
+  // Limits that meet or cross are a hard edge at the first.
+  const auto behind = [](double end, double start) { return std::max(end, start * 1.0001 + 1e-5); };
+  const double shadows_end = behind(s.shadows_end, s.shadows_start),
+               highlights_end = behind(s.highlights_end, s.highlights_start);
   return map_color(source, [&](const Rgb& c) {
     const double y = luminance(c);
-    const double in_shadows = 1 - smoothstep(s.shadows_start, s.shadows_end, y);
-    const double in_highlights = smoothstep(s.highlights_start, s.highlights_end, y);
+    const double in_shadows = 1 - smoothstep(s.shadows_start, shadows_end, y);
+    const double in_highlights = smoothstep(s.highlights_start, highlights_end, y);
     const double in_midtones = 1 - in_shadows - in_highlights;
     return glm::max(c * shadows * in_shadows + c * midtones * in_midtones + c * highlights * in_highlights, Rgb(0));
   });

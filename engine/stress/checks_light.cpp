@@ -195,10 +195,15 @@ Result<Outcome> proportional(Lab& lab, const Situation& s, const Hold& hold) {
   Random random(s.seed);
   const double high = static_cast<float>(up_to * random.between(0.3, 1.0)),
                low = static_cast<float>(high * random.between(0.1, 0.8));
-  const auto added = [&](double amount) -> Result<Image> {
+  const auto with = [&](double amount) {
     Look look = s.look;
     look.entries.front().set(setting, {.type = SettingType::number, .number = {amount, 0, 0}});
-    AFTERGLOW_TRY(Made made, lab.run(look, s.picture, s.frame, usual_way(lab)));
+    return look;
+  };
+  for (const double amount : {high, low})  // at 0 an effect may be idle, and take settings that it refuses otherwise
+    if (!lab.facts(with(amount), s.picture.color.size(), s.frame)) return not_applicable();
+  const auto added = [&](double amount) -> Result<Image> {
+    AFTERGLOW_TRY(Made made, lab.run(with(amount), s.picture, s.frame, usual_way(lab)));
     return std::move(made.image);
   };
   AFTERGLOW_TRY(const Image of_high, added(high));

@@ -11,6 +11,7 @@
 namespace afterglow::stress {
 namespace {
 
+constexpr long long kMostPixels = 1ll << 26;  ///< of all images of a look together: 1 GiB of full floats
 constexpr int kStacksUntilFresh = 4000;  ///< made with the same pipelines: specialised ones add up
 
 struct Prepared {
@@ -175,6 +176,10 @@ Result<LookFacts> Lab::facts(const Look& look, Size size, double frame) {
 Result<LookFacts> Lab::State::find_facts(const Look& look, Size size, double frame) {
   AFTERGLOW_TRY(const auto stack, Stack::load("stress.lua", options(look, {.plain = true}), *diagnostics));
   AFTERGLOW_TRY(const Graph graph, stack->graph(context_for(size, frame)));
+  long long pixels = 0;
+  for (const auto& image : graph.images) pixels += image.size.area();
+  if (pixels > kMostPixels)
+    return Error{ErrorKind::io, fmt::format("its images have {} pixels, more than are tried", pixels)};
   LookFacts facts{.entries = bench::oracle_entries(stack->preset(), graph),
                   .holds = {},
                   .runs = graph.result != graph.source,

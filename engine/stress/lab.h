@@ -54,7 +54,7 @@ class Lab {
   Result<Made> run(const Look& look, const Picture& picture, double frame, const Way& way);
   /// Every image that the passes make, by name, when each runs on its own in full floats.
   Result<std::vector<std::pair<std::string, Image>>> images(const Look& look, const Picture& picture, double frame);
-  /// Errors (script): the effect refuses the settings, or its script fails.
+  /// Errors: script (the effect refuses the settings, or its script fails), io (images larger than is tried).
   Result<LookFacts> facts(const Look& look, Size size, double frame);
 
   /// Forgets stacks and results of earlier pictures; pipelines stay, until there are many.

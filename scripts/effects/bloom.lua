@@ -23,7 +23,9 @@ end
 local function size_of(s, source)
   if s.reference_height == 0 then return source.width, source.height end
   local height = s.reference_height
-  return math.max(1, (2 * source.width * height + source.height) // (2 * source.height)), height
+  local width = math.max(1, (2 * source.width * height + source.height) // (2 * source.height))
+  if width > 16384 then error(("reference_height = %d makes the picture %d wide; at most 16384 is possible"):format(height, width), 0) end
+  return width, height
 end
 
 -- The picture of that size: halved while that leaves at least as much, then the mean over what is left.

@@ -8,13 +8,13 @@ return fx.effect {
   at = "post_process", order = 80,
   settings = {
     iterations = fx.int { min = 0, max = 12, default = 3, doc = "Halvings of the picture; each doubles the blur. 0: none." },
-    offset = fx.float { min = 0, max = 3, default = 1, doc = "Distance of the reads: widens the blur smoothly between two counts of iterations; large ones show a pattern." },
+    offset = fx.float { min = 0, max = 3, default = 1, doc = "Distance of the reads: widens the blur smoothly between two counts of iterations; large ones show a pattern. In 1024ths of a pixel." },
   },
   active = function(s) return s.iterations > 0, "iterations is 0" end,
 
   holds = { "black", "constant", "bounded", "monotone", "linear", "mirror", "turn_180", "turn_90", continuous = 1, error = { fp32 = 1e-5, fp16 = 2e-3, levels = "iterations" } },
   build = function(g, s, source)
-    local o = s.offset
+    local o = math.floor(s.offset * 1024 + 0.5) / 1024  -- exact in floats: mirrored reads weigh the same
     local down = { taps = { { 0, 0, 1 / 2 }, { -o, -o, 1 / 8 }, { o, -o, 1 / 8 }, { -o, o, 1 / 8 }, { o, o, 1 / 8 } } }
     local h = o / 2
     local up = { taps = { { -o, 0, 1 / 12 }, { o, 0, 1 / 12 }, { 0, -o, 1 / 12 }, { 0, o, 1 / 12 },
