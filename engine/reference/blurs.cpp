@@ -50,7 +50,8 @@ DoubleImage with_alpha_of(const DoubleImage& picture, DoubleImage image) {
 
 }  // namespace
 
-DoubleImage dual_kawase(const DoubleImage& source, int iterations, double offset) {
+DoubleImage dual_kawase(const DoubleImage& source, int iterations, double offset_wanted) {
+  const double offset = std::floor(offset_wanted * 1024 + 0.5) / 1024;
   std::vector<Tap2d> down{{0, 0, 0.5}}, up;
   for (const double x : {-1.0, 1.0})
     for (const double y : {-1.0, 1.0}) {

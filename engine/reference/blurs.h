@@ -7,7 +7,7 @@
 namespace afterglow::reference {
 
 /// Dual Kawase (M. Bjørge, SIGGRAPH 2015): `iterations` halvings of five reads, then as many doublings of eight.
-DoubleImage dual_kawase(const DoubleImage& source, int iterations, double offset);
+DoubleImage dual_kawase(const DoubleImage& source, int iterations, double offset_wanted);
 
 /// Mean of `samples` reads from the pixel to `intensity` of its way to the centre.
 DoubleImage radial_blur(const DoubleImage& source, double intensity, int samples, Point center);

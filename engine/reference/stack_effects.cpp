@@ -139,8 +139,7 @@ DoubleImage run_glitch(const DoubleImage& source, const Inputs& inputs, const Se
 // ---- blurs
 
 DoubleImage run_dual_kawase(const DoubleImage& source, const Inputs&, const Settings& s) {
-  const double offset = std::floor(s.number("offset") * 1024 + 0.5) / 1024;
-  return dual_kawase(source, s.integer("iterations"), offset);
+  return dual_kawase(source, s.integer("iterations"), s.number("offset"));
 }
 
 DoubleImage run_radial_blur(const DoubleImage& source, const Inputs&, const Settings& s) {
