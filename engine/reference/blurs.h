@@ -6,7 +6,8 @@
 
 namespace afterglow::reference {
 
-/// Dual Kawase (M. Bjørge, SIGGRAPH 2015): `iterations` halvings of five reads, then as many doublings of eight.
+/// Dual Kawase (M. Bjørge, SIGGRAPH 2015): `iterations` halvings of five reads, then as many doublings of eight. The
+/// offset counts in 1024ths of a pixel.
 DoubleImage dual_kawase(const DoubleImage& source, int iterations, double offset_wanted);
 
 /// Mean of `samples` reads from the pixel to `intensity` of its way to the centre.
