@@ -11,7 +11,7 @@
 namespace afterglow::stress {
 namespace {
 
-constexpr long long kMostPixels = 1ll << 26;  ///< of all images of a look together: 1 GiB of full floats
+constexpr long long kMostPixels = 1ll << 24;  ///< of all images of a look together: 256 MiB of full floats
 constexpr int kStacksUntilFresh = 4000;  ///< made with the same pipelines: specialised ones add up
 
 struct Prepared {

@@ -30,10 +30,22 @@ local function brightest(s)
   return most
 end
 
--- A power multiplies the relative error of what it is given.
-local function steepest(s)
+-- How much the lift takes away, at most.
+local function taken(s)
+  local lift = values(s)
+  return math.max(0, -lift[1], -lift[2], -lift[3])
+end
+
+-- A power multiplies the relative error of what it is given (3e-7: gain, lift, logarithm), and that grows with what the lift has taken away.
+local function rounding(s)
   local _, power = values(s)
-  return math.max(power[1], power[2], power[3])
+  return 1e-5 * math.max(1, math.max(power[1], power[2], power[3]) / 30) * (1 + taken(s))
+end
+
+-- A root makes much of the rounding of what a lift has left.
+local function is_bounded(s)
+  local _, power = values(s)
+  return brightest(s) <= 1e5 and (taken(s) == 0 or math.min(power[1], power[2], power[3]) >= 1)
 end
 
 local function least_gain(s)
@@ -56,7 +68,7 @@ return fx.effect {
   end,
   holds = { "constant", "mirror", "turn_180", "turn_90", shift = 1,
     monotone = { when = function(s) return least_gain(s) >= 0 end },
-    error = { fp32 = function(s) return 1e-5 * math.max(1, steepest(s) / 100) end, when = function(s) return brightest(s) <= 1e5 end } },
+    error = { fp32 = rounding, when = is_bounded } },
   build = function(g, s, source)
     local lift, power, gain = values(s)
     return g:pass { shader = "lift_gamma_gain/grade", source = source, lift = lift, power = power, gain = gain }
