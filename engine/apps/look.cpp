@@ -35,7 +35,7 @@ namespace {
 
 // As `run` chooses on a CPU device, the one that is always there.
 constexpr DescribeOptions kAssumed{
-    .flag_non_finite = true, .storage_reads = true, .source_is_storage = true, .rows = kMaxRows};
+    .flag_non_finite = true, .storage_reads = true, .source_is_storage = true, .rows = kMaxRows, .hide_uniforms = true};
 
 /// Compiles each distinct kernel once and gathers what is wrong.
 class ShaderCheck {

@@ -104,7 +104,7 @@
 ---A wide, smooth, cheap blur of the whole picture.
 ---@class afterglow.settings.dual_kawase : afterglow.EntryKeys
 ---@field iterations? integer|afterglow.Moving  Halvings of the picture; each doubles the blur. 0: none. integer 0…12, default 3
----@field offset? number|afterglow.Moving  Distance of the reads: widens the blur smoothly between two counts of iterations; large ones show a pattern. 0…3, default 1
+---@field offset? number|afterglow.Moving  Distance of the reads: widens the blur smoothly between two counts of iterations; large ones show a pattern. In 1024ths of a pixel. 0…3, default 1
 
 ---Draws lines where brightness changes: Sobel, Scharr or Roberts.
 ---@class afterglow.settings.edge_detection : afterglow.EntryKeys
@@ -225,9 +225,9 @@
 ---@field highlights? number[]|string|afterglow.Moving  Colour by which highlights are multiplied. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
 ---@field highlights_offset? number|afterglow.Moving  Added to the factor of highlights; four times as much above 0, so that 1 is plenty of light and -1 black. -1…1, default 0
 ---@field shadows_start? number|afterglow.Moving  Luminance from which shadows fade into midtones. 0…100, default 0
----@field shadows_end? number|afterglow.Moving  Luminance from which nothing counts as shadow. 0…100, default 0.3
+---@field shadows_end? number|afterglow.Moving  Luminance from which nothing counts as shadow. Not above the start: a hard edge there. 0…100, default 0.3
 ---@field highlights_start? number|afterglow.Moving  Luminance from which midtones fade into highlights. 0…100, default 0.55
----@field highlights_end? number|afterglow.Moving  Luminance from which all is highlight. 0…100, default 1
+---@field highlights_end? number|afterglow.Moving  Luminance from which all is highlight. Not above the start: a hard edge there. 0…100, default 1
 
 ---Contrast-adaptive sharpening of fine detail; best after tone mapping.
 ---@class afterglow.settings.sharpen : afterglow.EntryKeys
