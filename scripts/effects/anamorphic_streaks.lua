@@ -22,7 +22,8 @@ return fx.effect {
   holds = {
     "black", "constant", "mirror", "turn_180", "monotone",
     continuous = function(s) return 1 + s.intensity * math.max(s.tint[1], s.tint[2], s.tint[3]) end,
-    error = { when = function(s) return s.intensity * math.max(s.tint[1], s.tint[2], s.tint[3]) <= 1e5 end },
+    -- Half floats are rounded twice at each of up to eleven levels.
+    error = { fp16 = 3e-3, when = function(s) return s.intensity * math.max(s.tint[1], s.tint[2], s.tint[3]) <= 1e5 end },
   },
   build = function(g, s, source)
     local image = g:filter { source = source, size = { math.max(source.width // 2, 1), math.max(source.height // 2, 1) },

@@ -290,11 +290,11 @@ TEST_F(PlayWindow, FillsTheScreenAndGoesBack) {
 
 TEST_F(PlayWindow, MinimisedItRestsAndComesBackWithTheLastEdit) {
   ASSERT_EQ(run_on(xvfb_.display(), "openbox --sm-disable >/dev/null &"), 0);  // ends with the display
+  ASSERT_TRUE(until([&] { return user("get_num_desktops"); })) << "no window manager";
   write_preset("{ 1, 0, 0 }");
   play({"look.lua", "shot.####.exr"});
   ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
   EXPECT_TRUE(until_color(kX, kY, kRed));
-  // The manager may not be ready when it is asked first.
   EXPECT_TRUE(
       until([&] { return user("search --class afterglow windowminimize") && !has_color(shot(), kX, kY, kRed); }));
   write_preset("{ 0, 1, 0 }");
