@@ -4,6 +4,9 @@ local fx = require "afterglow"
 
 local kHalving = { x = { { -1.5, 1 / 8 }, { -0.5, 3 / 8 }, { 0.5, 3 / 8 }, { 1.5, 1 / 8 } } }
 
+-- What light is multiplied by, at most.
+local function gain(s) return s.intensity * math.max(s.tint[1], s.tint[2], s.tint[3]) end
+
 return fx.effect {
   name = "anamorphic_streaks",
   doc = "Long horizontal flares from bright lights, as of an anamorphic lens.",
@@ -21,9 +24,10 @@ return fx.effect {
 
   holds = {
     "black", "constant", "mirror", "turn_180", "monotone",
-    continuous = function(s) return 1 + s.intensity * math.max(s.tint[1], s.tint[2], s.tint[3]) end,
-    -- Half floats are rounded twice at each of up to eleven levels.
-    error = { fp16 = 3e-3, when = function(s) return s.intensity * math.max(s.tint[1], s.tint[2], s.tint[3]) <= 1e5 end },
+    continuous = function(s) return 1 + gain(s) end,
+    -- Half floats are rounded twice at each of up to eleven levels. What little exceeds a high threshold keeps the rounding of what it was.
+    error = { fp32 = function(s) return 1e-5 * math.max(1, s.threshold * gain(s)) end, fp16 = function(s) return 3e-3 * math.max(1, s.threshold * gain(s)) end,
+              when = function(s) return gain(s) <= 1e5 end },
   },
   build = function(g, s, source)
     local image = g:filter { source = source, size = { math.max(source.width // 2, 1), math.max(source.height // 2, 1) },
