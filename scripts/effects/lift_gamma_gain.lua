@@ -42,15 +42,15 @@ local function rounding(s)
   return 1e-5 * math.max(1, math.max(power[1], power[2], power[3]) / 30) * (1 + taken(s))
 end
 
--- A root makes much of the rounding of what a lift has left.
-local function is_bounded(s)
-  local _, power = values(s)
-  return brightest(s) <= 1e5 and (taken(s) == 0 or math.min(power[1], power[2], power[3]) >= 1)
-end
-
 local function least_gain(s)
   local _, _, gain = values(s)
   return math.min(gain[1], gain[2], gain[3])
+end
+
+-- A root makes much of the rounding of what a lift has left; a gain below 0 takes away without end.
+local function is_bounded(s)
+  local _, power = values(s)
+  return brightest(s) <= 1e5 and least_gain(s) >= 0 and (taken(s) == 0 or math.min(power[1], power[2], power[3]) >= 1)
 end
 
 return fx.effect {

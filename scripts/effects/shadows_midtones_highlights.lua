@@ -22,6 +22,11 @@ local function beyond(limit, start) return math.max(limit, start * 1.0001 + 1e-5
 -- At an edge that is nearly hard, rounding decides on which side a pixel is.
 local function is_soft(start, limit) return limit - start >= 0.02 * limit end
 
+-- Where shadows and highlights overlap, midtones count below 0: factors cancel.
+local function is_bounded(s)
+  return s.shadows_end <= s.highlights_start and is_soft(s.shadows_start, s.shadows_end) and is_soft(s.highlights_start, s.highlights_end)
+end
+
 local function brightest(s)
   local most = 0
   for _, color in ipairs { s.shadows, s.midtones, s.highlights } do most = math.max(most, color[1], color[2], color[3]) end
@@ -46,7 +51,7 @@ return fx.effect {
                 and is_white(factor(s.highlights, s.highlights_offset))), "all factors are 1"
   end,
   holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1,
-    error = { fp32 = 2e-4, when = function(s) return brightest(s) <= 1e5 and is_soft(s.shadows_start, s.shadows_end) and is_soft(s.highlights_start, s.highlights_end) end } },
+    error = { fp32 = 2e-4, when = function(s) return brightest(s) <= 1e5 and is_bounded(s) end } },
   build = function(g, s, source)
     return g:pass {
       shader = "shadows_midtones_highlights/scale", source = source,
