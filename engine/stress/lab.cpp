@@ -12,7 +12,7 @@ namespace afterglow::stress {
 namespace {
 
 constexpr long long kMostPixels = 1ll << 24;  ///< of all images of a look together: 256 MiB of full floats
-constexpr int kStacksUntilFresh = 4000;  ///< made with the same pipelines: specialised ones add up
+constexpr int kStacksUntilFresh = 4000;       ///< made with the same pipelines: specialised ones add up
 
 struct Prepared {
   std::unique_ptr<Stack> stack;
