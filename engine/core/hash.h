@@ -11,9 +11,8 @@ namespace afterglow {
 struct Hash {
   std::uint64_t high = 0, low = 0;
   friend bool operator==(const Hash&, const Hash&) = default;
-  friend auto operator<=>(const Hash&,
-                          const Hash&) = default;  // NOLINT(modernize-use-nullptr): its 0 is the compiler's
-  std::string hex() const;                         ///< 32 lower-case hexadecimal digits
+  friend auto operator<=>(const Hash&, const Hash&) = default;  // NOLINT(modernize-use-nullptr)
+  std::string hex() const;                                      ///< 32 lower-case hexadecimal digits
 };
 
 Hash hash_bytes(const void* data, std::size_t size);
