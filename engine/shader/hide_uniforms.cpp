@@ -8,15 +8,6 @@
 namespace afterglow {
 namespace {
 
-Instruction instruction(spv::Op op, Words operands) {
-  operands.insert(operands.begin(), static_cast<std::uint32_t>(operands.size() + 1) << spv::WordCountShift |
-                                        static_cast<std::uint32_t>(op));
-  Instruction out;
-  out.op = op;
-  out.words = std::move(operands);
-  return out;
-}
-
 class Hider {
  public:
   explicit Hider(Module& module) : module_(module) {}
@@ -44,20 +35,16 @@ class Hider {
   /// Types, blocks and gl_FragCoord.
   void look() {
     std::map<std::uint32_t, std::uint32_t> pointees;  // pointer type → what it points to
-    std::uint32_t decorated = 0;
     for (const auto& i : module_.code) {
       const Words& w = i.words;
       if (i.op == spv::OpDecorate && w.size() == 4 && w[2] == spv::DecorationBuiltIn && w[3] == spv::BuiltInFragCoord)
-        decorated = w[1];
+        position_ = w[1];
       if ((i.op == spv::OpTypeInt || i.op == spv::OpTypeFloat) && w[2] == 32) shapes_[w[1]] = {w[1], 1};
       if (i.op == spv::OpTypeInt && w[2] == 32 && w[3] == 0) bits_ = w[1];
       if (i.op == spv::OpTypeVector && shapes_.contains(w[2])) shapes_[w[1]] = {w[2], w[3]};
       if (i.op == spv::OpTypePointer) pointees[w[1]] = w[3];
       if (i.op != spv::OpVariable) continue;
-      if (i.result == decorated) {
-        position_ = i.result;
-        position_type_ = pointees[i.type];
-      }
+      if (i.result == position_) position_type_ = pointees[i.type];
       if (w[3] == spv::StorageClassUniform || w[3] == spv::StorageClassPushConstant) blocks_.insert(i.result);
     }
   }
@@ -66,19 +53,19 @@ class Hider {
   std::uint32_t type_of_bits(std::uint32_t n) {
     if (bits_ == 0) {
       bits_ = module_.fresh();
-      code_.push_back(instruction(spv::OpTypeInt, {bits_, 32, 0}));
+      code_.push_back(Instruction::of_words(spv::OpTypeInt, {bits_, 32, 0}));
     }
     if (n == 1) return bits_;
     for (const auto& [id, shape] : shapes_)
       if (shape.component == bits_ && shape.count == n) return id;
     const std::uint32_t type = module_.fresh();
-    code_.push_back(instruction(spv::OpTypeVector, {type, bits_, n}));
+    code_.push_back(Instruction::of_words(spv::OpTypeVector, {type, bits_, n}));
     return type;
   }
 
   std::uint32_t constant(std::uint32_t value) {
     const std::uint32_t id = module_.fresh();
-    code_.push_back(instruction(spv::OpConstant, {bits_, id, value}));
+    code_.push_back(Instruction::of_words(spv::OpConstant, {bits_, id, value}));
     return id;
   }
 

@@ -46,14 +46,20 @@ Words Module::join() const {
   return out;
 }
 
-Instruction Instruction::of_ids(spv::Op op, std::uint32_t type, std::uint32_t result, const Words& operands) {
+Instruction Instruction::of_words(spv::Op op, const Words& operands) {
   Instruction out;
   out.op = op;
+  out.words = {static_cast<std::uint32_t>(operands.size() + 1) << spv::WordCountShift | static_cast<std::uint32_t>(op)};
+  out.words.insert(out.words.end(), operands.begin(), operands.end());
+  return out;
+}
+
+Instruction Instruction::of_ids(spv::Op op, std::uint32_t type, std::uint32_t result, const Words& operands) {
+  Words words{type, result};
+  words.insert(words.end(), operands.begin(), operands.end());
+  Instruction out = of_words(op, words);
   out.type = type;
   out.result = result;
-  out.words = {0, type, result};
-  out.words.insert(out.words.end(), operands.begin(), operands.end());
-  out.words[0] = static_cast<std::uint32_t>(out.words.size()) << spv::WordCountShift | static_cast<std::uint32_t>(op);
   for (std::size_t word = 1; word < out.words.size(); ++word) out.ids.push_back(static_cast<std::uint16_t>(word));
   return out;
 }

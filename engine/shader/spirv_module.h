@@ -23,6 +23,8 @@ struct Instruction {
   std::vector<std::uint16_t> ids;  ///< which words name ids, the result's included
   std::uint32_t type = 0, result = 0;
 
+  /// A new instruction with these words behind the first; names no ids.
+  static Instruction of_words(spv::Op op, const Words& operands);
   /// A new instruction all of whose operands are ids.
   static Instruction of_ids(spv::Op op, std::uint32_t type, std::uint32_t result, const Words& operands);
 };
