@@ -12,7 +12,6 @@ namespace afterglow::stress {
 namespace {
 
 constexpr long long kMostPixels = 1ll << 24;  ///< of all images of a look together: 256 MiB of full floats
-constexpr int kStacksUntilFresh = 4000;       ///< made with the same pipelines: specialised ones add up
 
 struct Prepared {
   std::unique_ptr<Stack> stack;
@@ -43,7 +42,6 @@ std::string Way::name() const {
 struct Lab::State {
   Device* device = nullptr;
   Diagnostics* diagnostics = nullptr;
-  std::filesystem::path cache;
   std::shared_ptr<StackShared> shared;
   std::map<std::string, Prepared> prepared;  ///< by look, way and size
   std::map<std::string, Made> results;       ///< by look, way, frame and content of the picture
@@ -77,8 +75,7 @@ Result<std::unique_ptr<Lab>> Lab::create(Device& device, const std::filesystem::
   auto state = std::make_unique<State>();
   state->device = &device;
   state->diagnostics = &diagnostics;
-  state->cache = cache.empty() ? cache : cache / "shaders";
-  state->shared = std::make_shared<StackShared>(state->cache);
+  state->shared = std::make_shared<StackShared>(cache.empty() ? cache : cache / "shaders");
   AFTERGLOW_TRY(const Calibration calibration, Calibration::shipped());
   state->usual = calibration.find(device.info(), 0).choice;
   state->usual.storage = Storage::fp32;
@@ -90,9 +87,6 @@ void Lab::forget() {
   state_->prepared.clear();
   state_->results.clear();
   state_->known.clear();
-  if (state_->stacks < kStacksUntilFresh) return;
-  state_->stacks = 0;
-  state_->shared = std::make_shared<StackShared>(state_->cache);
 }
 
 Result<Prepared*> Lab::State::prepare(const Look& look, const Way& way, const Picture& picture, double frame) {

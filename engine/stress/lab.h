@@ -57,7 +57,7 @@ class Lab {
   /// Errors: script (the effect refuses the settings, or its script fails), io (images larger than is tried).
   Result<LookFacts> facts(const Look& look, Size size, double frame);
 
-  /// Forgets stacks and results of earlier pictures; pipelines stay, until there are many.
+  /// Forgets stacks, and with them their pipelines, and results of earlier pictures.
   void forget();
   /// As `run` executes on this device, but for what half floats and filtered fetches would change.
   const Choice& usual() const;
