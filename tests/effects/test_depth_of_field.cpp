@@ -1,11 +1,9 @@
 // Depth of field: the oracle, and what may not leak.
 #include <fmt/format.h>
-#include <unistd.h>
-
-#include <fstream>
 
 #include "cases.h"
 #include "reference/blurs.h"
+#include "resident.h"
 #include "temporal_player.h"
 
 namespace afterglow {
@@ -105,13 +103,6 @@ TEST_F(Effects, WhatIsInFocusStaysBitForBit) {
   auto scene = random_scene({40, 30}, 67);
   scene.depth = DoubleImage(40, 30, Rgba(2, 0, 0, 1));
   EXPECT_TRUE(agrees(run_stack(kWide, scene, Way::plain).result, scene.source, 0, kRgba));
-}
-
-/// Bytes of this process in memory.
-std::size_t resident() {
-  std::size_t pages = 0, ignored = 0;
-  std::ifstream("/proc/self/statm") >> ignored >> pages;
-  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
 // A driver that compiles the shader again for each frame's parameters, as lavapipe does when it can see them, keeps

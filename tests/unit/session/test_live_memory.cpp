@@ -1,17 +1,9 @@
 // Thousands of reloads leave nothing behind.
-#include <fstream>
-
 #include "live_fixture.h"
+#include "resident.h"
 
 namespace afterglow {
 namespace {
-
-/// Bytes of this process in memory.
-std::size_t resident() {
-  std::size_t pages = 0, ignored = 0;
-  std::ifstream("/proc/self/statm") >> ignored >> pages;
-  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-}
 
 class LiveMemory : public LiveTest {
  protected:
