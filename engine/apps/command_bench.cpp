@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct BenchArguments {
   std::vector<std::string> presets, overrides, paths, vary;
   DeviceArguments device;
   std::optional<double> max_error;
@@ -48,7 +48,7 @@ constexpr const char* kQuickVariants = "plain16f,chosen";
 constexpr int kQuickRepeat = 3;
 
 struct Bench {
-  const Arguments& arguments;
+  const BenchArguments& arguments;
   Console& console;
   std::unique_ptr<Device> device;
   StackOptions base;
@@ -93,7 +93,7 @@ Result<void> measure(Bench& bench, Size size, const std::vector<bench::Variant>&
 }
 
 Result<void> measure_matrix(Bench& bench) {
-  const Arguments& a = bench.arguments;
+  const BenchArguments& a = bench.arguments;
   const std::string sizes = !a.sizes.empty() ? a.sizes : a.quick ? kQuickSizes : kSizes;
   const std::string names = !a.variants.empty() ? a.variants : a.quick ? kQuickVariants : kDefaultVariants;
   AFTERGLOW_TRY(const auto all_sizes, parse_sizes(sizes));
@@ -154,7 +154,7 @@ void print_goals(const std::vector<bench::GoalResult>& goals) {
 
 /// Ratios to an older report. Errors: other, when one is beyond the threshold.
 Result<void> compare(const Bench& bench) {
-  const Arguments& a = bench.arguments;
+  const BenchArguments& a = bench.arguments;
   AFTERGLOW_TRY(const std::string old, read_file(a.compare));
   AFTERGLOW_TRY(const auto comparisons, bench::compare_reports(old, a.compare, bench.report));
   if (comparisons.empty())
@@ -177,7 +177,7 @@ Result<void> compare(const Bench& bench) {
 /// --reload: edits instead of frames.
 Result<void> measure_all_reloads(Bench& bench) {
   constexpr int kEdits = 50, kQuickEdits = 3;
-  const Arguments& a = bench.arguments;
+  const BenchArguments& a = bench.arguments;
   AFTERGLOW_TRY(const auto sizes, parse_sizes(!a.sizes.empty() ? a.sizes : a.quick ? kQuickSizes : kReloadSizes));
   const int edits = a.quick ? kQuickEdits : kEdits;
   bench.total = a.presets.size() * sizes.size() * static_cast<std::size_t>(2 * edits);
@@ -209,7 +209,7 @@ Result<void> measure_all_reloads(Bench& bench) {
 
 /// --temporal: shots and resolutions instead of times.
 Result<void> measure_steadiness(Bench& bench) {
-  const Arguments& a = bench.arguments;
+  const BenchArguments& a = bench.arguments;
   StabilityRequest request{
       .presets = {}, .options = {}, .variants = {}, .sizes = {}, .shot = a.picture, .quick = a.quick};
   for (const auto& name : a.presets) {
@@ -237,7 +237,7 @@ Result<void> measure_steadiness(Bench& bench) {
   return {};
 }
 
-Result<void> run_command(const Arguments& a, Console& console) {
+Result<void> run_bench(const BenchArguments& a, Console& console) {
   if (a.temporal && a.presets.empty())
     return Error{ErrorKind::usage, "--temporal needs a look to measure", "afterglow bench", 0, "one or more PRESETs"};
   if (a.reload && a.presets.empty())
@@ -275,7 +275,7 @@ Result<void> run_command(const Arguments& a, Console& console) {
   return compare(bench);
 }
 
-void add_options(CLI::App& app, Arguments& a) {
+void add_options(CLI::App& app, BenchArguments& a) {
   const auto list = [&](const char* name, std::vector<std::string>& into, const char* help, const char* type) {
     app.add_option(name, into, help)->type_name(type)->expected(1)->allow_extra_args(false)->take_all();
   };
@@ -319,7 +319,7 @@ void add_options(CLI::App& app, Arguments& a) {
 
 Command add_bench_command(CLI::App& program) {
   auto* app = program.add_subcommand("bench", "Measure run time against error");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<BenchArguments>();
   add_options(*app, *arguments);
   app->footer(
       "Examples:\n"
@@ -328,7 +328,7 @@ Command add_bench_command(CLI::App& program) {
       "old/bench.json\n"
       "  afterglow bench look.lua --vary glow.max_iterations=4,8,16 --quick\n"
       "All that is measured at one size is prepared first and then run in turns; upload and read-back are not in it.");
-  return {app, [arguments](Console& console) { return run_command(*arguments, console); }};
+  return {app, [arguments](Console& console) { return run_bench(*arguments, console); }};
 }
 
 }  // namespace afterglow

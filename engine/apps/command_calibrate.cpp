@@ -16,7 +16,7 @@
 namespace afterglow {
 namespace {
 
-struct Arguments {
+struct CalibrateArguments {
   DeviceArguments device;
   std::string look, size = "1280x720", out;
   int repeat = 9;
@@ -37,7 +37,7 @@ void print(const bench::CalibrationResult& result) {
   fmt::print("{}\n{}\n{}", operations.text("  "), ways.text("  "), chosen.text("  "));
 }
 
-Result<void> run_command(const Arguments& a, Console& console) {
+Result<void> run_calibrate(const CalibrateArguments& a, Console& console) {
   bench::CalibrationRequest request{.look = a.look, .base = {}, .size = {}, .repeat = a.repeat};
   if (a.look.empty()) request.look = find_installation() / "calibration" / "look.lua";
   AFTERGLOW_TRY(request.size, parse_size(a.size));
@@ -60,7 +60,7 @@ Result<void> run_command(const Arguments& a, Console& console) {
 
 Command add_calibrate_command(CLI::App& program) {
   auto* app = program.add_subcommand("calibrate", "Measure how this device executes stacks fastest");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CalibrateArguments>();
   app->add_option("-o,--output", arguments->out, "Table to write, for `run --calibration FILE`")->type_name("FILE");
   app->add_option("--look", arguments->look, "Look to measure on (default: one that comes with the program)")
       ->type_name("PRESET");
@@ -69,7 +69,7 @@ Command add_calibrate_command(CLI::App& program) {
       ->check(CLI::Range(1, 1000));
   arguments->device.add(*app);
   app->footer("Takes a minute or so; best on a quiet machine.");
-  return {app, [arguments](Console& console) { return run_command(*arguments, console); }};
+  return {app, [arguments](Console& console) { return run_calibrate(*arguments, console); }};
 }
 
 }  // namespace afterglow

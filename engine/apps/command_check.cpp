@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Arguments {
+struct CheckArguments {
   PresetArguments preset;
   AssumedPicture picture;
   bool json = false;
@@ -92,7 +92,7 @@ std::string as_json(const Look& look, const std::string& file, const std::vector
   return json_text(out);
 }
 
-Result<void> run(const Arguments& arguments, Console& console) {
+Result<void> run_check(const CheckArguments& arguments, Console& console) {
   AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
   auto errors = shader_errors(look);
   if (!errors.empty()) {
@@ -109,12 +109,12 @@ Result<void> run(const Arguments& arguments, Console& console) {
 
 Command add_check_command(CLI::App& program) {
   auto* app = program.add_subcommand("check", "Check a preset and its shaders; print the resolved order and settings");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CheckArguments>();
   arguments->preset.add(*app);
   arguments->picture.add(*app);
   app->add_flag("--json", arguments->json, "Print JSON");
   app->footer("Needs no Vulkan device. The picture is assumed to have every auxiliary input that the stack asks for.");
-  return {app, [arguments](Console& console) { return run(*arguments, console); }};
+  return {app, [arguments](Console& console) { return run_check(*arguments, console); }};
 }
 
 }  // namespace afterglow

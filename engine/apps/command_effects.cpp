@@ -20,7 +20,7 @@
 namespace afterglow {
 namespace {
 
-struct Arguments {
+struct EffectsArguments {
   std::string name;
   PresetArguments preset;  // --path alone
   bool json = false, markdown = false, completion = false;
@@ -62,7 +62,7 @@ std::string effect_text(const EffectSchema& effect) {
   return out;
 }
 
-Result<void> run(const Arguments& arguments, Console& console) {
+Result<void> run_effects(const EffectsArguments& arguments, Console& console) {
   const std::vector<std::filesystem::path> extra(arguments.preset.paths.begin(), arguments.preset.paths.end());
   AFTERGLOW_TRY(auto effects, list_effects(search_path_for({}, extra), console.diagnostics()));
   if (effects.empty())
@@ -95,13 +95,13 @@ Result<void> run(const Arguments& arguments, Console& console) {
 
 Command add_effects_command(CLI::App& program) {
   auto* app = program.add_subcommand("effects", "List the effects, or the settings of one");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<EffectsArguments>();
   app->add_option("NAME", arguments->name, "Effect whose settings to show");
   app->add_flag("--json", arguments->json, "Print JSON");
   app->add_flag("--markdown", arguments->markdown, "Print documents in Markdown");
   app->add_flag("--completion", arguments->completion, "Print completion data for lua-language-server (scripts/_meta)");
   arguments->preset.add_paths(*app);
-  return {app, [arguments](Console& console) { return run(*arguments, console); }};
+  return {app, [arguments](Console& console) { return run_effects(*arguments, console); }};
 }
 
 }  // namespace afterglow

@@ -14,7 +14,7 @@
 namespace afterglow {
 namespace {
 
-struct Arguments {
+struct ExplainArguments {
   PresetArguments preset;
   AssumedPicture picture;
   std::string setting, format = "text";
@@ -43,7 +43,7 @@ Result<void> choose(const std::string& text, ExplainView& view) {
   return {};
 }
 
-Result<void> run(const Arguments& arguments, Console& console) {
+Result<void> run_explain(const ExplainArguments& arguments, Console& console) {
   AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
   AFTERGLOW_TRY(const BuildContext context, arguments.picture.context(*look.preset));
   ExplainView view{look, arguments.preset.file, context, "", ""};
@@ -56,7 +56,7 @@ Result<void> run(const Arguments& arguments, Console& console) {
 
 Command add_explain_command(CLI::App& program) {
   auto* app = program.add_subcommand("explain", "Tell where each setting comes from, and what runs and what does not");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ExplainArguments>();
   arguments->preset.add(*app);
   app->add_option("SETTING", arguments->setting, "Show this alone: an entry, or one of its settings (glow.intensity)");
   arguments->picture.add(*app);
@@ -66,7 +66,7 @@ Command add_explain_command(CLI::App& program) {
   app->footer(
       "Needs no Vulkan device.\n"
       "Example: afterglow explain cave.lua glow.intensity --frame 12 --at 4,0,0");
-  return {app, [arguments](Console& console) { return run(*arguments, console); }};
+  return {app, [arguments](Console& console) { return run_explain(*arguments, console); }};
 }
 
 }  // namespace afterglow

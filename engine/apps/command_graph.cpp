@@ -12,14 +12,14 @@
 namespace afterglow {
 namespace {
 
-struct Arguments {
+struct GraphArguments {
   PresetArguments preset;
   AssumedPicture picture;
   std::string format, output;
 };
 
 /// --format, else the output's extension, else dot.
-Result<std::string> format_of(const Arguments& arguments) {
+Result<std::string> format_of(const GraphArguments& arguments) {
   if (!arguments.format.empty()) return arguments.format;
   if (arguments.output.empty()) return std::string("dot");
   const std::string extension = std::filesystem::path(arguments.output).extension().string();
@@ -29,7 +29,7 @@ Result<std::string> format_of(const Arguments& arguments) {
                "afterglow graph", 0, ".dot, .svg, .json, or --format"};
 }
 
-Result<void> run(const Arguments& arguments, Console& console) {
+Result<void> run_graph(const GraphArguments& arguments, Console& console) {
   AFTERGLOW_TRY(const std::string format, format_of(arguments));
   AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
   const std::string& title = look.preset->name();
@@ -45,7 +45,7 @@ Result<void> run(const Arguments& arguments, Console& console) {
 
 Command add_graph_command(CLI::App& program) {
   auto* app = program.add_subcommand("graph", "Show the passes of a preset, and what was skipped or joined and why");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<GraphArguments>();
   arguments->preset.add(*app);
   arguments->picture.add(*app);
   app->add_option("--format", arguments->format, "dot, svg or json (default: by the output's name, else dot)")
@@ -53,7 +53,7 @@ Command add_graph_command(CLI::App& program) {
       ->type_name("FORMAT");
   app->add_option("-o,--output", arguments->output, "File to write (default: standard output)")->type_name("FILE");
   app->footer("Needs no Vulkan device.\nExample: afterglow graph presets/neon_night.lua -o neon.svg");
-  return {app, [arguments](Console& console) { return run(*arguments, console); }};
+  return {app, [arguments](Console& console) { return run_graph(*arguments, console); }};
 }
 
 }  // namespace afterglow

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPlaceholder = "my_effect";
 
-struct Arguments {
+struct NewArguments {
   std::string kind, name, folder = ".";
 };
 
@@ -75,7 +75,7 @@ Result<void> write_new(const fs::path& path, const NewFile& file) {
   return error;
 }
 
-Result<void> run(const Arguments& arguments) {
+Result<void> run_new(const NewArguments& arguments) {
   const fs::path folder = arguments.folder;
   AFTERGLOW_CHECK(check_new_effect_name(arguments.name, search_path_for(folder / "preset.lua", {})));
   AFTERGLOW_TRY(const auto files, files_of(find_installation() / "templates" / arguments.kind, arguments.name));
@@ -99,12 +99,12 @@ Result<void> run(const Arguments& arguments) {
 
 Command add_new_command(CLI::App& program) {
   auto* app = program.add_subcommand("new", "Write a working effect to start from: script, shader, example, test");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<NewArguments>();
   app->add_option("KIND", arguments->kind, "What to write: effect")->required()->check(CLI::IsMember({"effect"}));
   app->add_option("NAME", arguments->name, "Its name: letters, digits and '_'")->required();
   app->add_option("--in", arguments->folder, "Folder to write into (default: this one)")->type_name("FOLDER");
   app->footer("Never overwrites a file.\nExample: afterglow new effect haze");
-  return {app, [arguments](Console&) { return run(*arguments); }};
+  return {app, [arguments](Console&) { return run_new(*arguments); }};
 }
 
 }  // namespace afterglow

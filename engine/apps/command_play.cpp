@@ -20,7 +20,7 @@
 namespace afterglow {
 namespace {
 
-struct Arguments {
+struct PlayArguments {
   PresetArguments preset;
   DeviceArguments device;
   ExecutionArguments execution;
@@ -36,7 +36,7 @@ struct Arguments {
   bool headless = false, fast = false, real_time = false, stats = false, poll = false;
 };
 
-void add_input(CLI::App& app, Arguments& a) {
+void add_input(CLI::App& app, PlayArguments& a) {
   app.add_option("INPUT", a.inputs,
                  "Pictures, sequences like shot.####.exr and shot.%04d.exr, videos (MP4, QuickTime, AVI)")
       ->required();
@@ -62,7 +62,7 @@ void add_input(CLI::App& app, Arguments& a) {
       ->group(group);
 }
 
-void add_playing(CLI::App& app, Arguments& a) {
+void add_playing(CLI::App& app, PlayArguments& a) {
   const std::string group = "Playing", headless = "Without a window";
   app.add_option("--fps", a.fps, "Frames a second (default: the video's, else 24)")
       ->check(CLI::PositiveNumber)
@@ -99,7 +99,7 @@ void add_playing(CLI::App& app, Arguments& a) {
   app.add_option("--report", a.report, "Write them as JSON")->type_name("FILE.json")->group("Messages");
 }
 
-Result<PlayerOptions> player_options(const Arguments& a) {
+Result<PlayerOptions> player_options(const PlayArguments& a) {
   PlayerOptions options;
   AFTERGLOW_TRY(options.live.stack, a.execution.options());
   AFTERGLOW_TRY(options.live.stack.preset, a.preset.options());
@@ -139,12 +139,12 @@ Result<PlayerOptions> player_options(const Arguments& a) {
 }
 
 /// `write_picture` finds the format by the extension: wrong ones are refused before any work.
-Result<void> check_screenshot(const Arguments& a) {
+Result<void> check_screenshot(const PlayArguments& a) {
   return a.screenshot.empty() ? Result<void>{} : check_output(a.screenshot, {});
 }
 
 /// An image between passes that is not there would show the result in its place.
-Result<void> check_shown(const Arguments& a, Player& player) {
+Result<void> check_shown(const PlayArguments& a, Player& player) {
   if (a.show.empty()) return {};
   const std::vector<std::string> images = player.live().images();
   if (images.empty() || std::ranges::find(images, a.show) != images.end()) return {};
@@ -153,7 +153,7 @@ Result<void> check_shown(const Arguments& a, Player& player) {
                join(images),     nearest_name(a.show, images)};
 }
 
-Result<void> play_without_window(const Arguments& a, const PlayerOptions& options, Console& console) {
+Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& options, Console& console) {
   const auto start = Clock::now();
   AFTERGLOW_TRY(const auto device, Device::create(a.device.options(), console.diagnostics()));
   AFTERGLOW_TRY(const auto player, Player::open(*device, options, console.diagnostics()));
@@ -188,7 +188,7 @@ Result<void> play_without_window(const Arguments& a, const PlayerOptions& option
   return done;
 }
 
-Result<void> play_with_window(const Arguments& a, const PlayerOptions& options, Console& console) {
+Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& options, Console& console) {
   const PlayWindowOptions window{
       .scale = a.ui_scale, .full_screen = a.full_screen, .paused = a.paused, .stats = a.stats, .speed = a.speed};
   Result<void> reported;
@@ -206,7 +206,7 @@ Result<void> play_with_window(const Arguments& a, const PlayerOptions& options, 
   return reported;
 }
 
-Result<void> play_command(const Arguments& a, Console& console) {
+Result<void> play_command(const PlayArguments& a, Console& console) {
   AFTERGLOW_TRY(const PlayerOptions options, player_options(a));
   AFTERGLOW_CHECK(check_screenshot(a));
   if (a.headless) return play_without_window(a, options, console);
@@ -217,7 +217,7 @@ Result<void> play_command(const Arguments& a, Console& console) {
 
 Command add_play_command(CLI::App& program) {
   auto* app = program.add_subcommand("play", "Play pictures through a preset that is being edited");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PlayArguments>();
   arguments->preset.add(*app);
   add_input(*app, *arguments);
   add_playing(*app, *arguments);

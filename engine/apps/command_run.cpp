@@ -25,7 +25,7 @@
 namespace afterglow {
 namespace {
 
-struct Arguments {
+struct RunArguments {
   PresetArguments preset;
   DeviceArguments device;
   ExecutionArguments execution;
@@ -39,7 +39,7 @@ struct Arguments {
   std::string stats, report, lock, locked;
 };
 
-void add_files(CLI::App& app, Arguments& a) {
+void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("INPUT", a.files.inputs, "Pictures: files, or sequences like shot.####.exr and shot.%04d.exr")
       ->required();
   app.add_option("-o,--output", a.files.output, "File, pattern (out.####.png) or folder; the extension says the format")
@@ -116,7 +116,7 @@ void add_files(CLI::App& app, Arguments& a) {
       ->group(output);
 }
 
-void add_reports(CLI::App& app, Arguments& a) {
+void add_reports(CLI::App& app, RunArguments& a) {
   app.add_option("--lock", a.lock, "Write down what this was made with: hashes of scripts, shaders, options; versions")
       ->type_name("FILE.json")
       ->group("Output");
@@ -146,7 +146,7 @@ SampleType sample_type(const std::string& text) {
 }
 
 /// Every option that changes pixels, for --lock and the hash that --resume compares.
-PixelOptions pixel_options(const Arguments& a) {
+PixelOptions pixel_options(const RunArguments& a) {
   const auto flag = [](bool given) { return given ? "yes" : ""; };
   const auto number = [](std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; };
   return {{"--set", join(a.preset.overrides, " ")},
@@ -179,7 +179,7 @@ std::string options_text(const PixelOptions& options) {
 
 /// Everything about one run that outlives a step.
 struct Run {
-  const Arguments& arguments;
+  const RunArguments& arguments;
   Console& console;
   Clock::time_point start = Clock::now();
   std::unique_ptr<Session> session;
@@ -190,7 +190,7 @@ struct Run {
   double milliseconds() const { return milliseconds_since(start); }
 };
 
-Result<SessionOptions> session_options(const Arguments& a) {
+Result<SessionOptions> session_options(const RunArguments& a) {
   SessionOptions options;
   options.device = a.device.options();
   AFTERGLOW_TRY(options.stack, a.execution.options());
@@ -200,7 +200,7 @@ Result<SessionOptions> session_options(const Arguments& a) {
   return options;
 }
 
-WriteOptions write_options(const Arguments& a) {
+WriteOptions write_options(const RunArguments& a) {
   WriteOptions options;
   options.type = sample_type(a.type);
   options.compression = a.compression;
@@ -211,7 +211,7 @@ WriteOptions write_options(const Arguments& a) {
   return options;
 }
 
-FrameListRequest files_of(const Arguments& a) {
+FrameListRequest files_of(const RunArguments& a) {
   FrameListRequest request = a.files;
   if (!a.depth.empty()) request.depth = parse_layer_choice(a.depth);
   if (!a.normal.empty()) request.normal = parse_layer_choice(a.normal);
@@ -247,7 +247,7 @@ Result<Graph> usual_graph(Run& run) {
 
 /// Hash of the look for --resume, and the frames that need not be made.
 Result<void> prepare_resume(Run& run) {
-  const Arguments& a = run.arguments;
+  const RunArguments& a = run.arguments;
   if (!a.resume && run.report.frames.size() < 2) return {};
   AFTERGLOW_TRY(const Graph graph, usual_graph(run));
   const std::string options = options_text(pixel_options(a)) + choice_name(run.session->stack().choice().execution);
@@ -266,7 +266,7 @@ Result<void> prepare_resume(Run& run) {
 
 /// With --locked, ends the run when the look is another; with --lock, what to write when the run is done.
 Result<void> prepare_lock(Run& run) {
-  const Arguments& a = run.arguments;
+  const RunArguments& a = run.arguments;
   if (a.lock.empty() && a.locked.empty()) return {};
   AFTERGLOW_TRY(const Graph graph, usual_graph(run));
   AFTERGLOW_TRY(run.lock, lock_of(*run.session, graph, pixel_options(a)));
@@ -287,7 +287,7 @@ Result<void> check_outputs(const Run& run) {
 }
 
 Result<void> run_frames(Run& run, const SessionOptions& options) {
-  const Arguments& a = run.arguments;
+  const RunArguments& a = run.arguments;
   run.loop.write = write_options(a);
   run.loop.nan_policy = nan_policy(a.nan_policy);
   run.loop.fail_fast = a.fail_fast || run.loop.nan_policy == NanPolicy::fail;
@@ -329,7 +329,7 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   return done;
 }
 
-Result<void> run_command(const Arguments& a, Console& console) {
+Result<void> run_run(const RunArguments& a, Console& console) {
   Run run{a, console};
   AFTERGLOW_TRY(const SessionOptions options, session_options(a));
   AFTERGLOW_TRY(const auto jobs, list_frames(files_of(a)));
@@ -350,7 +350,7 @@ Result<void> run_command(const Arguments& a, Console& console) {
 
 Command add_run_command(CLI::App& program) {
   auto* app = program.add_subcommand("run", "Apply a preset to pictures");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RunArguments>();
   arguments->preset.add(*app);
   add_files(*app, *arguments);
   arguments->device.add(*app);
@@ -362,7 +362,7 @@ Command add_run_command(CLI::App& program) {
       "  afterglow run look.lua shot.####.exr -o graded/shot.####.exr --frames 1-240 --resume\n"
       "  afterglow run look.lua *.exr -o graded/ --format png --set glow.strength=0.4 --stats\n"
       "Outputs appear whole or not at all. Notes for --resume lie in the output's folder, in .afterglow/.");
-  return {app, [arguments](Console& console) { return run_command(*arguments, console); }};
+  return {app, [arguments](Console& console) { return run_run(*arguments, console); }};
 }
 
 }  // namespace afterglow

@@ -13,7 +13,7 @@
 namespace afterglow {
 namespace {
 
-struct Arguments {
+struct SetArguments {
   PresetArguments preset;
   std::vector<std::string> settings, resets;
   bool dry_run = false;
@@ -31,7 +31,7 @@ Result<std::vector<Override>> overrides_of(const std::vector<std::string>& setti
   return wanted;
 }
 
-Result<std::vector<PresetEdit>> edits_of(const Arguments& arguments, const std::filesystem::path& file,
+Result<std::vector<PresetEdit>> edits_of(const SetArguments& arguments, const std::filesystem::path& file,
                                          const PresetOptions& options, Console& console) {
   if (arguments.settings.empty() && arguments.resets.empty())
     return Error{ErrorKind::usage, "nothing to change", "afterglow set", 0,
@@ -45,7 +45,7 @@ Result<std::vector<PresetEdit>> edits_of(const Arguments& arguments, const std::
   return edits;
 }
 
-Result<void> run(const Arguments& arguments, Console& console) {
+Result<void> run_set(const SetArguments& arguments, Console& console) {
   AFTERGLOW_TRY(const auto file, arguments.preset.preset_file());
   AFTERGLOW_TRY(const PresetOptions options, arguments.preset.options());
   AFTERGLOW_TRY(const auto edits, edits_of(arguments, file, options, console));
@@ -68,7 +68,7 @@ Result<void> run(const Arguments& arguments, Console& console) {
 
 Command add_set_command(CLI::App& program) {
   auto* app = program.add_subcommand("set", "Change settings in the text of a preset");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SetArguments>();
   app->add_option("PRESET", arguments->preset.file, "Preset to change: a file, or a name on the search path")
       ->required();
   app->add_option("ENTRY.SETTING=VALUE", arguments->settings, "What is to be: glow.intensity=0.4, glow.enabled=false")
@@ -85,7 +85,7 @@ Command add_set_command(CLI::App& program) {
       "they are.\n"
       "Prints the lines that changed. Needs no Vulkan device.\n"
       "Example: afterglow set look.lua glow.intensity=0.4 'glow.tint=#ff8800' --reset glow.scatter");
-  return {app, [arguments](Console& console) { return run(*arguments, console); }};
+  return {app, [arguments](Console& console) { return run_set(*arguments, console); }};
 }
 
 }  // namespace afterglow

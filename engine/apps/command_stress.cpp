@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kShortCases = 1500;
 constexpr Size kGrowthSize{256, 256}, kShortGrowthSize{64, 64};
 
-struct Arguments {
+struct StressArguments {
   std::vector<std::string> presets, effects, paths, devices;
   std::uint64_t seed = 1, cases = 0;
   std::string duration, report, out = "stress", repeat;
@@ -61,10 +61,10 @@ void print_list() {
   fmt::print("{}\n{}", checks.text(), pictures.text());
 }
 
-std::vector<fs::path> extra_paths(const Arguments& a) { return {a.paths.begin(), a.paths.end()}; }
+std::vector<fs::path> extra_paths(const StressArguments& a) { return {a.paths.begin(), a.paths.end()}; }
 
 /// Effects by name, presets whole; without any, every effect there is.
-Result<std::vector<stress::Subject>> subjects_of(const Arguments& a, Console& console) {
+Result<std::vector<stress::Subject>> subjects_of(const StressArguments& a, Console& console) {
   std::vector<stress::Subject> out;
   if (a.presets.empty() || !a.effects.empty()) {
     AFTERGLOW_TRY(out, stress::subjects_of_effects(a.effects, extra_paths(a), console.diagnostics()));
@@ -87,7 +87,7 @@ struct Opened {
   std::unique_ptr<stress::Lab> lab;
 };
 
-Result<Opened> open(const Arguments& a, const std::string& name, Diagnostics& diagnostics) {
+Result<Opened> open(const StressArguments& a, const std::string& name, Diagnostics& diagnostics) {
   DeviceArguments device;
   device.device = name;
   device.validate = a.validate;
@@ -106,7 +106,7 @@ Result<void> check_validation(const Device& device) {
 }
 
 /// --repeat FOLDER: the case again. Errors: other (it still fails).
-Result<void> repeat(const Arguments& a, Console& console) {
+Result<void> repeat(const StressArguments& a, Console& console) {
   AFTERGLOW_TRY(const stress::Situation situation, stress::read_reproducer(a.repeat, console.diagnostics()));
   Diagnostics quiet;
   AFTERGLOW_TRY(const Opened opened, open(a, a.devices.empty() ? "auto" : a.devices.front(), quiet));
@@ -122,7 +122,7 @@ Result<void> repeat(const Arguments& a, Console& console) {
 }
 
 /// Words by which another process of this program tries the same.
-std::vector<std::string> same_arguments(const Arguments& a, const std::string& device) {
+std::vector<std::string> same_arguments(const StressArguments& a, const std::string& device) {
   std::vector<std::string> out{"stress"};
   for (const auto& preset : a.presets) out.push_back(preset);
   for (const auto& effect : a.effects) out.insert(out.end(), {"--effect", effect});
@@ -132,7 +132,7 @@ std::vector<std::string> same_arguments(const Arguments& a, const std::string& d
 }
 
 /// The other side of it: prints the digests of trials.
-Result<void> print_digests(const Arguments& a, Console& console) {
+Result<void> print_digests(const StressArguments& a, Console& console) {
   AFTERGLOW_TRY(auto subjects, subjects_of(a, console));
   Diagnostics quiet;
   AFTERGLOW_TRY(const Opened opened, open(a, a.devices.empty() ? "auto" : a.devices.front(), quiet));
@@ -149,7 +149,7 @@ Result<void> print_digests(const Arguments& a, Console& console) {
   return {};
 }
 
-Result<std::vector<stress::ProcessCheck>> ask_other_processes(const Arguments& a, const std::string& device,
+Result<std::vector<stress::ProcessCheck>> ask_other_processes(const StressArguments& a, const std::string& device,
                                                               const std::map<std::uint64_t, Hash>& digests) {
   constexpr std::size_t kMost = 200;  // arguments of a command line
   std::map<std::uint64_t, Hash> some;
@@ -170,7 +170,7 @@ Result<std::vector<stress::ProcessCheck>> ask_other_processes(const Arguments& a
   return out;
 }
 
-Result<stress::StressReport> try_device(const Arguments& a, const std::string& device, Console& console) {
+Result<stress::StressReport> try_device(const StressArguments& a, const std::string& device, Console& console) {
   AFTERGLOW_TRY(auto subjects, subjects_of(a, console));
   Diagnostics quiet;  // settings that are hard to stand are worth a warning each
   AFTERGLOW_TRY(const Opened opened, open(a, device, quiet));
@@ -221,7 +221,7 @@ Result<stress::StressReport> try_device(const Arguments& a, const std::string& d
   return report;
 }
 
-Result<void> run_command(const Arguments& a, Console& console) {
+Result<void> run_stress(const StressArguments& a, Console& console) {
   if (a.list) {
     print_list();
     return {};
@@ -245,7 +245,7 @@ Result<void> run_command(const Arguments& a, Console& console) {
   return Error{ErrorKind::other, fmt::format("{} cases failed (seed {})", failures, a.seed), "afterglow stress"};
 }
 
-void add_options(CLI::App& app, Arguments& a) {
+void add_options(CLI::App& app, StressArguments& a) {
   const auto list = [&](const char* name, std::vector<std::string>& into, const char* help, const char* type) {
     return app.add_option(name, into, help)->type_name(type)->expected(1)->allow_extra_args(false)->take_all();
   };
@@ -273,7 +273,7 @@ void add_options(CLI::App& app, Arguments& a) {
 
 Command add_stress_command(CLI::App& program) {
   auto* app = program.add_subcommand("stress", "Try to break effects and looks with hard pictures and settings");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<StressArguments>();
   add_options(*app, *arguments);
   app->footer(
       "Examples:\n"
@@ -282,7 +282,7 @@ Command add_stress_command(CLI::App& program) {
       "  afterglow stress look.lua --for 1h --report stress.json\n"
       "  afterglow stress --repeat stress/seed-7/my_effect-finite-12-render\n"
       "Exit code 0: everything held; 1: something did not. Effects say in `holds` what else to hold them to.");
-  return {app, [arguments](Console& console) { return run_command(*arguments, console); }};
+  return {app, [arguments](Console& console) { return run_stress(*arguments, console); }};
 }
 
 }  // namespace afterglow

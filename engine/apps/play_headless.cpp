@@ -9,7 +9,7 @@
 namespace afterglow {
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kUntilStopped = std::numeric_limits<double>::infinity();
 
 std::uint64_t frames_had(const Player& player) {
   const PlayerStats stats = player.stats();
@@ -42,7 +42,7 @@ Result<void> play_headless(Player& player, const HeadlessOptions& options) {
     AFTERGLOW_TRY(const Step step, player.step());
     if (player.shown().failed) return *player.shown().failed;
     if (options.count && frames_had(player) >= *options.count) break;
-    if (!step.changed) player.wait(options.fast && transport.playing() ? kForever : step.next);
+    if (!step.changed) player.wait(options.fast && transport.playing() ? kUntilStopped : step.next);
   }
   transport.pause(player.now());
   if (interrupted()) return interrupt_error();

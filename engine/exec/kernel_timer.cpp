@@ -49,7 +49,7 @@ Error KernelTimer::blame(Error error, const Plan& plan) {
   if (plan.kernels.empty()) return error;
   error.message +=
       fmt::format(" while running {} kernel(s), the last of them '{}'", plan.kernels.size(), plan.kernels.back().name);
-  error.trail.push_back("times per pass (--stats=passes) run each kernel alone and name the one that fails");
+  error.trail.emplace_back("times per pass (--stats=passes) run each kernel alone and name the one that fails");
   return error;
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 using Vector3 = std::array<double, 3>;
 
-Vector3 apply(const Matrix3& m, const Vector3& v) {
+Vector3 transform(const Matrix3& m, const Vector3& v) {
   Vector3 out{};
   for (int i = 0; i < 3; ++i) out[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
   return out;
@@ -50,14 +50,14 @@ Matrix3 rgb_to_xyz(const Chromaticities& p) {
   const Vector3 r = column(p.red), g = column(p.green), b = column(p.blue);
   Matrix3 m{};
   for (int i = 0; i < 3; ++i) m[i] = {r[i], g[i], b[i]};
-  const Vector3 scale = apply(inverse(m), xyz_of(p.white));
+  const Vector3 scale = transform(inverse(m), xyz_of(p.white));
   for (auto& row : m)
     for (int j = 0; j < 3; ++j) row[j] *= scale[j];
   return m;
 }
 
 Matrix3 adapt_white(const std::array<double, 2>& from, const std::array<double, 2>& to) {
-  const Vector3 source = apply(kBradford, xyz_of(from)), target = apply(kBradford, xyz_of(to));
+  const Vector3 source = transform(kBradford, xyz_of(from)), target = transform(kBradford, xyz_of(to));
   Matrix3 gain{};
   for (int i = 0; i < 3; ++i) gain[i][i] = target[i] / source[i];
   return multiply(inverse(kBradford), multiply(gain, kBradford));

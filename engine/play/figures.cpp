@@ -6,7 +6,7 @@
 namespace afterglow {
 namespace {
 
-constexpr std::size_t kMostFrames = 100'000, kMostLatencies = 1000, kFpsFrames = 24;
+constexpr std::size_t kMostWorkTimes = 100'000, kMostLatencies = 1000, kFpsFrames = 24;
 
 template <class T>
 void add(std::deque<T>& row, const T& value, std::size_t most) {
@@ -29,8 +29,8 @@ Percentiles Percentiles::of(std::vector<double> values) {
 
 void Figures::frame_shown(double now, double work, bool playing) {
   ++shown_;
-  if (playing) add(work_, work, kMostFrames);
-  if (playing && last_ >= 0) add(intervals_, (now - last_) * 1000, kMostFrames);
+  if (playing) add(work_, work, kMostWorkTimes);
+  if (playing && last_ >= 0) add(intervals_, (now - last_) * 1000, kMostWorkTimes);
   last_ = playing ? now : -1;
 }
 

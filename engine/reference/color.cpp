@@ -10,8 +10,6 @@ namespace {
 constexpr double kLogcA = 5.555556, kLogcB = 0.047996, kLogcC = 0.244161, kLogcD = 0.386036;
 constexpr double kHsvEpsilon = 1e-4;
 
-double saturate(double x) { return glm::clamp(x, 0.0, 1.0); }
-
 }  // namespace
 
 double luminance(const Rgb& c) { return 0.2126729 * c.r + 0.7151522 * c.g + 0.0721750 * c.b; }

@@ -8,6 +8,9 @@ namespace afterglow::reference {
 /// Pivot of the contrast step inside LogC: ACEScc's middle grey. Its linear value there is 0.2247698.
 inline constexpr double kAcesccMidGray = 0.4135884;
 
+/// Held to 0…1.
+inline double saturate(double x) { return glm::clamp(x, 0.0, 1.0); }
+
 /// Rec.709/D65 luminance; the weights add up to 1.0000001 and are used so.
 double luminance(const Rgb& c);
 

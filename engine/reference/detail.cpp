@@ -7,11 +7,7 @@
 
 namespace afterglow::reference {
 
-namespace {
-
-double saturate(double x) { return glm::clamp(x, 0.0, 1.0); }
-
-}  // namespace
+namespace {}  // namespace
 
 double perceived(const Rgb& c) { return std::sqrt(luminance(glm::clamp(c, Rgb(0), Rgb(1)))); }
 

@@ -19,8 +19,6 @@ DoubleImage bright_half(const DoubleImage& source, double threshold) {
                    [&](const Rgb& c) { return box_bloom_threshold(c, threshold, BoxBrightness::max); });
 }
 
-double unit(std::uint32_t word) { return (word >> 8u) / 16777216.0; }
-
 double layer(double x, double y, const LensDirt& s, std::uint32_t number) {
   const int home_x = static_cast<int>(std::floor(x)), home_y = static_cast<int>(std::floor(y));
   double sum = 0;

@@ -8,8 +8,6 @@ namespace afterglow::reference {
 
 namespace {
 
-double unit(std::uint32_t word) { return (word >> 8u) / 16777216.0; }
-
 int wrapped(int i, int n) { return ((i % n) + n) % n; }
 
 }  // namespace

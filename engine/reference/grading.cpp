@@ -9,8 +9,6 @@ namespace afterglow::reference {
 
 namespace {
 
-double saturate(double x) { return glm::clamp(x, 0.0, 1.0); }
-
 double smoothstep(double from, double to, double x) {
   const double t = saturate((x - from) / (to - from));
   return t * t * (3 - 2 * t);

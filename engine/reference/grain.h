@@ -10,6 +10,8 @@ namespace afterglow::reference {
 
 /// pcg3d (Jarzynski, Olano, JCGT 9/3, 2020).
 using Words = std::array<std::uint32_t, 3>;
+/// 0 … 1, without 1: the upper 24 bits of a random word.
+inline double unit(std::uint32_t word) { return (word >> 8u) / 16777216.0; }
 Words pcg3d(Words v);
 
 struct FilmGrain {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "reference/color.h"
+
 namespace afterglow::reference {
 
 namespace {
@@ -14,8 +16,6 @@ struct Pixel {
 struct Samples {
   Pixel centre, right, below;
 };
-
-double saturate(double x) { return glm::clamp(x, 0.0, 1.0); }
 
 /// The 2×2 quad of the pixel; its origin is even. All four pixels share one result.
 Samples quad(int x, int y) {

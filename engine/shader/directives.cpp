@@ -21,9 +21,9 @@ Error unknown_directive(const std::string& file, const Token& word) {
   return error;
 }
 
-class Scanner {
+class DirectiveScanner {
  public:
-  explicit Scanner(const std::string& file) : file_(file) {}
+  explicit DirectiveScanner(const std::string& file) : file_(file) {}
 
   Result<Directives> run(const std::vector<Token>& tokens) {
     for (std::size_t i = 0; i < tokens.size();) {
@@ -87,7 +87,7 @@ class Scanner {
 }  // namespace
 
 Result<Directives> scan_directives(const std::vector<Token>& tokens, const std::string& file) {
-  return Scanner(file).run(tokens);
+  return DirectiveScanner(file).run(tokens);
 }
 
 }  // namespace afterglow

@@ -35,9 +35,9 @@ const std::vector<std::string>& uniform_types() {
   return kNames;
 }
 
-class Scanner {
+class ShaderScanner {
  public:
-  Scanner(const std::string& file, ScanAs as) : file_(file), as_(as) {}
+  ShaderScanner(const std::string& file, ScanAs as) : file_(file), as_(as) {}
 
   Result<ShaderScan> run(std::vector<Token> tokens) {
     out_.tokens = std::move(tokens);
@@ -392,7 +392,7 @@ class Scanner {
 
 Result<ShaderScan> scan(std::string_view text, const std::string& file, ScanAs as) {
   AFTERGLOW_TRY(auto tokens, tokenize(text, file));
-  return Scanner(file, as).run(std::move(tokens));
+  return ShaderScanner(file, as).run(std::move(tokens));
 }
 
 }  // namespace afterglow

@@ -87,12 +87,12 @@ Result<Outcome> continuous(Lab& lab, const Situation& s, const Hold& hold) {
 
 constexpr long long kSmall = 4096;
 
-constexpr Check kChecks[] = {
+constexpr Check kContinuousChecks[] = {
     {"continuous", "continuous", "no jump where light changes by a little", continuous, kSmall},
 };
 
 }  // namespace
 
-std::span<const Check> continuous_checks() { return kChecks; }
+std::span<const Check> continuous_checks() { return kContinuousChecks; }
 
 }  // namespace afterglow::stress

@@ -40,13 +40,13 @@ Result<Outcome> error_fp16(Lab& lab, const Situation& s, const Hold& hold) { ret
 
 constexpr long long kLargeForOracle = 1 << 17;
 
-constexpr Check kChecks[] = {
+constexpr Check kExactChecks[] = {
     {"error_fp32", "error", "the error against double precision, in full floats", error_fp32, kLargeForOracle},
     {"error_fp16", "error", "the same with images in half floats", error_fp16, kLargeForOracle},
 };
 
 }  // namespace
 
-std::span<const Check> exact_checks() { return kChecks; }
+std::span<const Check> exact_checks() { return kExactChecks; }
 
 }  // namespace afterglow::stress

@@ -161,7 +161,7 @@ Result<Outcome> idle(Lab& lab, const Situation& s, const Hold&) {
   return compare(some.image, all.image, 0, way.name());
 }
 
-constexpr Check kChecks[] = {
+constexpr Check kCommonChecks[] = {
     {"finite", nullptr, "nothing non-finite leaves any pass, each on its own in full floats", finite},
     {"finite_joined", nullptr, "nor as users run it, in full and half floats, nor any image in between", finite_joined},
     {"alpha", nullptr, "alpha is the source's, bit for bit", alpha},
@@ -174,6 +174,6 @@ constexpr Check kChecks[] = {
 
 }  // namespace
 
-std::span<const Check> common_checks() { return kChecks; }
+std::span<const Check> common_checks() { return kCommonChecks; }
 
 }  // namespace afterglow::stress

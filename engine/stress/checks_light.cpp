@@ -225,7 +225,7 @@ Result<Outcome> proportional(Lab& lab, const Situation& s, const Hold& hold) {
                                   setting, low, high, worst, place_of(of_high, at)));
 }
 
-constexpr Check kChecks[] = {
+constexpr Check kLightChecks[] = {
     {"black", "black", "black stays black", black},
     {"constant", "constant", "one colour stays one colour", constant},
     {"mean", "mean", "the mean stays", mean},
@@ -242,6 +242,6 @@ Picture greys_of(const Situation& s) {
   return with_color(s, [](int, int, float* p) { set_grey(p, grey_of(p)); });
 }
 
-std::span<const Check> light_checks() { return kChecks; }
+std::span<const Check> light_checks() { return kLightChecks; }
 
 }  // namespace afterglow::stress

@@ -126,7 +126,7 @@ Result<Outcome> shift(Lab& lab, const Situation& s, const Hold& hold) {
                  hold.numbers.at("within"), fmt::format("moved by {} and {} pixels", dx, dy));
 }
 
-constexpr Check kChecks[] = {
+constexpr Check kSymmetryChecks[] = {
     {"mirror", "mirror", "mirrored pictures give mirrored results", mirror},
     {"turn_180", "turn_180", "turned pictures give turned results", turn_180},
     {"turn_90", "turn_90", "the same for 90 degrees", turn_90},
@@ -135,6 +135,6 @@ constexpr Check kChecks[] = {
 
 }  // namespace
 
-std::span<const Check> symmetry_checks() { return kChecks; }
+std::span<const Check> symmetry_checks() { return kSymmetryChecks; }
 
 }  // namespace afterglow::stress

@@ -8,14 +8,10 @@
 namespace afterglow {
 namespace {
 
-void help(const char* text) {
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
-}
-
 // One control; true when pressed.
 bool button(const Ui& ui, const char* label, const char* text) {
   const bool pressed = ImGui::Button(label, {ui.px(34), 0});
-  help(text);
+  Ui::help(text);
   ImGui::SameLine(0, ui.px(2));
   return pressed;
 }
@@ -32,25 +28,25 @@ void draw_buttons(const Ui& ui, TransportBarState& state) {
     const auto next = static_cast<LoopMode>((static_cast<int>(transport.loop()) + 1) % 3);
     transport.set_loop(next, state.now);
   }
-  help("What happens at the ends of the range (L)");
+  Ui::help("What happens at the ends of the range (L)");
   ImGui::SameLine(0, ui.px(10));
   float speed = static_cast<float>(transport.speed());
   ImGui::SetNextItemWidth(ui.px(84));
   if (ImGui::DragFloat("##speed", &speed, 0.02f, -8, 8, "%.2fx") && std::abs(speed) >= Transport::kSlowest)
     transport.set_speed(speed, state.now);
   if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) transport.set_speed(1, state.now);
-  help("Speed; negative is backwards (, and .); right-click for 1");
+  Ui::help("Speed; negative is backwards (, and .); right-click for 1");
   ImGui::SameLine(0, ui.px(4));
   float fps = static_cast<float>(transport.fps());
   ImGui::SetNextItemWidth(ui.px(84));
   if (ImGui::DragFloat("##fps", &fps, 0.1f, 1, 240, "%.3g fps", ImGuiSliderFlags_AlwaysClamp))
     transport.set_fps(fps, state.now);
-  help("Frames a second at speed 1");
+  Ui::help("Frames a second at speed 1");
   ImGui::SameLine(0, ui.px(4));
   bool every = transport.pacing() == Pacing::every_frame;
   if (ImGui::Checkbox("every frame", &every))
     transport.set_pacing(every ? Pacing::every_frame : Pacing::real_time, state.now);
-  help("As fast as it goes, without dropping frames, instead of by the clock");
+  Ui::help("As fast as it goes, without dropping frames, instead of by the clock");
 }
 
 void draw_figures(const Ui& ui, const TransportBarState& state) {
@@ -66,7 +62,7 @@ void draw_figures(const Ui& ui, const TransportBarState& state) {
       std::max(ImGui::GetCursorPosX(), ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text.c_str()).x));
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopFont();
-  if (!state.picture.empty()) help(state.picture.c_str());
+  if (!state.picture.empty()) Ui::help(state.picture.c_str());
 }
 
 struct Bar {

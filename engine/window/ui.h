@@ -38,6 +38,10 @@ struct Ui {
     message = text;
     message_until = now + 3;
   }
+  /// Tells about the item that was drawn last, while the pointer is over it.
+  static void help(const char* text) {
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+  }
   std::string message;
   double message_until = 0;
 

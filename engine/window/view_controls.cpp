@@ -8,10 +8,6 @@ namespace {
 constexpr ViewChannel kChannels[] = {ViewChannel::color, ViewChannel::red,   ViewChannel::green,
                                      ViewChannel::blue,  ViewChannel::alpha, ViewChannel::luminance};
 
-void help(const char* text) {
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
-}
-
 void draw_image_picker(PanelPort& port) {
   const std::string shown = port.shown_image();
   if (ImGui::BeginCombo("image", shown.empty() ? "result" : shown.c_str(), ImGuiComboFlags_HeightLarge)) {
@@ -20,7 +16,7 @@ void draw_image_picker(PanelPort& port) {
       if (ImGui::Selectable(name.c_str(), name == shown)) port.show(name);
     ImGui::EndCombo();
   }
-  help("The result, or any image between passes (N, Shift+N, Backspace)");
+  Ui::help("The result, or any image between passes (N, Shift+N, Backspace)");
 }
 
 void draw_comparison(PanelPort& port) {
@@ -32,12 +28,12 @@ void draw_comparison(PanelPort& port) {
     }
     ImGui::EndCombo();
   }
-  help("Left of the border: what went in, or the other preset's result (W)");
+  Ui::help("Left of the border: what went in, or the other preset's result (W)");
   if (view.compare == Compare::none) return;
   float wipe = static_cast<float>(view.wipe);
   if (ImGui::SliderFloat("border", &wipe, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) view.wipe = wipe;
   ImGui::Checkbox("horizontal border", &view.wipe_vertical);
-  help("Shift+W");
+  Ui::help("Shift+W");
 }
 
 }  // namespace
@@ -49,23 +45,23 @@ void draw_view_controls(Ui& ui, PanelPort& port) {
   float exposure = static_cast<float>(view.exposure);
   if (ImGui::SliderFloat("exposure", &exposure, -10, 10, "%+.2f EV")) view.exposure = exposure;
   if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) view.exposure = 0;
-  help("Of the view alone, before encoding for the screen (Up, Down, 0); right-click for 0");
+  Ui::help("Of the view alone, before encoding for the screen (Up, Down, 0); right-click for 0");
   if (ImGui::BeginCombo("channel", view_channel_name(view.channel).c_str())) {
     for (const ViewChannel channel : kChannels)
       if (ImGui::Selectable(view_channel_name(channel).c_str(), channel == view.channel)) view.channel = channel;
     ImGui::EndCombo();
   }
-  help("C, R, G, B, A, Y");
+  Ui::help("C, R, G, B, A, Y");
   draw_comparison(port);
   ImGui::PopItemWidth();
   ImGui::Checkbox("false colour", &view.false_color);
-  help("Marks values below 0, above 1, and what is not finite (X)");
+  Ui::help("Marks values below 0, above 1, and what is not finite (X)");
   ImGui::SameLine();
   ImGui::Checkbox("histogram", &ui.show_histogram);
-  help("H");
+  Ui::help("H");
   ImGui::SameLine();
   ImGui::Checkbox("figures", &ui.show_stats);
-  help("Frame times and reload latency (S)");
+  Ui::help("Frame times and reload latency (S)");
 }
 
 }  // namespace afterglow

@@ -19,7 +19,7 @@ std::string lua(const BloomSettings& s) {
       s.knee, s.intensity, s.scatter, s.bicubic_upsampling, s.fade_fireflies, s.reference_height);
 }
 
-std::string level(const char* name, std::size_t i) { return fmt::format("bloom.{}[{}]", name, i); }
+std::string bloom_image(const char* name, std::size_t i) { return fmt::format("bloom.{}[{}]", name, i); }
 
 std::vector<float> interleaved_floats(const DoubleImage& image) {
   const auto doubles = interleaved(image);
@@ -30,7 +30,7 @@ std::vector<float> interleaved_floats(const DoubleImage& image) {
 void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& s) {
   const auto threshold = BloomThreshold::from_gamma(s.threshold, s.knee);
   DoubleImage picture = scene.source;
-  for (std::size_t i = 0; made.has(level("scaled", i)); ++i) picture = made.image(level("scaled", i));
+  for (std::size_t i = 0; made.has(bloom_image("scaled", i)); ++i) picture = made.image(bloom_image("scaled", i));
   if (s.reference_height > 0)
     EXPECT_TRUE(agrees(interleaved_floats(picture), bloom_scaled(scene.source, s.reference_height), kFullFloat, kRgb))
         << "scaled";
@@ -40,23 +40,23 @@ void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& 
              kFullFloat, kRgb))
       << "prefilter";
   std::size_t levels = 0;
-  for (std::string before = "bloom.prefilter"; made.has(level("vertical", levels));
-       before = level("vertical", levels++)) {
+  for (std::string before = "bloom.prefilter"; made.has(bloom_image("vertical", levels));
+       before = bloom_image("vertical", levels++)) {
     EXPECT_TRUE(
-        agrees(made.pixels(level("horizontal", levels)), bloom_horizontal(made.image(before)), kFullFloat, kRgb))
+        agrees(made.pixels(bloom_image("horizontal", levels)), bloom_horizontal(made.image(before)), kFullFloat, kRgb))
         << "horizontal " << levels;
-    EXPECT_TRUE(agrees(made.pixels(level("vertical", levels)), bloom_vertical(made.image(level("horizontal", levels))),
-                       kFullFloat, kRgb))
+    EXPECT_TRUE(agrees(made.pixels(bloom_image("vertical", levels)),
+                       bloom_vertical(made.image(bloom_image("horizontal", levels))), kFullFloat, kRgb))
         << "vertical " << levels;
   }
-  std::string low = level("vertical", levels - 1);
-  for (std::size_t i = levels - 1; i-- > 0; low = level("combine", i)) {
-    const auto high = made.image(level("vertical", i)), up = made.image(level("up", i));
-    EXPECT_TRUE(agrees(made.pixels(level("up", i)), bloom_up(made.image(low), high.size(), s.bicubic_upsampling),
+  std::string low = bloom_image("vertical", levels - 1);
+  for (std::size_t i = levels - 1; i-- > 0; low = bloom_image("combine", i)) {
+    const auto high = made.image(bloom_image("vertical", i)), up = made.image(bloom_image("up", i));
+    EXPECT_TRUE(agrees(made.pixels(bloom_image("up", i)), bloom_up(made.image(low), high.size(), s.bicubic_upsampling),
                        kFullFloat, kRgb))
         << "up " << i;
     const auto combined = s.mode == BloomMode::additive ? bloom_add(up, high, 1) : bloom_scatter(up, high, s.scatter);
-    EXPECT_TRUE(agrees(made.pixels(level("combine", i)), combined, kFullFloat, kRgb)) << "combine " << i;
+    EXPECT_TRUE(agrees(made.pixels(bloom_image("combine", i)), combined, kFullFloat, kRgb)) << "combine " << i;
   }
   EXPECT_TRUE(
       agrees(made.pixels("bloom.up"), bloom_up(made.image(low), made.size, s.bicubic_upsampling), kFullFloat, kRgb))
@@ -74,14 +74,16 @@ void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& 
 void check_end_to_end(const Made& made, const BloomImages& expected) {
   EXPECT_TRUE(agrees(made.pixels("bloom.prefilter"), expected.prefilter, kFullFloat, kRgb));
   for (std::size_t i = 0; i < expected.vertical.size(); ++i) {
-    EXPECT_TRUE(agrees(made.pixels(level("horizontal", i)), expected.horizontal[i], kFullFloat, kRgb))
+    EXPECT_TRUE(agrees(made.pixels(bloom_image("horizontal", i)), expected.horizontal[i], kFullFloat, kRgb))
         << "horizontal " << i;
-    EXPECT_TRUE(agrees(made.pixels(level("vertical", i)), expected.vertical[i], kFullFloat, kRgb)) << "vertical " << i;
+    EXPECT_TRUE(agrees(made.pixels(bloom_image("vertical", i)), expected.vertical[i], kFullFloat, kRgb))
+        << "vertical " << i;
   }
-  EXPECT_FALSE(made.has(level("vertical", expected.vertical.size()))) << "too many levels";
+  EXPECT_FALSE(made.has(bloom_image("vertical", expected.vertical.size()))) << "too many levels";
   for (std::size_t i = 0; i < expected.combine.size(); ++i) {
-    EXPECT_TRUE(agrees(made.pixels(level("up", i)), expected.up[i], kFullFloat, kRgb)) << "up " << i;
-    EXPECT_TRUE(agrees(made.pixels(level("combine", i)), expected.combine[i], kFullFloat, kRgb)) << "combine " << i;
+    EXPECT_TRUE(agrees(made.pixels(bloom_image("up", i)), expected.up[i], kFullFloat, kRgb)) << "up " << i;
+    EXPECT_TRUE(agrees(made.pixels(bloom_image("combine", i)), expected.combine[i], kFullFloat, kRgb))
+        << "combine " << i;
   }
   EXPECT_TRUE(agrees(made.result, expected.result, kFullFloat, kRgba));
 }

@@ -15,7 +15,7 @@ std::string lua(const BoxBloomSettings& s) {
                      s.brightness == BoxBrightness::max ? "max" : "luma");
 }
 
-std::string level(const char* name, std::size_t i) { return fmt::format("box_bloom.{}[{}]", name, i); }
+std::string box_bloom_image(const char* name, std::size_t i) { return fmt::format("box_bloom.{}[{}]", name, i); }
 
 void check(const Scene& scene, const BoxBloomSettings& settings) {
   SCOPED_TRACE(scene.name + ": " + lua(settings));
@@ -25,16 +25,17 @@ void check(const Scene& scene, const BoxBloomSettings& settings) {
 
   EXPECT_TRUE(agrees(made.pixels("box_bloom.threshold"), expected.down[0], kFullFloat, kRgb));
   for (std::size_t i = 1; i < n; ++i) {
-    const auto& down = made.pixels(level("down", i));
+    const auto& down = made.pixels(box_bloom_image("down", i));
     EXPECT_TRUE(agrees(down, expected.down[i], kFullFloat, kRgb)) << "down " << i;
-    const auto before = made.image(i == 1 ? "box_bloom.threshold" : level("down", i - 1));
+    const auto before = made.image(i == 1 ? "box_bloom.threshold" : box_bloom_image("down", i - 1));
     EXPECT_TRUE(agrees(down, box_bloom_blur(before, expected.down[i].size(), settings.pattern), kFullFloat, kRgb))
         << "down " << i;
   }
-  EXPECT_FALSE(made.has(level("down", n)));
+  EXPECT_FALSE(made.has(box_bloom_image("down", n)));
   for (std::size_t i = 1; i + 1 < n; ++i) {
-    EXPECT_TRUE(agrees(made.pixels(level("up", i)), expected.blur_up[i], kFullFloat, kRgb)) << "up " << i;
-    EXPECT_TRUE(agrees(made.pixels(level("combine", i)), expected.up[i], kFullFloat, kRgb)) << "combine " << i;
+    EXPECT_TRUE(agrees(made.pixels(box_bloom_image("up", i)), expected.blur_up[i], kFullFloat, kRgb)) << "up " << i;
+    EXPECT_TRUE(agrees(made.pixels(box_bloom_image("combine", i)), expected.up[i], kFullFloat, kRgb))
+        << "combine " << i;
   }
   if (n > 1) {
     EXPECT_TRUE(agrees(made.pixels("box_bloom.up"), expected.final_up, kFullFloat, kRgb));

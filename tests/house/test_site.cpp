@@ -16,14 +16,14 @@ namespace afterglow {
 namespace {
 namespace fs = std::filesystem;
 
-const fs::path kProject = AFTERGLOW_PROJECT_FOLDER;
+const fs::path kProjectFolder = AFTERGLOW_PROJECT_FOLDER;
 
 class Site : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     std::string pattern = (fs::temp_directory_path() / "afterglow-site-XXXXXX").string();
     folder_ = mkdtemp(pattern.data());
-    const std::string command = "'" + (kProject / "docs" / "site.sh").string() + "' '" + folder_.string() + "'";
+    const std::string command = "'" + (kProjectFolder / "docs" / "site.sh").string() + "' '" + folder_.string() + "'";
     made_ = std::system(command.c_str()) == 0;
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
@@ -51,9 +51,9 @@ class Site : public testing::Test {
 };
 
 TEST_F(Site, EveryDocumentIsAPage) {
-  for (const auto& entry : fs::recursive_directory_iterator(kProject / "docs"))
+  for (const auto& entry : fs::recursive_directory_iterator(kProjectFolder / "docs"))
     if (entry.path().extension() == ".md") {
-      auto page = folder_ / fs::relative(entry.path(), kProject);
+      auto page = folder_ / fs::relative(entry.path(), kProjectFolder);
       EXPECT_TRUE(fs::exists(page.replace_extension(".html"))) << page << ": add it to the pages of docs/site.sh";
     }
   for (const char* page : {"index.html", "README.html", "CONTRIBUTING.html", "CHANGELOG.html"})
@@ -95,15 +95,15 @@ std::string section_of(const std::string& text, const std::string& effect) {
 }
 
 TEST(Documents, EveryEffectHasItsPlaceInTheReference) {
-  const std::string text = read_file(kProject / "docs" / "effects.md").value();
+  const std::string text = read_file(kProjectFolder / "docs" / "effects.md").value();
   int effects = 0;
-  for (const auto& entry : fs::directory_iterator(kProject / "scripts" / "effects")) {
+  for (const auto& entry : fs::directory_iterator(kProjectFolder / "scripts" / "effects")) {
     const std::string name = entry.path().stem().string(), section = section_of(text, name);
     ++effects;
     ASSERT_FALSE(section.empty()) << name << " is not in docs/effects.md; run docs/effects/make.sh";
     EXPECT_NE(section.find("\nCost: "), std::string::npos) << name;
     EXPECT_NE(section.find("](images/effects/" + name + ".jpg)"), std::string::npos) << name;
-    EXPECT_TRUE(fs::exists(kProject / "docs/images/effects" / (name + ".jpg"))) << name;
+    EXPECT_TRUE(fs::exists(kProjectFolder / "docs/images/effects" / (name + ".jpg"))) << name;
     EXPECT_NE(section.find("```lua\nfx." + name), std::string::npos) << name << ": no example";
     // Formula or source stand in the comment that the effect's file begins with.
     EXPECT_TRUE(read_file(entry.path()).value().starts_with("-- ")) << name << " does not say where it comes from";

@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr std::uint64_t kPicture = 10 * 10 * 4 * sizeof(float);
+constexpr std::uint64_t kPictureBytes = 10 * 10 * 4 * sizeof(float);
 
 /// Reads pictures of 10×10 whose values are their keys; negative keys fail. With `hold`, each waits for `let`.
 class Reader {
@@ -61,7 +61,7 @@ struct Cache {
 
   Cache(std::uint64_t pictures, int threads, bool hold = false)
       : reader(hold),
-        ahead([this](int key) { return reader(key); }, {pictures * kPicture, threads},
+        ahead([this](int key) { return reader(key); }, {pictures * kPictureBytes, threads},
               [this] {
                 const std::lock_guard lock(mutex);
                 ++arrived;
@@ -82,7 +82,7 @@ TEST(ReadAhead, ReadsTheMostUrgentFirstAndNoMoreThanFits) {
   const auto stats = cache.ahead.stats();
   EXPECT_EQ(stats.pictures, 3);
   EXPECT_EQ(stats.ahead, 3);
-  EXPECT_EQ(stats.bytes, 3 * kPicture);
+  EXPECT_EQ(stats.bytes, 3 * kPictureBytes);
   EXPECT_EQ(cache.ahead.find(6)->picture.color.pixels[0], 6);
   EXPECT_EQ(cache.ahead.find(8), nullptr);
 }
@@ -97,7 +97,7 @@ TEST(ReadAhead, WhatIsBehindMakesRoomForWhatIsAhead) {
   EXPECT_NE(cache.ahead.find(1), nullptr);
   EXPECT_NE(cache.ahead.find(2), nullptr);
   EXPECT_EQ(cache.ahead.stats().evicted, 1u);
-  EXPECT_LE(cache.ahead.stats().most_bytes, 3 * kPicture);
+  EXPECT_LE(cache.ahead.stats().most_bytes, 3 * kPictureBytes);
 }
 
 TEST(ReadAhead, WhatFitsStaysForTheNextLap) {

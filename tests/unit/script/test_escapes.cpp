@@ -12,7 +12,7 @@ using testing::AnyOf;
 using testing::HasSubstr;
 
 // Statements of a preset that has `fx`; its error, "" when it loads.
-std::string run(const std::string& statements) {
+std::string escape(const std::string& statements) {
   Scene scene;
   scene.options.limits = {16u << 20, 2'000'000, 60};
   scene.preset("local fx = require \"afterglow\"\n" + statements + "\nreturn fx.stack {}\n");
@@ -37,36 +37,39 @@ const std::string kMemory = "preset.lua: error: memory limit reached: more than 
 // ---- loops of Lua's own that no hook interrupts
 
 TEST(Escapes, NothingRepeatedForEver) {
-  EXPECT_EQ(run("assert((\"\"):rep(math.maxinteger) == \"\")"), "");
-  EXPECT_EQ(run("assert(string.rep(\"\", 2^53, \"\") == \"\")"), "");
+  EXPECT_EQ(escape("assert((\"\"):rep(math.maxinteger) == \"\")"), "");
+  EXPECT_EQ(escape("assert(string.rep(\"\", 2^53, \"\") == \"\")"), "");
   EXPECT_EQ(
-      run("assert((\"\"):rep(3, \",\") == \",,\" and (\"ab\"):rep(2, \"-\") == \"ab-ab\" and (\"x\"):rep(-1) == \"\")"),
+      escape(
+          "assert((\"\"):rep(3, \",\") == \",,\" and (\"ab\"):rep(2, \"-\") == \"ab-ab\" and (\"x\"):rep(-1) == \"\")"),
       "");
-  EXPECT_EQ(run("local s = (\"\"):rep(1e9, \",\")"), kMemory);
-  EXPECT_THAT(run("local s = (\"x\"):rep(math.maxinteger)"), AnyOf(kMemory, HasSubstr("resulting string too large")));
+  EXPECT_EQ(escape("local s = (\"\"):rep(1e9, \",\")"), kMemory);
+  EXPECT_THAT(escape("local s = (\"x\"):rep(math.maxinteger)"),
+              AnyOf(kMemory, HasSubstr("resulting string too large")));
 }
 
 TEST(Escapes, TablesThatCallThemselves) {
   const std::string refused = "preset.lua:2: error: setmetatable: __call must be a function";
-  EXPECT_EQ(run("local m = {} local t = setmetatable({}, m) m.__call = t m.__call = t setmetatable(t, m) t()"),
+  EXPECT_EQ(escape("local m = {} local t = setmetatable({}, m) m.__call = t m.__call = t setmetatable(t, m) t()"),
             refused);
-  EXPECT_EQ(run("local t = {} setmetatable(t, { __call = t }) t()"), refused);
+  EXPECT_EQ(escape("local t = {} setmetatable(t, { __call = t }) t()"), refused);
   // Later changes of the metatable do not count, so that no chain can be closed behind the check's back.
-  EXPECT_EQ(run("local m = {} local t = setmetatable({}, m) m.__call = t t()"),
+  EXPECT_EQ(escape("local m = {} local t = setmetatable({}, m) m.__call = t t()"),
             "preset.lua:2: error: attempt to call a table value (local 't')");
-  EXPECT_EQ(run("local m = { __call = function(t, x) return x + 1 end } assert(setmetatable({}, m)(2) == 3)"), "");
-  EXPECT_EQ(run("local t = setmetatable({}, { __call = pcall }) t()"), "");  // through C, which counts its depth
+  EXPECT_EQ(escape("local m = { __call = function(t, x) return x + 1 end } assert(setmetatable({}, m)(2) == 3)"), "");
+  EXPECT_EQ(escape("local t = setmetatable({}, { __call = pcall }) t()"), "");  // through C, which counts its depth
 }
 
 TEST(Escapes, WeakTablesAndFinalizers) {
-  EXPECT_THAT(run("setmetatable({}, { __mode = \"k\" })"), HasSubstr("__mode is not allowed"));
-  EXPECT_THAT(run("setmetatable({}, { __gc = true })"), HasSubstr("__gc is not allowed"));
-  EXPECT_EQ(run("local ran = false local m = {} do local t = setmetatable({}, m) end\n"
-                "m.__gc = function() ran = true end m.__mode = \"k\"\n"
-                "for i = 1, 200 do local waste = (\"x\"):rep(100000) end assert(not ran)"),
+  EXPECT_THAT(escape("setmetatable({}, { __mode = \"k\" })"), HasSubstr("__mode is not allowed"));
+  EXPECT_THAT(escape("setmetatable({}, { __gc = true })"), HasSubstr("__gc is not allowed"));
+  EXPECT_EQ(escape("local ran = false local m = {} do local t = setmetatable({}, m) end\n"
+                   "m.__gc = function() ran = true end m.__mode = \"k\"\n"
+                   "for i = 1, 200 do local waste = (\"x\"):rep(100000) end assert(not ran)"),
             "");
   EXPECT_THAT(
-      run("setmetatable({}, setmetatable({}, { __index = function(t, k) return k == \"__gc\" and print or nil end }))"),
+      escape(
+          "setmetatable({}, setmetatable({}, { __index = function(t, k) return k == \"__gc\" and print or nil end }))"),
       "");
 }
 
@@ -81,31 +84,33 @@ TEST(Escapes, LongTextsInOneInstruction) {
 // ---- metatables
 
 TEST(Escapes, MetatablesStayWhatTheyWere) {
-  EXPECT_EQ(run("local m = {} local t = setmetatable({}, m) assert(getmetatable(t) == m and setmetatable(t, nil) == t "
-                "and getmetatable(t) == nil)"),
-            "");
-  EXPECT_EQ(run("local C = {} C.__index = C function C.new() return setmetatable({}, C) end local c = C.new() function "
-                "C:late() return 7 end assert(c:late() == 7)"),
-            "");
-  EXPECT_EQ(run("local t = setmetatable({}, { __metatable = \"mine\" }) assert(getmetatable(t) == \"mine\") "
-                "setmetatable(t, nil)"),
+  EXPECT_EQ(
+      escape("local m = {} local t = setmetatable({}, m) assert(getmetatable(t) == m and setmetatable(t, nil) == t "
+             "and getmetatable(t) == nil)"),
+      "");
+  EXPECT_EQ(
+      escape("local C = {} C.__index = C function C.new() return setmetatable({}, C) end local c = C.new() function "
+             "C:late() return 7 end assert(c:late() == 7)"),
+      "");
+  EXPECT_EQ(escape("local t = setmetatable({}, { __metatable = \"mine\" }) assert(getmetatable(t) == \"mine\") "
+                   "setmetatable(t, nil)"),
             "preset.lua:2: error: setmetatable: this metatable is protected");
-  EXPECT_EQ(run("local t = setmetatable({}, {}) rawset(t, 1, 2) table.insert(t, 3) assert(#t == 2)"), "");
-  EXPECT_EQ(run("local t = setmetatable({}, { __eq = function() return true end, __lt = function() return true end, "
-                "__concat = "
-                "function() return \"c\" end, __len = function() return 9 end }) assert(t == setmetatable({}, "
-                "getmetatable(t)) and "
-                "t < t and t .. 1 == \"c\" and #t == 9)"),
+  EXPECT_EQ(escape("local t = setmetatable({}, {}) rawset(t, 1, 2) table.insert(t, 3) assert(#t == 2)"), "");
+  EXPECT_EQ(escape("local t = setmetatable({}, { __eq = function() return true end, __lt = function() return true end, "
+                   "__concat = "
+                   "function() return \"c\" end, __len = function() return 9 end }) assert(t == setmetatable({}, "
+                   "getmetatable(t)) and "
+                   "t < t and t .. 1 == \"c\" and #t == 9)"),
             "");
 }
 
 TEST(Escapes, TheTableOfGlobalsIsOutOfReach) {
-  EXPECT_EQ(run("assert(getmetatable(_ENV) == false)"), "");
-  EXPECT_EQ(run("setmetatable(_ENV, {})"), "preset.lua:2: error: setmetatable: this metatable is protected");
-  EXPECT_EQ(run("local _ENV = {} x = 1"), "");
-  EXPECT_THAT(run("getmetatable(\"\").__index = print"), HasSubstr("attempt to index a boolean value"));
-  EXPECT_EQ(run("string = { format = print } assert((\"%d\"):format(1) == \"1\")"), "");
-  EXPECT_EQ(run("require = nil pcall = nil"), "");
+  EXPECT_EQ(escape("assert(getmetatable(_ENV) == false)"), "");
+  EXPECT_EQ(escape("setmetatable(_ENV, {})"), "preset.lua:2: error: setmetatable: this metatable is protected");
+  EXPECT_EQ(escape("local _ENV = {} x = 1"), "");
+  EXPECT_THAT(escape("getmetatable(\"\").__index = print"), HasSubstr("attempt to index a boolean value"));
+  EXPECT_EQ(escape("string = { format = print } assert((\"%d\"):format(1) == \"1\")"), "");
+  EXPECT_EQ(escape("require = nil pcall = nil"), "");
 }
 
 TEST(Escapes, MetamethodsOfWhatIsHandedToUs) {
@@ -113,59 +118,62 @@ TEST(Escapes, MetamethodsOfWhatIsHandedToUs) {
   const std::string trap =
       "local function trap() while true do end end\nlocal m = { __index = trap, __len = trap, __pairs = trap, "
       "__newindex = trap, __tostring = trap, __eq = trap, __close = trap }\n";
-  EXPECT_EQ(run(trap + "fx.stack(setmetatable({}, m))"), "");
-  EXPECT_EQ(run(trap + "fx.stack { setmetatable({}, m) }").substr(0, 20), "preset.lua:4: error:");
-  EXPECT_EQ(run(trap + "fx.stack { name = setmetatable({}, m) }").substr(0, 20), "preset.lua:4: error:");
-  EXPECT_EQ(run(trap + "fx.bloom(setmetatable({ intensity = setmetatable({}, m) }, m))").substr(0, 20),
+  EXPECT_EQ(escape(trap + "fx.stack(setmetatable({}, m))"), "");
+  EXPECT_EQ(escape(trap + "fx.stack { setmetatable({}, m) }").substr(0, 20), "preset.lua:4: error:");
+  EXPECT_EQ(escape(trap + "fx.stack { name = setmetatable({}, m) }").substr(0, 20), "preset.lua:4: error:");
+  EXPECT_EQ(escape(trap + "fx.bloom(setmetatable({ intensity = setmetatable({}, m) }, m))").substr(0, 20),
             "preset.lua:4: error:");
-  EXPECT_EQ(run(trap + "fx.color { default = setmetatable({ 1, 1, 1 }, m), doc = \"d\" }"), "");
-  EXPECT_EQ(run(trap + "table.concat(setmetatable({ 1 }, m))"), "");
-  EXPECT_EQ(run(trap + "for k in pairs(setmetatable({}, m)) do end"), "");
-  EXPECT_EQ(run(trap + "error(setmetatable({}, m))"),
+  EXPECT_EQ(escape(trap + "fx.color { default = setmetatable({ 1, 1, 1 }, m), doc = \"d\" }"), "");
+  EXPECT_EQ(escape(trap + "table.concat(setmetatable({ 1 }, m))"), "");
+  EXPECT_EQ(escape(trap + "for k in pairs(setmetatable({}, m)) do end"), "");
+  EXPECT_EQ(escape(trap + "error(setmetatable({}, m))"),
             "preset.lua:4: error: the script raised an error that is a table, not a text");
 }
 
 // ---- texts, C stack, error objects
 
 TEST(Escapes, DepthInEveryLanguage) {
-  EXPECT_EQ(run("local t = {} for i = 1, 1e5 do t = { t } end fx.stack(t)").substr(0, 20), "preset.lua:2: error:");
-  EXPECT_EQ(run("local t = {} for i = 1, 1e5 do t = { default = t } end fx.float(t)").substr(0, 20),
+  EXPECT_EQ(escape("local t = {} for i = 1, 1e5 do t = { t } end fx.stack(t)").substr(0, 20), "preset.lua:2: error:");
+  EXPECT_EQ(escape("local t = {} for i = 1, 1e5 do t = { default = t } end fx.float(t)").substr(0, 20),
             "preset.lua:2: error:");
-  EXPECT_EQ(run("local m = {} m.__tostring = function(t) return tostring(t) end tostring(setmetatable({}, m))"),
+  EXPECT_EQ(escape("local m = {} m.__tostring = function(t) return tostring(t) end tostring(setmetatable({}, m))"),
             "preset.lua:2: error: C stack overflow");
-  EXPECT_EQ(run("local m = {} m.__index = function(t, k) return t[k] end m.__newindex = m.__index local x = "
-                "setmetatable({}, m).y"),
+  EXPECT_EQ(escape("local m = {} m.__index = function(t, k) return t[k] end m.__newindex = m.__index local x = "
+                   "setmetatable({}, m).y"),
             "preset.lua:2: error: C stack overflow");
   EXPECT_EQ(
-      run("local m = {} m.__concat = function(a, b) return a .. b end local t = setmetatable({}, m) local x = t .. t"),
+      escape(
+          "local m = {} m.__concat = function(a, b) return a .. b end local t = setmetatable({}, m) local x = t .. t"),
       "preset.lua:2: error: C stack overflow");
   EXPECT_EQ(
-      run("local t = {} for i = 1, 3000 do t[i] = i end table.sort(t, function(a, b) table.sort(t) return a < b end)")
+      escape(
+          "local t = {} for i = 1, 3000 do t[i] = i end table.sort(t, function(a, b) table.sort(t) return a < b end)")
           .substr(0, 20),
       "preset.lua:2: error:");
 }
 
 TEST(Escapes, ErrorsFromHandlers) {
-  EXPECT_EQ(run("local function f() error(setmetatable({}, { __tostring = error })) end assert(not pcall(f)) "
-                "pcall(pcall, f) pcall(error)"),
+  EXPECT_EQ(escape("local function f() error(setmetatable({}, { __tostring = error })) end assert(not pcall(f)) "
+                   "pcall(pcall, f) pcall(error)"),
             "");
-  EXPECT_EQ(run("local x <close> = setmetatable({}, { __close = function() while true do end end }) error(\"x\")"),
+  EXPECT_EQ(escape("local x <close> = setmetatable({}, { __close = function() while true do end end }) error(\"x\")"),
             "preset.lua:2: " + kBudget);
-  EXPECT_EQ(run("while true do pcall(error, setmetatable({}, { __tostring = error })) end"),
+  EXPECT_EQ(escape("while true do pcall(error, setmetatable({}, { __tostring = error })) end"),
             "preset.lua:2: " + kBudget);
-  EXPECT_EQ(run("for i = 1, 200 do local ok = pcall(pcall, pcall, error) end pcall(string.rep, \"x\", 1e9)"), kMemory);
+  EXPECT_EQ(escape("for i = 1, 200 do local ok = pcall(pcall, pcall, error) end pcall(string.rep, \"x\", 1e9)"),
+            kMemory);
 }
 
 TEST(Escapes, ManyValuesAtOnce) {
-  EXPECT_THAT(run("table.unpack({}, 1, 1e8)"), HasSubstr("too many results to unpack"));
-  EXPECT_THAT(run("string.byte((\"x\"):rep(2e6), 1, -1)"), HasSubstr("string slice too long"));
-  EXPECT_THAT(run("select(-math.maxinteger, 1)"), HasSubstr("index out of range"));
-  EXPECT_THAT(run("string.char(table.unpack({}, 1, 10))"), HasSubstr("number expected, got nil"));
-  EXPECT_EQ(run("while true do select(\"#\", table.unpack({}, 1, 1e5)) end"), "preset.lua:2: " + kBudget);
-  EXPECT_EQ(run("local t = { 1, 2, 3 } local a, b = table.unpack(t, 2) assert(a == 2 and b == 3 and select(\"#\", "
-                "table.unpack(t, 3, 2)) == 0)"),
+  EXPECT_THAT(escape("table.unpack({}, 1, 1e8)"), HasSubstr("too many results to unpack"));
+  EXPECT_THAT(escape("string.byte((\"x\"):rep(2e6), 1, -1)"), HasSubstr("string slice too long"));
+  EXPECT_THAT(escape("select(-math.maxinteger, 1)"), HasSubstr("index out of range"));
+  EXPECT_THAT(escape("string.char(table.unpack({}, 1, 10))"), HasSubstr("number expected, got nil"));
+  EXPECT_EQ(escape("while true do select(\"#\", table.unpack({}, 1, 1e5)) end"), "preset.lua:2: " + kBudget);
+  EXPECT_EQ(escape("local t = { 1, 2, 3 } local a, b = table.unpack(t, 2) assert(a == 2 and b == 3 and select(\"#\", "
+                   "table.unpack(t, 3, 2)) == 0)"),
             "");
-  EXPECT_THAT(run("table.unpack({}, math.mininteger, math.maxinteger)"), HasSubstr("too many results to unpack"));
+  EXPECT_THAT(escape("table.unpack({}, math.mininteger, math.maxinteger)"), HasSubstr("too many results to unpack"));
 }
 
 // ---- numbers that are none
@@ -173,8 +181,9 @@ TEST(Escapes, ManyValuesAtOnce) {
 TEST(Escapes, NumbersThatNoCountCanBe) {
   for (const char* number : {"0/0", "1/0", "-1/0", "2^53", "-2^53", "math.mininteger", "1e308"}) {
     SCOPED_TRACE(number);
-    EXPECT_THAT(run(std::string("fx.bloom { max_iterations = ") + number + " }"), HasSubstr("preset.lua:2: error: "));
-    EXPECT_THAT(run(std::string("fx.bloom { scatter = ") + number + " }"), HasSubstr("preset.lua:2: error: "));
+    EXPECT_THAT(escape(std::string("fx.bloom { max_iterations = ") + number + " }"),
+                HasSubstr("preset.lua:2: error: "));
+    EXPECT_THAT(escape(std::string("fx.bloom { scatter = ") + number + " }"), HasSubstr("preset.lua:2: error: "));
     EXPECT_THAT(build(std::string("g:pass { shader = \"glow/mix\", source = source, strength = 1, size = { ") + number +
                       ", 4 } }"),
                 HasSubstr("effects/glow.lua:5: error: "));
@@ -188,7 +197,7 @@ TEST(Escapes, NumbersThatNoCountCanBe) {
         HasSubstr("error: "));
   }
   for (const char* number : {"0/0", "1/0", "-1/0"})
-    EXPECT_THAT(run(std::string("fx.curve { { 0, 1 }, { ") + number + ", 1 } }"), HasSubstr("preset.lua:2: error: "))
+    EXPECT_THAT(escape(std::string("fx.curve { { 0, 1 }, { ") + number + ", 1 } }"), HasSubstr("preset.lua:2: error: "))
         << number;
   for (const char* number : {"0/0", "1/0", "1e39"})  // more than a 32-bit float holds
     EXPECT_THAT(build(std::string("g:pass { shader = \"glow/mix\", source = source, strength = ") + number + " }"),

@@ -10,14 +10,14 @@ namespace {
 using testing::ElementsAre;
 
 // Runs the statements in a preset and returns its error; "" when it loads.
-std::string run(const std::string& statements) {
+std::string run_statements(const std::string& statements) {
   Scene scene;
   scene.preset(statements + "\nreturn require(\"afterglow\").stack {}\n");
   return scene.load_error();
 }
 
 // The statements must hold `assert`s.
-#define EXPECT_RUNS(statements) EXPECT_EQ(run(statements), "")
+#define EXPECT_RUNS(statements) EXPECT_EQ(run_statements(statements), "")
 
 class Absent : public testing::TestWithParam<const char*> {};
 
@@ -31,8 +31,9 @@ INSTANTIATE_TEST_SUITE_P(Sandbox, Absent,
                                          "math.random", "math.randomseed", "getfenv"));
 
 TEST(Sandbox, CallingWhatIsNotThere) {
-  EXPECT_EQ(run("io.open(\"/etc/passwd\")"), "preset.lua:1: error: attempt to index a nil value (global 'io')");
-  EXPECT_EQ(run("\nload(\"return 1\")"), "preset.lua:2: error: attempt to call a nil value (global 'load')");
+  EXPECT_EQ(run_statements("io.open(\"/etc/passwd\")"),
+            "preset.lua:1: error: attempt to index a nil value (global 'io')");
+  EXPECT_EQ(run_statements("\nload(\"return 1\")"), "preset.lua:2: error: attempt to call a nil value (global 'load')");
 }
 
 TEST(Sandbox, PrecompiledScriptsAreRefused) {
@@ -43,14 +44,15 @@ TEST(Sandbox, PrecompiledScriptsAreRefused) {
 
 TEST(Sandbox, LibrariesCannotBeChanged) {
   const std::string refused = "preset.lua:1: error: this table is read-only";
-  EXPECT_EQ(run("string.rep = print"), refused);
-  EXPECT_EQ(run("math.pi = 3"), refused);
-  EXPECT_EQ(run("table.insert = nil"), refused);
-  EXPECT_EQ(run("require(\"afterglow\").stack = print"), refused);
-  EXPECT_EQ(run("require(\"afterglow\").filters.tent = print"), refused);
-  EXPECT_EQ(run("rawset(math, \"pi\", 3)"), "preset.lua:1: error: rawset: this table is protected");
-  EXPECT_EQ(run("table.insert(math, 3)"), refused);
-  EXPECT_EQ(run("setmetatable(string, {})"), "preset.lua:1: error: setmetatable: this metatable is protected");
+  EXPECT_EQ(run_statements("string.rep = print"), refused);
+  EXPECT_EQ(run_statements("math.pi = 3"), refused);
+  EXPECT_EQ(run_statements("table.insert = nil"), refused);
+  EXPECT_EQ(run_statements("require(\"afterglow\").stack = print"), refused);
+  EXPECT_EQ(run_statements("require(\"afterglow\").filters.tent = print"), refused);
+  EXPECT_EQ(run_statements("rawset(math, \"pi\", 3)"), "preset.lua:1: error: rawset: this table is protected");
+  EXPECT_EQ(run_statements("table.insert(math, 3)"), refused);
+  EXPECT_EQ(run_statements("setmetatable(string, {})"),
+            "preset.lua:1: error: setmetatable: this metatable is protected");
 }
 
 TEST(Sandbox, MetatablesOfOthersAreHidden) {
@@ -63,9 +65,10 @@ TEST(Sandbox, MetatablesOfOthersAreHidden) {
 }
 
 TEST(Sandbox, FinalizersAreRefused) {
-  EXPECT_EQ(run("setmetatable({}, { __gc = function() end })"),
+  EXPECT_EQ(run_statements("setmetatable({}, { __gc = function() end })"),
             "preset.lua:1: error: setmetatable: __gc is not allowed");
-  EXPECT_EQ(run("local m = setmetatable({}, { __index = function() return print end }) setmetatable({}, m)"), "");
+  EXPECT_EQ(run_statements("local m = setmetatable({}, { __index = function() return print end }) setmetatable({}, m)"),
+            "");
 }
 
 TEST(Sandbox, GlobalsOfOneFileStayInIt) {
@@ -92,7 +95,7 @@ TEST(Sandbox, PairsSkipsWhatIsRemovedAndRefusesOddKeys) {
   EXPECT_RUNS("local t, n = { a = 1, b = 2, c = 3 }, 0 for k in pairs(t) do t.b = nil n = n + 1 end assert(n == 2)");
   EXPECT_RUNS("local n = 0 for k, v in pairs({}) do n = n + 1 end assert(n == 0)");
   EXPECT_RUNS("local n = 0 for k, v in pairs(math) do n = n + 1 end assert(n > 10)");
-  EXPECT_EQ(run("for k in pairs({ [{}] = 1 }) do end"),
+  EXPECT_EQ(run_statements("for k in pairs({ [{}] = 1 }) do end"),
             "preset.lua:1: error: pairs: a key is a table, which has no place in an order; allowed: numbers, texts and "
             "booleans as keys");
 }
@@ -101,13 +104,13 @@ TEST(Sandbox, TextsHoldNoAddresses) {
   EXPECT_RUNS("assert(tostring({}) == \"table\" and tostring(print) == \"function\")");
   EXPECT_RUNS("assert(string.format(\"%s %s\", {}, 5) == \"table 5\")");
   EXPECT_RUNS("assert(tostring(require(\"afterglow\").stack {}) == \"stack\")");
-  EXPECT_EQ(run("string.format(\"%5p\", {})"),
+  EXPECT_EQ(run_statements("string.format(\"%5p\", {})"),
             "preset.lua:1: error: string.format: %p is not allowed (addresses differ from run to run)");
-  EXPECT_EQ(run("string.format(\"%%%-p\", {})"),
+  EXPECT_EQ(run_statements("string.format(\"%%%-p\", {})"),
             "preset.lua:1: error: string.format: %p is not allowed (addresses differ from run to run)");
   EXPECT_RUNS("assert(string.format(\"%%p %5.1f\", 2.25) == \"%p   2.2\")");
   EXPECT_RUNS("assert(tostring(setmetatable({}, { __tostring = function() return \"me\" end })) == \"me\")");
-  EXPECT_EQ(run("tostring(setmetatable({}, { __tostring = function() return 5 end }))"),
+  EXPECT_EQ(run_statements("tostring(setmetatable({}, { __tostring = function() return 5 end }))"),
             "preset.lua:1: error: tostring: __tostring must return a text");
 }
 
@@ -128,13 +131,13 @@ TEST(Sandbox, OrdinaryLuaWorks) {
       "== 100)");
   EXPECT_RUNS("assert(math.floor(2.5) == 2 and math.type(1) == \"integer\" and math.huge > 1)");
   EXPECT_RUNS("local n = 0 for i, v in ipairs({ 5, 6 }) do n = n + i * v end assert(n == 17)");
-  EXPECT_EQ(run("table.insert({ 1 }, 3, 1)"),
+  EXPECT_EQ(run_statements("table.insert({ 1 }, 3, 1)"),
             "preset.lua:1: error: table.insert: position 3 is out of range; allowed: 1…2");
-  EXPECT_EQ(run("table.remove({ 1 }, 3)"),
+  EXPECT_EQ(run_statements("table.remove({ 1 }, 3)"),
             "preset.lua:1: error: table.remove: position 3 is out of range; allowed: 1…1");
-  EXPECT_EQ(run("table.concat({ 1, {} })"),
+  EXPECT_EQ(run_statements("table.concat({ 1, {} })"),
             "preset.lua:1: error: table.concat: item 2 is a table; allowed: texts and numbers");
-  EXPECT_EQ(run("table.sort(setmetatable({}, {}))"),
+  EXPECT_EQ(run_statements("table.sort(setmetatable({}, {}))"),
             "preset.lua:1: error: table.sort: a table with a metatable cannot be sorted");
 }
 
@@ -158,24 +161,26 @@ TEST(Sandbox, CaughtErrorsAreTextsWithTheirPlace) {
 }
 
 TEST(Sandbox, ARethrownErrorKeepsItsPlace) {
-  EXPECT_EQ(run("local ok, e = pcall(function()\n\n error(\"deep\") end)\n\nerror(e, 0)"), "preset.lua:3: error: deep");
-  EXPECT_EQ(run("\n\nerror(\"plain\", 0)"), "preset.lua:3: error: plain");
+  EXPECT_EQ(run_statements("local ok, e = pcall(function()\n\n error(\"deep\") end)\n\nerror(e, 0)"),
+            "preset.lua:3: error: deep");
+  EXPECT_EQ(run_statements("\n\nerror(\"plain\", 0)"), "preset.lua:3: error: plain");
 }
 
 TEST(Sandbox, ErrorsThatAreNoTexts) {
-  EXPECT_EQ(run("error({ code = 5 })"), "preset.lua:1: error: the script raised an error that is a table, not a text");
-  EXPECT_EQ(run("\nerror()"), "preset.lua:2: error: the script raised an error that is a nil, not a text");
-  EXPECT_EQ(run("error(42)"), "preset.lua:1: error: 42");
-  EXPECT_EQ(run("error(setmetatable({}, { __tostring = function() while true do end end }))"),
+  EXPECT_EQ(run_statements("error({ code = 5 })"),
+            "preset.lua:1: error: the script raised an error that is a table, not a text");
+  EXPECT_EQ(run_statements("\nerror()"), "preset.lua:2: error: the script raised an error that is a nil, not a text");
+  EXPECT_EQ(run_statements("error(42)"), "preset.lua:1: error: 42");
+  EXPECT_EQ(run_statements("error(setmetatable({}, { __tostring = function() while true do end end }))"),
             "preset.lua:1: error: the script raised an error that is a table, not a text");
 }
 
 TEST(Sandbox, LongMessagesAreCut) {
-  const std::string message = run("error((\"é\"):rep(100000))");
+  const std::string message = run_statements("error((\"é\"):rep(100000))");
   EXPECT_EQ(message.substr(0, 23), "preset.lua:1: error: é");
   EXPECT_TRUE(message.ends_with("é…"));  // not cut within a character
   EXPECT_EQ(message.size(), std::string("preset.lua:1: error: ").size() + 400 + 3);
-  EXPECT_EQ(run("error(\"a\\27[31m\\0b\")"), "preset.lua:1: error: a [31m b");
+  EXPECT_EQ(run_statements("error(\"a\\27[31m\\0b\")"), "preset.lua:1: error: a [31m b");
 }
 
 TEST(Sandbox, PrintIsANoteAndBounded) {

@@ -40,4 +40,10 @@ class KernelRunner {
   VkCommandPool pool_ = VK_NULL_HANDLE;
 };
 
+/// One for all tests of a program.
+inline KernelRunner& runner() {
+  static KernelRunner kRunner;
+  return kRunner;
+}
+
 }  // namespace afterglow

@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kApply = "vec4 apply(vec4 color) { return color; }\n";
+constexpr const char* kHarmless = "vec4 apply(vec4 color) { return color; }\n";
 
 std::string repeat(const std::string& text, int times) {
   std::string out;
@@ -36,7 +36,7 @@ TEST(Hostile, NestingIsLimited) {
   EXPECT_THAT(outcome(in_apply(repeat("{", 5000) + repeat("}", 5000))), HasSubstr("nested more than 64 deep"));
   EXPECT_THAT(outcome(in_apply("c *= " + repeat("(", 5000) + "1.0" + repeat(")", 5000) + ";")),
               HasSubstr("nested more than 64 deep"));
-  EXPECT_THAT(outcome("#define D " + repeat("(", 5000) + "\n" + kApply), HasSubstr("nested more than 64 deep"));
+  EXPECT_THAT(outcome("#define D " + repeat("(", 5000) + "\n" + kHarmless), HasSubstr("nested more than 64 deep"));
   EXPECT_EQ(outcome(in_apply("c *= " + repeat("(", 60) + "1.0" + repeat(")", 60) + ";")), "ok");
 }
 
@@ -62,22 +62,22 @@ TEST(Hostile, ExpressionsAtTheLimitCompile) {
 }
 
 TEST(Hostile, SizesAreLimited) {
-  EXPECT_THAT(outcome(repeat("// some text\n", 30000) + kApply), HasSubstr("larger than 262144 bytes"));
-  EXPECT_THAT(outcome(repeat("int a;", 30000) + kApply), HasSubstr("more than 65536 tokens"));
-  EXPECT_THAT(outcome("float " + std::string(2000, 'x') + ";\n" + kApply), HasSubstr("longer than 128 characters"));
+  EXPECT_THAT(outcome(repeat("// some text\n", 30000) + kHarmless), HasSubstr("larger than 262144 bytes"));
+  EXPECT_THAT(outcome(repeat("int a;", 30000) + kHarmless), HasSubstr("more than 65536 tokens"));
+  EXPECT_THAT(outcome("float " + std::string(2000, 'x') + ";\n" + kHarmless), HasSubstr("longer than 128 characters"));
   EXPECT_THAT(outcome("uniform float a0" +
                       [] {
                         std::string s;
                         for (int i = 1; i < 300; ++i) s += ", a" + std::to_string(i);
                         return s;
                       }() +
-                      ";\n" + kApply),
+                      ";\n" + kHarmless),
               HasSubstr("at most 256 parameters"));
   EXPECT_THAT(outcome([] {
                 std::string s;
                 for (int i = 0; i < 17; ++i) s += "uniform sampler2D t" + std::to_string(i) + ";\n";
                 return s;
-              }() + kApply),
+              }() + kHarmless),
               HasSubstr("reads at most 16 images"));
 }
 
@@ -100,9 +100,9 @@ TEST(Hostile, MacrosThatExplodeAreRefused) {
 }
 
 TEST(Hostile, MacrosWhoseGrowthIsHiddenAreRefused) {
-  EXPECT_THAT(outcome("#define OPEN (\n" + std::string(kApply)),
+  EXPECT_THAT(outcome("#define OPEN (\n" + std::string(kHarmless)),
               HasSubstr(":1: error: the brackets in macro 'OPEN' are not balanced"));
-  EXPECT_THAT(outcome("#define CLOSE )(\n" + std::string(kApply)),
+  EXPECT_THAT(outcome("#define CLOSE )(\n" + std::string(kHarmless)),
               HasSubstr("the brackets in macro 'CLOSE' are not balanced"));
   EXPECT_THAT(outcome("#define F(x) x x\n#define G F\n" + in_apply("c *= G(1.0);")),
               HasSubstr(":2: error: macro 'F' needs its arguments behind it"));
@@ -122,14 +122,14 @@ TEST(Hostile, IncludesAreLimited) {
   ShaderFiles files;
   for (int i = 0; i < 100; ++i)
     files.write("lib/deep" + std::to_string(i) + ".glsl", "#include \"lib/deep" + std::to_string(i + 1) + ".glsl\"\n");
-  EXPECT_THAT(files.find("a", std::string("#include \"lib/deep0.glsl\"\n") + kApply).error().text(),
+  EXPECT_THAT(files.find("a", std::string("#include \"lib/deep0.glsl\"\n") + kHarmless).error().text(),
               HasSubstr("nested more than 16 deep"));
   std::string many;
   for (int i = 0; i < 100; ++i) {
     files.write("lib/wide" + std::to_string(i) + ".glsl", "");
     many += "#include \"lib/wide" + std::to_string(i) + ".glsl\"\n";
   }
-  EXPECT_THAT(files.find("b", many + kApply).error().text(), HasSubstr("includes at most 64 files"));
+  EXPECT_THAT(files.find("b", many + kHarmless).error().text(), HasSubstr("includes at most 64 files"));
 }
 
 TEST(Hostile, AFolderIsNoShader) {

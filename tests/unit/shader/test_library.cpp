@@ -9,7 +9,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr const char* kApply = "vec4 apply(vec4 color) { return color; }\n";
+constexpr const char* kSimple = "vec4 apply(vec4 color) { return color; }\n";
 
 std::vector<std::string> include_names(const ShaderSource& source) {
   std::vector<std::string> out;
@@ -19,14 +19,14 @@ std::vector<std::string> include_names(const ShaderSource& source) {
 
 TEST(ShaderLibrary, FindsOnceAndForgetsOnReload) {
   ShaderFiles files;
-  files.write("fx/a.glsl", kApply);
+  files.write("fx/a.glsl", kSimple);
   ShaderLibrary library(files.search());
   const auto first = library.find("fx/a");
   ASSERT_TRUE(first.ok()) << first.error().text();
   EXPECT_EQ((*first)->name, "fx/a");
   EXPECT_EQ((*first)->path, files.path("fx/a.glsl"));
-  EXPECT_EQ((*first)->text, kApply);
-  files.write("fx/a.glsl", std::string("uniform float t;\n") + kApply);
+  EXPECT_EQ((*first)->text, kSimple);
+  files.write("fx/a.glsl", std::string("uniform float t;\n") + kSimple);
   EXPECT_EQ(*library.find("fx/a"), *first);
   library.reload();
   const auto second = library.find("fx/a");
@@ -40,9 +40,9 @@ TEST(ShaderLibrary, KnowsWhichShadersLoop) {
   files.write("lib/sum.glsl",
               "float sum(vec4 v) { float s = 0.0; for (int i = 0; i < 4; ++i) s += v[i]; return s; }\n");
   const std::string do_not = "// for once, while we do it\n";
-  EXPECT_FALSE((*files.find("straight", do_not + kApply))->loops);
+  EXPECT_FALSE((*files.find("straight", do_not + kSimple))->loops);
   EXPECT_TRUE((*files.find("own", "vec4 apply(vec4 c) { while (c.r > 1.0) c *= 0.5; return c; }"))->loops);
-  EXPECT_TRUE((*files.find("included", std::string("#include \"lib/sum.glsl\"\n") + kApply))->loops);
+  EXPECT_TRUE((*files.find("included", std::string("#include \"lib/sum.glsl\"\n") + kSimple))->loops);
 }
 
 TEST(ShaderLibrary, AnErrorIsNotRemembered) {
@@ -50,13 +50,13 @@ TEST(ShaderLibrary, AnErrorIsNotRemembered) {
   files.write("a.glsl", "oops");
   ShaderLibrary library(files.search());
   EXPECT_FALSE(library.find("a").ok());
-  files.write("a.glsl", kApply);
+  files.write("a.glsl", kSimple);
   EXPECT_TRUE(library.find("a").ok());
 }
 
 TEST(ShaderLibrary, UnknownNamesGetTheNearest) {
   ShaderFiles files;
-  files.write("bloom/threshold.glsl", kApply);
+  files.write("bloom/threshold.glsl", kSimple);
   files.write("lib/treshold.glsl", "");
   ShaderLibrary library(files.search());
   const auto result = library.find("bloom/treshold");
@@ -68,8 +68,8 @@ TEST(ShaderLibrary, UnknownNamesGetTheNearest) {
 
 TEST(ShaderLibrary, NamesStayBelowTheShaderFolders) {
   ShaderFiles files;
-  files.write("a.glsl", kApply);
-  files.write("../secret.glsl", kApply);
+  files.write("a.glsl", kSimple);
+  files.write("../secret.glsl", kSimple);
   ShaderLibrary library(files.search());
   for (const std::string name : {"../secret", "./a", "x/../a", "/etc/passwd", "", "a/", "a\\b"})
     EXPECT_FALSE(library.find(name).ok()) << name;
@@ -78,14 +78,14 @@ TEST(ShaderLibrary, NamesStayBelowTheShaderFolders) {
 
 TEST(ShaderLibrary, EarlierFoldersShadowLaterOnes) {
   ShaderFiles first, second;
-  second.write("a.glsl", kApply);
+  second.write("a.glsl", kSimple);
   second.write("lib/x.glsl", "float x() { return 2.0; }\n");
-  second.write("b.glsl", std::string("#include \"lib/x.glsl\"\n") + kApply);
+  second.write("b.glsl", std::string("#include \"lib/x.glsl\"\n") + kSimple);
   SearchPath search;
   search.user = {first.root()};
   search.installation = second.root();
   EXPECT_EQ((*ShaderLibrary(search).find("a"))->path, second.path("a.glsl"));
-  first.write("a.glsl", kApply);
+  first.write("a.glsl", kSimple);
   first.write("lib/x.glsl", "float x() { return 1.0; }\n");
   EXPECT_EQ((*ShaderLibrary(search).find("a"))->path, first.path("a.glsl"));
   EXPECT_EQ((*ShaderLibrary(search).find("b"))->includes.at(0).path, first.path("lib/x.glsl"))
@@ -94,7 +94,7 @@ TEST(ShaderLibrary, EarlierFoldersShadowLaterOnes) {
 
 TEST(ShaderLibrary, AByteOrderMarkIsDropped) {
   ShaderFiles files;
-  EXPECT_EQ((*files.find("a", std::string("\xEF\xBB\xBF") + kApply))->text, kApply);
+  EXPECT_EQ((*files.find("a", std::string("\xEF\xBB\xBF") + kSimple))->text, kSimple);
 }
 
 TEST(ShaderLibrary, IncludesStandOnceAndInOrder) {
@@ -104,7 +104,7 @@ TEST(ShaderLibrary, IncludesStandOnceAndInOrder) {
   files.write("lib/right.glsl", "#include \"lib/base.glsl\"\nfloat right() { return base(); }\n");
   const auto source = files.find(
       "fx/a",
-      std::string("#include \"lib/left.glsl\"\n#include \"lib/right.glsl\"\n#include \"lib/left.glsl\"\n") + kApply);
+      std::string("#include \"lib/left.glsl\"\n#include \"lib/right.glsl\"\n#include \"lib/left.glsl\"\n") + kSimple);
   ASSERT_TRUE(source.ok()) << source.error().text();
   EXPECT_THAT(include_names(**source), ElementsAre("lib/base.glsl", "lib/left.glsl", "lib/right.glsl"));
   EXPECT_THAT((*source)->includes[0].uses, ElementsAre());
@@ -118,7 +118,7 @@ TEST(ShaderLibrary, AFileBesideTheShaderComesFirst) {
   ShaderFiles files;
   files.write("helper.glsl", "float far() { return 1.0; }\n");
   files.write("fx/helper.glsl", "float near() { return 1.0; }\n");
-  const auto source = files.find("fx/a", std::string("#include \"helper.glsl\"\n") + kApply);
+  const auto source = files.find("fx/a", std::string("#include \"helper.glsl\"\n") + kSimple);
   ASSERT_TRUE(source.ok());
   EXPECT_EQ((*source)->includes.at(0).path, files.path("fx/helper.glsl"));
 }
@@ -127,7 +127,7 @@ TEST(ShaderLibrary, OneFileUnderTwoNamesIsOneFile) {
   ShaderFiles files;
   files.write("fx/helper.glsl", "float near() { return 1.0; }\n");
   const auto source =
-      files.find("fx/a", std::string("#include \"helper.glsl\"\n#include \"fx/helper.glsl\"\n") + kApply);
+      files.find("fx/a", std::string("#include \"helper.glsl\"\n#include \"fx/helper.glsl\"\n") + kSimple);
   ASSERT_TRUE(source.ok()) << source.error().text();
   EXPECT_EQ((*source)->includes.size(), 1u);
 }
@@ -135,7 +135,7 @@ TEST(ShaderLibrary, OneFileUnderTwoNamesIsOneFile) {
 TEST(ShaderLibrary, TheHashCoversIncludes) {
   ShaderFiles files;
   files.write("lib/x.glsl", "float x() { return 1.0; }\n");
-  const std::string text = std::string("#include \"lib/x.glsl\"\n") + kApply;
+  const std::string text = std::string("#include \"lib/x.glsl\"\n") + kSimple;
   const Hash before = (*files.find("a", text))->hash;
   EXPECT_EQ((*files.find("a", text))->hash, before);
   files.write("lib/x.glsl", "float x() { return 2.0; }\n");
@@ -146,7 +146,7 @@ TEST(ShaderLibrary, IncludeErrorsAreAtTheirOwnFileAndLine) {
   ShaderFiles files;
   files.write("lib/color.glsl", "float luminance(vec3 c) { return c.g; }\n");
   const auto message = [&](const std::string& text) {
-    const auto result = files.find("fx/a", text + kApply);
+    const auto result = files.find("fx/a", text + kSimple);
     return result.ok() ? std::string("ok") : result.error().text();
   };
   const std::string a = files.path("fx/a.glsl").string();
@@ -170,11 +170,11 @@ TEST(ShaderLibrary, IncludeCyclesAreRefused) {
   ShaderFiles files;
   files.write("lib/a.glsl", "#include \"lib/b.glsl\"\n");
   files.write("lib/b.glsl", "\n#include \"lib/a.glsl\"\n");
-  const auto cycle = files.find("fx/x", std::string("#include \"lib/a.glsl\"\n") + kApply);
+  const auto cycle = files.find("fx/x", std::string("#include \"lib/a.glsl\"\n") + kSimple);
   ASSERT_FALSE(cycle.ok());
   EXPECT_THAT(cycle.error().text(), HasSubstr(files.path("lib/b.glsl").string() +
                                               ":2: error: 'lib/a.glsl' includes itself, directly or through others"));
-  const auto self = files.find("fx/y", std::string("#include \"y.glsl\"\n") + kApply);
+  const auto self = files.find("fx/y", std::string("#include \"y.glsl\"\n") + kSimple);
   ASSERT_FALSE(self.ok());
   EXPECT_THAT(self.error().message, HasSubstr("includes itself"));
 }
@@ -183,7 +183,7 @@ TEST(ShaderLibrary, ErrorsInIncludesTellWhoIncludesThem) {
   ShaderFiles files;
   files.write("lib/bad.glsl", "oops\n");
   files.write("lib/outer.glsl", "\n#include \"lib/bad.glsl\"\n");
-  const auto source = files.find("fx/a", std::string("#include \"lib/outer.glsl\"\n") + kApply);
+  const auto source = files.find("fx/a", std::string("#include \"lib/outer.glsl\"\n") + kSimple);
   ASSERT_FALSE(source.ok());
   EXPECT_EQ(source.error().file, files.path("lib/bad.glsl").string());
   EXPECT_THAT(source.error().trail, ElementsAre("included at " + files.path("lib/outer.glsl").string() + ":2",
@@ -195,7 +195,8 @@ TEST(ShaderLibrary, MacrosMayBeDefinedAgain) {
   files.write("lib/a.glsl", "#ifndef PI\n#define PI 3.0\n#endif\n");
   files.write("lib/b.glsl", "#ifndef PI\n#define PI 3.5\n#endif\n");
   EXPECT_TRUE(
-      files.find("x", std::string("#include \"lib/a.glsl\"\n#include \"lib/b.glsl\"\n#define PI 4.0\n") + kApply).ok());
+      files.find("x", std::string("#include \"lib/a.glsl\"\n#include \"lib/b.glsl\"\n#define PI 4.0\n") + kSimple)
+          .ok());
 }
 
 }  // namespace

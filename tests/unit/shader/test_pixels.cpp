@@ -14,11 +14,6 @@
 namespace afterglow {
 namespace {
 
-KernelRunner& runner() {
-  static KernelRunner runner;
-  return runner;
-}
-
 /// Random light over seven orders of magnitude, each texel unlike its neighbours.
 TestImage random_light(Size size, unsigned seed) {
   std::mt19937 random(seed);

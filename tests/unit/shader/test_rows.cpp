@@ -22,11 +22,6 @@ TestImage light(Size size, unsigned seed) {
   return image;
 }
 
-KernelRunner& runner() {
-  static KernelRunner kRunner;
-  return kRunner;
-}
-
 // Straight, choosing, choosing within a choice, with helpers, precise, looping, returning early.
 constexpr const char* kStages[] = {
     "vec4 apply(vec4 color) { return color * 2.0 + 1.0; }",

@@ -9,7 +9,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr const char* kApply = "vec4 apply(vec4 color) { return color; }\n";
+constexpr const char* kOwnPixel = "vec4 apply(vec4 color) { return color; }\n";
 
 ShaderScan scanned(const std::string& text) {
   static std::vector<std::unique_ptr<std::string>> keep;  // tokens are views of the text
@@ -139,7 +139,7 @@ TEST_P(ScanErrors, NameFileLineAndRemedy) {
   EXPECT_EQ(error.nearest, bad.nearest);
 }
 
-const std::string kEnd = kApply;
+const std::string kEnd = kOwnPixel;
 
 INSTANTIATE_TEST_SUITE_P(
     Declarations, ScanErrors,
