@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "apps/table.h"
+#include "batch/table.h"
 #include "image/reader.h"
 #include "image/sequence.h"
 

@@ -13,14 +13,15 @@
 #include "apps/interrupt.h"
 #include "apps/options.h"
 #include "apps/reload_bench.h"
-#include "apps/scale.h"
-#include "apps/table.h"
+#include "batch/scale.h"
+#include "batch/table.h"
 #include "bench/cell.h"
 #include "bench/goals.h"
 #include "bench/picture.h"
 #include "bench/report.h"
 #include "core/file.h"
 #include "core/paths.h"
+#include "core/version.h"
 #include "image/reader.h"
 
 namespace afterglow {
@@ -255,7 +256,7 @@ Result<void> run_bench(const BenchArguments& a, Console& console) {
   bench.base.max_memory = 64ull << 30;  // what does not fit is the device's to say
   AFTERGLOW_TRY(bench.device, Device::create(a.device.options(), console.diagnostics()));
   const DeviceInfo& info = bench.device->info();
-  bench.report = {.version = AFTERGLOW_VERSION,
+  bench.report = {.version = version(),
                   .device = info.name,
                   .driver = info.driver,
                   .kind = info.type,

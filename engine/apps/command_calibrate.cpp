@@ -8,7 +8,7 @@
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
-#include "apps/table.h"
+#include "batch/table.h"
 #include "bench/calibrate.h"
 #include "core/file.h"
 #include "core/paths.h"

@@ -7,10 +7,10 @@
 #include <set>
 
 #include "apps/command.h"
-#include "apps/json_text.h"
 #include "apps/look.h"
 #include "apps/setting_text.h"
-#include "apps/table.h"
+#include "batch/json_text.h"
+#include "batch/table.h"
 #include "core/printable.h"
 #include "script/explanation.h"
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/command.h"
-#include "apps/json_text.h"
-#include "apps/table.h"
+#include "batch/json_text.h"
+#include "batch/table.h"
 #include "gpu/device.h"
 #include "session/calibration.h"
 

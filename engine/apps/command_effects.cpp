@@ -8,10 +8,10 @@
 
 #include "apps/command.h"
 #include "apps/effect_page.h"
-#include "apps/json_text.h"
 #include "apps/options.h"
 #include "apps/setting_text.h"
-#include "apps/table.h"
+#include "batch/json_text.h"
+#include "batch/table.h"
 #include "core/printable.h"
 #include "core/text.h"
 #include "script/holds.h"

@@ -14,6 +14,7 @@
 #include "apps/options.h"
 #include "core/exception.h"
 #include "core/text.h"
+#include "core/version.h"
 
 namespace afterglow {
 namespace {
@@ -108,7 +109,7 @@ enum class Work { all, parsing };
 
 int run(Console& console, int argc, char** argv, Work work) {
   CLI::App program("Finishes rendered pictures: Lua looks on Vulkan.", "afterglow");
-  program.set_version_flag("--version", "afterglow " AFTERGLOW_VERSION);
+  program.set_version_flag("--version", std::string("afterglow ") + version());
   program.require_subcommand(1);
   program.footer(kFooter);
   program.get_formatter()->column_width(34);

@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "apps/command.h"
-#include "apps/frame_list.h"
-#include "apps/frame_loop.h"
-#include "apps/lock.h"
 #include "apps/options.h"
-#include "apps/resume.h"
-#include "apps/run_report.h"
-#include "apps/schedule.h"
+#include "batch/frame_list.h"
+#include "batch/frame_loop.h"
+#include "batch/lock.h"
+#include "batch/resume.h"
+#include "batch/run_report.h"
+#include "batch/schedule.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "core/text.h"
@@ -286,6 +286,15 @@ Result<void> check_outputs(const Run& run) {
   return {};
 }
 
+RunEvents events_of(Console& console) {
+  return {.diagnostics = console.diagnostics(),
+          .progress = [&console](std::size_t done, std::size_t total, const std::string& label,
+                                 double seconds) { console.progress(done, total, label, seconds); },
+          .end_progress = [&console] { console.end_progress(); },
+          .failed = [&console](const Error& error) { console.error(error); },
+          .interrupted = interrupted};
+}
+
 Result<void> run_frames(Run& run, const SessionOptions& options) {
   const RunArguments& a = run.arguments;
   run.loop.write = write_options(a);
@@ -323,7 +332,7 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
       earlier ? schedule_with_histories(run.report.frames, files_of(a), *earlier) : plain_schedule(run.report.frames);
   run.report.pre_roll = schedule.earlier.size();
   run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
-  FrameLoop loop(*run.session, run.loop, run.console);
+  FrameLoop loop(*run.session, run.loop, events_of(run.console));
   auto done = loop.run(schedule);
   run.report.memory_needed = loop.largest_need();
   return done;

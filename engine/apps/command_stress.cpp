@@ -9,10 +9,11 @@
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
-#include "apps/table.h"
+#include "batch/table.h"
 #include "core/file.h"
 #include "core/paths.h"
 #include "core/text.h"
+#include "core/version.h"
 #include "stress/processes.h"
 #include "stress/report.h"
 
@@ -179,12 +180,12 @@ Result<stress::StressReport> try_device(const StressArguments& a, const std::str
                                    .cases = a.cases,
                                    .seconds = 0,
                                    .out = fs::path(a.out) / fmt::format("seed-{}", a.seed),
-                                   .version = AFTERGLOW_VERSION};
+                                   .version = version()};
   if (!a.duration.empty()) {
     AFTERGLOW_TRY(options.seconds, parse_duration(a.duration));
   }
   if (a.quick && options.cases == 0) options.cases = kShortCases;
-  stress::StressReport report{.version = AFTERGLOW_VERSION,
+  stress::StressReport report{.version = version(),
                               .device = opened.device->info().name,
                               .driver = opened.device->info().driver,
                               .seed = a.seed};

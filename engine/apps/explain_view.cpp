@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/graph_view.h"
-#include "apps/json_text.h"
 #include "apps/setting_text.h"
-#include "apps/table.h"
+#include "batch/json_text.h"
+#include "batch/table.h"
 #include "core/text.h"
 
 namespace afterglow {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/graph_view.h"
-#include "apps/json_text.h"
+#include "batch/json_text.h"
 #include "graph/condition.h"
 #include "graph/history.h"
 

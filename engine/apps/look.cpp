@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "apps/crop.h"
+#include "batch/crop.h"
 #include "core/paths.h"
 #include "exec/describe.h"
 #include "graph/region.h"

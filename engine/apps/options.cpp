@@ -188,13 +188,6 @@ Result<std::uint64_t> parse_memory(const std::string& text) {
   return static_cast<std::uint64_t>(bytes);
 }
 
-std::string memory_text(std::uint64_t bytes) {
-  const auto value = static_cast<double>(bytes);
-  if (value >= 1024.0 * 1024 * 1024) return fmt::format("{:.1f} GiB", value / (1024.0 * 1024 * 1024));
-  if (value >= 1024.0 * 1024) return fmt::format("{:.0f} MiB", value / (1024.0 * 1024));
-  return fmt::format("{:.0f} KiB", value / 1024.0);
-}
-
 void AssumedPicture::add(CLI::App& command) {
   command.add_option("--size", size, "Size of the assumed picture (default 1920x1080)")
       ->type_name("WxH")

@@ -61,8 +61,6 @@ Result<Size> parse_size(const std::string& text);
 Result<Rect> parse_region(const std::string& text);
 /// "6G", "512M", "1.5GiB", "1000000": bytes, units of 1024. Errors: usage.
 Result<std::uint64_t> parse_memory(const std::string& text);
-/// "6.0 GiB", "512 MiB".
-std::string memory_text(std::uint64_t bytes);
 
 /// "1,-2.5,3". Errors: usage.
 Result<Position> parse_position(const std::string& text);

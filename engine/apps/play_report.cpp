@@ -4,10 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/json_text.h"
 #include "apps/options.h"
-#include "apps/run_report.h"
-#include "apps/table.h"
+#include "batch/json_text.h"
+#include "batch/run_report.h"
+#include "batch/table.h"
+#include "core/version.h"
 
 namespace afterglow {
 namespace {
@@ -84,7 +85,7 @@ std::string play_report_json(const PlayReport& report, Player& player) {
   const Transport& transport = player.transport();
   const Footage& footage = player.footage();
   Json out{
-      {"afterglow", AFTERGLOW_VERSION},
+      {"afterglow", version()},
       {"preset", report.preset},
       {"device", report.device},
       {"driver", report.driver},

@@ -9,11 +9,12 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "apps/json_text.h"
-#include "apps/table.h"
+#include "batch/json_text.h"
+#include "batch/table.h"
 #include "bench/picture.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
+#include "core/version.h"
 #include "image/writer.h"
 #include "play/player.h"
 
@@ -167,7 +168,7 @@ std::string reload_bench_text(const ReloadBench& bench) {
 }
 
 std::string reload_bench_json(const ReloadBench& bench, const std::string& device) {
-  Json out{{"afterglow", AFTERGLOW_VERSION},
+  Json out{{"afterglow", version()},
            {"device", device},
            {"width", bench.size.width},
            {"height", bench.size.height},

@@ -1,6 +1,7 @@
 // Small text helpers that error messages share.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,5 +23,8 @@ std::string lower(std::string_view text);
 
 /// Shortest decimal text that reads back as the same float ("0.2", not "0.20000000298").
 std::string number_text(double value);
+
+/// "6.0 GiB", "512 MiB", "3 KiB".
+std::string memory_text(std::uint64_t bytes);
 
 }  // namespace afterglow

@@ -1,7 +1,7 @@
 // Every JSON file that the program reads: calibrations, locks, goals, earlier reports of bench.
 #include <cmath>
 
-#include "apps/lock.h"
+#include "batch/lock.h"
 #include "bench/goals.h"
 #include "bench/report.h"
 #include "fuzz.h"

@@ -1,4 +1,4 @@
-#include "apps/lock.h"
+#include "batch/lock.h"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "apps/json_text.h"
+#include "batch/json_text.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "core/version.h"
 #include "exec/choice.h"
 #include "shader/glsl.h"
 #include "shader/library.h"
@@ -91,7 +92,7 @@ Result<Lock> lock_of(Session& session, const Graph& graph, const PixelOptions& o
   }
   for (const auto& [name, value] : options)
     if (!value.empty()) lock.options[name] = value;
-  lock.made_with = {{"afterglow", AFTERGLOW_VERSION},
+  lock.made_with = {{"afterglow", version()},
                     {"device", report.device},
                     {"driver", report.driver},
                     {"execution", choice_name(report.choice.execution)},

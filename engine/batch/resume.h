@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/frame_list.h"
-#include "apps/run_report.h"
+#include "batch/frame_list.h"
+#include "batch/run_report.h"
 #include "core/hash.h"
 #include "core/result.h"
 #include "graph/graph.h"

@@ -1,15 +1,14 @@
-#include "apps/frame_loop.h"
+#include "batch/frame_loop.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "apps/crop.h"
-#include "apps/interrupt.h"
-#include "apps/options.h"
-#include "apps/resume.h"
-#include "apps/scale.h"
+#include "batch/crop.h"
+#include "batch/resume.h"
+#include "batch/scale.h"
 #include "core/stopwatch.h"
+#include "core/text.h"
 #include "image/camera.h"
 #include "image/facts.h"
 
@@ -18,6 +17,8 @@ namespace {
 
 /// A file that fails spoils its frame; a script, a device or an option that fails would spoil them all.
 bool ends_run(const Error& error) { return error.kind != ErrorKind::io && error.kind != ErrorKind::other; }
+
+Error interruption() { return {ErrorKind::interrupted, "interrupted"}; }
 
 Error named(Error error, const FrameJob& job) {
   if (error.file.empty()) error.file = job.input.string();
@@ -42,8 +43,8 @@ struct FrameLoop::Writing {
   std::future<Result<void>> written;
 };
 
-FrameLoop::FrameLoop(Session& session, FrameLoopOptions options, Console& console)
-    : session_(session), options_(std::move(options)), console_(console) {}
+FrameLoop::FrameLoop(Session& session, FrameLoopOptions options, RunEvents events)
+    : session_(session), options_(std::move(options)), events_(std::move(events)) {}
 
 FrameLoop::~FrameLoop() = default;
 
@@ -54,12 +55,12 @@ Result<void> FrameLoop::run(Schedule& schedule) {
   const auto start = Clock::now();
   std::unique_ptr<Reading> next;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (interrupted()) return close(interrupt_error());
+    if (events_.interrupted()) return close(interruption());
     if (frames.size() > 1)
-      console_.progress(i, frames.size(),
-                        frames[i].pre_roll ? "before " + frames[i].record->job.output.filename().string()
-                                           : frames[i].record->job.output.filename().string(),
-                        milliseconds_since(start) / 1000);
+      events_.progress(i, frames.size(),
+                       frames[i].pre_roll ? "before " + frames[i].record->job.output.filename().string()
+                                          : frames[i].record->job.output.filename().string(),
+                       milliseconds_since(start) / 1000);
     auto reading = next ? std::move(next) : begin_reading(frames[i]);
     // Shaders, pipelines and memory are made while the first picture is read.
     if (i == 0 && !reading->refused) {
@@ -79,7 +80,7 @@ Result<void> FrameLoop::run(Schedule& schedule) {
 /// Waits for the last output and sums up.
 Result<void> FrameLoop::close(Result<void> result) {
   auto last = finish_writing();
-  console_.end_progress();
+  events_.end_progress();
   if (!result) {
     if (result.error().kind == ErrorKind::interrupted && total_ > 1) {
       Error error = result.error();
@@ -89,7 +90,7 @@ Result<void> FrameLoop::close(Result<void> result) {
     return result;
   }
   if (!last) return last;
-  if (total_ > 1) non_finite_.sum_up(console_.diagnostics());
+  if (total_ > 1) non_finite_.sum_up(events_.diagnostics);
   if (failed_ > 0) return Error{ErrorKind::io, fmt::format("{} of {} frames failed", failed_, total_)};
   return {};
 }
@@ -168,7 +169,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   overlap_ = total_ + pre_roll_ > 1 && need->three_frames() <= options_.max_memory;
   reading->picture = std::async(std::launch::async, [this, &frame, options]() -> Result<Picture> {
     const auto start = Clock::now();
-    auto picture = read_picture(frame.job.input, options, console_.diagnostics());
+    auto picture = read_picture(frame.job.input, options, events_.diagnostics);
     if (picture && options_.size) scale_picture(*picture, *options_.size);
     if (picture && options_.reuse && total_ + pre_roll_ > 1) note_content(*picture);
     frame.read = milliseconds_since(start);
@@ -184,7 +185,7 @@ Result<void> FrameLoop::process(Reading& reading) {
   if (reading.refused) return fail(frame, *reading.refused, reading.pre_roll);
   auto picture = reading.picture.get();
   if (!picture) return fail(frame, named(std::move(picture).error(), frame.job), reading.pre_roll);
-  if (interrupted()) return interrupt_error();
+  if (events_.interrupted()) return interruption();
   frame.size = picture->color.size();
   frame.non_finite.input = picture->non_finite;
   const auto processed = make(reading, *picture);
@@ -202,11 +203,10 @@ Result<void> FrameLoop::process(Reading& reading) {
   non_finite_.add(frame.non_finite);
   frame.skipped = report.skipped_now;
   if (report.clamped > 0)
-    console_.diagnostics().warn_once(
-        "clamped", fmt::format("{}: {} samples were held at ±65504, the largest half float", frame.job.input.string(),
-                               report.clamped));
+    events_.diagnostics.warn_once("clamped", fmt::format("{}: {} samples were held at ±65504, the largest half float",
+                                                         frame.job.input.string(), report.clamped));
   if (reading.part) crop_picture(*picture, *options_.region, *reading.part);
-  if (interrupted()) return interrupt_error();
+  if (events_.interrupted()) return interruption();
   AFTERGLOW_CHECK(finish_writing());
   begin_writing(frame, std::move(*picture));
   return {};
@@ -247,11 +247,11 @@ Result<void> FrameLoop::mend(Reading& reading, Picture& picture) {
     return error;
   }
   Trace trace = std::move(traced).value();
-  if (trace.overflow) non_finite_.tell_overflow(*trace.overflow, frame.job.input, console_.diagnostics());
+  if (trace.overflow) non_finite_.tell_overflow(*trace.overflow, frame.job.input, events_.diagnostics);
   if (!flagged) return {};
   take_findings(frame.non_finite, trace, picture);
   frame.non_finite.untraced = trace.passes.empty();
-  non_finite_.tell(frame.non_finite, frame.job.input, options_.nan_policy, console_.diagnostics());
+  non_finite_.tell(frame.non_finite, frame.job.input, options_.nan_policy, events_.diagnostics);
   if (options_.nan_policy == NanPolicy::fail) return Error{ErrorKind::script, kUntraced};
   picture.color = std::move(trace.result);
   picture.codes.clear();
@@ -263,7 +263,7 @@ void FrameLoop::begin_writing(FrameRecord& frame, Picture picture) {
   writing_->frame = &frame;
   writing_->written = std::async(std::launch::async, [this, &frame, picture = std::move(picture)]() -> Result<void> {
     const auto start = Clock::now();
-    auto written = write_picture(picture, frame.job.output, options_.write, console_.diagnostics());
+    auto written = write_picture(picture, frame.job.output, options_.write, events_.diagnostics);
     frame.write = milliseconds_since(start);
     if (written && options_.record_look) return record_made(frame.job, *options_.record_look);
     return written;
@@ -285,12 +285,12 @@ Result<void> FrameLoop::fail(FrameRecord& frame, Error error, bool pre_roll) {
   frame.state = FrameRecord::State::failed;
   frame.error = error;
   if (pre_roll && !ends_run(error)) {
-    console_.diagnostics().warn("left out of the pre-roll: " + error.text());
+    events_.diagnostics.warn("left out of the pre-roll: " + error.text());
     return {};
   }
   if (total_ == 1 || options_.fail_fast || ends_run(error)) return error;
   ++failed_;
-  console_.error(error);
+  events_.failed(error);
   return {};
 }
 

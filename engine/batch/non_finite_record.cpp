@@ -1,4 +1,4 @@
-#include "apps/non_finite_record.h"
+#include "batch/non_finite_record.h"
 
 #include <fmt/format.h>
 

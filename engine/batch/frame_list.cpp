@@ -1,4 +1,4 @@
-#include "apps/frame_list.h"
+#include "batch/frame_list.h"
 
 #include <fmt/format.h>
 

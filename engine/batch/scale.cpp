@@ -1,4 +1,4 @@
-#include "apps/scale.h"
+#include "batch/scale.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "apps/schedule.h"
+#include "batch/schedule.h"
 
 #include <algorithm>
 #include <map>

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/frame_list.h"
-#include "apps/non_finite_record.h"
+#include "batch/frame_list.h"
+#include "batch/non_finite_record.h"
 #include "session/session.h"
 
 namespace afterglow {

@@ -1,4 +1,4 @@
-#include "apps/table.h"
+#include "batch/table.h"
 
 #include <algorithm>
 

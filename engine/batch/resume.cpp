@@ -1,4 +1,4 @@
-#include "apps/resume.h"
+#include "batch/resume.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/temporary.h"
 #include "core/text.h"
+#include "core/version.h"
 #include "shader/library.h"
 
 namespace afterglow {
@@ -23,7 +24,7 @@ fs::path record_file(const fs::path& output) {
 
 Result<Hash> look_hash(const Preset& preset, const Graph& graph, const std::string& options) {
   Hasher hasher;
-  hasher.add(AFTERGLOW_VERSION).add(options);
+  hasher.add(version()).add(options);
   for (const auto& file : preset.files()) {
     AFTERGLOW_TRY(const std::string text, read_file(file));
     hasher.add(text);

@@ -1,4 +1,4 @@
-#include "apps/run_report.h"
+#include "batch/run_report.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -7,9 +7,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/json_text.h"
-#include "apps/options.h"
-#include "apps/table.h"
+#include "batch/json_text.h"
+#include "batch/table.h"
+#include "core/text.h"
+#include "core/version.h"
 
 namespace afterglow {
 namespace {
@@ -209,7 +210,7 @@ std::string report_text(const RunReport& report, bool passes) {
 }
 
 std::string report_json(const RunReport& report) {
-  Json out{{"afterglow", AFTERGLOW_VERSION}};
+  Json out{{"afterglow", version()}};
   out["session"] = report.session ? session_json(*report.session) : Json(nullptr);
   for (const auto& step : steps(report)) out["milliseconds"][step.name] = step.milliseconds;
   out["milliseconds"]["wall"] = report.wall;

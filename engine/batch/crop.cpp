@@ -1,4 +1,4 @@
-#include "apps/crop.h"
+#include "batch/crop.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <deque>
 #include <vector>
 
-#include "apps/run_report.h"
+#include "batch/run_report.h"
 
 namespace afterglow {
 

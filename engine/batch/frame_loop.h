@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "apps/console.h"
-#include "apps/non_finite_record.h"
-#include "apps/run_report.h"
-#include "apps/schedule.h"
+#include "batch/non_finite_record.h"
+#include "batch/run_events.h"
+#include "batch/run_report.h"
+#include "batch/schedule.h"
 #include "core/hash.h"
 #include "image/reader.h"
 #include "image/writer.h"
@@ -34,7 +34,7 @@ struct FrameLoopOptions {
 
 class FrameLoop {
  public:
-  FrameLoop(Session& session, FrameLoopOptions options, Console& console);
+  FrameLoop(Session& session, FrameLoopOptions options, RunEvents events);
   ~FrameLoop();
 
   /// Runs the frames of the schedule and notes in each what became of it. A frame whose files fail is reported and
@@ -69,7 +69,7 @@ class FrameLoop {
 
   Session& session_;
   FrameLoopOptions options_;
-  Console& console_;
+  RunEvents events_;
   std::unique_ptr<Writing> writing_;
   NonFiniteRecord non_finite_;
   std::size_t total_ = 0, pre_roll_ = 0, done_ = 0, failed_ = 0;

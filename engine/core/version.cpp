@@ -1,0 +1,7 @@
+#include "core/version.h"
+
+namespace afterglow {
+
+const char* version() { return AFTERGLOW_VERSION; }
+
+}  // namespace afterglow
