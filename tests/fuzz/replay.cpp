@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   if (LLVMFuzzerInitialize != nullptr) LLVMFuzzerInitialize(&argc, &argv);
   std::vector<fs::path> files;
   for (int i = 1; i < argc; ++i) {
+    if (!fs::exists(argv[i])) continue;  // a harness that nothing was found with
     if (!fs::is_directory(argv[i])) {
       files.emplace_back(argv[i]);
       continue;

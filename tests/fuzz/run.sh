@@ -3,7 +3,7 @@
 #
 #   run.sh FOLDER all|HARNESS… [SECONDS]   fuzz each for so long (60); FOLDER is the build folder, where the grown
 #                                          corpora, findings and the ledger of all runs lie
-#   run.sh FOLDER merge [HARNESS…]         adds the few inputs to tests/fuzz/corpus that reach all edges of the grown corpora
+#   run.sh FOLDER merge [HARNESS…]         adds the few inputs to the archives of tests/fuzz/corpus that reach all edges of the grown corpora
 #   run.sh FOLDER report                   minutes, executions and coverage of each harness over all runs
 #
 # Exit code 1 when something was found.
@@ -37,7 +37,13 @@ dictionary() {
 }
 
 names() {
-  for source in "$here"/corpus/*/; do basename "$source"; done
+  for archive in "$here"/corpus/*.tar.zst; do basename "$archive" .tar.zst; done
+}
+
+# Folders of the inputs that the project keeps: the archive, as the build unpacks it, and what something was found with.
+seeds() {
+  echo "$work/tests/fuzz/corpus/$1"
+  [[ ! -d $here/found/$1 ]] || echo "$here/found/$1"
 }
 
 fuzz_one() {
@@ -48,7 +54,7 @@ fuzz_one() {
   # shellcheck disable=SC2046
   cpu=$({ time nice -n 19 "$work/tests/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=2048 -print_final_stats=1 \
     -close_fd_mask=1 -artifact_prefix="$work/fuzz-findings/$name-" $(limits "$name") $(dictionary "$name") \
-    "$grown" "$here/corpus/$name" >"$log" 2>&1; } 2>&1) || status=$?
+    "$grown" $(seeds "$name") >"$log" 2>&1; } 2>&1) || status=$?
   local runs cov features
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   [[ -n $runs ]] || runs=$(grep -aoE '^#[0-9]+' "$log" | tail -n 1 | tr -d '#')
@@ -61,16 +67,18 @@ fuzz_one() {
 }
 
 merge_one() {
-  local name=$1 both before
-  both=$(mktemp -d "$work/merge.XXXXXX")
-  cp "$here/corpus/$name"/* "$both"
+  local name=$1 both before list
+  both=$(mktemp -d "$work/merge.XXXXXX") list=$(mktemp "$work/merge-list.XXXXXX")
+  cp "$work/tests/fuzz/corpus/$name"/* "$both"
   before=$(find "$both" -type f | wc -l)
   # shellcheck disable=SC2046
   "$work/tests/fuzz/fuzz_$name" -set_cover_merge=1 -use_counters=0 -timeout=60 -rss_limit_mb=2048 -close_fd_mask=1 $(limits "$name") \
     "$both" "$work/fuzz-corpus/$name" >"$work/fuzz-merge.log" 2>&1
-  cp -n "$both"/* "$here/corpus/$name/"
+  # The same inputs always give the same archive.
+  (cd "$both" && find . -type f -printf '%P\n' | LC_ALL=C sort >"$list" &&
+    cmake -E tar c "$here/corpus/$name.tar.zst" --zstd --mtime=2026-01-01 --files-from="$list")
   printf '%s: %s inputs, %s of them new\n' "$name" "$(find "$both" -type f | wc -l)" "$(($(find "$both" -type f | wc -l) - before))"
-  rm -rf "$both"
+  rm -rf "$both" "$list"
 }
 
 report() {
