@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 
 install(DIRECTORY scripts shaders presets templates calibration assets DESTINATION ${CMAKE_INSTALL_DATADIR}/afterglow USE_SOURCE_PERMISSIONS)
 install(DIRECTORY engine/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/afterglow
-  FILES_MATCHING PATTERN "*.h" PATTERN reference EXCLUDE PATTERN bench EXCLUDE PATTERN batch EXCLUDE PATTERN stress EXCLUDE PATTERN play EXCLUDE PATTERN window EXCLUDE PATTERN apps EXCLUDE)
+  FILES_MATCHING PATTERN "*.h" PATTERN reference EXCLUDE PATTERN bench EXCLUDE PATTERN batch EXCLUDE PATTERN edit EXCLUDE PATTERN stress EXCLUDE PATTERN play EXCLUDE PATTERN window EXCLUDE PATTERN apps EXCLUDE)
 
 set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/afterglow)
 install(EXPORT afterglow NAMESPACE afterglow:: FILE afterglow-targets.cmake DESTINATION ${config_folder})

@@ -11,7 +11,7 @@ function(afterglow_room name)
   endforeach()
   target_link_libraries(afterglow_${name} PRIVATE ${ROOM_LIBRARIES})
   set_target_properties(afterglow_${name} PROPERTIES EXPORT_NAME ${name})
-  if(NOT name MATCHES "^(batch|reference|bench|stress|play|window)$")  # for the program and tests alone
+  if(NOT name MATCHES "^(batch|edit|reference|bench|stress|play|window)$")  # for the program and tests alone
     install(TARGETS afterglow_${name} EXPORT afterglow ARCHIVE)
   endif()
 endfunction()

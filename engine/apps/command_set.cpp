@@ -7,7 +7,7 @@
 #include "apps/command.h"
 #include "apps/options.h"
 #include "apps/text_difference.h"
-#include "script/write_back.h"
+#include "edit/write_back.h"
 #include "shader/library.h"
 
 namespace afterglow {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "script/write_back.h"
+#include "edit/write_back.h"
 #include "window/panel_port.h"
 
 namespace afterglow {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edit/literal.h"
+#include "edit/write_back_check.h"
 #include "fuzz.h"
-#include "script/literal.h"
 #include "script/overrides.h"
 #include "script/value.h"
-#include "script/write_back_check.h"
 
 using namespace afterglow;
 

@@ -1,14 +1,14 @@
 // Settings written back into text: any text as tokens, constructors and calls; and, where it is a preset that loads,
 // whole rewrites, one `ENTRY.SETTING=VALUE` or `ENTRY.SETTING` a line behind "=== edits".
-#include "script/write_back.h"
+#include "edit/write_back.h"
 
 #include <fmt/format.h>
 
 #include "core/text.h"
+#include "edit/literal.h"
+#include "edit/table_edit.h"
 #include "fuzz.h"
 #include "script/key_finder.h"
-#include "script/literal.h"
-#include "script/table_edit.h"
 
 using namespace afterglow;
 

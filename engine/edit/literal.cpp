@@ -1,4 +1,4 @@
-#include "script/literal.h"
+#include "edit/literal.h"
 
 #include <fmt/format.h>
 

@@ -5,10 +5,10 @@
 #include <random>
 
 #include "core/file.h"
+#include "edit/write_back.h"
 #include "scene.h"
 #include "script/explanation.h"
 #include "script/lua_text.h"
-#include "script/write_back.h"
 
 namespace afterglow::test {
 namespace {

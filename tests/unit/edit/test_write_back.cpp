@@ -6,9 +6,9 @@
 #include <fstream>
 
 #include "core/file.h"
+#include "edit/write_back.h"
 #include "scene.h"
 #include "script/explanation.h"
-#include "script/write_back.h"
 
 namespace afterglow::test {
 namespace {

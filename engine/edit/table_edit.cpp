@@ -1,4 +1,4 @@
-#include "script/table_edit.h"
+#include "edit/table_edit.h"
 
 #include <algorithm>
 

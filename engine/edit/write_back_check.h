@@ -1,8 +1,8 @@
 // Does a preset say what edits of another wanted, and everything else as the other did?
 #pragma once
 
+#include "edit/write_back.h"
 #include "script/explanation.h"
-#include "script/write_back.h"
 
 namespace afterglow::script {
 

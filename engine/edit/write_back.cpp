@@ -1,15 +1,15 @@
-#include "script/write_back.h"
+#include "edit/write_back.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "core/file.h"
+#include "edit/write_back_check.h"
+#include "edit/write_back_place.h"
 #include "script/key_finder.h"
 #include "script/overrides.h"
 #include "script/setting.h"
-#include "script/write_back_check.h"
-#include "script/write_back_place.h"
 
 namespace afterglow {
 

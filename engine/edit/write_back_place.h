@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "script/table_edit.h"
-#include "script/write_back.h"
+#include "edit/table_edit.h"
+#include "edit/write_back.h"
 
 namespace afterglow::script {
 

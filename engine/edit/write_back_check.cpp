@@ -1,4 +1,4 @@
-#include "script/write_back_check.h"
+#include "edit/write_back_check.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "core/file.h"
 #include "core/replace_file.h"
-#include "script/write_back.h"
+#include "edit/write_back.h"
 
 namespace afterglow {
 namespace {

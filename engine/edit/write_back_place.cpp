@@ -1,11 +1,11 @@
-#include "script/write_back_place.h"
+#include "edit/write_back_place.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "edit/literal.h"
 #include "script/explanation.h"
-#include "script/literal.h"
 #include "script/script_error.h"
 
 namespace afterglow::script {
