@@ -17,6 +17,7 @@
 #include <set>
 #include <thread>
 
+#include "core/file_descriptor.h"
 #include "core/gathering.h"
 #include "core/stopwatch.h"
 #include "core/watch_places.h"
@@ -28,20 +29,6 @@ namespace {
 constexpr std::uint32_t kCome = IN_CREATE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF;
 constexpr std::uint32_t kWritten = IN_CLOSE_WRITE | IN_MODIFY | IN_ATTRIB;
 constexpr std::uint32_t kLost = IN_Q_OVERFLOW | IN_UNMOUNT | IN_DELETE_SELF | IN_MOVE_SELF;  // of whole folders
-
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int number) : number_(number) {}
-  ~FileDescriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  int get() const { return number_; }
-
- private:
-  int number_;
-};
 
 /// What to watch in each folder: the kinds of event, and of which names.
 using Folders = std::map<std::string, std::pair<std::uint32_t, std::set<std::string>>>;
