@@ -80,10 +80,11 @@ TEST_F(Inspect, CheckWarmsTheCacheForRun) {
   const auto after_check = files();
   make_exr("a.exr");
   ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "a.png", "--device", "llvmpipe"}, options).exit_code, kDone);
-  for (const auto& name : files())
-    if (name.starts_with("cache/shaders/"))
-      EXPECT_NE(std::find(after_check.begin(), after_check.end(), name), after_check.end())
-          << name << " was compiled again";
+  for (const auto& name : files()) {
+    if (!name.starts_with("cache/shaders/")) continue;
+    EXPECT_NE(std::find(after_check.begin(), after_check.end(), name), after_check.end())
+        << name << " was compiled again";
+  }
 }
 
 TEST_F(Inspect, GraphAsJsonNamesKernelsAndSkips) {

@@ -31,9 +31,10 @@ void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& 
   const auto threshold = BloomThreshold::from_gamma(s.threshold, s.knee);
   DoubleImage picture = scene.source;
   for (std::size_t i = 0; made.has(bloom_image("scaled", i)); ++i) picture = made.image(bloom_image("scaled", i));
-  if (s.reference_height > 0)
+  if (s.reference_height > 0) {
     EXPECT_TRUE(agrees(interleaved_floats(picture), bloom_scaled(scene.source, s.reference_height), kFullFloat, kRgb))
         << "scaled";
+  }
   EXPECT_TRUE(
       agrees(made.pixels("bloom.prefilter"),
              s.fade_fireflies ? bloom_prefilter_fireflies(picture, threshold) : bloom_prefilter(picture, threshold),
