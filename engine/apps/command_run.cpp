@@ -250,7 +250,7 @@ Result<void> prepare_resume(Run& run) {
   const RunArguments& a = run.arguments;
   if (!a.resume && run.report.frames.size() < 2) return {};
   AFTERGLOW_TRY(const Graph graph, usual_graph(run));
-  const std::string options = options_text(pixel_options(a)) + choice_name(run.session->stack().choice().execution);
+  const std::string options = options_text(pixel_options(a)) + execution_name(run.session->stack().choice().execution);
   AFTERGLOW_TRY(const Hash look, look_hash(run.session->preset(), graph, options));
   run.loop.record_look = look;
   if (!a.resume) return {};

@@ -9,7 +9,7 @@
 #include "apps/json_text.h"
 #include "core/file.h"
 #include "core/text.h"
-#include "exec/choice.h"
+#include "shader/execution_config.h"
 #include "shader/glsl.h"
 #include "shader/library.h"
 
@@ -94,7 +94,7 @@ Result<Lock> lock_of(Session& session, const Graph& graph, const PixelOptions& o
   lock.made_with = {{"afterglow", AFTERGLOW_VERSION},
                     {"device", report.device},
                     {"driver", report.driver},
-                    {"execution", choice_name(report.choice.execution)},
+                    {"execution", execution_name(report.choice.execution)},
                     {"shader compiler", glsl_compiler_version()}};
   return lock;
 }

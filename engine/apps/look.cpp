@@ -4,8 +4,10 @@
 
 #include "apps/crop.h"
 #include "core/paths.h"
+#include "exec/cpu/driver.h"
 #include "exec/describe.h"
 #include "graph/region.h"
+#include "session/calibration.h"
 #include "session/display_encoding.h"
 #include "shader/kernel.h"
 
@@ -33,63 +35,34 @@ Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& a
 
 namespace {
 
-// As `run` chooses on a CPU device, the one that is always there.
-constexpr DescribeOptions kAssumed{
-    .flag_non_finite = true, .storage_reads = true, .source_is_storage = true, .rows = kMaxRows, .hide_uniforms = true};
-
-/// Compiles each distinct kernel once and gathers what is wrong.
-class ShaderCheck {
- public:
-  explicit ShaderCheck(ShaderLibrary& shaders) : shaders_(shaders) {}
-
-  void run(const Graph& graph, const Plan& plan, const DescribeOptions& options) {
-    for (const auto& kernel : plan.kernels) {
-      const auto desc = describe_kernel(shaders_, graph, kernel, options);
-      if (!desc) {
-        keep(desc.error());
-        continue;
-      }
-      const auto assembled = assemble(*desc);
-      if (!assembled) {
-        keep(assembled.error());
-        continue;
-      }
-      if (!compiled_.insert(assembled->hash).second) continue;
-      if (const auto result = compiler_.compile(*desc); !result) keep(result.error());
-    }
-  }
-
-  std::vector<Error> errors;
-
- private:
-  void keep(const Error& error) {
-    if (seen_.insert(error.text()).second) errors.push_back(error);
-  }
-
-  ShaderLibrary& shaders_;
-  KernelCompiler compiler_{cache_folder() / "shaders"};  // the folder that Stack uses, so that `run` starts warm
-  std::set<std::string> seen_;
-  std::set<Hash> compiled_;
-};
+/// As `run` executes on a CPU device, the one that is always there.
+ExecutionConfig execution_on_cpu() {
+  const auto calibration = Calibration::shipped();
+  DeviceInfo cpu;
+  cpu.type = "cpu";
+  ExecutionConfig config = calibration ? calibration->find(cpu, 0).choice : ExecutionConfig{};
+  fit_to_cpu_driver(config);
+  return config;
+}
 
 }  // namespace
 
 std::vector<Error> shader_errors(const Look& look) {
-  ShaderCheck check(*look.shaders);
-  check.run(look.graph, look.plan, kAssumed);
-  if (!check.errors.empty() || look.graph.result == look.graph.source) return check.errors;
-  // The last kernel once more, as it is for display files without and with transparency.
-  for (const bool straight : {false, true}) {
-    Graph graph = look.graph;
-    encode_for_display(graph, {.straight_alpha = straight});
-    DescribeOptions options = kAssumed;
+  ProgramOptions options{.config = execution_on_cpu(), .source_is_storage = true, .flag_non_finite = true};
+  KernelCompiler compiler{cache_folder() / "shaders"};  // the folder that Stack uses, so that `run` starts warm
+  std::vector<Error> errors = check_kernels(*look.shaders, compiler, look.graph, options);
+  if (errors.empty() && look.graph.result != look.graph.source) {
+    // The last kernel once more, as it is for display files without and with transparency.
     options.codes = true;
-    const Plan plan = make_plan(graph, {});
-    Plan last;
-    last.kernels = {plan.kernels.back()};
-    check.run(graph, last, options);
+    for (const bool straight : {false, true}) {
+      Graph graph = look.graph;
+      encode_for_display(graph, {.straight_alpha = straight});
+      for (auto& error : check_kernels(*look.shaders, compiler, graph, options)) errors.push_back(std::move(error));
+    }
   }
-  return check.errors;
+  std::set<std::string> seen;
+  std::erase_if(errors, [&](const Error& error) { return !seen.insert(error.text()).second; });
+  return errors;
 }
 
 }  // namespace afterglow

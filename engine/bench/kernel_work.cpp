@@ -20,7 +20,8 @@ Result<KernelWork> KernelWork::create(const Device& device, KernelCompiler& comp
   KernelWork out;
   AFTERGLOW_TRY(out.compiled_, compiler.compile(kernel));
   AFTERGLOW_TRY(out.pipelines_, KernelPipelines::create(device, {out.compiled_}, {name}, target.format));
-  AFTERGLOW_TRY(out.sampler_, create_sampler(device, kernel.hardware_filter ? VK_FILTER_LINEAR : VK_FILTER_NEAREST));
+  AFTERGLOW_TRY(out.sampler_,
+                create_sampler(device, kernel.config.hardware_filter ? VK_FILTER_LINEAR : VK_FILTER_NEAREST));
   const DrawLayout& layout = out.pipelines_.layout(out.compiled_);
   AFTERGLOW_TRY(out.descriptors_,
                 Descriptors::create(device, {{.layout = layout.set.get(), .images = descriptor_types(out.compiled_)}}));

@@ -69,7 +69,7 @@ KernelDesc shift(bool hardware_filter) {
   KernelDesc kernel;
   kernel.filter = Filter{.interpolation = Interpolation::linear, .x = {{0.3, 1}}, .y = {{0.3, 1}}, .taps = {}};
   kernel.ratio_x = kernel.ratio_y = AxisRatio::same;
-  kernel.hardware_filter = hardware_filter;
+  kernel.config.hardware_filter = hardware_filter;
   return kernel;
 }
 

@@ -59,7 +59,7 @@ PictureKind PreparedStack::picture_kind() const {
 
 Result<Point> PreparedStack::try_out(Device& device, const Picture& picture, bool passes, std::vector<float>& rgb) {
   Point point{
-      .choice = choice_name(stack_->choice().execution), .label = variant_.label, .settings = variant_.settings};
+      .choice = execution_name(stack_->choice().execution), .label = variant_.label, .settings = variant_.settings};
   if (!runs()) {
     rgb = rgb_of(picture.color.pixels);
     return point;

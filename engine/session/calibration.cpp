@@ -38,7 +38,7 @@ Result<CalibratedChoice> read_choice(const Json& json) {
   CalibratedChoice out;
   out.max_error = json["max_error"].get<double>();
   if (!std::isfinite(out.max_error) || out.max_error < 0) return wrong("'max_error' is negative");
-  AFTERGLOW_TRY(out.choice, parse_choice(json["choice"].get<std::string>()));
+  AFTERGLOW_TRY(out.choice, parse_execution(json["choice"].get<std::string>()));
   return out;
 }
 
@@ -114,7 +114,7 @@ Calibration::Found Calibration::find(const DeviceInfo& info, double max_error) c
     const auto best = std::find_if(entry.choices.rbegin(), entry.choices.rend(), allowed);
     if (best != entry.choices.rend()) return {best->choice, fmt::format("{}, {}", file, entry.name())};
   }
-  return {Choice{}, kAnything};
+  return {ExecutionConfig{}, kAnything};
 }
 
 }  // namespace afterglow

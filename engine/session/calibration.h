@@ -9,15 +9,15 @@
 #include <vector>
 
 #include "core/result.h"
-#include "exec/choice.h"
 #include "gpu/device.h"
+#include "shader/execution_config.h"
 
 namespace afterglow {
 
 /// Fastest where at least this error is allowed.
 struct CalibratedChoice {
   double max_error = 0;  ///< E of math.md §13
-  Choice choice;
+  ExecutionConfig choice;
 };
 
 /// What is known of some devices. A pattern that ends in '*' fits what begins so; an empty one fits everything.
@@ -42,11 +42,11 @@ struct Calibration {
   static Result<Calibration> shipped();
 
   struct Found {
-    Choice choice;
+    ExecutionConfig choice;
     std::string from;  ///< for reports: "calibration/devices.json, llvmpipe*"
   };
-  /// The choice with the largest `max_error` that is allowed, from the first entry that has one; without any, Choice{},
-  /// which is exact on every device.
+  /// The choice with the largest `max_error` that is allowed, from the first entry that has one; without any,
+  /// ExecutionConfig{}, which is exact on every device.
   Found find(const DeviceInfo& info, double max_error) const;
 };
 

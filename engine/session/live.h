@@ -24,7 +24,7 @@ struct LiveOptions {
   /// See Stack::use: source and result will be a FrameRunner's.
   bool own_images = true;
   /// New kernels are drawn with on another device before they are taken, where the driver would compile them in their
-  /// first frame else (exec/warm_up.h).
+  /// first frame else (exec/cpu/warm_up.h).
   bool warm_up = false;
   bool follow = true;  ///< watch the files; false: only `LiveStack::reload` looks at them
   WatchOptions watch;

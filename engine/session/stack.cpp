@@ -14,7 +14,7 @@
 namespace afterglow {
 namespace {
 
-constexpr Choice kReference{.joining = Joining::none, .share_memory = false};
+constexpr ExecutionConfig kReference{.joining = Joining::none, .share_memory = false};
 
 StackChoice choose(const Device& device, const StackOptions& options, const Calibration& calibration,
                    double max_error) {
@@ -169,11 +169,11 @@ Result<void> Stack::warm_up(WarmUp& on) {
 }
 
 Result<std::unique_ptr<Program>> Stack::program_by_passes(const Graph& graph, const std::optional<Rect>& region) const {
-  ProgramOptions options = program_options(kReference);
+  ProgramOptions options;
   const bool halves = std::ranges::any_of(graph.histories, [](const History& history) { return !history.precise; });
-  if (halves) options.storage = state_->choice.execution.storage;
+  if (halves) options.config.storage = state_->choice.execution.storage;
   options.reference = true;
-  options.storage_reads = state_->choice.execution.storage_reads;  // as the histories are made
+  options.config.storage_reads = state_->choice.execution.storage_reads;  // as the histories are made
   options.region = region;
   options.max_memory = state_->options.max_memory;
   options.pipelines = &state_->shared->pipelines;

@@ -11,15 +11,15 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
-#include "exec/choice.h"
+#include "exec/cpu/warm_up.h"
 #include "exec/idle_programs.h"
 #include "exec/image_pool.h"
 #include "exec/pipeline_pool.h"
 #include "exec/program.h"
-#include "exec/warm_up.h"
 #include "gpu/device.h"
 #include "script/preset.h"
 #include "session/display_encoding.h"
+#include "shader/execution_config.h"
 #include "shader/kernel.h"
 
 namespace afterglow {
@@ -50,15 +50,15 @@ struct StackOptions {
   /// At most so many rows an invocation, whatever calibration says. Fewer make large frames slower and shaders faster
   /// to compile; the pixels are the same.
   int most_rows = kMaxRows;
-  std::optional<Choice> choice;       ///< execute so, whatever calibration and precision say
-  std::filesystem::path calibration;  ///< a table of `afterglow calibrate`; empty: the shipped one
+  std::optional<ExecutionConfig> choice;  ///< execute so, whatever calibration and precision say
+  std::filesystem::path calibration;      ///< a table of `afterglow calibrate`; empty: the shipped one
   /// Null: the stack's own. Its cache folder counts, and whoever made it calls Device::use_pipeline_cache.
   std::shared_ptr<StackShared> shared;
 };
 
 /// How a stack is executed, and why so.
 struct StackChoice {
-  Choice execution;
+  ExecutionConfig execution;
   std::string from;  ///< "calibration/devices.json, any gpu", "given", "--reference"
   double max_error = 2e-3;
 };

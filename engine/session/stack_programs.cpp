@@ -18,7 +18,8 @@ Result<void> Stack::State::fit_histories() {
 }
 
 ProgramOptions Stack::State::options_of_programs() const {
-  ProgramOptions out = program_options(choice.execution);
+  ProgramOptions out;
+  out.config = choice.execution;
   out.reference = options.reference;
   out.source_is_storage = own_images;
   out.result_by_rows = own_images;

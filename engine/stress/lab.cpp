@@ -32,7 +32,7 @@ Made untouched(const Picture& picture) { return {.image = picture.color}; }
 }  // namespace
 
 std::string Way::name() const {
-  std::string out = plain ? "plain" : choice_name(choice);
+  std::string out = plain ? "plain" : execution_name(choice);
   if (skip_idle) out += ", idle effects left out";
   if (region) out += fmt::format(", region {},{},{},{}", region->x, region->y, region->width, region->height);
   if (!show.empty()) out += ", image " + show;
@@ -46,7 +46,7 @@ struct Lab::State {
   std::map<std::string, Prepared> prepared;  ///< by look, way and size
   std::map<std::string, Made> results;       ///< by look, way, frame and content of the picture
   std::map<std::string, Result<LookFacts>> known;
-  Choice usual;
+  ExecutionConfig usual;
   int stacks = 0;
 
   StackOptions options(const Look& look, const Way& way) const {
@@ -68,7 +68,7 @@ struct Lab::State {
 Lab::Lab(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Lab::~Lab() = default;
 Device& Lab::device() { return *state_->device; }
-const Choice& Lab::usual() const { return state_->usual; }
+const ExecutionConfig& Lab::usual() const { return state_->usual; }
 int Lab::stacks_made() const { return state_->stacks; }
 
 Result<std::unique_ptr<Lab>> Lab::create(Device& device, const std::filesystem::path& cache, Diagnostics& diagnostics) {

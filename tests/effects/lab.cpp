@@ -75,11 +75,11 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
     made.result = source;
     return made;
   }
-  const ProgramOptions options{.storage = way == Way::joined_half ? Storage::fp16 : Storage::fp32,
+  const ProgramOptions options{.config = {.storage = way == Way::joined_half ? Storage::fp16 : Storage::fp32,
+                                          .storage_reads = way != Way::plain,
+                                          .rows = way == Way::plain ? 1 : kMaxRows},
                                .reference = way == Way::plain,
-                               .storage_reads = way != Way::plain,
                                .source_is_storage = way != Way::plain,
-                               .rows = way == Way::plain ? 1 : kMaxRows,
                                .worth = {0, 0},
                                .result_by_rows = way != Way::plain};
   auto program = need(Program::create(*lab.device, shaders, lab.compiler, graph, options));

@@ -108,8 +108,8 @@ TEST_F(HistoriesOfFrames, AFrameReadsWhatTheOneBeforeItMade) {
   StackOptions plain, kept, reference, half, rows;
   kept.keep_images = true;
   reference.reference = true;
-  half.choice = Choice{.storage = Storage::fp16};
-  rows.choice = Choice{.storage_reads = true, .rows = 4};
+  half.choice = ExecutionConfig{.storage = Storage::fp16};
+  rows.choice = ExecutionConfig{.storage_reads = true, .rows = 4};
   for (const auto& options : {plain, kept, reference, half, rows}) {
     const auto session = open(options);
     EXPECT_EQ(run(*session, 1, 1), 9);  // 16 / 2 + 1
@@ -152,8 +152,8 @@ TEST_F(HistoriesOfFrames, ASeekBeginsAnew) {
 TEST_F(HistoriesOfFrames, AFirstImageStandsForTheFrameBefore) {
   look("fx.trail { image = true }");
   StackOptions plain, rows, half;
-  rows.choice = Choice{.storage_reads = true, .rows = 4};
-  half.choice = Choice{.storage = Storage::fp16, .storage_reads = true};
+  rows.choice = ExecutionConfig{.storage_reads = true, .rows = 4};
+  half.choice = ExecutionConfig{.storage = Storage::fp16, .storage_reads = true};
   for (const auto& options : {plain, rows, half}) {
     const auto session = open(options);
     EXPECT_EQ(run(*session, 1, 1), 5);

@@ -2,7 +2,7 @@
 // drawn with before they are needed.
 #include <fmt/format.h>
 
-#include "exec/warm_up.h"
+#include "exec/cpu/warm_up.h"
 #include "live_fixture.h"
 
 namespace afterglow {
@@ -175,7 +175,8 @@ TEST_F(LiveFrames, WarmingUpIsCleanVulkan) {
   effect_of_frames(true);
   auto warm_up = WarmUp::create(*device_, true);
   ASSERT_TRUE(warm_up) << warm_up.error().text();
-  for (const Choice choice : {Choice{}, Choice{.storage = Storage::fp16}, Choice{.storage_reads = true, .rows = 4}}) {
+  for (const ExecutionConfig choice : {ExecutionConfig{}, ExecutionConfig{.storage = Storage::fp16},
+                                       ExecutionConfig{.storage_reads = true, .rows = 4}}) {
     StackOptions options;
     options.choice = choice;
     auto stack = Stack::load(folder_ / "look.lua", options, diagnostics_);

@@ -1,4 +1,4 @@
-#include "shader/storage_reads.h"
+#include "shader/cpu/storage_reads.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "exec/warm_up.h"
+#include "exec/cpu/warm_up.h"
 
 #include <cstdlib>
 #include <string_view>

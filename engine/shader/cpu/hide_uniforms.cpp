@@ -1,4 +1,4 @@
-#include "shader/hide_uniforms.h"
+#include "shader/cpu/hide_uniforms.h"
 
 #include <algorithm>
 #include <set>

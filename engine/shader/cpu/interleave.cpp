@@ -1,4 +1,4 @@
-#include "shader/interleave.h"
+#include "shader/cpu/interleave.h"
 
 #include <map>
 #include <optional>
