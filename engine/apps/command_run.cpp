@@ -232,7 +232,8 @@ Result<std::optional<int>> pre_roll_of(Run& run) {
     assumed.frame = frames[i * frames.size() / asked].job.frame;
     assumed.fps = run.arguments.fps;
     AFTERGLOW_TRY(const BuildContext context, assumed.context(preset));
-    AFTERGLOW_TRY(const Graph graph, run.session->stack().graph(context));
+    AFTERGLOW_TRY(const auto build, run.session->evaluate(context));
+    const Graph& graph = build->graph;
     if (!graph.histories.empty()) most = std::max(most.value_or(0), run.arguments.pre_roll.value_or(pre_roll(graph)));
   }
   return most;
@@ -242,7 +243,8 @@ Result<std::optional<int>> pre_roll_of(Run& run) {
 Result<Graph> usual_graph(Run& run) {
   AssumedPicture assumed;
   AFTERGLOW_TRY(const BuildContext context, assumed.context(run.session->preset()));
-  return run.session->stack().graph(context);
+  AFTERGLOW_TRY(const auto build, run.session->evaluate(context));
+  return build->graph;
 }
 
 /// Hash of the look for --resume, and the frames that need not be made.

@@ -55,9 +55,9 @@ class FrameLoop {
     }  ///< one is read, one processed, one written
   };
 
-  Result<Need> need_of(const PictureHeader& header, const BuildContext& context, const FrameJob& job);
+  Result<Need> need_of(const PictureHeader& header, const Build& build, const FrameJob& job);
   std::unique_ptr<Reading> begin_reading(const ScheduledFrame& scheduled);
-  void place_in_time(Reading& reading);
+  Result<void> place_in_time(Reading& reading);
   Result<void> process(Reading& reading);
   Result<void> make(Reading& reading, Picture& picture);
   Result<Trace> trace_again(const Reading& reading);
@@ -75,7 +75,8 @@ class FrameLoop {
   std::size_t total_ = 0, pre_roll_ = 0, done_ = 0, failed_ = 0;
   std::uint64_t largest_need_ = 0;
   bool overlap_ = false;
-  std::optional<int> last_;  ///< number of the frame that the next one follows
+  std::optional<int> last_;   ///< number of the frame that the next one follows
+  std::optional<int> begun_;  ///< number of the frame that was evaluated last
 };
 
 }  // namespace afterglow

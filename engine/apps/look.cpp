@@ -21,14 +21,15 @@ Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& a
   AFTERGLOW_TRY(Preset preset, Preset::load(file, options, *look.shaders, console.diagnostics()));
   look.preset = std::make_unique<Preset>(std::move(preset));
   AFTERGLOW_TRY(const BuildContext context, assumed.context(*look.preset));
-  AFTERGLOW_TRY(look.graph, look.preset->build(context, console.diagnostics()));
-  AFTERGLOW_CHECK(validate(look.graph));
-  look.plan = make_plan(look.graph, {});
+  AFTERGLOW_TRY(look.build, look.preset->evaluate(context, console.diagnostics()));
+  AFTERGLOW_CHECK(validate(look.build.graph));
+  look.plan = make_plan(look.build.graph, {});
   if (!assumed.region.empty()) {
     AFTERGLOW_TRY(const Rect region, parse_region(assumed.region));
     const Rect whole{0, 0, context.size.width, context.size.height};
     AFTERGLOW_TRY(const Rect part, part_of_region(region, whole, whole));
-    look.plan.skipped.push_back(skipped_pixels(look.graph, look.plan, regions(look.graph, look.plan, part)));
+    look.plan.skipped.push_back(
+        skipped_pixels(look.build.graph, look.plan, regions(look.build.graph, look.plan, part)));
   }
   return look;
 }
@@ -50,12 +51,12 @@ ExecutionConfig execution_on_cpu() {
 std::vector<Error> shader_errors(const Look& look) {
   ProgramOptions options{.config = execution_on_cpu(), .source_is_storage = true, .flag_non_finite = true};
   KernelCompiler compiler{cache_folder() / "shaders"};  // the folder that Stack uses, so that `run` starts warm
-  std::vector<Error> errors = check_kernels(*look.shaders, compiler, look.graph, options);
-  if (errors.empty() && look.graph.result != look.graph.source) {
+  std::vector<Error> errors = check_kernels(*look.shaders, compiler, look.build.graph, options);
+  if (errors.empty() && look.build.graph.result != look.build.graph.source) {
     // The last kernel once more, as it is for display files without and with transparency.
     options.codes = true;
     for (const bool straight : {false, true}) {
-      Graph graph = look.graph;
+      Graph graph = look.build.graph;
       encode_for_display(graph, {.straight_alpha = straight});
       for (auto& error : check_kernels(*look.shaders, compiler, graph, options)) errors.push_back(std::move(error));
     }

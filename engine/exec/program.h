@@ -32,11 +32,11 @@ struct WorthAKernel {
 };
 
 struct ProgramOptions {
-  ExecutionConfig config;  ///< as wished: what the device cannot do is left out
-  bool reference = false;  ///< every pass on its own, computed weights, no sharing of memory, images may be read back
+  ExecutionConfig config{};  ///< as wished: what the device cannot do is left out
+  bool reference = false;    ///< every pass on its own, computed weights, no sharing of memory, images may be read back
   /// With `config.storage_reads`: the source that will be bound has STORAGE usage and comes in GENERAL layout.
   bool source_is_storage = false;
-  WorthAKernel worth;
+  WorthAKernel worth{};
   bool codes = false;  ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
   /// The result's alpha is 0 where a colour that was not finite came up in a pass and no pass of another kernel that
   /// reads around its pixel made it finite again; elsewhere 1 (`codes`: what the last pass gave). See Watch.
@@ -54,7 +54,7 @@ struct ProgramOptions {
   /// what they hold. Null: the program's own. It must outlive the program.
   ImagePool* images = nullptr;
   /// Images of the graph's histories, shared with other programs; null: the program makes its own.
-  std::shared_ptr<Histories> histories;
+  std::shared_ptr<Histories> histories{};
   std::uint64_t max_memory = 6ull << 30;
 };
 

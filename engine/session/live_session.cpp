@@ -28,7 +28,8 @@ struct LiveSession::State {
   Program* alive() const { return live->stacks_taken() == ran_in ? ran : nullptr; }
 
   Result<void> prepare(const BuildContext& next);
-  Result<bool> prepare_aside(const BuildContext& next);
+  Result<void> prepare(Stack& stack, bool may_wait);
+  bool there_or_late(const FrameWork& work);
   FrameRunner::Choose choose();
 };
 
@@ -51,15 +52,6 @@ Result<void> LiveSession::read_result(HostResult& out, const std::optional<Rect>
   return state_->runner->read_result(out, part);
 }
 
-namespace {
-
-Result<bool> made(Result<void> prepared) {
-  if (!prepared) return std::move(prepared).error();
-  return true;
-}
-
-}  // namespace
-
 /// The stack as it is now, for this frame.
 Result<void> LiveSession::State::prepare(const BuildContext& next) {
   const bool new_shape = !context || context->size != next.size || context->auxiliary != next.auxiliary;
@@ -69,22 +61,29 @@ Result<void> LiveSession::State::prepare(const BuildContext& next) {
   live->update();
   Stack* stack = live->stack();
   if (!stack) return {};
-  const FileTrace trace;
-  const auto prepared = aside && !new_shape ? prepare_aside(next) : made(stack->prepare(next));
-  live->also_follow(trace.looks());
-  if (!prepared) return prepared.error();
-  waits = !*prepared;
-  return {};
+  auto prepared = prepare(*stack, aside && !new_shape);
+  live->also_follow(stack->preset().looked_at());
+  return prepared;
 }
 
-/// False while the frame's structure is being built.
-Result<bool> LiveSession::State::prepare_aside(const BuildContext& next) {
+Result<void> LiveSession::State::prepare(Stack& stack, bool may_wait) {
+  AFTERGLOW_TRY(auto build, stack.evaluate(*context));
+  if (may_wait) {
+    AFTERGLOW_TRY(const FrameWork work, stack.work({.build = build}));
+    waits = !there_or_late(work);
+    if (waits) return {};
+  }
+  return stack.prepare(request_for(std::move(build)));
+}
+
+/// False when the frame's structure is to be built beside the drawing thread.
+bool LiveSession::State::there_or_late(const FrameWork& work) {
   constexpr int kMostMisses = 3;  // then the structure moves faster than builds come
-  Stack& stack = *live->stack();
-  AFTERGLOW_TRY(const bool there, stack.prepare_if_made(next));
+  const ProgramCache& programs = *live->stack()->programs();
+  const bool there = programs.has(work) || !work.runs() || !programs.work();
   if (there || misses >= kMostMisses) {
     misses = 0;
-    return there ? Result<bool>(true) : made(stack.prepare(next));
+    return true;
   }
   if (!live->building()) {
     live->build_for_frame();
@@ -95,10 +94,11 @@ Result<bool> LiveSession::State::prepare_aside(const BuildContext& next) {
 
 /// Frames whose content makes effects idle run without them.
 FrameRunner::Choose LiveSession::State::choose() {
-  if (!live->stack() || !live->stack()->depends_on_content()) return {};
-  return [this](float brightest) -> Result<Program*> {
-    AFTERGLOW_TRY(const IdlePrograms::Choice choice, live->stack()->program_for(brightest));
-    skipped_now = *choice.skipped;
+  Stack* stack = live->stack();
+  if (!stack || !stack->programs()->depends_on_content()) return {};
+  return [this, stack](float brightest) -> Result<Program*> {
+    AFTERGLOW_TRY(ProgramCache::Choice choice, stack->programs()->for_content(brightest, stack->shaders()));
+    skipped_now = std::move(choice.skipped);
     return ran = choice.program;
   };
 }

@@ -75,18 +75,24 @@ Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& pres
   return std::unique_ptr<Session>(new Session(std::move(state)));
 }
 
-Result<void> Session::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding,
-                              const std::optional<Rect>& region) {
+Result<void> Session::prepare(FrameRequest frame) {
   state_->ran = nullptr;
-  AFTERGLOW_CHECK(state_->stack->prepare(context, encoding, region));
+  AFTERGLOW_CHECK(state_->stack->prepare(std::move(frame)));
   state_->ran = state_->stack->program();
   return {};
 }
 
 Result<void> Session::process(Picture& picture, const BuildContext& frame,
                               const std::optional<DisplayEncoding>& encoding, const std::optional<Rect>& region) {
-  const BuildContext context = context_of(picture, frame);
-  AFTERGLOW_CHECK(prepare(context, encoding, region));
+  AFTERGLOW_TRY(auto build, evaluate(context_of(picture, frame)));
+  return process(picture, request_for(std::move(build), encoding, region));
+}
+
+Result<void> Session::process(Picture& picture, FrameRequest request) {
+  const Size size = request.build->context.size;
+  const auto encoding = request.encoding;
+  const auto region = request.region;
+  AFTERGLOW_CHECK(prepare(std::move(request)));
   state_->times.frame = {};
   state_->result.clamped = 0;
   state_->flagged = state_->result.flagged = false;
@@ -96,15 +102,16 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame,
   // The result replaces the source in its own memory. Effects never change alpha: the source's own values stay where
   // they are, exact whatever the storage format.
   HostResult& result = state_->result;
-  const auto inputs = picture_inputs(picture, state_->stack->prepared_graph());
+  const auto inputs = picture_inputs(picture, state_->stack->program()->graph());
   result.pixels = std::move(picture.color.pixels);
   result.keep_alpha = true;
   picture.content.erase("source");
   FrameRunner::Choose choose;
-  if (state_->stack->depends_on_content())
-    choose = [this](float brightest) -> Result<Program*> {
-      AFTERGLOW_TRY(const IdlePrograms::Choice choice, state_->stack->program_for(brightest));
-      state_->skipped_now = *choice.skipped;
+  ProgramCache& programs = *state_->stack->programs();
+  if (programs.depends_on_content())
+    choose = [this, &programs](float brightest) -> Result<Program*> {
+      AFTERGLOW_TRY(ProgramCache::Choice choice, programs.for_content(brightest, state_->stack->shaders()));
+      state_->skipped_now = std::move(choice.skipped);
       return state_->ran = choice.program;
     };
   auto times = state_->runner->run(*state_->stack->program(), inputs, result, state_->options.timing, choose);
@@ -114,17 +121,15 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame,
   state_->times.frame = std::move(times).value();
   state_->flagged = result.flagged;
   if (result.flagged && encoding && encoding->straight_alpha && !picture.codes.empty())
-    state_->flagged = lost_alpha(picture, region.value_or(Rect{0, 0, context.size.width, context.size.height}));
+    state_->flagged = lost_alpha(picture, region.value_or(Rect{0, 0, size.width, size.height}));
   for (auto& kept : kept_of(state_->times.frame)) state_->skipped_now.push_back(std::move(kept));
   return {};
 }
 
-Result<Trace> Session::trace(const Picture& picture, const BuildContext& frame,
-                             const std::optional<DisplayEncoding>& encoding, const std::optional<Rect>& region,
-                             NanPolicy policy) {
-  AFTERGLOW_CHECK(state_->stack->prepare(context_of(picture, frame), encoding, region));
+Result<Trace> Session::trace(const Picture& picture, const FrameRequest& request, NanPolicy policy) {
+  AFTERGLOW_CHECK(state_->stack->prepare(request));
   if (!state_->tracer) state_->tracer = std::make_unique<Tracer>(*state_->device, state_->options.stack.max_memory);
-  return state_->tracer->run(*state_->stack, picture, frame, region, policy);
+  return state_->tracer->run(*state_->stack, picture, request, policy);
 }
 
 SessionReport Session::report() const {
@@ -137,9 +142,10 @@ SessionReport Session::report() const {
   report.reference = state_->options.stack.reference;
   report.skipped = stack.skipped();
   report.skipped_now = state_->skipped_now;
-  report.counters = {.programs = stack.programs(),
+  report.counters = {.programs = state_->stack->programs()->programs(),
                      .images = state_->runner->counters().images,
-                     .buffers = state_->runner->counters().buffers};
+                     .buffers = state_->runner->counters().buffers,
+                     .evaluations = state_->stack->preset().evaluations()};
   if (state_->ran)
     for (const auto& kernel : state_->ran->plan().kernels) report.kernels.push_back(kernel.name);
   if (const Program* program = state_->stack->program()) report.memory = program->memory();

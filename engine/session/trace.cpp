@@ -109,7 +109,7 @@ Result<void> Tracer::State::prepare(Stack& stack, GuardedGraph wanted, const std
     return {};
   }
   program.reset();
-  AFTERGLOW_TRY(program, stack.program_by_passes(guarded.graph, part));
+  AFTERGLOW_TRY(program, stack.programs()->by_passes(guarded.graph, part, stack.shaders()));
   return {};
 }
 
@@ -152,13 +152,13 @@ Result<void> Tracer::State::look(Stack& stack, const Graph& graph, Trace& trace)
   return {};
 }
 
-Result<Trace> Tracer::run(Stack& stack, const Picture& picture, const BuildContext& frame,
-                          const std::optional<Rect>& region, NanPolicy policy) {
+Result<Trace> Tracer::run(Stack& stack, const Picture& picture, const FrameRequest& request, NanPolicy policy) {
   Trace trace;
-  AFTERGLOW_TRY(const Graph graph, stack.graph(context_of(picture, frame)));
+  AFTERGLOW_TRY(const FrameWork work, stack.work({.build = request.build}));
+  const Graph& graph = work.graph;
   trace.result = picture.color;
   if (graph.result == graph.source) return trace;
-  AFTERGLOW_CHECK(state_->prepare(stack, guard(graph, policy), region));
+  AFTERGLOW_CHECK(state_->prepare(stack, guard(graph, policy), request.region));
   const auto inputs = picture_inputs(picture, graph);
   HostResult result;
   result.pixels = std::move(trace.result.pixels);

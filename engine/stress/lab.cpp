@@ -42,7 +42,7 @@ std::string Way::name() const {
 struct Lab::State {
   Device* device = nullptr;
   Diagnostics* diagnostics = nullptr;
-  std::shared_ptr<StackShared> shared;
+  std::shared_ptr<SharedKernels> shared;
   std::map<std::string, Prepared> prepared;  ///< by look, way and size
   std::map<std::string, Made> results;       ///< by look, way, frame and content of the picture
   std::map<std::string, Result<LookFacts>> known;
@@ -75,7 +75,7 @@ Result<std::unique_ptr<Lab>> Lab::create(Device& device, const std::filesystem::
   auto state = std::make_unique<State>();
   state->device = &device;
   state->diagnostics = &diagnostics;
-  state->shared = std::make_shared<StackShared>(cache.empty() ? cache : cache / "shaders");
+  state->shared = std::make_shared<SharedKernels>(cache.empty() ? cache : cache / "shaders");
   AFTERGLOW_TRY(const Calibration calibration, Calibration::shipped());
   state->usual = calibration.find(device.info(), 0).choice;
   state->usual.storage = Storage::fp32;
@@ -118,18 +118,19 @@ Result<Made> Lab::State::run(const Look& look, const Picture& picture, double fr
   AFTERGLOW_TRY(Prepared* const one, prepare(look, way, picture, frame));
   if (!one->stack->runs()) return untouched(picture);
   FrameRunner::Choose choose;
-  if (way.skip_idle && one->stack->depends_on_content())
+  if (way.skip_idle && one->stack->programs()->depends_on_content())
     choose = [&](float brightest) -> Result<Program*> {
-      AFTERGLOW_TRY(const IdlePrograms::Choice choice, one->stack->program_for(brightest));
+      AFTERGLOW_TRY(const ProgramCache::Choice choice,
+                    one->stack->programs()->for_content(brightest, one->stack->shaders()));
       return choice.program;
     };
-  auto inputs = picture_inputs(picture, one->stack->prepared_graph());
+  auto inputs = picture_inputs(picture, one->stack->program()->graph());
   for (auto& [name, input] : inputs) input.content.reset();  // it is to run, whatever ran before
   HostResult result;
   AFTERGLOW_TRY(const FrameTimes times,
                 one->runner->run(*one->stack->program(), inputs, result, KernelTiming::none, choose));
   (void)times;
-  const Size size = one->stack->prepared_graph().images[one->stack->prepared_graph().result].size;
+  const Size size = one->stack->program()->graph().images[one->stack->program()->graph().result].size;
   Made made{.image = {}, .clamped = result.clamped, .shown = one->stack->shows()};
   made.image.width = size.width;
   made.image.height = size.height;
@@ -143,7 +144,7 @@ Result<std::vector<std::pair<std::string, Image>>> Lab::images(const Look& look,
   AFTERGLOW_TRY(Prepared* const one, state_->prepare(look, {.plain = true}, picture, frame));
   std::vector<std::pair<std::string, Image>> out;
   if (!one->stack->runs()) return out;
-  const Graph& graph = one->stack->prepared_graph();
+  const Graph& graph = one->stack->program()->graph();
   for (const auto& pass : graph.passes) {
     const auto& made = graph.images[static_cast<std::size_t>(pass.output)];
     Image image(made.size.width, made.size.height, 4);
@@ -169,12 +170,13 @@ Result<LookFacts> Lab::facts(const Look& look, Size size, double frame) {
 
 Result<LookFacts> Lab::State::find_facts(const Look& look, Size size, double frame) {
   AFTERGLOW_TRY(const auto stack, Stack::load("stress.lua", options(look, {.plain = true}), *diagnostics));
-  AFTERGLOW_TRY(const Graph graph, stack->graph(context_for(size, frame)));
+  AFTERGLOW_TRY(const auto build, stack->evaluate(context_for(size, frame)));
+  const Graph& graph = build->graph;
   long long pixels = 0;
   for (const auto& image : graph.images) pixels += image.size.area();
   if (pixels > kMostPixels)
     return Error{ErrorKind::io, fmt::format("its images have {} pixels, more than are tried", pixels)};
-  LookFacts facts{.entries = bench::oracle_entries(stack->preset(), graph),
+  LookFacts facts{.entries = bench::oracle_entries(*build),
                   .holds = {},
                   .runs = graph.result != graph.source,
                   .passes = 0,
@@ -184,8 +186,9 @@ Result<LookFacts> Lab::State::find_facts(const Look& look, Size size, double fra
     const GraphImage& image = graph.images[static_cast<std::size_t>(pass.output)];
     if (pass.output != graph.result && image.size == size) facts.images.push_back(image.name);
   }
-  if (const auto& entries = stack->preset().entries(); entries.size() == 1) {
-    AFTERGLOW_TRY(facts.holds, stack->preset().holds(entries.front().name, size));
+  if (build->entries->size() == 1) {
+    if (build->promise_error) return *build->promise_error;
+    facts.holds = build->promises.front().holds;
   }
   return facts;
 }

@@ -118,7 +118,7 @@ Made run_preset(const fs::path& file, const Scene& scene, Way way) {
   Lab& lab = Lab::get();
   ShaderLibrary shaders(search_path_for(file, {}));
   auto preset = need(Preset::load(file, {}, shaders, lab.diagnostics));
-  const Graph graph = need(preset.build(context_of(scene), lab.diagnostics));
+  const Graph graph = need(preset.evaluate(context_of(scene), lab.diagnostics)).graph;
   const auto valid = validate(graph);
   if (!valid.ok()) throw std::runtime_error(valid.error().text());
   return run(graph, shaders, scene, way);
@@ -134,7 +134,7 @@ std::string build_error(const std::string& entries, const Scene& scene) {
   ShaderLibrary shaders(search_path_for(file, {}));
   auto preset = Preset::load(file, {}, shaders, lab.diagnostics);
   if (!preset.ok()) return preset.error().text();
-  const auto graph = preset->build(context_of(scene), lab.diagnostics);
+  const auto graph = preset->evaluate(context_of(scene), lab.diagnostics);
   return graph.ok() ? "" : graph.error().text();
 }
 

@@ -233,7 +233,7 @@ TEST_F(HistoriesOfFrames, AStackThatTakesAnothersPlaceGoesOn) {
   BuildContext context{.size = {kWidth, kHeight}};
   context.frame = 2;
   ASSERT_TRUE(next.prepare(context));
-  ASSERT_TRUE(next.take_histories(session->stack()));
+  next.take_over(session->stack(), false);
   context.frame = 3;
   ASSERT_TRUE(next.prepare(context));
   auto runner = FrameRunner::create(session->device(), 1u << 30);

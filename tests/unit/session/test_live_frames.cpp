@@ -186,7 +186,10 @@ TEST_F(LiveFrames, WarmingUpIsCleanVulkan) {
     context.size = {1024, 640};
     context.frame = 2;
     ASSERT_TRUE((*stack)->prepare(context));
-    const auto drawn = (*stack)->warm_up(**warm_up);
+    const ProgramCache& programs = *(*stack)->programs();
+    KernelCompiler compiler({});
+    const auto drawn =
+        (*warm_up)->draw((*stack)->shaders(), compiler, programs.work()->graph, programs.program_options());
     EXPECT_TRUE(drawn) << drawn.error().text();
   }
   EXPECT_EQ((*warm_up)->validation_errors(), 0);

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -28,39 +30,38 @@ struct FileLook {
 /// By absolute path.
 using FileLooks = std::map<std::filesystem::path, FileLook>;
 
-/// While it lives, `read_file`, `is_file` and the functions below note on it what they look at on the thread that made
-/// it. They nest: the innermost notes. Of two looks at a path, the first that says most counts.
-class FileTrace {
+/// Takes down what those look at who are given it: `read_file`, `is_file`, a SearchPath. Of two looks at a path, the
+/// first that says most counts. Thread-safe.
+class FileRecord {
  public:
-  FileTrace();
-  ~FileTrace();
-  FileTrace(const FileTrace&) = delete;
-  FileTrace& operator=(const FileTrace&) = delete;
+  void note(const std::filesystem::path& path, FileLook::Kind kind);
+  /// What was looked at so far. The same value as the last time while nothing was added.
+  std::shared_ptr<const FileLooks> looks() const;
 
-  const FileLooks& looks() const { return looks_; }
-
-  /// For functions that look at files. They do nothing on a thread without a trace.
-  static void note(const std::filesystem::path& path, FileLook::Kind kind);
-  /// A content that is about to be read; `Reading::done` with what was found. Read errors are looks too.
+  /// A content that is about to be read; `done` with what was found. Read errors are looks too. Null: notes nothing.
   class Reading {
    public:
-    explicit Reading(const std::filesystem::path& path);
+    Reading(FileRecord* record, const std::filesystem::path& path);
     void done(std::string_view content);
     ~Reading();
     Reading(const Reading&) = delete;
     Reading& operator=(const Reading&) = delete;
 
    private:
+    FileRecord* record_;
     const std::filesystem::path& path_;
     Hash stamp_;
-    bool noted_ = false;
   };
 
  private:
   void add(const std::filesystem::path& path, const FileLook& look);
+  mutable std::mutex mutex_;
   FileLooks looks_;
-  FileTrace* outer_ = nullptr;
+  mutable std::shared_ptr<const FileLooks> taken_;  ///< null: something was added since
 };
+
+/// A look of that kind, now.
+FileLook look_at(const std::filesystem::path& path, FileLook::Kind kind);
 
 /// What Watcher::watch must be given to notice when looks come out differently.
 std::vector<std::filesystem::path> paths_to_watch(const FileLooks& looks);

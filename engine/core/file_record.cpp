@@ -1,4 +1,4 @@
-#include "core/file_trace.h"
+#include "core/file_record.h"
 
 #include <sys/stat.h>
 
@@ -18,8 +18,6 @@ using Kind = FileLook::Kind;
 constexpr std::uint64_t kNothing = 1, kFile = 2, kFolder = 3, kOther = 4, kUnreadable = 5;  // first word of a Hash
 constexpr std::size_t kLargest = 64u << 20;     // bytes that are read to compare contents; larger files by their stamps
 constexpr std::int64_t kYoung = 2'000'000'000;  // ns; FAT counts in steps of two seconds
-
-thread_local FileTrace* innermost = nullptr;
 
 std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * 1'000'000'000LL + time.tv_nsec; }
 
@@ -99,29 +97,35 @@ fs::path whole_path(const fs::path& path) {
 
 }  // namespace
 
-FileTrace::FileTrace() : outer_(innermost) { innermost = this; }
-FileTrace::~FileTrace() { innermost = outer_; }
+FileLook look_at(const fs::path& path, Kind kind) { return {kind, look(path, kind), {}}; }
 
-void FileTrace::add(const fs::path& path, const FileLook& look) {
+void FileRecord::add(const fs::path& path, const FileLook& look) {
+  const std::lock_guard lock(mutex_);
   const auto [known, fresh] = looks_.emplace(whole_path(path), look);
-  if (!fresh && known->second.kind < look.kind) known->second = look;
+  if (!fresh && known->second.kind >= look.kind) return;
+  known->second = look;
+  taken_.reset();
 }
 
-void FileTrace::note(const fs::path& path, Kind kind) {
-  if (innermost) innermost->add(path, {kind, look(path, kind), {}});
+void FileRecord::note(const fs::path& path, Kind kind) { add(path, look_at(path, kind)); }
+
+std::shared_ptr<const FileLooks> FileRecord::looks() const {
+  const std::lock_guard lock(mutex_);
+  if (!taken_) taken_ = std::make_shared<const FileLooks>(looks_);
+  return taken_;
 }
 
-FileTrace::Reading::Reading(const fs::path& path) : path_(path) {
-  if (innermost) stamp_ = trusted_stamp(path);
+FileRecord::Reading::Reading(FileRecord* record, const fs::path& path) : record_(record), path_(path) {
+  if (record_) stamp_ = trusted_stamp(path);
 }
 
-void FileTrace::Reading::done(std::string_view content) {
-  if (innermost) innermost->add(path_, {Kind::content, hash_text(content), stamp_});
-  noted_ = true;
+void FileRecord::Reading::done(std::string_view content) {
+  if (record_) record_->add(path_, {Kind::content, hash_text(content), stamp_});
+  record_ = nullptr;
 }
 
-FileTrace::Reading::~Reading() {
-  if (innermost && !noted_) innermost->add(path_, {Kind::content, content(path_), stamp_});
+FileRecord::Reading::~Reading() {
+  if (record_) record_->add(path_, {Kind::content, content(path_), stamp_});
 }
 
 std::vector<fs::path> paths_to_watch(const FileLooks& looks) {
