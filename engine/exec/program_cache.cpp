@@ -67,6 +67,11 @@ const ProgramCacheOptions& ProgramCache::options() const { return state_->option
 bool ProgramCache::has(const FrameWork& work) const { return state_->found(work) != state_->entries.end(); }
 const FrameWork* ProgramCache::work() const { return state_->present ? &state_->entries.front().work : nullptr; }
 Program* ProgramCache::program() const { return state_->present ? state_->entries.front().program.get() : nullptr; }
+Program* ProgramCache::program(std::uint64_t id) const {
+  Program* const whole = program();
+  if (!whole || whole->id() == id) return whole;
+  return state_->entries.front().idle.program(id);
+}
 double ProgramCache::milliseconds() const { return state_->milliseconds; }
 
 ProgramOptions ProgramCache::State::program_options() const {

@@ -77,6 +77,9 @@ class ProgramCache {
   /// The present program; null when nothing runs.
   Program* program() const;
 
+  /// The program of that number (Program::id), if it is one of the present structure; else null.
+  Program* program(std::uint64_t id) const;
+
   /// What runs a frame.
   struct Choice {
     Program* program = nullptr;      ///< null: nothing runs, the result is the source

@@ -21,7 +21,7 @@ namespace afterglow {
 
 struct LiveOptions {
   StackOptions stack;  ///< its overrides are the first of `LiveStack::set_overrides`
-  /// See Stack::use: source and result will be a FrameRunner's.
+  /// See Stack::use: source and result will be a Renderer's.
   bool own_images = true;
   /// New kernels are drawn with on another device before they are taken, where the driver would compile them in their
   /// first frame else (exec/cpu/warm_up.h).

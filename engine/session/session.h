@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "exec/frame.h"
 #include "image/picture.h"
 #include "session/stack.h"
 #include "session/trace.h"
@@ -18,6 +17,10 @@ struct SessionOptions {
   DeviceOptions device;
   StackOptions stack;
   KernelTiming timing = KernelTiming::none;
+  /// Frames in flight at most, where pixels take the way over staging buffers: see RendererOptions.
+  int frames = 1;
+  /// False takes that way on every device.
+  bool direct = true;
 };
 
 /// Milliseconds: since the session began (device, script, compile) and of the last frame (upload, execute, read-back).
@@ -62,6 +65,16 @@ class Session {
   Result<std::shared_ptr<const Build>> evaluate(const BuildContext& context) { return stack().evaluate(context); }
   /// Makes everything that a frame needs; `process` does it otherwise. May run while the picture is being read.
   Result<void> prepare(FrameRequest frame);
+  /// How many frames may be in flight: submitted and not collected.
+  int frames() const;
+  int in_flight() const;
+  /// The first half of `process`, which goes on while the device works. A frame that nothing runs for is in flight like
+  /// any other. Errors: as of `process`; the picture is lost then.
+  Result<void> submit(Picture picture, FrameRequest request);
+  /// The second half, of the oldest frame that is in flight; `report` is of it then. `picture` gets what was submitted,
+  /// as `process` leaves it, also where it fails.
+  Result<void> collect(Picture& picture);
+
   /// Runs the stack: `picture.color` becomes the result; its alpha stays. A stack with nothing to do leaves the picture
   /// untouched. The request's build was evaluated for this size and these auxiliary images.
   /// With `encoding` the result may come as `picture.codes` instead, and `picture.color` stays the source.

@@ -145,6 +145,13 @@ Result<FrameWork> Stack::work(const FrameRequest& frame) {
   return work;
 }
 
+Result<RenderRequest> Stack::request(FrameRequest frame) {
+  RenderRequest request{.programs = state_->programs.get(), .shaders = state_->shaders.get()};
+  AFTERGLOW_TRY(request.work, work(frame));
+  state_->build = std::move(frame.build);
+  return request;
+}
+
 std::uint64_t Stack::memory_needed(const Build& build) const {
   const StackOptions& options = state_->options;
   ExecutionConfig config = options.reference ? kReference : ExecutionConfig{};

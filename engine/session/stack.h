@@ -11,7 +11,7 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
-#include "exec/program_cache.h"
+#include "exec/renderer.h"
 #include "gpu/device.h"
 #include "script/build.h"
 #include "session/display_encoding.h"
@@ -86,12 +86,14 @@ class Stack {
   Result<std::shared_ptr<const Build>> evaluate(const BuildContext& context);
   /// What runs of it, up to the image that is shown. Needs no device. Errors: script.
   Result<FrameWork> work(const FrameRequest& frame);
+  /// The same for a Renderer, which still wants the pictures. `build` is this frame's from here on.
+  Result<RenderRequest> request(FrameRequest frame);
   /// Bytes of device memory that the stack's images take for such a picture, with the source and the result. Needs no
   /// device.
   std::uint64_t memory_needed(const Build& build) const;
 
   /// Looks up how to execute on a device. Call before `prepare`. `own_images`: source and result will be a
-  /// FrameRunner's, made as the program likes them best (ProgramOptions::source_is_storage, result_by_rows).
+  /// Renderer's, made as the programs like them best.
   void use(Device& device, bool own_images = false);
   const StackChoice& choice() const;
   /// What was made on the device; null before `use`.
@@ -104,7 +106,7 @@ class Stack {
   /// Evaluates and prepares.
   Result<void> prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {},
                        const std::optional<Rect>& region = {});
-  /// Of the last `prepare`; null before it.
+  /// Of the last `prepare` or `request`; null before it.
   const std::shared_ptr<const Build>& build() const;
   /// False when no effect has anything to do: the result *is* the source, and `record` records nothing.
   bool runs() const;

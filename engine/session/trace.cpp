@@ -87,7 +87,7 @@ struct Tracer::State {
   GuardedGraph guarded;
   std::optional<Rect> region;
   std::unique_ptr<Program> program;
-  std::unique_ptr<FrameRunner> runner;  // last: it waits before the program goes
+  std::unique_ptr<Renderer> renderer;  // last: it waits before the program goes
 
   Result<void> prepare(Stack& stack, GuardedGraph wanted, const std::optional<Rect>& part);
   Result<std::optional<Image>> image(ImageId id);
@@ -101,8 +101,8 @@ Result<void> Tracer::State::prepare(Stack& stack, GuardedGraph wanted, const std
   const bool reusable = program && region == part && same_structure(guarded.graph, wanted.graph);
   guarded = std::move(wanted);
   region = part;
-  if (!runner) {
-    AFTERGLOW_TRY(runner, FrameRunner::create(device, max_memory));
+  if (!renderer) {
+    AFTERGLOW_TRY(renderer, Renderer::create(device, {.max_memory = max_memory}));
   }
   if (reusable) {
     program->set_parameters(guarded.graph);
@@ -117,7 +117,7 @@ Result<void> Tracer::State::prepare(Stack& stack, GuardedGraph wanted, const std
 Result<std::optional<Image>> Tracer::State::image(ImageId id) {
   const auto transient = program->transient(id);
   if (!transient || !transient->kept) return std::optional<Image>();
-  AFTERGLOW_TRY(HostResult read, runner->read_image(*program, id));
+  AFTERGLOW_TRY(HostResult read, renderer->read_image(*program, id));
   Image out;
   out.width = transient->binding.size.width;
   out.height = transient->binding.size.height;
@@ -163,7 +163,7 @@ Result<Trace> Tracer::run(Stack& stack, const Picture& picture, const FrameReque
   HostResult result;
   result.pixels = std::move(trace.result.pixels);
   result.keep_alpha = true;
-  AFTERGLOW_CHECK(state_->runner->run(*state_->program, inputs, result, KernelTiming::none));
+  AFTERGLOW_CHECK(state_->renderer->run(*state_->program, inputs, result));
   trace.result.pixels = std::move(result.pixels);
   AFTERGLOW_CHECK(state_->look(stack, graph, trace));
   return trace;

@@ -15,7 +15,7 @@ constexpr long long kMostPixels = 1ll << 24;  ///< of all images of a look toget
 
 struct Prepared {
   std::unique_ptr<Stack> stack;
-  std::unique_ptr<FrameRunner> runner;
+  std::unique_ptr<Renderer> renderer;
 };
 
 BuildContext context_for(Size size, double frame) {
@@ -98,7 +98,7 @@ Result<Prepared*> Lab::State::prepare(const Look& look, const Way& way, const Pi
     AFTERGLOW_TRY(one.stack, Stack::load("stress.lua", options(look, way), *diagnostics));
     one.stack->use(*device, true);
     one.stack->show(way.show);
-    AFTERGLOW_TRY(one.runner, FrameRunner::create(*device, 16ull << 30));
+    AFTERGLOW_TRY(one.renderer, Renderer::create(*device, {.max_memory = 16ull << 30}));
     ++stacks;
   }
   AFTERGLOW_CHECK(one.stack->prepare(context_for(size, frame), {}, way.region));
@@ -117,19 +117,12 @@ Result<Made> Lab::run(const Look& look, const Picture& picture, double frame, co
 Result<Made> Lab::State::run(const Look& look, const Picture& picture, double frame, const Way& way) {
   AFTERGLOW_TRY(Prepared* const one, prepare(look, way, picture, frame));
   if (!one->stack->runs()) return untouched(picture);
-  FrameRunner::Choose choose;
-  if (way.skip_idle && one->stack->programs()->depends_on_content())
-    choose = [&](float brightest) -> Result<Program*> {
-      AFTERGLOW_TRY(const ProgramCache::Choice choice,
-                    one->stack->programs()->for_content(brightest, one->stack->shaders()));
-      return choice.program;
-    };
-  auto inputs = picture_inputs(picture, one->stack->program()->graph());
-  for (auto& [name, input] : inputs) input.content.reset();  // it is to run, whatever ran before
+  AFTERGLOW_TRY(RenderRequest request, one->stack->request({.build = one->stack->build(), .region = way.region}));
+  request.inputs = picture_inputs(picture, request.work.graph);
+  for (auto& [name, input] : request.inputs) input.content.reset();  // it is to run, whatever ran before
   HostResult result;
-  AFTERGLOW_TRY(const FrameTimes times,
-                one->runner->run(*one->stack->program(), inputs, result, KernelTiming::none, choose));
-  (void)times;
+  AFTERGLOW_TRY(const FrameReport report, one->renderer->render(std::move(request), result));
+  (void)report;
   const Size size = one->stack->program()->graph().images[one->stack->program()->graph().result].size;
   Made made{.image = {}, .clamped = result.clamped, .shown = one->stack->shows()};
   made.image.width = size.width;
@@ -151,7 +144,7 @@ Result<std::vector<std::pair<std::string, Image>>> Lab::images(const Look& look,
     if (pass.output == graph.result) {
       image = result.image;
     } else if (const auto held = one->stack->program()->transient(pass.output); held && held->kept) {
-      AFTERGLOW_TRY(HostResult pixels, one->runner->read_image(*one->stack->program(), pass.output));
+      AFTERGLOW_TRY(HostResult pixels, one->renderer->read_image(*one->stack->program(), pass.output));
       image.pixels = std::move(pixels.pixels);
     } else {
       continue;  // nobody reads it, so nothing makes it

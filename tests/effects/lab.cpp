@@ -1,4 +1,5 @@
 #include "lab.h"
+#include "script/build.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

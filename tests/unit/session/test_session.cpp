@@ -209,9 +209,9 @@ TEST_F(SessionTest, SmallErrorsMeanFullFloats) {
 TEST_F(SessionTest, MemoryIsForeseenWithoutADevice) {
   auto stack = Stack::load(folder_ / "look.lua", {}, diagnostics_);
   ASSERT_TRUE(stack) << stack.error().text();
-  const auto bytes = (*stack)->memory_needed({.size = {16384, 16384}, .auxiliary = {}});
-  ASSERT_TRUE(bytes) << bytes.error().text();
-  EXPECT_EQ(*bytes, 2ull * 16384 * 16384 * 16);  // source and result
+  const auto build = (*stack)->evaluate({.size = {16384, 16384}, .auxiliary = {}});
+  ASSERT_TRUE(build) << build.error().text();
+  EXPECT_EQ((*stack)->memory_needed(**build), 2ull * 16384 * 16384 * 16);  // source and result
 }
 
 TEST_F(SessionTest, ShaderErrorsNameTheAuthorsFileAndLine) {

@@ -1,9 +1,10 @@
-#include "exec/frame.h"
+#include "exec/frame_runner.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/stopwatch.h"
 #include "exec/convert.h"
@@ -26,20 +27,23 @@ std::uint64_t image_bytes(const ImageDesc& desc) {
 }  // namespace
 
 struct FrameRunner::State {
-  State(Device& device_in, std::uint64_t max_memory_in, bool direct_in)
+  State(Device& device_in, std::uint64_t max_memory_in, bool direct_in, bool ahead_in)
       : device(device_in),
         max_memory(max_memory_in),
         direct(direct_in),
+        ahead(ahead_in),
         inputs(device_in, direct_in),
         result(device_in, direct_in),
-        staging(device_in),
+        staging(device_in, ahead_in),
         timer(device_in) {}
 
   Device& device;
   std::uint64_t max_memory;
   bool direct;
+  bool ahead;  ///< staging is whole
   FrameInputs inputs;
   FrameResult result;
+  bool flags = false;  ///< the last run's result tells of what is not finite
   std::optional<Rect> shown;  ///< the part of the result that the last run made; none: the result is the source
   Staging staging;
   KernelTimer timer;
@@ -62,6 +66,15 @@ struct FrameRunner::State {
     friend bool operator==(const Bound&, const Bound&) = default;
   };
   std::optional<Bound> bound;
+  /// A frame that began.
+  struct Begun {
+    Program* ran = nullptr;  ///< null: the result is the source
+    HostImage source;
+    FrameTimes times;
+    Plan plan{};                                   ///< of `ran`, for messages
+    std::optional<Clock::time_point> submitted{};  ///< none: its kernels have been waited for
+  };
+  std::optional<Begun> begun;
   Submitter submitter;  // last: it waits before the images go
 
   Result<void> check_memory(const std::map<std::string, ImageDesc>& descs, std::uint64_t other_bytes) const;
@@ -71,17 +84,23 @@ struct FrameRunner::State {
   Result<void> upload(const Program& program, const std::map<std::string, HostImage>& host, bool look);
   Result<void> bring_source(const std::map<std::string, HostImage>& host, FrameTimes& times);
   Result<void> leave_readable();
-  Result<Program*> run(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
-                       const Choose& choose, FrameTimes& times);
-  Result<void> execute(Program& program, const std::vector<bool>& run, KernelTiming timing, FrameTimes& times);
+  Result<void> begin(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
+                     const Choose& choose);
+  Result<void> start(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
+                     const Choose& choose);
+  Result<void> execute(Program& program, const std::vector<bool>& run, KernelTiming timing);
+  Result<void> time_separately(Program& program, const std::vector<bool>& run);
+  Result<void> wait();
+  Result<FrameTimes> end();
   std::vector<VkImageLayout> input_layouts() const;
 };
 
 FrameRunner::FrameRunner(std::unique_ptr<State> state) : state_(std::move(state)) {}
 FrameRunner::~FrameRunner() = default;
 
-Result<std::unique_ptr<FrameRunner>> FrameRunner::create(Device& device, std::uint64_t max_memory, bool direct) {
-  auto state = std::make_unique<State>(device, max_memory, direct && device.is_cpu());
+Result<std::unique_ptr<FrameRunner>> FrameRunner::create(Device& device, const Options& options) {
+  auto state = std::make_unique<State>(device, options.max_memory, options.direct && device.is_cpu(),
+                                       options.whole_staging);
   AFTERGLOW_TRY(state->submitter, Submitter::create(device));
   return std::unique_ptr<FrameRunner>(new FrameRunner(std::move(state)));
 }
@@ -113,7 +132,7 @@ Result<void> FrameRunner::State::prepare(const Program& program, const std::map<
   AFTERGLOW_TRY(const auto descs, FrameInputs::wanted_by(program, host));
   const ImageDesc result_desc = FrameResult::wanted_by(program);
   std::uint64_t bytes = program.memory().arena + program.memory().histories + image_bytes(result_desc);
-  if (!direct) bytes += 2 * Staging::bytes({VK_NULL_HANDLE, result_desc.format, result_desc.size});
+  if (!direct) bytes += 2 * staging.bytes({VK_NULL_HANDLE, result_desc.format, result_desc.size});
   AFTERGLOW_CHECK(check_memory(descs, bytes));
   AFTERGLOW_CHECK(prepare_inputs(descs));
   return take_result(program);
@@ -123,6 +142,7 @@ Result<void> FrameRunner::State::prepare(const Program& program, const std::map<
 Result<void> FrameRunner::State::upload(const Program& program, const std::map<std::string, HostImage>& host,
                                         bool look) {
   const bool half = program.storage_format() == VK_FORMAT_R16G16B16A16_SFLOAT;
+  staging.begin_uploads();
   for (const auto& [name, id] : inputs_of(program.graph()))
     AFTERGLOW_CHECK(inputs.upload(staging, name, host.at(name), program.parts().images[id], look && name == "source",
                                   half ? Storage::fp16 : Storage::fp32));
@@ -143,6 +163,7 @@ Result<void> FrameRunner::State::bring_source(const std::map<std::string, HostIm
   AFTERGLOW_CHECK(prepare_inputs(descs));
   const auto start = Clock::now();
   const Rect all{0, 0, given.size.width, given.size.height};
+  staging.begin_uploads();
   AFTERGLOW_CHECK(inputs.upload(staging, "source", given, all, false, Storage::fp32));
   times.upload = milliseconds_since(start);
   return {};
@@ -161,8 +182,8 @@ std::vector<VkImageLayout> FrameRunner::State::input_layouts() const {
   return layouts;
 }
 
-Result<void> FrameRunner::State::execute(Program& program, const std::vector<bool>& run, KernelTiming timing,
-                                         FrameTimes& times) {
+/// Submits; with `timing` it also waits.
+Result<void> FrameRunner::State::execute(Program& program, const std::vector<bool>& run, KernelTiming timing) {
   const auto& kernels = program.plan().kernels;
   const bool separate = timing == KernelTiming::submissions;
   const bool stamps = timing == KernelTiming::timestamps && device.timestamps_mean_draws();
@@ -188,118 +209,180 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
     bound = {program.id(), wanted.images, program.bindings()};
     wanted.bindings = program.bindings();
   }
-
-  const auto after = [&](VkCommandBuffer commands) {
-    inputs.after(commands);
-    result.after(commands);
-  };
-  const auto start = Clock::now();
-  auto done = known ? submitter.submit_again(which)
-                    : submitter.submit(
-                          [&](VkCommandBuffer commands) {
-                            inputs.before(program, commands);
-                            result.before(commands);
-                            program.record(commands, -1, queries, run);
-                            if (!separate) after(commands);
-                          },
-                          which);
-  if (done) done = submitter.wait();
-  // Layouts are where they were when the frame ends as it began.
   last.reset();
-  if (done && timing == KernelTiming::none && input_layouts() == wanted.layouts) last = std::move(wanted);
-  if (!done) return KernelTimer::blame(std::move(done).error(), program.plan());
-  times.execute = milliseconds_since(start);
+  begun->submitted = Clock::now();
+  auto submitted = known ? submitter.submit_again(which)
+                         : submitter.submit(
+                               [&](VkCommandBuffer commands) {
+                                 inputs.before(program, commands);
+                                 result.before(commands);
+                                 program.record(commands, -1, queries, run);
+                                 if (separate) return;
+                                 inputs.after(commands);
+                                 result.after(commands);
+                               },
+                               which);
+  if (!submitted) return KernelTimer::blame(std::move(submitted).error(), program.plan());
+  // Layouts are where they were when the frame ends as it began.
+  if (timing == KernelTiming::none && input_layouts() == wanted.layouts) last = std::move(wanted);
+  if (timing == KernelTiming::none) return {};
+  AFTERGLOW_CHECK(wait());
   if (stamps) {
-    AFTERGLOW_TRY(times.kernels, timer.read(program.plan()));
+    AFTERGLOW_TRY(begun->times.kernels, timer.read(program.plan()));
   }
-  if (!separate) return {};
+  return separate ? time_separately(program, run) : Result<void>();
+}
 
-  // Each kernel once more, alone: the same pixels again, since no input has changed.
-  times.separate_submissions = true;
+/// Each kernel once more, alone: the same pixels again, since no input has changed.
+Result<void> FrameRunner::State::time_separately(Program& program, const std::vector<bool>& run) {
+  const auto& kernels = program.plan().kernels;
+  begun->times.separate_submissions = true;
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     if (!run[i]) continue;
     const auto begin = Clock::now();
-    done = submitter.submit([&](VkCommandBuffer commands) { program.record(commands, static_cast<int>(i)); });
+    auto done = submitter.submit([&](VkCommandBuffer commands) { program.record(commands, static_cast<int>(i)); });
     if (done) done = submitter.wait();
     if (!done) {
       Error error = std::move(done).error();
       error.message += fmt::format(" in kernel '{}'", kernels[i].name);
       return error;
     }
-    times.kernels.push_back({kernels[i].name, milliseconds_since(begin)});
+    begun->times.kernels.push_back({kernels[i].name, milliseconds_since(begin)});
   }
-  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) { after(commands); }));
+  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) {
+    inputs.after(commands);
+    result.after(commands);
+  }));
   return submitter.wait();
 }
 
-/// The program that made the result, or null when it is the source. Everything of a frame but reading it back.
-Result<Program*> FrameRunner::State::run(Program& program, const std::map<std::string, HostImage>& host,
-                                         KernelTiming timing, const Choose& choose, FrameTimes& times) {
+/// The one place that waits for kernels.
+Result<void> FrameRunner::State::wait() {
+  if (!begun || !begun->submitted) return {};
+  const auto since = *std::exchange(begun->submitted, std::nullopt);
+  auto done = submitter.wait();
+  begun->times.execute = milliseconds_since(since);
+  if (done) return {};
+  recorded = {};
+  result.set_writer(0);
+  return KernelTimer::blame(std::move(done).error(), begun->plan);
+}
+
+/// Everything of a frame but waiting for it and reading it back.
+Result<void> FrameRunner::State::start(Program& program, const std::map<std::string, HostImage>& host,
+                                       KernelTiming timing, const Choose& choose) {
   AFTERGLOW_CHECK(prepare(program, host));
-  const auto start = Clock::now();
-  AFTERGLOW_CHECK(upload(program, host, choose != nullptr));
-  times.upload = milliseconds_since(start);
+  begun->source = host.at("source");
+  const auto began = Clock::now();
+  AFTERGLOW_CHECK(upload(program, host, choose.look));
+  begun->times.upload = milliseconds_since(began);
 
   Program* chosen = &program;
-  if (choose) {
-    AFTERGLOW_TRY(chosen, choose(inputs.brightest("source")));
+  if (choose.program) {
+    AFTERGLOW_TRY(chosen, choose.program(choose.look ? inputs.brightest("source") : 0));
   }
-  if (!chosen) return chosen;
+  if (!chosen) return {};
   if (chosen != &program) AFTERGLOW_CHECK(take_result(*chosen));
   const std::vector<bool> run = chosen->begin_run(inputs.versions(), result.writer() != chosen->id());
-  times.kernels_run = static_cast<int>(std::ranges::count(run, true));
-  times.kernels_kept = static_cast<int>(run.size()) - times.kernels_run;
-  if (times.kernels_run > 0) {
+  begun->times.kernels_run = static_cast<int>(std::ranges::count(run, true));
+  begun->times.kernels_kept = static_cast<int>(run.size()) - begun->times.kernels_run;
+  if (begun->times.kernels_run > 0) {
     result.set_writer(0);
-    AFTERGLOW_CHECK(execute(*chosen, run, timing, times));
+    begun->plan = chosen->plan();
+    AFTERGLOW_CHECK(execute(*chosen, run, timing));
     chosen->up_to_date();
     result.set_writer(chosen->id());
   }
-  return chosen;
+  begun->ran = chosen;
+  return {};
+}
+
+Result<void> FrameRunner::State::begin(Program& program, const std::map<std::string, HostImage>& host,
+                                       KernelTiming timing, const Choose& choose) {
+  begun.emplace();
+  shown.reset();
+  auto started = start(program, host, timing, choose);
+  if (!started) {
+    (void)submitter.wait();  // nothing may be on its way between images that are made anew
+    (void)staging.wait();
+    begun.reset();
+    return started;
+  }
+  if (!begun->ran) return {};
+  shown = begun->ran->parts().images[begun->ran->graph().result];
+  flags = begun->ran->flags_non_finite();
+  return {};
+}
+
+Result<FrameTimes> FrameRunner::State::end() {
+  auto done = wait();
+  FrameTimes times = begun ? std::move(begun->times) : FrameTimes{};
+  if (!done) return std::move(done).error();
+  return times;
+}
+
+Result<void> FrameRunner::begin(Program& program, const std::map<std::string, HostImage>& inputs, KernelTiming timing,
+                                const Choose& choose) {
+  State& s = *state_;
+  AFTERGLOW_CHECK(s.begin(program, inputs, timing, choose));
+  return s.ahead && s.begun->ran ? s.result.begin_download(s.staging, *s.shown) : Result<void>();
+}
+
+Result<void> FrameRunner::wait() { return state_->wait(); }
+void FrameRunner::forget_result() { state_->result.set_writer(0); }
+
+Result<FrameTimes> FrameRunner::finish(HostResult& out) {
+  State& s = *state_;
+  out.clamped = 0;
+  out.flagged = false;
+  if (!s.begun) return Error{ErrorKind::other, "no frame began"};
+  Program* const ran = s.begun->ran;
+  const HostImage source = s.begun->source;
+  AFTERGLOW_TRY(FrameTimes times, s.end());
+  out.clamped = s.inputs.clamped();
+  if (!ran) {
+    s.begun.reset();
+    copy_source(source, out.pixels);
+    return times;
+  }
+  const auto start = Clock::now();
+  AFTERGLOW_TRY(const std::uint64_t held, s.result.download(s.staging, *s.shown, out, s.flags));
+  s.begun.reset();
+  out.clamped += held;
+  times.readback = milliseconds_since(start);
+  return times;
 }
 
 Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out,
                                     KernelTiming timing, const Choose& choose) {
   const Graph& graph = program.graph();
-  FrameTimes times;
-  out.clamped = 0;
-  out.flagged = false;
-  Program* ran = nullptr;
   if (graph.result == graph.source) {
+    state_->shown.reset();
+    out.clamped = 0;
+    out.flagged = false;
     AFTERGLOW_CHECK(check_input(graph, "source", graph.source, inputs));
-  } else {
-    AFTERGLOW_TRY(ran, state_->run(program, inputs, timing, choose, times));
-    out.clamped = state_->inputs.clamped();
-  }
-  state_->shown.reset();
-  if (ran) state_->shown = ran->parts().images[ran->graph().result];
-  if (!ran) {
     copy_source(inputs.at("source"), out.pixels);
-    return times;
+    return FrameTimes{};
   }
-  const auto start = Clock::now();
-  AFTERGLOW_TRY(const std::uint64_t held,
-                state_->result.download(state_->staging, *state_->shown, out, ran->flags_non_finite()));
-  out.clamped += held;
-  times.readback = milliseconds_since(start);
-  return times;
+  AFTERGLOW_CHECK(begin(program, inputs, timing, choose));
+  return finish(out);
 }
 
 Result<FrameTimes> FrameRunner::run_on_device(Program* program, const std::map<std::string, HostImage>& inputs,
                                               KernelTiming timing, const Choose& choose) {
   State& s = *state_;
   FrameTimes times;
-  Program* ran = nullptr;
-  s.shown.reset();
+  bool ran = false;
   if (program && program->graph().result != program->graph().source) {
-    AFTERGLOW_TRY(ran, s.run(*program, inputs, timing, choose, times));
+    AFTERGLOW_CHECK(s.begin(*program, inputs, timing, choose));
+    ran = s.begun->ran != nullptr;
+    AFTERGLOW_TRY(times, s.end());
   } else {
+    s.shown.reset();
     AFTERGLOW_CHECK(s.bring_source(inputs, times));
   }
-  if (ran)
-    s.shown = ran->parts().images[ran->graph().result];
-  else
-    AFTERGLOW_CHECK(s.leave_readable());
+  s.begun.reset();
+  if (!ran) AFTERGLOW_CHECK(s.leave_readable());
   return times;
 }
 
