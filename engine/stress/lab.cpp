@@ -117,7 +117,7 @@ Result<Made> Lab::run(const Look& look, const Picture& picture, double frame, co
 Result<Made> Lab::State::run(const Look& look, const Picture& picture, double frame, const Way& way) {
   AFTERGLOW_TRY(Prepared* const one, prepare(look, way, picture, frame));
   if (!one->stack->runs()) return untouched(picture);
-  AFTERGLOW_TRY(RenderRequest request, one->stack->request({.build = one->stack->build(), .region = way.region}));
+  AFTERGLOW_TRY(RenderRequest request, one->stack->request(request_for(one->stack->build(), {}, way.region)));
   request.inputs = picture_inputs(picture, request.work.graph);
   for (auto& [name, input] : request.inputs) input.content.reset();  // it is to run, whatever ran before
   HostResult result;
