@@ -145,6 +145,8 @@ SampleType sample_type(const std::string& text) {
   return SampleType::automatic;
 }
 
+constexpr int kFramesInFlight = 2;  // of a sequence: while one runs the next is packed and the last is unpacked
+
 /// Every option that changes pixels, for --lock and the hash that --resume compares.
 PixelOptions pixel_options(const RunArguments& a) {
   const auto flag = [](bool given) { return given ? "yes" : ""; };
@@ -314,7 +316,9 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   run.loop.reuse = !a.execution.reference;
   AFTERGLOW_CHECK(check_outputs(run));
   AFTERGLOW_TRY(const std::filesystem::path preset, a.preset.preset_file());
-  AFTERGLOW_TRY(run.session, Session::open(preset, options, run.console.diagnostics()));
+  SessionOptions opened = options;
+  opened.frames = run.report.frames.size() > 1 ? kFramesInFlight : 1;
+  AFTERGLOW_TRY(run.session, Session::open(preset, opened, run.console.diagnostics()));
   run.loop.read.auxiliary = run.session->preset().needs();
   AFTERGLOW_CHECK(prepare_lock(run));
   AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run));

@@ -66,7 +66,7 @@ Result<void> FrameLoop::run(Schedule& schedule) {
     }
     if (reading->picture.valid()) reading->picture.wait();
     if (overlap_ && i + 1 < frames.size()) next = begin_reading(frames[i + 1]);
-    if (auto done = process(*reading); !done) return close(done.error());
+    if (auto done = process(std::move(reading)); !done) return close(done.error());
     if (!overlap_)
       if (auto done = finish_writing(); !done) return close(done.error());
   }
@@ -75,6 +75,8 @@ Result<void> FrameLoop::run(Schedule& schedule) {
 
 /// Waits for the last output and sums up.
 Result<void> FrameLoop::close(Result<void> result) {
+  while (result && !running_.empty()) result = finish_running();
+  running_.clear();
   auto last = finish_writing();
   console_.end_progress();
   if (!result) {
@@ -193,24 +195,58 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   return reading;
 }
 
-/// From the picture that has been read to one that is being written.
-Result<void> FrameLoop::process(Reading& reading) {
-  FrameRecord& frame = *reading.frame;
-  if (auto placed = place_in_time(reading); !placed)
-    return fail(frame, named(std::move(placed).error(), frame.job), reading.pre_roll);
-  if (reading.refused) return fail(frame, *reading.refused, reading.pre_roll);
-  auto picture = reading.picture.get();
-  if (!picture) return fail(frame, named(std::move(picture).error(), frame.job), reading.pre_roll);
+/// Frames in flight beside the one that is submitted. One that a trace may have to make again, with what the frame
+/// before handed on, is waited for at once.
+std::size_t FrameLoop::ahead() const {
+  const bool may = overlap_ && !options_.histories && options_.nan_policy != NanPolicy::fail;
+  return may ? static_cast<std::size_t>(session_.frames() - 1) : 0;
+}
+
+/// From the picture that has been read to one that is in flight, and the oldest of those to one that is being written.
+Result<void> FrameLoop::process(std::unique_ptr<Reading> reading) {
+  FrameRecord& frame = *reading->frame;
+  if (auto placed = place_in_time(*reading); !placed)
+    return fail(frame, named(std::move(placed).error(), frame.job), reading->pre_roll);
+  if (reading->refused) return fail(frame, *reading->refused, reading->pre_roll);
+  auto picture = reading->picture.get();
+  if (!picture) return fail(frame, named(std::move(picture).error(), frame.job), reading->pre_roll);
   if (interrupted()) return interrupt_error();
   frame.size = picture->color.size();
   frame.non_finite.input = picture->non_finite;
-  const auto processed = make(reading, *picture);
-  // Validation goes first: it says what a failure comes from.
+  if (const auto begun = begin(*reading, std::move(*picture)); !begun) return failed(*reading, begun.error());
+  running_.push_back(std::move(reading));
+  while (running_.size() > ahead()) AFTERGLOW_CHECK(finish_running());
+  return {};
+}
+
+/// Validation goes first: it says what a failure comes from.
+Result<void> FrameLoop::failed(const Reading& reading, Error error) {
   if (session_.device().validation_errors() > 0)
-    return fail(frame, {ErrorKind::device, "Vulkan validation: " + session_.device().validation_messages().front()});
-  if (!processed) return fail(frame, named(processed.error(), frame.job), reading.pre_roll);
+    return fail(*reading.frame,
+                {ErrorKind::device, "Vulkan validation: " + session_.device().validation_messages().front()});
+  return fail(*reading.frame, named(std::move(error), reading.frame->job), reading.pre_roll);
+}
+
+Result<void> FrameLoop::begin(Reading& reading, Picture picture) {
+  if (options_.nan_policy == NanPolicy::fail) {
+    AFTERGLOW_TRY(const Trace trace, session_.trace(picture, reading.request, options_.nan_policy));
+    take_findings(reading.frame->non_finite, trace, picture);
+    if (!trace.passes.empty())
+      return non_finite_error(reading.frame->non_finite.passes.front(), reading.frame->job.input);
+  }
+  return session_.submit(std::move(picture), reading.request);
+}
+
+/// The oldest frame in flight, until it is being written.
+Result<void> FrameLoop::finish_running() {
+  const auto reading = std::move(running_.front());
+  running_.pop_front();
+  FrameRecord& frame = *reading->frame;
+  Picture picture;
+  if (const auto made = make(*reading, picture); !made) return failed(*reading, made.error());
+  if (session_.device().validation_errors() > 0) return failed(*reading, {});
   last_ = frame.job.frame;
-  if (reading.pre_roll) {
+  if (reading->pre_roll) {
     frame.state = FrameRecord::State::done;
     return {};
   }
@@ -222,22 +258,16 @@ Result<void> FrameLoop::process(Reading& reading) {
     console_.diagnostics().warn_once(
         "clamped", fmt::format("{}: {} samples were held at ±65504, the largest half float", frame.job.input.string(),
                                report.clamped));
-  if (reading.request.region) crop_picture(*picture, *options_.region, *reading.request.region);
+  if (reading->request.region) crop_picture(picture, *options_.region, *reading->request.region);
   if (interrupted()) return interrupt_error();
   AFTERGLOW_CHECK(finish_writing());
-  begin_writing(frame, std::move(*picture));
+  begin_writing(frame, std::move(picture));
   return {};
 }
 
-/// Runs the stack. A frame in which something was not finite is made once more from its file, pass by pass and mended.
+/// The frame's result. One in which something was not finite is made once more from its file, pass by pass and mended.
 Result<void> FrameLoop::make(Reading& reading, Picture& picture) {
-  if (options_.nan_policy == NanPolicy::fail) {
-    AFTERGLOW_TRY(const Trace trace, session_.trace(picture, reading.request, options_.nan_policy));
-    take_findings(reading.frame->non_finite, trace, picture);
-    if (!trace.passes.empty())
-      return non_finite_error(reading.frame->non_finite.passes.front(), reading.frame->job.input);
-  }
-  AFTERGLOW_CHECK(session_.process(picture, reading.request));
+  AFTERGLOW_CHECK(session_.collect(picture));
   const SessionReport report = session_.report();
   const bool overflow = report.clamped > 0 && !non_finite_.overflow_told();
   if (!report.flagged && !overflow) return {};

@@ -2,6 +2,7 @@
 // allows.
 #pragma once
 
+#include <deque>
 #include <future>
 #include <memory>
 #include <optional>
@@ -58,7 +59,11 @@ class FrameLoop {
   Result<Need> need_of(const PictureHeader& header, const Build& build, const FrameJob& job);
   std::unique_ptr<Reading> begin_reading(const ScheduledFrame& scheduled);
   Result<void> place_in_time(Reading& reading);
-  Result<void> process(Reading& reading);
+  std::size_t ahead() const;
+  Result<void> process(std::unique_ptr<Reading> reading);
+  Result<void> begin(Reading& reading, Picture picture);
+  Result<void> finish_running();
+  Result<void> failed(const Reading& reading, Error error);
   Result<void> make(Reading& reading, Picture& picture);
   Result<Trace> trace_again(const Reading& reading);
   Result<void> mend(Reading& reading, Picture& picture);
@@ -70,6 +75,7 @@ class FrameLoop {
   Session& session_;
   FrameLoopOptions options_;
   Console& console_;
+  std::deque<std::unique_ptr<Reading>> running_;  ///< whose frames are in flight, the oldest first
   std::unique_ptr<Writing> writing_;
   NonFiniteRecord non_finite_;
   std::size_t total_ = 0, pre_roll_ = 0, done_ = 0, failed_ = 0;

@@ -11,6 +11,8 @@
 
 namespace afterglow {
 
+class FileRecord;  // core/file_record.h
+
 /// One step on a colour c. Its numbers begin at pixel (0, row) of the table.
 enum class LutKind {
   none = 0,

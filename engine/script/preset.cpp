@@ -28,6 +28,7 @@ struct Preset::State {
   std::vector<EntryRun> runs;                              // in the order of execution
   std::shared_ptr<const std::vector<StackEntry>> entries;  // the same, as they were resolved last
   std::shared_ptr<const std::vector<StackEntry>> loaded;   // as they were first
+  std::shared_ptr<const Explanation> loaded_so;            // of that
   std::vector<std::string> needs;
   Surroundings surroundings;
   std::shared_ptr<const Explanation> explanation;  // of that
@@ -98,6 +99,7 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   may_change = script::may_change(runs, surroundings);
   resolve(lua, {});
   loaded = entries;
+  loaded_so = explanation;
 }
 
 void Preset::State::resolve(lua_State* lua, const BuildContext& context) {
@@ -156,6 +158,7 @@ const std::string& Preset::name() const { return state_->name; }
 std::optional<double> Preset::max_error() const { return state_->max_error; }
 bool Preset::may_change() const { return state_->may_change; }
 const std::vector<StackEntry>& Preset::entries() const { return *state_->loaded; }
+const Explanation& Preset::explanation() const { return *state_->loaded_so; }
 std::uint64_t Preset::evaluations() const { return state_->evaluations; }
 std::vector<std::string> Preset::needs() const { return state_->needs; }
 std::shared_ptr<const FileLooks> Preset::looked_at() const { return state_->runtime->path.record->looks(); }

@@ -122,7 +122,8 @@ struct BuildContext {
   friend bool operator==(const BuildContext&, const BuildContext&) = default;
 };
 
-struct Build;  // script/build.h
+struct Build;        // script/build.h
+struct Explanation;  // script/explanation.h
 
 /// Owns one Lua state. Not thread-safe; may move between threads. Errors of all functions: script.
 class Preset {
@@ -137,6 +138,7 @@ class Preset {
   std::optional<double> max_error() const;  ///< `max_error` of the stack
   /// In the order of execution, as they are for no frame in particular; those of a frame are Build::entries.
   const std::vector<StackEntry>& entries() const;
+  const Explanation& explanation() const;                       ///< the same for Build::explanation
   const EffectSchema& schema(const std::string& effect) const;  ///< of an effect that the stack uses
   /// May settings differ from frame to frame or from place to place (curves, functions, volumes)?
   bool may_change() const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "script/build.h"
 
 namespace afterglow::stress {
 namespace {

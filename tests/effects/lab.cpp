@@ -1,5 +1,4 @@
 #include "lab.h"
-#include "script/build.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -8,9 +7,10 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "exec/frame.h"
+#include "exec/frame_runner.h"
 #include "files.h"
 #include "image/metrics.h"
+#include "script/build.h"
 #include "shader/kernel.h"
 #include "shader/library.h"
 

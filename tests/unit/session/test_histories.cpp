@@ -236,12 +236,14 @@ TEST_F(HistoriesOfFrames, AStackThatTakesAnothersPlaceGoesOn) {
   next.take_over(session->stack(), false);
   context.frame = 3;
   ASSERT_TRUE(next.prepare(context));
-  auto runner = FrameRunner::create(session->device(), 1u << 30);
-  ASSERT_TRUE(runner);
+  auto renderer = Renderer::create(session->device(), {});
+  ASSERT_TRUE(renderer);
   const Picture p = picture(2);
   HostResult out;
-  ASSERT_TRUE((*runner)->run(*next.program(), {{"source", {p.color.pixels.data(), p.color.size(), 4}}}, out,
-                             KernelTiming::none));
+  auto request = next.request(request_for(next.build()));
+  ASSERT_TRUE(request);
+  request->inputs = {{"source", {p.color.pixels.data(), p.color.size(), 4}}};
+  ASSERT_TRUE((*renderer)->render(std::move(*request), out));
   EXPECT_EQ(out.pixels[0], 4.75f);
 }
 
