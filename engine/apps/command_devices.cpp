@@ -8,8 +8,8 @@
 #include "apps/command.h"
 #include "apps/json_text.h"
 #include "apps/table.h"
+#include "exec/calibration.h"
 #include "gpu/device.h"
-#include "session/calibration.h"
 
 namespace afterglow {
 namespace {

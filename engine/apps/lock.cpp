@@ -10,7 +10,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "shader/execution_config.h"
-#include "shader/glsl.h"
+#include "shader/kernel.h"
 #include "shader/library.h"
 
 namespace afterglow {

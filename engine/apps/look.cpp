@@ -4,11 +4,10 @@
 
 #include "apps/crop.h"
 #include "core/paths.h"
-#include "exec/cpu/driver.h"
-#include "exec/describe.h"
+#include "exec/calibration.h"
+#include "exec/program_cache.h"
 #include "graph/region.h"
-#include "session/calibration.h"
-#include "session/display_encoding.h"
+#include "session/stack.h"
 #include "shader/kernel.h"
 
 namespace afterglow {
@@ -41,24 +40,21 @@ ExecutionConfig execution_on_cpu() {
   const auto calibration = Calibration::shipped();
   DeviceInfo cpu;
   cpu.type = "cpu";
-  ExecutionConfig config = calibration ? calibration->find(cpu, 0).choice : ExecutionConfig{};
-  fit_to_cpu_driver(config);
-  return config;
+  return calibration ? calibration->find(cpu, 0).choice : ExecutionConfig{};
 }
 
 }  // namespace
 
 std::vector<Error> shader_errors(const Look& look) {
-  ProgramOptions options{.config = execution_on_cpu(), .source_is_storage = true, .flag_non_finite = true};
+  const ExecutionConfig config = execution_on_cpu();
   KernelCompiler compiler{cache_folder() / "shaders"};  // the folder that Stack uses, so that `run` starts warm
-  std::vector<Error> errors = check_kernels(*look.shaders, compiler, look.build.graph, options);
+  std::vector<Error> errors = check_kernels(*look.shaders, compiler, {.graph = look.build.graph}, config);
   if (errors.empty() && look.build.graph.result != look.build.graph.source) {
     // The last kernel once more, as it is for display files without and with transparency.
-    options.codes = true;
     for (const bool straight : {false, true}) {
-      Graph graph = look.build.graph;
-      encode_for_display(graph, {.straight_alpha = straight});
-      for (auto& error : check_kernels(*look.shaders, compiler, graph, options)) errors.push_back(std::move(error));
+      FrameWork work{.graph = look.build.graph, .codes = true};
+      encode_for_display(work.graph, {.straight_alpha = straight});
+      for (auto& error : check_kernels(*look.shaders, compiler, work, config)) errors.push_back(std::move(error));
     }
   }
   std::set<std::string> seen;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/cell.h"
-#include "session/calibration.h"
+#include "exec/calibration.h"
 
 namespace afterglow::bench {
 

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "bench/kernel_work.h"
 #include "bench/oracle.h"
 #include "bench/quality.h"
+#include "exec/timing.h"
 
 namespace afterglow::bench {
 namespace {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <optional>
 
-#include "bench/device_picture.h"
 #include "bench/results.h"
-#include "bench/timed_work.h"
+#include "bench/turns.h"
+#include "exec/timing.h"
 #include "session/stack.h"
 
 namespace afterglow::bench {

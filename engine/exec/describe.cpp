@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "core/parallel.h"
 #include "exec/cpu/image_reads.h"
@@ -100,23 +99,6 @@ Result<std::vector<ImageId>> images_of_slots(const Graph& graph, const PlanKerne
     images.push_back(input->image);
   }
   return images;
-}
-
-std::vector<Error> check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const Graph& graph,
-                                 const ProgramOptions& options) {
-  std::vector<Error> errors;
-  std::set<Hash> checked;
-  for (const auto& kernel : make_plan(graph, options.config).kernels) {
-    const auto check = [&]() -> Result<void> {
-      AFTERGLOW_TRY(const KernelDesc desc, describe_kernel(shaders, graph, kernel, options));
-      AFTERGLOW_TRY(const AssembledKernel assembled, assemble(desc));
-      if (!checked.insert(assembled.hash).second) return {};
-      AFTERGLOW_CHECK(compiler.compile(desc));
-      return {};
-    };
-    if (auto good = check(); !good) errors.push_back(std::move(good).error());
-  }
-  return errors;
 }
 
 Result<CompiledKernels> compile_kernels(KernelCompiler& compiler, const std::vector<KernelDesc>& kernels) {

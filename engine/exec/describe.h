@@ -27,10 +27,6 @@ const PassInput* input_of(const Pass& pass, const std::string& name);
 Result<std::vector<ImageId>> images_of_slots(const Graph& graph, const PlanKernel& kernel,
                                              const CompiledKernel& compiled);
 
-/// Compiles every kernel that a program would have, touching no device. What is wrong with each.
-std::vector<Error> check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const Graph& graph,
-                                 const ProgramOptions& options);
-
 /// Kernels of the same text share one compilation.
 struct CompiledKernels {
   std::vector<CompiledKernel> unique;

@@ -45,6 +45,9 @@ void Program::set_parameters(const Graph& graph) {
   state_->graph.histories = graph.histories;  // values of first frames
 }
 
+bool Program::has_previous(const std::string& history) const {
+  return state_->histories && state_->histories->has_previous(history);
+}
 Histories* Program::histories() const { return state_->histories.get(); }
 Result<void> Program::use(std::shared_ptr<Histories> histories) { return state_->use(std::move(histories)); }
 int Program::recording() const { return state_->begins_anew() ? kUnlikeOthers : state_->parity(); }

@@ -97,6 +97,8 @@ class Program {
   std::vector<bool> begin_run(const InputVersions& inputs, bool result_lost);
   /// Notes that what `begin_run` said has run, in the frame that its histories began.
   void up_to_date();
+  /// Whether the frame that its histories began has one before it, for the history of that name.
+  bool has_previous(const std::string& history) const;
   /// What frames hand on to the next; null when the graph has no histories. `Histories::begin` says which frame
   /// `record` records.
   Histories* histories() const;

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <iterator>
 #include <list>
+#include <set>
 #include <utility>
 
 #include "core/stopwatch.h"
+#include "exec/cpu/driver.h"
+#include "exec/describe.h"
 #include "exec/histories.h"
 #include "exec/idle_programs.h"
 #include "graph/history.h"
@@ -47,6 +50,25 @@ struct ProgramCache::State {
 bool same_program(const FrameWork& a, const FrameWork& b) {
   return a.region == b.region && a.codes == b.codes && a.texts == b.texts && same_structure(a.graph, b.graph) &&
          (!a.region || same_reach(a.graph, b.graph));
+}
+
+std::vector<Error> check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
+                                 const ExecutionConfig& config) {
+  ProgramOptions options{.config = config, .source_is_storage = true, .codes = work.codes, .flag_non_finite = true};
+  fit_to_cpu_driver(options.config);
+  std::vector<Error> errors;
+  std::set<Hash> checked;
+  for (const auto& kernel : make_plan(work.graph, config).kernels) {
+    const auto check = [&]() -> Result<void> {
+      AFTERGLOW_TRY(const KernelDesc desc, describe_kernel(shaders, work.graph, kernel, options));
+      AFTERGLOW_TRY(const AssembledKernel assembled, assemble(desc));
+      if (!checked.insert(assembled.hash).second) return {};
+      AFTERGLOW_CHECK(compiler.compile(desc));
+      return {};
+    };
+    if (auto good = check(); !good) errors.push_back(std::move(good).error());
+  }
+  return errors;
 }
 
 Result<Hash> texts_of(const Graph& graph, ShaderLibrary& shaders) {

@@ -36,6 +36,11 @@ bool same_program(const FrameWork& a, const FrameWork& b);
 /// Of all shaders of a graph, with what they include. Errors: script.
 Result<Hash> texts_of(const Graph& graph, ShaderLibrary& shaders);
 
+/// Compiles every kernel that the frame's program has on a CPU device for `run`, touching none. What is wrong with
+/// each.
+std::vector<Error> check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
+                                 const ExecutionConfig& config);
+
 struct ProgramCacheOptions {
   ExecutionConfig config{};
   bool reference = false;   ///< every pass on its own, computed weights, no sharing of memory

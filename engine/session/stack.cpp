@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "core/stopwatch.h"
+#include "exec/calibration.h"
 #include "graph/history.h"
 #include "graph/memory.h"
 #include "graph/region.h"
-#include "session/calibration.h"
 
 namespace afterglow {
 namespace {

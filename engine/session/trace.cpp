@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "exec/histories.h"
 #include "session/picture_inputs.h"
 
 namespace afterglow {
@@ -128,7 +127,7 @@ Result<std::optional<Image>> Tracer::State::image(ImageId id) {
 
 Result<void> Tracer::State::look(Stack& stack, const Graph& graph, Trace& trace) {
   for (const auto& history : graph.histories) {
-    if (!program->histories()->has_previous(history.name)) continue;
+    if (!program->has_previous(history.name)) continue;
     AFTERGLOW_TRY(const auto read, image(history.previous));
     if (!read) continue;
     const NonFinite found = find_in(*read, {0, 0, read->width, read->height});

@@ -63,6 +63,9 @@ struct KernelDesc {
   std::vector<ImageRead> reads{};
 };
 
+/// Name and version of the compiler of kernels: part of cache keys. Does not initialise it.
+std::string glsl_compiler_version();
+
 /// Where a dynamic parameter lies in the kernel's uniform block.
 struct KernelParam {
   int stage = 0;  ///< 0-based over [sample, stages…] (the sample stage, when there is one, is 0)

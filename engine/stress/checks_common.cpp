@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "exec/half.h"
+#include "core/half.h"
 #include "image/picture.h"
 #include "stress/check.h"
 

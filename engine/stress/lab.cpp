@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "bench/oracle.h"
-#include "session/calibration.h"
+#include "exec/calibration.h"
 #include "session/picture_inputs.h"
 
 namespace afterglow::stress {

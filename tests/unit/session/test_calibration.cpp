@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "core/file.h"
-#include "session/calibration.h"
+#include "exec/calibration.h"
 
 namespace afterglow {
 namespace {

@@ -1,8 +1,8 @@
-#include "bench/kernel_work.h"
+#include "exec/timing/kernel_work.h"
 
 #include "exec/record.h"
 
-namespace afterglow::bench {
+namespace afterglow {
 namespace {
 
 /// Between runs: what one has written, the next may write again; readers of the source need not wait for each other.
@@ -59,4 +59,4 @@ Result<BufferCopy> BufferCopy::create(const Device& device, VkDeviceSize bytes) 
   return out;
 }
 
-}  // namespace afterglow::bench
+}  // namespace afterglow

@@ -1,22 +1,6 @@
-#include "bench/timed_work.h"
-
-#include <chrono>
+#include "bench/turns.h"
 
 namespace afterglow::bench {
-
-Result<TimedWork> TimedWork::create(const Device& device, const std::function<void(VkCommandBuffer)>& record) {
-  TimedWork out;
-  AFTERGLOW_TRY(out.submitter_, Submitter::create(device));
-  AFTERGLOW_CHECK(out.submitter_.record(record));
-  return out;
-}
-
-Result<double> TimedWork::run() {
-  const auto start = std::chrono::steady_clock::now();
-  AFTERGLOW_CHECK(submitter_.submit_again());
-  AFTERGLOW_CHECK(submitter_.wait());
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
 
 Result<std::vector<Spread>> run_in_turns(const std::vector<Measured>& all, int repeat,
                                          const std::function<Result<void>(int round)>& step) {

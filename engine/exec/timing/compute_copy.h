@@ -1,11 +1,11 @@
 // The copy of a picture by a compute shader, for comparison with a full-screen draw.
 #pragma once
 
-#include "bench/timed_work.h"
 #include "exec/program.h"
+#include "exec/timing/timed_work.h"
 #include "gpu/image.h"
 
-namespace afterglow::bench {
+namespace afterglow {
 
 class ComputeCopy {
  public:
@@ -24,4 +24,4 @@ class ComputeCopy {
   TimedWork work_;
 };
 
-}  // namespace afterglow::bench
+}  // namespace afterglow

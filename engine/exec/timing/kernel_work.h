@@ -1,14 +1,14 @@
 // One kernel alone on one picture: what floors and calibration measure.
 #pragma once
 
-#include "bench/device_picture.h"
-#include "bench/timed_work.h"
 #include "exec/descriptors.h"
 #include "exec/kernel_pipelines.h"
+#include "exec/timing/device_picture.h"
+#include "exec/timing/timed_work.h"
 #include "gpu/memory.h"
 #include "shader/kernel.h"
 
-namespace afterglow::bench {
+namespace afterglow {
 
 /// A full-size draw of a kernel that reads the source alone. The picture must outlive it.
 class KernelWork {
@@ -39,4 +39,4 @@ class BufferCopy {
   TimedWork work_;
 };
 
-}  // namespace afterglow::bench
+}  // namespace afterglow

@@ -9,7 +9,7 @@
 #include "exec/program.h"
 #include "image/picture.h"
 
-namespace afterglow::bench {
+namespace afterglow {
 
 /// What stacks must have in common to share a picture.
 struct PictureKind {
@@ -43,4 +43,4 @@ class DevicePicture {
 Result<FrameImage> upload_image(const Device& device, const Image& image, VkFormat format, VkImageUsageFlags usage,
                                 VkImageLayout layout);
 
-}  // namespace afterglow::bench
+}  // namespace afterglow

@@ -1,4 +1,4 @@
-#include "bench/device_picture.h"
+#include "exec/timing/device_picture.h"
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 #include "exec/host_input.h"
 #include "exec/staging.h"
 
-namespace afterglow::bench {
+namespace afterglow {
 namespace {
 
 constexpr VkImageLayout kRest = VK_IMAGE_LAYOUT_GENERAL;
@@ -103,4 +103,4 @@ void DevicePicture::after(VkCommandBuffer commands, VkImageLayout source_layout)
   record_barriers(commands, &barrier, 1);
 }
 
-}  // namespace afterglow::bench
+}  // namespace afterglow

@@ -1,26 +1,13 @@
-// Work for the device that is recorded once and submitted again and again.
+// What is measured in turns.
 #pragma once
 
 #include <functional>
 #include <vector>
 
 #include "bench/statistics.h"
-#include "exec/submit.h"
+#include "core/result.h"
 
 namespace afterglow::bench {
-
-class TimedWork {
- public:
-  /// What is recorded must be right to run any number of times. Errors: device.
-  static Result<TimedWork> create(const Device& device, const std::function<void(VkCommandBuffer)>& record);
-  TimedWork() = default;
-
-  /// Submits and waits; milliseconds from one to the other. Errors: device.
-  Result<double> run();
-
- private:
-  Submitter submitter_;
-};
 
 /// Something that can be run again and again, and how many milliseconds that took.
 using Measured = std::function<Result<double>()>;

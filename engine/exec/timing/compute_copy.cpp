@@ -1,12 +1,12 @@
-#include "bench/compute_copy.h"
+#include "exec/timing/compute_copy.h"
 
 #include <array>
 
-#include "bench/copy_compute.h"
+#include "exec/timing/copy_compute.h"
 #include "gpu/error.h"
 #include "gpu/pipeline.h"
 
-namespace afterglow::bench {
+namespace afterglow {
 namespace {
 
 constexpr std::uint32_t kGroupWidth = 16, kGroupHeight = 8;
@@ -119,4 +119,4 @@ Result<ComputeCopy> ComputeCopy::create(const Device& device, const ImageBinding
   return out;
 }
 
-}  // namespace afterglow::bench
+}  // namespace afterglow

@@ -1,4 +1,4 @@
-#include "exec/half.h"
+#include "core/half.h"
 
 #include <bit>
 

@@ -1,4 +1,4 @@
-#include "session/calibration.h"
+#include "exec/calibration.h"
 
 #include <fmt/format.h>
 
