@@ -23,8 +23,8 @@ struct SharedKernels {
 
 /// What is to run for a frame: a value.
 struct FrameWork {
-  Graph graph;
-  Hash texts;                    ///< of the graph's shaders: see `texts_of`
+  Graph graph{};
+  Hash texts{};                  ///< of the graph's shaders: see `texts_of`
   std::optional<Rect> region{};  ///< of the result, in its pixels and within it; empty: all of it
   bool codes = false;            ///< the last pass gives 8-bit codes
   double frame = 1, step = 1;    ///< number, and how many after the frame before it; see Histories::begin

@@ -13,7 +13,7 @@
 
 #include <cstdint>
 
-namespace afterglow::bench {
+namespace afterglow {
 
 inline constexpr std::uint32_t kCopyCompute[] = {
     0x07230203, 0x00010500, 0x0008000b, 0x0000002f, 0x00000000, 0x00020011, 0x00000001, 0x00020011, 0x00000032,
@@ -45,4 +45,4 @@ inline constexpr std::uint32_t kCopyCompute[] = {
     0x0000002a, 0x000200f9, 0x0000001e, 0x000200f8, 0x0000001e, 0x000100fd, 0x00010038,
 };
 
-}  // namespace afterglow::bench
+}  // namespace afterglow
