@@ -29,7 +29,7 @@ Result<std::vector<bench::Variant>> parse_variants(const std::string& text) {
     bench::Variant variant{.label = trim(part), .choice = {}, .settings = {}, .overrides = {}};
     variant.watch = variant.label == kWatched;
     if (variant.label != kChosen && !variant.watch) {
-      auto choice = parse_choice(variant.label);
+      auto choice = parse_execution(variant.label);
       if (!choice) {
         Error error = std::move(choice).error();
         error.file = "--variants";

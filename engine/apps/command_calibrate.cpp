@@ -33,7 +33,7 @@ void print(const bench::CalibrationResult& result) {
               p.quality ? fmt::format("{:.1e}", p.quality->error.percentile) : "–"});
   Table chosen({"from --max-error", "chosen"});
   for (const auto& [max_error, choice] : result.choices)
-    chosen.add({fmt::format("{:g}", max_error), choice_name(choice)});
+    chosen.add({fmt::format("{:g}", max_error), execution_name(choice)});
   fmt::print("{}\n{}\n{}", operations.text("  "), ways.text("  "), chosen.text("  "));
 }
 

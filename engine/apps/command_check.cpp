@@ -26,7 +26,7 @@ struct CheckArguments {
 };
 
 const std::string* skip_reason(const Look& look, const StackEntry& entry) {
-  for (const auto& skipped : look.graph.skipped)
+  for (const auto& skipped : look.build.graph.skipped)
     if (skipped.name == entry.name) return &skipped.reason;
   return nullptr;
 }
@@ -44,7 +44,7 @@ std::string entry_text(const Look& look, const StackEntry& entry, std::size_t pl
                                 entry.required ? ", required" : "", entry.enabled ? "" : ", not enabled");
   if (const auto* reason = skip_reason(look, entry)) out += fmt::format("   skipped: {}\n", *reason);
   Table table;
-  for (const auto& setting : look.preset->explanation().entries[place - 1].settings)
+  for (const auto& setting : look.build.explanation->entries[place - 1].settings)
     table.add({setting.name, setting.value.text(), origin_text(setting)});
   return out + table.text("   ");
 }
@@ -52,13 +52,13 @@ std::string entry_text(const Look& look, const StackEntry& entry, std::size_t pl
 std::vector<std::string> shadow_notes(const Look& look) {
   std::vector<std::string> notes;
   std::set<std::string> seen;
-  for (const auto& entry : look.preset->entries()) {
+  for (const auto& entry : *look.build.entries) {
     if (!seen.insert(entry.effect).second) continue;
     const auto& schema = look.preset->schema(entry.effect);
     for (const auto& file : schema.shadowed)
       notes.push_back(fmt::format("{} shadows {}", schema.file.string(), file.string()));
   }
-  for (const auto& pass : look.graph.passes) {
+  for (const auto& pass : look.build.graph.passes) {
     if (pass.shader.empty() || !seen.insert("shader " + pass.shader).second) continue;
     const auto files = look.shaders->path().find_shader(pass.shader + ".glsl");
     for (std::size_t i = 1; i < files.size(); ++i)
@@ -68,17 +68,17 @@ std::vector<std::string> shadow_notes(const Look& look) {
 }
 
 std::string as_text(const Look& look, const std::string& file, const std::vector<std::string>& shadows) {
-  const auto& entries = look.preset->entries();
+  const auto& entries = *look.build.entries;
   std::string out = fmt::format("{}: {}\n", file, look.preset->name());
   for (std::size_t i = 0; i < entries.size(); ++i) out += entry_text(look, entries[i], i + 1);
   for (const auto& note : shadows) out += note + "\n";
-  return out + fmt::format("{} effects, {} passes in {} kernels: no errors\n", entries.size(), look.graph.passes.size(),
-                           look.plan.kernels.size());
+  return out + fmt::format("{} effects, {} passes in {} kernels: no errors\n", entries.size(),
+                           look.build.graph.passes.size(), look.plan.kernels.size());
 }
 
 std::string as_json(const Look& look, const std::string& file, const std::vector<std::string>& shadows) {
   Json out{{"file", file}, {"name", look.preset->name()}, {"entries", Json::array()}};
-  for (const auto& entry : look.preset->entries()) {
+  for (const auto& entry : *look.build.entries) {
     Json item{{"name", entry.name},   {"effect", entry.effect},   {"at", entry.at},
               {"order", entry.order}, {"enabled", entry.enabled}, {"required", entry.required}};
     for (const auto& [name, value] : entry.settings) item["settings"][name] = Json(value_json(value));
@@ -86,7 +86,7 @@ std::string as_json(const Look& look, const std::string& file, const std::vector
     if (const auto* reason = skip_reason(look, entry)) item["skipped"] = *reason;
     out["entries"].push_back(std::move(item));
   }
-  out["passes"] = look.graph.passes.size();
+  out["passes"] = look.build.graph.passes.size();
   out["kernels"] = look.plan.kernels.size();
   out["shadows"] = shadows;
   return json_text(out);

@@ -8,8 +8,8 @@
 #include "apps/command.h"
 #include "batch/json_text.h"
 #include "batch/table.h"
+#include "exec/calibration.h"
 #include "gpu/device.h"
-#include "session/calibration.h"
 
 namespace afterglow {
 namespace {
@@ -34,7 +34,7 @@ std::string as_json(const std::vector<DeviceInfo>& devices, const Calibration& c
                          {"usable", device.usable}};
     if (!device.usable) entry["why_not"] = device.why_not;
     const auto found = calibration.find(device, kDefaultError);
-    entry["choice"] = choice_name(found.choice);
+    entry["choice"] = execution_name(found.choice);
     entry["choice_from"] = found.from;
     list.push_back(std::move(entry));
   }
@@ -47,7 +47,7 @@ std::string as_table(const std::vector<DeviceInfo>& devices, const Calibration& 
     const auto& device = devices[i];
     const auto found = calibration.find(device, kDefaultError);
     table.add({std::to_string(i), device.name, device.type, device.driver, version_text(device.api_version),
-               device.usable ? "yes" : "no: " + device.why_not, choice_name(found.choice), found.from});
+               device.usable ? "yes" : "no: " + device.why_not, execution_name(found.choice), found.from});
   }
   return table.text();
 }

@@ -29,7 +29,7 @@ Result<void> choose(const std::string& text, ExplainView& view) {
   view.entry = text.substr(0, dot);
   std::vector<std::string> names;
   const StackEntry* entry = nullptr;
-  for (const auto& candidate : view.look.preset->entries()) {
+  for (const auto& candidate : *view.look.build.entries) {
     names.push_back(candidate.name);
     if (candidate.name == view.entry) entry = &candidate;
   }
@@ -45,8 +45,7 @@ Result<void> choose(const std::string& text, ExplainView& view) {
 
 Result<void> run_explain(const ExplainArguments& arguments, Console& console) {
   AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
-  AFTERGLOW_TRY(const BuildContext context, arguments.picture.context(*look.preset));
-  ExplainView view{look, arguments.preset.file, context, "", ""};
+  ExplainView view{look, arguments.preset.file, look.build.context, "", ""};
   if (!arguments.setting.empty()) AFTERGLOW_CHECK(choose(arguments.setting, view));
   fmt::print("{}", arguments.format == "json" ? explain_json(view) : printable(explain_text(view), true));
   return {};

@@ -33,9 +33,9 @@ Result<void> run_graph(const GraphArguments& arguments, Console& console) {
   AFTERGLOW_TRY(const std::string format, format_of(arguments));
   AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
   const std::string& title = look.preset->name();
-  const std::string text = format == "svg"    ? graph_svg(look.graph, look.plan, title)
-                           : format == "json" ? graph_json(look.graph, look.plan, title)
-                                              : graph_dot(look.graph, look.plan, title);
+  const std::string text = format == "svg"    ? graph_svg(look.build.graph, look.plan, title)
+                           : format == "json" ? graph_json(look.build.graph, look.plan, title)
+                                              : graph_dot(look.build.graph, look.plan, title);
   if (!arguments.output.empty()) return write_file_atomically(arguments.output, text);
   fmt::print("{}", text);
   return {};

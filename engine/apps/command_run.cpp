@@ -145,6 +145,8 @@ SampleType sample_type(const std::string& text) {
   return SampleType::automatic;
 }
 
+constexpr int kFramesInFlight = 2;  // of a sequence: while one runs the next is packed and the last is unpacked
+
 /// Every option that changes pixels, for --lock and the hash that --resume compares.
 PixelOptions pixel_options(const RunArguments& a) {
   const auto flag = [](bool given) { return given ? "yes" : ""; };
@@ -232,7 +234,8 @@ Result<std::optional<int>> pre_roll_of(Run& run) {
     assumed.frame = frames[i * frames.size() / asked].job.frame;
     assumed.fps = run.arguments.fps;
     AFTERGLOW_TRY(const BuildContext context, assumed.context(preset));
-    AFTERGLOW_TRY(const Graph graph, run.session->stack().graph(context));
+    AFTERGLOW_TRY(const auto build, run.session->evaluate(context));
+    const Graph& graph = build->graph;
     if (!graph.histories.empty()) most = std::max(most.value_or(0), run.arguments.pre_roll.value_or(pre_roll(graph)));
   }
   return most;
@@ -242,7 +245,8 @@ Result<std::optional<int>> pre_roll_of(Run& run) {
 Result<Graph> usual_graph(Run& run) {
   AssumedPicture assumed;
   AFTERGLOW_TRY(const BuildContext context, assumed.context(run.session->preset()));
-  return run.session->stack().graph(context);
+  AFTERGLOW_TRY(const auto build, run.session->evaluate(context));
+  return build->graph;
 }
 
 /// Hash of the look for --resume, and the frames that need not be made.
@@ -250,7 +254,7 @@ Result<void> prepare_resume(Run& run) {
   const RunArguments& a = run.arguments;
   if (!a.resume && run.report.frames.size() < 2) return {};
   AFTERGLOW_TRY(const Graph graph, usual_graph(run));
-  const std::string options = options_text(pixel_options(a)) + choice_name(run.session->stack().choice().execution);
+  const std::string options = options_text(pixel_options(a)) + execution_name(run.session->stack().choice().execution);
   AFTERGLOW_TRY(const Hash look, look_hash(run.session->preset(), graph, options));
   run.loop.record_look = look;
   if (!a.resume) return {};
@@ -321,7 +325,9 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   run.loop.reuse = !a.execution.reference;
   AFTERGLOW_CHECK(check_outputs(run));
   AFTERGLOW_TRY(const std::filesystem::path preset, a.preset.preset_file());
-  AFTERGLOW_TRY(run.session, Session::open(preset, options, run.console.diagnostics()));
+  SessionOptions opened = options;
+  opened.frames = run.report.frames.size() > 1 ? kFramesInFlight : 1;
+  AFTERGLOW_TRY(run.session, Session::open(preset, opened, run.console.diagnostics()));
   run.loop.read.auxiliary = run.session->preset().needs();
   AFTERGLOW_CHECK(prepare_lock(run));
   AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run));

@@ -23,8 +23,8 @@ std::string position_text(const Position& p) {
 bool shown(const std::string& wanted, const std::string& name) { return wanted.empty() || wanted == name; }
 
 const std::string* skip_reason(const Look& look, const std::string& entry) {
-  const auto found = std::ranges::find(look.graph.skipped, entry, &Skipped::name);
-  return found == look.graph.skipped.end() ? nullptr : &found->reason;
+  const auto found = std::ranges::find(look.build.graph.skipped, entry, &Skipped::name);
+  return found == look.build.graph.skipped.end() ? nullptr : &found->reason;
 }
 
 // What became of a pass.
@@ -36,8 +36,8 @@ struct PassFate {
 
 std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
   std::vector<PassFate> fates;
-  for (std::size_t i = 0; i < look.graph.passes.size(); ++i) {
-    const Pass& pass = look.graph.passes[i];
+  for (std::size_t i = 0; i < look.build.graph.passes.size(); ++i) {
+    const Pass& pass = look.build.graph.passes[i];
     if (pass.effect != entry) continue;
     const int kernel = kernel_of(look.plan, static_cast<int>(i));
     if (kernel < 0) {
@@ -54,7 +54,7 @@ std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
 
 std::string fate_text(const Look& look, const PassFate& fate) {
   if (fate.kernel.empty()) return "skipped: " + fate.reason;
-  const std::string what = fmt::format("{} {}", kind_text(fate.pass->kind), size_text(look.graph, *fate.pass));
+  const std::string what = fmt::format("{} {}", kind_text(fate.pass->kind), size_text(look.build.graph, *fate.pass));
   if (*fate.state == 'j') return fmt::format("{}, joined into {}", what, fate.kernel);
   return fate.kernel == fate.pass->name ? what + ", runs" : fmt::format("{}, runs as {}", what, fate.kernel);
 }
@@ -98,8 +98,8 @@ std::string entry_text(const ExplainView& view, const StackEntry& entry, const E
   }
   if (any) out += settings.text("   ");
   if (view.setting.empty())
-    for (const auto& kept : view.look.graph.histories)
-      if (kept.effect == entry.name) out += history_text(view.look.graph, kept);
+    for (const auto& kept : view.look.build.graph.histories)
+      if (kept.effect == entry.name) out += history_text(view.look.build.graph, kept);
   Table passes({"pass", ""});
   const auto fates = fates_of(view.look, entry.name);
   for (const auto& fate : fates) passes.add({fate.pass->name, fate_text(view.look, fate)});
@@ -131,7 +131,7 @@ Json volume_json(const VolumeState& volume) {
 }  // namespace
 
 std::string explain_text(const ExplainView& view) {
-  const Explanation& explanation = view.look.preset->explanation();
+  const Explanation& explanation = *view.look.build.explanation;
   std::string out = fmt::format("{}: {}, frame {} ({} s)", view.file, view.look.preset->name(),
                                 number_text(view.context.frame), number_text(view.context.time));
   if (explanation.position)
@@ -144,14 +144,14 @@ std::string explain_text(const ExplainView& view) {
                  volume.distance ? number_text(*volume.distance) : "", number_text(volume.factor), volume.reason});
     out += "\n" + table.text();
   }
-  const auto& entries = view.look.preset->entries();
+  const auto& entries = *view.look.build.entries;
   for (std::size_t i = 0; i < entries.size(); ++i)
     if (shown(view.entry, entries[i].name)) out += entry_text(view, entries[i], explanation.entries[i], i + 1);
   return out;
 }
 
 std::string explain_json(const ExplainView& view) {
-  const Explanation& explanation = view.look.preset->explanation();
+  const Explanation& explanation = *view.look.build.explanation;
   Json out{{"file", view.file},
            {"name", view.look.preset->name()},
            {"frame", view.context.frame},
@@ -161,7 +161,7 @@ std::string explain_json(const ExplainView& view) {
   out["volumes"] = Json::array();
   for (const auto& volume : explanation.volumes) out["volumes"].push_back(volume_json(volume));
   out["entries"] = Json::array();
-  const auto& entries = view.look.preset->entries();
+  const auto& entries = *view.look.build.entries;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (!shown(view.entry, entries[i].name)) continue;
     Json item{{"name", entries[i].name}, {"effect", entries[i].effect}};
@@ -178,7 +178,7 @@ std::string explain_json(const ExplainView& view) {
       if (!fate.reason.empty()) pass["reason"] = fate.reason;
       item["passes"].push_back(std::move(pass));
     }
-    for (const auto& history : view.look.graph.histories)
+    for (const auto& history : view.look.build.graph.histories)
       if (history.effect == entries[i].name)
         item["histories"].push_back({{"name", history.name}, {"pre_roll", history.pre_roll}});
     out["entries"].push_back(std::move(item));

@@ -6,7 +6,7 @@
 
 #include "apps/options.h"
 #include "graph/plan.h"
-#include "script/preset.h"
+#include "script/build.h"
 #include "shader/library.h"
 
 namespace afterglow {
@@ -14,7 +14,7 @@ namespace afterglow {
 struct Look {
   std::unique_ptr<ShaderLibrary> shaders;
   std::unique_ptr<Preset> preset;
-  Graph graph;
+  Build build;
   Plan plan;  ///< as `run` would make it
 };
 

@@ -31,9 +31,7 @@ struct FrameLoop::Reading {
   FrameRecord* frame = nullptr;
   bool pre_roll = false, restart = false;
   std::optional<Error> refused;  ///< by the header; nothing was read
-  BuildContext context;
-  std::optional<Rect> part;  ///< of the picture, when there is a region
-  std::optional<DisplayEncoding> encoding;
+  FrameRequest request{};        ///< its region: of the picture, when a part of the display window is wanted
   ReadOptions options;
   std::future<Result<Picture>> picture;
 };
@@ -64,13 +62,12 @@ Result<void> FrameLoop::run(Schedule& schedule) {
     auto reading = next ? std::move(next) : begin_reading(frames[i]);
     // Shaders, pipelines and memory are made while the first picture is read.
     if (i == 0 && !reading->refused) {
-      if (auto prepared = session_.prepare(reading->context, reading->encoding, reading->part);
-          !prepared && ends_run(prepared.error()))
+      if (auto prepared = session_.prepare(reading->request); !prepared && ends_run(prepared.error()))
         return close(fail(*reading->frame, std::move(prepared).error()));
     }
     if (reading->picture.valid()) reading->picture.wait();
     if (overlap_ && i + 1 < frames.size()) next = begin_reading(frames[i + 1]);
-    if (auto done = process(*reading); !done) return close(done.error());
+    if (auto done = process(std::move(reading)); !done) return close(done.error());
     if (!overlap_)
       if (auto done = finish_writing(); !done) return close(done.error());
   }
@@ -79,6 +76,8 @@ Result<void> FrameLoop::run(Schedule& schedule) {
 
 /// Waits for the last output and sums up.
 Result<void> FrameLoop::close(Result<void> result) {
+  while (result && !running_.empty()) result = finish_running();
+  running_.clear();
   auto last = finish_writing();
   events_.end_progress();
   if (!result) {
@@ -95,12 +94,12 @@ Result<void> FrameLoop::close(Result<void> result) {
   return {};
 }
 
-Result<FrameLoop::Need> FrameLoop::need_of(const PictureHeader& header, const BuildContext& context,
-                                           const FrameJob& job) {
+Result<FrameLoop::Need> FrameLoop::need_of(const PictureHeader& header, const Build& build, const FrameJob& job) {
+  const BuildContext& context = build.context;
   Need need;
   need.reading = header.host_bytes;
   need.result = static_cast<std::uint64_t>(context.size.area()) * 4 * sizeof(float);
-  AFTERGLOW_TRY(need.device, session_.stack().memory_needed(context));
+  need.device = session_.stack().memory_needed(build);
   largest_need_ = std::max(largest_need_, need.one_frame());
   if (need.one_frame() > options_.max_memory)
     return Error{ErrorKind::io,
@@ -110,12 +109,19 @@ Result<FrameLoop::Need> FrameLoop::need_of(const PictureHeader& header, const Bu
   return need;
 }
 
-/// Which frame this one follows: the last of its sequence that was made.
-void FrameLoop::place_in_time(Reading& reading) {
-  if (!options_.histories) return;
+/// Which frame this one follows: the last of its sequence that was made. It was evaluated as if none failed.
+Result<void> FrameLoop::place_in_time(Reading& reading) {
+  if (!options_.histories || reading.refused) return {};
   if (reading.restart) last_.reset();
-  reading.context.restart = !last_;
-  reading.context.step = last_ ? reading.frame->job.frame - *last_ : 1;
+  BuildContext context = reading.request.build->context;
+  context.restart = !last_;
+  context.step = last_ ? reading.frame->job.frame - *last_ : 1;
+  if (context != reading.request.build->context) {
+    AFTERGLOW_TRY(reading.request.build, session_.evaluate(context));
+  }
+  reading.request.restart = context.restart;
+  reading.request.step = context.step;
+  return {};
 }
 
 std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFrame& scheduled) {
@@ -136,7 +142,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
     return reading;
   }
   const Size display = header->display_window.size();
-  BuildContext& context = reading->context;
+  BuildContext context;
   context.size =
       options_.size ? scaled_size(header->data_window.size(), display, *options_.size) : header->data_window.size();
   if (options_.region) {
@@ -150,7 +156,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
       reading->refused = named(part.error(), frame.job);
       return reading;
     }
-    reading->part = *part;
+    reading->request.region = *part;
   }
   for (const auto& name : header->auxiliary)
     if (std::find(options.auxiliary.begin(), options.auxiliary.end(), name) != options.auxiliary.end())
@@ -160,8 +166,20 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   context.time = frame.job.frame / options_.fps;
   context.position = camera_position(header->facts->metadata);
   if (const auto codes = display_codes(frame.job.output, options_.write, header->has_alpha, header->facts.get()))
-    reading->encoding = DisplayEncoding{codes->straight_alpha, codes->dither};
-  const auto need = need_of(*header, context, frame.job);
+    reading->request.encoding = DisplayEncoding{codes->straight_alpha, codes->dither};
+  if (options_.histories) {
+    if (scheduled.restart) begun_.reset();
+    context.restart = !begun_;
+    context.step = begun_ ? frame.job.frame - *begun_ : 1;
+  }
+  auto build = session_.evaluate(context);
+  if (!build) {
+    reading->refused = std::move(build).error();
+    return reading;
+  }
+  begun_ = frame.job.frame;
+  reading->request = request_for(std::move(*build), reading->request.encoding, reading->request.region);
+  const auto need = need_of(*header, *reading->request.build, frame.job);
   if (!need) {
     reading->refused = need.error();
     return reading;
@@ -178,23 +196,58 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   return reading;
 }
 
-/// From the picture that has been read to one that is being written.
-Result<void> FrameLoop::process(Reading& reading) {
-  FrameRecord& frame = *reading.frame;
-  place_in_time(reading);
-  if (reading.refused) return fail(frame, *reading.refused, reading.pre_roll);
-  auto picture = reading.picture.get();
-  if (!picture) return fail(frame, named(std::move(picture).error(), frame.job), reading.pre_roll);
+/// Frames in flight beside the one that is submitted. One that a trace may have to make again, with what the frame
+/// before handed on, is waited for at once.
+std::size_t FrameLoop::ahead() const {
+  const bool may = overlap_ && !options_.histories && options_.nan_policy != NanPolicy::fail;
+  return may ? static_cast<std::size_t>(session_.frames() - 1) : 0;
+}
+
+/// From the picture that has been read to one that is in flight, and the oldest of those to one that is being written.
+Result<void> FrameLoop::process(std::unique_ptr<Reading> reading) {
+  FrameRecord& frame = *reading->frame;
+  if (auto placed = place_in_time(*reading); !placed)
+    return fail(frame, named(std::move(placed).error(), frame.job), reading->pre_roll);
+  if (reading->refused) return fail(frame, *reading->refused, reading->pre_roll);
+  auto picture = reading->picture.get();
+  if (!picture) return fail(frame, named(std::move(picture).error(), frame.job), reading->pre_roll);
   if (events_.interrupted()) return interruption();
   frame.size = picture->color.size();
   frame.non_finite.input = picture->non_finite;
-  const auto processed = make(reading, *picture);
-  // Validation goes first: it says what a failure comes from.
+  if (const auto begun = begin(*reading, std::move(*picture)); !begun) return failed(*reading, begun.error());
+  running_.push_back(std::move(reading));
+  while (running_.size() > ahead()) AFTERGLOW_CHECK(finish_running());
+  return {};
+}
+
+/// Validation goes first: it says what a failure comes from.
+Result<void> FrameLoop::failed(const Reading& reading, Error error) {
   if (session_.device().validation_errors() > 0)
-    return fail(frame, {ErrorKind::device, "Vulkan validation: " + session_.device().validation_messages().front()});
-  if (!processed) return fail(frame, named(processed.error(), frame.job), reading.pre_roll);
+    return fail(*reading.frame,
+                {ErrorKind::device, "Vulkan validation: " + session_.device().validation_messages().front()});
+  return fail(*reading.frame, named(std::move(error), reading.frame->job), reading.pre_roll);
+}
+
+Result<void> FrameLoop::begin(Reading& reading, Picture picture) {
+  if (options_.nan_policy == NanPolicy::fail) {
+    AFTERGLOW_TRY(const Trace trace, session_.trace(picture, reading.request, options_.nan_policy));
+    take_findings(reading.frame->non_finite, trace, picture);
+    if (!trace.passes.empty())
+      return non_finite_error(reading.frame->non_finite.passes.front(), reading.frame->job.input);
+  }
+  return session_.submit(std::move(picture), reading.request);
+}
+
+/// The oldest frame in flight, until it is being written.
+Result<void> FrameLoop::finish_running() {
+  const auto reading = std::move(running_.front());
+  running_.pop_front();
+  FrameRecord& frame = *reading->frame;
+  Picture picture;
+  if (const auto made = make(*reading, picture); !made) return failed(*reading, made.error());
+  if (session_.device().validation_errors() > 0) return failed(*reading, {});
   last_ = frame.job.frame;
-  if (reading.pre_roll) {
+  if (reading->pre_roll) {
     frame.state = FrameRecord::State::done;
     return {};
   }
@@ -205,23 +258,16 @@ Result<void> FrameLoop::process(Reading& reading) {
   if (report.clamped > 0)
     events_.diagnostics.warn_once("clamped", fmt::format("{}: {} samples were held at ±65504, the largest half float",
                                                          frame.job.input.string(), report.clamped));
-  if (reading.part) crop_picture(*picture, *options_.region, *reading.part);
+  if (reading->request.region) crop_picture(picture, *options_.region, *reading->request.region);
   if (events_.interrupted()) return interruption();
   AFTERGLOW_CHECK(finish_writing());
-  begin_writing(frame, std::move(*picture));
+  begin_writing(frame, std::move(picture));
   return {};
 }
 
-/// Runs the stack. A frame in which something was not finite is made once more from its file, pass by pass and mended.
+/// The frame's result. One in which something was not finite is made once more from its file, pass by pass and mended.
 Result<void> FrameLoop::make(Reading& reading, Picture& picture) {
-  if (options_.nan_policy == NanPolicy::fail) {
-    AFTERGLOW_TRY(const Trace trace,
-                  session_.trace(picture, reading.context, reading.encoding, reading.part, options_.nan_policy));
-    take_findings(reading.frame->non_finite, trace, picture);
-    if (!trace.passes.empty())
-      return non_finite_error(reading.frame->non_finite.passes.front(), reading.frame->job.input);
-  }
-  AFTERGLOW_CHECK(session_.process(picture, reading.context, reading.encoding, reading.part));
+  AFTERGLOW_CHECK(session_.collect(picture));
   const SessionReport report = session_.report();
   const bool overflow = report.clamped > 0 && !non_finite_.overflow_told();
   if (!report.flagged && !overflow) return {};
@@ -233,7 +279,7 @@ Result<Trace> FrameLoop::trace_again(const Reading& reading) {
   Diagnostics quiet;  // reading has said all there is to say
   AFTERGLOW_TRY(Picture source, read_picture(reading.frame->job.input, reading.options, quiet));
   if (options_.size) scale_picture(source, *options_.size);
-  return session_.trace(source, reading.context, reading.encoding, reading.part, options_.nan_policy);
+  return session_.trace(source, reading.request, options_.nan_policy);
 }
 
 Result<void> FrameLoop::mend(Reading& reading, Picture& picture) {

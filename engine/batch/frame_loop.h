@@ -2,6 +2,7 @@
 // allows.
 #pragma once
 
+#include <deque>
 #include <future>
 #include <memory>
 #include <optional>
@@ -55,10 +56,14 @@ class FrameLoop {
     }  ///< one is read, one processed, one written
   };
 
-  Result<Need> need_of(const PictureHeader& header, const BuildContext& context, const FrameJob& job);
+  Result<Need> need_of(const PictureHeader& header, const Build& build, const FrameJob& job);
   std::unique_ptr<Reading> begin_reading(const ScheduledFrame& scheduled);
-  void place_in_time(Reading& reading);
-  Result<void> process(Reading& reading);
+  Result<void> place_in_time(Reading& reading);
+  std::size_t ahead() const;
+  Result<void> process(std::unique_ptr<Reading> reading);
+  Result<void> begin(Reading& reading, Picture picture);
+  Result<void> finish_running();
+  Result<void> failed(const Reading& reading, Error error);
   Result<void> make(Reading& reading, Picture& picture);
   Result<Trace> trace_again(const Reading& reading);
   Result<void> mend(Reading& reading, Picture& picture);
@@ -70,12 +75,14 @@ class FrameLoop {
   Session& session_;
   FrameLoopOptions options_;
   RunEvents events_;
+  std::deque<std::unique_ptr<Reading>> running_;  ///< whose frames are in flight, the oldest first
   std::unique_ptr<Writing> writing_;
   NonFiniteRecord non_finite_;
   std::size_t total_ = 0, pre_roll_ = 0, done_ = 0, failed_ = 0;
   std::uint64_t largest_need_ = 0;
   bool overlap_ = false;
-  std::optional<int> last_;  ///< number of the frame that the next one follows
+  std::optional<int> last_;   ///< number of the frame that the next one follows
+  std::optional<int> begun_;  ///< number of the frame that was evaluated last
 };
 
 }  // namespace afterglow

@@ -152,7 +152,7 @@ Json session_json(const SessionReport& session) {
   Json out{{"preset", session.preset},
            {"device", session.device},
            {"driver", session.driver},
-           {"choice", choice_name(session.choice.execution)},
+           {"choice", execution_name(session.choice.execution)},
            {"choice_from", session.choice.from},
            {"storage", session.choice.execution.storage == Storage::fp16 ? "fp16" : "fp32"},
            {"reference", session.reference},
@@ -182,7 +182,7 @@ std::string report_text(const RunReport& report, bool passes) {
   std::string out;
   if (report.session)
     out += fmt::format("{} on {} ({}; {})\n", report.session->preset, report.session->device,
-                       choice_name(report.session->choice.execution), report.session->choice.from);
+                       execution_name(report.session->choice.execution), report.session->choice.from);
   const std::size_t done = count(report, FrameRecord::State::done);
   out += fmt::format("frames: {} done, {} up to date, {} failed\n", done, count(report, FrameRecord::State::up_to_date),
                      count(report, FrameRecord::State::failed));

@@ -18,8 +18,8 @@ constexpr double kWorthwhile = 0.97;
 
 }  // namespace
 
-std::vector<Choice> candidates() {
-  std::vector<Choice> out;
+std::vector<ExecutionConfig> candidates() {
+  std::vector<ExecutionConfig> out;
   for (const Storage storage : {Storage::fp32, Storage::fp16})
     for (const bool hardware_filter : {false, true})
       for (const bool storage_reads : {false, true})
@@ -41,7 +41,7 @@ std::vector<CalibratedChoice> fastest_within_errors(const std::vector<Point>& po
       if (allowed && (!fastest || point.execute.median < fastest->execute.median)) fastest = &point;
     }
     if (!fastest || (!out.empty() && fastest->execute.median > kWorthwhile * best)) continue;
-    auto choice = parse_choice(fastest->choice);
+    auto choice = parse_execution(fastest->choice);
     if (!choice) continue;
     out.push_back({out.empty() ? 0 : error, *choice});
     best = fastest->execute.median;
@@ -62,7 +62,7 @@ Result<CalibrationResult> calibrate(Device& device, const CalibrationRequest& re
                    .repeat = request.repeat,
                    .quality = true,
                    .passes = false};
-  for (const Choice& choice : candidates()) cell.variants.push_back({choice_name(choice), choice, {}, {}});
+  for (const ExecutionConfig& choice : candidates()) cell.variants.push_back({execution_name(choice), choice, {}, {}});
   AFTERGLOW_TRY(out.cell, measure_cell(device, cell, diagnostics, step));
   out.choices = fastest_within_errors(out.cell.points);
   if (out.choices.empty()) return Error{ErrorKind::other, "no way of execution gives the right picture here"};
@@ -73,7 +73,7 @@ std::string calibration_json(const CalibrationResult& result) {
   using Json = nlohmann::ordered_json;
   Json entry{{"device", result.device.name}, {"driver", result.device.driver}, {"choices", Json::array()}};
   for (const auto& [max_error, choice] : result.choices)
-    entry["choices"].push_back(Json{{"max_error", max_error}, {"choice", choice_name(choice)}});
+    entry["choices"].push_back(Json{{"max_error", max_error}, {"choice", execution_name(choice)}});
   Json& measured = entry["measured"];
   measured["look"] = result.cell.preset;
   measured["size"] = fmt::format("{}x{}", result.cell.size.width, result.cell.size.height);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/cell.h"
-#include "session/calibration.h"
+#include "exec/calibration.h"
 
 namespace afterglow::bench {
 
@@ -30,7 +30,7 @@ struct CalibrationRequest {
 };
 
 /// The ways of execution that calibration tries: all combinations that make sense, joined.
-std::vector<Choice> candidates();
+std::vector<ExecutionConfig> candidates();
 
 /// From measured points (with quality), the fastest within each of a few allowed errors. What does not gain at least 3
 /// % over a more exact choice is left out, so that noise does not cost exactness. The first is for every error. Empty

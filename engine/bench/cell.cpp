@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "bench/kernel_work.h"
 #include "bench/oracle.h"
 #include "bench/quality.h"
+#include "exec/timing.h"
 
 namespace afterglow::bench {
 namespace {
@@ -24,8 +24,8 @@ Result<Truth> find_truth(Device& device, const CellRequest& request, Diagnostics
   options.choice.reset();
   options.reference = true;
   AFTERGLOW_TRY(const auto stack, Stack::load(request.preset, options, diagnostics));
-  AFTERGLOW_TRY(const Graph graph, stack->graph(context_of(picture)));
-  const auto entries = oracle_entries(stack->preset(), graph);
+  AFTERGLOW_TRY(const auto build, stack->evaluate(context_of(picture)));
+  const auto entries = oracle_entries(*build);
   const std::string unknown = reference::effect_without_oracle(entries);
   if (unknown.empty()) return Truth{"double precision", oracle_result(picture, entries)};
 

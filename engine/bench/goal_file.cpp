@@ -33,7 +33,7 @@ Result<GoalTerm> read_term(const Json& json, const fs::path& folder) {
   if (term.copy) return term;
   term.look = folder / json.at("look").get<std::string>();
   if (json.contains("choice")) {
-    AFTERGLOW_TRY(term.choice, parse_choice(json.at("choice")));
+    AFTERGLOW_TRY(term.choice, parse_execution(json.at("choice")));
   }
   for (const auto& text : json.value("set", std::vector<std::string>{})) {
     AFTERGLOW_TRY(Override parsed, parse_override(text));

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "bench/command_time.h"
-#include "bench/kernel_work.h"
 #include "bench/picture.h"
+#include "exec/timing.h"
 #include "image/writer.h"
 #include "session/session.h"
 

@@ -17,11 +17,11 @@ struct GoalTerm {
   bool copy = false;           ///< one RGBA32F copy pass of the picture
   std::filesystem::path look;  ///< else: a preset
   std::vector<Override> overrides;
-  std::optional<Choice> choice;  ///< empty: as `run` would choose
-  bool display = false;          ///< the last kernel writes 8-bit display codes
-  bool frame = false;            ///< a whole frame as `run` makes it, not only what was recorded
-  double light = 1;              ///< factor of the picture
-  std::optional<Size> size;      ///< another than the goal's
+  std::optional<ExecutionConfig> choice;  ///< empty: as `run` would choose
+  bool display = false;                   ///< the last kernel writes 8-bit display codes
+  bool frame = false;                     ///< a whole frame as `run` makes it, not only what was recorded
+  double light = 1;                       ///< factor of the picture
+  std::optional<Size> size;               ///< another than the goal's
 };
 
 /// A whole command: reading, executing, writing.

@@ -4,9 +4,7 @@
 
 #include <memory>
 
-#include "bench/compute_copy.h"
-#include "bench/kernel_work.h"
-#include "exec/submit.h"
+#include "exec/timing.h"
 
 namespace afterglow::bench {
 namespace {
@@ -51,15 +49,15 @@ Result<std::unique_ptr<FormatCopy>> make_copy(const Device& device, KernelCompil
   AFTERGLOW_TRY(KernelWork fill, KernelWork::create(device, compiler, {}, source, binding(out->from), "fill"));
   AFTERGLOW_TRY(const double ignored, fill.work().run());
   (void)ignored;
-  AFTERGLOW_TRY(Submitter submitter, Submitter::create(device));
-  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) {
-    const auto readable = image_barrier(
-        out->from.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
-        VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-        VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_GENERAL);
-    record_barriers(commands, &readable, 1);
-  }));
-  AFTERGLOW_CHECK(submitter.wait());
+  AFTERGLOW_TRY(TimedWork leave, TimedWork::create(device, [&](VkCommandBuffer commands) {
+                  const auto readable =
+                      image_barrier(out->from.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                    VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                                    VK_IMAGE_LAYOUT_GENERAL);
+                  record_barriers(commands, &readable, 1);
+                }));
+  AFTERGLOW_CHECK(leave.run());
   AFTERGLOW_TRY(out->copy, KernelWork::create(device, compiler, {}, binding(out->from), binding(out->to), format.name));
   return out;
 }
@@ -69,7 +67,7 @@ KernelDesc shift(bool hardware_filter) {
   KernelDesc kernel;
   kernel.filter = Filter{.interpolation = Interpolation::linear, .x = {{0.3, 1}}, .y = {{0.3, 1}}, .taps = {}};
   kernel.ratio_x = kernel.ratio_y = AxisRatio::same;
-  kernel.hardware_filter = hardware_filter;
+  kernel.config.hardware_filter = hardware_filter;
   return kernel;
 }
 

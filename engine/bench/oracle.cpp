@@ -11,10 +11,12 @@ reference::DoubleImage as_double(const Image& image) {
 
 }  // namespace
 
-std::vector<reference::Entry> oracle_entries(const Preset& preset, const Graph& graph) {
+std::vector<reference::Entry> oracle_entries(const Build& build) {
   std::vector<reference::Entry> out;
-  for (const auto& entry : preset.entries()) {
-    if (!entry.enabled || std::ranges::find(graph.skipped, entry.name, &Skipped::name) != graph.skipped.end()) continue;
+  for (const auto& entry : *build.entries) {
+    if (!entry.enabled ||
+        std::ranges::find(build.graph.skipped, entry.name, &Skipped::name) != build.graph.skipped.end())
+      continue;
     reference::Entry one{.effect = entry.effect, .settings = {}};
     for (const auto& [name, value] : entry.settings) one.settings[name] = {value.number, value.choice};
     out.push_back(std::move(one));

@@ -6,13 +6,13 @@
 
 #include "image/picture.h"
 #include "reference/stack.h"
-#include "script/preset.h"
+#include "script/build.h"
 
 namespace afterglow::bench {
 
 /// The entries of a preset that run, as the oracle wants them. `graph`: of the same preset; effects that it skipped are
 /// left out.
-std::vector<reference::Entry> oracle_entries(const Preset& preset, const Graph& graph);
+std::vector<reference::Entry> oracle_entries(const Build& build);
 
 /// R, G and B of the stack's result in double precision. Every effect must have an oracle.
 std::vector<double> oracle_result(const Picture& picture, const std::vector<reference::Entry>& entries);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "exec/half.h"
+#include "core/half.h"
 #include "image/parallel.h"
 
 namespace afterglow::bench {

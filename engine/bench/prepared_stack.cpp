@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "exec/frame.h"
 
 namespace afterglow::bench {
 namespace {
@@ -59,15 +58,15 @@ PictureKind PreparedStack::picture_kind() const {
 
 Result<Point> PreparedStack::try_out(Device& device, const Picture& picture, bool passes, std::vector<float>& rgb) {
   Point point{
-      .choice = choice_name(stack_->choice().execution), .label = variant_.label, .settings = variant_.settings};
+      .choice = execution_name(stack_->choice().execution), .label = variant_.label, .settings = variant_.settings};
   if (!runs()) {
     rgb = rgb_of(picture.color.pixels);
     return point;
   }
-  Program& program = *stack_->program();
+  const Program& program = *stack_->program();
   point.kernels = static_cast<int>(program.plan().kernels.size());
   point.image_memory = program.memory().arena;
-  AFTERGLOW_TRY(const auto runner, FrameRunner::create(device, 64ull << 30));
+  AFTERGLOW_TRY(const auto renderer, Renderer::create(device, {.max_memory = 64ull << 30}));
   std::map<std::string, HostImage> inputs{
       {"source", {picture.color.pixels.data(), picture.color.size(), picture.color.channels}}};
   for (const auto& [name, image] : picture.auxiliary)
@@ -79,8 +78,11 @@ Result<Point> PreparedStack::try_out(Device& device, const Picture& picture, boo
                               : device.timestamps_mean_draws() ? KernelTiming::timestamps
                                                                : KernelTiming::submissions;
   for (int i = 0; i <= (passes ? kPassRuns : 1); ++i) {
-    AFTERGLOW_TRY(FrameTimes times, runner->run(program, inputs, result, timing));
-    if (i > 0) runs.push_back(std::move(times));  // the first one also makes memory and finishes shaders
+    AFTERGLOW_TRY(RenderRequest request, stack_->request(request_for(stack_->build(), variant_.encoding)));
+    request.inputs = inputs;
+    request.timing = timing;
+    AFTERGLOW_TRY(FrameReport report, renderer->render(std::move(request), result));
+    if (i > 0) runs.push_back(std::move(report.times));  // the first one also makes memory and finishes shaders
   }
   point.upload = runs.back().upload;
   point.read_back = runs.back().readback;

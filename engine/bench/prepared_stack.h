@@ -4,18 +4,18 @@
 #include <memory>
 #include <optional>
 
-#include "bench/device_picture.h"
 #include "bench/results.h"
-#include "bench/timed_work.h"
+#include "bench/turns.h"
+#include "exec/timing.h"
 #include "session/stack.h"
 
 namespace afterglow::bench {
 
 /// What to measure.
 struct Variant {
-  std::string label;             ///< "plain16f"
-  std::optional<Choice> choice;  ///< empty: as `run` would choose
-  std::string settings;          ///< for reports: what `overrides` add to the preset
+  std::string label;                      ///< "plain16f"
+  std::optional<ExecutionConfig> choice;  ///< empty: as `run` would choose
+  std::string settings;                   ///< for reports: what `overrides` add to the preset
   std::vector<Override> overrides;
   bool watch = false;                       ///< values that are not finite are looked for, as `run` does
   std::optional<DisplayEncoding> encoding;  ///< the last kernel writes 8-bit codes; not for `try_out`

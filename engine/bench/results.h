@@ -21,7 +21,7 @@ struct Quality {
 
 /// One choice for one preset at one size.
 struct Point {
-  std::string choice;    ///< `choice_name`
+  std::string choice;    ///< `execution_name`
   std::string label;     ///< as it was asked for: "plain16f", "chosen", or the choice's own name
   std::string settings;  ///< what was varied: "glow.scatter=0.5"; empty: as the preset says
   Spread execute;        ///< recorded once and submitted; without upload and read-back

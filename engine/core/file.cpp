@@ -7,20 +7,20 @@
 #include <fstream>
 #include <system_error>
 
-#include "core/file_trace.h"
+#include "core/file_record.h"
 #include "core/temporary.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
 
-bool is_file(const fs::path& path) {
-  FileTrace::note(path, FileLook::Kind::existence);
+bool is_file(const fs::path& path, FileRecord* record) {
+  if (record) record->note(path, FileLook::Kind::existence);
   std::error_code ec;
   return fs::is_regular_file(path, ec);
 }
 
-Result<std::string> read_file(const fs::path& path, std::size_t limit) {
-  FileTrace::Reading reading(path);
+Result<std::string> read_file(const fs::path& path, std::size_t limit, FileRecord* record) {
+  FileRecord::Reading reading(record, path);
   std::error_code ec;
   const auto status = fs::status(path, ec);
   if (!fs::exists(status)) return Error{ErrorKind::io, "no such file", path.string()};

@@ -1,5 +1,4 @@
-// Files, whole: read, and written so that they appear whole or not at all. What is looked at is noted on the thread's
-// FileTrace (core/file_trace.h), if it has one.
+// Files, whole: read, and written so that they appear whole or not at all.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +10,15 @@
 
 namespace afterglow {
 
+class FileRecord;  // core/file_record.h
+
 /// The whole file. Errors: io (missing, folder, unreadable, larger than `limit` bytes).
-Result<std::string> read_file(const std::filesystem::path& path, std::size_t limit = 64u << 20);
+/// `record` takes the look down.
+Result<std::string> read_file(const std::filesystem::path& path, std::size_t limit = 64u << 20,
+                              FileRecord* record = nullptr);
 
 /// Is there a file (links are followed)?
-bool is_file(const std::filesystem::path& path);
+bool is_file(const std::filesystem::path& path, FileRecord* record = nullptr);
 
 /// Writes to a temporary file beside `path`, then renames. On error nothing is left behind.
 Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view content);

@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "core/file.h"
-#include "core/file_trace.h"
+#include "core/file_record.h"
 #include "core/pack.h"
 #include "core/text.h"
 
@@ -33,7 +33,7 @@ void add_pack(SearchPath& path, const fs::path& pack) {
     path.user.push_back(pack);
     return;
   }
-  FileTrace::note(pack, FileLook::Kind::stamp);
+  if (path.record) path.record->note(pack, FileLook::Kind::stamp);
   auto opened = open_zip(pack, cache_folder());
   if (opened)
     path.user.push_back(std::move(opened).value());
@@ -45,7 +45,7 @@ void add_pack(SearchPath& path, const fs::path& pack) {
 void add_packs(SearchPath& path, const fs::path& folder) {
   std::vector<fs::path> packs;
   std::error_code ec;
-  FileTrace::note(folder / "packs", FileLook::Kind::listing);
+  if (path.record) path.record->note(folder / "packs", FileLook::Kind::listing);
   for (fs::directory_iterator it(folder / "packs", ec), end; !ec && it != end; it.increment(ec)) {
     std::error_code ignored;
     if (is_zip(it->path()) || fs::is_directory(it->path(), ignored)) packs.push_back(it->path());
@@ -67,15 +67,15 @@ bool is_installation(const fs::path& folder) { return is_file(folder / "scripts"
 std::vector<fs::path> SearchPath::find_effect(const std::string& name) const {
   std::vector<fs::path> hits;
   for (const auto& folder : effect_folders())
-    if (is_file(folder / (name + ".lua"))) hits.push_back(folder / (name + ".lua"));
+    if (is_file(folder / (name + ".lua"), record.get())) hits.push_back(folder / (name + ".lua"));
   return hits;
 }
 
 std::vector<fs::path> SearchPath::find_shader(const std::string& name) const {
   std::vector<fs::path> hits;
   for (const auto& root : user)
-    if (is_file(root / "shaders" / name)) hits.push_back(root / "shaders" / name);
-  if (!installation.empty() && is_file(installation / "shaders" / name))
+    if (is_file(root / "shaders" / name, record.get())) hits.push_back(root / "shaders" / name);
+  if (!installation.empty() && is_file(installation / "shaders" / name, record.get()))
     hits.push_back(installation / "shaders" / name);
   return hits;
 }
@@ -102,7 +102,7 @@ std::vector<fs::path> SearchPath::find_preset(const std::string& name) const {
   std::vector<fs::path> hits;
   for (const auto& folder : preset_folders())
     for (const auto& file : {folder / (name + ".lua"), folder / name / (name + ".lua")})
-      if (is_file(file)) hits.push_back(file);
+      if (is_file(file, record.get())) hits.push_back(file);
   return hits;
 }
 
@@ -133,21 +133,29 @@ fs::path find_installation() {
   return {};
 }
 
-std::vector<fs::path> folders_of_preset(const fs::path& preset) {
+namespace {
+
+std::vector<fs::path> folders_of(const fs::path& preset, FileRecord* record) {
   std::vector<fs::path> folders{preset.has_parent_path() ? preset.parent_path() : fs::path(".")};
   const fs::path above = folders[0].parent_path();
   if (folders[0].filename() != "presets") return folders;
-  FileTrace::note(above / "effects", FileLook::Kind::existence);
+  if (record) record->note(above / "effects", FileLook::Kind::existence);
   std::error_code ec;
   if (fs::is_directory(above / "effects", ec)) folders.push_back(above);
   return folders;
 }
 
-SearchPath search_path_for(const fs::path& preset, const std::vector<fs::path>& extra) {
+}  // namespace
+
+std::vector<fs::path> folders_of_preset(const fs::path& preset) { return folders_of(preset, nullptr); }
+
+SearchPath search_path_for(const fs::path& preset, const std::vector<fs::path>& extra,
+                           std::shared_ptr<FileRecord> record) {
   SearchPath path;
+  path.record = std::move(record);
   path.installation = find_installation();
   if (!preset.empty())
-    for (const auto& folder : folders_of_preset(preset)) add_folder(path, folder);
+    for (const auto& folder : folders_of(preset, path.record.get())) add_folder(path, folder);
   for (const auto& folder : extra) add_folder(path, folder);
   if (const auto list = environment("AFTERGLOW_PATH"); !list.empty())
     for (const auto& entry : split(list, ':'))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,8 @@
 
 namespace afterglow {
 
+class FileRecord;  // core/file_record.h
+
 /// The folders in which a name is looked up, in order: beside the preset, each --path, each entry of AFTERGLOW_PATH,
 /// the installation. The first three hold `effects/NAME.lua` and `shaders/…`; the installation holds
 /// `scripts/effects/NAME.lua` and `shaders/…` and comes last.
@@ -17,6 +20,8 @@ struct SearchPath {
   std::vector<std::filesystem::path> user;  ///< in order of precedence
   std::filesystem::path installation;       ///< folder that holds scripts/, shaders/, presets/
   std::optional<Error> error = {};          ///< of a pack that cannot be used: loading a preset fails with it
+  /// Takes down what is looked at along the path, here and by those who read what was found. Null: nothing is.
+  std::shared_ptr<FileRecord> record = {};
 
   /// `effects/NAME.lua` or the installation's `scripts/effects/NAME.lua`; all hits, the winner first.
   std::vector<std::filesystem::path> find_effect(const std::string& name) const;
@@ -43,7 +48,9 @@ std::vector<std::filesystem::path> folders_of_preset(const std::filesystem::path
 
 /// Search path for a preset file; `extra` are the --path options. AFTERGLOW_PATH is split at ':'. Both may name zips.
 /// Behind each folder come the packs (folders and zips) in its `packs/`, by name; those of the installation come last.
-SearchPath search_path_for(const std::filesystem::path& preset, const std::vector<std::filesystem::path>& extra);
+/// `record` becomes the path's.
+SearchPath search_path_for(const std::filesystem::path& preset, const std::vector<std::filesystem::path>& extra,
+                           std::shared_ptr<FileRecord> record = nullptr);
 
 /// The preset that a user means: a file as it is; a pack (folder or zip) that holds one preset or one of its own name;
 /// the name of a preset in `extra`, AFTERGLOW_PATH or the installation. A file that does not exist comes back as it is.

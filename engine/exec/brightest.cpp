@@ -5,7 +5,7 @@
 #include <bit>
 #include <limits>
 
-#include "exec/half.h"
+#include "core/half.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define AFTERGLOW_AVX2 1

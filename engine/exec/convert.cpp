@@ -5,8 +5,8 @@
 #include <atomic>
 #include <cstring>
 
+#include "core/half.h"
 #include "core/parallel.h"
-#include "exec/half.h"
 
 namespace afterglow {
 

@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "core/parallel.h"
+#include "exec/cpu/image_reads.h"
+#include "exec/cpu/rows.h"
 #include "graph/history.h"
 
 namespace afterglow {
@@ -31,72 +33,14 @@ Result<KernelStage> stage_of(ShaderLibrary& shaders, const Pass& pass) {
   return KernelStage{.shader = std::move(shader).value(), .constants = pass.constants, .label = pass.name};
 }
 
-const PassInput* find_input(const Pass& pass, const std::string& name) {
-  const auto found = std::ranges::find(pass.inputs, name, &PassInput::name);
-  return found == pass.inputs.end() ? nullptr : &*found;
-}
-
-/// How an image is best read: as a storage image where it is one.
-ImageRead read_of(const Graph& graph, ImageId image, const DescribeOptions& options) {
-  if (graph.images[image].data) return ImageRead::storage_rgba32f;  // whatever the stack's own images are
-  const History* history = history_of_previous(graph, image);
-  const bool between = history || graph.images[image].producer >= 0;
-  if (!between && !(image == graph.source && options.source_is_storage)) return ImageRead::sampled;
-  const ImageRead read =
-      options.half_storage && !is_precise(graph, image) ? ImageRead::storage_rgba16f : ImageRead::storage_rgba32f;
-  // In a first frame another image stands in the same place.
-  if (history && history->first != kNoImage && read_of(graph, history->first, options) != read)
-    return ImageRead::sampled;
-  return read;
-}
-
-/// One wish for each image slot, in the order that AssembledKernel::images has.
-std::vector<ImageRead> reads_of(const Graph& graph, const PlanKernel& kernel, const KernelDesc& desc,
-                                const DescribeOptions& options) {
-  std::vector<ImageRead> reads;
-  const auto add = [&](int stage, const std::string& name) {
-    const PassInput* input = find_input(pass_of_stage(graph, kernel, stage), name);
-    reads.push_back(input ? read_of(graph, input->image, options) : ImageRead::sampled);
-  };
-  if (desc.filter && desc.hardware_filter)
-    reads.push_back(ImageRead::sampled);  // the sampler interpolates
-  else if (!desc.sample)
-    add(-1, "source");
-  int stage = 0;
-  const auto add_inputs = [&](const KernelStage& of) {
-    for (const auto& input : of.shader->interface.inputs) add(stage, input.name);
-    ++stage;
-  };
-  if (desc.sample) add_inputs(*desc.sample);
-  for (const auto& of : desc.stages) add_inputs(of);
-  return reads;
-}
-
-/// How many rows of the target an invocation of this kernel should make, of at most `wanted`: several where
-/// neighbouring rows read mostly the same texels, and where there is but a pixel's own colour to work on.
-int rows_that_pay(const KernelDesc& kernel, int wanted) {
-  constexpr double kWorthwhile = 1.5;  // times fewer lines
-  constexpr int kMostLines = 12;       // that a processor fetches ahead at a time
-  if (kernel.sample || kernel.hardware_filter) return 1;
-  // Loops cannot be taken in turns: it would be so many times as much to compile for nothing.
-  for (const auto& stage : kernel.stages)
-    if (stage.shader->loops) return 1;
-  if (!kernel.filter) return wanted;
-  for (int rows = wanted; rows > 1; rows /= 2) {
-    const auto lines = lines_shared(*kernel.filter, kernel.ratio_y, rows);
-    if (lines && lines->together <= kMostLines && lines->apart > kWorthwhile * lines->together) return rows;
-  }
-  return 1;
-}
-
 }  // namespace
 
 Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, const PlanKernel& kernel,
-                                   const DescribeOptions& options) {
+                                   const ProgramOptions& options) {
   KernelDesc desc;
-  desc.hardware_filter = options.hardware_filter;
-  desc.hide_uniforms = options.hide_uniforms;
-  const bool half = options.half_storage && !is_precise(graph, kernel.output);
+  desc.config = options.config;
+  desc.config.rows = 1;
+  const bool half = options.config.storage == Storage::fp16 && !is_precise(graph, kernel.output);
   desc.target = half ? KernelTarget::float16 : KernelTarget::float32;
   if (options.codes && kernel.output == graph.result) desc.target = KernelTarget::codes8;
   const long long pixels = graph.images[kernel.output].size.area();
@@ -125,9 +69,14 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
     desc.watch = Watch::flag;
   else if (options.flag_non_finite && !desc.stages.empty())
     desc.watch = Watch::hand_on;
-  if (options.storage_reads) desc.reads = reads_of(graph, kernel, desc, options);
-  if (pixels >= options.worth.rows) desc.rows = rows_that_pay(desc, options.rows);
+  if (options.config.storage_reads) desc.reads = storage_reads_of(graph, kernel, desc, options);
+  if (pixels >= options.worth.rows) desc.config.rows = rows_that_pay(desc, options.config.rows);
   return desc;
+}
+
+const PassInput* input_of(const Pass& pass, const std::string& name) {
+  const auto found = std::ranges::find(pass.inputs, name, &PassInput::name);
+  return found == pass.inputs.end() ? nullptr : &*found;
 }
 
 const Pass& pass_of_stage(const Graph& graph, const PlanKernel& kernel, int stage) {
@@ -142,7 +91,7 @@ Result<std::vector<ImageId>> images_of_slots(const Graph& graph, const PlanKerne
   std::vector<ImageId> images;
   for (const auto& slot : compiled.images) {
     const Pass& pass = pass_of_stage(graph, kernel, slot.stage);
-    const PassInput* input = find_input(pass, slot.name);
+    const PassInput* input = input_of(pass, slot.name);
     if (!input) {
       return Error{ErrorKind::script, fmt::format("pass '{}' lacks the input '{}' of its shader", pass.name, slot.name),
                    pass.file, pass.line};

@@ -12,24 +12,15 @@
 
 namespace afterglow {
 
-struct DescribeOptions {
-  bool hardware_filter = false;
-  bool half_storage = false;
-  bool codes = false;              ///< the result holds 8-bit codes
-  bool flag_non_finite = false;    ///< see ProgramOptions
-  bool storage_reads = false;      ///< images between kernels are read as storage images where their shaders allow it
-  bool source_is_storage = false;  ///< the source too
-  int rows = 1;                    ///< an invocation may make so many where that pays
-  WorthAKernel worth;
-  bool hide_uniforms = false;  ///< see KernelDesc
-};
-
-/// Errors: script (an unknown shader).
+/// `options.config` is taken as it is, whatever the device. Errors: script (an unknown shader).
 Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, const PlanKernel& kernel,
-                                   const DescribeOptions& options);
+                                   const ProgramOptions& options);
 
 /// The pass that a stage of the kernel (AssembledKernel::ImageSlot::stage, KernelParam::stage) is.
 const Pass& pass_of_stage(const Graph& graph, const PlanKernel& kernel, int stage);
+
+/// The input of that name, or null.
+const PassInput* input_of(const Pass& pass, const std::string& name);
 
 /// The images to bind, in the order of the compiled kernel's slots. Errors: script (a pass that lacks an input its
 /// shader declares).

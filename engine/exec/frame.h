@@ -1,7 +1,6 @@
-// Moves pictures between host and device around a program: upload, submit, read back.
+// What goes into a frame, what comes out of it, and how long it took.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -44,7 +43,7 @@ struct HostResult {
   bool keep_alpha = false;  ///< write R, G and B alone where `pixels` has the size of the result already
 };
 
-/// An image of a FrameRunner between frames. It may be sampled in fragment shaders of later submissions to the device's
+/// An image of a Renderer between frames. It may be sampled in fragment shaders of later submissions to the device's
 /// queue without a barrier, in this layout, and must be left in it.
 struct DeviceImage {
   ImageBinding binding;
@@ -53,52 +52,6 @@ struct DeviceImage {
 struct DeviceImages {
   DeviceImage source, result;
   bool ran = false;  ///< false: nothing had to run, the result *is* the source
-};
-
-/// Images, staging memory, command buffer and fence for one frame at a time; reused while sizes stay the same. Not
-/// thread-safe.
-class FrameRunner {
- public:
-  /// `direct`: on devices whose memory is the CPU's, pixels are written into and read from the images themselves; false
-  /// takes the way over staging buffers that every GPU can go. Errors: device.
-  static Result<std::unique_ptr<FrameRunner>> create(Device& device, std::uint64_t max_memory, bool direct = true);
-  ~FrameRunner();
-  /// Which program runs a frame, asked once its source has been packed. `brightest`: the largest red, green or blue of
-  /// it, see exec/brightest.h. It must take the same inputs; null: nothing has to run, the result is the source.
-  using Choose = std::function<Result<Program*>(float brightest)>;
-
-  /// Uploads "source" and the auxiliary images that the graph asks for, runs, reads the result back into `out` (RGBA
-  /// float; resized by it). What is known to be the same as before is not done again: uploads of the same content, and
-  /// kernels for which nothing has changed (Program::kernels_to_run). Of a program with a region, the region alone is
-  /// written. Errors: other (an input is missing or of another size), io (over `max_memory`), device.
-  Result<FrameTimes> run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out,
-                         KernelTiming timing, const Choose& choose = {});
-  /// Like `run`, but the result stays on the device: see `images` and `read_result`. `program` null: nothing has to
-  /// run, the source alone is brought to the device. Whoever reads the images of the frame before must be done with it:
-  /// a submission that does has to be waited for.
-  Result<FrameTimes> run_on_device(Program* program, const std::map<std::string, HostImage>& inputs,
-                                   KernelTiming timing, const Choose& choose = {});
-  /// How long kernel `kernel` of the program that ran last takes, by itself: it is run once more, which changes no
-  /// pixel. None when another program ran last, or nothing did. Needs a program created with `keep_images`. Whoever
-  /// reads `images` must be done with them. Errors: device.
-  Result<std::optional<double>> time_kernel(Program& program, std::size_t kernel);
-  /// What the last run left on the device. Null images before the first.
-  DeviceImages images() const;
-  /// The result of the last run, or that part of it: the rest of `out` is undefined. When nothing had to run it is the
-  /// source, which is not read back. Errors: other (nothing was run), device.
-  Result<void> read_result(HostResult& out, const std::optional<Rect>& part = {});
-  /// Pixels of a transient image as the last run left them. Needs a program created with `reference`. Errors: other.
-  Result<HostResult> read_image(Program& program, ImageId image);
-
-  struct Counters {
-    int images = 0, buffers = 0, recordings = 0;
-  };
-  Counters counters() const;  ///< objects made and commands recorded so far; steady frames leave them alone
-
- private:
-  struct State;
-  explicit FrameRunner(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
 };
 
 }  // namespace afterglow

@@ -75,6 +75,11 @@ Result<std::uint64_t> FrameResult::over_rows_of(Staging& staging, const Rect& pa
                    [&](int y) { return row(part.y + y, image_.image.row(part.y + y) + left); });
 }
 
+Result<void> FrameResult::begin_download(Staging& staging, const Rect& part) {
+  if (image_.direct) return {};
+  return staging.begin_download(staged(image_), image_.layout, part.y, part.y + part.height);
+}
+
 Result<std::uint64_t> FrameResult::download(Staging& staging, const Rect& part, HostResult& out, bool flags) {
   std::atomic<bool> flagged = false;
   const auto look = [&](const std::byte* from, VkFormat of) {

@@ -36,6 +36,8 @@ class FrameResult {
   /// Reads that part back. Returns how many samples were clamped to ±65504. `flags`: look for alphas of 0, for
   /// HostResult::flagged. Errors: device.
   Result<std::uint64_t> download(Staging& staging, const Rect& part, HostResult& out, bool flags = false);
+  /// Submits the copies of a `download` of that part from an image that is not direct. Staging is whole.
+  Result<void> begin_download(Staging& staging, const Rect& part);
   int made() const { return made_; }  ///< images so far
 
  private:

@@ -43,6 +43,12 @@ void IdlePrograms::set_parameters(const Graph& graph) {
   }
 }
 
+Program* IdlePrograms::program(std::uint64_t id) const {
+  for (const auto& [idle, variant] : variants_)
+    if (variant.program && variant.program->id() == id) return variant.program.get();
+  return nullptr;
+}
+
 Result<void> IdlePrograms::use(const std::shared_ptr<Histories>& histories) {
   for (auto& [idle, variant] : variants_)
     if (variant.program) AFTERGLOW_CHECK(variant.program->use(histories));

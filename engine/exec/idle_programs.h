@@ -25,6 +25,8 @@ class IdlePrograms {
   void set_parameters(const Graph& graph);
   /// See Program::use.
   Result<void> use(const std::shared_ptr<Histories>& histories);
+  /// The program of that number here; null when there is none.
+  Program* program(std::uint64_t id) const;
   /// Programs made so far.
   int size() const { return static_cast<int>(variants_.size()); }
 

@@ -17,10 +17,8 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
                                                  const Graph& graph, const ProgramOptions& options) {
   AFTERGLOW_CHECK(validate(graph));
   auto state = std::make_unique<State>(device, graph, options);
-  const bool half = options.storage == Storage::fp16;
-  state->format = half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
-  state->plan = make_plan(graph, {.joining = options.reference ? Joining::none : options.joining});
-  state->storage_reads = options.storage_reads && supports(device, state->format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
+  state->settle_config();
+  state->plan = make_plan(graph, state->options.config);
   static std::atomic<std::uint64_t> programs = 0;
   state->serial = ++programs;
   state->made.resize(state->plan.kernels.size());
@@ -47,6 +45,9 @@ void Program::set_parameters(const Graph& graph) {
   state_->graph.histories = graph.histories;  // values of first frames
 }
 
+bool Program::has_previous(const std::string& history) const {
+  return state_->histories && state_->histories->has_previous(history);
+}
 Histories* Program::histories() const { return state_->histories.get(); }
 Result<void> Program::use(std::shared_ptr<Histories> histories) { return state_->use(std::move(histories)); }
 int Program::recording() const { return state_->begins_anew() ? kUnlikeOthers : state_->parity(); }
@@ -121,6 +122,7 @@ ProgramMemory Program::memory() const {
 }
 int Program::bindings() const { return state_->bindings + state_->uses; }
 VkFormat Program::storage_format() const { return state_->format; }
+const ExecutionConfig& Program::config() const { return state_->options.config; }
 bool Program::flags_non_finite() const { return state_->options.flag_non_finite; }
 VkFormat Program::result_format() const { return state_->result_format(); }
 int Program::result_rows() const { return state_->result_rows; }

@@ -24,8 +24,6 @@ class Histories;     // exec/histories.h
 class ImagePool;     // exec/image_pool.h
 class PipelinePool;  // exec/pipeline_pool.h
 
-enum class Storage { fp32, fp16 };
-
 /// Pixels of a target from which it is worth a kernel of its own: on smaller ones little is won, and each kernel must
 /// be compiled.
 struct WorthAKernel {
@@ -34,18 +32,11 @@ struct WorthAKernel {
 };
 
 struct ProgramOptions {
-  Joining joining = Joining::all;
-  Storage storage = Storage::fp32;
-  bool reference = false;        ///< every pass on its own, computed weights, no sharing of memory
-  bool hardware_filter = false;  ///< filtered fetches may be used
-  bool storage_reads =
-      false;  ///< read images as storage images where shaders and device allow it: faster on CPU devices
-  bool source_is_storage =
-      false;  ///< with storage_reads: the source that will be bound has STORAGE usage and comes in GENERAL layout
-  /// Rows of pixels that one invocation may make where neighbouring rows read the same texels (1 … kMaxRows): faster on
-  /// CPU devices. More than 1 makes the images between kernels linear.
-  int rows = 1;
-  WorthAKernel worth;
+  ExecutionConfig config{};  ///< as wished: what the device cannot do is left out
+  bool reference = false;    ///< every pass on its own, computed weights, no sharing of memory, images may be read back
+  /// With `config.storage_reads`: the source that will be bound has STORAGE usage and comes in GENERAL layout.
+  bool source_is_storage = false;
+  WorthAKernel worth{};
   bool codes = false;  ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
   /// The result's alpha is 0 where a colour that was not finite came up in a pass and no pass of another kernel that
   /// reads around its pixel made it finite again; elsewhere 1 (`codes`: what the last pass gave). See Watch.
@@ -53,7 +44,7 @@ struct ProgramOptions {
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.
   std::optional<Rect> region{};
-  /// Each kernel draws one pixel alone: for exec/warm_up.h. What images hold is undefined.
+  /// Each kernel draws one pixel alone: for exec/cpu/warm_up.h. What images hold is undefined.
   bool a_pixel_each = false;
   /// Images between kernels keep their pixels from run to run (they share no memory), so that `record` can run the
   /// kernels alone for which something has changed.
@@ -63,8 +54,7 @@ struct ProgramOptions {
   /// what they hold. Null: the program's own. It must outlive the program.
   ImagePool* images = nullptr;
   /// Images of the graph's histories, shared with other programs; null: the program makes its own.
-  std::shared_ptr<Histories> histories;
-  bool share_memory = true;  ///< images whose lifetimes do not overlap share bytes (never with `reference`)
+  std::shared_ptr<Histories> histories{};
   std::uint64_t max_memory = 6ull << 30;
 };
 
@@ -107,6 +97,8 @@ class Program {
   std::vector<bool> begin_run(const InputVersions& inputs, bool result_lost);
   /// Notes that what `begin_run` said has run, in the frame that its histories began.
   void up_to_date();
+  /// Whether the frame that its histories began has one before it, for the history of that name.
+  bool has_previous(const std::string& history) const;
   /// What frames hand on to the next; null when the graph has no histories. `Histories::begin` says which frame
   /// `record` records.
   Histories* histories() const;
@@ -149,6 +141,8 @@ class Program {
   VkFormat storage_format() const;
   /// What is read of inputs and made of the others: everything, unless there is a region.
   const Regions& parts() const;
+  /// As it is executed: what was wished, as far as the device can do it.
+  const ExecutionConfig& config() const;
   bool flags_non_finite() const;   ///< ProgramOptions::flag_non_finite
   VkFormat result_format() const;  ///< the storage format, or R8G8B8A8_UNORM with ProgramOptions::codes
   /// With `result_by_rows`: how many rows the targets of the result must have; 1: they are not used.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "exec/cpu/driver.h"
 #include "exec/program_state.h"
 #include "gpu/error.h"
 #include "gpu/pipeline.h"
@@ -10,18 +11,33 @@
 
 namespace afterglow {
 
+namespace {
+
+/// Whether optimally tiled images of the format can be used so.
 bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted) {
   VkFormatProperties properties{};
   vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
   return (properties.optimalTilingFeatures & wanted) == wanted;
 }
 
-bool Program::State::hardware_filter() const {
+}  // namespace
+
+/// What the device and the other options leave of the wished execution.
+void Program::State::settle_config() {
+  ExecutionConfig& config = options.config;
+  if (options.reference) {
+    config.joining = Joining::none;
+    config.share_memory = config.hardware_filter = false;
+    config.rows = 1;
+  }
+  format = config.storage == Storage::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
   const auto filters = [&](VkFormat of) {
     return supports(device, of, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT);
   };
-  return options.hardware_filter && !options.reference && filters(format) &&
-         (graph.histories.empty() || filters(VK_FORMAT_R32G32B32A32_SFLOAT));
+  config.hardware_filter =
+      config.hardware_filter && filters(format) && (graph.histories.empty() || filters(VK_FORMAT_R32G32B32A32_SFLOAT));
+  config.storage_reads = config.storage_reads && supports(device, format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
+  if (device.is_cpu()) fit_to_cpu_driver(config);
 }
 
 /// The linear image that a result by rows is.
@@ -60,18 +76,9 @@ Result<void> Program::State::check() {
 }
 
 Result<std::vector<KernelDesc>> Program::State::describe(ShaderLibrary& shaders) {
-  const DescribeOptions describe{.hardware_filter = hardware_filter(),
-                                 .half_storage = options.storage == Storage::fp16,
-                                 .codes = options.codes,
-                                 .flag_non_finite = options.flag_non_finite,
-                                 .storage_reads = storage_reads,
-                                 .source_is_storage = options.source_is_storage,
-                                 .rows = options.reference ? 1 : options.rows,
-                                 .worth = options.worth,
-                                 .hide_uniforms = device.is_cpu()};
   std::vector<KernelDesc> descs;
   for (const auto& kernel : plan.kernels) {
-    AFTERGLOW_TRY(KernelDesc desc, describe_kernel(shaders, graph, kernel, describe));
+    AFTERGLOW_TRY(KernelDesc desc, describe_kernel(shaders, graph, kernel, options));
     descs.push_back(std::move(desc));
   }
   return descs;
@@ -79,29 +86,30 @@ Result<std::vector<KernelDesc>> Program::State::describe(ShaderLibrary& shaders)
 
 ArenaOptions Program::State::arena_options(const std::vector<KernelDesc>& descs) const {
   ArenaOptions wanted{.format = format,
-                      .share = options.share_memory && !options.reference && !options.keep_images,
+                      .share = options.config.share_memory && !options.keep_images,
                       .readable = options.reference,
-                      .storage = storage_reads,
+                      .storage = options.config.storage_reads,
                       .rows = {},
                       .max_memory = options.max_memory};
   if (linear)
-    for (const auto& desc : descs) wanted.rows.push_back(desc.rows);
+    for (const auto& desc : descs) wanted.rows.push_back(desc.config.rows);
   return wanted;
 }
 
 /// How many rows kernels really make at a time, and the images between them, unless those come from a pool.
 Result<void> Program::State::make_images(std::vector<KernelDesc>& descs) {
   for (std::size_t i = 0; i < descs.size(); ++i)
-    if (history_of_next(graph, plan.kernels[i].output)) descs[i].rows = 1;
-  linear = std::ranges::any_of(descs, [](const KernelDesc& desc) { return desc.rows > 1; });
+    if (history_of_next(graph, plan.kernels[i].output)) descs[i].config.rows = 1;
+  linear = std::ranges::any_of(descs, [](const KernelDesc& desc) { return desc.config.rows > 1; });
   for (std::size_t i = 0; i < descs.size(); ++i) {
     const ImageId output = plan.kernels[i].output;
     if (output == graph.result) {
-      descs[i].rows = options.result_by_rows ? RowTargets::possible(device, result_desc(), descs[i].rows) : 1;
-      result_rows = descs[i].rows;
+      descs[i].config.rows =
+          options.result_by_rows ? RowTargets::possible(device, result_desc(), descs[i].config.rows) : 1;
+      result_rows = descs[i].config.rows;
     } else if (linear) {
       const ImageDesc desc = Arena::desc_of(graph, output, arena_options(descs));
-      descs[i].rows = RowTargets::possible(device, desc, descs[i].rows);
+      descs[i].config.rows = RowTargets::possible(device, desc, descs[i].config.rows);
     }
   }
   if (from_pool()) return {};
@@ -140,8 +148,8 @@ Result<void> Program::State::compile(KernelCompiler& compiler, const std::vector
     images.push_back(std::move(bind));
     pointers.push_back(&compiled_of(i));
   }
-  AFTERGLOW_TRY(data, DataImages::create(device, graph, storage_reads));
-  AFTERGLOW_TRY(sampler, create_sampler(device, hardware_filter() ? VK_FILTER_LINEAR : VK_FILTER_NEAREST));
+  AFTERGLOW_TRY(data, DataImages::create(device, graph, options.config.storage_reads));
+  AFTERGLOW_TRY(sampler, create_sampler(device, options.config.hardware_filter ? VK_FILTER_LINEAR : VK_FILTER_NEAREST));
   AFTERGLOW_TRY(parameters, ParameterBuffer::create(device, graph, plan, pointers));
   return {};
 }
@@ -176,8 +184,8 @@ Result<void> Program::State::make_histories() {
   if (histories) return {};
   histories = std::make_shared<Histories>();
   return histories->fit(device, graph,
-                        {.half = options.storage == Storage::fp16,
-                         .storage = storage_reads,
+                        {.half = options.config.storage == Storage::fp16,
+                         .storage = options.config.storage_reads,
                          .max_memory = options.max_memory - std::min(options.max_memory, arena.memory().arena)});
 }
 
@@ -196,7 +204,7 @@ Result<void> Program::State::find_parts() {
     if (part.width < 1 || part.height < 1 || part.x < 0 || part.y < 0 || part.x + part.width > all.width ||
         part.y + part.height > all.height)
       return Error{ErrorKind::other, "the region is not within the picture"};
-    parts = regions(graph, plan, part, options.rows);
+    parts = regions(graph, plan, part, options.config.rows);
     return {};
   }
   for (const auto& kernel : plan.kernels) parts.kernels.push_back(whole(kernel.output));

@@ -25,7 +25,7 @@ void Program::State::identify() {
     hasher.add(number(image.size.width)).add(number(image.size.height));
     const Rect& part = parts.kernels[i];
     for (const int value : {part.x, part.y, part.width, part.height}) hasher.add(number(value));
-    hasher.add(number(linear)).add(number(storage_reads)).add(number(hardware_filter()));
+    hasher.add(number(linear)).add(number(options.config.storage_reads)).add(number(options.config.hardware_filter));
     for (const ImageId read : images[i]) {
       const GraphImage& from = graph.images[read];
       hasher.add(number(from.size.width)).add(number(from.size.height));

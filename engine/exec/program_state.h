@@ -18,16 +18,13 @@
 
 namespace afterglow {
 
-/// Whether optimally tiled images of the format can be used so.
-bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted);
-
 struct Program::State {
   State(Device& device_in, const Graph& graph_in, const ProgramOptions& options_in)
       : device(device_in), graph(graph_in), options(options_in) {}
 
   Device& device;
   Graph graph;
-  ProgramOptions options;
+  ProgramOptions options;  ///< with what is left of the wished execution
   VkFormat format = VK_FORMAT_UNDEFINED;
   Plan plan;
   Regions parts;
@@ -54,7 +51,6 @@ struct Program::State {
   std::map<ImageId, ImageBinding> inputs;
   std::vector<VkImageView> result;
   int result_rows = 1;
-  bool storage_reads = false;
   bool linear = false;                   ///< images between kernels stay in GENERAL
   int bindings = 0, uses = 0;            ///< of inputs and result; of histories
   std::shared_ptr<Histories> histories;  ///< null when the graph has none
@@ -70,24 +66,24 @@ struct Program::State {
 
   /// Images between kernels; one layout for both ways of reading.
   VkImageLayout read_layout() const {
-    return storage_reads || linear ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    return options.config.storage_reads || linear ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   }
   /// Histories are never linear: kernels that make them write one row at a time.
   VkImageLayout history_layout() const {
-    return storage_reads ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    return options.config.storage_reads ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   }
   VkImageLayout source_layout() const {
-    return options.source_is_storage && storage_reads ? VK_IMAGE_LAYOUT_GENERAL
-                                                      : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    return options.source_is_storage && options.config.storage_reads ? VK_IMAGE_LAYOUT_GENERAL
+                                                                     : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   }
   VkImageLayout target_layout(ImageId output) const;
   VkFormat result_format() const { return options.codes ? VK_FORMAT_R8G8B8A8_UNORM : format; }
   VkFormat image_format(ImageId image) const;
-  bool hardware_filter() const;
   ImageDesc result_desc() const;
   const CompiledKernel& compiled_of(std::size_t kernel) const { return compiled.unique[compiled.index[kernel]]; }
 
   // program_make.cpp
+  void settle_config();
   Result<void> check();
   Result<void> find_parts();
   Result<std::vector<KernelDesc>> describe(ShaderLibrary& shaders);

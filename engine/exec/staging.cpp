@@ -1,6 +1,7 @@
 #include "exec/staging.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "exec/convert.h"
 
@@ -34,17 +35,28 @@ constexpr auto kShader = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
 
 }  // namespace
 
-VkDeviceSize Staging::bytes(const StagedImage& image) {
-  return 2 * row_bytes(image) * static_cast<VkDeviceSize>(rows_per_band(image));
+int Staging::bands_for(const StagedImage& image) const {
+  constexpr int kTurns = 2;
+  const int all = (image.size.height + rows_per_band(image) - 1) / rows_per_band(image);
+  return whole_ ? std::max(all, kTurns) : kTurns;
 }
 
-Result<void> Staging::prepare(Bands& bands, const StagedImage& image, HostAccess access) {
+VkDeviceSize Staging::bytes(const StagedImage& image) const {
+  return static_cast<VkDeviceSize>(bands_for(image)) * row_bytes(image) *
+         static_cast<VkDeviceSize>(rows_per_band(image));
+}
+
+Result<void> Staging::prepare(Bands& bands, std::size_t first, const StagedImage& image, HostAccess access) {
   const VkDeviceSize size = row_bytes(image) * static_cast<VkDeviceSize>(rows_per_band(image));
-  for (auto& band : bands) {
+  const std::size_t end = first + static_cast<std::size_t>(bands_for(image));
+  if (bands.size() < end) bands.resize(end);
+  for (std::size_t i = first; i < end; ++i) {
+    Band& band = bands[i];
     if (band.buffer.size() >= size) continue;
     if (band.buffer.size() == 0) {
       AFTERGLOW_TRY(band.submitter, Submitter::create(*device_));
     }
+    AFTERGLOW_CHECK(band.submitter.wait());
     const VkBufferUsageFlags usage =
         access == HostAccess::write ? VK_BUFFER_USAGE_TRANSFER_SRC_BIT : VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     AFTERGLOW_TRY(band.buffer, Buffer::create(*device_, size, usage, access, "staging"));
@@ -53,12 +65,26 @@ Result<void> Staging::prepare(Bands& bands, const StagedImage& image, HostAccess
   return {};
 }
 
+Result<void> Staging::wait() {
+  for (auto* bands : {&uploads_, &downloads_})
+    for (auto& band : *bands) {
+      AFTERGLOW_CHECK(band.submitter.wait());
+      band.rows = 0;
+    }
+  begun_ = false;
+  return {};
+}
+
 Result<std::uint64_t> Staging::upload(const StagedImage& image, const PackRow& pack) {
-  AFTERGLOW_CHECK(prepare(uploads_, image, HostAccess::write));
+  const std::size_t first_band = whole_ ? next_ : 0;
+  AFTERGLOW_CHECK(prepare(uploads_, first_band, image, HostAccess::write));
+  const auto count = static_cast<std::size_t>(bands_for(image));
+  next_ = first_band + count;
+  std::size_t turn = 0;
   const int step = rows_per_band(image);
   std::uint64_t held = 0;
-  for (int first = 0, turn = 0; first < image.size.height; first += step, turn ^= 1) {
-    Band& band = uploads_[turn];
+  for (int first = 0; first < image.size.height; first += step, turn = (turn + 1) % count) {
+    Band& band = uploads_[first_band + turn];
     const int rows = std::min(step, image.size.height - first);
     AFTERGLOW_CHECK(band.submitter.wait());
     held += over_rows(rows, row_bytes(image),
@@ -82,14 +108,55 @@ Result<std::uint64_t> Staging::upload(const StagedImage& image, const PackRow& p
       }
     }));
   }
+  if (whole_) return held;
   for (auto& band : uploads_) AFTERGLOW_CHECK(band.submitter.wait());
   return held;
 }
 
+Result<void> Staging::submit_download(Band& band, const StagedImage& image, VkImageLayout layout, int first, int from,
+                                      int to) {
+  const int rows = std::min(rows_per_band(image), to - first);
+  const bool is_first = first == from, is_last = first + rows == to;
+  AFTERGLOW_CHECK(band.submitter.submit([&](VkCommandBuffer commands) {
+    if (is_first) {
+      const auto begin = image_barrier(image.image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | kShader,
+                                       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, layout, kTransfer,
+                                       VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+      record_barriers(commands, &begin, 1);
+    }
+    const VkBufferImageCopy region = copy_of(image, first, rows);
+    vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, band.buffer.get(), 1,
+                           &region);
+    const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                   .srcStageMask = kTransfer,
+                                   .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                   .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
+                                   .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
+    const auto end = image_barrier(image.image, kTransfer, 0, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                   VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | kShader, 0, layout);
+    const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                      .memoryBarrierCount = 1,
+                                      .pMemoryBarriers = &to_host,
+                                      .imageMemoryBarrierCount = is_last ? 1u : 0u,
+                                      .pImageMemoryBarriers = &end};
+    vkCmdPipelineBarrier2(commands, &dependency);
+  }));
+  band.first_row = first;
+  band.rows = rows;
+  return {};
+}
+
+Result<void> Staging::begin_download(const StagedImage& image, VkImageLayout layout, int from, int to) {
+  AFTERGLOW_CHECK(prepare(downloads_, 0, image, HostAccess::read));
+  std::size_t turn = 0;
+  for (int first = from; first < to; first += rows_per_band(image))
+    AFTERGLOW_CHECK(submit_download(downloads_[turn++], image, layout, first, from, to));
+  begun_ = true;
+  return {};
+}
+
 Result<std::uint64_t> Staging::download(const StagedImage& image, VkImageLayout layout, const UnpackRow& unpack,
                                         int from, int to) {
-  AFTERGLOW_CHECK(prepare(downloads_, image, HostAccess::read));
-  const int step = rows_per_band(image);
   std::uint64_t held = 0;
   const auto take = [&](Band& band) -> Result<void> {
     if (band.rows == 0) return {};
@@ -100,41 +167,17 @@ Result<std::uint64_t> Staging::download(const StagedImage& image, VkImageLayout 
     band.rows = 0;
     return {};
   };
-  int turn = 0;
-  for (int first = from; first < to; first += step, turn ^= 1) {
-    Band& band = downloads_[turn];
-    AFTERGLOW_CHECK(take(band));
-    const int rows = std::min(step, to - first);
-    const bool is_first = first == from, is_last = first + rows == to;
-    AFTERGLOW_CHECK(band.submitter.submit([&](VkCommandBuffer commands) {
-      if (is_first) {
-        const auto begin = image_barrier(image.image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | kShader,
-                                         VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, layout, kTransfer,
-                                         VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-        record_barriers(commands, &begin, 1);
-      }
-      const VkBufferImageCopy region = copy_of(image, first, rows);
-      vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, band.buffer.get(), 1,
-                             &region);
-      const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                     .srcStageMask = kTransfer,
-                                     .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                     .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
-                                     .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
-      const auto end = image_barrier(image.image, kTransfer, 0, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | kShader, 0, layout);
-      const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                        .memoryBarrierCount = 1,
-                                        .pMemoryBarriers = &to_host,
-                                        .imageMemoryBarrierCount = is_last ? 1u : 0u,
-                                        .pImageMemoryBarriers = &end};
-      vkCmdPipelineBarrier2(commands, &dependency);
-    }));
-    band.first_row = first;
-    band.rows = rows;
+  std::size_t turn = 0;
+  if (!std::exchange(begun_, false)) {
+    AFTERGLOW_CHECK(prepare(downloads_, 0, image, HostAccess::read));
+    const auto count = static_cast<std::size_t>(bands_for(image));
+    for (int first = from; first < to; first += rows_per_band(image), turn = (turn + 1) % count) {
+      AFTERGLOW_CHECK(take(downloads_[turn]));
+      AFTERGLOW_CHECK(submit_download(downloads_[turn], image, layout, first, from, to));
+    }
+    if (turn >= downloads_.size()) turn = 0;
   }
-  AFTERGLOW_CHECK(take(downloads_[turn]));
-  AFTERGLOW_CHECK(take(downloads_[turn ^ 1]));
+  for (std::size_t i = 0; i < downloads_.size(); ++i) AFTERGLOW_CHECK(take(downloads_[(turn + i) % downloads_.size()]));
   return held;
 }
 

@@ -2,8 +2,8 @@
 // time.
 #pragma once
 
-#include <array>
 #include <functional>
+#include <vector>
 
 #include "core/geometry.h"
 #include "exec/submit.h"
@@ -26,10 +26,11 @@ struct StagedImage {
 /// Two bands take turns: while the device copies one, the CPU converts the other. Bands are kept and reused.
 class Staging {
  public:
-  explicit Staging(const Device& device) : device_(&device) {}
+  /// `whole`: there are as many bands as a picture needs, and nothing waits for the device before it must.
+  explicit Staging(const Device& device, bool whole = false) : device_(&device), whole_(whole) {}
 
   /// Leaves the image in SHADER_READ_ONLY_OPTIMAL, visible to fragment shaders; what it held is lost. Returns the sum
-  /// of `pack`.
+  /// of `pack`. With `whole` the copies are on their way still.
   Result<std::uint64_t> upload(const StagedImage& image, const PackRow& pack);
 
   /// Takes the image in `layout`, written by draws, and leaves it so. Rows `from` … `to` − 1 are moved, no others.
@@ -40,8 +41,15 @@ class Staging {
     return download(image, layout, unpack, 0, image.size.height);
   }
 
+  /// The uploads that follow are another frame's: with `whole` their bands are used again.
+  void begin_uploads() { next_ = 0; }
+  /// With `whole`: submits the copies of a `download` with the same arguments, which need only take them then.
+  Result<void> begin_download(const StagedImage& image, VkImageLayout layout, int from, int to);
+  /// Until no copy is on its way. Errors: device.
+  Result<void> wait();
+
   /// Bytes of the buffers that moving an image of this size takes.
-  static VkDeviceSize bytes(const StagedImage& image);
+  VkDeviceSize bytes(const StagedImage& image) const;
   int buffers() const { return buffers_; }
 
  private:
@@ -50,10 +58,16 @@ class Staging {
     Submitter submitter;          // after the buffer: it waits when it goes
     int first_row = 0, rows = 0;  ///< on their way; 0: none
   };
-  using Bands = std::array<Band, 2>;
-  Result<void> prepare(Bands& bands, const StagedImage& image, HostAccess access);
+  using Bands = std::vector<Band>;
+  Result<void> prepare(Bands& bands, std::size_t first, const StagedImage& image, HostAccess access);
+
+  Result<void> submit_download(Band& band, const StagedImage& image, VkImageLayout layout, int first, int from, int to);
+  int bands_for(const StagedImage& image) const;
 
   const Device* device_;
+  bool whole_;
+  bool begun_ = false;    ///< a download
+  std::size_t next_ = 0;  ///< band of the next upload, with `whole`
   Bands uploads_, downloads_;
   int buffers_ = 0;
 };

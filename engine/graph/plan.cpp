@@ -107,13 +107,13 @@ void find_lifetimes(const Graph& graph, Plan& plan) {
 
 }  // namespace
 
-Plan make_plan(const Graph& graph, const PlanOptions& options) {
+Plan make_plan(const Graph& graph, const ExecutionConfig& config) {
   Plan plan;
   const std::vector<bool> keep = passes_that_matter(graph);
   Joiner joiner(graph, keep);
   for (std::size_t i = 0; i < graph.passes.size(); ++i) {
     if (keep[i])
-      joiner.add(static_cast<int>(i), options.joining);
+      joiner.add(static_cast<int>(i), config.joining);
     else
       plan.skipped.push_back({graph.passes[i].name, "nobody reads its image"});
   }

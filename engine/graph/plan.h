@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "graph/graph.h"
+#include "shader/execution_config.h"
 
 namespace afterglow {
 
@@ -16,17 +17,6 @@ struct PlanKernel {
   std::vector<int> passes;
   std::string name;  ///< "glow.up[0]+glow.combine+curve"
   ImageId output = kNoImage;
-};
-
-/// Which passes share a kernel.
-enum class Joining {
-  none,   ///< every pass on its own
-  heads,  ///< a filter with the pixel pass of the same effect that follows it: passes as math.md §4 writes them
-  all     ///< pixel passes with whatever feeds them
-};
-
-struct PlanOptions {
-  Joining joining = Joining::all;
 };
 
 struct Plan {
@@ -40,7 +30,8 @@ struct Plan {
   std::vector<Lifetime> lifetimes;  ///< parallel to `transient`; the result and what histories keep live to the end
 };
 
-Plan make_plan(const Graph& graph, const PlanOptions& options);
+/// Of `config` it reads `joining`.
+Plan make_plan(const Graph& graph, const ExecutionConfig& config);
 
 /// A block of memory wanted from kernel `first` to kernel `last` (inclusive).
 struct Block {

@@ -22,7 +22,7 @@ Result<const LutModule*> lut_module() {
 
 }  // namespace
 
-Result<Lut> read_lut(const std::filesystem::path& file) {
+Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record) {
   const auto fail = [&](std::string what) { return Error{ErrorKind::script, std::move(what), file.string()}; };
   std::string extension = lower(file.extension().string());
   if (!extension.empty()) extension.erase(0, 1);
@@ -32,7 +32,7 @@ Result<Lut> read_lut(const std::filesystem::path& file) {
     return Error{ErrorKind::script, fmt::format("'{}' is no format of look-up tables", extension),
                  file.string(),     0,
                  join(known),       nearest_name(extension, known)};
-  auto text = read_file(file, kMaxFile);
+  auto text = read_file(file, kMaxFile, record);
   if (!text) return fail(text.error().message);
   if (extension == "cube") AFTERGLOW_CHECK(check_cube(*text, file.string()));
   // Colour transforms that name further files: what a look may read is decided elsewhere.

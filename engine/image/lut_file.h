@@ -11,6 +11,8 @@
 
 namespace afterglow {
 
+class FileRecord;  // core/file_record.h
+
 /// One step on a colour c. Its numbers begin at pixel (0, row) of the table.
 enum class LutKind {
   none = 0,
@@ -41,7 +43,8 @@ inline constexpr int kLutRow = 256;  ///< colours a row of one-dimensional table
 
 /// Thread-safe. Errors (script, with the file and, for .cube, the line): missing, unknown format, what the file holds
 /// is wrong or has no place in steps; io: the module with OpenColorIO is not installed.
-Result<Lut> read_lut(const std::filesystem::path& file);
+/// `record`: see read_file (core/file.h).
+Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record = nullptr);
 
 /// What the module with OpenColorIO gives.
 struct LutModule {

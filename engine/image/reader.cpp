@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/exception.h"
-#include "core/file_trace.h"
+#include "core/file_record.h"
 #include "core/saturated.h"
 #include "core/text.h"
 #include "image/color_encoding.h"
@@ -347,9 +347,8 @@ Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& optio
 namespace {
 
 void note_stamp(const fs::path& file, FileLooks& looks) {
-  FileTrace trace;
-  FileTrace::note(file, FileLook::Kind::stamp);
-  looks.merge(FileLooks(trace.looks()));
+  std::error_code ec;
+  looks.emplace(fs::absolute(file, ec), look_at(file, FileLook::Kind::stamp));
 }
 
 /// Notes in `looks` what the files are before they are read.

@@ -199,7 +199,7 @@ Result<bool> Player::State::show_due(double now) {
   }
   const auto may_change = [](LiveSession* session) {
     Stack* stack = session ? session->live().stack() : nullptr;
-    return stack && (stack->preset().may_change() || !stack->prepared_graph().histories.empty());
+    return stack && (stack->preset().may_change() || (stack->build() && !stack->build()->graph.histories.empty()));
   };
   const bool moves = may_change(first.get()) || may_change(second.get());
   if (same_picture && !moves) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/file.h"
+#include "core/file_record.h"
 #include "core/inside.h"
 #include "core/pack.h"
 #include "core/text.h"
@@ -108,8 +110,7 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
   const auto roots = roots_of(runtime);
   for (const auto& root : roots) {
     const fs::path file = root / name;
-    std::error_code ec;
-    if (!fs::is_regular_file(file, ec)) continue;
+    if (!is_file(file, runtime.path.record.get())) continue;
     const bool own = std::ranges::find(runtime.path.user, root) != runtime.path.user.end();
     if (own && !lies_in(file, root))
       fail_at(lua, what, name, fmt::format("is a link that leads out of {}", root.string()), kAllowed);
@@ -126,7 +127,7 @@ const LoadedLut& load_lut(lua_State* lua, const fs::path& file) {
   if (known != runtime.assets.luts.end()) return known->second;
   runtime.box->charge(kFileCost);
   const Sandbox::Pause pause(*runtime.box);
-  auto read = read_lut(file);
+  auto read = read_lut(file, runtime.path.record.get());
   if (!read) throw ScriptError{std::move(read).error()};
   LoadedLut loaded{std::move(read->steps), make_data(runtime, read->size, std::move(read->table), file)};
   return runtime.assets.luts.emplace(file, std::move(loaded)).first->second;
@@ -142,6 +143,7 @@ std::shared_ptr<const ImageData> load_picture(lua_State* lua, const fs::path& fi
   ReadOptions options;
   options.max_side = kMaxSide;
   options.max_bytes = kMaxBytes;
+  if (runtime.path.record) runtime.path.record->note(file, FileLook::Kind::stamp);
   auto picture = read_picture(file, options, ignored);
   if (!picture) {
     Error error = std::move(picture).error();

@@ -59,7 +59,7 @@ fs::path find_module(const Runtime& runtime, const std::string& name) {
   roots.push_back(runtime.path.installation / "scripts");
   for (const auto& root : roots) {
     const fs::path path = root / file;
-    if (!is_file(path)) continue;
+    if (!is_file(path, runtime.path.record.get())) continue;
     if (!lies_in(path, root))
       throw failure(fmt::format("require: '{}' is a link that leads out of {}", name, root.string()));
     return path;
@@ -152,7 +152,7 @@ void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::o
   int index = 0;
   {
     const Sandbox::Pause pause(box);
-    auto text = given ? Result<std::string>(*given) : read_file(file, kMaxScript);
+    auto text = given ? Result<std::string>(*given) : read_file(file, kMaxScript, runtime.path.record.get());
     if (!text) throw ScriptError{{ErrorKind::script, text.error().message, file.string()}};
     std::size_t bytes = text->size();
     for (const Source& source : box.sources()) bytes += source.text.size();

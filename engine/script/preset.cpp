@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "core/file_record.h"
 #include "core/text.h"
+#include "script/build.h"
 #include "script/entry_run.h"
 #include "script/graph_binding.h"
 #include "script/hold_reader.h"
@@ -23,13 +25,15 @@ struct Preset::State {
   ShaderLibrary* shaders = nullptr;
   std::string file, name;
   std::optional<double> max_error;
-  std::vector<EntryRun> runs;       // in the order of execution
-  std::vector<StackEntry> entries;  // the same
+  std::vector<EntryRun> runs;                              // in the order of execution
+  std::shared_ptr<const std::vector<StackEntry>> entries;  // the same, as they were resolved last
+  std::shared_ptr<const std::vector<StackEntry>> loaded;   // as they were first
+  std::shared_ptr<const Explanation> loaded_so;            // of that
   std::vector<std::string> needs;
   Surroundings surroundings;
-  Explanation explanation;
+  std::shared_ptr<const Explanation> explanation;  // of that
   bool may_change = false;
-  std::uint64_t builds = 0;
+  std::uint64_t evaluations = 0;
 
   void load(lua_State* lua, const PresetOptions& options);
   void resolve(lua_State* lua, const BuildContext& context);
@@ -87,7 +91,6 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
     for (std::size_t i = 0; i < schema.settings.size(); ++i)
       if (declared.sources[i].preset || declared.sources[i].overridden)
         declared.entry.changed.push_back(schema.settings[i].name);
-    entries.push_back(declared.entry);
     runs.push_back({std::move(declared.entry), declared.effect, std::move(declared.sources)});
   }
   surroundings = {std::move(stack.volumes), std::move(stack.position), options.at};
@@ -95,15 +98,19 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
                    [](const auto& a, const auto& b) { return a.priority < b.priority; });
   may_change = script::may_change(runs, surroundings);
   resolve(lua, {});
+  loaded = entries;
+  loaded_so = explanation;
 }
 
 void Preset::State::resolve(lua_State* lua, const BuildContext& context) {
-  explanation = resolve_settings(lua, runs, surroundings, context);
+  explanation = std::make_shared<const Explanation>(resolve_settings(lua, runs, surroundings, context));
+  auto settled = std::make_shared<std::vector<StackEntry>>();
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].settings_ref != LUA_NOREF && entries[i].settings == runs[i].entry.settings) continue;
-    entries[i].settings = runs[i].entry.settings;
-    make_settings(lua, runs[i]);
+    const bool as_before = entries && (*entries)[i].settings == runs[i].entry.settings;
+    if (runs[i].settings_ref == LUA_NOREF || !as_before) make_settings(lua, runs[i]);
+    settled->push_back(runs[i].entry);
   }
+  entries = std::move(settled);
 }
 
 void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
@@ -133,7 +140,9 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
   auto state = std::make_unique<State>();
   state->file = file.string();
   state->shaders = &shaders;
-  AFTERGLOW_TRY(state->runtime, Runtime::create(search_path_for(file, options.paths), options.limits, diagnostics));
+  auto record = options.record ? options.record : std::make_shared<FileRecord>();
+  AFTERGLOW_TRY(state->runtime,
+                Runtime::create(search_path_for(file, options.paths, std::move(record)), options.limits, diagnostics));
   Sandbox& box = *state->runtime->box;
   const StackEntry* current = nullptr;
   auto error = box.run(state->file, [&](lua_State* lua) {
@@ -147,10 +156,12 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
 
 const std::string& Preset::name() const { return state_->name; }
 std::optional<double> Preset::max_error() const { return state_->max_error; }
-const std::vector<StackEntry>& Preset::entries() const { return state_->entries; }
 bool Preset::may_change() const { return state_->may_change; }
-const Explanation& Preset::explanation() const { return state_->explanation; }
+const std::vector<StackEntry>& Preset::entries() const { return *state_->loaded; }
+const Explanation& Preset::explanation() const { return *state_->loaded_so; }
+std::uint64_t Preset::evaluations() const { return state_->evaluations; }
 std::vector<std::string> Preset::needs() const { return state_->needs; }
+std::shared_ptr<const FileLooks> Preset::looked_at() const { return state_->runtime->path.record->looks(); }
 const SearchPath& Preset::path() const { return state_->runtime->path; }
 const std::vector<std::filesystem::path>& Preset::files() const { return state_->runtime->files; }
 
@@ -203,17 +214,17 @@ ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBu
   return image;
 }
 
-Result<Graph> Preset::build(const BuildContext& context, Diagnostics& diagnostics) {
+Result<Build> Preset::evaluate(const BuildContext& context, Diagnostics& diagnostics) {
   State& state = *state_;
   Sandbox& box = *state.runtime->box;
-  GraphBuilder graph(context, *state.shaders, ++state.builds);
+  GraphBuilder graph(context, *state.shaders, ++state.evaluations);
   const StackEntry* current = nullptr;
   ImageRef image = graph.source();
   state.runtime->graph = &graph;
   box.diagnostics = &diagnostics;
   auto error = box.run(state.file, [&](lua_State* lua) {
     if (state.may_change) state.resolve(lua, context);
-    warn_without_position(state.explanation, diagnostics);
+    warn_without_position(*state.explanation, diagnostics);
     for (const auto& run : state.runs) {
       current = &run.entry;
       image = state.build_entry(lua, run, graph, image, diagnostics);
@@ -222,17 +233,18 @@ Result<Graph> Preset::build(const BuildContext& context, Diagnostics& diagnostic
   state.runtime->graph = nullptr;
   box.diagnostics = nullptr;
   if (error) return with_entry(std::move(*error), current);
-  return graph.finish(image.id);
-}
-
-Result<std::vector<Hold>> Preset::holds(const std::string& entry, Size size) {
-  State& state = *state_;
-  std::vector<Hold> out;
-  auto error = state.runtime->box->run(state.file, [&](lua_State* lua) {
-    for (const auto& run : state.runs)
-      if (run.entry.name == entry) out = holds_of(lua, run, size);
+  Build out{.context = context,
+            .graph = {},
+            .entries = state.entries,
+            .explanation = state.explanation,
+            .promises = {},
+            .promise_error = {},
+            .files = {}};
+  out.graph = graph.finish(image.id);
+  out.promise_error = box.run(state.file, [&](lua_State* lua) {
+    for (const auto& run : state.runs) out.promises.push_back({run.entry.name, holds_of(lua, run, context.size)});
   });
-  if (error) return std::move(*error);
+  out.files = looked_at();
   return out;
 }
 

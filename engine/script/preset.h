@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/diagnostics.h"
+#include "core/file_record.h"
 #include "core/paths.h"
 #include "core/result.h"
 #include "graph/graph.h"
@@ -76,7 +77,7 @@ struct StackEntry {
   int order = 0;
   bool enabled = true;
   bool required = false;  ///< a missing auxiliary input is an error
-  /// All of them, in the schema's order; their values are those of the last build.
+  /// All of them, in the schema's order.
   std::vector<std::pair<std::string, SettingValue>> settings;
   std::vector<std::string> changed;  ///< names of those that the preset or an override set
   std::string file;                  ///< where the preset names the effect
@@ -105,10 +106,12 @@ struct PresetOptions {
   bool leave_out_unfit = false;          ///< overrides that do not fit the stack are warned about, and are no errors
   std::optional<Position> at;            ///< --at: where the picture is seen from, for volumes
   std::optional<std::string> text = {};  ///< of the preset, instead of what its file holds; the file need not exist
+  /// Takes down what is looked at, also by a preset that fails to load. Null: the preset's own (Build::files).
+  std::shared_ptr<FileRecord> record = {};
   ScriptLimits limits;
 };
 
-/// What `build` may ask about the picture.
+/// What `evaluate` may ask about the picture.
 struct BuildContext {
   Size size;                              ///< of the source
   std::map<std::string, Size> auxiliary;  ///< inputs that the picture has: "depth", "normal"
@@ -116,8 +119,10 @@ struct BuildContext {
   double step = 1;       ///< frames since the one before it, whose images its histories hold (graph/history.h)
   bool restart = false;  ///< no frame is before it: histories begin anew
   std::optional<Position> position = {};  ///< of its camera, when the picture says it
+  friend bool operator==(const BuildContext&, const BuildContext&) = default;
 };
 
+struct Build;        // script/build.h
 struct Explanation;  // script/explanation.h
 
 /// Owns one Lua state. Not thread-safe; may move between threads. Errors of all functions: script.
@@ -129,31 +134,33 @@ class Preset {
   Preset& operator=(Preset&&) noexcept;
   ~Preset();
 
-  const std::string& name() const;                              ///< of the stack
-  std::optional<double> max_error() const;                      ///< `max_error` of the stack
-  const std::vector<StackEntry>& entries() const;               ///< in the order of execution
+  const std::string& name() const;          ///< of the stack
+  std::optional<double> max_error() const;  ///< `max_error` of the stack
+  /// In the order of execution, as they are for no frame in particular; those of a frame are Build::entries.
+  const std::vector<StackEntry>& entries() const;
+  const Explanation& explanation() const;                       ///< the same for Build::explanation
   const EffectSchema& schema(const std::string& effect) const;  ///< of an effect that the stack uses
   /// May settings differ from frame to frame or from place to place (curves, functions, volumes)?
   bool may_change() const;
-  /// How the settings of the last build came about.
-  const Explanation& explanation() const;
-  /// What the entry's effect promises for pictures of this size with the settings of the last build.
-  Result<std::vector<Hold>> holds(const std::string& entry, Size size);
   /// Names of auxiliary inputs that enabled, active effects ask for; where settings may change, those that they could
   /// ask for.
   std::vector<std::string> needs() const;
   /// Where names are looked up; a preset that extends another has that one's folder in it too.
   const SearchPath& path() const;
-  /// Every file read so far: preset, library, effects; from the first `build` on also tables and pictures that effects
-  /// read (and where those that were not found would be).
+  /// Every file read so far: preset, library, effects; from the first `evaluate` on also tables and pictures that
+  /// effects read (and where those that were not found would be).
   const std::vector<std::filesystem::path>& files() const;
+
+  /// Everything that was looked at on disk so far, also in vain: what the next Build::files holds.
+  std::shared_ptr<const FileLooks> looked_at() const;
 
   /// Bytes that the script's state holds, after a collection.
   std::size_t memory_used() const;
 
   /// Settles the settings of this frame, then runs `active` and `build` of each enabled entry, in order. The same
-  /// context gives the same graph, whatever was built before.
-  Result<Graph> build(const BuildContext& context, Diagnostics& diagnostics);
+  /// context gives the same value, whatever was evaluated before.
+  Result<Build> evaluate(const BuildContext& context, Diagnostics& diagnostics);
+  std::uint64_t evaluations() const;  ///< so far
 
  private:
   struct State;

@@ -14,6 +14,7 @@ struct LiveStack::State {
   std::vector<Override> overrides;
   std::string shown;
 
+  std::shared_ptr<const FileLooks> followed;  ///< of frames
   std::uint64_t stacks_taken = 0;
   BuiltStack stack;
   mutable std::mutex mutex;
@@ -48,7 +49,7 @@ Result<std::unique_ptr<LiveStack>> LiveStack::open(Device& device, const std::fi
   own.stack.most_rows = std::min(own.stack.most_rows, kRowsWhileEdited);
   const auto& cache = options.stack.cache_folder;
   if (!own.stack.shared) {
-    own.stack.shared = std::make_shared<StackShared>(cache.empty() ? cache : cache / "shaders");
+    own.stack.shared = std::make_shared<SharedKernels>(cache.empty() ? cache : cache / "shaders");
     if (!cache.empty()) device.use_pipeline_cache((cache / "pipelines").string());
   }
   std::unique_ptr<LiveStack> live(new LiveStack(std::make_unique<State>(device, preset, own, diagnostics)));
@@ -64,22 +65,20 @@ bool LiveStack::update() {
   BuiltParts parts = s.builder.take();
   if (!parts.any()) return false;
   if (parts.structure) {
-    // Effects that look back go on where they were.
-    if (s.stack.stack && parts.structure->stack && !parts.structure->stack->take_histories(*s.stack.stack))
-      parts.structure->stack->reset_histories();
     const bool for_frame = parts.structure->for_frame;
-    if (for_frame && s.stack.stack && parts.structure->stack) parts.structure->stack->keep_programs_of(*s.stack.stack);
+    // Effects that look back go on where they were.
+    if (s.stack.stack && parts.structure->stack) parts.structure->stack->take_over(*s.stack.stack, for_frame);
     parts.for_frame = for_frame;
     std::swap(s.stack, *parts.structure);
     ++s.stacks_taken;
     if (parts.structure->stack) s.builder.release(std::move(*parts.structure));
   }
   if (parts.values) {
-    s.stack.stack->adopt(*parts.values->stack);
-    std::swap(s.stack.heard, parts.values->heard);
-    std::swap(s.stack.diagnostics, parts.values->diagnostics);
+    if (s.stack.stack) parts.values->stack->take_over(*s.stack.stack, true);
+    std::swap(s.stack, *parts.values);
     s.builder.release(std::move(*parts.values));
   }
+  s.followed = s.stack.files;
   {
     const std::lock_guard lock(s.mutex);
     s.heard = s.stack.heard;
@@ -133,8 +132,10 @@ std::vector<std::string> LiveStack::images() const {
   return state_->stack.stack ? state_->stack.stack->images() : std::vector<std::string>{};
 }
 
-void LiveStack::also_follow(FileLooks looks) {
-  if (!looks.empty()) state_->builder.also_follow(std::move(looks));
+void LiveStack::also_follow(const std::shared_ptr<const FileLooks>& looks) {
+  if (looks == state_->followed) return;
+  state_->followed = looks;
+  state_->builder.also_follow(*looks);
 }
 
 void LiveStack::reload() { state_->builder.look(); }

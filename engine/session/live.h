@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/diagnostics.h"
-#include "core/file_trace.h"
+#include "core/file_record.h"
 #include "core/result.h"
 #include "core/watch.h"
 #include "gpu/device.h"
@@ -21,10 +21,10 @@ namespace afterglow {
 
 struct LiveOptions {
   StackOptions stack;  ///< its overrides are the first of `LiveStack::set_overrides`
-  /// See Stack::use: source and result will be a FrameRunner's.
+  /// See Stack::use: source and result will be a Renderer's.
   bool own_images = true;
   /// New kernels are drawn with on another device before they are taken, where the driver would compile them in their
-  /// first frame else (exec/warm_up.h).
+  /// first frame else (exec/cpu/warm_up.h).
   bool warm_up = false;
   bool follow = true;  ///< watch the files; false: only `LiveStack::reload` looks at them
   WatchOptions watch;
@@ -89,7 +89,7 @@ class LiveStack {
   /// for such a frame. Call it for each frame; cheap when nothing but the time has changed.
   void set_context(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {});
   /// Builds for the frame that `set_context` said last, whose structure is another one than `stack` has programs for
-  /// (Stack::prepare_if_made). Those it has stay as spare ones.
+  /// (ProgramCache::has). Those it has stay as spare ones.
   void build_for_frame();
   /// Whether something is being built, or about to be.
   bool building() const;
@@ -106,9 +106,9 @@ class LiveStack {
   /// Looks at the files now, whatever the watcher says (for a reload key, and where `follow` is false).
   void reload();
 
-  /// What `Stack::prepare` has looked at for a frame (core/file_trace.h) is followed as well: at another time a preset
-  /// may use shaders that the build has not met.
-  void also_follow(FileLooks looks);
+  /// What a frame has looked at (Build::files) is followed as well: at another time a preset may use shaders that the
+  /// build has not met. Cheap when it is the same value as the last time.
+  void also_follow(const std::shared_ptr<const FileLooks>& looks);
 
   /// Any thread.
   LiveStatus status() const;

@@ -166,11 +166,13 @@ BuiltStack LiveBuilder::new_stack() {
 }
 
 /// Everything that reads files.
-Result<BuiltStack> LiveBuilder::load(const LiveRequest& request, std::optional<StackWork>& work) {
+Result<BuiltStack> LiveBuilder::load(const LiveRequest& request, const std::shared_ptr<FileRecord>& record,
+                                     std::optional<Basis>& work) {
   BuiltStack built = new_stack();
   StackOptions options = options_.stack;
   options.preset.overrides = request.overrides;
   options.preset.leave_out_unfit = true;
+  options.preset.record = record;
   {
     const std::lock_guard lock(mutex_);
     script_began_ = Clock::now();
@@ -181,30 +183,34 @@ Result<BuiltStack> LiveBuilder::load(const LiveRequest& request, std::optional<S
   built.stack->show(request.shown);
   built.stack->use(device_, options_.own_images);
   if (request.context) {
-    AFTERGLOW_TRY(work, built.stack->build(*request.context, request.encoding));
+    Basis made{.build = {}, .work = {}, .choice = built.stack->choice()};
+    AFTERGLOW_TRY(made.build, built.stack->evaluate(*request.context));
+    AFTERGLOW_TRY(made.work, built.stack->work({.build = made.build, .encoding = request.encoding}));
+    work = std::move(made);
   }
   return built;
 }
 
+bool LiveBuilder::Basis::serves(const Basis& other) const {
+  return choice.execution == other.choice.execution && choice.max_error == other.choice.max_error &&
+         same_program(work, other.work);
+}
+
 Result<void> LiveBuilder::build(const LiveRequest& request, BuildTimes& times) {
   const auto start = Clock::now();
-  std::optional<StackWork> work;
-  Result<BuiltStack> built = Error{};
-  FileLooks looks;
-  {
-    const FileTrace trace;
-    built = load(request, work);
-    looks = trace.looks();
-  }
+  std::optional<Basis> work;
+  const auto record = std::make_shared<FileRecord>();
+  Result<BuiltStack> built = load(request, record, work);
   {
     const std::lock_guard lock(mutex_);
     until_->store(kNever);  // from now on the script is the stack's, and nobody interrupts it
     until_.reset();
   }
-  follow(std::move(looks));
+  follow(*record->looks());
   times.script = milliseconds_since(start);
   if (!built) return std::move(built).error();
-  if (work && basis_ && !request.for_frame && same_work(*basis_, *work)) {
+  built->files = record->looks();
+  if (work && basis_ && !request.for_frame && basis_->serves(*work)) {
     times.kind = BuildTimes::Kind::values;
     publish(std::move(*built), times);
     return {};
@@ -215,10 +221,10 @@ Result<void> LiveBuilder::build(const LiveRequest& request, BuildTimes& times) {
       give_up(request.for_frame);
       return {};
     }
-    StackShared& shared = *options_.stack.shared;
+    SharedKernels& shared = *options_.stack.shared;
     const auto pipelines = shared.pipelines.counters();
     const int compiled = shared.compiler.counters().compiled;
-    AFTERGLOW_CHECK(built->stack->prepare_built(request.encoding));
+    AFTERGLOW_CHECK(built->stack->prepare(request_for(work->build, request.encoding)));
     const auto after = shared.pipelines.counters();
     times.pipeline = after.milliseconds - pipelines.milliseconds;
     times.shader = std::max(0.0, built->stack->compile_milliseconds() - times.pipeline);
@@ -243,7 +249,10 @@ void LiveBuilder::warm_up(Stack& stack, BuildTimes& times) {
     if (!made) return;
     warm_up_ = std::move(made).value();
   }
-  (void)stack.warm_up(*warm_up_);
+  const ProgramCache& programs = *stack.programs();
+  if (programs.program())
+    (void)warm_up_->draw(stack.shaders(), options_.stack.shared->compiler, programs.work()->graph,
+                         programs.program_options());
   times.warm_up = milliseconds_since(start);
 }
 
@@ -376,7 +385,7 @@ LiveStack::Counters LiveBuilder::counters() const {
     counters = counters_;
     counters.stacks = static_cast<std::uint64_t>(token_.use_count()) - 1;
   }
-  const StackShared& shared = *options_.stack.shared;
+  const SharedKernels& shared = *options_.stack.shared;
   counters.compiled = static_cast<std::uint64_t>(shared.compiler.counters().compiled);
   const auto pipelines = shared.pipelines.counters();
   counters.pipelines = pipelines.made;

@@ -11,8 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/file_trace.h"
+#include "core/file_record.h"
 #include "core/stopwatch.h"
+#include "exec/cpu/warm_up.h"
 #include "session/live.h"
 
 namespace afterglow {
@@ -38,7 +39,8 @@ struct BuiltStack {
   std::shared_ptr<Heard> heard;
   std::unique_ptr<Diagnostics> diagnostics;
   std::unique_ptr<Stack> stack;
-  bool for_frame = false;  ///< see LiveRequest
+  std::shared_ptr<const FileLooks> files{};  ///< that the build has looked at
+  bool for_frame = false;                    ///< see LiveRequest
 };
 
 /// Builds that have not been taken yet: a stack, and newer scripts for it or for the one that is shown.
@@ -77,13 +79,22 @@ class LiveBuilder {
     void note(Clock::time_point when) { since = std::min(since.value_or(when), when); }
   };
   using Until = std::atomic<Clock::rep>;
+  /// What the programs of a stack are made for.
+  struct Basis {
+    std::shared_ptr<const Build> build;
+    FrameWork work;
+    StackChoice choice;
+    /// Would programs that are made for one do for the other, with other values?
+    bool serves(const Basis& other) const;
+  };
 
   void run();
   void files_may_differ(Clock::time_point since, bool polled);
   void overtake();
   void work(const Wanted& why, const LiveRequest& request);
   Result<void> build(const LiveRequest& request, BuildTimes& times);
-  Result<BuiltStack> load(const LiveRequest& request, std::optional<StackWork>& work);
+  Result<BuiltStack> load(const LiveRequest& request, const std::shared_ptr<FileRecord>& record,
+                          std::optional<Basis>& work);
   BuiltStack new_stack();
   void publish(BuiltStack built, const BuildTimes& times);
   void fail(Error error);
@@ -102,9 +113,9 @@ class LiveBuilder {
   Diagnostics& diagnostics_;
 
   // Of the builder's thread alone.
-  FileLooks looks_;                 ///< of the last build
-  FileLooks later_looks_;           ///< of frames since
-  std::optional<StackWork> basis_;  ///< of the newest stack that was built
+  FileLooks looks_;             ///< of the last build
+  FileLooks later_looks_;       ///< of frames since
+  std::optional<Basis> basis_;  ///< of the newest stack that was built
   Clock::time_point published_at_{};
   std::unique_ptr<WarmUp> warm_up_;
   bool may_warm_up_;

@@ -8,12 +8,9 @@ namespace afterglow {
 
 struct LiveSession::State {
   std::unique_ptr<LiveStack> live;
-  std::unique_ptr<FrameRunner> runner;  // first to go: it waits for what is in flight
+  std::unique_ptr<Renderer> renderer;  // first to go: it waits for what is in flight
   std::optional<BuildContext> context;  ///< of the last frame
-  FrameTimes times;
-  std::vector<Skipped> skipped_now;
-  Program* ran = nullptr;
-  std::uint64_t ran_in = 0;  ///< LiveStack::stacks_taken when `ran` was of the stack
+  FrameReport last;                     ///< of it
   bool aside = false, waits = false;
   int misses = 0;  ///< builds in a row that came too late for the frame that they were for
   /// Kernels of a program, timed in turns.
@@ -25,11 +22,14 @@ struct LiveSession::State {
   } timed;
 
   /// What ran last, as long as it is there.
-  Program* alive() const { return live->stacks_taken() == ran_in ? ran : nullptr; }
+  Program* alive() const {
+    Stack* stack = live->stack();
+    return stack && last.program != 0 ? stack->programs()->program(last.program) : nullptr;
+  }
 
-  Result<void> prepare(const BuildContext& next);
-  Result<bool> prepare_aside(const BuildContext& next);
-  FrameRunner::Choose choose();
+  Result<RenderRequest> prepare(const BuildContext& next);
+  Result<RenderRequest> request_of(Stack& stack) const;
+  bool there_or_late(const FrameWork& work);
 };
 
 LiveSession::LiveSession(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -39,52 +39,46 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(Device& device, const std
                                                        const LiveOptions& options, Diagnostics& diagnostics) {
   auto state = std::make_unique<State>();
   AFTERGLOW_TRY(state->live, LiveStack::open(device, preset, options, diagnostics));
-  AFTERGLOW_TRY(state->runner, FrameRunner::create(device, options.stack.max_memory));
+  AFTERGLOW_TRY(state->renderer, Renderer::create(device, {.max_memory = options.stack.max_memory}));
   return std::unique_ptr<LiveSession>(new LiveSession(std::move(state)));
 }
 
 LiveStack& LiveSession::live() { return *state_->live; }
-DeviceImages LiveSession::images() const { return state_->runner->images(); }
-const FrameTimes& LiveSession::times() const { return state_->times; }
-FrameRunner::Counters LiveSession::counters() const { return state_->runner->counters(); }
+DeviceImages LiveSession::images() const { return state_->renderer->images(); }
+const FrameTimes& LiveSession::times() const { return state_->last.times; }
+Renderer::Counters LiveSession::counters() const { return state_->renderer->counters(); }
 Result<void> LiveSession::read_result(HostResult& out, const std::optional<Rect>& part) {
-  return state_->runner->read_result(out, part);
+  return state_->renderer->read_result(out, part);
 }
 
-namespace {
-
-Result<bool> made(Result<void> prepared) {
-  if (!prepared) return std::move(prepared).error();
-  return true;
-}
-
-}  // namespace
-
-/// The stack as it is now, for this frame.
-Result<void> LiveSession::State::prepare(const BuildContext& next) {
+/// What the stack as it is now runs for this frame: nothing without a stack, and nothing new while `waits`.
+Result<RenderRequest> LiveSession::State::prepare(const BuildContext& next) {
   const bool new_shape = !context || context->size != next.size || context->auxiliary != next.auxiliary;
   context = next;
   live->set_context(next);
   if (new_shape) live->settle();
   live->update();
   Stack* stack = live->stack();
-  if (!stack) return {};
-  const FileTrace trace;
-  const auto prepared = aside && !new_shape ? prepare_aside(next) : made(stack->prepare(next));
-  live->also_follow(trace.looks());
-  if (!prepared) return prepared.error();
-  waits = !*prepared;
-  return {};
+  if (!stack) return RenderRequest{};
+  auto request = request_of(*stack);
+  live->also_follow(stack->preset().looked_at());
+  if (request && aside && !new_shape) waits = !there_or_late(request->work);
+  return request;
 }
 
-/// False while the frame's structure is being built.
-Result<bool> LiveSession::State::prepare_aside(const BuildContext& next) {
+Result<RenderRequest> LiveSession::State::request_of(Stack& stack) const {
+  AFTERGLOW_TRY(auto build, stack.evaluate(*context));
+  return stack.request(request_for(std::move(build)));
+}
+
+/// False when the frame's structure is to be built beside the drawing thread.
+bool LiveSession::State::there_or_late(const FrameWork& work) {
   constexpr int kMostMisses = 3;  // then the structure moves faster than builds come
-  Stack& stack = *live->stack();
-  AFTERGLOW_TRY(const bool there, stack.prepare_if_made(next));
+  const ProgramCache& programs = *live->stack()->programs();
+  const bool there = programs.has(work) || !work.runs() || !programs.work();
   if (there || misses >= kMostMisses) {
     misses = 0;
-    return there ? Result<bool>(true) : made(stack.prepare(next));
+    return true;
   }
   if (!live->building()) {
     live->build_for_frame();
@@ -93,30 +87,16 @@ Result<bool> LiveSession::State::prepare_aside(const BuildContext& next) {
   return false;
 }
 
-/// Frames whose content makes effects idle run without them.
-FrameRunner::Choose LiveSession::State::choose() {
-  if (!live->stack() || !live->stack()->depends_on_content()) return {};
-  return [this](float brightest) -> Result<Program*> {
-    AFTERGLOW_TRY(const IdlePrograms::Choice choice, live->stack()->program_for(brightest));
-    skipped_now = *choice.skipped;
-    return ran = choice.program;
-  };
-}
-
 Result<void> LiveSession::process(const Picture& picture, const BuildContext& frame, KernelTiming timing) {
   State& s = *state_;
   s.waits = false;
-  const auto prepared = s.prepare(context_of(picture, frame));
-  if (prepared && s.waits) return {};
-  s.ran = nullptr;
-  s.ran_in = s.live->stacks_taken();
-  s.skipped_now.clear();
-  AFTERGLOW_CHECK(prepared);
-  const Stack* stack = s.live->stack();
-  s.ran = stack && stack->runs() ? s.live->stack()->program() : nullptr;
-  const auto inputs = picture_inputs(picture, s.ran ? s.ran->graph() : Graph{});
-  AFTERGLOW_TRY(s.times, s.runner->run_on_device(s.ran, inputs, timing, s.ran ? s.choose() : FrameRunner::Choose{}));
-  for (auto& kept : kept_of(s.times)) s.skipped_now.push_back(std::move(kept));
+  auto request = s.prepare(context_of(picture, frame));
+  if (request && s.waits) return {};
+  s.last = {};
+  if (!request) return std::move(request).error();
+  request->inputs = picture_inputs(picture, request->work.graph);
+  request->timing = timing;
+  AFTERGLOW_TRY(s.last, s.renderer->show(std::move(*request)));
   return {};
 }
 
@@ -137,7 +117,7 @@ Result<bool> LiveSession::time_a_kernel() {
     s.timed = {.program = program->id(), .next = 0, .all = false, .times = std::move(times)};
   }
   const std::size_t kernel = s.timed.next;
-  AFTERGLOW_TRY(const auto milliseconds, s.runner->time_kernel(*program, kernel));
+  AFTERGLOW_TRY(const auto milliseconds, s.renderer->time_kernel(*program, kernel));
   if (!milliseconds) return false;
   s.timed.times[kernel].milliseconds = *milliseconds;
   s.timed.next = (kernel + 1) % kernels.size();
@@ -162,16 +142,11 @@ std::vector<Skipped> LiveSession::skipped() const {
   const State& s = *state_;
   std::vector<Skipped> out;
   if (const Stack* stack = s.live->stack()) out = stack->skipped();
-  out.insert(out.end(), s.skipped_now.begin(), s.skipped_now.end());
+  out.insert(out.end(), s.last.skipped.begin(), s.last.skipped.end());
   return out;
 }
 
-std::vector<std::string> LiveSession::kernels() const {
-  std::vector<std::string> names;
-  if (const Program* ran = state_->alive())
-    for (const auto& kernel : ran->plan().kernels) names.push_back(kernel.name);
-  return names;
-}
+std::vector<std::string> LiveSession::kernels() const { return state_->last.kernels; }
 
 ProgramMemory LiveSession::memory() const {
   Stack* stack = state_->live->stack();

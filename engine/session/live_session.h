@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "exec/frame.h"
 #include "image/picture.h"
 #include "session/live.h"
 
@@ -45,9 +44,9 @@ class LiveSession {
   /// Whether all kernels of the last frame's program have been timed since it was made.
   bool all_timed() const;
 
-  /// Of the last `process`. See FrameRunner::images.
+  /// Of the last `process`. See Renderer::images.
   DeviceImages images() const;
-  /// Reads the result back; an error when nothing had to run (`images().ran`). See FrameRunner::read_result.
+  /// Reads the result back; an error when nothing had to run (`images().ran`). See Renderer::read_result.
   Result<void> read_result(HostResult& out, const std::optional<Rect>& part = {});
 
   const FrameTimes& times() const;  ///< of the last frame
@@ -55,7 +54,7 @@ class LiveSession {
   std::vector<Skipped> skipped() const;
   std::vector<std::string> kernels() const;  ///< that the last frame's program has, joined passes as "a+b"
   ProgramMemory memory() const;
-  FrameRunner::Counters counters() const;
+  Renderer::Counters counters() const;
 
  private:
   struct State;

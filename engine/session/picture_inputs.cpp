@@ -1,7 +1,5 @@
 #include "session/picture_inputs.h"
 
-#include <fmt/format.h>
-
 namespace afterglow {
 namespace {
 
@@ -25,13 +23,6 @@ BuildContext context_of(const Picture& picture, const BuildContext& frame) {
   context.auxiliary.clear();
   for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
   return context;
-}
-
-std::vector<Skipped> kept_of(const FrameTimes& times) {
-  if (times.kernels_kept == 0) return {};
-  if (times.kernels_run == 0) return {{"frame", "its picture and settings are those of an earlier frame"}};
-  return {{fmt::format("{} of {} kernels", times.kernels_kept, times.kernels_kept + times.kernels_run),
-           "nothing that they read has changed"}};
 }
 
 }  // namespace afterglow

@@ -1,4 +1,4 @@
-// A picture as a FrameRunner takes it, and what a frame left undone. Internal to the room.
+// A picture as a Renderer takes it.
 #pragma once
 
 #include <map>
@@ -17,8 +17,5 @@ std::map<std::string, HostImage> picture_inputs(const Picture& picture, const Gr
 
 /// `frame` with the sizes of the picture.
 BuildContext context_of(const Picture& picture, const BuildContext& frame);
-
-/// What a frame did not do because it was done before.
-std::vector<Skipped> kept_of(const FrameTimes& times);
 
 }  // namespace afterglow

@@ -1,5 +1,6 @@
 #include "session/session.h"
 
+#include <deque>
 #include <future>
 
 #include "core/stopwatch.h"
@@ -38,13 +39,24 @@ struct Session::State {
   // Destroyed in reverse: what was made on the device goes before the device.
   std::unique_ptr<Device> device;
   std::unique_ptr<Stack> stack;
-  std::unique_ptr<FrameRunner> runner;
+  std::unique_ptr<Renderer> renderer;
   std::unique_ptr<Tracer> tracer;  ///< once a frame was traced
+  /// A frame that is in flight.
+  struct Frame {
+    Picture picture;
+    std::optional<DisplayEncoding> encoding;
+    std::optional<Rect> region;
+    std::vector<Skipped> skipped;
+    bool runs = false;
+  };
+  std::deque<Frame> frames;
+  FrameReport last;              ///< of the frame that was collected last
+  std::vector<Skipped> skipped;  ///< by no frame like that one
   HostResult result;
   bool flagged = false;  ///< the last frame's result
   SessionTimes times;
-  Program* ran = nullptr;  ///< in the last frame; null: nothing
-  std::vector<Skipped> skipped_now;
+
+  Result<void> submit(Picture& picture, FrameRequest request);
 };
 
 Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -71,60 +83,98 @@ Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& pres
   if (options.timing == KernelTiming::timestamps && !state->device->timestamps_mean_draws())
     state->options.timing = KernelTiming::submissions;
   state->times.device = opened.milliseconds;
-  AFTERGLOW_TRY(state->runner, FrameRunner::create(*state->device, options.stack.max_memory));
+  AFTERGLOW_TRY(state->renderer, Renderer::create(*state->device, {.max_memory = options.stack.max_memory,
+                                                                   .direct = options.direct,
+                                                                   .frames = options.frames}));
   return std::unique_ptr<Session>(new Session(std::move(state)));
 }
 
-Result<void> Session::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding,
-                              const std::optional<Rect>& region) {
-  state_->ran = nullptr;
-  AFTERGLOW_CHECK(state_->stack->prepare(context, encoding, region));
-  state_->ran = state_->stack->program();
+int Session::frames() const { return state_->renderer->frames(); }
+int Session::in_flight() const { return static_cast<int>(state_->frames.size()); }
+
+Result<void> Session::prepare(FrameRequest frame) {
+  AFTERGLOW_CHECK(state_->renderer->wait());
+  AFTERGLOW_CHECK(state_->stack->prepare(std::move(frame)));
+  state_->skipped = state_->stack->skipped();
   return {};
 }
 
 Result<void> Session::process(Picture& picture, const BuildContext& frame,
                               const std::optional<DisplayEncoding>& encoding, const std::optional<Rect>& region) {
-  const BuildContext context = context_of(picture, frame);
-  AFTERGLOW_CHECK(prepare(context, encoding, region));
-  state_->times.frame = {};
-  state_->result.clamped = 0;
-  state_->flagged = state_->result.flagged = false;
-  state_->skipped_now.clear();
-  if (!state_->stack->runs()) return {};
+  AFTERGLOW_TRY(auto build, evaluate(context_of(picture, frame)));
+  return process(picture, request_for(std::move(build), encoding, region));
+}
 
-  // The result replaces the source in its own memory. Effects never change alpha: the source's own values stay where
-  // they are, exact whatever the storage format.
-  HostResult& result = state_->result;
-  const auto inputs = picture_inputs(picture, state_->stack->prepared_graph());
-  result.pixels = std::move(picture.color.pixels);
-  result.keep_alpha = true;
-  picture.content.erase("source");
-  FrameRunner::Choose choose;
-  if (state_->stack->depends_on_content())
-    choose = [this](float brightest) -> Result<Program*> {
-      AFTERGLOW_TRY(const IdlePrograms::Choice choice, state_->stack->program_for(brightest));
-      state_->skipped_now = *choice.skipped;
-      return state_->ran = choice.program;
-    };
-  auto times = state_->runner->run(*state_->stack->program(), inputs, result, state_->options.timing, choose);
-  picture.color.pixels = std::move(result.pixels);
-  picture.codes = std::move(result.codes);
-  if (!times) return std::move(times).error();
-  state_->times.frame = std::move(times).value();
-  state_->flagged = result.flagged;
-  if (result.flagged && encoding && encoding->straight_alpha && !picture.codes.empty())
-    state_->flagged = lost_alpha(picture, region.value_or(Rect{0, 0, context.size.width, context.size.height}));
-  for (auto& kept : kept_of(state_->times.frame)) state_->skipped_now.push_back(std::move(kept));
+Result<void> Session::process(Picture& picture, FrameRequest request) {
+  State& s = *state_;
+  if (!s.frames.empty()) return Error{ErrorKind::other, "frames are in flight"};
+  auto submitted = s.submit(picture, std::move(request));
+  return submitted ? collect(picture) : submitted;
+}
+
+Result<void> Session::submit(Picture picture, FrameRequest request) {
+  return state_->submit(picture, std::move(request));
+}
+
+/// Takes the picture; on errors it stays.
+Result<void> Session::State::submit(Picture& picture, FrameRequest request) {
+  Frame frame{.picture = {},
+              .encoding = request.encoding,
+              .region = request.region,
+              .skipped = {},
+              .runs = false};
+  AFTERGLOW_TRY(RenderRequest render, stack->request(std::move(request)));
+  frame.runs = render.work.runs();
+  if (frame.runs) {
+    render.inputs = picture_inputs(picture, render.work.graph);
+    render.timing = options.timing;
+    AFTERGLOW_CHECK(renderer->submit(std::move(render)));
+  } else {
+    AFTERGLOW_CHECK(renderer->wait());
+    AFTERGLOW_CHECK(stack->programs()->prepare(std::move(render.work), stack->shaders()));
+  }
+  frame.skipped = stack->skipped();
+  if (frame.runs) picture.content.erase("source");
+  frame.picture = std::move(picture);
+  frames.push_back(std::move(frame));
   return {};
 }
 
-Result<Trace> Session::trace(const Picture& picture, const BuildContext& frame,
-                             const std::optional<DisplayEncoding>& encoding, const std::optional<Rect>& region,
-                             NanPolicy policy) {
-  AFTERGLOW_CHECK(state_->stack->prepare(context_of(picture, frame), encoding, region));
+Result<void> Session::collect(Picture& picture) {
+  State& s = *state_;
+  if (s.frames.empty()) return Error{ErrorKind::other, "no frame is in flight"};
+  State::Frame frame = std::move(s.frames.front());
+  s.frames.pop_front();
+  picture = std::move(frame.picture);
+  s.last = {};
+  s.times.frame = {};
+  s.result.clamped = 0;
+  s.flagged = s.result.flagged = false;
+  s.skipped = std::move(frame.skipped);
+  if (!frame.runs) return {};
+
+  // The result replaces the source in its own memory. Effects never change alpha: the source's own values stay where
+  // they are, exact whatever the storage format.
+  HostResult& result = s.result;
+  result.pixels = std::move(picture.color.pixels);
+  result.keep_alpha = true;
+  auto report = s.renderer->collect(result);
+  picture.color.pixels = std::move(result.pixels);
+  picture.codes = std::move(result.codes);
+  if (!report) return std::move(report).error();
+  s.last = std::move(*report);
+  s.times.frame = s.last.times;
+  s.flagged = result.flagged;
+  if (result.flagged && frame.encoding && frame.encoding->straight_alpha && !picture.codes.empty())
+    s.flagged = lost_alpha(picture, frame.region.value_or(Rect{0, 0, picture.color.width, picture.color.height}));
+  return {};
+}
+
+Result<Trace> Session::trace(const Picture& picture, const FrameRequest& request, NanPolicy policy) {
+  AFTERGLOW_CHECK(state_->renderer->wait());
+  AFTERGLOW_CHECK(state_->stack->prepare(request));
   if (!state_->tracer) state_->tracer = std::make_unique<Tracer>(*state_->device, state_->options.stack.max_memory);
-  return state_->tracer->run(*state_->stack, picture, frame, region, policy);
+  return state_->tracer->run(*state_->stack, picture, request, policy);
 }
 
 SessionReport Session::report() const {
@@ -135,14 +185,14 @@ SessionReport Session::report() const {
   report.preset = state_->preset_file;
   report.choice = stack.choice();
   report.reference = state_->options.stack.reference;
-  report.skipped = stack.skipped();
-  report.skipped_now = state_->skipped_now;
-  report.counters = {.programs = stack.programs(),
-                     .images = state_->runner->counters().images,
-                     .buffers = state_->runner->counters().buffers};
-  if (state_->ran)
-    for (const auto& kernel : state_->ran->plan().kernels) report.kernels.push_back(kernel.name);
-  if (const Program* program = state_->stack->program()) report.memory = program->memory();
+  report.skipped = state_->skipped;
+  report.skipped_now = state_->last.skipped;
+  report.counters = {.programs = state_->stack->programs()->programs(),
+                     .images = state_->renderer->counters().images,
+                     .buffers = state_->renderer->counters().buffers,
+                     .evaluations = state_->stack->preset().evaluations()};
+  report.kernels = state_->last.kernels;
+  report.memory = state_->last.memory;
   report.clamped = state_->result.clamped;
   report.flagged = state_->flagged;
   report.times = state_->times;

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "exec/frame.h"
 #include "image/picture.h"
 #include "session/stack.h"
 #include "session/trace.h"
@@ -18,6 +17,10 @@ struct SessionOptions {
   DeviceOptions device;
   StackOptions stack;
   KernelTiming timing = KernelTiming::none;
+  /// Frames in flight at most, where pixels take the way over staging buffers: see RendererOptions.
+  int frames = 1;
+  /// False takes that way on every device.
+  bool direct = true;
 };
 
 /// Milliseconds: since the session began (device, script, compile) and of the last frame (upload, execute, read-back).
@@ -42,7 +45,8 @@ struct SessionReport {
   SessionTimes times;
   struct Counters {
     int programs = 0, images = 0, buffers = 0;
-  } counters;  ///< objects made so far; steady frames leave them alone
+    std::uint64_t evaluations = 0;  ///< of the preset: one a frame
+  } counters;                       ///< objects made so far; steady frames leave them alone
 };
 
 /// Not thread-safe.
@@ -57,21 +61,32 @@ class Session {
   Preset& preset() { return stack().preset(); }
   Device& device();
 
-  /// Makes everything that a picture of this size needs; `process` does it otherwise. May run while the picture is
-  /// being read.
-  Result<void> prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding = {},
-                       const std::optional<Rect>& region = {});
+  /// See Stack::evaluate: once a frame, for all that is asked about it and done with it.
+  Result<std::shared_ptr<const Build>> evaluate(const BuildContext& context) { return stack().evaluate(context); }
+  /// Makes everything that a frame needs; `process` does it otherwise. May run while the picture is being read.
+  Result<void> prepare(FrameRequest frame);
+  /// How many frames may be in flight: submitted and not collected.
+  int frames() const;
+  int in_flight() const;
+  /// The first half of `process`, which goes on while the device works. A frame that nothing runs for is in flight like
+  /// any other. Errors: as of `process`; the picture is lost then.
+  Result<void> submit(Picture picture, FrameRequest request);
+  /// The second half, of the oldest frame that is in flight; `report` is of it then. `picture` gets what was submitted,
+  /// as `process` leaves it, also where it fails.
+  Result<void> collect(Picture& picture);
+
   /// Runs the stack: `picture.color` becomes the result; its alpha stays. A stack with nothing to do leaves the picture
-  /// untouched. `frame` gives frame number, time and fps; sizes are taken from the picture.
+  /// untouched. The request's build was evaluated for this size and these auxiliary images.
   /// With `encoding` the result may come as `picture.codes` instead, and `picture.color` stays the source.
   /// With `region`, in pixels of the picture and within it, that part of the result is made and the rest is undefined.
   /// Pictures whose `content` is known and was there before are not run again while settings stay.
+  Result<void> process(Picture& picture, FrameRequest request);
+  /// Evaluates and processes: `frame` gives frame number, time and fps; sizes are taken from the picture.
   Result<void> process(Picture& picture, const BuildContext& frame = {},
                        const std::optional<DisplayEncoding>& encoding = {}, const std::optional<Rect>& region = {});
   /// Which passes make what is not finite in a frame, and its mended result: see session/trace.h. The frame that was
   /// processed last, or the next one that will be; arguments are those of `process`.
-  Result<Trace> trace(const Picture& picture, const BuildContext& frame, const std::optional<DisplayEncoding>& encoding,
-                      const std::optional<Rect>& region, NanPolicy policy);
+  Result<Trace> trace(const Picture& picture, const FrameRequest& request, NanPolicy policy);
   SessionReport report() const;
 
  private:

@@ -1,20 +1,20 @@
 #include "session/stack.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "core/stopwatch.h"
+#include "exec/calibration.h"
 #include "graph/history.h"
-#include "graph/plan.h"
+#include "graph/memory.h"
 #include "graph/region.h"
-#include "session/stack_state.h"
-#include "shader/kernel.h"
 
 namespace afterglow {
 namespace {
 
-constexpr Choice kReference{.joining = Joining::none, .share_memory = false};
+constexpr ExecutionConfig kReference{.joining = Joining::none, .share_memory = false};
 
 StackChoice choose(const Device& device, const StackOptions& options, const Calibration& calibration,
                    double max_error) {
@@ -33,6 +33,24 @@ StackChoice choose(const Device& device, const StackOptions& options, const Cali
 
 }  // namespace
 
+struct Stack::State {
+  StackOptions options;
+  std::shared_ptr<SharedKernels> shared;
+  Diagnostics* diagnostics = nullptr;
+  std::unique_ptr<ShaderLibrary> shaders;
+  std::optional<Preset> preset;
+  std::string shown;
+  std::vector<std::string> images;  ///< of the last graph
+  bool shows = true;
+  Calibration calibration;
+  StackChoice choice;
+  std::shared_ptr<const Build> build;      ///< that was prepared last
+  std::unique_ptr<ProgramCache> programs;  ///< null without a device
+  double script_ms = 0;
+
+  void cut(Graph& graph);
+};
+
 Stack::Stack(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Stack::~Stack() = default;
 
@@ -41,192 +59,160 @@ Result<std::unique_ptr<Stack>> Stack::load(const std::filesystem::path& preset, 
   const auto start = Clock::now();
   auto state = std::make_unique<State>();
   state->options = options;
-  state->scripts.diagnostics = &diagnostics;
-  state->scripts.shaders = std::make_unique<ShaderLibrary>(search_path_for(preset, options.preset.paths));
+  state->diagnostics = &diagnostics;
+  state->shaders =
+      std::make_unique<ShaderLibrary>(search_path_for(preset, options.preset.paths, options.preset.record));
   const auto& cache = options.cache_folder;
   state->shared = options.shared;
-  if (!state->shared) state->shared = std::make_shared<StackShared>(cache.empty() ? cache : cache / "shaders");
-  AFTERGLOW_TRY(Preset loaded, Preset::load(preset, options.preset, *state->scripts.shaders, diagnostics));
-  state->scripts.preset.emplace(std::move(loaded));
+  if (!state->shared) state->shared = std::make_shared<SharedKernels>(cache.empty() ? cache : cache / "shaders");
+  AFTERGLOW_TRY(Preset loaded, Preset::load(preset, options.preset, *state->shaders, diagnostics));
+  state->preset.emplace(std::move(loaded));
   AFTERGLOW_TRY(state->calibration,
                 options.calibration.empty() ? Calibration::shipped() : Calibration::load(options.calibration));
-  state->choice.max_error =
-      options.max_error.value_or(state->scripts.preset->max_error().value_or(state->choice.max_error));
+  state->choice.max_error = options.max_error.value_or(state->preset->max_error().value_or(state->choice.max_error));
   state->script_ms = milliseconds_since(start);
   return std::unique_ptr<Stack>(new Stack(std::move(state)));
 }
 
-Preset& Stack::preset() { return *state_->scripts.preset; }
-bool Stack::runs() const { return state_->prepared && state_->graph.result != state_->graph.source; }
-Program* Stack::program() { return state_->program.get(); }
-const Graph& Stack::prepared_graph() const { return state_->graph; }
+Preset& Stack::preset() { return *state_->preset; }
+ShaderLibrary& Stack::shaders() { return *state_->shaders; }
+ProgramCache* Stack::programs() { return state_->programs.get(); }
+Program* Stack::program() const { return state_->programs ? state_->programs->program() : nullptr; }
+const std::shared_ptr<const Build>& Stack::build() const { return state_->build; }
 const StackChoice& Stack::choice() const { return state_->choice; }
+void Stack::show(const std::string& image) { state_->shown = image; }
+bool Stack::shows() const { return state_->shows; }
+const std::vector<std::string>& Stack::images() const { return state_->images; }
+double Stack::script_milliseconds() const { return state_->script_ms; }
+double Stack::compile_milliseconds() const { return state_->programs ? state_->programs->milliseconds() : 0; }
+
+bool Stack::runs() const {
+  const FrameWork* work = state_->programs ? state_->programs->work() : nullptr;
+  return work && work->runs();
+}
 
 std::vector<Skipped> Stack::skipped() const {
-  std::vector<Skipped> all = state_->graph.skipped;
-  if (const Program* program = state_->program.get()) {
+  const FrameWork* work = state_->programs ? state_->programs->work() : nullptr;
+  if (!work) return {};
+  std::vector<Skipped> all = work->graph.skipped;
+  if (const Program* program = this->program()) {
     all.insert(all.end(), program->plan().skipped.begin(), program->plan().skipped.end());
-    if (state_->region) all.push_back(skipped_pixels(program->graph(), program->plan(), program->parts()));
+    if (work->region) all.push_back(skipped_pixels(program->graph(), program->plan(), program->parts()));
   }
   return all;
 }
 
-double Stack::script_milliseconds() const { return state_->script_ms; }
-double Stack::compile_milliseconds() const { return state_->compile_ms; }
-
 VkFormat Stack::result_format() const {
-  if (state_->program) return state_->program->result_format();
+  if (const Program* program = this->program()) return program->result_format();
   return state_->choice.execution.storage == Storage::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT
                                                            : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
-Result<Graph> Stack::graph(const BuildContext& context) { return state_->build(context, {}); }
-
-void Stack::show(const std::string& image) { state_->scripts.shown = image; }
-bool Stack::shows() const { return state_->shows; }
-const std::vector<std::string>& Stack::images() const { return state_->images; }
-
-Result<StackWork> Stack::build(const BuildContext& context, const std::optional<DisplayEncoding>& encoding) {
-  AFTERGLOW_TRY(state_->graph, state_->build(context, encoding));
-  AFTERGLOW_TRY(state_->texts, state_->texts_of(state_->graph));
-  state_->prepared = false;
-  return StackWork{state_->graph, *state_->texts, state_->choice};
+Result<std::shared_ptr<const Build>> Stack::evaluate(const BuildContext& context) {
+  const auto start = Clock::now();
+  AFTERGLOW_TRY(Build build, state_->preset->evaluate(context, *state_->diagnostics));
+  state_->script_ms += milliseconds_since(start);
+  return std::make_shared<const Build>(std::move(build));
 }
 
-bool same_work(const StackWork& a, const StackWork& b) {
-  return a.texts == b.texts && a.choice.execution == b.choice.execution && a.choice.max_error == b.choice.max_error &&
-         same_structure(a.graph, b.graph);
+/// Ends the graph at the image that is shown. Passes behind it are dropped as nobody reads them.
+void Stack::State::cut(Graph& graph) {
+  images.assign(1, graph.images[graph.source].name);
+  for (const auto& pass : graph.passes) images.push_back(graph.images[pass.output].name);
+  const auto found = shown.empty() ? images.end() : std::ranges::find(images, shown);
+  shows = shown.empty() || found != images.end();
+  if (!shows)
+    diagnostics->warn_once("show " + shown,
+                           fmt::format("the graph has no image '{}': the result is shown in its place", shown));
+  if (found == images.end()) return;
+  graph.result = found == images.begin() ? graph.source : graph.passes[found - images.begin() - 1].output;
+  separate_result(graph);
 }
 
-Result<void> Stack::prepare_built(const std::optional<DisplayEncoding>& encoding) {
-  state_->prepared = true;
-  state_->region.reset();
-  state_->encoded = encoding && !state_->options.reference && runs();
-  return state_->make();
+Result<FrameWork> Stack::work(const FrameRequest& frame) {
+  FrameWork work{.graph = frame.build->graph,
+                 .texts = {},
+                 .region = frame.region,
+                 .codes = false,
+                 .frame = frame.build->context.frame,
+                 .step = frame.step,
+                 .restart = frame.restart};
+  state_->cut(work.graph);
+  AFTERGLOW_CHECK(validate(work.graph));
+  work.codes = frame.encoding && !state_->options.reference && work.runs();
+  if (work.codes) encode_for_display(work.graph, *frame.encoding);
+  AFTERGLOW_TRY(work.texts, texts_of(work.graph, *state_->shaders));
+  return work;
 }
 
-void Stack::adopt(Stack& later) {
-  std::swap(state_->scripts, later.state_->scripts);
-  std::swap(state_->options.preset, later.state_->options.preset);
-  state_->adopted = true;
+Result<RenderRequest> Stack::request(FrameRequest frame) {
+  RenderRequest request{.programs = state_->programs.get(), .shaders = state_->shaders.get()};
+  AFTERGLOW_TRY(request.work, work(frame));
+  state_->build = std::move(frame.build);
+  return request;
 }
 
-Result<std::uint64_t> Stack::memory_needed(const BuildContext& context) {
-  AFTERGLOW_TRY(const Graph graph, this->graph(context));
-  const bool reference = state_->options.reference;
-  const std::uint64_t bytes_per_pixel = state_->options.precision == Precision::fp16 && !reference ? 8 : 16;
-  const Plan plan = make_plan(graph, {.joining = reference ? Joining::none : Joining::all});
-  std::vector<Block> blocks;
-  std::uint64_t kept = 0;
-  for (std::size_t i = 0; i < plan.transient.size(); ++i) {
-    const auto pixels = static_cast<std::uint64_t>(graph.images[plan.transient[i]].size.area());
-    // Both images of a history have memory of their own; one of them counts among the inputs below.
-    if (history_of_next(graph, plan.transient[i])) {
-      kept += pixels * (is_precise(graph, plan.transient[i]) ? 32 - bytes_per_pixel : bytes_per_pixel);
-      continue;
-    }
-    blocks.push_back({pixels * bytes_per_pixel, 1, plan.lifetimes[i].first, plan.lifetimes[i].last});
-  }
-  std::uint64_t total = kept + place(blocks, !reference && !state_->options.keep_images).total;
-  for (const auto& image : graph.images)
-    if (image.producer < 0) total += static_cast<std::uint64_t>(image.size.area()) * bytes_per_pixel;
-  return total;
+std::uint64_t Stack::memory_needed(const Build& build) const {
+  const StackOptions& options = state_->options;
+  ExecutionConfig config = options.reference ? kReference : ExecutionConfig{};
+  if (options.precision == Precision::fp16 && !options.reference) config.storage = Storage::fp16;
+  if (options.keep_images) config.share_memory = false;
+  return afterglow::memory_needed(build.graph, config);
 }
 
 void Stack::use(Device& device, bool own_images) {
-  state_->device = &device;
-  state_->own_images = own_images;
-  state_->choice = choose(device, state_->options, state_->calibration, state_->choice.max_error);
-  if (const auto& cache = state_->options.cache_folder; !cache.empty() && !state_->options.shared)
+  const StackOptions& options = state_->options;
+  state_->choice = choose(device, options, state_->calibration, state_->choice.max_error);
+  if (const auto& cache = options.cache_folder; !cache.empty() && !options.shared)
     device.use_pipeline_cache((cache / "pipelines").string());
+  state_->programs = std::make_unique<ProgramCache>(device, state_->shared,
+                                                    ProgramCacheOptions{.config = state_->choice.execution,
+                                                                        .reference = options.reference,
+                                                                        .own_images = own_images,
+                                                                        .skip_idle = options.skip_idle,
+                                                                        .flag_non_finite = options.flag_non_finite,
+                                                                        .keep_images = options.keep_images,
+                                                                        .spare = options.spare_programs,
+                                                                        .max_memory = options.max_memory});
+}
+
+Result<void> Stack::prepare(FrameRequest frame) {
+  AFTERGLOW_TRY(FrameWork work, this->work(frame));
+  state_->build = std::move(frame.build);
+  return state_->programs->prepare(std::move(work), *state_->shaders);
 }
 
 Result<void> Stack::prepare(const BuildContext& context, const std::optional<DisplayEncoding>& encoding,
                             const std::optional<Rect>& region) {
-  AFTERGLOW_TRY(auto next, state_->look_ahead(context, encoding, region));
-  return state_->take(std::move(next), context);
+  AFTERGLOW_TRY(auto build, evaluate(context));
+  return prepare(request_for(std::move(build), encoding, region));
 }
 
-Result<bool> Stack::prepare_if_made(const BuildContext& context) {
-  AFTERGLOW_TRY(auto next, state_->look_ahead(context, {}, {}));
-  const bool made =
-      next.present || next.spare != state_->spares.end() || next.graph.result == next.graph.source || !state_->prepared;
-  if (made) AFTERGLOW_CHECK(state_->take(std::move(next), context));
-  return made;
+void Stack::take_over(Stack& before, bool programs) {
+  if (!state_->programs || !before.state_->programs) return;
+  state_->programs->take_over(*before.state_->programs, programs);
 }
 
-void Stack::keep_programs_of(Stack& other) {
-  State &s = *state_, &from = *other.state_;
-  from.put_aside();
-  std::ranges::move(from.spares, std::back_inserter(s.spares));
-  from.spares.clear();
-  s.drop_spares();
-}
-
-Result<void> Stack::warm_up(WarmUp& on) {
-  if (!runs()) return {};
-  return on.draw(*state_->scripts.shaders, state_->shared->compiler, state_->graph, state_->options_of_programs());
-}
-
-Result<std::unique_ptr<Program>> Stack::program_by_passes(const Graph& graph, const std::optional<Rect>& region) const {
-  ProgramOptions options = program_options(kReference);
-  const bool halves = std::ranges::any_of(graph.histories, [](const History& history) { return !history.precise; });
-  if (halves) options.storage = state_->choice.execution.storage;
-  options.reference = true;
-  options.storage_reads = state_->choice.execution.storage_reads;  // as the histories are made
-  options.region = region;
-  options.max_memory = state_->options.max_memory;
-  options.pipelines = &state_->shared->pipelines;
-  options.histories = state_->histories;
-  return Program::create(*state_->device, *state_->scripts.shaders, state_->shared->compiler, graph, options);
+void Stack::reset_histories() {
+  if (state_->programs) state_->programs->reset_histories();
 }
 
 std::filesystem::path Stack::shader_file(const std::string& shader) const {
   if (shader.empty()) return {};
-  const auto found = state_->scripts.shaders->find(shader);
+  const auto found = state_->shaders->find(shader);
   return found ? (*found)->path : std::filesystem::path();
 }
 
-bool Stack::depends_on_content() const {
-  const StackOptions& options = state_->options;
-  return state_->program && options.skip_idle && !options.reference && !state_->graph.idle.empty();
-}
-
-Result<IdlePrograms::Choice> Stack::program_for(float brightest) {
-  const auto start = Clock::now();
-  const int before = state_->idle.size();
-  ProgramOptions options = state_->options_of_programs();
-  options.max_memory -= std::min(options.max_memory, state_->program->memory().arena);
-  auto choice = state_->idle.choose(*state_->device, *state_->scripts.shaders, state_->shared->compiler,
-                                    *state_->program, state_->graph, options, brightest);
-  if (state_->idle.size() > before) {
-    state_->device->save_pipeline_cache();
-    state_->compile_ms += milliseconds_since(start);
-  }
-  return choice;
-}
-
-const std::optional<Rect>& Stack::region() const { return state_->region; }
-int Stack::programs() const { return (state_->program ? 1 : 0) + state_->idle.size(); }
-
 Result<void> Stack::bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result) {
-  if (!state_->program) return {};
-  return state_->program->bind(inputs, result);
+  Program* program = this->program();
+  return program ? program->bind(inputs, result) : Result<void>();
 }
 
 void Stack::record(VkCommandBuffer commands) {
-  if (!state_->program) return;
-  state_->program->record(commands);
-  state_->histories->made();
-}
-
-void Stack::reset_histories() { state_->histories->reset(); }
-
-Result<void> Stack::take_histories(Stack& other) {
-  if (!state_->program) return {};
-  state_->histories->take(*other.state_->histories);
-  AFTERGLOW_CHECK(state_->program->use(state_->histories));
-  return state_->idle.use(state_->histories);
+  const Program* program = this->program();
+  if (!program) return;
+  program->record(commands);
+  state_->programs->made();
 }
 
 }  // namespace afterglow

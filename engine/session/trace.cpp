@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "exec/histories.h"
 #include "session/picture_inputs.h"
 
 namespace afterglow {
@@ -87,7 +86,7 @@ struct Tracer::State {
   GuardedGraph guarded;
   std::optional<Rect> region;
   std::unique_ptr<Program> program;
-  std::unique_ptr<FrameRunner> runner;  // last: it waits before the program goes
+  std::unique_ptr<Renderer> renderer;  // last: it waits before the program goes
 
   Result<void> prepare(Stack& stack, GuardedGraph wanted, const std::optional<Rect>& part);
   Result<std::optional<Image>> image(ImageId id);
@@ -101,15 +100,15 @@ Result<void> Tracer::State::prepare(Stack& stack, GuardedGraph wanted, const std
   const bool reusable = program && region == part && same_structure(guarded.graph, wanted.graph);
   guarded = std::move(wanted);
   region = part;
-  if (!runner) {
-    AFTERGLOW_TRY(runner, FrameRunner::create(device, max_memory));
+  if (!renderer) {
+    AFTERGLOW_TRY(renderer, Renderer::create(device, {.max_memory = max_memory}));
   }
   if (reusable) {
     program->set_parameters(guarded.graph);
     return {};
   }
   program.reset();
-  AFTERGLOW_TRY(program, stack.program_by_passes(guarded.graph, part));
+  AFTERGLOW_TRY(program, stack.programs()->by_passes(guarded.graph, part, stack.shaders()));
   return {};
 }
 
@@ -117,7 +116,7 @@ Result<void> Tracer::State::prepare(Stack& stack, GuardedGraph wanted, const std
 Result<std::optional<Image>> Tracer::State::image(ImageId id) {
   const auto transient = program->transient(id);
   if (!transient || !transient->kept) return std::optional<Image>();
-  AFTERGLOW_TRY(HostResult read, runner->read_image(*program, id));
+  AFTERGLOW_TRY(HostResult read, renderer->read_image(*program, id));
   Image out;
   out.width = transient->binding.size.width;
   out.height = transient->binding.size.height;
@@ -128,7 +127,7 @@ Result<std::optional<Image>> Tracer::State::image(ImageId id) {
 
 Result<void> Tracer::State::look(Stack& stack, const Graph& graph, Trace& trace) {
   for (const auto& history : graph.histories) {
-    if (!program->histories()->has_previous(history.name)) continue;
+    if (!program->has_previous(history.name)) continue;
     AFTERGLOW_TRY(const auto read, image(history.previous));
     if (!read) continue;
     const NonFinite found = find_in(*read, {0, 0, read->width, read->height});
@@ -152,18 +151,18 @@ Result<void> Tracer::State::look(Stack& stack, const Graph& graph, Trace& trace)
   return {};
 }
 
-Result<Trace> Tracer::run(Stack& stack, const Picture& picture, const BuildContext& frame,
-                          const std::optional<Rect>& region, NanPolicy policy) {
+Result<Trace> Tracer::run(Stack& stack, const Picture& picture, const FrameRequest& request, NanPolicy policy) {
   Trace trace;
-  AFTERGLOW_TRY(const Graph graph, stack.graph(context_of(picture, frame)));
+  AFTERGLOW_TRY(const FrameWork work, stack.work({.build = request.build}));
+  const Graph& graph = work.graph;
   trace.result = picture.color;
   if (graph.result == graph.source) return trace;
-  AFTERGLOW_CHECK(state_->prepare(stack, guard(graph, policy), region));
+  AFTERGLOW_CHECK(state_->prepare(stack, guard(graph, policy), request.region));
   const auto inputs = picture_inputs(picture, graph);
   HostResult result;
   result.pixels = std::move(trace.result.pixels);
   result.keep_alpha = true;
-  AFTERGLOW_CHECK(state_->runner->run(*state_->program, inputs, result, KernelTiming::none));
+  AFTERGLOW_CHECK(state_->renderer->run(*state_->program, inputs, result));
   trace.result.pixels = std::move(result.pixels);
   AFTERGLOW_CHECK(state_->look(stack, graph, trace));
   return trace;

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "exec/frame.h"
 #include "image/non_finite.h"
 #include "image/picture.h"
 #include "script/preset.h"
@@ -54,10 +53,9 @@ class Tracer {
  public:
   Tracer(Device& device, std::uint64_t max_memory);
   ~Tracer();
-  /// Makes the frame that the stack was prepared for last once more, from its picture. With `region`, only that part is
-  /// made and looked at. Errors: those of Stack::prepare and of FrameRunner::run.
-  Result<Trace> run(Stack& stack, const Picture& picture, const BuildContext& context,
-                    const std::optional<Rect>& region, NanPolicy policy);
+  /// Makes the frame that the stack was prepared for last once more, from its picture. With a region, only that part is
+  /// made and looked at. Errors: those of Stack::prepare and of Renderer::run.
+  Result<Trace> run(Stack& stack, const Picture& picture, const FrameRequest& request, NanPolicy policy);
 
  private:
   struct State;

@@ -7,12 +7,12 @@
 #include <iterator>
 
 #include "shader/axis.h"
+#include "shader/cpu/interleave.h"
+#include "shader/cpu/storage_reads.h"
 #include "shader/filter_head.h"
-#include "shader/interleave.h"
 #include "shader/kernel.h"
 #include "shader/prelude.h"
 #include "shader/rename.h"
-#include "shader/storage_reads.h"
 
 namespace afterglow {
 namespace {
@@ -46,8 +46,9 @@ class Assembler {
   Result<AssembledKernel> run() {
     if (kernel_.filter && kernel_.sample)
       return Error{ErrorKind::other, "a kernel has one head: a filter or a sample stage"};
-    if (kernel_.rows < 1 || kernel_.rows > kMaxRows)
-      return Error{ErrorKind::other, fmt::format("an invocation makes 1 to {} rows, not {}", kMaxRows, kernel_.rows)};
+    if (kernel_.config.rows < 1 || kernel_.config.rows > kMaxRows)
+      return Error{ErrorKind::other,
+                   fmt::format("an invocation makes 1 to {} rows, not {}", kMaxRows, kernel_.config.rows)};
     out_.file_names = {"", "lib/prelude.glsl"};
     AFTERGLOW_CHECK(head());
     if (watches()) row_ += "  float ag_light = 0.0;\n" + add_light("ag_color");
@@ -58,8 +59,8 @@ class Assembler {
       return error;
     }
     out_.glsl += kHeader;
-    if (kernel_.hide_uniforms) out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
-    for (int row = 0; row < kernel_.rows; ++row)
+    if (kernel_.config.hide_uniforms) out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
+    for (int row = 0; row < kernel_.config.rows; ++row)
       out_.glsl += fmt::format("layout(location = {0}) out vec4 ag_result{0};\n", row);
     if (!block_.empty()) out_.glsl += "layout(set = 0, binding = 0, std140) uniform ag_Block {\n" + block_ + "};\n";
     out_.glsl += images_;
@@ -96,13 +97,13 @@ class Assembler {
     images_ += fmt::format("#define ag_texel0(p) {}\n", texel(read, "ag_image0", "p"));
     if (!kernel_.filter) {
       every_row("vec4 ag_color{0} = ag_texel0(ag_pixel{0});");
-    } else if (!kernel_.hardware_filter && shares_rows(*kernel_.filter, kernel_.ratio_y, kernel_.rows)) {
+    } else if (!kernel_.config.hardware_filter && shares_rows(*kernel_.filter, kernel_.ratio_y, kernel_.config.rows)) {
       AFTERGLOW_TRY(const std::string code,
-                    filter_rows(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.rows));
+                    filter_rows(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.config.rows));
       body_ += code;
     } else {
       AFTERGLOW_TRY(const std::string code,
-                    filter_head(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.hardware_filter));
+                    filter_head(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.config.hardware_filter));
       head_function_ = "vec4 ag_filter(ivec2 ag_pixel) {\n  vec4 ag_color;\n" + code + "  return ag_color;\n}\n";
       every_row("vec4 ag_color{0} = ag_filter(ag_pixel{0});");
     }
@@ -111,9 +112,9 @@ class Assembler {
 
   /// Declares the pixels of the invocation. Those below the target's last row are made like it and land in padding.
   std::string pixels() const {
-    if (kernel_.rows == 1) return "  ivec2 ag_pixel0 = ivec2(gl_FragCoord.xy);\n";
-    std::string out = fmt::format("  ivec2 ag_pixel = ivec2(gl_FragCoord.xy) * ivec2(1, {});\n", kernel_.rows);
-    for (int row = 0; row < kernel_.rows; ++row)
+    if (kernel_.config.rows == 1) return "  ivec2 ag_pixel0 = ivec2(gl_FragCoord.xy);\n";
+    std::string out = fmt::format("  ivec2 ag_pixel = ivec2(gl_FragCoord.xy) * ivec2(1, {});\n", kernel_.config.rows);
+    for (int row = 0; row < kernel_.config.rows; ++row)
       out +=
           fmt::format("  ivec2 ag_pixel{0} = ivec2(ag_pixel.x, min(ag_pixel.y + {0}, ag_target_size.y - 1));\n", row);
     return out;
@@ -121,7 +122,8 @@ class Assembler {
 
   /// Adds a statement to main() for each row; {0} is its number.
   void every_row(const std::string& statement) {
-    for (int row = 0; row < kernel_.rows; ++row) body_ += "  " + fmt::format(fmt::runtime(statement), row) + "\n";
+    for (int row = 0; row < kernel_.config.rows; ++row)
+      body_ += "  " + fmt::format(fmt::runtime(statement), row) + "\n";
   }
 
   /// `by_engine`: all reads of it go through the engine's functions, so that it can be a storage image.

@@ -10,9 +10,9 @@
 
 #include "core/cache_folder.h"
 #include "core/file.h"
+#include "shader/cpu/hide_uniforms.h"
+#include "shader/cpu/interleave.h"
 #include "shader/glsl.h"
-#include "shader/hide_uniforms.h"
-#include "shader/interleave.h"
 #include "shader/kernel.h"
 #include "shader/kernel_file.h"
 #include "shader/reflect.h"
@@ -92,8 +92,8 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   KernelFile kernel;
   kernel.text = assembled.hash;
   AFTERGLOW_TRY(kernel.spirv, compile_glsl(assembled.glsl, assembled.file_names));
-  if (desc.rows > 1) kernel.spirv = interleave_rows(kernel.spirv, kTogether);
-  if (desc.hide_uniforms) kernel.spirv = hide_uniforms(kernel.spirv);
+  if (desc.config.rows > 1) kernel.spirv = interleave_rows(kernel.spirv, kTogether);
+  if (desc.config.hide_uniforms) kernel.spirv = hide_uniforms(kernel.spirv);
   AFTERGLOW_TRY(const Reflection reflection, reflect(kernel.spirv));
   kernel.block_size = reflection.block_size;
   for (const auto& param : assembled.params) {
@@ -142,7 +142,7 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   out.params = std::move(assembled.params);
   for (std::size_t i = 0; i < out.params.size(); ++i) out.params[i].offset = made->offsets[i];
   out.block_size = made->block_size;
-  out.rows = desc.rows;
+  out.rows = desc.config.rows;
   out.target = desc.target;
   out.hash = assembled.hash;
   return out;

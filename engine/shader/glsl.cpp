@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "core/text.h"
+#include "shader/kernel.h"
 #include "shader/rename.h"
 #include "shader/token.h"
 

@@ -9,9 +9,6 @@
 
 namespace afterglow {
 
-/// Name and version of the compiler: part of cache keys. Does not initialise it.
-std::string glsl_compiler_version();
-
 /// Fragment shader GLSL 460 → SPIR-V 1.6 for Vulkan 1.3. The first call in a process takes about 100 ms. Thread-safe.
 /// Errors (script): the first error of the compiler at its file (`file_names` by the numbers in #line) and line, the
 /// others in the trail, names as the author wrote them.

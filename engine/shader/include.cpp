@@ -58,7 +58,7 @@ class Resolver {
   Result<std::size_t> add(const fs::path& path, const IncludeLine& line, int depth) {
     ShaderSource::Include include{line.name, path, {}, {}, {}};
     AFTERGLOW_CHECK(check_inside(search_, path));
-    AFTERGLOW_TRY(include.text, read_shader(path));
+    AFTERGLOW_TRY(include.text, read_shader(path, search_.record.get()));
     bytes_ += include.text.size();
     if (bytes_ > kMaxIncludeBytes)
       return shader_error(path.string(), 0,
@@ -91,9 +91,9 @@ class Resolver {
     // A bare name is first of all a file beside this one; a name with a folder is looked up like that of a shader.
     const fs::path beside = (from.parent_path() / line.name).lexically_normal();
     const bool bare = line.name.find('/') == std::string::npos;
-    if (bare && is_file(beside)) return beside;
+    if (bare && is_file(beside, search_.record.get())) return beside;
     if (const auto hits = search_.find_shader(line.name); !hits.empty()) return hits.front().lexically_normal();
-    if (is_file(beside)) return beside;
+    if (is_file(beside, search_.record.get())) return beside;
     Error error = shader_error(at, line.line, fmt::format("cannot find the include '{}'", line.name));
     std::vector<std::string> names = list_shader_files(from.parent_path());
     for (const auto& folder : search_.user)
@@ -159,8 +159,8 @@ Result<void> check_inside(const SearchPath& search, const fs::path& file) {
   return {};
 }
 
-Result<std::string> read_shader(const fs::path& path) {
-  auto text = read_file(path, kMaxShaderBytes);
+Result<std::string> read_shader(const fs::path& path, FileRecord* record) {
+  auto text = read_file(path, kMaxShaderBytes, record);
   if (!text) {
     Error error = std::move(text).error();
     error.kind = ErrorKind::script;

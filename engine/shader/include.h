@@ -24,7 +24,8 @@ bool is_safe_name(const std::string& name);
 Result<void> check_inside(const SearchPath& search, const std::filesystem::path& file);
 
 /// Reads one file of GLSL, without a byte order mark. Errors: script.
-Result<std::string> read_shader(const std::filesystem::path& path);
+/// `record`: see read_file.
+Result<std::string> read_shader(const std::filesystem::path& path, FileRecord* record);
 
 /// Everything that a file with these includes sees, each file once, those that others need first. Errors (script):
 /// missing file (with the nearest name), cycle, limits, a name that two files define; file and line are those of the

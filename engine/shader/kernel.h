@@ -12,6 +12,7 @@
 
 #include "core/filter.h"
 #include "core/result.h"
+#include "shader/execution_config.h"
 #include "shader/interface.h"
 #include "shader/library.h"
 
@@ -45,27 +46,25 @@ enum class Watch {
   flag      ///< it writes alpha 0 there, and elsewhere 1 (codes8: what the last stage gave)
 };
 
-inline constexpr int kMaxRows = 8;  ///< colour attachments that every desktop device has
-
 struct KernelDesc {
   /// Head: exactly one of `filter` (source is bound at image 0) or `sample` is set; neither: the own pixel of image 0.
   std::optional<Filter> filter;
   AxisRatio ratio_x = AxisRatio::any, ratio_y = AxisRatio::any;
   std::optional<KernelStage> sample;
   std::vector<KernelStage> stages;  ///< pixel stages, in order
-  bool hardware_filter = false;     ///< let the sampler interpolate (error of 8-bit fractions) where that helps
+  /// As the program that it is of; but `rows` are those that one invocation of this kernel makes, each its own output
+  /// location: invocation (x, Y) makes the pixels (x, rows·Y) … (x, rows·Y + rows − 1). What neighbouring rows both
+  /// read is read once.
+  ExecutionConfig config{};
   KernelTarget target = KernelTarget::float32;
   Watch watch = Watch::none;
-  /// Rows of the target that one invocation makes, each its own output location: invocation (x, Y) makes the pixels
-  /// (x, rows·Y) … (x, rows·Y + rows − 1). What neighbouring rows both read is read once. 1 … kMaxRows.
-  int rows = 1;
-  /// The driver is kept from compiling the kernel again for each value of its parameters, as lavapipe does. Costs an
-  /// instruction a read.
-  bool hide_uniforms = false;
   /// Wished for each image slot, in the order of AssembledKernel::images; those beyond the end are sampled. An input
   /// that an author's shader uses in any other way than by the prelude's functions stays sampled.
-  std::vector<ImageRead> reads;
+  std::vector<ImageRead> reads{};
 };
+
+/// Name and version of the compiler of kernels: part of cache keys. Does not initialise it.
+std::string glsl_compiler_version();
 
 /// Where a dynamic parameter lies in the kernel's uniform block.
 struct KernelParam {
@@ -78,9 +77,9 @@ struct KernelParam {
 /// GLSL ready for the compiler, with what the executor must bind.
 /// Set 0: binding 0 the uniform block (absent when `block_size` is 0), bindings 1… the images in the order of `images`,
 /// combined image samplers or storage images. The block is std140; a bool takes 4 bytes, 0 or 1. Kernels with
-/// `hardware_filter` need samplers with linear filtering and clamp-to-edge; the others only use texelFetch. The result
-/// is location 0, or with several rows an invocation, locations 0 … rows−1. Push constants: see kPushConstantBytes
-/// below.
+/// `config.hardware_filter` need samplers with linear filtering and clamp-to-edge; the others only use texelFetch. The
+/// result is location 0, or with several rows an invocation, locations 0 … rows−1. Push constants: see
+/// kPushConstantBytes below.
 struct AssembledKernel {
   std::string glsl;
   /// Image slots: the head's source (filter or own pixel) or the sample stage's sampler2D inputs in order of
@@ -105,7 +104,7 @@ struct CompiledKernel {
   std::vector<AssembledKernel::ImageSlot> images;
   std::vector<KernelParam> params;
   std::uint32_t block_size = 0;  ///< bytes of the uniform block; 0: none
-  int rows = 1;                  ///< see KernelDesc
+  int rows = 1;                  ///< that one invocation makes
   KernelTarget target = KernelTarget::float32;
   Hash hash;
 };

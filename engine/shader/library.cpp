@@ -45,7 +45,7 @@ Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const
   auto source = std::make_shared<ShaderSource>();
   source->name = name;
   source->path = path;
-  AFTERGLOW_TRY(source->text, read_shader(path));
+  AFTERGLOW_TRY(source->text, read_shader(path, search.record.get()));
   AFTERGLOW_TRY(ShaderScan scanned, scan(source->text, path.string(), ScanAs::stage));
   AFTERGLOW_TRY(source->includes, resolve_includes(search, path, scanned));
   AFTERGLOW_CHECK(check_expansion(*source, scanned));

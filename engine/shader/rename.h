@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "shader/cpu/storage_reads.h"
 #include "shader/scan.h"
-#include "shader/storage_reads.h"
 
 namespace afterglow {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "exec/half.h"
+#include "core/half.h"
 #include "image/picture.h"
 #include "stress/check.h"
 
@@ -13,8 +13,8 @@ namespace afterglow::stress {
 namespace {
 
 /// Ways that must make the same numbers; the usual one is compared with the plain one in any case.
-const std::vector<Choice>& other_choices() {
-  static const std::vector<Choice> all{
+const std::vector<ExecutionConfig>& other_choices() {
+  static const std::vector<ExecutionConfig> all{
       {.joining = Joining::none},
       {.joining = Joining::heads, .share_memory = false},
       {.joining = Joining::all, .storage_reads = true},
@@ -116,7 +116,7 @@ Result<Outcome> same_ways(Lab& lab, const Situation& s, const Hold&) {
   Random random(s.seed);
   AFTERGLOW_TRY(const Made plain, lab.run(s.look, s.picture, s.frame, {.plain = true}));
   Outcome worst;
-  for (const Choice& choice : {lab.usual(), random.pick(other_choices())}) {
+  for (const ExecutionConfig& choice : {lab.usual(), random.pick(other_choices())}) {
     const Way way{.choice = choice};
     AFTERGLOW_TRY(const Made made, lab.run(s.look, s.picture, s.frame, way));
     Outcome outcome = compare(made.image, plain.image, kSame, way.name() + " against plain");

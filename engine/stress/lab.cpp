@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "bench/oracle.h"
-#include "session/calibration.h"
+#include "exec/calibration.h"
 #include "session/picture_inputs.h"
 
 namespace afterglow::stress {
@@ -15,7 +15,7 @@ constexpr long long kMostPixels = 1ll << 24;  ///< of all images of a look toget
 
 struct Prepared {
   std::unique_ptr<Stack> stack;
-  std::unique_ptr<FrameRunner> runner;
+  std::unique_ptr<Renderer> renderer;
 };
 
 BuildContext context_for(Size size, double frame) {
@@ -32,7 +32,7 @@ Made untouched(const Picture& picture) { return {.image = picture.color}; }
 }  // namespace
 
 std::string Way::name() const {
-  std::string out = plain ? "plain" : choice_name(choice);
+  std::string out = plain ? "plain" : execution_name(choice);
   if (skip_idle) out += ", idle effects left out";
   if (region) out += fmt::format(", region {},{},{},{}", region->x, region->y, region->width, region->height);
   if (!show.empty()) out += ", image " + show;
@@ -42,11 +42,11 @@ std::string Way::name() const {
 struct Lab::State {
   Device* device = nullptr;
   Diagnostics* diagnostics = nullptr;
-  std::shared_ptr<StackShared> shared;
+  std::shared_ptr<SharedKernels> shared;
   std::map<std::string, Prepared> prepared;  ///< by look, way and size
   std::map<std::string, Made> results;       ///< by look, way, frame and content of the picture
   std::map<std::string, Result<LookFacts>> known;
-  Choice usual;
+  ExecutionConfig usual;
   int stacks = 0;
 
   StackOptions options(const Look& look, const Way& way) const {
@@ -68,14 +68,14 @@ struct Lab::State {
 Lab::Lab(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Lab::~Lab() = default;
 Device& Lab::device() { return *state_->device; }
-const Choice& Lab::usual() const { return state_->usual; }
+const ExecutionConfig& Lab::usual() const { return state_->usual; }
 int Lab::stacks_made() const { return state_->stacks; }
 
 Result<std::unique_ptr<Lab>> Lab::create(Device& device, const std::filesystem::path& cache, Diagnostics& diagnostics) {
   auto state = std::make_unique<State>();
   state->device = &device;
   state->diagnostics = &diagnostics;
-  state->shared = std::make_shared<StackShared>(cache.empty() ? cache : cache / "shaders");
+  state->shared = std::make_shared<SharedKernels>(cache.empty() ? cache : cache / "shaders");
   AFTERGLOW_TRY(const Calibration calibration, Calibration::shipped());
   state->usual = calibration.find(device.info(), 0).choice;
   state->usual.storage = Storage::fp32;
@@ -98,7 +98,7 @@ Result<Prepared*> Lab::State::prepare(const Look& look, const Way& way, const Pi
     AFTERGLOW_TRY(one.stack, Stack::load("stress.lua", options(look, way), *diagnostics));
     one.stack->use(*device, true);
     one.stack->show(way.show);
-    AFTERGLOW_TRY(one.runner, FrameRunner::create(*device, 16ull << 30));
+    AFTERGLOW_TRY(one.renderer, Renderer::create(*device, {.max_memory = 16ull << 30}));
     ++stacks;
   }
   AFTERGLOW_CHECK(one.stack->prepare(context_for(size, frame), {}, way.region));
@@ -117,19 +117,13 @@ Result<Made> Lab::run(const Look& look, const Picture& picture, double frame, co
 Result<Made> Lab::State::run(const Look& look, const Picture& picture, double frame, const Way& way) {
   AFTERGLOW_TRY(Prepared* const one, prepare(look, way, picture, frame));
   if (!one->stack->runs()) return untouched(picture);
-  FrameRunner::Choose choose;
-  if (way.skip_idle && one->stack->depends_on_content())
-    choose = [&](float brightest) -> Result<Program*> {
-      AFTERGLOW_TRY(const IdlePrograms::Choice choice, one->stack->program_for(brightest));
-      return choice.program;
-    };
-  auto inputs = picture_inputs(picture, one->stack->prepared_graph());
-  for (auto& [name, input] : inputs) input.content.reset();  // it is to run, whatever ran before
+  AFTERGLOW_TRY(RenderRequest request, one->stack->request(request_for(one->stack->build(), {}, way.region)));
+  request.inputs = picture_inputs(picture, request.work.graph);
+  for (auto& [name, input] : request.inputs) input.content.reset();  // it is to run, whatever ran before
   HostResult result;
-  AFTERGLOW_TRY(const FrameTimes times,
-                one->runner->run(*one->stack->program(), inputs, result, KernelTiming::none, choose));
-  (void)times;
-  const Size size = one->stack->prepared_graph().images[one->stack->prepared_graph().result].size;
+  AFTERGLOW_TRY(const FrameReport report, one->renderer->render(std::move(request), result));
+  (void)report;
+  const Size size = one->stack->program()->graph().images[one->stack->program()->graph().result].size;
   Made made{.image = {}, .clamped = result.clamped, .shown = one->stack->shows()};
   made.image.width = size.width;
   made.image.height = size.height;
@@ -143,14 +137,14 @@ Result<std::vector<std::pair<std::string, Image>>> Lab::images(const Look& look,
   AFTERGLOW_TRY(Prepared* const one, state_->prepare(look, {.plain = true}, picture, frame));
   std::vector<std::pair<std::string, Image>> out;
   if (!one->stack->runs()) return out;
-  const Graph& graph = one->stack->prepared_graph();
+  const Graph& graph = one->stack->program()->graph();
   for (const auto& pass : graph.passes) {
     const auto& made = graph.images[static_cast<std::size_t>(pass.output)];
     Image image(made.size.width, made.size.height, 4);
     if (pass.output == graph.result) {
       image = result.image;
     } else if (const auto held = one->stack->program()->transient(pass.output); held && held->kept) {
-      AFTERGLOW_TRY(HostResult pixels, one->runner->read_image(*one->stack->program(), pass.output));
+      AFTERGLOW_TRY(HostResult pixels, one->renderer->read_image(*one->stack->program(), pass.output));
       image.pixels = std::move(pixels.pixels);
     } else {
       continue;  // nobody reads it, so nothing makes it
@@ -169,12 +163,13 @@ Result<LookFacts> Lab::facts(const Look& look, Size size, double frame) {
 
 Result<LookFacts> Lab::State::find_facts(const Look& look, Size size, double frame) {
   AFTERGLOW_TRY(const auto stack, Stack::load("stress.lua", options(look, {.plain = true}), *diagnostics));
-  AFTERGLOW_TRY(const Graph graph, stack->graph(context_for(size, frame)));
+  AFTERGLOW_TRY(const auto build, stack->evaluate(context_for(size, frame)));
+  const Graph& graph = build->graph;
   long long pixels = 0;
   for (const auto& image : graph.images) pixels += image.size.area();
   if (pixels > kMostPixels)
     return Error{ErrorKind::io, fmt::format("its images have {} pixels, more than are tried", pixels)};
-  LookFacts facts{.entries = bench::oracle_entries(stack->preset(), graph),
+  LookFacts facts{.entries = bench::oracle_entries(*build),
                   .holds = {},
                   .runs = graph.result != graph.source,
                   .passes = 0,
@@ -184,8 +179,9 @@ Result<LookFacts> Lab::State::find_facts(const Look& look, Size size, double fra
     const GraphImage& image = graph.images[static_cast<std::size_t>(pass.output)];
     if (pass.output != graph.result && image.size == size) facts.images.push_back(image.name);
   }
-  if (const auto& entries = stack->preset().entries(); entries.size() == 1) {
-    AFTERGLOW_TRY(facts.holds, stack->preset().holds(entries.front().name, size));
+  if (build->entries->size() == 1) {
+    if (build->promise_error) return *build->promise_error;
+    facts.holds = build->promises.front().holds;
   }
   return facts;
 }

@@ -18,7 +18,7 @@ namespace afterglow::stress {
 
 /// How a stack is executed.
 struct Way {
-  Choice choice;           ///< ignored with `plain`
+  ExecutionConfig choice;  ///< ignored with `plain`
   bool plain = false;      ///< every pass on its own in full floats (StackOptions::reference)
   bool skip_idle = false;  ///< effects that the content makes idle are left out, as `run` does
   std::optional<Rect> region;
@@ -60,7 +60,7 @@ class Lab {
   /// Forgets stacks, and with them their pipelines, and results of earlier pictures.
   void forget();
   /// As `run` executes on this device, but for what half floats and filtered fetches would change.
-  const Choice& usual() const;
+  const ExecutionConfig& usual() const;
   Device& device();
   int stacks_made() const;
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "script/build.h"
 
 namespace afterglow::stress {
 namespace {
@@ -46,10 +47,10 @@ Result<Look> look_of_preset(const std::filesystem::path& preset, const PresetOpt
   ShaderLibrary shaders(search_path_for(preset, options.paths));
   AFTERGLOW_TRY(Preset loaded, Preset::load(preset, options, shaders, diagnostics));
   BuildContext context{.size = size, .auxiliary = {{"depth", size}, {"normal", size}, {"motion", size}}};
-  AFTERGLOW_TRY(const Graph graph, loaded.build(context, diagnostics));
+  AFTERGLOW_TRY(const Build build, loaded.evaluate(context, diagnostics));
   Look look;
   look.paths = loaded.path().user;
-  for (const auto& entry : loaded.entries()) {
+  for (const auto& entry : *build.entries) {
     if (!entry.enabled) continue;
     LookEntry one{.effect = entry.effect, .settings = {}, .at = entry.at, .order = entry.order};
     const auto& schema = loaded.schema(entry.effect);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "exec/half.h"
+#include "core/half.h"
 #include "stress/auxiliary.h"
 #include "stress/picture_file.h"
 

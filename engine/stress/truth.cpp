@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <exception>
 
-#include "exec/half.h"
+#include "core/half.h"
 #include "stress/pictures.h"
 
 namespace afterglow::stress {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/text.h"
-#include "script/explanation.h"
+#include "script/build.h"
 #include "window/setting_widget.h"
 #include "window/view_controls.h"
 
@@ -18,8 +18,8 @@ const std::string* reason_of(const std::vector<Skipped>& list, const std::string
   return nullptr;
 }
 
-const SettingHistory* history_of(const Preset& preset, std::size_t entry, std::size_t setting) {
-  const auto& entries = preset.explanation().entries;
+const SettingHistory* history_of(const Build& build, std::size_t entry, std::size_t setting) {
+  const auto& entries = build.explanation->entries;
   if (entry >= entries.size() || setting >= entries[entry].settings.size()) return nullptr;
   return &entries[entry].settings[setting];
 }
@@ -167,15 +167,15 @@ void Panel::draw_outcome(Ui& ui) {
 }
 
 void Panel::draw_entries(Ui& ui, PanelPort& port) {
-  const Preset* preset = port.preset();
-  if (!preset) return;
-  if (preset->entries().empty()) ImGui::TextDisabled("The stack has no effects");
-  for (std::size_t i = 0; i < preset->entries().size(); ++i) draw_entry(ui, port, i);
+  const Build* build = port.build();
+  if (!build) return;
+  if (build->entries->empty()) ImGui::TextDisabled("The stack has no effects");
+  for (std::size_t i = 0; i < build->entries->size(); ++i) draw_entry(ui, port, i);
 }
 
 void Panel::draw_entry(Ui& ui, PanelPort& port, std::size_t index) {
   const Preset& preset = *port.preset();
-  const StackEntry& entry = preset.entries()[index];
+  const StackEntry& entry = (*port.build()->entries)[index];
   const EffectSchema& schema = preset.schema(entry.effect);
   const bool whole = found(entry.name) || found(entry.effect);
   const auto shows = [&](const SettingSchema& setting) { return whole || found(setting.name) || found(setting.doc); };
@@ -237,9 +237,9 @@ bool Panel::draw_entry_head(Ui& ui, PanelPort& port, const StackEntry& entry, co
 
 void Panel::draw_setting(Ui& ui, PanelPort& port, std::size_t entry_index, std::size_t index) {
   const Preset& preset = *port.preset();
-  const StackEntry& entry = preset.entries()[entry_index];
+  const StackEntry& entry = (*port.build()->entries)[entry_index];
   const SettingSchema& schema = preset.schema(entry.effect).settings[index];
-  const SettingHistory* history = history_of(preset, entry_index, index);
+  const SettingHistory* history = history_of(*port.build(), entry_index, index);
   const auto edit = port.edits().value(entry.name, schema.name);
   const SettingValue value = edit ? *edit : entry.settings[index].second;
 

@@ -8,7 +8,7 @@
 #include "exec/frame.h"
 #include "play/setting_edits.h"
 #include "play/view.h"
-#include "script/preset.h"
+#include "script/build.h"
 #include "session/live.h"
 
 namespace afterglow {
@@ -20,6 +20,7 @@ class PanelPort {
  public:
   virtual ~PanelPort() = default;
   virtual const Preset* preset() = 0;  ///< of the stack that is shown; null: there was no good one yet
+  virtual const Build* build() = 0;    ///< what it said about the last frame; null: there was none yet
   virtual LiveStatus status() = 0;
   virtual const std::vector<Skipped>& skipped() = 0;  ///< effects that the last frame left out, with reasons
   virtual std::vector<KernelTime> times() = 0;        ///< of kernels, as far as they are known

@@ -11,8 +11,8 @@ namespace afterglow {
 namespace {
 
 // Does the preset itself say this, without the edit over it?
-bool says(const Preset& preset, const SettingEdit& edit) {
-  for (const auto& entry : preset.explanation().entries)
+bool says(const Build& build, const SettingEdit& edit) {
+  for (const auto& entry : build.explanation->entries)
     if (entry.name == edit.entry)
       for (const auto& setting : entry.settings)
         if (setting.name == edit.setting) {
@@ -90,11 +90,11 @@ bool PanelSave::poll(PanelPort& port) {
 // The edits go when the preset on screen says the same: dropping them before would show the old values for a moment.
 void PanelSave::forget_what_is_in_the_file(PanelPort& port) {
   if (settling_.empty() || busy()) return;
-  const Preset* preset = port.preset();
-  if (!preset) return;
+  const Build* build = port.build();
+  if (!build) return;
   const bool all = std::all_of(settling_.begin(), settling_.end(), [&](const SettingEdit& edit) {
     // Edited again since: the edit stays, and there is nothing to wait for.
-    return port.edits().value(edit.entry, edit.setting) != edit.value || says(*preset, edit);
+    return port.edits().value(edit.entry, edit.setting) != edit.value || says(*build, edit);
   });
   if (!all || port.status().building) return;
   std::vector<SettingEdit> left = port.edits().edits();

@@ -7,6 +7,11 @@ const Preset* PlayerPort::preset() {
   return stack ? &stack->preset() : nullptr;
 }
 
+const Build* PlayerPort::build() {
+  Stack* stack = player_.live().stack();
+  return stack ? stack->build().get() : nullptr;
+}
+
 const std::vector<Skipped>& PlayerPort::skipped() {
   skipped_ = player_.session().skipped();
   return skipped_;

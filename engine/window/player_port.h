@@ -12,6 +12,7 @@ class PlayerPort final : public PanelPort {
   explicit PlayerPort(Player& player) : player_(player) {}
 
   const Preset* preset() override;
+  const Build* build() override;
   LiveStatus status() override { return player_.live().status(); }
   const std::vector<Skipped>& skipped() override;
   std::vector<KernelTime> times() override { return player_.kernel_times(); }

@@ -7,7 +7,7 @@
 
 #include "gpu/image.h"
 #include "gpu/memory.h"
-#include "gpu/swapchain_choice.h"
+#include "gpu/swapchain.h"
 #include "window/ui_pipeline.h"
 
 struct ImDrawData;

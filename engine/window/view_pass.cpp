@@ -6,7 +6,7 @@
 #include "gpu/error.h"
 #include "gpu/fullscreen_vertex.h"
 #include "gpu/pipeline.h"
-#include "gpu/swapchain_choice.h"
+#include "gpu/swapchain.h"
 #include "view.frag.h"
 
 namespace afterglow {

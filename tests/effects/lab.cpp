@@ -7,9 +7,10 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "exec/frame.h"
+#include "exec/frame_runner.h"
 #include "files.h"
 #include "image/metrics.h"
+#include "script/build.h"
 #include "shader/kernel.h"
 #include "shader/library.h"
 
@@ -75,11 +76,11 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
     made.result = source;
     return made;
   }
-  const ProgramOptions options{.storage = way == Way::joined_half ? Storage::fp16 : Storage::fp32,
+  const ProgramOptions options{.config = {.storage = way == Way::joined_half ? Storage::fp16 : Storage::fp32,
+                                          .storage_reads = way != Way::plain,
+                                          .rows = way == Way::plain ? 1 : kMaxRows},
                                .reference = way == Way::plain,
-                               .storage_reads = way != Way::plain,
                                .source_is_storage = way != Way::plain,
-                               .rows = way == Way::plain ? 1 : kMaxRows,
                                .worth = {0, 0},
                                .result_by_rows = way != Way::plain};
   auto program = need(Program::create(*lab.device, shaders, lab.compiler, graph, options));
@@ -118,7 +119,7 @@ Made run_preset(const fs::path& file, const Scene& scene, Way way) {
   Lab& lab = Lab::get();
   ShaderLibrary shaders(search_path_for(file, {}));
   auto preset = need(Preset::load(file, {}, shaders, lab.diagnostics));
-  const Graph graph = need(preset.build(context_of(scene), lab.diagnostics));
+  const Graph graph = need(preset.evaluate(context_of(scene), lab.diagnostics)).graph;
   const auto valid = validate(graph);
   if (!valid.ok()) throw std::runtime_error(valid.error().text());
   return run(graph, shaders, scene, way);
@@ -134,7 +135,7 @@ std::string build_error(const std::string& entries, const Scene& scene) {
   ShaderLibrary shaders(search_path_for(file, {}));
   auto preset = Preset::load(file, {}, shaders, lab.diagnostics);
   if (!preset.ok()) return preset.error().text();
-  const auto graph = preset->build(context_of(scene), lab.diagnostics);
+  const auto graph = preset->evaluate(context_of(scene), lab.diagnostics);
   return graph.ok() ? "" : graph.error().text();
 }
 

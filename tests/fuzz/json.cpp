@@ -4,8 +4,8 @@
 #include "batch/lock.h"
 #include "bench/goals.h"
 #include "bench/report.h"
+#include "exec/calibration.h"
 #include "fuzz.h"
-#include "session/calibration.h"
 
 using namespace afterglow;
 

@@ -1,10 +1,9 @@
 // A preset with effects, modules and shaders beside it: loaded and built, without a device.
-#include "script/preset.h"
-
 #include <fmt/format.h>
 
 #include "fuzz.h"
 #include "graph/plan.h"
+#include "script/build.h"
 #include "script/explanation.h"
 
 using namespace afterglow;
@@ -22,11 +21,11 @@ bool is_file_name(const std::string& name) {
 void build(Preset& preset, double frame) {
   Diagnostics silent;
   BuildContext context{{64, 32}, {{"depth", {64, 32}}, {"normal", {64, 32}}}, frame, frame / 24, 24};
-  auto graph = preset.build(context, silent);
-  if (!graph) return fuzz::check_error(graph.error(), {ErrorKind::script});
-  const auto valid = validate(*graph);
+  const auto made = preset.evaluate(context, silent);
+  if (!made) return fuzz::check_error(made.error(), {ErrorKind::script});
+  const auto valid = validate(made->graph);
   FUZZ_CLAIM(valid.ok(), valid.ok() ? "" : valid.error().text());
-  FUZZ_CLAIM(!to_json(*graph).empty(), "");
+  FUZZ_CLAIM(!to_json(made->graph).empty(), "");
 }
 
 }  // namespace

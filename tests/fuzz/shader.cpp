@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   KernelDesc joined;
   joined.target = size % 2 == 0 ? KernelTarget::codes8 : KernelTarget::float16;
-  joined.rows = 1 + static_cast<int>(size % 2);
+  joined.config.rows = 1 + static_cast<int>(size % 2);
   const KernelStage stage{*shader, {}, "x"};
   if ((*shader)->interface.kind == ShaderKind::sample)
     joined.sample = stage;

@@ -52,6 +52,37 @@ TEST(House, TheEngineKnowsNoEffectByName) {
   EXPECT_GT(files, 100);
 }
 
+/// Headers of a room that files of other rooms include: its doors.
+std::set<std::string> doors_of(const std::string& room) {
+  std::set<std::string> doors;
+  const std::string begin = "#include \"" + room + "/";
+  for (const auto& file : files_below(kProject / "engine", {".h", ".cpp"})) {
+    if (fs::relative(file, kProject / "engine").begin()->string() == room) continue;
+    const std::string text = read_file(file).value();
+    for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at + 1)) {
+      const std::size_t from = at + begin.size();
+      doors.insert(text.substr(from, text.find('"', from) - from));
+    }
+  }
+  return doors;
+}
+
+/// What other rooms may know of a room is little (CONTRIBUTING.md). A header more is a decision: either it is made part
+/// of one that is a door already, or a room is opened further, here.
+TEST(House, RoomsHaveFewDoors) {
+  struct Room {
+    const char* name;
+    std::size_t doors;
+  };
+  for (const auto& [name, most] :
+       {Room{"image", 14}, Room{"gpu", 10}, Room{"shader", 4}, Room{"graph", 8}, Room{"script", 5}, Room{"edit", 2},
+        Room{"exec", 6}, Room{"session", 6}, Room{"batch", 4}, Room{"play", 5}, Room{"window", 2}}) {
+    const auto doors = doors_of(name);
+    EXPECT_LE(doors.size(), most) << name << " is opened by " << testing::PrintToString(doors);
+  }
+  EXPECT_TRUE(doors_of("exec").contains("renderer.h"));
+}
+
 /// The rooms in order; each uses only those before it (CONTRIBUTING.md).
 TEST(House, RoomsUseOnlyRoomsAboveThem) {
   const std::vector<std::string> rooms{"core",    "image", "gpu",       "shader", "graph",  "script", "edit",   "exec",

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <set>
 
-#include "exec/half.h"
+#include "core/half.h"
 #include "stress/pictures.h"
 
 namespace afterglow::stress {

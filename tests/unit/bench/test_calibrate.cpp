@@ -13,7 +13,7 @@ using test::point;
 std::string chosen(const std::vector<Point>& points) {
   std::string out;
   for (const auto& [max_error, choice] : fastest_within_errors(points))
-    out += (out.empty() ? "" : "; ") + std::to_string(max_error).substr(0, 6) + " " + choice_name(choice);
+    out += (out.empty() ? "" : "; ") + std::to_string(max_error).substr(0, 6) + " " + execution_name(choice);
   return out;
 }
 
@@ -38,7 +38,7 @@ TEST(Calibrate, NothingToGoByIsNothingChosen) {
 
 TEST(Calibrate, CandidatesAreAllDifferent) {
   std::set<std::string> names;
-  for (const auto& choice : candidates()) names.insert(choice_name(choice));
+  for (const auto& choice : candidates()) names.insert(execution_name(choice));
   EXPECT_EQ(names.size(), candidates().size());
   EXPECT_TRUE(names.contains("joined fp32"));
 }
@@ -49,11 +49,11 @@ TEST(Calibrate, ItsFileIsATableThatFitsTheDevice) {
   result.device.driver = "blob 7";
   result.cell = test::report({point("joined fp32", 10, 1e-6)}).cells[0];
   result.operations = {{"copy RGBA32F", 5.25}};
-  result.choices = {{0, *parse_choice("joined fp32")}, {2e-3, *parse_choice("joined fp16")}};
+  result.choices = {{0, *parse_execution("joined fp32")}, {2e-3, *parse_execution("joined fp16")}};
   const auto table = Calibration::parse(calibration_json(result), "made.json");
   ASSERT_TRUE(table) << table.error().text();
-  EXPECT_EQ(choice_name(table->find(result.device, 2e-3).choice), "joined fp16");
-  EXPECT_EQ(choice_name(table->find(result.device, 1e-3).choice), "joined fp32");
+  EXPECT_EQ(execution_name(table->find(result.device, 2e-3).choice), "joined fp16");
+  EXPECT_EQ(execution_name(table->find(result.device, 1e-3).choice), "joined fp32");
   DeviceInfo other = result.device;
   other.driver = "blob 8";
   EXPECT_EQ(table->find(other, 2e-3).from, "built in: exact everywhere");

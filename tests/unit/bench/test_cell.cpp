@@ -50,9 +50,9 @@ class Cells : public testing::Test {
 TEST_F(Cells, EveryChoiceGivesTheTruth) {
   std::vector<Variant> variants;
   for (const Joining joining : {Joining::none, Joining::heads, Joining::all})
-    for (Choice choice : candidates()) {
+    for (ExecutionConfig choice : candidates()) {
       choice.joining = joining;
-      variants.push_back({choice_name(choice), choice, {}, {}});
+      variants.push_back({execution_name(choice), choice, {}, {}});
     }
   const auto cell = measure(AFTERGLOW_PROJECT_FOLDER "/presets/neon_night.lua", variants);
   ASSERT_TRUE(cell) << cell.error().text();
@@ -111,7 +111,8 @@ TEST_F(Cells, EffectsWithoutOracleAreComparedWithTheReference) {
          "order = 1,\n"
          "settings = {}, build = function(g, s, source) return g:pass { shader = \"dim\", source = source } end }\n";
   std::ofstream(folder_ / "shaders/dim.glsl") << "vec4 apply(vec4 color) { return color * 0.7; }\n";
-  const auto cell = measure(preset, {{"chosen", {}, {}, {}}, {"half", Choice{.storage = Storage::fp16}, {}, {}}});
+  const auto cell =
+      measure(preset, {{"chosen", {}, {}, {}}, {"half", ExecutionConfig{.storage = Storage::fp16}, {}, {}}});
   ASSERT_TRUE(cell) << cell.error().text();
   EXPECT_THAT(cell->truth, HasSubstr("'dim' has no oracle"));
   EXPECT_EQ(cell->points.at(0).quality->error.worst, 0);

@@ -6,7 +6,7 @@
 
 #include "bench/picture.h"
 #include "bench/quality.h"
-#include "exec/half.h"
+#include "core/half.h"
 
 namespace afterglow::bench {
 namespace {

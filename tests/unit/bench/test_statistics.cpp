@@ -1,7 +1,7 @@
 // Medians, spreads, and which points are on the front.
 #include <gtest/gtest.h>
 
-#include "bench/timed_work.h"
+#include "bench/turns.h"
 #include "reports.h"
 
 namespace afterglow::bench {

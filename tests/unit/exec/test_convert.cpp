@@ -7,9 +7,9 @@
 #include <limits>
 #include <random>
 
+#include "core/half.h"
 #include "core/parallel.h"
 #include "exec/convert.h"
-#include "exec/half.h"
 
 namespace afterglow {
 namespace {

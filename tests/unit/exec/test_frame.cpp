@@ -120,7 +120,7 @@ TEST_F(FrameTest, OneRunnerServesChangingSizesStoragesAndPrograms) {
   for (const Storage storage : {Storage::fp32, Storage::fp16, Storage::fp32}) {
     for (const Size size : {Size{64, 64}, Size{7, 1}, Size{101, 57}, Size{64, 64}}) {
       const auto pixels = noise(size, 22);
-      const auto made = program(graph(size, 0.5), {.storage = storage});
+      const auto made = program(graph(size, 0.5), {.config = {.storage = storage}});
       HostResult out;
       ASSERT_TRUE(frames->run(*made, {{"source", {pixels.data(), size, 4}}}, out, KernelTiming::none));
       Picture64 expected = Picture64::of(size, pixels);
@@ -218,7 +218,7 @@ TEST_F(FrameTest, HalfStorageCountsHeldValuesAndStaysFinite) {
   pixels[0] = 1e6f;   // held when it is stored
   pixels[5] = 60000;  // held when it is doubled
   for (const bool direct : {true, false}) {
-    const auto made = program(graph(size, 2), {.storage = Storage::fp16});
+    const auto made = program(graph(size, 2), {.config = {.storage = Storage::fp16}});
     HostResult out;
     ASSERT_TRUE(runner(direct)->run(*made, {{"source", {pixels.data(), size, 4}}}, out, KernelTiming::none));
     EXPECT_EQ(out.clamped, 3u);  // one of the source, two of the result
@@ -233,7 +233,7 @@ TEST_F(FrameTest, TheResultMayTakeThePlaceOfTheSource) {
   const auto pixels = noise(size, 30);
   for (const bool direct : {true, false}) {
     for (const Storage storage : {Storage::fp32, Storage::fp16}) {
-      const auto made = program(graph(size, 2), {.storage = storage});
+      const auto made = program(graph(size, 2), {.config = {.storage = storage}});
       HostResult apart, in_place{.pixels = pixels, .keep_alpha = true};
       const auto frames = runner(direct);
       ASSERT_TRUE(frames->run(*made, {{"source", {pixels.data(), size, 4}}}, apart, KernelTiming::none));

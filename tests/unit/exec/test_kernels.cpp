@@ -34,7 +34,7 @@ class KernelTest : public Workshop {
       const Graph graph = builder.finish(result);
       for (const auto& variant : kVariants) {
         const auto out = run(graph, {{"source", {pixels.data(), size, 4}}},
-                             {.storage = variant.storage, .reference = variant.reference}, variant.direct);
+                             {.config = {.storage = variant.storage}, .reference = variant.reference}, variant.direct);
         expect_near(out.pixels, expected, variant.tolerance,
                     fmt::format("{}×{} {}", size.width, size.height, variant.name));
       }
@@ -189,10 +189,10 @@ TEST_F(KernelTest, FilteredFetchesStayWithinTheirOwnTolerance) {
   const Graph graph = b.finish(b.filter("up", b.filter("down", b.source(), halved(size), gaussian()), size, {}));
   const Picture64 expected = filter64(filter64(Picture64::of(size, pixels), gaussian(), halved(size)), {}, size);
   const std::map<std::string, HostImage> inputs{{"source", {pixels.data(), size, 4}}};
-  const auto filtered = run(graph, inputs, {.hardware_filter = true});
+  const auto filtered = run(graph, inputs, {.config = {.hardware_filter = true}});
   expect_near(filtered.pixels, expected, 5e-3, "filtered fetches");
   // The reference never uses them, whatever it is asked.
-  const auto reference = run(graph, inputs, {.reference = true, .hardware_filter = true});
+  const auto reference = run(graph, inputs, {.config = {.hardware_filter = true}, .reference = true});
   expect_near(reference.pixels, expected, 1e-5, "reference");
 }
 

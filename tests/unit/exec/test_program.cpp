@@ -84,8 +84,8 @@ TEST_F(ProgramTest, SharedMemoryChangesNoBit) {
     const auto pixels = noise(size, 12);
     const std::map<std::string, HostImage> inputs{{"source", {pixels.data(), size, 4}}};
     for (const auto& graph : {pyramid(size), diamond(size)}) {
-      const auto shared = run(graph, inputs, {.share_memory = true});
-      const auto apart = run(graph, inputs, {.share_memory = false});
+      const auto shared = run(graph, inputs, {.config = {.share_memory = true}});
+      const auto apart = run(graph, inputs, {.config = {.share_memory = false}});
       EXPECT_EQ(shared.pixels, apart.pixels);
     }
   }
@@ -94,7 +94,7 @@ TEST_F(ProgramTest, SharedMemoryChangesNoBit) {
 TEST_F(ProgramTest, SharingSavesMemoryAndReferenceDoesNotShare) {
   const Size size{256, 128};
   const auto shared = program(pyramid(size));
-  const auto apart = program(pyramid(size), {.share_memory = false});
+  const auto apart = program(pyramid(size), {.config = {.share_memory = false}});
   const auto reference = program(pyramid(size), {.reference = true});
   EXPECT_LT(shared->memory().arena, shared->memory().sum);
   EXPECT_GE(shared->memory().arena, shared->memory().lower_bound);
@@ -103,7 +103,7 @@ TEST_F(ProgramTest, SharingSavesMemoryAndReferenceDoesNotShare) {
   EXPECT_EQ(shared->counters().allocations, 2);  // the images, the parameters
   // The result is the caller's image: one image fewer than kernels.
   EXPECT_EQ(shared->counters().images, static_cast<int>(shared->plan().kernels.size()) - 1);
-  const auto half = program(pyramid(size), {.storage = Storage::fp16});
+  const auto half = program(pyramid(size), {.config = {.storage = Storage::fp16}});
   EXPECT_EQ(half->storage_format(), VK_FORMAT_R16G16B16A16_SFLOAT);
   EXPECT_LT(half->memory().arena, shared->memory().arena);
 }

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "exec/frame.h"
+#include "exec/frame_runner.h"
 #include "exec/program.h"
 
 namespace afterglow {

@@ -49,7 +49,12 @@ std::string Scene::load_error() {
   return preset ? "" : shorten(preset.error().text());
 }
 
-Result<Graph> Scene::build(Preset& preset) { return preset.build(context, diagnostics); }
+Result<Build> Scene::evaluate(Preset& preset) { return preset.evaluate(context, diagnostics); }
+
+Result<Graph> Scene::build(Preset& preset) {
+  AFTERGLOW_TRY(Build made, evaluate(preset));
+  return std::move(made.graph);
+}
 
 std::string Scene::build_error() {
   auto preset = load();

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "script/preset.h"
+#include "script/build.h"
 
 namespace afterglow::test {
 
@@ -28,6 +28,7 @@ class Scene {
   Result<Preset> load();
   /// Text of the error of loading, with the folder's name cut out; "" when there is none.
   std::string load_error();
+  Result<Build> evaluate(Preset& preset);
   Result<Graph> build(Preset& preset);
   /// Loads and builds; text of the error of either.
   std::string build_error();

@@ -48,8 +48,9 @@ struct Animation : testing::Test {
     std::vector<std::string> out;
     for (const double frame : frames) {
       at(frame);
-      if (auto graph = scene.build(*preset); !graph) return {scene.shorten(graph.error().text())};
-      for (const auto& [name, value] : preset->entries()[0].settings)
+      const auto build = scene.evaluate(*preset);
+      if (!build) return {scene.shorten(build.error().text())};
+      for (const auto& [name, value] : build->entries->at(0).settings)
         if (name == setting) out.push_back(value.text());
     }
     return out;
@@ -197,6 +198,30 @@ TEST_F(Animation, MessagesOfFunctions) {
   // What goes wrong at a later frame only.
   EXPECT_THAT(values("gain", "function(t) return t.frame > 5 and -1 or 1 end", {1, 6}),
               ElementsAre("preset.lua:3: error: glow.gain at frame 6 = -1 is out of range; allowed: 0…4"));
+}
+
+// What was said of a frame stays said, whatever is asked about others.
+TEST_F(Animation, WhatWasSaidOfAFrameStays) {
+  scene.stack("fx.glow { gain = function(t) return t.frame end }");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  at(3);
+  const auto third = scene.evaluate(*preset);
+  ASSERT_TRUE(third);
+  const std::string graph = to_json(third->graph);
+  const auto gain_of = [](const Build& build) { return build.entries->at(0).settings.at(2).second.text(); };
+  at(4);
+  const auto fourth = scene.evaluate(*preset);
+  ASSERT_TRUE(fourth);
+  EXPECT_EQ(gain_of(*third), "3");
+  EXPECT_EQ(gain_of(*fourth), "4");
+  EXPECT_EQ(third->explanation->entries.at(0).settings.at(2).value.text(), "3");
+  EXPECT_EQ(fourth->explanation->entries.at(0).settings.at(2).value.text(), "4");
+  EXPECT_EQ(third->context.frame, 3);
+  EXPECT_EQ(to_json(third->graph), graph);
+  EXPECT_EQ(preset->evaluations(), 2u);
+  EXPECT_EQ(third->files, fourth->files) << "nothing else was looked at";
+  EXPECT_FALSE(third->files->empty());
 }
 
 }  // namespace

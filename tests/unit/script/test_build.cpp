@@ -182,10 +182,10 @@ TEST_P(ShippedPreset, Builds) {
   ASSERT_TRUE(preset) << preset.error().text();
   for (const Size size : {Size{1920, 1080}, Size{1, 1}, Size{3, 5}, Size{16384, 1}, Size{127, 16384}}) {
     const BuildContext context{size, {{"depth", size}, {"normal", size}}, 1, 0, 24};
-    auto graph = preset->build(context, scene.diagnostics);
-    ASSERT_TRUE(graph) << graph.error().text();
-    EXPECT_TRUE(validate(*graph)) << validate(*graph).error().text();
-    const auto bare = preset->build({size, {}, 1, 0, 24}, scene.diagnostics);
+    const auto made = preset->evaluate(context, scene.diagnostics);
+    ASSERT_TRUE(made) << made.error().text();
+    EXPECT_TRUE(validate(made->graph)) << validate(made->graph).error().text();
+    const auto bare = preset->evaluate({size, {}, 1, 0, 24}, scene.diagnostics);
     EXPECT_TRUE(bare) << bare.error().text();
   }
 }

@@ -26,10 +26,13 @@ std::vector<Hold> held(const std::string& holds, const std::string& entry = "fx.
   scene.stack(entry);
   auto preset = scene.load();
   EXPECT_TRUE(preset) << preset.error().text();
-  EXPECT_TRUE(scene.build(*preset));
-  const auto result = preset->holds("glow", size);
-  EXPECT_TRUE(result) << result.error().text();
-  return result ? *result : std::vector<Hold>();
+  scene.context.size = size;
+  const auto build = scene.evaluate(*preset);
+  EXPECT_TRUE(build) << build.error().text();
+  if (!build) return {};
+  EXPECT_FALSE(build->promise_error) << build->promise_error->text();
+  EXPECT_EQ(build->promises.at(0).entry, "glow");
+  return build->promises.at(0).holds;
 }
 
 TEST(Holds, NamesNumbersAndTables) {
@@ -103,8 +106,10 @@ TEST(Holds, FunctionsThatFail) {
   scene.stack("fx.glow {}");
   auto preset = scene.load();
   ASSERT_TRUE(preset);
-  ASSERT_TRUE(scene.build(*preset));
-  EXPECT_EQ(scene.shorten(preset->holds("glow", {8, 8}).error().text()),
+  const auto build = scene.evaluate(*preset);
+  ASSERT_TRUE(build) << "the frame is none the worse for it";
+  ASSERT_TRUE(build->promise_error);
+  EXPECT_EQ(scene.shorten(build->promise_error->text()),
             "effects/glow.lua:4: error: when of holds of effect 'glow' returned 3, not true or false");
 }
 

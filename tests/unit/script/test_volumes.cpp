@@ -44,9 +44,10 @@ struct Volumes : testing::Test {
     scene.context.position = position;
     auto preset = scene.load();
     if (!preset) return {preset.error().text()};
-    if (auto graph = scene.build(*preset); !graph) return {graph.error().text()};
+    const auto build = scene.evaluate(*preset);
+    if (!build) return {build.error().text()};
     std::vector<std::string> out;
-    for (const auto& [name, value] : preset->entries()[0].settings) out.push_back(value.text());
+    for (const auto& [name, value] : build->entries->at(0).settings) out.push_back(value.text());
     return out;
   }
   std::string gain(const std::optional<Position>& position) { return values(position).at(2); }
@@ -142,7 +143,9 @@ TEST_F(Volumes, PriorityThenPositionInTheList) {
   EXPECT_EQ(gain({}), "16");
   auto preset = scene.load();
   ASSERT_TRUE(preset);
-  const Explanation& explanation = preset->explanation();
+  const auto build = scene.evaluate(*preset);
+  ASSERT_TRUE(build);
+  const Explanation& explanation = *build->explanation;
   std::vector<std::string> names;
   for (const auto& volume : explanation.volumes) names.push_back(volume.name);
   EXPECT_THAT(names, ElementsAre("first", "top", "second", "half"));
@@ -363,14 +366,15 @@ TEST_F(Volumes, AThousandRandomSetsMatchAPlainReimplementation) {
     scene.context.position = Position{p[0], p[1], p[2]};
     auto preset = scene.load();
     ASSERT_TRUE(preset) << preset.error().text() << items;
-    ASSERT_TRUE(scene.build(*preset));
-    const auto& settings = preset->entries()[0].settings;
+    const auto build = scene.evaluate(*preset);
+    ASSERT_TRUE(build);
+    const auto& settings = build->entries->at(0).settings;
     const PlainSettings expected = plain_blend(volumes, p);
     EXPECT_EQ(settings[0].second.choice, expected.mode) << items;
     EXPECT_EQ(settings[1].second.number[0], expected.levels) << items;
     EXPECT_NEAR(settings[2].second.number[0], expected.gain, 1e-9) << items;
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(settings[4].second.number[i], expected.tint[i], 1e-9) << items;
-    for (const auto& volume : preset->explanation().volumes) local += volume.distance && volume.factor > 0;
+    for (const auto& volume : build->explanation->volumes) local += volume.distance && volume.factor > 0;
     snapped += expected.mode != "soft";
   }
   EXPECT_GT(local, 300) << "the sets must have something to blend";

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "core/file.h"
-#include "session/calibration.h"
+#include "exec/calibration.h"
 
 namespace afterglow {
 namespace {
@@ -26,7 +26,7 @@ DeviceInfo device(const char* name, const char* driver, const char* type = "disc
 std::string choice_for(const DeviceInfo& info, double max_error) {
   const auto table = Calibration::parse(kTable, "table.json");
   EXPECT_TRUE(table) << table.error().text();
-  return choice_name(table->find(info, max_error).choice);
+  return execution_name(table->find(info, max_error).choice);
 }
 
 TEST(Calibration, TakesTheLargestErrorThatIsAllowed) {
@@ -45,7 +45,7 @@ TEST(Calibration, GoesOnToTheNextEntryThatFits) {
 TEST(Calibration, DevicesItDoesNotKnowAreExact) {
   const auto table = Calibration::parse(kTable, "table.json");
   const auto found = table->find(device("Other", "x", "cpu"), 1);
-  EXPECT_EQ(found.choice, Choice{});
+  EXPECT_EQ(found.choice, ExecutionConfig{});
   EXPECT_THAT(found.from, HasSubstr("built in"));
 }
 

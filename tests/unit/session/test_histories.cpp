@@ -108,8 +108,8 @@ TEST_F(HistoriesOfFrames, AFrameReadsWhatTheOneBeforeItMade) {
   StackOptions plain, kept, reference, half, rows;
   kept.keep_images = true;
   reference.reference = true;
-  half.choice = Choice{.storage = Storage::fp16};
-  rows.choice = Choice{.storage_reads = true, .rows = 4};
+  half.choice = ExecutionConfig{.storage = Storage::fp16};
+  rows.choice = ExecutionConfig{.storage_reads = true, .rows = 4};
   for (const auto& options : {plain, kept, reference, half, rows}) {
     const auto session = open(options);
     EXPECT_EQ(run(*session, 1, 1), 9);  // 16 / 2 + 1
@@ -152,8 +152,8 @@ TEST_F(HistoriesOfFrames, ASeekBeginsAnew) {
 TEST_F(HistoriesOfFrames, AFirstImageStandsForTheFrameBefore) {
   look("fx.trail { image = true }");
   StackOptions plain, rows, half;
-  rows.choice = Choice{.storage_reads = true, .rows = 4};
-  half.choice = Choice{.storage = Storage::fp16, .storage_reads = true};
+  rows.choice = ExecutionConfig{.storage_reads = true, .rows = 4};
+  half.choice = ExecutionConfig{.storage = Storage::fp16, .storage_reads = true};
   for (const auto& options : {plain, rows, half}) {
     const auto session = open(options);
     EXPECT_EQ(run(*session, 1, 1), 5);
@@ -233,15 +233,17 @@ TEST_F(HistoriesOfFrames, AStackThatTakesAnothersPlaceGoesOn) {
   BuildContext context{.size = {kWidth, kHeight}};
   context.frame = 2;
   ASSERT_TRUE(next.prepare(context));
-  ASSERT_TRUE(next.take_histories(session->stack()));
+  next.take_over(session->stack(), false);
   context.frame = 3;
   ASSERT_TRUE(next.prepare(context));
-  auto runner = FrameRunner::create(session->device(), 1u << 30);
-  ASSERT_TRUE(runner);
+  auto renderer = Renderer::create(session->device(), {});
+  ASSERT_TRUE(renderer);
   const Picture p = picture(2);
   HostResult out;
-  ASSERT_TRUE((*runner)->run(*next.program(), {{"source", {p.color.pixels.data(), p.color.size(), 4}}}, out,
-                             KernelTiming::none));
+  auto request = next.request(request_for(next.build()));
+  ASSERT_TRUE(request);
+  request->inputs = {{"source", {p.color.pixels.data(), p.color.size(), 4}}};
+  ASSERT_TRUE((*renderer)->render(std::move(*request), out));
   EXPECT_EQ(out.pixels[0], 4.75f);
 }
 

@@ -2,7 +2,7 @@
 // drawn with before they are needed.
 #include <fmt/format.h>
 
-#include "exec/warm_up.h"
+#include "exec/cpu/warm_up.h"
 #include "live_fixture.h"
 
 namespace afterglow {
@@ -175,7 +175,8 @@ TEST_F(LiveFrames, WarmingUpIsCleanVulkan) {
   effect_of_frames(true);
   auto warm_up = WarmUp::create(*device_, true);
   ASSERT_TRUE(warm_up) << warm_up.error().text();
-  for (const Choice choice : {Choice{}, Choice{.storage = Storage::fp16}, Choice{.storage_reads = true, .rows = 4}}) {
+  for (const ExecutionConfig choice : {ExecutionConfig{}, ExecutionConfig{.storage = Storage::fp16},
+                                       ExecutionConfig{.storage_reads = true, .rows = 4}}) {
     StackOptions options;
     options.choice = choice;
     auto stack = Stack::load(folder_ / "look.lua", options, diagnostics_);
@@ -185,7 +186,10 @@ TEST_F(LiveFrames, WarmingUpIsCleanVulkan) {
     context.size = {1024, 640};
     context.frame = 2;
     ASSERT_TRUE((*stack)->prepare(context));
-    const auto drawn = (*stack)->warm_up(**warm_up);
+    const ProgramCache& programs = *(*stack)->programs();
+    KernelCompiler compiler({});
+    const auto drawn =
+        (*warm_up)->draw((*stack)->shaders(), compiler, programs.work()->graph, programs.program_options());
     EXPECT_TRUE(drawn) << drawn.error().text();
   }
   EXPECT_EQ((*warm_up)->validation_errors(), 0);

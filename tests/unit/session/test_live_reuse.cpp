@@ -147,7 +147,7 @@ TEST_F(LiveReuse, LinearImagesAndHalvesToo) {
   for (std::size_t i = 0; i < large.color.pixels.size(); ++i)
     large.color.pixels[i] = static_cast<float>(i * 7 % 1021) / 64.f;
   note_content(large);
-  for (const Choice choice : {Choice{.rows = 4}, Choice{.storage = Storage::fp16}}) {
+  for (const ExecutionConfig choice : {ExecutionConfig{.rows = 4}, ExecutionConfig{.storage = Storage::fp16}}) {
     LiveOptions options;
     options.follow = false;
     options.stack.choice = choice;

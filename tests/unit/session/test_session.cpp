@@ -209,9 +209,9 @@ TEST_F(SessionTest, SmallErrorsMeanFullFloats) {
 TEST_F(SessionTest, MemoryIsForeseenWithoutADevice) {
   auto stack = Stack::load(folder_ / "look.lua", {}, diagnostics_);
   ASSERT_TRUE(stack) << stack.error().text();
-  const auto bytes = (*stack)->memory_needed({.size = {16384, 16384}, .auxiliary = {}});
-  ASSERT_TRUE(bytes) << bytes.error().text();
-  EXPECT_EQ(*bytes, 2ull * 16384 * 16384 * 16);  // source and result
+  const auto build = (*stack)->evaluate({.size = {16384, 16384}, .auxiliary = {}});
+  ASSERT_TRUE(build) << build.error().text();
+  EXPECT_EQ((*stack)->memory_needed(**build), 2ull * 16384 * 16384 * 16);  // source and result
 }
 
 TEST_F(SessionTest, ShaderErrorsNameTheAuthorsFileAndLine) {
@@ -232,6 +232,49 @@ TEST_F(SessionTest, AnUnknownDeviceIsADeviceError) {
   const auto session = Session::open(folder_ / "look.lua", options, diagnostics_);
   ASSERT_FALSE(session);
   EXPECT_EQ(session.error().kind, ErrorKind::device);
+}
+
+/// Planning, preparing, running, tracing and reporting a frame look at one value.
+TEST_F(SessionTest, ScriptsRunOnceAFrame) {
+  preset("fx.gain { amount = function(t) return 1 + t.frame end }");
+  auto opened = open();
+  ASSERT_TRUE(opened) << opened.error().text();
+  Session& session = **opened;
+  const std::uint64_t before = session.report().counters.evaluations;
+  for (int frame = 1; frame <= 3; ++frame) {
+    BuildContext context{.size = {13, 7}};
+    context.frame = frame;
+    const auto build = session.evaluate(context);
+    ASSERT_TRUE(build) << build.error().text();
+    EXPECT_GT(session.stack().memory_needed(**build), 0u);
+    ASSERT_TRUE(session.prepare({.build = *build}));
+    Picture p = picture(13, 7);
+    const float source = p.color.pixels[4];
+    ASSERT_TRUE(session.trace(p, {.build = *build}, NanPolicy::fail));
+    ASSERT_TRUE(session.process(p, FrameRequest{.build = *build}));
+    EXPECT_FLOAT_EQ(p.color.pixels[4], source * static_cast<float>(1 + frame));
+    EXPECT_EQ(session.stack().build(), *build);
+    EXPECT_EQ(session.report().counters.evaluations, before + static_cast<std::uint64_t>(frame));
+  }
+}
+
+/// What is asked for a later frame changes nothing of the one that runs.
+TEST_F(SessionTest, ALaterFrameMayBeEvaluatedFirst) {
+  preset("fx.gain { amount = function(t) return t.frame end }");
+  auto opened = open();
+  ASSERT_TRUE(opened) << opened.error().text();
+  Session& session = **opened;
+  const auto at = [&](double frame) {
+    BuildContext context{.size = {13, 7}};
+    context.frame = frame;
+    return session.evaluate(context).value();
+  };
+  const auto second = at(2), third = at(3);
+  Picture p = picture(13, 7);
+  const float source = p.color.pixels[4];
+  ASSERT_TRUE(session.process(p, FrameRequest{.build = second}));
+  EXPECT_FLOAT_EQ(p.color.pixels[4], source * 2);
+  EXPECT_EQ(session.stack().build()->entries->at(0).settings.at(0).second.text(), "2");
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ KernelDesc kernel(Filter filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hard
   desc.filter = std::move(filter);
   desc.ratio_x = ratio_x;
   desc.ratio_y = ratio_y;
-  desc.hardware_filter = hardware_filter;
+  desc.config.hardware_filter = hardware_filter;
   return desc;
 }
 

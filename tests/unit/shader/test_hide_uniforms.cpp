@@ -7,7 +7,7 @@
 #include <spirv-tools/libspirv.hpp>
 
 #include "kernel_runner.h"
-#include "shader/hide_uniforms.h"
+#include "shader/cpu/hide_uniforms.h"
 #include "shader_files.h"
 
 namespace afterglow {
@@ -74,8 +74,8 @@ CompiledKernel compiled(bool hide, int rows = 1) {
   KernelCompiler compiler({});
   KernelDesc desc;
   desc.sample = files.stage("test/types", kEveryType);
-  desc.hide_uniforms = hide;
-  desc.rows = rows;
+  desc.config.hide_uniforms = hide;
+  desc.config.rows = rows;
   auto kernel = compiler.compile(desc);
   EXPECT_TRUE(kernel) << kernel.error().text();
   return *kernel;

@@ -192,8 +192,8 @@ class FilterPixels : public testing::TestWithParam<std::size_t> {
       desc.filter = filter;
       desc.ratio_x = test.ratio_x;
       desc.ratio_y = test.ratio_y;
-      desc.hardware_filter = hardware_filter;
-      desc.rows = rows;
+      desc.config.hardware_filter = hardware_filter;
+      desc.config.rows = rows;
       const auto kernel = compiler.compile(desc);
       ASSERT_TRUE(kernel.ok()) << kernel.error().text();
       for (const auto& sizes : test.sizes) {
@@ -242,7 +242,7 @@ TEST(KernelPixels, LongFiltersLoop) {
     desc.filter->y.push_back({i * 0.75, 0.04 - 0.001 * i});
   }
   for (const bool hardware : {false, true}) {
-    desc.hardware_filter = hardware;
+    desc.config.hardware_filter = hardware;
     KernelCompiler compiler{std::filesystem::path()};
     const auto kernel = compiler.compile(desc);
     ASSERT_TRUE(kernel.ok()) << kernel.error().text();

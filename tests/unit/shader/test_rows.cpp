@@ -7,7 +7,7 @@
 #include <spirv-tools/libspirv.hpp>
 
 #include "kernel_runner.h"
-#include "shader/interleave.h"
+#include "shader/cpu/interleave.h"
 #include "shader/spirv_module.h"
 #include "shader_files.h"
 
@@ -60,7 +60,7 @@ TEST_P(Rows, EachHasTheBitsThatItHasAlone) {
     for (std::size_t i = 0; i < alone->images.size(); ++i) images.push_back(light(size, static_cast<unsigned>(i) + 1));
     const TestImage expected = runner().run(*alone, images, size, block);
     for (const int rows : {2, 4, 8}) {
-      desc.rows = rows;
+      desc.config.rows = rows;
       const auto kernel = compiler.compile(desc);
       ASSERT_TRUE(kernel) << kernel.error().text();
       EXPECT_EQ(runner().run(*kernel, images, size, block).rgba, expected.rgba) << rows << " rows, " << size.width;
@@ -76,7 +76,7 @@ CompiledKernel compiled(const char* stage) {
   const ShaderFiles files;
   KernelDesc desc;
   desc.stages = {files.stage("test/stage", stage)};
-  desc.rows = 8;
+  desc.config.rows = 8;
   return KernelCompiler{std::filesystem::path()}.compile(desc).value();
 }
 
@@ -90,7 +90,7 @@ TEST(Rows, KnowWhereTheyAre) {
   KernelDesc desc;
   desc.stages = {files.stage("test/stage", "vec4 apply(vec4 color, ivec2 pixel) { return vec4(pixel, 0, 1); }")};
   for (const int rows : {1, 8}) {
-    desc.rows = rows;
+    desc.config.rows = rows;
     const auto kernel = KernelCompiler{std::filesystem::path()}.compile(desc);
     ASSERT_TRUE(kernel) << kernel.error().text();
     const TestImage out = runner().run(*kernel, {light({7, 11}, 1)}, {7, 11});
@@ -148,7 +148,7 @@ TEST(Interleave, LeavesWhatIsNoModuleAlone) {
 TEST(Rows, OutsideWhatADeviceHas) {
   KernelDesc desc;
   for (const int rows : {0, -1, 9}) {
-    desc.rows = rows;
+    desc.config.rows = rows;
     EXPECT_FALSE(assemble(desc)) << rows;
   }
 }

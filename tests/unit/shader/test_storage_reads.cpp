@@ -3,7 +3,7 @@
 
 #include <spirv-tools/libspirv.hpp>
 
-#include "shader/storage_reads.h"
+#include "shader/cpu/storage_reads.h"
 #include "shader_files.h"
 
 namespace afterglow {

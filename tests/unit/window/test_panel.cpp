@@ -37,14 +37,19 @@ class Port : public PanelPort {
  public:
   explicit Port(const fs::path& file) : file_(file) { reload(); }
   void reload() {
+    build_.reset();
     preset_.reset();
     shaders_ = std::make_unique<ShaderLibrary>(search_path_for(file_, {}));
     auto loaded = Preset::load(file_, {}, *shaders_, diagnostics_);
     ASSERT_TRUE(loaded) << loaded.error().text();
     preset_ = std::make_unique<Preset>(std::move(*loaded));
+    auto build = preset_->evaluate({.size = {64, 32}}, diagnostics_);
+    ASSERT_TRUE(build) << build.error().text();
+    build_ = std::move(*build);
   }
 
   const Preset* preset() override { return preset_.get(); }
+  const Build* build() override { return build_ ? &*build_ : nullptr; }
   LiveStatus status() override { return {}; }
   const std::vector<Skipped>& skipped() override { return skips; }
   std::vector<KernelTime> times() override { return frame_times.kernels; }
@@ -77,6 +82,7 @@ class Port : public PanelPort {
   Diagnostics diagnostics_;
   std::unique_ptr<ShaderLibrary> shaders_;
   std::unique_ptr<Preset> preset_;
+  std::optional<Build> build_;
 };
 
 class PanelTest : public ::testing::Test {
@@ -323,6 +329,7 @@ TEST_F(PanelTest, WithoutAPreset) {
      public:
       using Port::Port;
       const Preset* preset() override { return nullptr; }
+      const Build* build() override { return nullptr; }
     } empty(file);
     panel->draw(interface.ui(), empty, {0, 0}, {kWidth, kHeight});
   };

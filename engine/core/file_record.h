@@ -1,0 +1,74 @@
+// What a piece of work has looked at on disk, so that it can be done again when any of that changes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/hash.h"
+
+namespace afterglow {
+
+/// One look at a path. What was looked for in vain is a look as well.
+struct FileLook {
+  enum class Kind : std::uint8_t {
+    existence,  ///< is there a file or a folder?
+    stamp,      ///< size, times and number of the file: for large ones
+    listing,    ///< names in a folder
+    content,
+  };
+  Kind kind = Kind::existence;
+  Hash seen;   ///< of what was found
+  Hash stamp;  ///< of size, times and number of the file, taken before the look; zero: not to be relied on
+};
+
+/// By absolute path.
+using FileLooks = std::map<std::filesystem::path, FileLook>;
+
+/// Takes down what those look at who are given it: `read_file`, `is_file`, a SearchPath. Of two looks at a path, the
+/// first that says most counts. Thread-safe.
+class FileRecord {
+ public:
+  void note(const std::filesystem::path& path, FileLook::Kind kind);
+  /// What was looked at so far. The same value as the last time while nothing was added.
+  std::shared_ptr<const FileLooks> looks() const;
+
+  /// A content that is about to be read; `done` with what was found. Read errors are looks too. Null: notes nothing.
+  class Reading {
+   public:
+    Reading(FileRecord* record, const std::filesystem::path& path);
+    void done(std::string_view content);
+    ~Reading();
+    Reading(const Reading&) = delete;
+    Reading& operator=(const Reading&) = delete;
+
+   private:
+    FileRecord* record_;
+    const std::filesystem::path& path_;
+    Hash stamp_;
+  };
+
+ private:
+  void add(const std::filesystem::path& path, const FileLook& look);
+  mutable std::mutex mutex_;
+  FileLooks looks_;
+  mutable std::shared_ptr<const FileLooks> taken_;  ///< null: something was added since
+};
+
+/// A look of that kind, now.
+FileLook look_at(const std::filesystem::path& path, FileLook::Kind kind);
+
+/// What Watcher::watch must be given to notice when looks come out differently.
+std::vector<std::filesystem::path> paths_to_watch(const FileLooks& looks);
+
+/// The first path at which one would see something else now. `trust_stamps`: contents of files whose size, times and
+/// number are the same are not read again; for looking often. (Two changes within one tick of a file system's clock
+/// may have the same times: stamps younger than two seconds are not trusted.)
+std::optional<std::filesystem::path> first_changed(const FileLooks& looks, bool trust_stamps = false);
+
+}  // namespace afterglow

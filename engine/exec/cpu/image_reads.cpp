@@ -1,0 +1,47 @@
+#include "exec/cpu/image_reads.h"
+
+#include "exec/describe.h"
+#include "graph/history.h"
+
+namespace afterglow {
+namespace {
+
+/// How an image is best read: as a storage image where it is one.
+ImageRead read_of(const Graph& graph, ImageId image, const ProgramOptions& options) {
+  if (graph.images[image].data) return ImageRead::storage_rgba32f;  // whatever the stack's own images are
+  const History* history = history_of_previous(graph, image);
+  const bool between = history || graph.images[image].producer >= 0;
+  if (!between && !(image == graph.source && options.source_is_storage)) return ImageRead::sampled;
+  const ImageRead read = options.config.storage == Storage::fp16 && !is_precise(graph, image)
+                             ? ImageRead::storage_rgba16f
+                             : ImageRead::storage_rgba32f;
+  // In a first frame another image stands in the same place.
+  if (history && history->first != kNoImage && read_of(graph, history->first, options) != read)
+    return ImageRead::sampled;
+  return read;
+}
+
+}  // namespace
+
+std::vector<ImageRead> storage_reads_of(const Graph& graph, const PlanKernel& kernel, const KernelDesc& desc,
+                                        const ProgramOptions& options) {
+  std::vector<ImageRead> reads;
+  const auto add = [&](int stage, const std::string& name) {
+    const PassInput* input = input_of(pass_of_stage(graph, kernel, stage), name);
+    reads.push_back(input ? read_of(graph, input->image, options) : ImageRead::sampled);
+  };
+  if (desc.filter && desc.config.hardware_filter)
+    reads.push_back(ImageRead::sampled);  // the sampler interpolates
+  else if (!desc.sample)
+    add(-1, "source");
+  int stage = 0;
+  const auto add_inputs = [&](const KernelStage& of) {
+    for (const auto& input : of.shader->interface.inputs) add(stage, input.name);
+    ++stage;
+  };
+  if (desc.sample) add_inputs(*desc.sample);
+  for (const auto& of : desc.stages) add_inputs(of);
+  return reads;
+}
+
+}  // namespace afterglow

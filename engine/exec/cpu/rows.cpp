@@ -1,0 +1,20 @@
+#include "exec/cpu/rows.h"
+
+namespace afterglow {
+
+int rows_that_pay(const KernelDesc& kernel, int wanted) {
+  constexpr double kWorthwhile = 1.5;  // times fewer lines
+  constexpr int kMostLines = 12;       // that a processor fetches ahead at a time
+  if (kernel.sample || kernel.config.hardware_filter) return 1;
+  // Loops cannot be taken in turns: it would be so many times as much to compile for nothing.
+  for (const auto& stage : kernel.stages)
+    if (stage.shader->loops) return 1;
+  if (!kernel.filter) return wanted;
+  for (int rows = wanted; rows > 1; rows /= 2) {
+    const auto lines = lines_shared(*kernel.filter, kernel.ratio_y, rows);
+    if (lines && lines->together <= kMostLines && lines->apart > kWorthwhile * lines->together) return rows;
+  }
+  return 1;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,101 @@
+#include "exec/cpu/warm_up.h"
+
+#include <cstdlib>
+#include <string_view>
+
+#include "exec/frame_inputs.h"
+#include "exec/frame_result.h"
+#include "exec/histories.h"
+#include "exec/host_input.h"
+#include "exec/pipeline_pool.h"
+#include "exec/submit.h"
+
+namespace afterglow {
+namespace {
+
+/// Mesa's ways of turning its cache off.
+bool cache_is_off() {
+  for (const char* name : {"MESA_SHADER_CACHE_DISABLE", "MESA_GLSL_CACHE_DISABLE"}) {
+    const char* value = std::getenv(name);
+    if (!value) continue;
+    const std::string_view text = value;
+    if (text == "1" || text == "true" || text == "yes" || text == "y") return true;
+  }
+  return false;
+}
+
+int usual_channels(const std::string& input) {
+  if (input == "source") return 4;
+  if (input == "depth") return 1;
+  return input == "motion" ? 2 : 3;
+}
+
+/// Inputs as pictures usually have them; their pixels are never looked at.
+std::map<std::string, HostImage> inputs_for(const Graph& graph) {
+  static const float kNothing = 0;
+  std::map<std::string, HostImage> out;
+  for (const auto& [name, id] : inputs_of(graph))
+    out[name] = {.pixels = &kNothing, .size = graph.images[id].size, .channels = usual_channels(name)};
+  return out;
+}
+
+}  // namespace
+
+struct WarmUp::State {
+  State(std::unique_ptr<Device> device_in)
+      : device(std::move(device_in)), inputs(*device, true), result(*device, true) {}
+
+  std::unique_ptr<Device> device;
+  PipelinePool pipelines;
+  std::unique_ptr<Program> last;  ///< keeps its pipelines, with which the driver keeps what it has compiled
+  FrameInputs inputs;
+  FrameResult result;
+  Submitter submitter;  // last: it waits before the images go
+};
+
+WarmUp::WarmUp(std::unique_ptr<State> state) : state_(std::move(state)) {}
+WarmUp::~WarmUp() = default;
+
+bool WarmUp::helps(const Device& device) { return device.is_cpu() && !cache_is_off(); }
+
+Result<std::unique_ptr<WarmUp>> WarmUp::create(const Device& device, bool validate) {
+  Diagnostics nowhere;
+  AFTERGLOW_TRY(auto own,
+                Device::create({.device = device.info().uuid, .validate = validate, .presentation = {}}, nowhere));
+  auto state = std::make_unique<State>(std::move(own));
+  AFTERGLOW_TRY(state->submitter, Submitter::create(*state->device));
+  return std::unique_ptr<WarmUp>(new WarmUp(std::move(state)));
+}
+
+Result<void> WarmUp::draw(ShaderLibrary& shaders, KernelCompiler& compiler, const Graph& graph,
+                          ProgramOptions options) {
+  State& s = *state_;
+  options.a_pixel_each = true;
+  options.region.reset();
+  options.keep_images = false;
+  options.pipelines = &s.pipelines;
+  options.images = nullptr;
+  options.histories = nullptr;
+  AFTERGLOW_TRY(auto program, Program::create(*s.device, shaders, compiler, graph, options));
+  if (program->plan().kernels.empty()) return {};
+  AFTERGLOW_TRY(const auto wanted, FrameInputs::wanted_by(*program, inputs_for(graph)));
+  AFTERGLOW_CHECK(s.submitter.wait());
+  AFTERGLOW_CHECK(s.inputs.prepare(wanted));
+  AFTERGLOW_CHECK(s.result.take(FrameResult::wanted_by(*program), program->result_rows()));
+  if (program->histories()) program->histories()->begin(0);
+  AFTERGLOW_CHECK(program->bind(s.inputs.bindings(), binding_of(s.result.image())));
+  AFTERGLOW_CHECK(s.submitter.submit([&](VkCommandBuffer commands) {
+    s.inputs.before(*program, commands);
+    s.result.before(commands);
+    program->record(commands);
+    s.inputs.after(commands);
+    s.result.after(commands);
+  }));
+  AFTERGLOW_CHECK(s.submitter.wait());
+  s.last = std::move(program);
+  return {};
+}
+
+int WarmUp::validation_errors() const { return state_->device->validation_errors(); }
+
+}  // namespace afterglow

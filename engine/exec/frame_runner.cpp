@@ -1,0 +1,458 @@
+#include "exec/frame_runner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/stopwatch.h"
+#include "exec/convert.h"
+#include "exec/frame_inputs.h"
+#include "exec/frame_result.h"
+#include "exec/host_input.h"
+#include "exec/kernel_timer.h"
+#include "exec/staging.h"
+#include "exec/submit.h"
+#include "gpu/error.h"
+
+namespace afterglow {
+
+namespace {
+
+std::uint64_t image_bytes(const ImageDesc& desc) {
+  return static_cast<std::uint64_t>(desc.size.area()) * bytes_per_pixel(desc.format);
+}
+
+}  // namespace
+
+struct FrameRunner::State {
+  State(Device& device_in, std::uint64_t max_memory_in, bool direct_in, bool ahead_in)
+      : device(device_in),
+        max_memory(max_memory_in),
+        direct(direct_in),
+        ahead(ahead_in),
+        inputs(device_in, direct_in),
+        result(device_in, direct_in),
+        staging(device_in, ahead_in),
+        timer(device_in) {}
+
+  Device& device;
+  std::uint64_t max_memory;
+  bool direct;
+  bool ahead;  ///< staging is whole
+  FrameInputs inputs;
+  FrameResult result;
+  bool flags = false;  ///< the last run's result tells of what is not finite
+  std::optional<Rect> shown;  ///< the part of the result that the last run made; none: the result is the source
+  Staging staging;
+  KernelTimer timer;
+  /// What the command buffer holds and what it needs to be so again.
+  struct Recorded {
+    std::uint64_t program = 0;
+    std::vector<bool> run;
+    std::vector<VkImage> images;
+    std::vector<VkImageLayout> layouts;  ///< of the inputs, before and after
+    int bindings = 0;
+    friend bool operator==(const Recorded&, const Recorded&) = default;
+  };
+  static constexpr int kOneOff = 2;                       ///< buffer of the Submitter for what is submitted once
+  std::array<std::optional<Recorded>, kOneOff> recorded;  ///< by Program::recording
+  /// What a program is bound to: the images, and its own count then.
+  struct Bound {
+    std::uint64_t program = 0;
+    std::vector<VkImage> images;
+    int bindings = 0;
+    friend bool operator==(const Bound&, const Bound&) = default;
+  };
+  std::optional<Bound> bound;
+  /// A frame that began.
+  struct Begun {
+    Program* ran = nullptr;  ///< null: the result is the source
+    HostImage source;
+    FrameTimes times;
+    Plan plan{};                                   ///< of `ran`, for messages
+    std::optional<Clock::time_point> submitted{};  ///< none: its kernels have been waited for
+  };
+  std::optional<Begun> begun;
+  Submitter submitter;  // last: it waits before the images go
+
+  Result<void> check_memory(const std::map<std::string, ImageDesc>& descs, std::uint64_t other_bytes) const;
+  Result<void> prepare_inputs(const std::map<std::string, ImageDesc>& descs);
+  Result<void> take_result(const Program& program);
+  Result<void> prepare(const Program& program, const std::map<std::string, HostImage>& host);
+  Result<void> upload(const Program& program, const std::map<std::string, HostImage>& host, bool look);
+  Result<void> bring_source(const std::map<std::string, HostImage>& host, FrameTimes& times);
+  Result<void> leave_readable();
+  Result<void> begin(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
+                     const Choose& choose);
+  Result<void> start(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
+                     const Choose& choose);
+  Result<void> execute(Program& program, const std::vector<bool>& run, KernelTiming timing);
+  Result<void> time_separately(Program& program, const std::vector<bool>& run);
+  Result<void> wait();
+  Result<FrameTimes> end();
+  std::vector<VkImageLayout> input_layouts() const;
+};
+
+FrameRunner::FrameRunner(std::unique_ptr<State> state) : state_(std::move(state)) {}
+FrameRunner::~FrameRunner() = default;
+
+Result<std::unique_ptr<FrameRunner>> FrameRunner::create(Device& device, const Options& options) {
+  auto state = std::make_unique<State>(device, options.max_memory, options.direct && device.is_cpu(),
+                                       options.whole_staging);
+  AFTERGLOW_TRY(state->submitter, Submitter::create(device));
+  return std::unique_ptr<FrameRunner>(new FrameRunner(std::move(state)));
+}
+
+Result<void> FrameRunner::State::check_memory(const std::map<std::string, ImageDesc>& descs,
+                                              std::uint64_t other_bytes) const {
+  std::uint64_t total = other_bytes;
+  for (const auto& [name, desc] : descs) total += image_bytes(desc);
+  if (total <= max_memory) return {};
+  return Error{ErrorKind::io,
+               fmt::format("the frame needs {} of device memory, more than the {} allowed (--max-memory)",
+                           bytes_text(total), bytes_text(max_memory))};
+}
+
+Result<void> FrameRunner::State::prepare_inputs(const std::map<std::string, ImageDesc>& descs) {
+  AFTERGLOW_TRY(const bool fresh, inputs.prepare(descs));
+  if (fresh) recorded = {}, bound.reset();  // a new image may have the handle of one that is gone
+  return {};
+}
+
+Result<void> FrameRunner::State::take_result(const Program& program) {
+  AFTERGLOW_TRY(const bool fresh, result.take(FrameResult::wanted_by(program), program.result_rows()));
+  if (fresh) recorded = {}, bound.reset();
+  return {};
+}
+
+/// Images for this program and these inputs; those that are there and fit stay.
+Result<void> FrameRunner::State::prepare(const Program& program, const std::map<std::string, HostImage>& host) {
+  AFTERGLOW_TRY(const auto descs, FrameInputs::wanted_by(program, host));
+  const ImageDesc result_desc = FrameResult::wanted_by(program);
+  std::uint64_t bytes = program.memory().arena + program.memory().histories + image_bytes(result_desc);
+  if (!direct) bytes += 2 * staging.bytes({VK_NULL_HANDLE, result_desc.format, result_desc.size});
+  AFTERGLOW_CHECK(check_memory(descs, bytes));
+  AFTERGLOW_CHECK(prepare_inputs(descs));
+  return take_result(program);
+}
+
+/// Every input that may hold other pixels than those it is given. `look`: find out how bright the source is.
+Result<void> FrameRunner::State::upload(const Program& program, const std::map<std::string, HostImage>& host,
+                                        bool look) {
+  const bool half = program.storage_format() == VK_FORMAT_R16G16B16A16_SFLOAT;
+  staging.begin_uploads();
+  for (const auto& [name, id] : inputs_of(program.graph()))
+    AFTERGLOW_CHECK(inputs.upload(staging, name, host.at(name), program.parts().images[id], look && name == "source",
+                                  half ? Storage::fp16 : Storage::fp32));
+  return {};
+}
+
+/// The source alone, for frames without a program.
+Result<void> FrameRunner::State::bring_source(const std::map<std::string, HostImage>& host, FrameTimes& times) {
+  const auto source = host.find("source");
+  if (source == host.end() || !source->second.pixels) return Error{ErrorKind::other, "the frame has no image 'source'"};
+  const HostImage& given = source->second;
+  const std::map<std::string, ImageDesc> descs{{"source",
+                                                {.name = "source",
+                                                 .size = given.size,
+                                                 .format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                                                 .usage = VK_IMAGE_USAGE_SAMPLED_BIT}}};
+  AFTERGLOW_CHECK(check_memory(descs, 0));
+  AFTERGLOW_CHECK(prepare_inputs(descs));
+  const auto start = Clock::now();
+  const Rect all{0, 0, given.size.width, given.size.height};
+  staging.begin_uploads();
+  AFTERGLOW_CHECK(inputs.upload(staging, "source", given, all, false, Storage::fp32));
+  times.upload = milliseconds_since(start);
+  return {};
+}
+
+/// What is otherwise done after the kernels, when none has run.
+Result<void> FrameRunner::State::leave_readable() {
+  if (inputs.readable()) return {};
+  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) { inputs.after(commands); }, kOneOff));
+  return submitter.wait();
+}
+
+std::vector<VkImageLayout> FrameRunner::State::input_layouts() const {
+  std::vector<VkImageLayout> layouts;
+  for (const auto& [name, image] : inputs.images()) layouts.push_back(image.layout);
+  return layouts;
+}
+
+/// Submits; with `timing` it also waits.
+Result<void> FrameRunner::State::execute(Program& program, const std::vector<bool>& run, KernelTiming timing) {
+  const auto& kernels = program.plan().kernels;
+  const bool separate = timing == KernelTiming::submissions;
+  const bool stamps = timing == KernelTiming::timestamps && device.timestamps_mean_draws();
+  VkQueryPool queries = VK_NULL_HANDLE;
+  if (stamps) {
+    AFTERGLOW_TRY(queries, timer.queries(kernels.size() + 1));
+  }
+
+  Recorded wanted{.program = program.id(),
+                  .run = run,
+                  .images = result.images(),
+                  .layouts = input_layouts(),
+                  .bindings = program.bindings()};
+  for (const auto& [name, image] : inputs.images()) wanted.images.push_back(image.image.get());
+  const bool unlike = program.recording() == Program::kUnlikeOthers;
+  const int which = unlike ? kOneOff : program.recording();
+  std::optional<Recorded> none;
+  std::optional<Recorded>& last = unlike ? none : recorded[static_cast<std::size_t>(which)];
+  const bool known = timing == KernelTiming::none && last == wanted;
+  if (!known) {
+    if (bound != Bound{program.id(), wanted.images, program.bindings()})
+      AFTERGLOW_CHECK(program.bind(inputs.bindings(), binding_of(result.image())));
+    bound = {program.id(), wanted.images, program.bindings()};
+    wanted.bindings = program.bindings();
+  }
+  last.reset();
+  begun->submitted = Clock::now();
+  auto submitted = known ? submitter.submit_again(which)
+                         : submitter.submit(
+                               [&](VkCommandBuffer commands) {
+                                 inputs.before(program, commands);
+                                 result.before(commands);
+                                 program.record(commands, -1, queries, run);
+                                 if (separate) return;
+                                 inputs.after(commands);
+                                 result.after(commands);
+                               },
+                               which);
+  if (!submitted) return KernelTimer::blame(std::move(submitted).error(), program.plan());
+  // Layouts are where they were when the frame ends as it began.
+  if (timing == KernelTiming::none && input_layouts() == wanted.layouts) last = std::move(wanted);
+  if (timing == KernelTiming::none) return {};
+  AFTERGLOW_CHECK(wait());
+  if (stamps) {
+    AFTERGLOW_TRY(begun->times.kernels, timer.read(program.plan()));
+  }
+  return separate ? time_separately(program, run) : Result<void>();
+}
+
+/// Each kernel once more, alone: the same pixels again, since no input has changed.
+Result<void> FrameRunner::State::time_separately(Program& program, const std::vector<bool>& run) {
+  const auto& kernels = program.plan().kernels;
+  begun->times.separate_submissions = true;
+  for (std::size_t i = 0; i < kernels.size(); ++i) {
+    if (!run[i]) continue;
+    const auto begin = Clock::now();
+    auto done = submitter.submit([&](VkCommandBuffer commands) { program.record(commands, static_cast<int>(i)); });
+    if (done) done = submitter.wait();
+    if (!done) {
+      Error error = std::move(done).error();
+      error.message += fmt::format(" in kernel '{}'", kernels[i].name);
+      return error;
+    }
+    begun->times.kernels.push_back({kernels[i].name, milliseconds_since(begin)});
+  }
+  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) {
+    inputs.after(commands);
+    result.after(commands);
+  }));
+  return submitter.wait();
+}
+
+/// The one place that waits for kernels.
+Result<void> FrameRunner::State::wait() {
+  if (!begun || !begun->submitted) return {};
+  const auto since = *std::exchange(begun->submitted, std::nullopt);
+  auto done = submitter.wait();
+  begun->times.execute = milliseconds_since(since);
+  if (done) return {};
+  recorded = {};
+  result.set_writer(0);
+  return KernelTimer::blame(std::move(done).error(), begun->plan);
+}
+
+/// Everything of a frame but waiting for it and reading it back.
+Result<void> FrameRunner::State::start(Program& program, const std::map<std::string, HostImage>& host,
+                                       KernelTiming timing, const Choose& choose) {
+  AFTERGLOW_CHECK(prepare(program, host));
+  begun->source = host.at("source");
+  const auto began = Clock::now();
+  AFTERGLOW_CHECK(upload(program, host, choose.look));
+  begun->times.upload = milliseconds_since(began);
+
+  Program* chosen = &program;
+  if (choose.program) {
+    AFTERGLOW_TRY(chosen, choose.program(choose.look ? inputs.brightest("source") : 0));
+  }
+  if (!chosen) return {};
+  if (chosen != &program) AFTERGLOW_CHECK(take_result(*chosen));
+  const std::vector<bool> run = chosen->begin_run(inputs.versions(), result.writer() != chosen->id());
+  begun->times.kernels_run = static_cast<int>(std::ranges::count(run, true));
+  begun->times.kernels_kept = static_cast<int>(run.size()) - begun->times.kernels_run;
+  if (begun->times.kernels_run > 0) {
+    result.set_writer(0);
+    begun->plan = chosen->plan();
+    AFTERGLOW_CHECK(execute(*chosen, run, timing));
+    chosen->up_to_date();
+    result.set_writer(chosen->id());
+  }
+  begun->ran = chosen;
+  return {};
+}
+
+Result<void> FrameRunner::State::begin(Program& program, const std::map<std::string, HostImage>& host,
+                                       KernelTiming timing, const Choose& choose) {
+  begun.emplace();
+  shown.reset();
+  auto started = start(program, host, timing, choose);
+  if (!started) {
+    (void)submitter.wait();  // nothing may be on its way between images that are made anew
+    (void)staging.wait();
+    begun.reset();
+    return started;
+  }
+  if (!begun->ran) return {};
+  shown = begun->ran->parts().images[begun->ran->graph().result];
+  flags = begun->ran->flags_non_finite();
+  return {};
+}
+
+Result<FrameTimes> FrameRunner::State::end() {
+  auto done = wait();
+  FrameTimes times = begun ? std::move(begun->times) : FrameTimes{};
+  if (!done) return std::move(done).error();
+  return times;
+}
+
+Result<void> FrameRunner::begin(Program& program, const std::map<std::string, HostImage>& inputs, KernelTiming timing,
+                                const Choose& choose) {
+  State& s = *state_;
+  AFTERGLOW_CHECK(s.begin(program, inputs, timing, choose));
+  return s.ahead && s.begun->ran ? s.result.begin_download(s.staging, *s.shown) : Result<void>();
+}
+
+Result<void> FrameRunner::wait() { return state_->wait(); }
+void FrameRunner::forget_result() { state_->result.set_writer(0); }
+
+Result<FrameTimes> FrameRunner::finish(HostResult& out) {
+  State& s = *state_;
+  out.clamped = 0;
+  out.flagged = false;
+  if (!s.begun) return Error{ErrorKind::other, "no frame began"};
+  Program* const ran = s.begun->ran;
+  const HostImage source = s.begun->source;
+  AFTERGLOW_TRY(FrameTimes times, s.end());
+  out.clamped = s.inputs.clamped();
+  if (!ran) {
+    s.begun.reset();
+    copy_source(source, out.pixels);
+    return times;
+  }
+  const auto start = Clock::now();
+  AFTERGLOW_TRY(const std::uint64_t held, s.result.download(s.staging, *s.shown, out, s.flags));
+  s.begun.reset();
+  out.clamped += held;
+  times.readback = milliseconds_since(start);
+  return times;
+}
+
+Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string, HostImage>& inputs, HostResult& out,
+                                    KernelTiming timing, const Choose& choose) {
+  const Graph& graph = program.graph();
+  if (graph.result == graph.source) {
+    state_->shown.reset();
+    out.clamped = 0;
+    out.flagged = false;
+    AFTERGLOW_CHECK(check_input(graph, "source", graph.source, inputs));
+    copy_source(inputs.at("source"), out.pixels);
+    return FrameTimes{};
+  }
+  AFTERGLOW_CHECK(begin(program, inputs, timing, choose));
+  return finish(out);
+}
+
+Result<FrameTimes> FrameRunner::run_on_device(Program* program, const std::map<std::string, HostImage>& inputs,
+                                              KernelTiming timing, const Choose& choose) {
+  State& s = *state_;
+  FrameTimes times;
+  bool ran = false;
+  if (program && program->graph().result != program->graph().source) {
+    AFTERGLOW_CHECK(s.begin(*program, inputs, timing, choose));
+    ran = s.begun->ran != nullptr;
+    AFTERGLOW_TRY(times, s.end());
+  } else {
+    s.shown.reset();
+    AFTERGLOW_CHECK(s.bring_source(inputs, times));
+  }
+  s.begun.reset();
+  if (!ran) AFTERGLOW_CHECK(s.leave_readable());
+  return times;
+}
+
+Result<std::optional<double>> FrameRunner::time_kernel(Program& program, std::size_t kernel) {
+  State& s = *state_;
+  if (s.result.writer() != program.id() || !s.bound || s.bound->program != program.id() ||
+      kernel >= program.plan().kernels.size())
+    return std::optional<double>();
+  const bool makes_result = program.plan().kernels[kernel].output == program.graph().result;
+  const bool stamps = s.device.timestamps_mean_draws();
+  VkQueryPool queries = VK_NULL_HANDLE;
+  if (stamps) {
+    AFTERGLOW_TRY(queries, s.timer.queries(2));
+  }
+  const auto start = Clock::now();
+  AFTERGLOW_CHECK(s.submitter.submit(
+      [&](VkCommandBuffer commands) {
+        s.inputs.before(program, commands);
+        if (makes_result) s.result.before(commands);
+        program.record_again(commands, kernel, queries);
+        s.inputs.after(commands);
+        if (makes_result) s.result.after(commands);
+      },
+      State::kOneOff));
+  AFTERGLOW_CHECK(s.submitter.wait());
+  if (!stamps) return std::optional<double>(milliseconds_since(start));
+  AFTERGLOW_TRY(const double between, s.timer.between());
+  return std::optional<double>(between);
+}
+
+DeviceImages FrameRunner::images() const {
+  const auto image = [](const FrameImage& from) { return DeviceImage{binding_of(from), from.layout}; };
+  DeviceImages out;
+  if (const auto source = state_->inputs.images().find("source"); source != state_->inputs.images().end())
+    out.source = image(source->second);
+  out.ran = state_->shown.has_value();
+  out.result = out.ran ? image(state_->result.image()) : out.source;
+  return out;
+}
+
+Result<void> FrameRunner::read_result(HostResult& out, const std::optional<Rect>& part) {
+  if (!state_->shown) return Error{ErrorKind::other, "no frame was run, there is no result to read"};
+  AFTERGLOW_TRY(out.clamped, state_->result.download(state_->staging, part.value_or(*state_->shown), out));
+  return {};
+}
+
+Result<HostResult> FrameRunner::read_image(Program& program, ImageId image) {
+  const auto found = program.transient(image);
+  if (!found || !found->kept) {
+    const auto& images = program.graph().images;
+    const bool known = image >= 0 && image < static_cast<int>(images.size());
+    return Error{ErrorKind::other,
+                 fmt::format("the pixels of '{}' are not kept", known ? images[image].name : std::to_string(image))};
+  }
+  const auto [width, height] = found->binding.size;
+  HostResult out;
+  out.pixels.resize(static_cast<std::size_t>(found->binding.size.area()) * 4);
+  const auto unpack = [&, w = width](int y, const std::byte* from) {
+    return unpack_row(from, found->binding.format, w, out.pixels.data() + static_cast<std::ptrdiff_t>(y) * w * 4);
+  };
+  AFTERGLOW_TRY(out.clamped,
+                state_->staging.download({found->binding.image, found->binding.format, found->binding.size},
+                                         found->layout, unpack));
+  return out;
+}
+
+FrameRunner::Counters FrameRunner::counters() const {
+  return {.images = state_->inputs.made() + state_->result.made(),
+          .buffers = state_->staging.buffers() + state_->timer.pools(),
+          .recordings = state_->submitter.recordings()};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,263 @@
+#include "exec/program_cache.h"
+
+#include <algorithm>
+#include <iterator>
+#include <list>
+#include <set>
+#include <utility>
+
+#include "core/stopwatch.h"
+#include "exec/cpu/driver.h"
+#include "exec/describe.h"
+#include "exec/histories.h"
+#include "exec/idle_programs.h"
+#include "graph/history.h"
+#include "graph/region.h"
+
+namespace afterglow {
+
+struct ProgramCache::State {
+  State(Device& device_in, std::shared_ptr<SharedKernels> shared_in, const ProgramCacheOptions& options_in)
+      : device(device_in), shared(std::move(shared_in)), options(options_in) {}
+
+  /// A program and what it was made for. Values of the graph may be older or newer than the program's.
+  struct Entry {
+    FrameWork work;
+    std::unique_ptr<Program> program;  ///< null: nothing runs
+    IdlePrograms idle;
+  };
+  using Entries = std::list<Entry>;
+
+  Device& device;
+  std::shared_ptr<SharedKernels> shared;
+  ProgramCacheOptions options;
+  std::shared_ptr<Histories> histories = std::make_shared<Histories>();
+  Entries entries;       ///< the one used last first
+  bool present = false;  ///< the first is the present one
+  bool fresh = false;    ///< it was made by the last `find`, with the values of its frame
+  bool moved = false;    ///< it has to be pointed at the histories: it was not the present one, or they are others
+  double milliseconds = 0;
+
+  Entries::iterator found(const FrameWork& work) {
+    return std::ranges::find_if(entries, [&](const Entry& entry) { return same_program(entry.work, work); });
+  }
+  Result<void> fit_histories();
+  ProgramOptions program_options() const;
+  Result<void> make(FrameWork work, ShaderLibrary& shaders);
+  void drop_spares();
+};
+
+bool same_program(const FrameWork& a, const FrameWork& b) {
+  return a.region == b.region && a.codes == b.codes && a.texts == b.texts && same_structure(a.graph, b.graph) &&
+         (!a.region || same_reach(a.graph, b.graph));
+}
+
+std::vector<Error> check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
+                                 const ExecutionConfig& config) {
+  ProgramOptions options{.config = config, .source_is_storage = true, .codes = work.codes, .flag_non_finite = true};
+  fit_to_cpu_driver(options.config);
+  std::vector<Error> errors;
+  std::set<Hash> checked;
+  for (const auto& kernel : make_plan(work.graph, config).kernels) {
+    const auto check = [&]() -> Result<void> {
+      AFTERGLOW_TRY(const KernelDesc desc, describe_kernel(shaders, work.graph, kernel, options));
+      AFTERGLOW_TRY(const AssembledKernel assembled, assemble(desc));
+      if (!checked.insert(assembled.hash).second) return {};
+      AFTERGLOW_CHECK(compiler.compile(desc));
+      return {};
+    };
+    if (auto good = check(); !good) errors.push_back(std::move(good).error());
+  }
+  return errors;
+}
+
+Result<Hash> texts_of(const Graph& graph, ShaderLibrary& shaders) {
+  Hasher hasher;
+  for (const auto& pass : graph.passes) {
+    if (pass.shader.empty()) continue;
+    AFTERGLOW_TRY(const auto source, shaders.find(pass.shader));
+    hasher.add(source->hash.high).add(source->hash.low);
+  }
+  return hasher.finish();
+}
+
+ProgramCache::ProgramCache(Device& device, std::shared_ptr<SharedKernels> shared, const ProgramCacheOptions& options)
+    : state_(std::make_unique<State>(device, std::move(shared), options)) {}
+ProgramCache::~ProgramCache() = default;
+
+const ProgramCacheOptions& ProgramCache::options() const { return state_->options; }
+bool ProgramCache::has(const FrameWork& work) const { return state_->found(work) != state_->entries.end(); }
+const FrameWork* ProgramCache::work() const { return state_->present ? &state_->entries.front().work : nullptr; }
+Program* ProgramCache::program() const { return state_->present ? state_->entries.front().program.get() : nullptr; }
+Program* ProgramCache::program(std::uint64_t id) const {
+  Program* const whole = program();
+  if (!whole || whole->id() == id) return whole;
+  return state_->entries.front().idle.program(id);
+}
+double ProgramCache::milliseconds() const { return state_->milliseconds; }
+
+ProgramOptions ProgramCache::State::program_options() const {
+  ProgramOptions out;
+  out.config = options.config;
+  out.reference = options.reference;
+  out.source_is_storage = out.result_by_rows = options.own_images;
+  out.flag_non_finite = options.flag_non_finite;
+  out.keep_images = options.keep_images;
+  out.max_memory = options.max_memory;
+  out.pipelines = &shared->pipelines;
+  out.images = &shared->images;
+  out.histories = histories;
+  if (present) {
+    out.codes = entries.front().work.codes;
+    out.region = entries.front().work.region;
+  }
+  return out;
+}
+
+/// What earlier frames handed on stays where it still means the same.
+Result<void> ProgramCache::State::fit_histories() {
+  const bool half = options.config.storage == Storage::fp16 && !options.reference;
+  return histories->fit(device, entries.front().work.graph,
+                        {.half = half, .storage = options.config.storage_reads, .max_memory = options.max_memory});
+}
+
+/// Images that programs share go with the last of them: where they are kept, the program before stays until the new one
+/// is there.
+Result<void> ProgramCache::State::make(FrameWork work, ShaderLibrary& shaders) {
+  present = false;
+  if (options.spare == 0 && !options.keep_images) entries.clear();
+  entries.push_front({.work = std::move(work), .program = nullptr, .idle = {}});
+  present = true;
+  Entry& entry = entries.front();
+  if (!entry.work.runs()) return {};
+  const auto start = Clock::now();
+  AFTERGLOW_CHECK(fit_histories());
+  AFTERGLOW_TRY(entry.program, Program::create(device, shaders, shared->compiler, entry.work.graph, program_options()));
+  device.save_pipeline_cache();
+  milliseconds += milliseconds_since(start);
+  return {};
+}
+
+/// As many as may stay, within the memory that there may be. What runs nothing is made at once when it is wanted.
+void ProgramCache::State::drop_spares() {
+  const auto bytes_of = [](const Entry& entry) { return entry.program ? entry.program->memory().arena : 0; };
+  std::uint64_t bytes = bytes_of(entries.front());
+  int stay = 0;
+  for (auto entry = std::next(entries.begin()); entry != entries.end();) {
+    bytes += bytes_of(*entry);
+    const bool stays = entry->program && stay < options.spare && bytes <= options.max_memory;
+    stay += stays ? 1 : 0;
+    entry = stays ? std::next(entry) : entries.erase(entry);
+  }
+}
+
+ProgramOptions ProgramCache::program_options() const { return state_->program_options(); }
+
+Result<void> ProgramCache::find(FrameWork work, ShaderLibrary& shaders) {
+  State& s = *state_;
+  const auto found = s.found(work);
+  s.fresh = found == s.entries.end();
+  if (s.fresh) {
+    auto made = s.make(std::move(work), shaders);
+    if (!made) {
+      s.entries.pop_front();
+      s.present = false;
+    }
+    return made;
+  }
+  if (found != s.entries.begin()) {
+    s.entries.splice(s.entries.begin(), s.entries, found);
+    s.moved = true;
+  }
+  s.entries.front().work = std::move(work);
+  s.present = true;
+  return {};
+}
+
+Result<void> ProgramCache::begin() {
+  State& s = *state_;
+  if (!s.present) return {};
+  State::Entry& entry = s.entries.front();
+  const FrameWork& work = entry.work;
+  if (s.moved && entry.program) {
+    AFTERGLOW_CHECK(s.fit_histories());
+    AFTERGLOW_CHECK(entry.program->use(s.histories));
+    AFTERGLOW_CHECK(entry.idle.use(s.histories));
+  }
+  s.moved = false;
+  if (!s.fresh && entry.program) entry.program->set_parameters(work.graph);
+  if (!s.fresh) entry.idle.set_parameters(work.graph);
+  s.drop_spares();
+  if (work.runs())
+    s.histories->begin(work.frame, work.step, work.restart);
+  else
+    s.histories->reset();
+  return {};
+}
+
+Result<void> ProgramCache::prepare(FrameWork work, ShaderLibrary& shaders) {
+  AFTERGLOW_CHECK(find(std::move(work), shaders));
+  return begin();
+}
+
+bool ProgramCache::depends_on_content() const {
+  const ProgramCacheOptions& options = state_->options;
+  return program() && options.skip_idle && !options.reference && !work()->graph.idle.empty();
+}
+
+Result<ProgramCache::Choice> ProgramCache::for_content(float brightest, ShaderLibrary& shaders) {
+  State& s = *state_;
+  const auto start = Clock::now();
+  State::Entry& entry = s.entries.front();
+  const int before = entry.idle.size();
+  ProgramOptions options = s.program_options();
+  options.max_memory -= std::min(options.max_memory, entry.program->memory().arena);
+  AFTERGLOW_TRY(
+      const IdlePrograms::Choice choice,
+      entry.idle.choose(s.device, shaders, s.shared->compiler, *entry.program, entry.work.graph, options, brightest));
+  if (entry.idle.size() > before) {
+    s.device.save_pipeline_cache();
+    s.milliseconds += milliseconds_since(start);
+  }
+  return Choice{choice.program, *choice.skipped};
+}
+
+void ProgramCache::made() { state_->histories->made(); }
+void ProgramCache::reset_histories() { state_->histories->reset(); }
+
+void ProgramCache::take_over(ProgramCache& before, bool programs) {
+  State &s = *state_, &from = *before.state_;
+  if (programs && s.entries.empty()) {
+    s.entries = std::move(from.entries);
+    s.present = std::exchange(from.present, false);
+    s.moved = from.moved;
+    s.histories = from.histories;
+    return;
+  }
+  if (!program()) return;
+  s.histories->take(*from.histories);
+  s.moved = true;
+  if (programs) s.entries.splice(s.entries.end(), from.entries);
+  s.drop_spares();
+  from.entries.clear();
+  from.present = false;
+}
+
+Result<std::unique_ptr<Program>> ProgramCache::by_passes(const Graph& graph, const std::optional<Rect>& region,
+                                                         ShaderLibrary& shaders) const {
+  const State& s = *state_;
+  ProgramOptions options;
+  const bool halves = std::ranges::any_of(graph.histories, [](const History& history) { return !history.precise; });
+  if (halves) options.config.storage = s.options.config.storage;
+  options.config.storage_reads = s.options.config.storage_reads;  // as the histories are made
+  options.reference = true;
+  options.region = region;
+  options.max_memory = s.options.max_memory;
+  options.pipelines = &s.shared->pipelines;
+  options.histories = s.histories;
+  return Program::create(s.device, shaders, s.shared->compiler, graph, options);
+}
+
+int ProgramCache::programs() const { return program() ? 1 + state_->entries.front().idle.size() : 0; }
+
+}  // namespace afterglow

@@ -1,0 +1,28 @@
+#include "graph/memory.h"
+
+#include "graph/history.h"
+#include "graph/plan.h"
+
+namespace afterglow {
+
+std::uint64_t memory_needed(const Graph& graph, const ExecutionConfig& config) {
+  const std::uint64_t bytes_per_pixel = config.storage == Storage::fp16 ? 8 : 16;
+  const Plan plan = make_plan(graph, config);
+  std::vector<Block> blocks;
+  std::uint64_t kept = 0;
+  for (std::size_t i = 0; i < plan.transient.size(); ++i) {
+    const auto pixels = static_cast<std::uint64_t>(graph.images[plan.transient[i]].size.area());
+    // Both images of a history have memory of their own; one of them counts among the inputs below.
+    if (history_of_next(graph, plan.transient[i])) {
+      kept += pixels * (is_precise(graph, plan.transient[i]) ? 32 - bytes_per_pixel : bytes_per_pixel);
+      continue;
+    }
+    blocks.push_back({pixels * bytes_per_pixel, 1, plan.lifetimes[i].first, plan.lifetimes[i].last});
+  }
+  std::uint64_t total = kept + place(blocks, config.share_memory).total;
+  for (const auto& image : graph.images)
+    if (image.producer < 0) total += static_cast<std::uint64_t>(image.size.area()) * bytes_per_pixel;
+  return total;
+}
+
+}  // namespace afterglow

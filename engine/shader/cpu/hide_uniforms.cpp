@@ -1,0 +1,132 @@
+#include "shader/cpu/hide_uniforms.h"
+
+#include <algorithm>
+#include <set>
+
+#include "shader/spirv_module.h"
+
+namespace afterglow {
+namespace {
+
+class Hider {
+ public:
+  explicit Hider(Module& module) : module_(module) {}
+
+  /// False: there is nothing to hide, or nowhere to hide it.
+  bool run() {
+    look();
+    if (position_ == 0 || blocks_.empty()) return false;
+    const auto first = std::ranges::find(module_.code, spv::OpFunction, &Instruction::op);
+    code_.assign(module_.code.begin(), first);
+    for (std::uint32_t n = 1; n <= 4; ++n) bits_of_[n] = type_of_bits(n);
+    zero_index_ = constant(0);
+    sign_ = constant(31);
+    for (auto at = first; at != module_.code.end(); ++at) copy(*at);
+    module_.code = std::move(code_);
+    return true;
+  }
+
+ private:
+  struct Shape {
+    std::uint32_t component = 0;  ///< id of its type
+    std::uint32_t count = 1;
+  };
+
+  /// Types, blocks and gl_FragCoord.
+  void look() {
+    std::map<std::uint32_t, std::uint32_t> pointees;  // pointer type → what it points to
+    for (const auto& i : module_.code) {
+      const Words& w = i.words;
+      if (i.op == spv::OpDecorate && w.size() == 4 && w[2] == spv::DecorationBuiltIn && w[3] == spv::BuiltInFragCoord)
+        position_ = w[1];
+      if ((i.op == spv::OpTypeInt || i.op == spv::OpTypeFloat) && w[2] == 32) shapes_[w[1]] = {w[1], 1};
+      if (i.op == spv::OpTypeInt && w[2] == 32 && w[3] == 0) bits_ = w[1];
+      if (i.op == spv::OpTypeVector && shapes_.contains(w[2])) shapes_[w[1]] = {w[2], w[3]};
+      if (i.op == spv::OpTypePointer) pointees[w[1]] = w[3];
+      if (i.op != spv::OpVariable) continue;
+      if (i.result == position_) position_type_ = pointees[i.type];
+      if (w[3] == spv::StorageClassUniform || w[3] == spv::StorageClassPushConstant) blocks_.insert(i.result);
+    }
+  }
+
+  /// `n` whole numbers without a sign; declared when the module has no such type.
+  std::uint32_t type_of_bits(std::uint32_t n) {
+    if (bits_ == 0) {
+      bits_ = module_.fresh();
+      code_.push_back(Instruction::of_words(spv::OpTypeInt, {bits_, 32, 0}));
+    }
+    if (n == 1) return bits_;
+    for (const auto& [id, shape] : shapes_)
+      if (shape.component == bits_ && shape.count == n) return id;
+    const std::uint32_t type = module_.fresh();
+    code_.push_back(Instruction::of_words(spv::OpTypeVector, {type, bits_, n}));
+    return type;
+  }
+
+  std::uint32_t constant(std::uint32_t value) {
+    const std::uint32_t id = module_.fresh();
+    code_.push_back(Instruction::of_words(spv::OpConstant, {bits_, id, value}));
+    return id;
+  }
+
+  std::uint32_t add(spv::Op op, std::uint32_t type, const Words& operands) {
+    const std::uint32_t id = module_.fresh();
+    code_.push_back(Instruction::of_ids(op, type, id, operands));
+    return id;
+  }
+
+  void copy(const Instruction& i) {
+    if (i.op == spv::OpFunction) zero_ = 0;
+    const bool declares = i.op == spv::OpFunction || i.op == spv::OpFunctionParameter || i.op == spv::OpLabel ||
+                          i.op == spv::OpVariable || i.op == spv::OpLine || i.op == spv::OpNoLine;
+    if (!declares && zero_ == 0) zero_ = make_zero();
+    if (i.op == spv::OpAccessChain && blocks_.contains(i.words[3])) chains_.insert(i.result);
+    if (i.op == spv::OpLoad && chains_.contains(i.words[3]) && shapes_.contains(i.type))
+      load(i);
+    else
+      code_.push_back(i);
+  }
+
+  /// The sign of the pixel's place, at the head of a function.
+  std::uint32_t make_zero() {
+    const std::uint32_t place = add(spv::OpLoad, position_type_, {position_});
+    const std::uint32_t x =
+        add(spv::OpVectorExtractDynamic, shapes_.at(position_type_).component, {place, zero_index_});
+    const std::uint32_t bits = add(spv::OpBitcast, bits_, {x});
+    return add(spv::OpShiftRightLogical, bits_, {bits, sign_});
+  }
+
+  void load(const Instruction& i) {
+    const Shape& shape = shapes_.at(i.type);
+    const std::uint32_t type = bits_of_[shape.count];
+    Instruction read = i;
+    read.result = read.words[2] = module_.fresh();
+    code_.push_back(read);
+    const std::uint32_t bits = i.type == type ? read.result : add(spv::OpBitcast, type, {read.result});
+    const std::uint32_t zeros =
+        shape.count == 1 ? zero_ : add(spv::OpCompositeConstruct, type, Words(shape.count, zero_));
+    if (i.type == type) {
+      code_.push_back(Instruction::of_ids(spv::OpBitwiseXor, type, i.result, {bits, zeros}));
+    } else {
+      const std::uint32_t same = add(spv::OpBitwiseXor, type, {bits, zeros});
+      code_.push_back(Instruction::of_ids(spv::OpBitcast, i.type, i.result, {same}));
+    }
+  }
+
+  Module& module_;
+  std::vector<Instruction> code_;
+  std::map<std::uint32_t, Shape> shapes_;  ///< of types of 32-bit numbers
+  std::set<std::uint32_t> blocks_, chains_;
+  std::uint32_t position_ = 0, position_type_ = 0;  ///< gl_FragCoord
+  std::uint32_t bits_ = 0, bits_of_[5] = {};
+  std::uint32_t zero_index_ = 0, sign_ = 0, zero_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> hide_uniforms(const std::vector<std::uint32_t>& spirv) {
+  auto module = parse(spirv);
+  return module && Hider(*module).run() ? module->join() : spirv;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,57 @@
+// How a stack is executed, as one value: the calibration chooses it, the bench varies it, a report names it, and every
+// room down to the kernel reads it. It is declared here alone, in the first room that needs it. Every value of it makes
+// the same picture, within the error that its storage and its fetches allow.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/result.h"
+
+namespace afterglow {
+
+/// Which passes share a kernel.
+enum class Joining {
+  none,   ///< every pass on its own
+  heads,  ///< a filter with the pixel pass of the same effect that follows it: passes as math.md §4 writes them
+  all     ///< pixel passes with whatever feeds them
+};
+
+/// What images between kernels hold.
+enum class Storage { fp32, fp16 };
+
+inline constexpr int kMaxRows = 8;  ///< colour attachments that every desktop device has
+
+struct ExecutionConfig {
+  Joining joining = Joining::all;
+  Storage storage = Storage::fp32;
+  /// The sampler may interpolate (8-bit fractions) where that helps and the device can.
+  bool hardware_filter = false;
+  /// Images are read as storage images where shaders and device allow it: faster on CPU devices.
+  bool storage_reads = false;
+  bool share_memory = true;  ///< images whose lifetimes do not overlap share bytes
+  /// Rows of its target that one invocation of a kernel may make where neighbouring rows read the same texels
+  /// (1 … kMaxRows): faster on CPU devices. More than 1 makes the images between kernels linear.
+  int rows = 1;
+  /// The driver is kept from compiling a kernel again for each value of its parameters, as CPU drivers do. Costs an
+  /// instruction a read. It has no word: exec/cpu decides it by the device.
+  bool hide_uniforms = false;
+  friend bool operator==(const ExecutionConfig&, const ExecutionConfig&) = default;
+};
+
+/// The baseline of all comparisons: one RGBA16F fragment pass for each pass of math.md §4, read through a linear
+/// sampler (a B-spline is then four fetches).
+inline constexpr ExecutionConfig kPlain16f{
+    .joining = Joining::heads, .storage = Storage::fp16, .hardware_filter = true};
+/// The same in full floats.
+inline constexpr ExecutionConfig kPlain32f{
+    .joining = Joining::heads, .storage = Storage::fp32, .hardware_filter = true};
+
+/// "joined fp32 storage-reads rows8": the words of all that is not default, after joining and storage.
+std::string execution_name(const ExecutionConfig& config);
+
+/// Reads what `execution_name` writes, or "plain16f", "plain32f". Words may be separated by spaces or '+', in any
+/// order; what is not said is as in ExecutionConfig{}. Errors: usage.
+Result<ExecutionConfig> parse_execution(const std::string& text);
+
+}  // namespace afterglow

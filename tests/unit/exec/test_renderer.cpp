@@ -1,0 +1,217 @@
+// Frames in flight: what comes out is what comes out one at a time, in the same order, whatever overlaps.
+#include <gtest/gtest.h>
+
+#include "exec/renderer.h"
+#include "workshop.h"
+
+namespace afterglow {
+namespace {
+
+constexpr Size kSize{61, 37};
+
+class RendererTest : public Workshop {
+ protected:
+  void SetUp() override {
+    Workshop::SetUp();
+    shader("test/gain", "uniform float gain;\nvec4 apply(vec4 color) { return vec4(color.rgb * gain, color.a); }\n");
+    shader("test/offset", "uniform float by;\nvec4 apply(vec4 color) { return vec4(color.rgb + by, color.a); }\n");
+    shared_ = std::make_shared<SharedKernels>(std::filesystem::path());
+  }
+  std::unique_ptr<ProgramCache> cache(const ProgramCacheOptions& options = {}) {
+    return std::make_unique<ProgramCache>(device(), shared_, options);
+  }
+  static std::unique_ptr<Renderer> renderer(int frames, bool direct = false) {
+    auto made = Renderer::create(device(), {.direct = direct, .frames = frames});
+    EXPECT_TRUE(made) << made.error().text();
+    return std::move(*made);
+  }
+  /// `offset`: another structure than without.
+  static Graph graph(double gain, bool offset = false) {
+    GraphBuilder builder(kSize);
+    ImageId image = builder.pixel("gain", "test/gain", builder.source(), {}, {{"gain", number(gain)}});
+    if (offset) image = builder.pixel("offset", "test/offset", image, {}, {{"by", number(1)}});
+    return builder.finish(image);
+  }
+  RenderRequest request(ProgramCache& programs, const Graph& graph, const std::vector<float>& pixels) {
+    RenderRequest out{.programs = &programs, .shaders = library_.get()};
+    out.work = {.graph = graph, .texts = texts_of(graph, *library_).value()};
+    out.inputs["source"] = {pixels.data(), kSize, 4};
+    return out;
+  }
+  std::shared_ptr<SharedKernels> shared_;
+};
+
+/// The pixels, the values and now and then the structure are others in every frame; what one reads or writes too early
+/// or too late is a wrong number.
+TEST_F(RendererTest, FramesInFlightAreThoseOfOneAtATime) {
+  constexpr int kFrames = 24;
+  std::vector<std::vector<float>> sources;
+  for (int i = 0; i < kFrames; ++i) sources.push_back(noise(kSize, static_cast<unsigned>(i)));
+  for (const int frames : {1, 2, 3}) {
+    const auto programs = cache();
+    const auto ring = renderer(frames);
+    ASSERT_EQ(ring->frames(), frames);
+    int collected = 0;
+    const auto collect = [&] {
+      HostResult out;
+      const auto report = ring->collect(out);
+      ASSERT_TRUE(report) << report.error().text();
+      const auto& source = sources[static_cast<std::size_t>(collected)];
+      const float offset = collected % 7 == 3 ? 1 : 0;
+      ASSERT_EQ(out.pixels.size(), source.size());
+      for (std::size_t i = 0; i < source.size(); ++i) {
+        const float want = i % 4 == 3 ? source[i] : source[i] * static_cast<float>(collected + 1) + offset;
+        ASSERT_FLOAT_EQ(out.pixels[i], want) << "frame " << collected << " of " << frames << " in flight";
+      }
+      ++collected;
+    };
+    for (int i = 0; i < kFrames; ++i) {
+      if (ring->in_flight() == frames) collect();
+      const auto submitted =
+          ring->submit(request(*programs, graph(i + 1, i % 7 == 3), sources[static_cast<std::size_t>(i)]));
+      ASSERT_TRUE(submitted) << submitted.error().text();
+    }
+    EXPECT_EQ(ring->in_flight(), frames);
+    while (ring->in_flight() > 0) collect();
+    EXPECT_EQ(collected, kFrames);
+  }
+}
+
+TEST_F(RendererTest, SteadyFramesMakeNothingNew) {
+  const auto programs = cache();
+  const auto ring = renderer(2);
+  const auto pixels = noise(kSize, 1);
+  HostResult out;
+  Renderer::Counters steady;
+  for (int i = 0; i < 10; ++i) {
+    if (ring->in_flight() == 2) ASSERT_TRUE(ring->collect(out));
+    if (i == 4) steady = ring->counters();
+    ASSERT_TRUE(ring->submit(request(*programs, graph(i + 1), pixels)));
+  }
+  EXPECT_EQ(ring->counters().images, steady.images);
+  EXPECT_EQ(ring->counters().buffers, steady.buffers);
+  EXPECT_EQ(programs->programs(), 1);
+}
+
+/// The same picture and values again and again: no frame is the result of another slot's.
+TEST_F(RendererTest, ASlotsOldResultIsNotTakenForTheNewOne) {
+  const auto programs = cache({.keep_images = true});
+  const auto ring = renderer(2);
+  const auto pixels = noise(kSize, 1);
+  HostResult out;
+  int shown = 0;
+  const auto collect = [&](float gain) {
+    ASSERT_TRUE(ring->collect(out));
+    EXPECT_FLOAT_EQ(out.pixels[0], pixels[0] * gain) << shown;
+    ++shown;
+  };
+  const float gains[] = {2, 3, 3, 3, 2, 2, 3};
+  for (int i = 0; i < 7; ++i) {
+    if (ring->in_flight() == 2) collect(gains[shown]);
+    RenderRequest one = request(*programs, graph(gains[i]), pixels);
+    one.inputs["source"].content = Hash{1, 1};
+    ASSERT_TRUE(ring->submit(std::move(one)));
+  }
+  while (ring->in_flight() > 0) collect(gains[shown]);
+}
+
+TEST_F(RendererTest, WhatRunsNothingIsItsSourceAndKeepsItsPlace) {
+  const auto programs = cache();
+  const auto ring = renderer(2);
+  const auto first = noise(kSize, 1), second = noise(kSize, 2);
+  GraphBuilder nothing(kSize);
+  ASSERT_TRUE(ring->submit(request(*programs, graph(2), first)));
+  ASSERT_TRUE(ring->submit(request(*programs, nothing.finish(nothing.source()), second)));
+  HostResult out;
+  const auto ran = ring->collect(out);
+  ASSERT_TRUE(ran);
+  EXPECT_NE(ran->program, 0u);
+  EXPECT_EQ(ran->kernels, std::vector<std::string>{"gain"});
+  EXPECT_FLOAT_EQ(out.pixels[0], 2 * first[0]);
+  const auto left = ring->collect(out);
+  ASSERT_TRUE(left);
+  EXPECT_EQ(left->program, 0u);
+  EXPECT_EQ(out.pixels, second);
+}
+
+TEST_F(RendererTest, TooManyAndTooFewAreTold) {
+  const auto programs = cache();
+  const auto ring = renderer(1);
+  const auto pixels = noise(kSize, 1);
+  HostResult out;
+  EXPECT_EQ(ring->collect(out).error().message, "no frame is in flight");
+  ASSERT_TRUE(ring->submit(request(*programs, graph(2), pixels)));
+  const auto second = ring->submit(request(*programs, graph(2), pixels));
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().message, "the frame before has to be collected first");
+  EXPECT_TRUE(ring->collect(out)) << "the first one is as it was";
+}
+
+/// A frame that fails leaves the ones before it and those after it alone.
+TEST_F(RendererTest, AFrameThatFailsIsNotInFlight) {
+  const auto programs = cache();
+  const auto ring = renderer(2);
+  const auto pixels = noise(kSize, 1);
+  ASSERT_TRUE(ring->submit(request(*programs, graph(2), pixels)));
+  RenderRequest wrong = request(*programs, graph(3), pixels);
+  wrong.inputs["source"].size = {3, 3};
+  EXPECT_FALSE(ring->submit(std::move(wrong)));
+  ASSERT_TRUE(ring->submit(request(*programs, graph(5), pixels)));
+  HostResult out;
+  ASSERT_TRUE(ring->collect(out));
+  EXPECT_FLOAT_EQ(out.pixels[0], 2 * pixels[0]);
+  ASSERT_TRUE(ring->collect(out));
+  EXPECT_FLOAT_EQ(out.pixels[0], 5 * pixels[0]);
+}
+
+class ProgramCacheTest : public RendererTest {};
+
+TEST_F(ProgramCacheTest, ProgramsAreFoundByAllThatMakesThemAndByNothingElse) {
+  const auto programs = cache({.spare = 3});
+  const auto work = [&](double gain, bool offset) {
+    FrameWork out{.graph = graph(gain, offset)};
+    out.texts = texts_of(out.graph, *library_).value();
+    return out;
+  };
+  ASSERT_TRUE(programs->prepare(work(1, false), *library_));
+  const std::uint64_t plain = programs->program()->id();
+  EXPECT_TRUE(programs->has(work(9, false))) << "values make no new program";
+  EXPECT_FALSE(programs->has(work(1, true))) << "passes do";
+  FrameWork part = work(1, false);
+  part.region = Rect{0, 0, 5, 5};
+  EXPECT_FALSE(programs->has(part));
+  FrameWork texts = work(1, false);
+  texts.texts = Hash{1, 2};
+  EXPECT_FALSE(programs->has(texts));
+  FrameWork codes = work(1, false);
+  codes.codes = true;
+  EXPECT_FALSE(programs->has(codes));
+  ASSERT_TRUE(programs->prepare(work(1, true), *library_));
+  const std::uint64_t other = programs->program()->id();
+  EXPECT_NE(other, plain);
+  ASSERT_TRUE(programs->prepare(work(4, false), *library_));
+  EXPECT_EQ(programs->program()->id(), plain) << "it was spare";
+  EXPECT_EQ(programs->program(plain), programs->program());
+  EXPECT_EQ(programs->program(other), nullptr) << "of another structure";
+  const auto none = cache();
+  ASSERT_TRUE(none->prepare(work(1, false), *library_));
+  ASSERT_TRUE(none->prepare(work(1, true), *library_));
+  EXPECT_FALSE(none->has(work(1, false))) << "nothing is spare";
+}
+
+TEST_F(ProgramCacheTest, WhatCannotBeMadeLeavesNoPresentProgram) {
+  const auto programs = cache();
+  FrameWork good{.graph = graph(1)};
+  good.texts = texts_of(good.graph, *library_).value();
+  ASSERT_TRUE(programs->prepare(good, *library_));
+  FrameWork bad = good;
+  bad.region = Rect{0, 0, 1000, 1000};
+  EXPECT_FALSE(programs->prepare(bad, *library_));
+  EXPECT_EQ(programs->program(), nullptr);
+  EXPECT_EQ(programs->work(), nullptr);
+  EXPECT_TRUE(programs->prepare(good, *library_));
+  EXPECT_NE(programs->program(), nullptr);
+}
+
+}  // namespace
+}  // namespace afterglow

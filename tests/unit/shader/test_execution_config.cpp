@@ -1,0 +1,50 @@
+// Choices of execution as text.
+#include <gtest/gtest.h>
+
+#include "shader/execution_config.h"
+
+namespace afterglow {
+namespace {
+
+TEST(ExecutionConfig, NamesSayAllThatIsNotDefault) {
+  EXPECT_EQ(execution_name({}), "joined fp32");
+  EXPECT_EQ(execution_name({.storage_reads = true, .rows = 8}), "joined fp32 storage-reads rows8");
+  EXPECT_EQ(execution_name(kPlain16f), "heads fp16 hardware-filter");
+  EXPECT_EQ(execution_name({.joining = Joining::none, .share_memory = false}), "apart fp32 unshared");
+}
+
+TEST(ExecutionConfig, EveryNameReadsBackAsTheSameChoice) {
+  int read = 0;
+  for (const auto joining : {Joining::none, Joining::heads, Joining::all})
+    for (const auto storage : {Storage::fp32, Storage::fp16})
+      for (int bits = 0; bits < 8; ++bits)
+        for (const int rows : {1, 2, 8}) {
+          const ExecutionConfig choice{joining, storage, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, rows};
+          const auto parsed = parse_execution(execution_name(choice));
+          ASSERT_TRUE(parsed) << parsed.error().text();
+          EXPECT_EQ(*parsed, choice) << execution_name(choice);
+          ++read;
+        }
+  EXPECT_EQ(read, 144);
+}
+
+TEST(ExecutionConfig, WordsMayComeInAnyOrderAndWithPlus) {
+  EXPECT_EQ(*parse_execution("rows4+fp16+heads"),
+            (ExecutionConfig{.joining = Joining::heads, .storage = Storage::fp16, .rows = 4}));
+  EXPECT_EQ(*parse_execution("plain16f"), kPlain16f);
+  EXPECT_EQ(*parse_execution("plain32f storage-reads"),
+            (ExecutionConfig{.joining = Joining::heads, .hardware_filter = true, .storage_reads = true}));
+}
+
+TEST(ExecutionConfig, UnknownWordsSayWhatIsAllowed) {
+  for (const char* text : {"joind", "rows0", "rows9", "rows", "rows3x", "fp8"}) {
+    const auto parsed = parse_execution(text);
+    ASSERT_FALSE(parsed) << text;
+    EXPECT_EQ(parsed.error().kind, ErrorKind::usage);
+    EXPECT_NE(parsed.error().allowed.find("storage-reads"), std::string::npos);
+  }
+  EXPECT_EQ(parse_execution("joind").error().nearest, "joined");
+}
+
+}  // namespace
+}  // namespace afterglow
