@@ -55,15 +55,21 @@ class ShaderCheck {
         continue;
       }
       if (!compiled_.insert(assembled->hash).second) continue;
-      if (const auto result = compiler_.compile(*desc); !result) keep(result.error());
+      const auto compiled = compiler_.compile(*desc);
+      if (!compiled) {
+        keep(compiled.error());
+        continue;
+      }
+      for (const auto& warning : compiled->warnings)
+        if (seen_.insert(warning).second) found.warnings.push_back(warning);
     }
   }
 
-  std::vector<Error> errors;
+  ShaderFindings found;
 
  private:
   void keep(const Error& error) {
-    if (seen_.insert(error.text()).second) errors.push_back(error);
+    if (seen_.insert(error.text()).second) found.errors.push_back(error);
   }
 
   ShaderLibrary& shaders_;
@@ -74,10 +80,10 @@ class ShaderCheck {
 
 }  // namespace
 
-std::vector<Error> shader_errors(const Look& look) {
+ShaderFindings check_shaders(const Look& look) {
   ShaderCheck check(*look.shaders);
   check.run(look.graph, look.plan, kAssumed);
-  if (!check.errors.empty() || look.graph.result == look.graph.source) return check.errors;
+  if (!check.found.errors.empty() || look.graph.result == look.graph.source) return check.found;
   // The last kernel once more, as it is for display files without and with transparency.
   for (const bool straight : {false, true}) {
     Graph graph = look.graph;
@@ -89,7 +95,7 @@ std::vector<Error> shader_errors(const Look& look) {
     last.kernels = {plan.kernels.back()};
     check.run(graph, last, options);
   }
-  return check.errors;
+  return check.found;
 }
 
 }  // namespace afterglow

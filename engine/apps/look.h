@@ -21,7 +21,12 @@ struct Look {
 /// Errors: script, usage.
 Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& assumed, Console& console);
 
-/// Compiles every kernel of the plan, from the disk cache where possible; all GLSL errors, each once.
-std::vector<Error> shader_errors(const Look& look);
+struct ShaderFindings {
+  std::vector<Error> errors;
+  std::vector<std::string> warnings;  ///< see CompiledKernel::warnings
+};
+
+/// Compiles every kernel of the plan, from the disk cache where possible; all that is wrong with GLSL, each once.
+ShaderFindings check_shaders(const Look& look);
 
 }  // namespace afterglow

@@ -158,6 +158,7 @@ Result<void> Stack::State::make() {
   prepared = made.ok();
   if (!made) return std::move(made).error();
   program = std::move(made).value();
+  for (const auto& warning : program->warnings()) scripts.diagnostics->warn_once(warning, warning);
   device->save_pipeline_cache();
   compile_ms += milliseconds_since(start);
   return {};
