@@ -1,12 +1,12 @@
 // `afterglow devices`: what --device can choose from.
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/command.h"
 #include "apps/json_text.h"
+#include "apps/output.h"
 #include "apps/table.h"
 #include "gpu/device.h"
 #include "session/calibration.h"
@@ -66,7 +66,7 @@ Command add_devices_command(CLI::App& program) {
   return {app, [json, file](Console&) -> Result<void> {
             AFTERGLOW_TRY(const auto calibration, file->empty() ? Calibration::shipped() : Calibration::load(*file));
             AFTERGLOW_TRY(const auto devices, list_devices());
-            fmt::print("{}", *json ? as_json(devices, calibration) : as_table(devices, calibration));
+            output("{}", *json ? as_json(devices, calibration) : as_table(devices, calibration));
             return {};
           }};
 }
