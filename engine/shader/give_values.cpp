@@ -147,6 +147,37 @@ bool is_filled_by_index(const Module& module, std::uint32_t variable, const std:
   return false;
 }
 
+/// Follows a vector while its components are given one by one.
+class VectorUses {
+ public:
+  explicit VectorUses(const Module& module) : module_(module) {
+    for (const auto& i : module.code)
+      if (i.op == spv::OpTypeVector) whole_[i.words[1]] = (1u << i.words[3]) - 1;
+  }
+
+  /// Whether something of the value that `load` gives is used.
+  bool reads(const Instruction& load) const { return !whole_.contains(load.type) || reads(load.result, load.type, 0); }
+
+ private:
+  /// `given`: the components of `id` that are no longer what was loaded, as bits.
+  bool reads(std::uint32_t id, std::uint32_t type, std::uint32_t given) const {
+    for (const auto& i : module_.code) {
+      const bool uses = i.result != id && std::ranges::any_of(i.ids, [&](auto word) { return i.words[word] == id; });
+      if (!uses || i.op == spv::OpName || i.op == spv::OpDecorate) continue;
+      if (i.op == spv::OpCompositeExtract && i.words.size() == 5 && (given >> i.words[4] & 1) != 0) continue;
+      const bool inserts =
+          i.op == spv::OpCompositeInsert && i.words.size() == 6 && i.words[4] == id && i.words[3] != id;
+      if (!inserts) return true;
+      const std::uint32_t now = given | 1u << i.words[5];
+      if (now != whole_.at(type) && reads(i.result, type, now)) return true;
+    }
+    return false;
+  }
+
+  const Module& module_;
+  std::map<std::uint32_t, std::uint32_t> whole_;  ///< vector type → a bit for each component
+};
+
 /// The numbers of marks whose value is used. For that each variable gets the value of an input of its own; what is left
 /// of those once dead code has gone is used.
 std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
@@ -211,7 +242,6 @@ std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
       .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
       .RegisterPass(spvtools::CreateSSARewritePass())
       .RegisterPass(spvtools::CreateDeadBranchElimPass())
-      .RegisterPass(spvtools::CreateVectorDCEPass())
       .RegisterPass(spvtools::CreateAggressiveDCEPass());
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);
@@ -221,9 +251,12 @@ std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
   if (!optimizer.Run(before.data(), before.size(), &after, options)) return read;
   const auto left = parse(after);
   if (!left) return read;
-  for (const auto& i : left->code)
-    if (i.op == spv::OpLoad || i.op == spv::OpAccessChain)
-      if (const auto found = sources.find(i.words[3]); found != sources.end()) read.push_back(found->second);
+  const VectorUses uses(*left);
+  for (const auto& i : left->code) {
+    if (i.op != spv::OpLoad && i.op != spv::OpAccessChain) continue;
+    const auto found = sources.find(i.words[3]);
+    if (found != sources.end() && (i.op != spv::OpLoad || uses.reads(i))) read.push_back(found->second);
+  }
   std::ranges::sort(read);
   read.erase(std::unique(read.begin(), read.end()), read.end());
   return read;
