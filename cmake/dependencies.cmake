@@ -13,7 +13,7 @@ find_package(glm REQUIRED)
 find_package(OpenImageIO REQUIRED)
 # Debian's target names an include folder that does not exist.
 set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES /usr/include)
-pkg_check_modules(LUA REQUIRED IMPORTED_TARGET lua5.4-c++)  # built as C++: errors run destructors
+include(${CMAKE_CURRENT_LIST_DIR}/lua.cmake)
 pkg_check_modules(SPIRV_CROSS REQUIRED IMPORTED_TARGET spirv-cross-c-shared)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(MINIZIP REQUIRED IMPORTED_TARGET minizip)

@@ -12,4 +12,4 @@ configure_package_config_file(cmake/afterglow-config.cmake.in ${CMAKE_BINARY_DIR
   INSTALL_DESTINATION ${config_folder})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/afterglow-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/afterglow-config.cmake ${CMAKE_BINARY_DIR}/afterglow-config-version.cmake
-  cmake/dependencies.cmake DESTINATION ${config_folder})
+  cmake/dependencies.cmake cmake/lua.cmake DESTINATION ${config_folder})

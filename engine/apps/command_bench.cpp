@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <memory>
 
 #include "apps/bench_matrix.h"
@@ -12,6 +11,7 @@
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
+#include "apps/output.h"
 #include "apps/reload_bench.h"
 #include "batch/scale.h"
 #include "batch/table.h"
@@ -125,7 +125,7 @@ Result<void> measure_goals(Bench& bench) {
 }
 
 void print_cell(const bench::Cell& cell) {
-  fmt::print("\n{} {}×{}; errors against {}\n", cell.preset, cell.size.width, cell.size.height, cell.truth);
+  output("\n{} {}×{}; errors against {}\n", cell.preset, cell.size.width, cell.size.height, cell.truth);
   Table table({"", "variant", "ms", "quartiles", "÷ first", "÷ copy", "p99.99", "max", "PSNR"});
   for (const auto& p : cell.points) {
     const auto& q = p.quality;
@@ -136,8 +136,8 @@ void print_cell(const bench::Cell& cell) {
                q ? fmt::format("{:.1e}", q->error.percentile) : "–", q ? fmt::format("{:.1e}", q->error.worst) : "–",
                q ? fmt::format("{:.0f}", q->psnr) : "–"});
   }
-  fmt::print("{}  one copy pass {:.2f} ms; memory copy {:.2f} ms, {:.1f} GB/s\n", table.text("  "), cell.copy.median,
-             cell.memory.median, cell.gigabytes_per_second);
+  output("{}  one copy pass {:.2f} ms; memory copy {:.2f} ms, {:.1f} GB/s\n", table.text("  "), cell.copy.median,
+         cell.memory.median, cell.gigabytes_per_second);
 }
 
 void print_goals(const std::vector<bench::GoalResult>& goals) {
@@ -150,7 +150,7 @@ void print_goals(const std::vector<bench::GoalResult>& goals) {
                !g.ratio      ? "–"
                : g.reached() ? "yes"
                              : "no"});
-  fmt::print("\n{}", table.text());
+  output("\n{}", table.text());
 }
 
 /// Ratios to an older report. Errors: other, when one is beyond the threshold.
@@ -169,7 +169,7 @@ Result<void> compare(const Bench& bench) {
     table.add({c.what, fmt::format("{:.2f}", c.before), fmt::format("{:.2f}", c.now),
                fmt::format("{:.2f}{}", c.ratio(), beyond ? "  slower" : "")});
   }
-  fmt::print("\n{}", table.text());
+  output("\n{}", table.text());
   if (slower == 0) return {};
   return Error{ErrorKind::other, fmt::format("{} of {} are more than {:g} times as slow as in {}", slower,
                                              comparisons.size(), a.threshold, a.compare)};
@@ -197,7 +197,7 @@ Result<void> measure_all_reloads(Bench& bench) {
           });
       bench.console.end_progress();
       if (!measured) return std::move(measured).error();
-      fmt::print("{}: {}", preset.filename().string(), reload_bench_text(*measured));
+      output("{}: {}", preset.filename().string(), reload_bench_text(*measured));
       std::error_code problem;
       fs::create_directories(a.out, problem);
       AFTERGLOW_CHECK(write_file_atomically(
@@ -234,7 +234,7 @@ Result<void> measure_steadiness(Bench& bench) {
   bench.console.end_progress();
   if (!measured) return measured;
   AFTERGLOW_CHECK(bench::write_report(bench.report, a.out));
-  fmt::print("{}", stability_text(bench.report));
+  output("{}", stability_text(bench.report));
   return {};
 }
 

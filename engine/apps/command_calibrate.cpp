@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdio>
 #include <memory>
 
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
 #include "batch/table.h"
+#include "apps/output.h"
 #include "bench/calibrate.h"
 #include "core/file.h"
 #include "core/paths.h"
@@ -23,7 +23,7 @@ struct CalibrateArguments {
 };
 
 void print(const bench::CalibrationResult& result) {
-  fmt::print("{} with {}\n", result.device.name, result.device.driver);
+  output("{} with {}\n", result.device.name, result.device.driver);
   Table operations({"operation", "ns a pixel"});
   for (const auto& cost : result.operations)
     operations.add({cost.name, fmt::format("{:.2f}", cost.nanoseconds_per_pixel)});
@@ -34,7 +34,7 @@ void print(const bench::CalibrationResult& result) {
   Table chosen({"from --max-error", "chosen"});
   for (const auto& [max_error, choice] : result.choices)
     chosen.add({fmt::format("{:g}", max_error), execution_name(choice)});
-  fmt::print("{}\n{}\n{}", operations.text("  "), ways.text("  "), chosen.text("  "));
+  output("{}\n{}\n{}", operations.text("  "), ways.text("  "), chosen.text("  "));
 }
 
 Result<void> run_calibrate(const CalibrateArguments& a, Console& console) {

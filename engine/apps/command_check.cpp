@@ -1,13 +1,13 @@
 // `afterglow check`: is the preset right, and what would run in which order with which settings? No device needed.
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/command.h"
 #include "apps/look.h"
+#include "apps/output.h"
 #include "apps/setting_text.h"
 #include "batch/json_text.h"
 #include "batch/table.h"
@@ -94,14 +94,15 @@ std::string as_json(const Look& look, const std::string& file, const std::vector
 
 Result<void> run_check(const CheckArguments& arguments, Console& console) {
   AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
-  auto errors = shader_errors(look);
+  auto [errors, warnings] = check_shaders(look);
+  for (const auto& warning : warnings) console.diagnostics().warn(warning);
   if (!errors.empty()) {
     for (std::size_t i = 0; i + 1 < errors.size(); ++i) console.error(errors[i]);
     return std::move(errors.back());
   }
   const auto shadows = shadow_notes(look);
   const auto& file = arguments.preset.file;
-  fmt::print("{}", arguments.json ? as_json(look, file, shadows) : printable(as_text(look, file, shadows), true));
+  output("{}", arguments.json ? as_json(look, file, shadows) : printable(as_text(look, file, shadows), true));
   return {};
 }
 

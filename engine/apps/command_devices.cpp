@@ -1,7 +1,6 @@
 // `afterglow devices`: what --device can choose from.
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -9,6 +8,7 @@
 #include "batch/json_text.h"
 #include "batch/table.h"
 #include "exec/calibration.h"
+#include "apps/output.h"
 #include "gpu/device.h"
 
 namespace afterglow {
@@ -66,7 +66,7 @@ Command add_devices_command(CLI::App& program) {
   return {app, [json, file](Console&) -> Result<void> {
             AFTERGLOW_TRY(const auto calibration, file->empty() ? Calibration::shipped() : Calibration::load(*file));
             AFTERGLOW_TRY(const auto devices, list_devices());
-            fmt::print("{}", *json ? as_json(devices, calibration) : as_table(devices, calibration));
+            output("{}", *json ? as_json(devices, calibration) : as_table(devices, calibration));
             return {};
           }};
 }

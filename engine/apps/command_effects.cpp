@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/command.h"
 #include "apps/effect_page.h"
 #include "apps/options.h"
+#include "apps/output.h"
 #include "apps/setting_text.h"
 #include "batch/json_text.h"
 #include "batch/table.h"
@@ -78,15 +78,15 @@ Result<void> run_effects(const EffectsArguments& arguments, Console& console) {
                    join(names),         nearest_name(arguments.name, names)};
   }
   if (arguments.completion) {
-    fmt::print("{}", completion_text(effects));
+    output("{}", completion_text(effects));
   } else if (arguments.markdown) {
-    for (const auto& effect : effects) fmt::print("{}", effect_page(effect));
+    for (const auto& effect : effects) output("{}", effect_page(effect));
   } else if (arguments.json) {
     auto list = nlohmann::json::array();
     for (const auto& effect : effects) list.push_back(as_json(effect));
-    fmt::print("{}", json_text(list));
+    output("{}", json_text(list));
   } else {
-    fmt::print("{}", printable(arguments.name.empty() ? list_text(effects) : effect_text(effects.front()), true));
+    output("{}", printable(arguments.name.empty() ? list_text(effects) : effect_text(effects.front()), true));
   }
   return {};
 }

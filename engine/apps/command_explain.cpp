@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 
 #include "apps/command.h"
 #include "apps/explain_view.h"
+#include "apps/output.h"
 #include "core/printable.h"
 #include "core/text.h"
 
@@ -47,7 +47,7 @@ Result<void> run_explain(const ExplainArguments& arguments, Console& console) {
   AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
   ExplainView view{look, arguments.preset.file, look.build.context, "", ""};
   if (!arguments.setting.empty()) AFTERGLOW_CHECK(choose(arguments.setting, view));
-  fmt::print("{}", arguments.format == "json" ? explain_json(view) : printable(explain_text(view), true));
+  output("{}", arguments.format == "json" ? explain_json(view) : printable(explain_text(view), true));
   return {};
 }
 

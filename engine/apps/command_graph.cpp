@@ -1,12 +1,12 @@
 // `afterglow graph`: the passes a preset becomes, and what was skipped or joined, as dot, svg or json.
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 
 #include "apps/command.h"
 #include "apps/graph_view.h"
 #include "apps/look.h"
+#include "apps/output.h"
 #include "core/file.h"
 
 namespace afterglow {
@@ -37,7 +37,7 @@ Result<void> run_graph(const GraphArguments& arguments, Console& console) {
                            : format == "json" ? graph_json(look.build.graph, look.plan, title)
                                               : graph_dot(look.build.graph, look.plan, title);
   if (!arguments.output.empty()) return write_file_atomically(arguments.output, text);
-  fmt::print("{}", text);
+  output("{}", text);
   return {};
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
+#include "apps/output.h"
 #include "core/exception.h"
 #include "core/text.h"
 #include "core/version.h"
@@ -40,6 +42,9 @@ Error unknown_argument(const CLI::App& command, const std::string& argument) {
   const std::string where = "afterglow " + command.get_name();
   if (argument.empty() || argument[0] != '-')
     return {ErrorKind::usage, fmt::format("unexpected argument '{}'", argument), where};
+  std::error_code none;
+  if (std::filesystem::exists(argument, none))
+    return {ErrorKind::usage, fmt::format("'{}' is read as an option; name the file ./{}", argument, argument), where};
   const std::string name = argument.substr(0, argument.find('='));
   Error error{ErrorKind::usage, fmt::format("unknown option '{}'", name), where};
   error.nearest = nearest_name(name, option_names(command));
@@ -134,11 +139,14 @@ int run(Console& console, int argc, char** argv, Work work) {
 int run_command_line(int argc, char** argv) {
   Console console;
   install_interrupt_handler();
+  int exit_code = 0;
   try {
-    return run(console, argc, argv, Work::all);
+    exit_code = run(console, argc, argv, Work::all);
   } catch (const std::exception& exception) {
-    return fail(console, exception_error(exception));
+    exit_code = fail(console, exception_error(exception));
   }
+  const auto told = finish_output();
+  return exit_code == 0 && !told ? fail(console, told.error()) : exit_code;
 }
 
 int check_command_line(int argc, char** argv) {

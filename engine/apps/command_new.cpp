@@ -9,12 +9,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <vector>
 
 #include "apps/command.h"
+#include "apps/output.h"
 #include "core/file.h"
 #include "core/paths.h"
 #include "script/preset.h"
@@ -89,9 +89,8 @@ Result<void> run_new(const NewArguments& arguments) {
     for (std::size_t done = 0; done < i; ++done) fs::remove(folder / files[done].path, ignored);
     return written;
   }
-  for (const auto& file : files) fmt::print("{}\n", (folder / file.path).lexically_normal().string());
-  fmt::print("Try it:  afterglow run {}.lua PICTURE -o out.png\nTest it: tests/{}.sh\n", arguments.name,
-             arguments.name);
+  for (const auto& file : files) output("{}\n", (folder / file.path).lexically_normal().string());
+  output("Try it:  afterglow run {}.lua PICTURE -o out.png\nTest it: tests/{}.sh\n", arguments.name, arguments.name);
   return {};
 }
 

@@ -7,6 +7,7 @@
 
 #include "apps/command.h"
 #include "apps/options.h"
+#include "apps/output.h"
 #include "apps/play_headless.h"
 #include "apps/play_report.h"
 #include "apps/play_window.h"
@@ -180,7 +181,7 @@ Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& op
     auto picture = player->screenshot();
     done = picture ? write_picture(*picture, a.screenshot, {}, console.diagnostics()) : Result<void>(picture.error());
   }
-  if (a.stats) fmt::print("{}", play_report_text(report, *player));
+  if (a.stats) output("{}", play_report_text(report, *player));
   if (!a.report.empty()) {
     auto written = write_file_atomically(a.report, play_report_json(report, *player));
     if (done && !written) return written;
@@ -199,7 +200,7 @@ Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& optio
                        .mode = "window",
                        .error = {}};
     if (!done) figures.error = done.error();
-    if (a.stats) fmt::print("{}", play_report_text(figures, player));
+    if (a.stats) output("{}", play_report_text(figures, player));
     if (!a.report.empty()) reported = write_file_atomically(a.report, play_report_json(figures, player));
   };
   AFTERGLOW_CHECK(play_in_window(options, a.device.options(), window, console, report));

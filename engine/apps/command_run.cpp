@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <set>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "batch/resume.h"
 #include "batch/run_report.h"
 #include "batch/schedule.h"
+#include "apps/output.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "core/text.h"
@@ -353,7 +353,7 @@ Result<void> run_run(const RunArguments& a, Console& console) {
   if (done && !a.lock.empty()) done = write_file_atomically(a.lock, lock_text(*run.lock));
   if (run.session) run.report.session = run.session->report();
   run.report.wall = run.milliseconds();
-  if (!a.stats.empty() && run.session) fmt::print("{}", report_text(run.report, a.stats == "passes"));
+  if (!a.stats.empty() && run.session) output("{}", report_text(run.report, a.stats == "passes"));
   if (!a.report.empty()) {
     auto written = write_file_atomically(a.report, report_json(run.report));
     if (done && !written) return written;

@@ -1,11 +1,11 @@
 // `afterglow set`: changes settings in the text of a preset. No device needed.
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 
 #include "apps/command.h"
 #include "apps/options.h"
+#include "apps/output.h"
 #include "apps/text_difference.h"
 #include "edit/write_back.h"
 #include "shader/library.h"
@@ -59,7 +59,7 @@ Result<void> run_set(const SetArguments& arguments, Console& console) {
   }
   for (const auto& note : rewrite.notes) console.diagnostics().warn(note);
   if (!arguments.dry_run) AFTERGLOW_CHECK(writer.save(rewrite));
-  fmt::print("{}", difference_text(file.string(), rewrite.before, rewrite.text));
+  output("{}", difference_text(file.string(), rewrite.before, rewrite.text));
   if (rewrite.text == rewrite.before) console.diagnostics().note("the preset says so already; nothing was written");
   return {};
 }
@@ -71,8 +71,8 @@ Command add_set_command(CLI::App& program) {
   auto arguments = std::make_shared<SetArguments>();
   app->add_option("PRESET", arguments->preset.file, "Preset to change: a file, or a name on the search path")
       ->required();
-  app->add_option("ENTRY.SETTING=VALUE", arguments->settings, "What is to be: glow.intensity=0.4, glow.enabled=false")
-      ->type_name("");
+  app->add_option("SETTING", arguments->settings, "What is to be: glow.intensity=0.4, glow.enabled=false")
+      ->type_name("ENTRY.SETTING=VALUE");
   app->add_option("--reset", arguments->resets, "Back to the default; may be repeated")
       ->type_name("ENTRY.SETTING")
       ->allow_extra_args(false);

@@ -10,6 +10,7 @@
 #include "apps/interrupt.h"
 #include "apps/options.h"
 #include "batch/table.h"
+#include "apps/output.h"
 #include "core/file.h"
 #include "core/paths.h"
 #include "core/text.h"
@@ -59,7 +60,7 @@ void print_list() {
     checks.add({check.name, check.promise ? "those that promise it" : "every stack", check.doc});
   Table pictures({"picture", "what"});
   for (const auto& kind : stress::picture_kinds()) pictures.add({kind.name, kind.doc});
-  fmt::print("{}\n{}", checks.text(), pictures.text());
+  output("{}\n{}", checks.text(), pictures.text());
 }
 
 std::vector<fs::path> extra_paths(const StressArguments& a) { return {a.paths.begin(), a.paths.end()}; }
@@ -113,12 +114,12 @@ Result<void> repeat(const StressArguments& a, Console& console) {
   AFTERGLOW_TRY(const Opened opened, open(a, a.devices.empty() ? "auto" : a.devices.front(), quiet));
   AFTERGLOW_TRY(const stress::Outcome outcome, stress::run_check(*opened.lab, situation));
   if (!outcome.applies) {
-    fmt::print("{}: no longer applies: the effect does not promise it for these settings, or refuses them\n",
-               situation.check);
+    output("{}: no longer applies: the effect does not promise it for these settings, or refuses them\n",
+           situation.check);
     return {};
   }
   if (!outcome.holds) return Error{ErrorKind::other, fmt::format("{}: {}", situation.check, outcome.what), a.repeat};
-  fmt::print("{}: holds: {:.3g} measured, {:.3g} allowed\n", situation.check, outcome.measured, outcome.allowed);
+  output("{}: holds: {:.3g} measured, {:.3g} allowed\n", situation.check, outcome.measured, outcome.allowed);
   return {};
 }
 
@@ -146,7 +147,7 @@ Result<void> print_digests(const StressArguments& a, Console& console) {
     opened.lab->forget();
     AFTERGLOW_TRY(digests[index], stress::digest_of(*opened.lab, trials.at(index), quiet));
   }
-  fmt::print("{}", stress::digests_text(digests));
+  output("{}", stress::digests_text(digests));
   return {};
 }
 
@@ -233,7 +234,7 @@ Result<void> run_stress(const StressArguments& a, Console& console) {
   bool clean = true;
   for (const auto& device : a.devices.empty() ? std::vector<std::string>{"auto"} : a.devices) {
     AFTERGLOW_TRY(const auto report, try_device(a, device, console));
-    fmt::print("{}", stress::report_text(report));
+    output("{}", stress::report_text(report));
     std::fflush(stdout);
     const std::string file =
         a.devices.size() > 1 ? fs::path(a.report).replace_extension(device + ".json").string() : a.report;

@@ -21,6 +21,12 @@ bool terminal_has_colors() {
   return std::getenv("NO_COLOR") == nullptr && term != nullptr && std::string_view(term) != "dumb";
 }
 
+/// Messages that nobody reads stop no work.
+void put(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
 std::string clock_text(double seconds) {
   const long whole = std::lround(seconds);
   return fmt::format("{:02}:{:02}", whole / 60, whole % 60);
@@ -60,7 +66,7 @@ void Console::error(const Error& error) {
       text = fmt::format("{}{}{}{}error:{}{}", kBold, text.substr(0, at), kPlain, kRed, kPlain, text.substr(at + 6));
     }
   }
-  fmt::print(stderr, "{}\n", text);
+  put(text + "\n");
 }
 
 void Console::warning(const std::string& text) {
@@ -81,9 +87,8 @@ void Console::progress(std::size_t done, std::size_t total, const std::string& l
   constexpr std::size_t kWidth = 24;
   const std::size_t filled = done * kWidth / total;
   const double left = done > 0 ? seconds / static_cast<double>(done) * static_cast<double>(total - done) : 0;
-  fmt::print(stderr, "{}[{}{}] {}/{}  {}{}", kEraseLine, std::string(filled, '='), std::string(kWidth - filled, ' '),
-             done, total, label, done > 0 ? fmt::format("  {} left", clock_text(left)) : "");
-  std::fflush(stderr);
+  put(fmt::format("{}[{}{}] {}/{}  {}{}", kEraseLine, std::string(filled, '='), std::string(kWidth - filled, ' '), done,
+                  total, label, done > 0 ? fmt::format("  {} left", clock_text(left)) : ""));
   progress_shown_ = true;
 }
 
@@ -94,8 +99,7 @@ void Console::end_progress() {
 
 void Console::erase_progress() {
   if (!progress_shown_) return;
-  fmt::print(stderr, "{}", kEraseLine);
-  std::fflush(stderr);
+  put(kEraseLine);
   progress_shown_ = false;
 }
 

@@ -1,24 +1,56 @@
 #include "apps/interrupt.h"
 
+#include <unistd.h>
+
 #include <csignal>
+#include <cstring>
+
+#include "core/temporary.h"
 
 namespace afterglow {
 namespace {
 
+constexpr unsigned kGrace = 1;  // seconds between being asked to stop and being stopped
+
 volatile std::sig_atomic_t g_interrupted = 0;  // the one global: signal handlers can reach nothing else
 
-void on_signal(int) { g_interrupted = 1; }
+/// A driver may compile or draw for minutes and hears nothing meanwhile. What is half-written goes.
+[[noreturn]] void end_at_once(int) {
+  remove_own_temporaries();
+  constexpr const char* kMessage = "error: interrupted\n";
+  const ssize_t written = write(STDERR_FILENO, kMessage, std::strlen(kMessage));
+  static_cast<void>(written);
+  _exit(static_cast<int>(ErrorKind::interrupted));
+}
+
+void on_signal(int signal) {
+  if (g_interrupted != 0) end_at_once(signal);
+  g_interrupted = 1;
+  alarm(kGrace);
+}
+
+void handle(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  sigaction(signal, &action, nullptr);
+}
+
+bool is_ignored(int signal) {
+  struct sigaction now {};
+  return sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
 
 }  // namespace
 
 void install_interrupt_handler() {
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  handle(SIGALRM, end_at_once);
+  handle(SIGINT, on_signal);
+  handle(SIGTERM, on_signal);
+  if (!is_ignored(SIGHUP)) handle(SIGHUP, on_signal);  // nohup has said that it is to be ignored
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is a write that fails, with a message
+  std::signal(SIGPIPE, SIG_IGN);  // so is one into a pipe that nobody reads
 }
 
 bool interrupted() { return g_interrupted != 0; }

@@ -1,12 +1,14 @@
-// Ctrl-C and SIGTERM as a flag: work stops between its steps, so that nothing half-written is left.
+// Ctrl-C, SIGTERM and SIGHUP as a flag: work stops between its steps, so that nothing half-written is left.
 #pragma once
 
 #include "core/result.h"
 
 namespace afterglow {
 
-/// The first SIGINT or SIGTERM sets a flag; the second ends the process at once. A file that grows
-/// beyond the limit of the process (SIGXFSZ) is an error of its writer instead of the end of the process.
+/// The first SIGINT, SIGTERM or SIGHUP sets a flag; the second one, or a second that passes (a driver may not let go
+/// for minutes), ends the process with exit code 130, its temporary files removed. A file that grows beyond the limit
+/// of the process (SIGXFSZ) and a pipe that nobody reads (SIGPIPE) are errors of whoever writes instead of the end of
+/// the process.
 void install_interrupt_handler();
 bool interrupted();
 /// What commands return once `interrupted()` is true; exit code 130.

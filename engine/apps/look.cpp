@@ -45,21 +45,24 @@ ExecutionConfig execution_on_cpu() {
 
 }  // namespace
 
-std::vector<Error> shader_errors(const Look& look) {
+ShaderFindings check_shaders(const Look& look) {
   const ExecutionConfig config = execution_on_cpu();
   KernelCompiler compiler{cache_folder() / "shaders"};  // the folder that Stack uses, so that `run` starts warm
-  std::vector<Error> errors = check_kernels(*look.shaders, compiler, {.graph = look.build.graph}, config);
-  if (errors.empty() && look.build.graph.result != look.build.graph.source) {
+  ShaderFindings found = check_kernels(*look.shaders, compiler, {.graph = look.build.graph}, config);
+  if (found.errors.empty() && look.build.graph.result != look.build.graph.source) {
     // The last kernel once more, as it is for display files without and with transparency.
     for (const bool straight : {false, true}) {
       FrameWork work{.graph = look.build.graph, .codes = true};
       encode_for_display(work.graph, {.straight_alpha = straight});
-      for (auto& error : check_kernels(*look.shaders, compiler, work, config)) errors.push_back(std::move(error));
+      ShaderFindings more = check_kernels(*look.shaders, compiler, work, config);
+      std::ranges::move(more.errors, std::back_inserter(found.errors));
+      std::ranges::move(more.warnings, std::back_inserter(found.warnings));
     }
   }
   std::set<std::string> seen;
-  std::erase_if(errors, [&](const Error& error) { return !seen.insert(error.text()).second; });
-  return errors;
+  std::erase_if(found.errors, [&](const Error& error) { return !seen.insert(error.text()).second; });
+  std::erase_if(found.warnings, [&](const std::string& warning) { return !seen.insert(warning).second; });
+  return found;
 }
 
 }  // namespace afterglow

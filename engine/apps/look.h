@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/options.h"
+#include "exec/program_cache.h"
 #include "graph/plan.h"
 #include "script/build.h"
 #include "shader/library.h"
@@ -21,7 +22,7 @@ struct Look {
 /// Errors: script, usage.
 Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& assumed, Console& console);
 
-/// Compiles every kernel of the plan, from the disk cache where possible; all GLSL errors, each once.
-std::vector<Error> shader_errors(const Look& look);
+/// Compiles every kernel of the plan, from the disk cache where possible; all that is wrong with GLSL, each once.
+ShaderFindings check_shaders(const Look& look);
 
 }  // namespace afterglow

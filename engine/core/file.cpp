@@ -25,6 +25,8 @@ Result<std::string> read_file(const fs::path& path, std::size_t limit, FileRecor
   const auto status = fs::status(path, ec);
   if (!fs::exists(status)) return Error{ErrorKind::io, "no such file", path.string()};
   if (fs::is_directory(status)) return Error{ErrorKind::io, "is a folder, not a file", path.string()};
+  // Reading a pipe waits for whoever may write it, which may be nobody.
+  if (fs::is_fifo(status)) return Error{ErrorKind::io, "is a pipe, not a file", path.string()};
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{ErrorKind::io, fmt::format("cannot be read: {}", std::strerror(errno)), path.string()};
   std::string content;

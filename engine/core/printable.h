@@ -5,7 +5,8 @@
 
 namespace afterglow {
 
-/// Every control character (C0, DEL, and C1 as UTF-8 spells it) becomes a space; line feeds stay when `lines` says so.
+/// Every control character (C0, DEL, C1 as UTF-8 spells it, and those that turn the direction of text or end lines)
+/// becomes a space; line feeds stay when `lines` says so.
 std::string printable(std::string text, bool lines = false);
 
 }  // namespace afterglow

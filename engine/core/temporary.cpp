@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <charconv>
@@ -49,15 +50,40 @@ pid_t process_of(std::string_view name) {
   return second.ec == std::errc() && second.ptr == numbers.data() + numbers.size() ? process : 0;
 }
 
+/// The names given last, where a signal handler can read them.
+struct Given {
+  std::atomic<bool> whole{false};
+  std::array<char, 4096> path{};
+};
+constexpr std::size_t kGiven = 64;  // more than are written at a time
+std::array<Given, kGiven> g_given;
+
+void remember(unsigned count, const std::string& path) {
+  Given& given = g_given[count % kGiven];
+  given.whole = false;
+  if (path.size() >= given.path.size()) return;
+  path.copy(given.path.data(), path.size());
+  given.path[path.size()] = '\0';
+  given.whole = true;
+}
+
 bool lives(pid_t process) { return kill(process, 0) == 0 || errno != ESRCH; }
 
 }  // namespace
 
 fs::path temporary_beside(const fs::path& path) {
   static std::atomic<unsigned> counter{0};
-  const auto name = fmt::format(".{}.{}-{}-{}.tmp{}", path.stem().string(), machine(), getpid(), counter++,
-                                path.extension().string());
-  return path.parent_path() / name;
+  const unsigned count = counter++;
+  const auto name =
+      fmt::format(".{}.{}-{}-{}.tmp{}", path.stem().string(), machine(), getpid(), count, path.extension().string());
+  fs::path temporary = path.parent_path() / name;
+  remember(count, temporary.string());
+  return temporary;
+}
+
+void remove_own_temporaries() noexcept {
+  for (const auto& given : g_given)
+    if (given.whole) unlink(given.path.data());
 }
 
 int remove_abandoned_temporaries(const fs::path& folder) {

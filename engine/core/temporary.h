@@ -9,6 +9,10 @@ namespace afterglow {
 /// libraries choose the format by it): `.NAME.MACHINE-PROCESS-COUNT.tmp.EXT`.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
+/// Removes the last files of this process that have such names and have not become others. For signal handlers that end
+/// the process: it takes no lock and no memory.
+void remove_own_temporaries() noexcept;
+
 /// Removes files with such names from `folder` whose processes ran on this machine and live no more: they were killed.
 /// Returns how many.
 int remove_abandoned_temporaries(const std::filesystem::path& folder);

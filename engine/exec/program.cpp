@@ -120,6 +120,13 @@ ProgramMemory Program::memory() const {
   if (state_->histories) memory.histories = state_->histories->bytes();
   return memory;
 }
+std::vector<std::string> Program::warnings() const {
+  std::vector<std::string> all;
+  for (const auto& kernel : state_->compiled.unique)
+    for (const auto& warning : kernel.warnings)
+      if (std::ranges::find(all, warning) == all.end()) all.push_back(warning);
+  return all;
+}
 int Program::bindings() const { return state_->bindings + state_->uses; }
 VkFormat Program::storage_format() const { return state_->format; }
 const ExecutionConfig& Program::config() const { return state_->options.config; }

@@ -138,6 +138,8 @@ class Program {
   const Plan& plan() const;
   const Graph& graph() const;
   ProgramMemory memory() const;
+  /// What authors of its shaders should know, each once: see CompiledKernel::warnings.
+  std::vector<std::string> warnings() const;
   VkFormat storage_format() const;
   /// What is read of inputs and made of the others: everything, unless there is a region.
   const Regions& parts() const;

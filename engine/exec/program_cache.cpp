@@ -52,23 +52,24 @@ bool same_program(const FrameWork& a, const FrameWork& b) {
          (!a.region || same_reach(a.graph, b.graph));
 }
 
-std::vector<Error> check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
-                                 const ExecutionConfig& config) {
+ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
+                             const ExecutionConfig& config) {
   ProgramOptions options{.config = config, .source_is_storage = true, .codes = work.codes, .flag_non_finite = true};
   fit_to_cpu_driver(options.config);
-  std::vector<Error> errors;
+  ShaderFindings found;
   std::set<Hash> checked;
   for (const auto& kernel : make_plan(work.graph, config).kernels) {
     const auto check = [&]() -> Result<void> {
       AFTERGLOW_TRY(const KernelDesc desc, describe_kernel(shaders, work.graph, kernel, options));
       AFTERGLOW_TRY(const AssembledKernel assembled, assemble(desc));
       if (!checked.insert(assembled.hash).second) return {};
-      AFTERGLOW_CHECK(compiler.compile(desc));
+      AFTERGLOW_TRY(const CompiledKernel compiled, compiler.compile(desc));
+      found.warnings.insert(found.warnings.end(), compiled.warnings.begin(), compiled.warnings.end());
       return {};
     };
-    if (auto good = check(); !good) errors.push_back(std::move(good).error());
+    if (auto good = check(); !good) found.errors.push_back(std::move(good).error());
   }
-  return errors;
+  return found;
 }
 
 Result<Hash> texts_of(const Graph& graph, ShaderLibrary& shaders) {
@@ -133,6 +134,8 @@ Result<void> ProgramCache::State::make(FrameWork work, ShaderLibrary& shaders) {
   const auto start = Clock::now();
   AFTERGLOW_CHECK(fit_histories());
   AFTERGLOW_TRY(entry.program, Program::create(device, shaders, shared->compiler, entry.work.graph, program_options()));
+  if (options.diagnostics)
+    for (const auto& warning : entry.program->warnings()) options.diagnostics->warn_once(warning, warning);
   device.save_pipeline_cache();
   milliseconds += milliseconds_since(start);
   return {};

@@ -36,9 +36,14 @@ bool same_program(const FrameWork& a, const FrameWork& b);
 /// Of all shaders of a graph, with what they include. Errors: script.
 Result<Hash> texts_of(const Graph& graph, ShaderLibrary& shaders);
 
+struct ShaderFindings {
+  std::vector<Error> errors;
+  std::vector<std::string> warnings;  ///< see CompiledKernel::warnings
+};
+
 /// Compiles every kernel that the frame's program has on a CPU device for `run`, touching none. What is wrong with
 /// each.
-std::vector<Error> check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
+ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
                                  const ExecutionConfig& config);
 
 struct ProgramCacheOptions {
@@ -52,6 +57,7 @@ struct ProgramCacheOptions {
   /// with their images, within `max_memory` altogether.
   int spare = 0;
   std::uint64_t max_memory = 6ull << 30;  ///< bytes of device memory for images
+  Diagnostics* diagnostics = nullptr;     ///< takes the warnings of shaders (CompiledKernel::warnings); null: nobody
 };
 
 /// Not thread-safe; but caches with the same SharedKernels may be filled on different threads. Device and shaders must

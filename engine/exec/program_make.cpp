@@ -96,11 +96,21 @@ ArenaOptions Program::State::arena_options(const std::vector<KernelDesc>& descs)
   return wanted;
 }
 
+/// Whether the device can draw into linear images between kernels, all of them: they share layouts and barriers.
+bool Program::State::can_be_linear() const {
+  ArenaOptions wanted = arena_options({});
+  wanted.rows.assign(plan.transient.size(), 1);
+  return std::ranges::all_of(plan.transient, [&](ImageId id) {
+    return id == graph.result || history_of_next(graph, id) || check_image(device, Arena::desc_of(graph, id, wanted));
+  });
+}
+
 /// How many rows kernels really make at a time, and the images between them, unless those come from a pool.
 Result<void> Program::State::make_images(std::vector<KernelDesc>& descs) {
   for (std::size_t i = 0; i < descs.size(); ++i)
     if (history_of_next(graph, plan.kernels[i].output)) descs[i].config.rows = 1;
-  linear = std::ranges::any_of(descs, [](const KernelDesc& desc) { return desc.config.rows > 1; });
+  const auto by_rows = [](const KernelDesc& desc) { return desc.config.rows > 1; };
+  linear = std::ranges::any_of(descs, by_rows) && can_be_linear();
   for (std::size_t i = 0; i < descs.size(); ++i) {
     const ImageId output = plan.kernels[i].output;
     if (output == graph.result) {
@@ -110,6 +120,8 @@ Result<void> Program::State::make_images(std::vector<KernelDesc>& descs) {
     } else if (linear) {
       const ImageDesc desc = Arena::desc_of(graph, output, arena_options(descs));
       descs[i].config.rows = RowTargets::possible(device, desc, descs[i].config.rows);
+    } else {
+      descs[i].config.rows = 1;
     }
   }
   if (from_pool()) return {};

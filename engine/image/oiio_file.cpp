@@ -191,11 +191,13 @@ class OiioFile : public PictureFile {
   void use_png_chunks(ColorEncoding& encoding, Diagnostics& diagnostics) const {
     if (container_.srgb) return;
     if (container_.gamma) {
-      // 1/2.2 is what programs write that mean sRGB but do not know the sRGB chunk.
+      // What programs write that mean sRGB but do not know the sRGB chunk (PNG, 11.3.2.5); other numbers mean what they
+      // say.
+      constexpr double kSrgb = 0.45455;
       const double exponent = 1 / *container_.gamma;
       if (std::abs(exponent - 1) < 0.01) {
         encoding.curve = TransferCurve::linear;
-      } else if (std::abs(exponent - 2.2) > 0.03 && exponent > 0.1 && exponent < 10) {
+      } else if (std::abs(*container_.gamma - kSrgb) > 1e-5 && exponent > 0.1 && exponent < 10) {
         encoding.curve = TransferCurve::power;
         encoding.exponent = exponent;
       }

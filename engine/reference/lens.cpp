@@ -49,8 +49,8 @@ DoubleImage lens_distortion(const DoubleImage& source, const LensDistortion& s) 
   const double sigma = 2 * std::tan(theta / 2);
   const Point axes(glm::max(s.x_multiplier, 1e-4), glm::max(s.y_multiplier, 1e-4));
   return generate(source.size(), [&](int x, int y) {
-    Point uv = (uv_of(x, y, source.size()) - 0.5) / s.scale + 0.5;
-    const Point ray = axes * (uv - 0.5 - (2.0 * s.center - 1.0));
+    Point uv = s.center + (uv_of(x, y, source.size()) - s.center) / s.scale;
+    const Point ray = axes * (uv - s.center);
     const double r = glm::length(ray);
     if (s.intensity != 0 && r > 0)
       uv += ray * ((s.intensity > 0 ? std::tan(std::min(r * theta, kRightAngle)) / (r * sigma)

@@ -1,8 +1,7 @@
 // The functions that effects declare themselves with: fx.effect and the setting types.
 #pragma once
 
-#include <lua.hpp>
-
+#include "script/lua.h"
 #include "script/preset.h"
 #include "script/runtime.h"
 

@@ -1,9 +1,8 @@
 // A Lua function that a script gave and that is called later.
 #pragma once
 
-#include <lua.hpp>
-
 #include "core/result.h"
+#include "script/lua.h"
 
 namespace afterglow::script {
 

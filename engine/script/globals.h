@@ -1,7 +1,7 @@
 // What scripts find in a fresh state: an allow-list, everything on it bounded and deterministic.
 #pragma once
 
-#include <lua.hpp>
+#include "script/lua.h"
 
 namespace afterglow::script {
 

@@ -1,9 +1,8 @@
 // The userdata `g` and images that `build` functions work with, over a GraphBuilder.
 #pragma once
 
-#include <lua.hpp>
-
 #include "script/graph_builder.h"
+#include "script/lua.h"
 
 namespace afterglow::script {
 

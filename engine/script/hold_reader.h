@@ -1,10 +1,10 @@
 // Reads what effects promise, and asks them what holds for a frame.
 #pragma once
 
-#include <lua.hpp>
 #include <vector>
 
 #include "script/holds.h"
+#include "script/lua.h"
 
 namespace afterglow::script {
 

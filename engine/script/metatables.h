@@ -3,7 +3,7 @@
 // unseen.
 #pragma once
 
-#include <lua.hpp>
+#include "script/lua.h"
 
 namespace afterglow::script {
 

@@ -1,8 +1,9 @@
 // Small values that scripts hold and cannot look into: userdata with a protected metatable and no finalizer.
 #pragma once
 
-#include <lua.hpp>
 #include <type_traits>
+
+#include "script/lua.h"
 
 namespace afterglow::script {
 

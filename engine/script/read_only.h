@@ -2,7 +2,7 @@
 // reach the real table nor the metatable.
 #pragma once
 
-#include <lua.hpp>
+#include "script/lua.h"
 
 namespace afterglow::script {
 

@@ -1,13 +1,13 @@
 // One sandboxed Lua 5.4 state: capped memory, a budget of instructions and time that no script can swallow,
 // allow-listed globals, and errors that carry file and line. Knows nothing of presets and effects.
 //
-// Lua is linked in its C++ build: Lua errors are C++ exceptions, so destructors of native frames run when one passes.
+// Lua's C++ build is linked where there is one: its errors are C++ exceptions, so destructors of native frames run when
+// one passes.
 #pragma once
 
 #include <array>
 #include <chrono>
 #include <cstdint>
-#include <lua.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +17,7 @@
 #include "core/exception.h"
 #include "core/result.h"
 #include "core/stopwatch.h"
+#include "script/lua.h"
 #include "script/preset.h"
 #include "script/script_error.h"
 

@@ -1,10 +1,10 @@
 // The functions that presets are made of: fx.NAME{…} and fx.stack{…}.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 #include <vector>
 
+#include "script/lua.h"
 #include "script/runtime.h"
 #include "script/table_reader.h"
 

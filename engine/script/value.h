@@ -2,8 +2,9 @@
 #pragma once
 
 #include <array>
-#include <lua.hpp>
 #include <string>
+
+#include "script/lua.h"
 
 namespace afterglow::script {
 

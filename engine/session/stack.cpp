@@ -173,7 +173,8 @@ void Stack::use(Device& device, bool own_images) {
                                                                         .flag_non_finite = options.flag_non_finite,
                                                                         .keep_images = options.keep_images,
                                                                         .spare = options.spare_programs,
-                                                                        .max_memory = options.max_memory});
+                                                                        .max_memory = options.max_memory,
+                                                                        .diagnostics = state_->diagnostics});
 }
 
 Result<void> Stack::prepare(FrameRequest frame) {

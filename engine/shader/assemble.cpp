@@ -10,6 +10,7 @@
 #include "shader/cpu/interleave.h"
 #include "shader/cpu/storage_reads.h"
 #include "shader/filter_head.h"
+#include "shader/give_values.h"
 #include "shader/kernel.h"
 #include "shader/prelude.h"
 #include "shader/rename.h"
@@ -59,6 +60,7 @@ class Assembler {
       return error;
     }
     out_.glsl += kHeader;
+    if (!out_.unset.empty()) out_.glsl += give_value_header();
     if (kernel_.config.hide_uniforms) out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
     for (int row = 0; row < kernel_.config.rows; ++row)
       out_.glsl += fmt::format("layout(location = {0}) out vec4 ag_result{0};\n", row);
@@ -198,13 +200,22 @@ class Assembler {
       out_.params.push_back({stage_count_, param.name, param.type, 0});
     }
     stages_ += fmt::format("#line 1 {}\n", file_index(source.path.string())) +
-               rewrite(source.text, scanned, names, values, readers);
+               rewrite(source.text, scanned, names, values, add_unset(scanned, source.path, prefix), readers);
     if (kind == ShaderKind::sample)
       every_row("vec4 ag_color{0} = " + prefix + "sample_at(ag_pixel{0});");
     else
       row_ += fmt::format("  ag_color = {}apply({});\n", prefix, arguments) + (watches() ? add_light("ag_color") : "");
     ++stage_count_;
     return {};
+  }
+
+  /// Numbers the file's variables without a value; returns the first number.
+  std::size_t add_unset(const ShaderScan& scanned, const std::filesystem::path& file, const std::string& prefix) {
+    const std::size_t first = out_.unset.size();
+    for (const auto& unset : scanned.unset)
+      out_.unset.push_back({unset.name, unset.kind == Unset::Kind::global ? prefix + unset.name : std::string(),
+                            file.string(), unset.line, unset.kind == Unset::Kind::argument});
+    return first;
   }
 
   /// What replaces the declaration of each specialised parameter.
@@ -256,8 +267,8 @@ class Assembler {
     for (const auto use : added.uses) see(libraries_[use], names);
     added.names = scanned.names;
     see(added, names);
-    library_text_ +=
-        fmt::format("#line 1 {}\n", file_index(include.path.string())) + rewrite(include.text, scanned, names, {});
+    library_text_ += fmt::format("#line 1 {}\n", file_index(include.path.string())) +
+                     rewrite(include.text, scanned, names, {}, add_unset(scanned, include.path, added.prefix));
     libraries_.push_back(std::move(added));
     return libraries_.size() - 1;
   }

@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "shader/cpu/hide_uniforms.h"
 #include "shader/cpu/interleave.h"
+#include "shader/give_values.h"
 #include "shader/glsl.h"
 #include "shader/kernel.h"
 #include "shader/kernel_file.h"
@@ -92,6 +93,9 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   KernelFile kernel;
   kernel.text = assembled.hash;
   AFTERGLOW_TRY(kernel.spirv, compile_glsl(assembled.glsl, assembled.file_names));
+  ValuesGiven given = give_values(std::move(kernel.spirv), assembled.unset);
+  kernel.spirv = std::move(given.spirv);
+  kernel.unset = std::move(given.read);
   if (desc.config.rows > 1) kernel.spirv = interleave_rows(kernel.spirv, kTogether);
   if (desc.config.hide_uniforms) kernel.spirv = hide_uniforms(kernel.spirv);
   AFTERGLOW_TRY(const Reflection reflection, reflect(kernel.spirv));
@@ -144,6 +148,8 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   out.block_size = made->block_size;
   out.rows = desc.config.rows;
   out.target = desc.target;
+  for (const auto number : made->unset)
+    if (number < assembled.unset.size()) out.warnings.push_back(unset_warning(assembled.unset[number]));
   out.hash = assembled.hash;
   return out;
 }

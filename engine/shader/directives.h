@@ -20,6 +20,7 @@ struct IncludeLine {
 struct Edit {
   std::size_t begin = 0, end = 0;  ///< byte offsets
   int constant = -1;               ///< index into ShaderInterface::params of the constant declared here; -1: vanishes
+  int unset = -1;                  ///< index into ShaderScan::unset: its value is to be put here
 };
 
 struct Directives {

@@ -93,7 +93,16 @@ struct AssembledKernel {
   std::vector<ImageSlot> images;
   std::vector<KernelParam> params;      ///< dynamic parameters in the order of the block; offsets are not known yet (0)
   std::vector<std::string> file_names;  ///< index used in #line directives → file path; [0] is the engine's own text
-  Hash hash;                            ///< of glsl
+  /// A variable that authors declare without a value. It gets zeros.
+  struct UnsetVariable {
+    std::string name;      ///< as in the file
+    std::string variable;  ///< of file scope: its name in `glsl`; else empty
+    std::string file;
+    int line = 0;
+    bool argument = false;  ///< an `out` argument that its function may leave as it is
+  };
+  std::vector<UnsetVariable> unset;
+  Hash hash;  ///< of glsl
 };
 
 /// Push constants of every kernel (fragment stage): ivec2 target size, ivec2 size of image 0.
@@ -106,6 +115,8 @@ struct CompiledKernel {
   std::uint32_t block_size = 0;  ///< bytes of the uniform block; 0: none
   int rows = 1;                  ///< that one invocation makes
   KernelTarget target = KernelTarget::float32;
+  /// What authors should know, as FILE:LINE: TEXT: variables that may be read before they have a value (they are 0).
+  std::vector<std::string> warnings;
   Hash hash;
 };
 

@@ -17,7 +17,7 @@ struct Header {
 };
 struct Fixed {
   std::uint64_t text_high, text_low;
-  std::uint32_t block_size, offsets, words, zero;
+  std::uint32_t block_size, offsets, unset, words;
 };
 
 /// Takes `count` words off the front, which are known to be there.
@@ -40,10 +40,11 @@ std::string encode(const KernelFile& kernel) {
                     kernel.text.low,
                     kernel.block_size,
                     static_cast<std::uint32_t>(kernel.offsets.size()),
-                    static_cast<std::uint32_t>(kernel.spirv.size()),
-                    0};
+                    static_cast<std::uint32_t>(kernel.unset.size()),
+                    static_cast<std::uint32_t>(kernel.spirv.size())};
   append(content, &fixed, sizeof fixed);
   append(content, kernel.offsets.data(), kernel.offsets.size() * sizeof(std::uint32_t));
+  append(content, kernel.unset.data(), kernel.unset.size() * sizeof(std::uint32_t));
   append(content, kernel.spirv.data(), kernel.spirv.size() * sizeof(std::uint32_t));
   const Hash hash = hash_text(content);
   const Header header{kMagic, kKernelFileVersion, content.size(), hash.high, hash.low};
@@ -63,10 +64,12 @@ std::optional<KernelFile> decode(std::string_view bytes) {
   if (hash_text(bytes) != Hash{header.hash_high, header.hash_low}) return std::nullopt;
   std::memcpy(&fixed, bytes.data(), sizeof fixed);
   bytes.remove_prefix(sizeof fixed);
-  if (fixed.offsets > kMaxWords || fixed.words > kMaxWords) return std::nullopt;
-  if (bytes.size() != (std::size_t{fixed.offsets} + fixed.words) * sizeof(std::uint32_t)) return std::nullopt;
-  KernelFile kernel{{fixed.text_high, fixed.text_low}, fixed.block_size, {}, {}};
+  if (fixed.offsets > kMaxWords || fixed.unset > kMaxWords || fixed.words > kMaxWords) return std::nullopt;
+  if (bytes.size() != (std::size_t{fixed.offsets} + fixed.unset + fixed.words) * sizeof(std::uint32_t))
+    return std::nullopt;
+  KernelFile kernel{{fixed.text_high, fixed.text_low}, fixed.block_size, {}, {}, {}};
   kernel.offsets = take_words(bytes, fixed.offsets);
+  kernel.unset = take_words(bytes, fixed.unset);
   kernel.spirv = take_words(bytes, fixed.words);
   if (kernel.spirv.empty() || kernel.spirv[0] != kSpirvMagic) return std::nullopt;
   return kernel;

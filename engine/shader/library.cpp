@@ -56,9 +56,11 @@ Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const
   for (const auto& include : source->includes) hasher.add(include.text);
   source->hash = hasher.finish();
   source->loops = has_loop(scanned.tokens);
+  source->keeps_state = scanned.keeps_state;
   for (const auto& include : source->includes) {
-    AFTERGLOW_TRY(const std::vector<Token> tokens, tokenize(include.text, include.path.string()));
-    source->loops = source->loops || has_loop(tokens);
+    AFTERGLOW_TRY(const ShaderScan library, scan(include.text, include.path.string(), ScanAs::library));
+    source->loops = source->loops || has_loop(library.tokens);
+    source->keeps_state = source->keeps_state || library.keeps_state;
   }
   return std::shared_ptr<const ShaderSource>(std::move(source));
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "shader/give_values.h"
+
 namespace afterglow {
 namespace {
 
@@ -64,7 +66,7 @@ std::string only_newlines(std::string_view text) {
 }  // namespace
 
 std::string rewrite(std::string_view text, const ShaderScan& scanned, const NameMap& names,
-                    const std::vector<std::string>& constants, const StorageReaders& readers) {
+                    const std::vector<std::string>& constants, std::size_t first_unset, const StorageReaders& readers) {
   std::string out;
   out.reserve(text.size() + text.size() / 4);
   std::size_t copied = 0;
@@ -73,6 +75,12 @@ std::string rewrite(std::string_view text, const ShaderScan& scanned, const Name
     for (; edit != scanned.edits.end() && edit->begin <= offset; ++edit) {
       out += text.substr(copied, edit->begin - copied);
       if (edit->constant >= 0) out += constants[static_cast<std::size_t>(edit->constant)];
+      if (edit->unset >= 0) {
+        const auto index = static_cast<std::size_t>(edit->unset);
+        const std::string& name = scanned.unset[index].name;
+        const auto known = names.find(name);
+        out += give_value_text(first_unset + index, known == names.end() ? name : known->second.text);
+      }
       out += only_newlines(text.substr(edit->begin, edit->end - edit->begin));
       copied = edit->end;
     }

@@ -23,9 +23,11 @@ struct NewName {
 using NameMap = std::map<std::string, NewName, std::less<>>;
 
 /// `constants[i]` replaces the declaration of parameter i; reads of the inputs in `readers` become calls of their own
-/// functions. Ends with a newline.
+/// functions. The variable `scanned.unset[i]` gets a value where it is declared, as number `first_unset` + i (see
+/// shader/give_values.h). Ends with a newline.
 std::string rewrite(std::string_view text, const ShaderScan& scanned, const NameMap& names,
-                    const std::vector<std::string>& constants, const StorageReaders& readers = {});
+                    const std::vector<std::string>& constants, std::size_t first_unset,
+                    const StorageReaders& readers = {});
 
 /// Removes the prefixes from a compiler's message: "ag_s0_threshold" → "threshold".
 std::string original_names(std::string_view message);

@@ -55,7 +55,11 @@ class ShaderScanner {
     out_.edits = std::move(directives.edits);
     while (at_ < code_.size()) AFTERGLOW_CHECK(declaration());
     if (as_ == ScanAs::stage) AFTERGLOW_CHECK(entry_point());
-    std::sort(out_.edits.begin(), out_.edits.end(), [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
+    for (std::size_t i = 0; i < out_.unset.size(); ++i) {
+      const Unset& unset = out_.unset[i];
+      if (unset.kind != Unset::Kind::global) out_.edits.push_back({unset.at, unset.at, -1, static_cast<int>(i)});
+    }
+    std::ranges::stable_sort(out_.edits, {}, &Edit::begin);
     return std::move(out_);
   }
 
@@ -127,7 +131,7 @@ class ShaderScanner {
     while (token().is("[")) at_ = after_closing(at_);
     if (!token().is_identifier()) return fail(line(), "a declaration was expected here");
     if (token(1).is("(")) return function();
-    return variables();
+    return variables(is_const);
   }
 
   Result<void> skip_to_semicolon() {
@@ -259,25 +263,34 @@ class ShaderScanner {
       ++at_;
       return {};
     }
-    return variables();
+    return variables(false);
   }
 
   /// `NAME [..] = …, NAME …;`, at the first name.
-  Result<void> variables() {
-    bool expects_name = true;
+  Result<void> variables(bool is_const) {
+    bool expects_name = true, has_value = false;
+    out_.keeps_state = out_.keeps_state || !is_const;
+    const auto end = [&] {
+      if (has_value) out_.unset.pop_back();
+      has_value = false;
+    };
     while (at_ < code_.size() && (expects_name || !token().is(";"))) {
       if (expects_name) {
         if (!token().is_identifier()) return fail(line(), "a name was expected in the declaration");
         AFTERGLOW_CHECK(add_name(token(), false));
+        out_.unset.push_back({std::string(token().text), token().line, Unset::Kind::global});
         expects_name = false;
         ++at_;
       } else if (token().is("(") || token().is("[") || token().is("{")) {
         at_ = after_closing(at_);
       } else {
+        has_value = has_value || token().is("=");
         expects_name = token().is(",");
+        if (expects_name) end();
         ++at_;
       }
     }
+    end();
     if (at_ >= code_.size()) return fail(line(), "';' is missing after the declaration");
     ++at_;
     return {};
@@ -292,7 +305,11 @@ class ShaderScanner {
     const bool body = token().is("{");
     if (!body && !token().is(";")) return fail(name, fmt::format("'{{' or ';' was expected after {}(…)", name.text));
     const std::size_t arguments_end = at_ - 1;
+    const std::size_t begin = at_;
     at_ = body ? after_closing(at_) : at_ + 1;
+    if (body)
+      find_unset(std::span(code_).subspan(arguments + 1, arguments_end - arguments - 1),
+                 std::span(code_).subspan(begin, at_ - begin), out_.unset);
     if (name.is("main"))
       return fail(name, "main is made by the engine; define vec4 apply(vec4 color) or vec4 sample_at(ivec2 pixel)");
     if (is_builtin_function(name.text))

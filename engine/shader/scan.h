@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "shader/declared.h"
 #include "shader/directives.h"
 #include "shader/interface.h"
 #include "shader/token.h"
@@ -24,7 +25,9 @@ struct ShaderScan {
   ShaderInterface interface;  ///< `kind` means nothing for a library
   std::vector<GlobalName> names;
   std::vector<IncludeLine> includes;
-  std::vector<Edit> edits;  ///< in order of the text
+  std::vector<Unset> unset;  ///< variables without a value of their own
+  bool keeps_state = false;  ///< it has variables at file scope that functions may write
+  std::vector<Edit> edits;   ///< in order of the text
 };
 
 enum class ScanAs {

@@ -161,7 +161,7 @@
 ---@field x_multiplier? number|afterglow.Moving  How much of it happens across. 0…1, default 1
 ---@field y_multiplier? number|afterglow.Moving  How much of it happens down. 0…1, default 1
 ---@field center? number[]|afterglow.Moving  The point that stays: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
----@field scale? number|afterglow.Moving  Enlarges the result, to hide edges that were drawn in. 0.01…5, default 1
+---@field scale? number|afterglow.Moving  Enlarges the result around the centre, to hide edges that were drawn in. 0.01…5, default 1
 
 ---The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.
 ---@class afterglow.settings.lift_gamma_gain : afterglow.EntryKeys

@@ -11,7 +11,7 @@ return fx.effect {
     x_multiplier = fx.float { min = 0, max = 1, default = 1, doc = "How much of it happens across." },
     y_multiplier = fx.float { min = 0, max = 1, default = 1, doc = "How much of it happens down." },
     center = fx.vec2 { min = 0, max = 1, default = { 0.5, 0.5 }, doc = "The point that stays: {0, 0} is the upper left corner, {1, 1} the lower right." },
-    scale = fx.float { min = 0.01, max = 5, default = 1, doc = "Enlarges the result, to hide edges that were drawn in." },
+    scale = fx.float { min = 0.01, max = 5, default = 1, doc = "Enlarges the result around the centre, to hide edges that were drawn in." },
   },
   active = function(s)
     local bends = s.intensity ~= 0 and (s.x_multiplier > 0 or s.y_multiplier > 0)
@@ -25,7 +25,7 @@ return fx.effect {
     return g:pass {
       shader = "lens_distortion/bend", source = source, barrel = s.intensity >= 0,
       theta = theta, sigma = 2 * math.tan(theta / 2), bend = s.intensity ~= 0 and 1 or 0,
-      center = { 2 * s.center[1] - 1, 2 * s.center[2] - 1 },
+      center = { s.center[1] - 0.5, s.center[2] - 0.5 },
       axes = { math.max(s.x_multiplier, 1e-4), math.max(s.y_multiplier, 1e-4) }, inverse_scale = 1 / s.scale,
     }
   end,

@@ -10,7 +10,9 @@ local function encoded(c)
   for i = 1, 3 do
     local v = math.min(c[i], 1)
     v = v <= 0.0031308 and 12.92 * v or 1.055 * v ^ (1 / 2.4) - 0.055
-    out[i] = math.abs(v - 0.5) < 0.003 and 0.5 or v  -- 0x80 of 8 bits is 0.502: it is meant to be the middle
+    -- 0x80 of 8 bits is 0.502: it is meant to be the middle. (The default has eight digits.)
+    local is_middle = math.abs(v - 0.5) < 1e-6 or math.abs(v - 128 / 255) < 1e-6
+    out[i] = is_middle and 0.5 or v
   end
   return out
 end

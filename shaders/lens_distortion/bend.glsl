@@ -6,13 +6,13 @@ layout(constant_id = 0) const bool barrel = true;
 uniform sampler2D source;
 uniform float theta, sigma;  // radians; 2 tan(θ/2)
 uniform float bend;          // 0 leaves the scale alone
-uniform vec2 center;         // −1…1
+uniform vec2 center;         // −½…½
 uniform vec2 axes;
 uniform float inverse_scale;
 
 vec4 sample_at(ivec2 pixel) {
   vec2 size = vec2(target_size());
-  vec2 p = (vec2(2 * pixel + 1) - size) / (2.0 * size) * inverse_scale;  // −½…½
+  vec2 p = center + ((vec2(2 * pixel + 1) - size) / (2.0 * size) - center) * inverse_scale;  // −½…½
   vec2 ray = axes * (p - center);
   float r = max(length(ray), 1e-4);  // the factor is flat around the centre
   float factor = barrel ? tangent(r * theta) / (r * sigma) : arc_tangent(r * sigma) / (r * theta);

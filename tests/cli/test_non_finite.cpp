@@ -110,6 +110,43 @@ TEST_F(NonFiniteValues, APassThatDividesByZeroIsNamedAndMended) {
   EXPECT_EQ(made[at(5, 3, 0)], ramp(5, 3, 0));
 }
 
+/// Not whatever lay in memory, which changes from run to run and is finite more often than not.
+TEST_F(NonFiniteValues, ZerosThatACompilerSeesDivideAsOthersDo) {
+  make("a.exr", {});
+  for (const auto& [glsl, made] :
+       {std::pair("return vec4(color.rgb * 0.5 / 0.0, color.a);", "made 1728 +Inf"),
+        std::pair("return vec4(vec3(0.5 / (color.r - color.r)), color.a);", "made 1728 +Inf"),
+        std::pair("return vec4((color.rgb - color.rgb) / 0.0, color.a);", "made 1728 NaN")}) {
+    SCOPED_TRACE(glsl);
+    make_effect("vec4 apply(vec4 color) { " + std::string(glsl) + " }\n");
+    EXPECT_THAT(run_look().err, HasSubstr(std::string("pass 'broken.apply' ") + made));
+    const std::string once = read("o.exr");
+    EXPECT_THAT(run_look({}, "o.png").err, HasSubstr(made));
+    EXPECT_EQ(run_look({"--reference"}).exit_code, kDone);
+    EXPECT_EQ(read("o.exr"), once) << "every run makes the same bytes, joined passes and single ones";
+    EXPECT_EQ(run_look({"--nan-policy", "fail"}).exit_code, kScript);
+  }
+}
+
+TEST_F(NonFiniteValues, VariablesWithoutAValueAreZeroAndTold) {
+  make("a.exr", {});
+  make_effect(
+      "vec4 apply(vec4 color) {\n  float u;\n  if (color.r > 9.0) u = 1.0;\n  return vec4(color.rgb * u, "
+      "color.a);\n}\n");
+  const std::string warning = "shaders/broken/apply.glsl:2: 'u' may be read before it has a value; it is 0 there";
+  for (int again = 0; again < 2; ++again) {  // the second time the kernel comes from the cache
+    const Outcome outcome = run_look();
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("warning: "));
+    EXPECT_THAT(outcome.err, HasSubstr(warning));
+    EXPECT_EQ(outcome.err.find(warning), outcome.err.rfind(warning)) << "once";
+    for (const int x : {0, 13}) EXPECT_EQ(load("o.exr")[at(x, 7, 1)], 0);
+  }
+  const Outcome check = run({"check", "look.lua"});
+  EXPECT_EQ(check.exit_code, kDone);
+  EXPECT_THAT(check.err, HasSubstr(warning));
+}
+
 TEST_F(NonFiniteValues, NeighboursStandIn) {
   make("a.exr", {});
   make_effect(kDivide);

@@ -73,7 +73,8 @@ TEST_F(Effects, ChannelMixerAgrees) {
 TEST_F(Effects, SplitToningAgrees) {
   agree_everywhere({toned({.shadows = {0.2, 0.4, 0.7}, .highlights = {0.8, 0.6, 0.3}}),
                     toned({.shadows = {0.5, 0.5, 0.8}, .balance = 60}),
-                    toned({.highlights = {1, 0, 0.4}, .balance = -30})});
+                    toned({.highlights = {1, 0, 0.4}, .balance = -30}),
+                    toned({.shadows = {0.4981, 0.5, 0.5}, .highlights = {0.5, 0.5015, 0.5}})});  // nearly grey
   expect_skipped("fx.split_toning {}", "both tints are grey");
   expect_skipped("fx.split_toning { shadows = \"#808080\", highlights = \"#808080\" }", "both tints are grey");
 }

@@ -52,10 +52,22 @@ TEST_F(Effects, LensDistortionAgrees) {
   agree_everywhere(
       {bent({.intensity = 0.4}), bent({.intensity = -0.6}), bent({.intensity = 0, .scale = 1.7}),
        bent({.intensity = 0.3, .x_multiplier = 0, .y_multiplier = 0.6, .center = {0.4, 0.55}, .scale = 0.8}),
-       bent({.intensity = -1, .scale = 2})},
+       bent({.intensity = 0.5, .center = {0.2, 0.9}}), bent({.intensity = -1, .scale = 2})},
       kBetweenPixels);
   expect_skipped("fx.lens_distortion { intensity = 0 }", "nothing bends and scale is 1");
   expect_skipped("fx.lens_distortion { x_multiplier = 0, y_multiplier = 0 }", "nothing bends and scale is 1");
+}
+
+TEST_F(Effects, LensDistortionLeavesItsCentreAlone) {
+  // A point of light at the centre of pixel (8, 30) of 32×40.
+  Scene scene{"point", DoubleImage(32, 40, Rgba(0, 0, 0, 1)), {}, {}};
+  scene.source.at(8, 30) = Rgba(4, 4, 4, 1);
+  for (const char* entry : {"fx.lens_distortion { intensity = 0.6, center = { 8.5 / 32, 30.5 / 40 } }",
+                            "fx.lens_distortion { intensity = -0.6, center = { 8.5 / 32, 30.5 / 40 }, scale = 1.7 }"}) {
+    const auto pixels = run_stack(entry, scene, Way::plain).result;
+    EXPECT_NEAR(pixels[(30 * 32 + 8) * 4], 4, 1e-3) << entry;
+    EXPECT_LT(pixels[(20 * 32 + 16) * 4], 1e-3) << entry;
+  }
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 //   AFTERGLOW_FAULT_LOG=FILE   written at each such call: its number and its name
 //
 // One device at a time, as the program has it.
-#include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
 #include <array>
@@ -17,6 +16,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
+
+#include "../vulkan_chain.h"
 
 namespace {
 
@@ -142,18 +143,9 @@ PFN_vkGetInstanceProcAddr next_instance = nullptr;
 PFN_vkGetDeviceProcAddr next_device = nullptr;
 VkInstance the_instance = VK_NULL_HANDLE;
 
-/// What the loader leaves for each layer in the chain.
-template <typename Info, VkStructureType kType>
-Info* link_of(const void* next) {
-  auto* info = static_cast<const Info*>(next);
-  while (info && !(info->sType == kType && info->function == VK_LAYER_LINK_INFO))
-    info = static_cast<const Info*>(info->pNext);
-  return const_cast<Info*>(info);
-}
-
 VKAPI_ATTR VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* allocator,
                                                VkInstance* instance) {
-  auto* link = link_of<VkLayerInstanceCreateInfo, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO>(info->pNext);
+  auto* link = chain::link_of<VkLayerInstanceCreateInfo, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO>(info->pNext);
   if (!link) return VK_ERROR_INITIALIZATION_FAILED;
   next_instance = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
   link->u.pLayerInfo = link->u.pLayerInfo->pNext;
@@ -166,7 +158,7 @@ VKAPI_ATTR VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info,
 
 VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
                                              const VkAllocationCallbacks* allocator, VkDevice* device) {
-  auto* link = link_of<VkLayerDeviceCreateInfo, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO>(info->pNext);
+  auto* link = chain::link_of<VkLayerDeviceCreateInfo, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO>(info->pNext);
   if (!link) return VK_ERROR_INITIALIZATION_FAILED;
   const auto next = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
   next_device = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
@@ -202,11 +194,5 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance(VkInstance instance, const
 
 extern "C" __attribute__((visibility("default"))) VKAPI_ATTR VkResult VKAPI_CALL
 vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* negotiate) {
-  constexpr std::uint32_t kVersion = 2;
-  if (negotiate->loaderLayerInterfaceVersion < kVersion) return VK_ERROR_INITIALIZATION_FAILED;
-  negotiate->loaderLayerInterfaceVersion = kVersion;
-  negotiate->pfnGetInstanceProcAddr = &get_instance;
-  negotiate->pfnGetDeviceProcAddr = &get_device;
-  negotiate->pfnGetPhysicalDeviceProcAddr = nullptr;
-  return VK_SUCCESS;
+  return chain::negotiate(negotiate, &get_instance, &get_device);
 }

@@ -96,5 +96,22 @@ TEST(House, RoomsUseOnlyRoomsAboveThem) {
   }
 }
 
+/// Newer CLI11 throws at names with these characters, before any command has begun.
+TEST(House, NamesOfOptionsArePlain) {
+  const std::string call = "add_option(";
+  int names = 0;
+  for (const auto& file : files_below(kProject / "engine" / "apps", {".cpp"})) {
+    const std::string text = read_file(file).value();
+    for (std::size_t at = text.find(call); at != std::string::npos; at = text.find(call, at + 1)) {
+      const std::size_t first = text.find_first_not_of(" \n", at + call.size());
+      if (text[first] != '"') continue;  // a name that a helper was given
+      const std::string name = text.substr(first + 1, text.find('"', first + 1) - first - 1);
+      EXPECT_EQ(name.find_first_of("=:{ !"), std::string::npos) << file << ": '" << name << "'";
+      ++names;
+    }
+  }
+  EXPECT_GT(names, 20);
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -7,8 +7,9 @@ int rows_that_pay(const KernelDesc& kernel, int wanted) {
   constexpr int kMostLines = 12;       // that a processor fetches ahead at a time
   if (kernel.sample || kernel.config.hardware_filter) return 1;
   // Loops cannot be taken in turns: it would be so many times as much to compile for nothing.
+  // Variables of file scope would go from row to row with what the row before left in them.
   for (const auto& stage : kernel.stages)
-    if (stage.shader->loops) return 1;
+    if (stage.shader->loops || stage.shader->keeps_state) return 1;
   if (!kernel.filter) return wanted;
   for (int rows = wanted; rows > 1; rows /= 2) {
     const auto lines = lines_shared(*kernel.filter, kernel.ratio_y, rows);

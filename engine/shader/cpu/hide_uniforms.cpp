@@ -15,7 +15,7 @@ class Hider {
   /// False: there is nothing to hide, or nowhere to hide it.
   bool run() {
     look();
-    if (position_ == 0 || blocks_.empty()) return false;
+    if (position_ == 0 || (blocks_.empty() && !divides_)) return false;
     const auto first = std::ranges::find(module_.code, spv::OpFunction, &Instruction::op);
     code_.assign(module_.code.begin(), first);
     for (std::uint32_t n = 1; n <= 4; ++n) bits_of_[n] = type_of_bits(n);
@@ -32,7 +32,16 @@ class Hider {
     std::uint32_t count = 1;
   };
 
-  /// Types, blocks and gl_FragCoord.
+  static bool is_division(spv::Op op) { return op == spv::OpFDiv || op == spv::OpFMod || op == spv::OpFRem; }
+
+  /// Whether it is a constant without a zero in it.
+  bool is_sure(const Instruction& i) const {
+    if (i.op == spv::OpConstant) return (i.words.back() & ~kSignBit) != 0;
+    return i.op == spv::OpConstantComposite &&
+           std::all_of(i.words.begin() + 3, i.words.end(), [this](std::uint32_t id) { return sure_.contains(id); });
+  }
+
+  /// Types, blocks, constants and gl_FragCoord.
   void look() {
     std::map<std::uint32_t, std::uint32_t> pointees;  // pointer type → what it points to
     for (const auto& i : module_.code) {
@@ -43,6 +52,8 @@ class Hider {
       if (i.op == spv::OpTypeInt && w[2] == 32 && w[3] == 0) bits_ = w[1];
       if (i.op == spv::OpTypeVector && shapes_.contains(w[2])) shapes_[w[1]] = {w[2], w[3]};
       if (i.op == spv::OpTypePointer) pointees[w[1]] = w[3];
+      divides_ = divides_ || is_division(i.op);
+      if (is_sure(i)) sure_.insert(i.result);
       if (i.op != spv::OpVariable) continue;
       if (i.result == position_) position_type_ = pointees[i.type];
       if (w[3] == spv::StorageClassUniform || w[3] == spv::StorageClassPushConstant) blocks_.insert(i.result);
@@ -83,6 +94,8 @@ class Hider {
     if (i.op == spv::OpAccessChain && blocks_.contains(i.words[3])) chains_.insert(i.result);
     if (i.op == spv::OpLoad && chains_.contains(i.words[3]) && shapes_.contains(i.type))
       load(i);
+    else if (is_division(i.op) && shapes_.contains(i.type) && !sure_.contains(i.words[4]))
+      divide(i);
     else
       code_.push_back(i);
   }
@@ -97,26 +110,41 @@ class Hider {
   }
 
   void load(const Instruction& i) {
-    const Shape& shape = shapes_.at(i.type);
-    const std::uint32_t type = bits_of_[shape.count];
     Instruction read = i;
     read.result = read.words[2] = module_.fresh();
     code_.push_back(read);
-    const std::uint32_t bits = i.type == type ? read.result : add(spv::OpBitcast, type, {read.result});
+    hide(i.type, read.result, i.result);
+  }
+
+  void divide(const Instruction& i) {
+    Instruction division = i;
+    division.words[4] = module_.fresh();
+    hide(i.type, i.words[4], division.words[4]);
+    code_.push_back(division);
+  }
+
+  /// Makes `hidden` of `value`: the same bits, as the driver cannot know.
+  void hide(std::uint32_t value_type, std::uint32_t value, std::uint32_t hidden) {
+    const Shape& shape = shapes_.at(value_type);
+    const std::uint32_t type = bits_of_[shape.count];
+    const std::uint32_t bits = value_type == type ? value : add(spv::OpBitcast, type, {value});
     const std::uint32_t zeros =
         shape.count == 1 ? zero_ : add(spv::OpCompositeConstruct, type, Words(shape.count, zero_));
-    if (i.type == type) {
-      code_.push_back(Instruction::of_ids(spv::OpBitwiseXor, type, i.result, {bits, zeros}));
+    if (value_type == type) {
+      code_.push_back(Instruction::of_ids(spv::OpBitwiseXor, type, hidden, {bits, zeros}));
     } else {
       const std::uint32_t same = add(spv::OpBitwiseXor, type, {bits, zeros});
-      code_.push_back(Instruction::of_ids(spv::OpBitcast, i.type, i.result, {same}));
+      code_.push_back(Instruction::of_ids(spv::OpBitcast, value_type, hidden, {same}));
     }
   }
 
   Module& module_;
   std::vector<Instruction> code_;
   std::map<std::uint32_t, Shape> shapes_;  ///< of types of 32-bit numbers
+  static constexpr std::uint32_t kSignBit = 0x80000000u;
   std::set<std::uint32_t> blocks_, chains_;
+  std::set<std::uint32_t> sure_;  ///< constants without a zero in them
+  bool divides_ = false;
   std::uint32_t position_ = 0, position_type_ = 0;  ///< gl_FragCoord
   std::uint32_t bits_ = 0, bits_of_[5] = {};
   std::uint32_t zero_index_ = 0, sign_ = 0, zero_ = 0;

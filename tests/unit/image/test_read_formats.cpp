@@ -146,6 +146,8 @@ TEST_F(Png, GammaChunk) {
   };
   EXPECT_NEAR(value(100000, false), 128 / 255.0, 1e-6);                 // linear
   EXPECT_NEAR(value(55556, false), std::pow(128 / 255.0, 1.8), 1e-5);   // an old Macintosh
+  EXPECT_NEAR(value(45000, false), std::pow(128 / 255.0, 1 / 0.45), 1e-5);
+  EXPECT_NEAR(value(46000, false), std::pow(128 / 255.0, 1 / 0.46), 1e-5);
   EXPECT_NEAR(value(45455, false), srgb_to_linear(128 / 255.0), 1e-6);  // means sRGB
   EXPECT_NEAR(value(100000, true), srgb_to_linear(128 / 255.0), 1e-6);  // the sRGB chunk wins
 }

@@ -1,0 +1,25 @@
+// Standard output: what a command tells. Whether it arrived is looked at once, at the end, so that output which nobody
+// reads stops no work.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "core/result.h"
+
+namespace afterglow {
+
+void output_text(const std::string& text);
+
+template <typename... Arguments>
+void output(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  output_text(fmt::format(format, std::forward<Arguments>(arguments)...));
+}
+
+/// Writes what is still on its way. Errors (io): something could not be written. A reader that has gone
+/// (`afterglow effects | head -1`) is no error.
+Result<void> finish_output();
+
+}  // namespace afterglow

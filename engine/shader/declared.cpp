@@ -1,0 +1,124 @@
+#include "shader/declared.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace afterglow {
+namespace {
+
+constexpr std::array<std::string_view, 4> kQualifiers = {"highp", "mediump", "lowp", "precise"};
+/// Words that begin statements and may have a name behind them.
+constexpr std::array<std::string_view, 14> kStatements = {"return",   "if",      "else",  "for",     "while",
+                                                          "do",       "switch",  "case",  "default", "break",
+                                                          "continue", "discard", "const", "struct"};
+
+template <std::size_t kCount>
+bool is_any(const Token& token, const std::array<std::string_view, kCount>& words) {
+  return std::ranges::any_of(words, [&](std::string_view word) { return token.is(word); });
+}
+
+using Tokens = std::span<const Token* const>;
+
+bool opens(const Token& token) { return token.is("(") || token.is("[") || token.is("{"); }
+bool closes(const Token& token) { return token.is(")") || token.is("]") || token.is("}"); }
+
+/// Position behind the bracket that closes the one at `at`.
+std::size_t after_closing(Tokens tokens, std::size_t at) {
+  int depth = 0;
+  for (; at < tokens.size(); ++at) {
+    if (opens(*tokens[at])) ++depth;
+    if (closes(*tokens[at]) && --depth == 0) return at + 1;
+  }
+  return at;
+}
+
+void skip_sizes(Tokens tokens, std::size_t& at) {
+  while (at < tokens.size() && tokens[at]->is("[")) at = after_closing(tokens, at);
+}
+
+/// Adds the names without a value of `NAME [..], NAME = …, NAME;`, from the first name on. Returns the position behind
+/// the semicolon.
+std::size_t declarators(Tokens tokens, std::size_t at, std::vector<Unset>& out) {
+  const std::size_t first = out.size();
+  while (at < tokens.size() && tokens[at]->is_identifier()) {
+    const Token& name = *tokens[at++];
+    skip_sizes(tokens, at);
+    if (at < tokens.size() && tokens[at]->is("=")) {
+      while (at < tokens.size() && !tokens[at]->is(",") && !tokens[at]->is(";"))
+        at = opens(*tokens[at]) ? after_closing(tokens, at) : at + 1;
+    } else {
+      out.push_back({std::string(name.text), name.line});
+    }
+    if (at >= tokens.size() || !tokens[at]->is(",")) break;
+    ++at;
+  }
+  if (at >= tokens.size() || !tokens[at]->is(";")) {
+    out.resize(first);  // no declaration after all
+    return at;
+  }
+  for (std::size_t i = first; i < out.size(); ++i) out[i].at = tokens[at]->end();
+  return at + 1;
+}
+
+/// The declaration that begins at `at`, if there is one. Returns the position behind it, or `at`.
+std::size_t declaration(Tokens tokens, std::size_t at, std::vector<Unset>& out) {
+  std::size_t next = at;
+  while (next < tokens.size() && is_any(*tokens[next], kQualifiers)) ++next;
+  if (next < tokens.size() && tokens[next]->is("struct")) {
+    while (next < tokens.size() && !tokens[next]->is("{")) ++next;
+    next = after_closing(tokens, next);
+    return next < tokens.size() && tokens[next]->is_identifier() ? declarators(tokens, next, out) : next;
+  }
+  if (next >= tokens.size() || !tokens[next]->is_identifier() || is_any(*tokens[next], kStatements)) return at;
+  ++next;
+  skip_sizes(tokens, next);
+  if (next + 1 >= tokens.size() || !tokens[next]->is_identifier()) return at;
+  const Token& behind = *tokens[next + 1];
+  const bool declares = behind.is(";") || behind.is(",") || behind.is("[") || behind.is("=");
+  return declares ? declarators(tokens, next, out) : at;
+}
+
+void out_arguments(Tokens tokens, std::size_t at, std::vector<Unset>& out) {
+  bool is_out = false;
+  const Token* name = nullptr;
+  int depth = 0;
+  const auto end = [&] {
+    if (is_out && name) out.push_back({std::string(name->text), name->line, Unset::Kind::argument, at});
+    is_out = false;
+    name = nullptr;
+  };
+  for (const Token* token : tokens) {
+    if (opens(*token)) ++depth;
+    if (closes(*token)) --depth;
+    if (depth > 0 || token->is("]")) continue;
+    if (token->is(",")) {
+      end();
+    } else if (token->is("out")) {
+      is_out = true;
+    } else if (token->is_identifier()) {
+      name = token;
+    }
+  }
+  end();
+}
+
+}  // namespace
+
+void find_unset(Tokens arguments, Tokens body, std::vector<Unset>& out) {
+  if (body.empty()) return;
+  out_arguments(arguments, body.front()->end(), out);
+  for (std::size_t at = 1; at < body.size();) {
+    const Token& before = *body[at - 1];
+    const bool begins = before.is("{") || before.is("}") || before.is(";") || before.is(":");
+    const std::size_t next = begins ? declaration(body, at, out) : at;
+    if (next > at)
+      at = next;
+    else if (body[at]->is("("))
+      at = after_closing(body, at);
+    else
+      ++at;
+  }
+}
+
+}  // namespace afterglow

@@ -1,0 +1,289 @@
+#include "shader/give_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <spirv-tools/optimizer.hpp>
+#include <string_view>
+
+#include "shader/spirv_module.h"
+
+namespace afterglow {
+namespace {
+
+constexpr const char* kMark = "ag_unset";
+
+std::string_view name_of(const Instruction& op_name) { return reinterpret_cast<const char*>(&op_name.words[2]); }
+
+/// What the functions below have to know about a module.
+struct Ids {
+  std::uint32_t mark = 0;  ///< the variable kMark
+  std::map<std::string, std::uint32_t, std::less<>> by_name;
+  std::map<std::uint32_t, std::uint32_t> numbers;   ///< id of a whole number's constant → its value
+  std::map<std::uint32_t, std::uint32_t> pointees;  ///< pointer type → what it points to
+
+  explicit Ids(const Module& module) {
+    for (const auto& i : module.code) {
+      if (i.op == spv::OpName) by_name.emplace(name_of(i), i.words[1]);
+      if (i.op == spv::OpConstant && i.words.size() == 4) numbers[i.result] = i.words[3];
+      if (i.op == spv::OpTypePointer) pointees[i.words[1]] = i.words[3];
+    }
+    if (const auto found = by_name.find(kMark); found != by_name.end()) mark = found->second;
+  }
+};
+
+/// A mark: OpStore of its number, OpLoad of the variable, OpStore of the same.
+struct Mark {
+  std::uint32_t number = 0, type = 0, variable = 0;
+};
+std::optional<Mark> mark_at(const Module& module, std::size_t at, const Ids& ids) {
+  const auto& code = module.code;
+  if (ids.mark == 0 || at + 2 >= code.size() || code[at].op != spv::OpStore || code[at].words[1] != ids.mark)
+    return std::nullopt;
+  const Instruction &load = code[at + 1], &store = code[at + 2];
+  if (load.op != spv::OpLoad || store.op != spv::OpStore || store.words[1] != load.words[3] ||
+      store.words[2] != load.result)
+    return std::nullopt;
+  return Mark{ids.numbers.at(code[at].words[2]), load.type, load.words[3]};
+}
+
+Instruction store(std::uint32_t variable, std::uint32_t value) {
+  Instruction out = Instruction::of_words(spv::OpStore, {variable, value});
+  out.ids = {1, 2};
+  return out;
+}
+
+/// Puts instructions before the first function: all types and constants are known there.
+void declare(Module& module, const std::vector<Instruction>& declarations) {
+  const auto first = std::ranges::find(module.code, spv::OpFunction, &Instruction::op);
+  module.code.insert(first, declarations.begin(), declarations.end());
+}
+
+/// Zeros of each type, declared once.
+class Zeros {
+ public:
+  explicit Zeros(Module& module) : module_(module) {}
+  std::uint32_t of(std::uint32_t type) {
+    auto& zero = zeros_[type];
+    if (zero == 0) {
+      zero = module_.fresh();
+      declarations.push_back(Instruction::of_ids(spv::OpConstantNull, type, zero, {}));
+    }
+    return zero;
+  }
+  std::vector<Instruction> declarations;
+
+ private:
+  Module& module_;
+  std::map<std::uint32_t, std::uint32_t> zeros_;
+};
+
+/// Variables that something is stored in, whole, before anything else is done with them, in the first block of their
+/// function.
+std::set<std::uint32_t> stored_at_once(const Module& module) {
+  std::set<std::uint32_t> touched, stored;
+  int block = 0;
+  for (const auto& i : module.code) {
+    if (i.op == spv::OpFunction) block = 0;
+    if (i.op == spv::OpLabel) ++block;
+    if (block == 0 || i.op == spv::OpVariable) continue;
+    if (i.op == spv::OpStore && block == 1 && !touched.contains(i.words[1]) && i.words[2] != i.words[1])
+      stored.insert(i.words[1]);
+    for (const auto word : i.ids) touched.insert(i.words[word]);
+  }
+  return stored;
+}
+
+/// The module with zeros in place of the marks.
+Words with_zeros(Module module, const Ids& ids) {
+  Zeros zeros(module);
+  std::vector<Instruction> code;
+  for (std::size_t i = 0; i < module.code.size(); ++i) {
+    const auto mark = mark_at(module, i, ids);
+    if (!mark) {
+      code.push_back(module.code[i]);
+      continue;
+    }
+    code.push_back(store(mark->variable, zeros.of(mark->type)));
+    i += 2;
+  }
+  module.code = std::move(code);
+  const std::set<std::uint32_t> stored = stored_at_once(module);
+  std::vector<Instruction> late;  // variables of file scope, behind the zeros that they begin with
+  for (std::size_t i = 0; i < module.code.size(); ++i) {
+    Instruction& variable = module.code[i];
+    if (variable.op != spv::OpVariable || variable.words.size() > 4) continue;
+    const bool file_scope = variable.words[3] == spv::StorageClassPrivate;
+    const bool unset = variable.words[3] == spv::StorageClassFunction && !stored.contains(variable.result);
+    if (!file_scope && !unset) continue;
+    const std::uint32_t zero = zeros.of(ids.pointees.at(variable.type));
+    Instruction given =
+        Instruction::of_words(spv::OpVariable, {variable.type, variable.result, variable.words[3], zero});
+    given.type = variable.type;
+    given.result = variable.result;
+    given.ids = {1, 2, 4};
+    variable = std::move(given);
+    if (!file_scope) continue;
+    late.push_back(variable);
+    module.code.erase(module.code.begin() + static_cast<std::ptrdiff_t>(i--));
+  }
+  zeros.declarations.insert(zeros.declarations.end(), late.begin(), late.end());
+  declare(module, zeros.declarations);
+  return module.join();
+}
+
+/// Whether elements are stored by an index that is no constant: which of them, nobody knows.
+bool is_filled_by_index(const Module& module, std::uint32_t variable, const std::set<std::uint32_t>& constants) {
+  std::set<std::uint32_t> chains;
+  for (const auto& i : module.code) {
+    if (i.op == spv::OpAccessChain && i.words[3] == variable &&
+        std::any_of(i.words.begin() + 4, i.words.end(), [&](std::uint32_t id) { return !constants.contains(id); }))
+      chains.insert(i.result);
+    if (i.op == spv::OpStore && chains.contains(i.words[1])) return true;
+  }
+  return false;
+}
+
+/// Follows a vector while its components are given one by one.
+class VectorUses {
+ public:
+  explicit VectorUses(const Module& module) : module_(module) {
+    for (const auto& i : module.code)
+      if (i.op == spv::OpTypeVector) whole_[i.words[1]] = (1u << i.words[3]) - 1;
+  }
+
+  /// Whether something of the value that `load` gives is used.
+  bool reads(const Instruction& load) const { return !whole_.contains(load.type) || reads(load.result, load.type, 0); }
+
+ private:
+  /// `given`: the components of `id` that are no longer what was loaded, as bits.
+  bool reads(std::uint32_t id, std::uint32_t type, std::uint32_t given) const {
+    for (const auto& i : module_.code) {
+      const bool uses = i.result != id && std::ranges::any_of(i.ids, [&](auto word) { return i.words[word] == id; });
+      if (!uses || i.op == spv::OpName || i.op == spv::OpDecorate) continue;
+      if (i.op == spv::OpCompositeExtract && i.words.size() == 5 && (given >> i.words[4] & 1) != 0) continue;
+      const bool inserts =
+          i.op == spv::OpCompositeInsert && i.words.size() == 6 && i.words[4] == id && i.words[3] != id;
+      if (!inserts) return true;
+      const std::uint32_t now = given | 1u << i.words[5];
+      if (now != whole_.at(type) && reads(i.result, type, now)) return true;
+    }
+    return false;
+  }
+
+  const Module& module_;
+  std::map<std::uint32_t, std::uint32_t> whole_;  ///< vector type → a bit for each component
+};
+
+/// The numbers of marks whose value is used. For that each variable gets the value of an input of its own; what is left
+/// of those once dead code has gone is used.
+std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
+                                               const std::vector<AssembledKernel::UnsetVariable>& unset) {
+  std::set<std::uint32_t> constants;
+  for (const auto& i : module.code)
+    if (i.op == spv::OpConstant) constants.insert(i.result);
+  std::map<std::uint32_t, std::uint32_t> sources;  // variable → number of the mark
+  std::vector<Instruction> declarations;
+  const auto source = [&](std::uint32_t type, std::uint32_t number) {
+    const std::uint32_t pointer = module.fresh(), variable = module.fresh();
+    declarations.push_back(Instruction::of_words(spv::OpTypePointer, {pointer, spv::StorageClassInput, type}));
+    declarations.push_back(Instruction::of_words(spv::OpVariable, {pointer, variable, spv::StorageClassInput}));
+    sources[variable] = number;
+    return variable;
+  };
+  std::vector<Instruction> code, first;  // `first`: what main begins with
+  const auto give = [&](std::vector<Instruction>& to, const Mark& mark) {
+    const std::uint32_t value = module.fresh();
+    to.push_back(Instruction::of_ids(spv::OpLoad, mark.type, value, {source(mark.type, mark.number)}));
+    to.push_back(store(mark.variable, value));
+  };
+  std::map<std::uint32_t, std::uint32_t> globals;  // variable of file scope → number
+  for (std::size_t n = 0; n < unset.size(); ++n)
+    if (const auto found = ids.by_name.find(unset[n].variable);
+        !unset[n].variable.empty() && found != ids.by_name.end())
+      globals[found->second] = static_cast<std::uint32_t>(n);
+  std::uint32_t main = 0, function = 0;
+  bool begins = false;
+  for (const auto& i : module.code) {
+    if (i.op == spv::OpEntryPoint) main = i.words[2];
+    const auto global = i.op == spv::OpVariable ? globals.find(i.result) : globals.end();
+    if (global != globals.end()) give(first, {global->second, ids.pointees.at(i.type), i.result});
+  }
+  for (std::size_t i = 0; i < module.code.size(); ++i) {
+    const Instruction& at = module.code[i];
+    if (at.op == spv::OpFunction) function = at.result;
+    if (begins && at.op != spv::OpVariable) {
+      code.insert(code.end(), first.begin(), first.end());
+      begins = false;
+    }
+    if (at.op == spv::OpLabel && function == main) begins = !first.empty(), main = 0;
+    const auto mark = mark_at(module, i, ids);
+    if (!mark) {
+      code.push_back(at);
+      continue;
+    }
+    if (!is_filled_by_index(module, mark->variable, constants)) give(code, *mark);
+    i += 2;
+  }
+  module.code = std::move(code);
+  declare(module, declarations);
+
+  spvtools::Optimizer optimizer(kSpirvEnvironment);
+  optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
+  optimizer.RegisterPass(spvtools::CreateInlineExhaustivePass())
+      .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+      .RegisterPass(spvtools::CreatePrivateToLocalPass())
+      .RegisterPass(spvtools::CreateScalarReplacementPass())
+      .RegisterPass(spvtools::CreateLocalAccessChainConvertPass())
+      .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
+      .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
+      .RegisterPass(spvtools::CreateSSARewritePass())
+      .RegisterPass(spvtools::CreateDeadBranchElimPass())
+      .RegisterPass(spvtools::CreateAggressiveDCEPass());
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(false);
+  const Words before = module.join();
+  Words after;
+  std::vector<std::uint32_t> read;
+  if (!optimizer.Run(before.data(), before.size(), &after, options)) return read;
+  const auto left = parse(after);
+  if (!left) return read;
+  const VectorUses uses(*left);
+  for (const auto& i : left->code) {
+    if (i.op != spv::OpLoad && i.op != spv::OpAccessChain) continue;
+    const auto found = sources.find(i.words[3]);
+    if (found != sources.end() && (i.op != spv::OpLoad || uses.reads(i))) read.push_back(found->second);
+  }
+  std::ranges::sort(read);
+  read.erase(std::unique(read.begin(), read.end()), read.end());
+  return read;
+}
+
+}  // namespace
+
+std::string give_value_header() { return fmt::format("int {};\n", kMark); }
+
+std::string give_value_text(std::size_t number, const std::string& variable) {
+  return fmt::format(" {} = {}; {} = {};", kMark, number, variable, variable);
+}
+
+ValuesGiven give_values(std::vector<std::uint32_t> spirv, const std::vector<AssembledKernel::UnsetVariable>& unset) {
+  auto module = parse(spirv);
+  if (!module) return {std::move(spirv), {}};
+  const Ids ids(*module);
+  ValuesGiven out;
+  if (!unset.empty()) out.read = read_before_written(*module, ids, unset);
+  out.spirv = with_zeros(std::move(*module), ids);
+  return out;
+}
+
+std::string unset_warning(const AssembledKernel::UnsetVariable& unset) {
+  return fmt::format("{}:{}: '{}' {}", unset.file, unset.line, unset.name,
+                     unset.argument ? "may leave its function without a value; it is 0 then"
+                                    : "may be read before it has a value; it is 0 there");
+}
+
+}  // namespace afterglow

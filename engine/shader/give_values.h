@@ -1,0 +1,31 @@
+// Variables that authors declare without a value get zeros, so that no pixel depends on what lay in memory. In the text
+// each is marked where it is declared; in the SPIR-V made of it the marks become stores of zeros. Internal to the room.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "shader/kernel.h"
+
+namespace afterglow {
+
+/// To stand before all marks, at file scope.
+std::string give_value_header();
+/// The mark that gives `variable` a value; `number` is its index in AssembledKernel::unset.
+std::string give_value_text(std::size_t number, const std::string& variable);
+
+struct ValuesGiven {
+  std::vector<std::uint32_t> spirv;
+  std::vector<std::uint32_t> read;  ///< numbers of those that may be read before they are written, in order
+};
+
+/// Marks become zeros; variables without a mark (in heads of loops, from macros) begin as zeros. What is no SPIR-V
+/// comes back as it is.
+ValuesGiven give_values(std::vector<std::uint32_t> spirv, const std::vector<AssembledKernel::UnsetVariable>& unset);
+
+/// "look/shaders/glow.glsl:7: 'u' may be read before it has a value; it is 0 there".
+std::string unset_warning(const AssembledKernel::UnsetVariable& unset);
+
+}  // namespace afterglow

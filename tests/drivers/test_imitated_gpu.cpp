@@ -1,0 +1,178 @@
+// The ways of execution that GPUs take, on a GPU that a layer imitates (gpu_layer.cpp): every command, every preset,
+// with validation against that GPU's limits.
+#include <OpenImageIO/imageio.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli_test.h"
+#include "image/metrics.h"
+
+namespace afterglow::test {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kWithoutRows = "joined fp32";
+/// What the shipped table tells every CPU device; no GPU can write rows this way.
+constexpr const char* kByRows = "joined fp32 storage-reads rows8";
+
+class ImitatedGpu : public CliTest {
+ protected:
+  static RunOptions on_gpu() {
+    RunOptions options;
+    options.environment = {{"VK_ADD_LAYER_PATH", AFTERGLOW_GPU_LAYER_FOLDER},
+                           {"VK_INSTANCE_LAYERS", "VK_LAYER_KHRONOS_validation:VK_LAYER_AFTERGLOW_gpu"},
+                           {"AFTERGLOW_VALIDATE", "1"}};
+    return options;
+  }
+  /// The program must be content, and so must the validation layer, an error of which is exit code 5.
+  Outcome done(const std::vector<std::string>& arguments, const RunOptions& options = on_gpu()) const {
+    const Outcome outcome = run(arguments, options);
+    EXPECT_EQ(outcome.exit_code, kDone) << arguments.front() << ": " << outcome.err;
+    return outcome;
+  }
+  /// A table of ways of execution that fits every device.
+  std::string table_of(const std::string& choice) const {
+    write("table.json", R"({"devices": [{"choices": [{"max_error": 0, "choice": ")" + choice + R"("}]}]})");
+    return "table.json";
+  }
+  std::vector<float> load(const std::string& name) const {
+    auto in = OIIO::ImageInput::open(text(name));
+    EXPECT_TRUE(in) << name;
+    if (!in) return {};
+    std::vector<float> pixels(static_cast<std::size_t>(in->spec().width) * in->spec().height * in->spec().nchannels);
+    EXPECT_TRUE(in->read_image(0, 0, 0, in->spec().nchannels, OIIO::TypeDesc::FLOAT, pixels.data()));
+    return pixels;
+  }
+  void expect_near(const std::string& made, const std::string& wanted, double error) const {
+    const auto a = load(made), b = load(wanted);
+    ASSERT_EQ(a.size(), b.size());
+    const ErrorMeasure measure = measure_error(a, b);
+    EXPECT_TRUE(within(measure, error)) << made << ": " << measure.percentile << ", worst " << measure.worst;
+  }
+};
+
+TEST_F(ImitatedGpu, IsSeenAsOne) {
+  const json list = json::parse(done({"devices", "--json"}).out);
+  EXPECT_EQ(list.at(0).at("name"), "Imitated GPU");
+  EXPECT_EQ(list.at(0).at("type"), "discrete");
+}
+
+/// Images between passes cannot be linear here, which is only known once the device is asked.
+TEST_F(ImitatedGpu, RowsAreForDevicesThatCanWriteThem) {
+  for (const char* look : {"neon_night.lua", "shallow_focus.lua"}) {
+    std::vector<std::string> arguments{"run",   preset(look).string(), neon().string(),  "--size", "1280x720", "--type",
+                                       "float", "--calibration",       table_of(kByRows)};
+    arguments.insert(arguments.end(), {"-o", "gpu.exr"});
+    done(arguments);
+    arguments.back() = "cpu.exr";
+    done(arguments, {});
+    expect_near("gpu.exr", "cpu.exr", 1e-5);
+  }
+}
+
+TEST_F(ImitatedGpu, HistoriesRegionsLayersAndDisplayFiles) {
+  for (int frame = 1; frame <= 3; ++frame) make_exr("in/a.000" + std::to_string(frame) + ".exr", 96, 54);
+  write("look.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.auto_exposure {}, fx.bloom { threshold = 0.5 }, "
+        "fx.tone_mapping {} }\n");
+  const std::vector<std::string> sequence{"run", "look.lua", "in/a.####.exr", "--type", "float", "--precision", "fp32"};
+  const auto with = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  done(with(sequence, {"-o", "gpu.####.exr", "--stats=passes"}));
+  done(with(sequence, {"-o", "cpu.####.exr"}), {});
+  for (const char* frame : {"0001", "0002", "0003"})
+    expect_near("gpu." + std::string(frame) + ".exr", "cpu." + std::string(frame) + ".exr", 1e-5);
+  done({"run", "look.lua", "in/a.0001.exr", "-o", "region.png", "--region", "7,5,40,30"});
+  done({"run", "look.lua", "in/a.0001.exr", "-o", "layers.exr", "--keep-layers", "--nan-policy", "neighbour"});
+  done({"run", "look.lua", "in/a.0001.exr", "-o", "reference.jpg", "--reference"});
+}
+
+/// Its timestamps run over at the first pass.
+TEST_F(ImitatedGpu, TimesOfPassesAreTimes) {
+  make_exr("a.exr");
+  done({"run", preset("neon_night.lua").string(), "a.exr", "-o", "a.png", "--stats=passes", "--report", "report.json"});
+  const json report = json::parse(read("report.json"));
+  ASSERT_FALSE(report.at("passes").empty());
+  for (const auto& pass : report.at("passes")) {
+    EXPECT_GE(pass.at("milliseconds").get<double>(), 0);
+    EXPECT_LT(pass.at("milliseconds").get<double>(), 60e3) << pass;
+  }
+}
+
+TEST_F(ImitatedGpu, CalibratesAndRunsByItsOwnTable) {
+  done({"calibrate", "--repeat", "1", "-o", "own.json"});
+  make_exr("a.exr");
+  done({"run", preset("neon_night.lua").string(), "a.exr", "-o", "a.png", "--calibration", "own.json"});
+}
+
+TEST_F(ImitatedGpu, IsMeasured) {
+  done({"bench", preset("plain_aces.lua").string(), "--quick", "--sizes", "48x27", "-o", "out"});
+  EXPECT_TRUE(fs::exists(path("out/bench.json")));
+}
+
+TEST_F(ImitatedGpu, Plays) {
+  for (int frame = 1; frame <= 3; ++frame) make_exr("in/a.000" + std::to_string(frame) + ".exr");
+  done({"play", preset("neon_night.lua").string(), "in/a.####.exr", "--headless", "--fast", "--count", "6",
+        "--screenshot", "shot.png"});
+  EXPECT_TRUE(fs::exists(path("shot.png")));
+}
+
+TEST_F(ImitatedGpu, HostsRecordStacksOnIt) {
+  RunOptions options = on_gpu();
+  options.program = AFTERGLOW_EMBED;
+  const Outcome outcome = run({preset("neon_night.lua").string()}, options);
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.out << outcome.err;
+}
+
+TEST_F(ImitatedGpu, SidesBeyondItsLimitAreRefusedWithTheLimit) {
+  make_exr("wide.exr", 600, 20);
+  RunOptions options = on_gpu();
+  options.environment["AFTERGLOW_GPU_SIDE"] = "512";
+  const Outcome outcome = run({"run", preset("plain_aces.lua").string(), "wide.exr", "-o", "wide.png"}, options);
+  EXPECT_EQ(outcome.exit_code, kDevice) << outcome.err;
+  EXPECT_TRUE(is_one_error_line(outcome.err)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("the device allows 512×512"));
+  EXPECT_FALSE(fs::exists(path("wide.png")));
+  done({"run", preset("plain_aces.lua").string(), "wide.exr", "-o", "narrow.png", "--size", "512x17"}, options);
+}
+
+std::vector<std::string> shipped_presets() {
+  std::vector<std::string> names;
+  const fs::path root = fs::path(AFTERGLOW_PROJECT_FOLDER) / "presets";
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    const fs::path relative = fs::relative(entry.path(), root);
+    if (relative.extension() == ".lua" && relative.parent_path().filename() != "effects")
+      names.push_back(relative.string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+class PresetsOnImitatedGpu : public ImitatedGpu, public ::testing::WithParamInterface<std::string> {};
+
+TEST_P(PresetsOnImitatedGpu, AreTheSameNumbersInFullFloats) {
+  const std::vector<std::string> look{
+      "run",           preset(GetParam()).string(), neon().string(), "--size", "161x90", "--type", "float",
+      "--calibration", table_of(kWithoutRows)};
+  const auto to = [&](const char* file) {
+    auto arguments = look;
+    arguments.insert(arguments.end(), {"-o", file});
+    return arguments;
+  };
+  done(to("gpu.exr"));
+  done(to("cpu.exr"), {});
+  expect_near("gpu.exr", "cpu.exr", 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Drivers, PresetsOnImitatedGpu, ::testing::ValuesIn(shipped_presets()), [](const auto& info) {
+  std::string name = info.param;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  return name;
+});
+
+}  // namespace
+}  // namespace afterglow::test

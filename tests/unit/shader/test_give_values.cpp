@@ -1,0 +1,186 @@
+// Variables that authors declare without a value: they are 0, at every turn of a loop and in every call, and those that
+// may be read so are told by file and line.
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <spirv-tools/libspirv.hpp>
+
+#include "kernel_runner.h"
+#include "shader/give_values.h"
+#include "shader_files.h"
+
+namespace afterglow {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+struct Made {
+  std::vector<std::string> warnings;
+  std::array<float, 4> pixel{};
+};
+
+/// What a pixel shader makes of the colour (0.5, 0.25, 2, 1), and what the compiler says of it.
+Made made(const std::string& shader, int rows = 1, bool hide = true) {
+  static KernelRunner runner;
+  const ShaderFiles files;
+  KernelCompiler compiler({});
+  KernelDesc desc;
+  desc.stages = {files.stage("test/unset", shader)};
+  desc.rows = rows;
+  desc.hide_uniforms = hide;
+  const auto kernel = compiler.compile(desc);
+  Made out;
+  EXPECT_TRUE(kernel) << kernel.error().text();
+  if (!kernel) return out;
+  EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_3).Validate(kernel->spirv));
+  for (const auto& warning : kernel->warnings) {
+    EXPECT_THAT(warning, testing::StartsWith(files.path("test/unset.glsl").string() + ":"));
+    out.warnings.push_back(warning.substr(warning.find(".glsl:") + 6));
+  }
+  TestImage image{{9, 16}, {}};
+  for (long long i = 0; i < image.size.area(); ++i) image.rgba.insert(image.rgba.end(), {0.5f, 0.25f, 2.f, 1.f});
+  const TestImage result = runner.run(*kernel, {image}, image.size);
+  std::memcpy(out.pixel.data(), result.at(4, 5), sizeof out.pixel);
+  for (int y = 0; y < image.size.height; ++y)
+    EXPECT_EQ(std::memcmp(result.at(4, y), out.pixel.data(), sizeof out.pixel), 0) << "row " << y;
+  EXPECT_EQ(runner.validation_errors(), 0);
+  return out;
+}
+
+std::string read_at(int line, const std::string& name) {
+  return std::to_string(line) + ": '" + name + "' may be read before it has a value; it is 0 there";
+}
+
+TEST(GiveValues, AVariableIsZero) {
+  for (const int rows : {1, 8}) {
+    const Made one = made("vec4 apply(vec4 color) {\n  float u;\n  return color + u;\n}\n", rows);
+    EXPECT_THAT(one.warnings, ElementsAre(read_at(2, "u")));
+    EXPECT_THAT(one.pixel, ElementsAre(0.5f, 0.25f, 2.f, 1.f));
+  }
+}
+
+TEST(GiveValues, EachOfADeclaration) {
+  const Made one = made(
+      "vec4 apply(vec4 color) {\n  highp float a = 1.0, b,\n    c;\n  ivec2 d, e = ivec2(1);\n  bvec3 f;\n"
+      "  return vec4(a + b, c, d.x + e.y, f.y ? 1.0 : 2.0);\n}\n");
+  EXPECT_THAT(one.warnings, ElementsAre(read_at(2, "b"), read_at(3, "c"), read_at(4, "d"), read_at(5, "f")));
+  EXPECT_THAT(one.pixel, ElementsAre(1.f, 0.f, 1.f, 2.f));
+}
+
+TEST(GiveValues, OnlyOneBranchGivesIt) {
+  const Made one =
+      made("vec4 apply(vec4 color) {\n  vec3 u;\n  if (color.r > 9.0) u = color.rgb;\n  return vec4(u, 1.0);\n}\n");
+  EXPECT_THAT(one.warnings, ElementsAre(read_at(2, "u")));
+  EXPECT_THAT(one.pixel, ElementsAre(0.f, 0.f, 0.f, 1.f));
+}
+
+TEST(GiveValues, WhatIsAlwaysGivenIsNotTold) {
+  EXPECT_THAT(
+      made("vec4 apply(vec4 color) {\n  vec3 u; float v;\n  if (color.r > 9.0) u = color.rgb; else u = vec3(1.0);\n"
+           "  v = 2.0;\n  return vec4(u, v);\n}\n")
+          .warnings,
+      IsEmpty());
+  EXPECT_THAT(made("vec4 apply(vec4 color) {\n  vec3 u;\n  u.x = 1.0; u.z = 2.0;\n  u.y = color.r;\n  return vec4(u, "
+                   "1.0);\n}\n")
+                  .warnings,
+              IsEmpty());
+  EXPECT_THAT(made("struct Pair { float a; vec2 b; };\nvec4 apply(vec4 color) {\n  Pair p;\n  p.a = color.r;\n"
+                   "  p.b = color.gb;\n  return vec4(p.a, p.b, 1.0);\n}\n")
+                  .warnings,
+              IsEmpty());
+  EXPECT_THAT(made("void both(vec4 color, out float a, out vec3 b) { a = color.a; b = color.rgb; }\n"
+                   "vec4 apply(vec4 color) {\n  float a;\n  vec3 b;\n  both(color, a, b);\n  return vec4(b, a);\n}\n")
+                  .warnings,
+              IsEmpty());
+  EXPECT_THAT(made("vec4 apply(vec4 color) {\n  float y[4];\n  for (int i = 0; i < 4; ++i) y[i] = color[i];\n"
+                   "  return vec4(y[3], y[2], y[1], y[0]);\n}\n")
+                  .warnings,
+              IsEmpty());
+}
+
+TEST(GiveValues, AtEveryTurnOfALoop) {
+  // The second turn must not see what the first one left.
+  const Made one = made(
+      "vec4 apply(vec4 color) {\n  float sum = 0.0;\n  for (int i = 0; i < 3; ++i) {\n    float u;\n"
+      "    if (i == 0) u = color.b;\n    sum += u;\n  }\n  return vec4(sum);\n}\n");
+  EXPECT_THAT(one.warnings, ElementsAre(read_at(4, "u")));
+  EXPECT_THAT(one.pixel, ElementsAre(2.f, 2.f, 2.f, 2.f));
+}
+
+TEST(GiveValues, ArraysAndStructs) {
+  const Made array = made(
+      "vec4 apply(vec4 color) {\n  float a[3], b[2][2];\n  a[1] = color.r;\n  return vec4(a[0], a[1], a[2], b[1][0]);\n"
+      "}\n");
+  EXPECT_THAT(array.warnings, ElementsAre(read_at(2, "a"), read_at(2, "b")));
+  EXPECT_THAT(array.pixel, ElementsAre(0.f, 0.5f, 0.f, 0.f));
+  const Made record = made(
+      "struct Light { vec3 color; float far[2]; };\nvec4 apply(vec4 color) {\n  struct Local { int n; } local;\n"
+      "  Light light;\n  light.color = color.rgb;\n  return vec4(light.color, light.far[1] + float(local.n));\n}\n");
+  EXPECT_THAT(record.warnings, ElementsAre(read_at(3, "local"), read_at(4, "light")));
+  EXPECT_THAT(record.pixel, ElementsAre(0.5f, 0.25f, 2.f, 0.f));
+}
+
+TEST(GiveValues, OutArguments) {
+  const Made one = made(
+      "void maybe(float x, out float y,\n           out vec2 z) {\n  if (x > 1.0) y = x;\n  z.x = x;\n}\n"
+      "vec4 apply(vec4 color) {\n  float a = 7.0, b = 7.0; vec2 c = vec2(7.0), d = vec2(7.0);\n"
+      "  maybe(color.b, a, c);\n  maybe(color.r, b, d);\n  return vec4(a, b, c.y, d.x);\n}\n");
+  EXPECT_THAT(one.warnings, ElementsAre("1: 'y' may leave its function without a value; it is 0 then",
+                                        "2: 'z' may leave its function without a value; it is 0 then"));
+  EXPECT_THAT(one.pixel, ElementsAre(2.f, 0.f, 0.f, 0.5f));
+}
+
+TEST(GiveValues, VariablesOfTheFile) {
+  for (const int rows : {1, 8}) {
+    const Made one = made(
+        "float seen, written, given = 3.0;\nvoid keep(float x) { written = x; }\n"
+        "vec4 apply(vec4 color) {\n  keep(color.r);\n  return vec4(seen, written, given, 1.0);\n}\n",
+        rows);
+    EXPECT_THAT(one.warnings, ElementsAre(read_at(1, "seen")));
+    EXPECT_THAT(one.pixel, ElementsAre(0.f, 0.5f, 3.f, 1.f));
+  }
+}
+
+TEST(GiveValues, WhereNoMarkCanStand) {
+  const Made one = made(
+      "#define HIDDEN float u\nvec4 apply(vec4 color) {\n  HIDDEN;\n  float sum = u;\n"
+      "  for (float v; sum < 1.0; sum += 1.0) sum += v;\n  return vec4(sum);\n}\n");
+  EXPECT_THAT(one.pixel, ElementsAre(1.f, 1.f, 1.f, 1.f));
+}
+
+TEST(GiveValues, NamesThatTheFileUsesTwice) {
+  const Made one = made(
+      "float u() { return 4.0; }\nvec4 apply(vec4 color) {\n  float v = u();\n  { float u; v += u; }\n"
+      "  return vec4(v);\n}\n");
+  EXPECT_THAT(one.pixel, ElementsAre(4.f, 4.f, 4.f, 4.f));
+}
+
+/// By a zero that the compiler can see: on lavapipe's side of hide_uniforms, or it would be whatever lay in memory.
+TEST(GiveValues, DivisionsAreThoseOfIeee) {
+  for (const int rows : {1, 8}) {
+    const Made by_zero = made("vec4 apply(vec4 color) { return color / 0.0; }\n", rows);
+    for (const float value : by_zero.pixel) EXPECT_TRUE(std::isinf(value) && value > 0);
+    const Made of_zero = made("vec4 apply(vec4 color) { return (color - color) / (color - color); }\n", rows);
+    for (const float value : of_zero.pixel) EXPECT_TRUE(std::isnan(value));
+    const Made difference = made(
+        "vec4 apply(vec4 color) { return vec4(1.0, -1.0, 2.0, 3.0) / vec4(color.r - color.r, 0.0, 2.0, "
+        "color.b * 0.0); }\n",
+        rows);
+    EXPECT_TRUE(std::isinf(difference.pixel[0]) && difference.pixel[0] > 0);
+    EXPECT_TRUE(std::isinf(difference.pixel[1]) && difference.pixel[1] < 0);
+    EXPECT_EQ(difference.pixel[2], 1.f);
+    EXPECT_TRUE(std::isinf(difference.pixel[3]));
+    const Made rest = made("vec4 apply(vec4 color) { return mod(color, 0.0); }\n", rows);
+    for (const float value : rest.pixel) EXPECT_TRUE(std::isnan(value));
+  }
+}
+
+TEST(GiveValues, WhatIsNoModuleStays) {
+  EXPECT_EQ(give_values({1, 2, 3}, {}).spirv, (std::vector<std::uint32_t>{1, 2, 3}));
+}
+
+}  // namespace
+}  // namespace afterglow
