@@ -11,6 +11,7 @@
 
 #include "core/file.h"
 #include "core/file_trace.h"
+#include "core/own_file.h"
 #include "core/pack.h"
 #include "core/text.h"
 
@@ -121,16 +122,13 @@ std::vector<std::string> SearchPath::preset_names() const {
 
 fs::path find_installation() {
   if (const auto home = environment("AFTERGLOW_HOME"); !home.empty()) return home;
-  std::error_code ec;
-  const fs::path binary = fs::read_symlink("/proc/self/exe", ec);
-  if (!ec) {
-    const fs::path shared = binary.parent_path().parent_path() / "share" / "afterglow";
-    if (is_installation(shared)) return shared;
-  }
-#ifdef AFTERGLOW_SOURCE_FOLDER
-  if (is_installation(AFTERGLOW_SOURCE_FOLDER)) return AFTERGLOW_SOURCE_FOLDER;
-#endif
-  return {};
+  constexpr int kMostLevels = 4;  // PREFIX/lib/x86_64-linux-gnu/afterglow/module.so
+  fs::path folder = own_file().parent_path();
+  for (int level = 0; level < kMostLevels && folder.has_relative_path(); ++level, folder = folder.parent_path())
+    if (is_installation(folder / "share" / "afterglow")) return folder / "share" / "afterglow";
+  folder =
+      is_in_build_folder() ? fs::path(AFTERGLOW_SOURCE_FOLDER) : fs::path(AFTERGLOW_PREFIX) / "share" / "afterglow";
+  return is_installation(folder) ? folder : fs::path();
 }
 
 std::vector<fs::path> folders_of_preset(const fs::path& preset) {
@@ -143,9 +141,9 @@ std::vector<fs::path> folders_of_preset(const fs::path& preset) {
   return folders;
 }
 
-SearchPath search_path_for(const fs::path& preset, const std::vector<fs::path>& extra) {
+SearchPath search_path_for(const fs::path& preset, const std::vector<fs::path>& extra, const fs::path& installation) {
   SearchPath path;
-  path.installation = find_installation();
+  path.installation = installation.empty() ? find_installation() : installation;
   if (!preset.empty())
     for (const auto& folder : folders_of_preset(preset)) add_folder(path, folder);
   for (const auto& folder : extra) add_folder(path, folder);

@@ -116,7 +116,7 @@ void FrameInputs::before(const Program& program, VkCommandBuffer commands) {
                                      VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(wanted), wanted));
     image.layout = wanted;
   }
-  record_barriers(commands, barriers.data(), barriers.size());
+  record_barriers(*device_, commands, barriers.data(), barriers.size());
 }
 
 void FrameInputs::after(VkCommandBuffer commands) {
@@ -131,7 +131,7 @@ void FrameInputs::after(VkCommandBuffer commands) {
         shown_access(image, VK_ACCESS_2_HOST_WRITE_BIT), to));
     image.layout = to;
   }
-  record_barriers(commands, barriers.data(), barriers.size());
+  record_barriers(*device_, commands, barriers.data(), barriers.size());
 }
 
 bool FrameInputs::readable() const {

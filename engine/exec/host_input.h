@@ -1,13 +1,12 @@
 // What a frame is given, checked against what its program reads.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <map>
 #include <string>
 #include <vector>
 
 #include "exec/frame.h"
+#include "gpu/vulkan.h"
 
 namespace afterglow {
 

@@ -12,7 +12,7 @@ namespace afterglow {
 
 bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted) {
   VkFormatProperties properties{};
-  vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
+  device.vk().vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
   return (properties.optimalTilingFeatures & wanted) == wanted;
 }
 

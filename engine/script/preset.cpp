@@ -133,7 +133,7 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
   auto state = std::make_unique<State>();
   state->file = file.string();
   state->shaders = &shaders;
-  AFTERGLOW_TRY(state->runtime, Runtime::create(search_path_for(file, options.paths), options.limits, diagnostics));
+  AFTERGLOW_TRY(state->runtime, Runtime::create(search_path_for(file, options.paths, options.installation), options.limits, diagnostics));
   Sandbox& box = *state->runtime->box;
   const StackEntry* current = nullptr;
   auto error = box.run(state->file, [&](lua_State* lua) {
