@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "apps/setting_text.h"
+#include "script/setting_text.h"
 #include "core/file.h"
 
 namespace afterglow {

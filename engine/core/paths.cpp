@@ -154,7 +154,8 @@ SearchPath search_path_for(const fs::path& preset, const std::vector<fs::path>& 
   return path;
 }
 
-Result<fs::path> find_preset_file(const std::string& given, const std::vector<fs::path>& extra) {
+Result<fs::path> find_preset_file(const std::string& given, const std::vector<fs::path>& extra,
+                                  const fs::path& installation) {
   std::error_code ec;
   SearchPath path;
   std::string name = given;
@@ -164,7 +165,7 @@ Result<fs::path> find_preset_file(const std::string& given, const std::vector<fs
     name = fs::path(given).lexically_normal().stem().string();
   } else {
     if (fs::exists(given, ec) || !is_preset_name(given)) return fs::path(given);
-    path = search_path_for({}, extra);
+    path = search_path_for({}, extra, installation);
   }
   if (path.error) return *path.error;
   if (const auto hits = path.find_preset(name); !hits.empty()) return hits.front();

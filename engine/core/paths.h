@@ -52,7 +52,8 @@ SearchPath search_path_for(const std::filesystem::path& preset, const std::vecto
 /// the name of a preset in `extra`, AFTERGLOW_PATH or the installation. A file that does not exist comes back as it is.
 /// Errors: script (unknown name, with the nearest; a pack with several presets or none, or one that is refused).
 Result<std::filesystem::path> find_preset_file(const std::string& given,
-                                               const std::vector<std::filesystem::path>& extra);
+                                               const std::vector<std::filesystem::path>& extra,
+                                               const std::filesystem::path& installation = {});
 
 /// Folder for disk caches: AFTERGLOW_CACHE, else XDG_CACHE_HOME/afterglow, else HOME/.cache/afterglow, else a
 /// folder of the user's under the system's temporary folder. Not created.

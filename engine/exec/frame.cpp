@@ -274,7 +274,7 @@ Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string
   state_->shown.reset();
   if (ran) state_->shown = ran->parts().images[ran->graph().result];
   if (!ran) {
-    copy_source(inputs.at("source"), out.pixels);
+    copy_source(inputs.at("source"), out);
     return times;
   }
   const auto start = Clock::now();

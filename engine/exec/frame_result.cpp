@@ -93,6 +93,11 @@ Result<std::uint64_t> FrameResult::download_looking(Staging& staging, const Rect
   const auto first = [&](int y) {
     return row_values * static_cast<std::size_t>(y) + static_cast<std::size_t>(part.x) * 4;
   };
+  if (out.write_row)
+    return over_rows_of(staging, part, [&](int y, const std::byte* from) {
+      look(from, format);
+      return out.write_row(part.x, y, part.width, format, from);
+    });
   if (format == VK_FORMAT_R8G8B8A8_UNORM) {
     out.codes.resize(row_values * static_cast<std::size_t>(height));
     return over_rows_of(staging, part, [&](int y, const std::byte* from) {

@@ -1,4 +1,4 @@
-#include "apps/setting_text.h"
+#include "script/setting_text.h"
 
 #include <fmt/format.h>
 
