@@ -55,8 +55,8 @@ int main(int argc, char **argv) {
   static uint8_t graded[HEIGHT][WIDTH][3]; /* sRGB codes */
   afterglow_run_info info = afterglow_run_info_default();
   info.source = (afterglow_image){.data = picture, .width = WIDTH, .height = HEIGHT, .channels = 3};
-  info.result = (afterglow_image){
-      .data = graded, .width = WIDTH, .height = HEIGHT, .channels = 3, .samples = AFTERGLOW_UINT8};
+  info.result =
+      (afterglow_image){.data = graded, .width = WIDTH, .height = HEIGHT, .channels = 3, .samples = AFTERGLOW_UINT8};
   info.dither = true;
   need(afterglow_stack_run(stack, &info));
 

@@ -9,9 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "vulkan_host.h"
-
 #include "afterglow.h"
+#include "vulkan_host.h"
 
 enum { WIDTH = 320, HEIGHT = 180, SAMPLES = WIDTH * HEIGHT * 4 };
 
@@ -130,7 +129,9 @@ int main(int argc, char **argv) {
     worst = fmax(worst, fabs((double)recorded[i] - run[i]) / (fabs((double)run[i]) + 0.01));
     change = fmax(change, fabs((double)recorded[i] - picture[i]));
   }
-  printf("recorded against run: worst relative error %.3g; the look changed the picture by up to %.3g; validation errors: %d\n",
-         worst, change, host.validation_errors);
+  printf(
+      "recorded against run: worst relative error %.3g; the look changed the picture by up to %.3g; validation errors: "
+      "%d\n",
+      worst, change, host.validation_errors);
   return worst <= 1e-6 && change > 0.01 && host.validation_errors == 0 ? 0 : 1;
 }

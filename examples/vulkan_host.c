@@ -113,8 +113,8 @@ static VkDeviceMemory allocate(Host *host, const VkMemoryRequirements *needs, Vk
   VkPhysicalDeviceMemoryProperties types;
   vkGetPhysicalDeviceMemoryProperties(host->physical_device, &types);
   uint32_t type = 0;
-  while (type < types.memoryTypeCount && (!(needs->memoryTypeBits >> type & 1) ||
-                                          (types.memoryTypes[type].propertyFlags & wanted) != wanted))
+  while (type < types.memoryTypeCount &&
+         (!(needs->memoryTypeBits >> type & 1) || (types.memoryTypes[type].propertyFlags & wanted) != wanted))
     ++type;
   const VkMemoryAllocateInfo info = {
       .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs->size, .memoryTypeIndex = type};

@@ -43,7 +43,8 @@
 #define AFTERGLOW_VERSION_MAJOR 0
 #define AFTERGLOW_VERSION_MINOR 1
 #define AFTERGLOW_VERSION_PATCH 0
-#define AFTERGLOW_MAKE_VERSION(major, minor, patch) ((uint32_t)(major) << 22 | (uint32_t)(minor) << 12 | (uint32_t)(patch))
+#define AFTERGLOW_MAKE_VERSION(major, minor, patch) \
+  ((uint32_t)(major) << 22 | (uint32_t)(minor) << 12 | (uint32_t)(patch))
 #define AFTERGLOW_VERSION \
   AFTERGLOW_MAKE_VERSION(AFTERGLOW_VERSION_MAJOR, AFTERGLOW_VERSION_MINOR, AFTERGLOW_VERSION_PATCH)
 
@@ -347,9 +348,9 @@ AFTERGLOW_API void afterglow_stack_reset_history(afterglow_stack *stack);
 
 /* ---- live reload --------------------------------------------------------------------------------------------------*/
 
-/* Takes the edits that were built since, all or nothing; `changed` (may be NULL) says whether there were any. Cheap when
- * there are none. An edit that is broken is returned as an error, once; the last good preset stays. Nothing that was
- * recorded from the stack may be in flight. One thread at a time. Errors: script, device. */
+/* Takes the edits that were built since, all or nothing; `changed` (may be NULL) says whether there were any. Cheap
+ * when there are none. An edit that is broken is returned as an error, once; the last good preset stays. Nothing that
+ * was recorded from the stack may be in flight. One thread at a time. Errors: script, device. */
 AFTERGLOW_API afterglow_error *afterglow_stack_update(afterglow_stack *stack, bool *changed);
 
 /* Reads the files now, or takes another text when `preset_text` is given (then not with `follow`), and takes the result

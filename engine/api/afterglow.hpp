@@ -143,9 +143,9 @@ struct StackOptions {
 template <class Sample>
 afterglow_image image(Sample* pixels, int width, int height, int channels = 4) {
   using Plain = std::remove_const_t<Sample>;
-  static_assert(std::is_same_v<Plain, float> || std::is_same_v<Plain, std::uint16_t> ||
-                    std::is_same_v<Plain, std::uint8_t>,
-                "samples are float, std::uint16_t (halves) or std::uint8_t");
+  static_assert(
+      std::is_same_v<Plain, float> || std::is_same_v<Plain, std::uint16_t> || std::is_same_v<Plain, std::uint8_t>,
+      "samples are float, std::uint16_t (halves) or std::uint8_t");
   afterglow_image out{};
   out.data = const_cast<Plain*>(pixels);
   out.width = width;
@@ -197,9 +197,7 @@ class Stack {
     run(info);
   }
 
-  void set(std::string_view name, double value) {
-    check(afterglow_stack_set_number(get(), to_view(name), value));
-  }
+  void set(std::string_view name, double value) { check(afterglow_stack_set_number(get(), to_view(name), value)); }
   void set(std::string_view name, int value) { set(name, static_cast<double>(value)); }
   void set(std::string_view name, bool value) { check(afterglow_stack_set_boolean(get(), to_view(name), value)); }
   void set(std::string_view name, const char* value) { set(name, std::string_view(value)); }
@@ -223,8 +221,7 @@ class Stack {
     return out;
   }
   std::string get_text(std::string_view name) const {
-    return detail::text_from(
-        [&](afterglow_text** out) { return afterglow_stack_get_text(get(), to_view(name), out); });
+    return detail::text_from([&](afterglow_text** out) { return afterglow_stack_get_text(get(), to_view(name), out); });
   }
   std::vector<double> get_numbers(std::string_view name) const {
     std::vector<double> out(4);

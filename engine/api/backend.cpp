@@ -104,7 +104,9 @@ Result<void> Backend::run(const Shape& shape, const std::map<std::string, HostIm
     };
   const bool timed = options_.time_kernels;
   const bool stamps = device_->device->timestamps_mean_draws();
-  const KernelTiming timing = !timed ? KernelTiming::none : stamps ? KernelTiming::timestamps : KernelTiming::submissions;
+  const KernelTiming timing = !timed   ? KernelTiming::none
+                              : stamps ? KernelTiming::timestamps
+                                       : KernelTiming::submissions;
   AFTERGLOW_TRY(times_, runner_->run(*ran_, inputs, result, timing, choose));
   clamped_ = result.clamped;
   return {};

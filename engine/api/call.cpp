@@ -44,7 +44,8 @@ Diagnostics::Sink sink_of(afterglow_message_callback message, void* user) {
 
 using namespace afterglow;
 
-static_assert(AFTERGLOW_VERSION_MAJOR == AFTERGLOW_PROJECT_MAJOR && AFTERGLOW_VERSION_MINOR == AFTERGLOW_PROJECT_MINOR &&
+static_assert(AFTERGLOW_VERSION_MAJOR == AFTERGLOW_PROJECT_MAJOR &&
+                  AFTERGLOW_VERSION_MINOR == AFTERGLOW_PROJECT_MINOR &&
                   AFTERGLOW_VERSION_PATCH == AFTERGLOW_PROJECT_PATCH,
               "afterglow.h and CMakeLists.txt say different versions");
 

@@ -51,7 +51,9 @@ afterglow_error* call(Work work) noexcept {
 
 inline afterglow_string view(const std::string& text) { return {text.c_str(), text.size()}; }
 inline bool is_given(afterglow_string text) { return text.data != nullptr; }
-inline std::string text_of(afterglow_string text) { return text.data ? std::string(text.data, text.size) : std::string(); }
+inline std::string text_of(afterglow_string text) {
+  return text.data ? std::string(text.data, text.size) : std::string();
+}
 
 /// Hands a text over to the caller.
 Result<void> give(std::string text, afterglow_text** out, const char* function);

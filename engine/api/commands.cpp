@@ -1,5 +1,4 @@
 // Recording into command buffers of the caller.
-#define AFTERGLOW_VULKAN
 #include "api/handles.h"
 
 using namespace afterglow;

@@ -1,5 +1,4 @@
 // Devices of the C interface.
-#define AFTERGLOW_VULKAN
 #include "api/documents.h"
 #include "api/handles.h"
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "script/explanation.h"
-#include "script/setting_text.h"
+#include "script/setting_json.h"
 
 namespace afterglow::api {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Names of files and texts of scripts are any bytes: what is no UTF-8 becomes U+FFFD.
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json history_json(const SettingHistory& setting) {
   Json out{{"name", setting.name}, {"default", value_json(setting.default_value)}};
@@ -39,12 +39,12 @@ Json volume_json(const VolumeState& volume) {
 
 std::string device_document(const Device& device) {
   const DeviceInfo& info = device.info();
-  return text_of(Json{{"name", info.name},
-                      {"type", info.type},
-                      {"driver", info.driver},
-                      {"uuid", info.uuid},
-                      {"validation_errors", device.validation_errors()},
-                      {"validation_messages", device.validation_messages()}});
+  return dumped(Json{{"name", info.name},
+                     {"type", info.type},
+                     {"driver", info.driver},
+                     {"uuid", info.uuid},
+                     {"validation_errors", device.validation_errors()},
+                     {"validation_messages", device.validation_messages()}});
 }
 
 std::string settings_document(const Preset& preset) {
@@ -62,7 +62,7 @@ std::string settings_document(const Preset& preset) {
     }
     out.push_back(std::move(item));
   }
-  return text_of(out);
+  return dumped(out);
 }
 
 std::string explain_document(const Preset& preset, const std::vector<Skipped>& skipped) {
@@ -83,7 +83,7 @@ std::string explain_document(const Preset& preset, const std::vector<Skipped>& s
       for (const auto& setting : explanation.entries[i].settings) item["settings"].push_back(history_json(setting));
     out["entries"].push_back(std::move(item));
   }
-  return text_of(out);
+  return dumped(out);
 }
 
 std::string report_document(const BackendReport& report, std::uint64_t mended) {
@@ -100,13 +100,12 @@ std::string report_document(const BackendReport& report, std::uint64_t mended) {
            {"mended_samples", mended}};
   for (const auto& skipped : report.skipped)
     out["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
-  Json times{{"script", report.script},         {"compile", report.compile},
-             {"upload", report.times.upload},   {"execute", report.times.execute},
-             {"read_back", report.times.readback}, {"kernels", Json::array()}};
+  Json times{{"script", report.script},         {"compile", report.compile},          {"upload", report.times.upload},
+             {"execute", report.times.execute}, {"read_back", report.times.readback}, {"kernels", Json::array()}};
   for (const auto& kernel : report.times.kernels)
     times["kernels"].push_back({{"name", kernel.name}, {"milliseconds", kernel.milliseconds}});
   out["milliseconds"] = std::move(times);
-  return text_of(out);
+  return dumped(out);
 }
 
 }  // namespace afterglow::api

@@ -38,7 +38,11 @@ Result<SettingValue> value_of(const afterglow_stack* stack, const char* function
   for (const auto& entry : entries) names.push_back(entry.name);
   const auto entry = std::ranges::find(entries, parts.entry, &StackEntry::name);
   if (entry == entries.end())
-    return Error{ErrorKind::usage, fmt::format("the stack has no entry '{}'", parts.entry), "", 0, join(names),
+    return Error{ErrorKind::usage,
+                 fmt::format("the stack has no entry '{}'", parts.entry),
+                 "",
+                 0,
+                 join(names),
                  nearest_name(parts.entry, names)};
   if (parts.setting == "enabled")
     return SettingValue{.type = SettingType::boolean, .number = {entry->enabled ? 1.0 : 0.0}, .choice = {}};
@@ -50,8 +54,12 @@ Result<SettingValue> value_of(const afterglow_stack* stack, const char* function
     if (setting == parts.setting) return value;
     names.push_back(setting);
   }
-  return Error{ErrorKind::usage, fmt::format("effect '{}' has no setting '{}'", entry->effect, parts.setting), "", 0,
-               join(names), nearest_name(parts.setting, names)};
+  return Error{ErrorKind::usage,
+               fmt::format("effect '{}' has no setting '{}'", entry->effect, parts.setting),
+               "",
+               0,
+               join(names),
+               nearest_name(parts.setting, names)};
 }
 
 int components(SettingType type) {

@@ -55,8 +55,8 @@ Result<BackendOptions> options_of(const afterglow_stack_options& given) {
     out.preset = is_given(given.preset_file) ? text_of(given.preset_file) : "preset.lua";
     out.stack.preset.text = text_of(given.preset_text);
   } else {
-    AFTERGLOW_TRY(out.preset, find_preset_file(text_of(given.preset_file), out.stack.preset.paths,
-                                               out.stack.preset.installation));
+    AFTERGLOW_TRY(out.preset,
+                  find_preset_file(text_of(given.preset_file), out.stack.preset.paths, out.stack.preset.installation));
   }
   switch (given.precision) {
     case AFTERGLOW_PRECISION_AUTOMATIC:
@@ -93,14 +93,15 @@ struct Input {
 Result<void> run(afterglow_stack& stack, const afterglow_run_info& info) {
   Backend& backend = *stack.backend;
   if (backend.options().commands)
-    return usage("afterglow_stack_run: the stack was made with AFTERGLOW_USE_COMMANDS; allowed: afterglow_stack_record");
+    return usage(
+        "afterglow_stack_run: the stack was made with AFTERGLOW_USE_COMMANDS; allowed: afterglow_stack_record");
   stack.mended = 0;
   AFTERGLOW_TRY(const Pixels source, check_image(info.source, ImageRole::color, "source"));
   AFTERGLOW_TRY(const Pixels result, check_image(info.result, ImageRole::color, "result"));
   const auto same_size = [&](const Pixels& image, const char* name) -> Result<void> {
     if (image.size == source.size) return {};
-    return usage(fmt::format("image '{}' has {}×{} pixels, the source {}×{}", name, image.size.width,
-                             image.size.height, source.size.width, source.size.height));
+    return usage(fmt::format("image '{}' has {}×{} pixels, the source {}×{}", name, image.size.width, image.size.height,
+                             source.size.width, source.size.height));
   };
   AFTERGLOW_CHECK(same_size(result, "result"));
 
@@ -108,9 +109,9 @@ Result<void> run(afterglow_stack& stack, const afterglow_run_info& info) {
   AFTERGLOW_TRY(shape.context, context_of(info.frame, source.size));
   AFTERGLOW_TRY(shape.region, region_of(info.region, source.size));
   std::map<std::string, HostImage> inputs{{"source", input_image(source, ImageRole::color, stack.mended)}};
-  for (const Input& input : {Input{"depth", &info.depth, ImageRole::depth},
-                             Input{"normal", &info.normal, ImageRole::normal},
-                             Input{"motion", &info.motion, ImageRole::motion}}) {
+  for (const Input& input :
+       {Input{"depth", &info.depth, ImageRole::depth}, Input{"normal", &info.normal, ImageRole::normal},
+        Input{"motion", &info.motion, ImageRole::motion}}) {
     if (!input.image->data) continue;
     AFTERGLOW_TRY(const Pixels pixels, check_image(*input.image, input.role, input.name));
     AFTERGLOW_CHECK(same_size(pixels, input.name));

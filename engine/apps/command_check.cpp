@@ -9,7 +9,7 @@
 #include "apps/command.h"
 #include "apps/json_text.h"
 #include "apps/look.h"
-#include "script/setting_text.h"
+#include "apps/setting_text.h"
 #include "apps/table.h"
 #include "core/printable.h"
 #include "script/explanation.h"

@@ -10,7 +10,7 @@
 #include "apps/effect_page.h"
 #include "apps/json_text.h"
 #include "apps/options.h"
-#include "script/setting_text.h"
+#include "apps/setting_text.h"
 #include "apps/table.h"
 #include "core/printable.h"
 #include "core/text.h"

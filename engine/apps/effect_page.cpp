@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "script/setting_text.h"
+#include "apps/setting_text.h"
 #include "core/file.h"
 
 namespace afterglow {

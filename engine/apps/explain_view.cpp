@@ -7,7 +7,7 @@
 
 #include "apps/graph_view.h"
 #include "apps/json_text.h"
-#include "script/setting_text.h"
+#include "apps/setting_text.h"
 #include "apps/table.h"
 #include "core/text.h"
 

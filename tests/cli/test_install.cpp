@@ -44,7 +44,8 @@ TEST_F(Installed, RunsFromAnotherFolderWithItsOwnScripts) {
 /// A program with the build's and the source's folders hidden, where the system lets us.
 class InstalledHosts : public Installed {
  protected:
-  Outcome run_host(const std::string& program, const std::vector<std::string>& arguments, RunOptions options = {}) const {
+  Outcome run_host(const std::string& program, const std::vector<std::string>& arguments,
+                   RunOptions options = {}) const {
     options.environment["AFTERGLOW_HOME"] = "";  // not the one of whoever runs the tests
     static const bool can_hide = run({"--mount", "mount", "-t", "tmpfs", "none", "/mnt"}, unshare()).exit_code == 0;
     if (!can_hide) {
@@ -77,8 +78,9 @@ TEST_F(InstalledHosts, FindThePackage) {
   fs::copy(AFTERGLOW_PROJECT_FOLDER "/examples", path("examples"));
   RunOptions options;
   options.limit = std::chrono::seconds(300);
-  must(AFTERGLOW_CMAKE, {"-S", "examples", "-B", "built", "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + text("moved"),
-                         "-DCMAKE_C_FLAGS=" AFTERGLOW_CXX_FLAGS, "-DCMAKE_CXX_FLAGS=" AFTERGLOW_CXX_FLAGS},
+  must(AFTERGLOW_CMAKE,
+       {"-S", "examples", "-B", "built", "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + text("moved"),
+        "-DCMAKE_C_FLAGS=" AFTERGLOW_CXX_FLAGS, "-DCMAKE_CXX_FLAGS=" AFTERGLOW_CXX_FLAGS},
        options);
   must(AFTERGLOW_CMAKE, {"--build", "built"}, options);
   Outcome outcome = run_host(text("built/example_memory"), {"neon_night", text("graded.ppm")});
@@ -95,8 +97,8 @@ TEST_F(InstalledHosts, FindThePackage) {
 TEST_F(InstalledHosts, FindTheLibraryByPkgConfig) {
   RunOptions options;
   options.environment["PKG_CONFIG_PATH"] = text("moved/" AFTERGLOW_LIBRARY_FOLDER "/pkgconfig");
-  write("build.sh", "set -e\ncc -std=c11 " AFTERGLOW_CXX_FLAGS
-                    " '" AFTERGLOW_PROJECT_FOLDER "/examples/memory.c' -o host $(pkg-config --cflags --libs afterglow)\n");
+  write("build.sh", "set -e\ncc -std=c11 " AFTERGLOW_CXX_FLAGS " '" AFTERGLOW_PROJECT_FOLDER
+                    "/examples/memory.c' -o host $(pkg-config --cflags --libs afterglow)\n");
   must("/bin/sh", {"build.sh"}, options);
   RunOptions at_run_time;
   at_run_time.environment["LD_LIBRARY_PATH"] = text("moved/" AFTERGLOW_LIBRARY_FOLDER);

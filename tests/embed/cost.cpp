@@ -58,7 +58,8 @@ int main(int argc, char** argv) {
   for (int round = -2; round < rounds; ++round) {  // the first ones make shaders and memory
     std::copy(source.begin(), source.end(), picture.color.pixels.begin());
     auto start = Clock::now();
-    if (const auto done = (*session)->process(picture); !done) return std::fprintf(stderr, "%s\n", done.error().text().c_str()), 1;
+    if (const auto done = (*session)->process(picture); !done)
+      return std::fprintf(stderr, "%s\n", done.error().text().c_str()), 1;
     const double own = milliseconds_since(start);
     start = Clock::now();
     need(afterglow_stack_run(stack, &info));
@@ -69,8 +70,8 @@ int main(int argc, char** argv) {
     ratio.push_back(call / own);
   }
   const bool same = result == picture.color.pixels;
-  std::printf("engine %.2f ms, C interface %.2f ms, median of the ratios of %d rounds %.4f; pixels %s\n", median(engine),
-              median(interface), rounds, median(ratio), same ? "equal" : "DIFFER");
+  std::printf("engine %.2f ms, C interface %.2f ms, median of the ratios of %d rounds %.4f; pixels %s\n",
+              median(engine), median(interface), rounds, median(ratio), same ? "equal" : "DIFFER");
   afterglow_stack_free(stack);
   afterglow_device_free(device);
   return same ? 0 : 1;

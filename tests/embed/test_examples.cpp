@@ -48,7 +48,7 @@ TEST_F(Example, PicturesInMemory) {
   const auto red = [&](int x, int y) {
     return static_cast<unsigned char>(picture[head.size() + static_cast<std::size_t>(y * 320 + x) * 3]);
   };
-  EXPECT_GT(red(160, 90), 240);             // the square
+  EXPECT_GT(red(160, 90), 240);              // the square
   EXPECT_GT(red(135, 90), red(10, 10) + 8);  // its glow
 
   const Outcome less = run(EXAMPLE_MEMORY, {"neon_night", "less.ppm", "bloom.intensity=0"});

@@ -9,9 +9,7 @@ bool is_half(const py::dtype& type) { return type.kind() == 'f' && type.itemsize
 bool is_float(const py::dtype& type) { return type.kind() == 'f' && type.itemsize() == 4; }
 bool is_codes(const py::dtype& type) { return type.kind() == 'u' && type.itemsize() == 1; }
 bool is_native(const py::dtype& type) { return type.byteorder() == '=' || type.byteorder() == '|'; }
-bool is_known(const py::dtype& type) {
-  return is_native(type) && (is_half(type) || is_float(type) || is_codes(type));
-}
+bool is_known(const py::dtype& type) { return is_native(type) && (is_half(type) || is_float(type) || is_codes(type)); }
 
 std::string shape_text(const py::array& array) { return py::str(array.attr("shape")).cast<std::string>(); }
 

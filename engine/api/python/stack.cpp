@@ -103,8 +103,8 @@ void raise(const Error& error) {
   const py::object type = module.attr(name);
   const auto or_none = [](const std::string& text) { return text.empty() ? py::object(py::none()) : py::str(text); };
   const py::object raised = type(error.what(), error.message, or_none(error.file),
-                                 error.line > 0 ? py::object(py::int_(error.line)) : py::none(),
-                                 or_none(error.allowed), or_none(error.nearest));
+                                 error.line > 0 ? py::object(py::int_(error.line)) : py::none(), or_none(error.allowed),
+                                 or_none(error.nearest));
   PyErr_SetObject(type.ptr(), raised.ptr());
 }
 
@@ -124,7 +124,8 @@ PyStack::PyStack(const py::object& preset, const py::kwargs& given) {
   wanted.preset_text = options.take("text", std::string());
   if (const py::object paths = options.take("paths"); !paths.is_none())
     for (const auto& path : paths) wanted.paths.push_back(path_text(path));
-  if (const py::object folder = options.take("installation"); !folder.is_none()) wanted.installation = path_text(folder);
+  if (const py::object folder = options.take("installation"); !folder.is_none())
+    wanted.installation = path_text(folder);
   if (const py::object file = options.take("calibration"); !file.is_none()) wanted.calibration = path_text(file);
   wanted.precision = precision_of(options.take("precision", std::string("auto")));
   wanted.max_error = options.take("max_error", 0.0);

@@ -30,9 +30,8 @@ void ApiTest::TearDownTestSuite() {
 }
 
 void ApiTest::SetUp() {
-  folder_ = fs::path(testing::TempDir()) /
-            (std::string("afterglow_api_") + std::to_string(getpid()) + "_" +
-             testing::UnitTest::GetInstance()->current_test_info()->name());
+  folder_ = fs::path(testing::TempDir()) / (std::string("afterglow_api_") + std::to_string(getpid()) + "_" +
+                                            testing::UnitTest::GetInstance()->current_test_info()->name());
   fs::remove_all(folder_);
   write("effects/gain.lua", R"(
     local fx = require "afterglow"

@@ -1,5 +1,4 @@
 // Recording: what is refused before there is anything to record. examples/vulkan.c records.
-#define AFTERGLOW_VULKAN
 #include "fixture.h"
 
 namespace afterglow::test {

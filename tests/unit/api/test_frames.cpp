@@ -24,7 +24,8 @@ class FrameTest : public ApiTest {
       })");
     write("shaders/gain/trail.glsl",
           "uniform sampler2D source;\nuniform sampler2D before;\n"
-          "vec4 sample_at(ivec2 p) { vec4 c = fetch(source, p); return vec4(c.rgb + 0.5 * fetch(before, p).rgb, c.a); }\n");
+          "vec4 sample_at(ivec2 p) { vec4 c = fetch(source, p); return vec4(c.rgb + 0.5 * fetch(before, p).rgb, c.a); "
+          "}\n");
   }
 };
 
@@ -58,8 +59,8 @@ TEST_F(FrameTest, EffectsLookBackAtTheFrameBefore) {
   EXPECT_EQ(run_frame(stack.get(), 1), 1);
   EXPECT_EQ(run_frame(stack.get(), 2), 1.5f);
   EXPECT_EQ(run_frame(stack.get(), 3), 1.75f);
-  EXPECT_EQ(run_frame(stack.get(), 3), 1.75f);     // the same frame once more
-  EXPECT_EQ(run_frame(stack.get(), 9), 1);         // another place in the sequence
+  EXPECT_EQ(run_frame(stack.get(), 3), 1.75f);  // the same frame once more
+  EXPECT_EQ(run_frame(stack.get(), 9), 1);      // another place in the sequence
   EXPECT_EQ(run_frame(stack.get(), 10), 1.5f);
   EXPECT_EQ(run_frame(stack.get(), 11, true), 1);  // told to begin anew
   afterglow_stack_reset_history(stack.get());

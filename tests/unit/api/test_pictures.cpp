@@ -66,8 +66,7 @@ TEST_F(PictureTest, ThreeChannelsAreOpaque) {
   std::vector<float> result(three.size());
   const StackPtr stack = this->stack();
   run(stack, image(three, kWidth, kHeight, 3), image(result, kWidth, kHeight, 3));
-  for (std::size_t i = 0; i < result.size(); ++i)
-    ASSERT_EQ(result[i], wanted.color.pixels[i / 3 * 4 + i % 3]) << i;
+  for (std::size_t i = 0; i < result.size(); ++i) ASSERT_EQ(result[i], wanted.color.pixels[i / 3 * 4 + i % 3]) << i;
   std::vector<float> four(opaque.size());
   run(stack, image(three, kWidth, kHeight, 3), image(four, kWidth, kHeight));
   EXPECT_EQ(four, wanted.color.pixels);
@@ -91,7 +90,8 @@ TEST_F(PictureTest, StridesAreKeptAndGapsLeftAlone) {
   std::size_t touched = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
-      ASSERT_EQ(0, std::memcmp(at(result, x, y), &wanted.color.pixels[static_cast<std::size_t>(y * kWidth + x) * 4], 16))
+      ASSERT_EQ(0,
+                std::memcmp(at(result, x, y), &wanted.color.pixels[static_cast<std::size_t>(y * kWidth + x) * 4], 16))
           << x << " " << y;
   for (const float value : result) touched += value != -7;
   EXPECT_EQ(touched, source.size());
@@ -156,7 +156,8 @@ TEST_F(PictureTest, OnlyTheRegionIsWritten) {
     for (int x = 0; x < kWidth; ++x) {
       const bool inside = x >= 5 && x < 16 && y >= 3 && y < 12;
       const std::size_t i = static_cast<std::size_t>(y * kWidth + x) * 4;
-      for (std::size_t c = 0; c < 4; ++c) ASSERT_EQ(result[i + c], inside ? wanted.color.pixels[i + c] : -7) << x << " " << y;
+      for (std::size_t c = 0; c < 4; ++c)
+        ASSERT_EQ(result[i + c], inside ? wanted.color.pixels[i + c] : -7) << x << " " << y;
     }
   info.region = {30, 0, 8, 1};
   const ErrorPtr outside(afterglow_stack_run(stack.get(), &info));

@@ -1,10 +1,6 @@
-#include "script/setting_text.h"
-
-#include <fmt/format.h>
+#include "script/setting_json.h"
 
 #include <nlohmann/json.hpp>
-
-#include "core/text.h"
 
 namespace afterglow {
 
@@ -28,18 +24,6 @@ const char* type_text(SettingType type) {
       return "file";
   }
   return "?";
-}
-
-std::string allowed_text(const SettingSchema& setting) {
-  const std::string unit = setting.unit.empty() ? "" : " " + setting.unit;
-  if (setting.type == SettingType::boolean) return "true, false";
-  if (setting.type == SettingType::enumeration) return join(setting.choices);
-  if (setting.type == SettingType::file) return "." + join(setting.choices, ", .");
-  if (setting.min && setting.max)
-    return fmt::format("{} to {}{}", number_text(*setting.min), number_text(*setting.max), unit);
-  if (setting.min) return fmt::format("at least {}{}", number_text(*setting.min), unit);
-  if (setting.max) return fmt::format("at most {}{}", number_text(*setting.max), unit);
-  return "any" + unit;
 }
 
 nlohmann::json value_json(const SettingValue& value) {
