@@ -7,18 +7,18 @@
 #include <stdbool.h>
 #include <vulkan/vulkan.h>
 
-#define HOST_FUNCTIONS(F)                                                                                              \
-  F(vkCreateInstance)                                                                                                  \
-  F(vkDestroyInstance) F(vkEnumerateInstanceLayerProperties) F(vkEnumeratePhysicalDevices)                             \
-      F(vkGetPhysicalDeviceMemoryProperties) F(vkGetPhysicalDeviceQueueFamilyProperties) F(vkCreateDevice)             \
-          F(vkDestroyDevice) F(vkGetDeviceQueue) F(vkCreateCommandPool) F(vkDestroyCommandPool)                        \
-              F(vkAllocateCommandBuffers) F(vkBeginCommandBuffer) F(vkEndCommandBuffer) F(vkQueueSubmit2)              \
-                  F(vkQueueWaitIdle) F(vkCreateImage) F(vkDestroyImage) F(vkGetImageMemoryRequirements)                \
-                      F(vkBindImageMemory) F(vkCreateImageView) F(vkDestroyImageView) F(vkCreateBuffer)                \
-                          F(vkDestroyBuffer) F(vkGetBufferMemoryRequirements) F(vkBindBufferMemory)                    \
-                              F(vkAllocateMemory) F(vkFreeMemory) F(vkMapMemory) F(vkCmdCopyBufferToImage)             \
-                                  F(vkCmdCopyImageToBuffer) F(vkCmdPipelineBarrier2) F(vkCreateDebugUtilsMessengerEXT) \
-                                      F(vkDestroyDebugUtilsMessengerEXT)
+/* clang-format off */
+#define HOST_FUNCTIONS(F) \
+  F(vkCreateInstance) F(vkDestroyInstance) F(vkEnumerateInstanceLayerProperties) \
+  F(vkEnumeratePhysicalDevices) F(vkGetPhysicalDeviceMemoryProperties) \
+  F(vkGetPhysicalDeviceQueueFamilyProperties) F(vkCreateDevice) F(vkDestroyDevice) F(vkGetDeviceQueue) \
+  F(vkCreateCommandPool) F(vkDestroyCommandPool) F(vkAllocateCommandBuffers) F(vkBeginCommandBuffer) \
+  F(vkEndCommandBuffer) F(vkQueueSubmit2) F(vkQueueWaitIdle) F(vkCreateImage) F(vkDestroyImage) \
+  F(vkGetImageMemoryRequirements) F(vkBindImageMemory) F(vkCreateImageView) F(vkDestroyImageView) \
+  F(vkCreateBuffer) F(vkDestroyBuffer) F(vkGetBufferMemoryRequirements) F(vkBindBufferMemory) \
+  F(vkAllocateMemory) F(vkFreeMemory) F(vkMapMemory) F(vkCmdCopyBufferToImage) F(vkCmdCopyImageToBuffer) \
+  F(vkCmdPipelineBarrier2) F(vkCreateDebugUtilsMessengerEXT) F(vkDestroyDebugUtilsMessengerEXT)
+/* clang-format on */
 #define HOST_DECLARE(name) extern PFN_##name name;
 HOST_FUNCTIONS(HOST_DECLARE)
 extern PFN_vkGetInstanceProcAddr vkGetInstanceProcAddr;

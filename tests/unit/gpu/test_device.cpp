@@ -155,6 +155,33 @@ TEST(DeviceTest, AdoptUsesAndKeepsTheCallersObjects) {
   EXPECT_EQ(log->errors(), 0) << testing::PrintToString(log->messages());
 }
 
+PFN_vkGetInstanceProcAddr the_loader = nullptr;
+int asked = 0;
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL ask(VkInstance instance, const char* name) {
+  ++asked;
+  return std::string_view(name) == "vkGetPhysicalDeviceFeatures2" && asked < 0 ? nullptr : the_loader(instance, name);
+}
+
+TEST(DeviceTest, AnAdoptedDeviceTakesItsFunctionsFromTheCaller) {
+  auto owner = validated_device();
+  ASSERT_TRUE(owner);
+  the_loader = owner->vk().vkGetInstanceProcAddr;
+  const AdoptedDevice objects{.instance = owner->instance(),
+                              .physical_device = owner->physical(),
+                              .device = owner->handle(),
+                              .queue = owner->queue(),
+                              .queue_family = owner->queue_family(),
+                              .get_instance_proc_addr = ask};
+  Diagnostics diagnostics;
+  asked = 0;
+  EXPECT_TRUE(Device::adopt(objects, diagnostics));
+  EXPECT_GT(asked, 10);
+  asked = -1000;  // one that lacks a function
+  const auto lacking = Device::adopt(objects, diagnostics);
+  ASSERT_FALSE(lacking);
+  EXPECT_THAT(lacking.error().message, HasSubstr("vkGetPhysicalDeviceFeatures2"));
+}
+
 TEST(DeviceTest, AdoptRefusesWhatItCannotUse) {
   Diagnostics diagnostics;
   EXPECT_FALSE(Device::adopt({}, diagnostics));
