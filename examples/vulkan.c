@@ -4,6 +4,8 @@
  *
  * Two frames are run, and their pixels compared with what afterglow_stack_run makes of the same picture. Exit code 0:
  * they are the same, and the validation layer had nothing to say. */
+#define AFTERGLOW_VULKAN
+#define VK_NO_PROTOTYPES /* this program has variables of these names */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,7 +3,9 @@
 #ifndef VULKAN_HOST_H
 #define VULKAN_HOST_H
 
+#ifndef VK_NO_PROTOTYPES
 #define VK_NO_PROTOTYPES
+#endif
 #include <stdbool.h>
 #include <vulkan/vulkan.h>
 
