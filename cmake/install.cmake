@@ -1,15 +1,18 @@
-# An installation: the program (found by engine/apps), what it reads at run time, and the library for programs that embed it:
-#   find_package(afterglow REQUIRED)  and  target_link_libraries(engine PRIVATE afterglow::session)
+# An installation, in components: the program, the library, what both read at run time, what hosts are compiled with
+# (find_package(afterglow) and pkg-config), the Python module.
 include(CMakePackageConfigHelpers)
 
-install(DIRECTORY scripts shaders presets templates calibration assets DESTINATION ${CMAKE_INSTALL_DATADIR}/afterglow USE_SOURCE_PERMISSIONS)
-install(DIRECTORY engine/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/afterglow
-  FILES_MATCHING PATTERN "*.h" PATTERN reference EXCLUDE PATTERN bench EXCLUDE PATTERN batch EXCLUDE PATTERN edit EXCLUDE PATTERN stress EXCLUDE PATTERN play EXCLUDE PATTERN window EXCLUDE PATTERN apps EXCLUDE)
+install(DIRECTORY scripts shaders presets templates calibration assets DESTINATION ${CMAKE_INSTALL_DATADIR}/afterglow
+  USE_SOURCE_PERMISSIONS COMPONENT data)
 
 set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/afterglow)
-install(EXPORT afterglow NAMESPACE afterglow:: FILE afterglow-targets.cmake DESTINATION ${config_folder})
+install(EXPORT afterglow NAMESPACE afterglow:: FILE afterglow-targets.cmake DESTINATION ${config_folder} COMPONENT development)
 configure_package_config_file(cmake/afterglow-config.cmake.in ${CMAKE_BINARY_DIR}/afterglow-config.cmake
   INSTALL_DESTINATION ${config_folder})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/afterglow-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/afterglow-config.cmake ${CMAKE_BINARY_DIR}/afterglow-config-version.cmake
-  cmake/dependencies.cmake cmake/lua.cmake DESTINATION ${config_folder})
+  DESTINATION ${config_folder} COMPONENT development)
+
+file(RELATIVE_PATH AFTERGLOW_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+configure_file(cmake/afterglow.pc.in ${CMAKE_BINARY_DIR}/afterglow.pc @ONLY)
+install(FILES ${CMAKE_BINARY_DIR}/afterglow.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)

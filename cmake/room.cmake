@@ -3,17 +3,12 @@
 function(afterglow_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;USES;LIBRARIES" ${ARGN})
   add_library(afterglow_${name} STATIC ${ROOM_SOURCES})
-  target_include_directories(afterglow_${name} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/engine> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/afterglow>)
+  target_include_directories(afterglow_${name} PUBLIC ${PROJECT_SOURCE_DIR}/engine)
   target_compile_options(afterglow_${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
   foreach(used ${ROOM_USES})
     target_link_libraries(afterglow_${name} PUBLIC afterglow_${used})
   endforeach()
   target_link_libraries(afterglow_${name} PRIVATE ${ROOM_LIBRARIES})
-  set_target_properties(afterglow_${name} PROPERTIES EXPORT_NAME ${name})
-  if(NOT name MATCHES "^(batch|edit|reference|bench|stress|play|window)$")  # for the program and tests alone
-    install(TARGETS afterglow_${name} EXPORT afterglow ARCHIVE)
-  endif()
 endfunction()
 
 # afterglow_test(NAME SOURCES a.cpp … USES core …): one GoogleTest binary, its cases known to ctest.

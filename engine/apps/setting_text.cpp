@@ -2,33 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "core/text.h"
 
 namespace afterglow {
-
-const char* type_text(SettingType type) {
-  switch (type) {
-    case SettingType::integer:
-      return "int";
-    case SettingType::number:
-      return "float";
-    case SettingType::boolean:
-      return "bool";
-    case SettingType::enumeration:
-      return "enum";
-    case SettingType::color:
-      return "color";
-    case SettingType::vec2:
-      return "vec2";
-    case SettingType::vec3:
-      return "vec3";
-    case SettingType::file:
-      return "file";
-  }
-  return "?";
-}
 
 std::string allowed_text(const SettingSchema& setting) {
   const std::string unit = setting.unit.empty() ? "" : " " + setting.unit;
@@ -40,38 +16,6 @@ std::string allowed_text(const SettingSchema& setting) {
   if (setting.min) return fmt::format("at least {}{}", number_text(*setting.min), unit);
   if (setting.max) return fmt::format("at most {}{}", number_text(*setting.max), unit);
   return "any" + unit;
-}
-
-nlohmann::json value_json(const SettingValue& value) {
-  switch (value.type) {
-    case SettingType::integer:
-      return static_cast<long long>(value.number[0]);
-    case SettingType::number:
-      return value.number[0];
-    case SettingType::boolean:
-      return value.number[0] != 0;
-    case SettingType::enumeration:
-    case SettingType::file:
-      return value.choice;
-    case SettingType::vec2:
-      return {value.number[0], value.number[1]};
-    case SettingType::color:
-    case SettingType::vec3:
-      return {value.number[0], value.number[1], value.number[2]};
-  }
-  return nullptr;
-}
-
-nlohmann::json setting_json(const SettingSchema& setting) {
-  nlohmann::json out{{"name", setting.name},
-                     {"type", type_text(setting.type)},
-                     {"default", value_json(setting.default_value)},
-                     {"doc", setting.doc}};
-  if (setting.min) out["min"] = *setting.min;
-  if (setting.max) out["max"] = *setting.max;
-  if (!setting.choices.empty()) out[setting.type == SettingType::file ? "extensions" : "choices"] = setting.choices;
-  if (!setting.unit.empty()) out["unit"] = setting.unit;
-  return out;
 }
 
 }  // namespace afterglow

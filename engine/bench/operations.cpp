@@ -22,7 +22,7 @@ constexpr NamedFormat kFormats[] = {{"RGBA32F", kFloats},
 
 bool can_draw(const Device& device, VkFormat format) {
   VkFormatProperties properties{};
-  vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
+  device.vk().vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
   constexpr auto kWanted = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
   return (properties.optimalTilingFeatures & kWanted) == kWanted;
 }
@@ -55,7 +55,7 @@ Result<std::unique_ptr<FormatCopy>> make_copy(const Device& device, KernelCompil
                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                                     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                                     VK_IMAGE_LAYOUT_GENERAL);
-                  record_barriers(commands, &readable, 1);
+                  record_barriers(device, commands, &readable, 1);
                 }));
   AFTERGLOW_CHECK(leave.run());
   AFTERGLOW_TRY(out->copy, KernelWork::create(device, compiler, {}, binding(out->from), binding(out->to), format.name));

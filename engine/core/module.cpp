@@ -7,22 +7,20 @@
 #include <system_error>
 #include <vector>
 
+#include "core/own_file.h"
+
 namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
 std::vector<fs::path> candidates(const std::string& name) {
   std::vector<fs::path> folders;
-  Dl_info here{};
-  if (dladdr(reinterpret_cast<const void*>(&load_module), &here) && here.dli_fname) {
-    std::error_code ec;
-    fs::path binary = fs::canonical(here.dli_fname, ec);
-    if (ec) binary = fs::read_symlink("/proc/self/exe", ec);
-    folders.push_back(binary.parent_path());
-    folders.push_back(binary.parent_path() / "afterglow");
-    folders.push_back(binary.parent_path().parent_path() / AFTERGLOW_MODULE_FOLDER);
+  if (const fs::path own = own_file(); !own.empty()) {
+    const fs::path folder = own.parent_path();
+    folders.insert(folders.end(), {folder, folder / "afterglow", folder.parent_path() / AFTERGLOW_MODULE_FOLDER});
   }
-  folders.emplace_back(AFTERGLOW_BUILT_MODULE_FOLDER);
+  folders.emplace_back(is_in_build_folder() ? fs::path(AFTERGLOW_BUILT_MODULE_FOLDER)
+                                            : fs::path(AFTERGLOW_PREFIX) / AFTERGLOW_MODULE_FOLDER);
   for (fs::path& folder : folders) folder /= name;
   return folders;
 }

@@ -8,8 +8,9 @@
 
 namespace afterglow {
 
-/// The address of `entry` in the module `name` ("afterglow_oiio.so"): beside the running binary, in the library folder
-/// of its installation, or where it was built. The module stays loaded. Thread-safe. Errors: io (not installed, cannot
+/// The address of `entry` in the module `name` ("afterglow_oiio.so"): beside the program or library that this code is
+/// part of, in the library folder of its installation, below the prefix it was built for, or where it was built. The
+/// module stays loaded. Thread-safe. Errors: io (not installed, cannot
 /// be loaded; the message is about "NAME (why)").
 Result<void*> load_module(const std::string& name, const char* entry);
 

@@ -11,6 +11,7 @@
 
 #include "core/file.h"
 #include "core/file_record.h"
+#include "core/own_file.h"
 #include "core/pack.h"
 #include "core/text.h"
 
@@ -121,16 +122,13 @@ std::vector<std::string> SearchPath::preset_names() const {
 
 fs::path find_installation() {
   if (const auto home = environment("AFTERGLOW_HOME"); !home.empty()) return home;
-  std::error_code ec;
-  const fs::path binary = fs::read_symlink("/proc/self/exe", ec);
-  if (!ec) {
-    const fs::path shared = binary.parent_path().parent_path() / "share" / "afterglow";
-    if (is_installation(shared)) return shared;
-  }
-#ifdef AFTERGLOW_SOURCE_FOLDER
-  if (is_installation(AFTERGLOW_SOURCE_FOLDER)) return AFTERGLOW_SOURCE_FOLDER;
-#endif
-  return {};
+  constexpr int kMostLevels = 4;  // PREFIX/lib/x86_64-linux-gnu/afterglow/module.so
+  fs::path folder = own_file().parent_path();
+  for (int level = 0; level < kMostLevels && folder.has_relative_path(); ++level, folder = folder.parent_path())
+    if (is_installation(folder / "share" / "afterglow")) return folder / "share" / "afterglow";
+  folder =
+      is_in_build_folder() ? fs::path(AFTERGLOW_SOURCE_FOLDER) : fs::path(AFTERGLOW_PREFIX) / "share" / "afterglow";
+  return is_installation(folder) ? folder : fs::path();
 }
 
 namespace {
@@ -150,10 +148,10 @@ std::vector<fs::path> folders_of(const fs::path& preset, FileRecord* record) {
 std::vector<fs::path> folders_of_preset(const fs::path& preset) { return folders_of(preset, nullptr); }
 
 SearchPath search_path_for(const fs::path& preset, const std::vector<fs::path>& extra,
-                           std::shared_ptr<FileRecord> record) {
+                           std::shared_ptr<FileRecord> record, const fs::path& installation) {
   SearchPath path;
   path.record = std::move(record);
-  path.installation = find_installation();
+  path.installation = installation.empty() ? find_installation() : installation;
   if (!preset.empty())
     for (const auto& folder : folders_of(preset, path.record.get())) add_folder(path, folder);
   for (const auto& folder : extra) add_folder(path, folder);
@@ -164,7 +162,8 @@ SearchPath search_path_for(const fs::path& preset, const std::vector<fs::path>& 
   return path;
 }
 
-Result<fs::path> find_preset_file(const std::string& given, const std::vector<fs::path>& extra) {
+Result<fs::path> find_preset_file(const std::string& given, const std::vector<fs::path>& extra,
+                                  const fs::path& installation) {
   std::error_code ec;
   SearchPath path;
   std::string name = given;
@@ -174,7 +173,7 @@ Result<fs::path> find_preset_file(const std::string& given, const std::vector<fs
     name = fs::path(given).lexically_normal().stem().string();
   } else {
     if (fs::exists(given, ec) || !is_preset_name(given)) return fs::path(given);
-    path = search_path_for({}, extra);
+    path = search_path_for({}, extra, installation);
   }
   if (path.error) return *path.error;
   if (const auto hits = path.find_preset(name); !hits.empty()) return hits.front();

@@ -38,8 +38,9 @@ struct SearchPath {
   std::vector<std::filesystem::path> preset_folders() const;
 };
 
-/// The folder with scripts/, shaders/ and presets/: AFTERGLOW_HOME, else found from the running binary
-/// (`BIN/../share/afterglow`, or the source tree the binary was built from). Empty when there is none.
+/// The folder with scripts/, shaders/ and presets/: AFTERGLOW_HOME, else `share/afterglow` in a folder above the
+/// program or library that this code is part of, else below the prefix that it was built for; the source tree for
+/// what has not been installed. Empty when there is none.
 std::filesystem::path find_installation();
 
 /// The folders that belong to a preset: its own; of a preset in `presets/`, also the one above when that holds
@@ -48,15 +49,17 @@ std::vector<std::filesystem::path> folders_of_preset(const std::filesystem::path
 
 /// Search path for a preset file; `extra` are the --path options. AFTERGLOW_PATH is split at ':'. Both may name zips.
 /// Behind each folder come the packs (folders and zips) in its `packs/`, by name; those of the installation come last.
-/// `record` becomes the path's.
+/// `record` becomes the path's. `installation`: what find_installation says, unless it is given.
 SearchPath search_path_for(const std::filesystem::path& preset, const std::vector<std::filesystem::path>& extra,
-                           std::shared_ptr<FileRecord> record = nullptr);
+                           std::shared_ptr<FileRecord> record = nullptr,
+                           const std::filesystem::path& installation = {});
 
 /// The preset that a user means: a file as it is; a pack (folder or zip) that holds one preset or one of its own name;
 /// the name of a preset in `extra`, AFTERGLOW_PATH or the installation. A file that does not exist comes back as it is.
 /// Errors: script (unknown name, with the nearest; a pack with several presets or none, or one that is refused).
 Result<std::filesystem::path> find_preset_file(const std::string& given,
-                                               const std::vector<std::filesystem::path>& extra);
+                                               const std::vector<std::filesystem::path>& extra,
+                                               const std::filesystem::path& installation = {});
 
 /// Folder for disk caches: AFTERGLOW_CACHE, else XDG_CACHE_HOME/afterglow, else HOME/.cache/afterglow, else a
 /// folder of the user's under the system's temporary folder. Not created.

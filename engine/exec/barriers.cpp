@@ -49,7 +49,7 @@ std::vector<KernelBarriers> kernel_barriers(const Plan& plan, const std::vector<
   return out;
 }
 
-void record_barriers(VkCommandBuffer commands, const KernelBarriers& barriers) {
+void record_barriers(const Device& device, VkCommandBuffer commands, const KernelBarriers& barriers) {
   if (barriers.images.empty() && !barriers.memory) return;
   const VkMemoryBarrier2 memory{
       .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
@@ -63,7 +63,7 @@ void record_barriers(VkCommandBuffer commands, const KernelBarriers& barriers) {
                               .pMemoryBarriers = &memory,
                               .imageMemoryBarrierCount = static_cast<std::uint32_t>(barriers.images.size()),
                               .pImageMemoryBarriers = barriers.images.data()};
-  vkCmdPipelineBarrier2(commands, &info);
+  device.vk().vkCmdPipelineBarrier2(commands, &info);
 }
 
 }  // namespace afterglow

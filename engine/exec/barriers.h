@@ -1,11 +1,11 @@
 // What must happen between kernels, as data: pure functions of the plan.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <functional>
 #include <vector>
 
+#include "gpu/device.h"
+#include "gpu/vulkan.h"
 #include "graph/plan.h"
 
 namespace afterglow {
@@ -40,6 +40,6 @@ std::vector<KernelBarriers> kernel_barriers(const Plan& plan, const std::vector<
                                             const std::function<VkImage(ImageId)>& image_of, VkImageLayout read_layout);
 
 /// Records what must happen; nothing when that is nothing.
-void record_barriers(VkCommandBuffer commands, const KernelBarriers& barriers);
+void record_barriers(const Device& device, VkCommandBuffer commands, const KernelBarriers& barriers);
 
 }  // namespace afterglow

@@ -97,8 +97,8 @@ Result<Calibration> Calibration::load(const std::filesystem::path& file) {
   return parse(text, file.string());
 }
 
-Result<Calibration> Calibration::shipped() {
-  const auto file = find_installation() / kShipped;
+Result<Calibration> Calibration::shipped(const std::filesystem::path& installation) {
+  const auto file = (installation.empty() ? find_installation() : installation) / kShipped;
   std::error_code none;
   if (!std::filesystem::exists(file, none)) return Calibration{};
   AFTERGLOW_TRY(const std::string text, read_file(file));

@@ -38,8 +38,9 @@ struct Calibration {
   /// Errors (io): not JSON, not such a table, an unknown choice; they name the entry.
   static Result<Calibration> parse(const std::string& json, const std::string& file);
   static Result<Calibration> load(const std::filesystem::path& file);
-  /// The table that comes with the program; empty where an installation has none.
-  static Result<Calibration> shipped();
+  /// The table that comes with the program, in `installation` or else in find_installation(); empty where there is
+  /// none.
+  static Result<Calibration> shipped(const std::filesystem::path& installation = {});
 
   struct Found {
     ExecutionConfig choice;

@@ -1,11 +1,11 @@
 // Pixels between the host's floats and the formats of device images.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+
+#include "gpu/vulkan.h"
 
 namespace afterglow {
 

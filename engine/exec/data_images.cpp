@@ -43,8 +43,8 @@ Result<DataImages> DataImages::create(const Device& device, const Graph& graph, 
   }
   if (barriers.empty()) return out;
   AFTERGLOW_TRY(Submitter submitter, Submitter::create(device));
-  AFTERGLOW_CHECK(
-      submitter.submit([&](VkCommandBuffer commands) { record_barriers(commands, barriers.data(), barriers.size()); }));
+  AFTERGLOW_CHECK(submitter.submit(
+      [&](VkCommandBuffer commands) { record_barriers(device, commands, barriers.data(), barriers.size()); }));
   AFTERGLOW_CHECK(submitter.wait());
   return out;
 }

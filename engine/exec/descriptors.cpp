@@ -22,15 +22,16 @@ Result<DescriptorPoolHandle> create_pool(const Device& device, const std::vector
                                         .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
                                         .pPoolSizes = sizes.data()};
   VkDescriptorPool pool = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateDescriptorPool(device.handle(), &info, nullptr, &pool), "cannot create a descriptor pool");
-  return DescriptorPoolHandle(device.handle(), pool);
+  AFTERGLOW_VK(device.vk().vkCreateDescriptorPool(device.handle(), &info, nullptr, &pool),
+               "cannot create a descriptor pool");
+  return DescriptorPoolHandle(device, pool);
 }
 
 }  // namespace
 
 Result<Descriptors> Descriptors::create(const Device& device, const std::vector<SetNeeds>& needs) {
   Descriptors out;
-  out.device_ = device.handle();
+  out.device_ = &device;
   AFTERGLOW_TRY(out.pool_, create_pool(device, needs));
   for (const auto& need : needs) {
     const VkDescriptorSetAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
@@ -38,7 +39,7 @@ Result<Descriptors> Descriptors::create(const Device& device, const std::vector<
                                                .descriptorSetCount = 1,
                                                .pSetLayouts = &need.layout};
     VkDescriptorSet set = VK_NULL_HANDLE;
-    AFTERGLOW_VK(vkAllocateDescriptorSets(device.handle(), &allocate, &set), "cannot allocate descriptors");
+    AFTERGLOW_VK(device.vk().vkAllocateDescriptorSets(device.handle(), &allocate, &set), "cannot allocate descriptors");
     out.sets_.push_back(set);
     out.images_.push_back(need.images);
     if (need.block.range == 0) continue;
@@ -48,7 +49,7 @@ Result<Descriptors> Descriptors::create(const Device& device, const std::vector<
                                      .descriptorCount = 1,
                                      .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                                      .pBufferInfo = &need.block};
-    vkUpdateDescriptorSets(device.handle(), 1, &write, 0, nullptr);
+    device.vk().vkUpdateDescriptorSets(device.handle(), 1, &write, 0, nullptr);
   }
   return out;
 }
@@ -62,7 +63,7 @@ void Descriptors::write_image(std::size_t kernel, std::size_t slot, VkImageView 
                                    .descriptorCount = 1,
                                    .descriptorType = images_[kernel][slot],
                                    .pImageInfo = &image};
-  vkUpdateDescriptorSets(device_, 1, &write, 0, nullptr);
+  device_->vk().vkUpdateDescriptorSets(device_->handle(), 1, &write, 0, nullptr);
 }
 
 }  // namespace afterglow

@@ -28,7 +28,7 @@ class Descriptors {
                    VkSampler sampler) const;
 
  private:
-  VkDevice device_ = VK_NULL_HANDLE;
+  const Device* device_ = nullptr;
   DescriptorPoolHandle pool_;
   std::vector<VkDescriptorSet> sets_;
   std::vector<std::vector<VkDescriptorType>> images_;  ///< parallel to `sets_`

@@ -30,6 +30,8 @@ struct HostImage {
   Size size;
   int channels = 4;
   std::optional<Hash> content{};  ///< of the pixels, when known: an image of the same content is not uploaded again
+  /// In place of `pixels`, for pictures that are stored otherwise: writes row y as floats. Called on several threads.
+  std::function<void(int y, float* row)> read_row{};
 };
 
 struct HostResult {
@@ -41,6 +43,9 @@ struct HostResult {
   /// Of a program with ProgramOptions::flag_non_finite: some alpha is 0. Such a program's `pixels` have no other alpha.
   bool flagged = false;
   bool keep_alpha = false;  ///< write R, G and B alone where `pixels` has the size of the result already
+  /// In place of `pixels` and `codes`: takes `width` pixels of row y, from column x on, as they lie in an image of
+  /// `format` (RGBA32F, RGBA16F, RGBA8). Returns how many values were held at ±65504. Called on several threads.
+  std::function<std::uint64_t(int x, int y, int width, VkFormat format, const std::byte* from)> write_row{};
 };
 
 /// An image of a Renderer between frames. It may be sampled in fragment shaders of later submissions to the device's

@@ -15,9 +15,24 @@ namespace {
 Result<std::uint64_t> write_pixels(Staging& staging, FrameImage& image, const HostImage& host, const Rect& part,
                                    Brightest* brightest) {
   const ImageDesc& desc = image.image.desc();
+  const auto width = static_cast<std::ptrdiff_t>(desc.size.width);
+  // Rows that are made for this may be made in the image itself, where the CPU can read it as fast as its own memory.
+  const bool in_place = image.direct && host.channels == 4 && desc.format == VK_FORMAT_R32G32B32A32_SFLOAT;
   const auto pack = [&](int y, std::byte* to) -> std::uint64_t {
     if (y < part.y || y >= part.y + part.height) return 0;
-    const float* row = host.pixels + static_cast<std::ptrdiff_t>(y) * desc.size.width * host.channels;
+    if (host.read_row && in_place) {
+      auto* row = reinterpret_cast<float*>(to);
+      host.read_row(y, row);
+      if (brightest) brightest->add_row(row, host.channels, desc.size.width);
+      return 0;
+    }
+    thread_local std::vector<float> made;
+    const float* row = host.pixels + static_cast<std::ptrdiff_t>(y) * width * host.channels;
+    if (host.read_row) {
+      made.resize(static_cast<std::size_t>(width * host.channels));
+      host.read_row(y, made.data());
+      row = made.data();
+    }
     if (brightest) brightest->add_row(row, host.channels, desc.size.width);
     return pack_row(row, host.channels, desc.size.width, desc.format, to);
   };
@@ -116,7 +131,7 @@ void FrameInputs::before(const Program& program, VkCommandBuffer commands) {
                                      VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(wanted), wanted));
     image.layout = wanted;
   }
-  record_barriers(commands, barriers.data(), barriers.size());
+  record_barriers(*device_, commands, barriers.data(), barriers.size());
 }
 
 void FrameInputs::after(VkCommandBuffer commands) {
@@ -131,7 +146,7 @@ void FrameInputs::after(VkCommandBuffer commands) {
         shown_access(image, VK_ACCESS_2_HOST_WRITE_BIT), to));
     image.layout = to;
   }
-  record_barriers(commands, barriers.data(), barriers.size());
+  record_barriers(*device_, commands, barriers.data(), barriers.size());
 }
 
 bool FrameInputs::readable() const {

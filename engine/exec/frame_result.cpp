@@ -48,7 +48,7 @@ void FrameResult::before(VkCommandBuffer commands) {
         image_barrier(image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                       0, VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, drawing_layout()));
-  record_barriers(commands, barriers.data(), barriers.size());
+  record_barriers(*device_, commands, barriers.data(), barriers.size());
 }
 
 void FrameResult::after(VkCommandBuffer commands) {
@@ -59,7 +59,7 @@ void FrameResult::after(VkCommandBuffer commands) {
     barriers.push_back(image_barrier(image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, drawing_layout(), shown_stage(image_),
                                      shown_access(image_, VK_ACCESS_2_HOST_READ_BIT), image_.layout));
-  record_barriers(commands, barriers.data(), barriers.size());
+  record_barriers(*device_, commands, barriers.data(), barriers.size());
 }
 
 /// Calls `row` for every row of that part, with its first pixel there, and sums up what it returns.
@@ -98,6 +98,11 @@ Result<std::uint64_t> FrameResult::download_looking(Staging& staging, const Rect
   const auto first = [&](int y) {
     return row_values * static_cast<std::size_t>(y) + static_cast<std::size_t>(part.x) * 4;
   };
+  if (out.write_row)
+    return over_rows_of(staging, part, [&](int y, const std::byte* from) {
+      look(from, format);
+      return out.write_row(part.x, y, part.width, format, from);
+    });
   if (format == VK_FORMAT_R8G8B8A8_UNORM) {
     out.codes.resize(row_values * static_cast<std::size_t>(height));
     return over_rows_of(staging, part, [&](int y, const std::byte* from) {

@@ -342,7 +342,7 @@ Result<FrameTimes> FrameRunner::finish(HostResult& out) {
   out.clamped = s.inputs.clamped();
   if (!ran) {
     s.begun.reset();
-    copy_source(source, out.pixels);
+    copy_source(source, out);
     return times;
   }
   const auto start = Clock::now();
@@ -361,7 +361,7 @@ Result<FrameTimes> FrameRunner::run(Program& program, const std::map<std::string
     out.clamped = 0;
     out.flagged = false;
     AFTERGLOW_CHECK(check_input(graph, "source", graph.source, inputs));
-    copy_source(inputs.at("source"), out.pixels);
+    copy_source(inputs.at("source"), out);
     return FrameTimes{};
   }
   AFTERGLOW_CHECK(begin(program, inputs, timing, choose));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "exec/convert.h"
+#include "gpu/image.h"
 
 namespace afterglow {
 
@@ -15,7 +16,7 @@ Error input_error(const std::string& message) { return Error{ErrorKind::other, m
 Result<void> check_input(const Graph& graph, const std::string& name, ImageId id,
                          const std::map<std::string, HostImage>& inputs) {
   const auto found = inputs.find(name);
-  if (found == inputs.end() || !found->second.pixels)
+  if (found == inputs.end() || (!found->second.pixels && !found->second.read_row))
     return input_error(fmt::format("the frame has no image '{}'", name));
   const Size size = found->second.size, wanted = graph.images[id].size;
   if (size != wanted) {
@@ -39,9 +40,21 @@ VkFormat input_format(const std::string& name, const HostImage& image, VkFormat 
   return image.channels == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
-void copy_source(const HostImage& source, std::vector<float>& pixels) {
-  if (source.pixels == pixels.data() && source.channels == 4) return;
+void copy_source(const HostImage& source, HostResult& out) {
+  std::vector<float>& pixels = out.pixels;
   const auto [width, height] = source.size;
+  if (source.read_row && out.write_row) {
+    constexpr VkFormat kFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    std::vector<float> row(static_cast<std::size_t>(width) * static_cast<std::size_t>(source.channels));
+    std::vector<std::byte> packed(static_cast<std::size_t>(width) * bytes_per_pixel(kFormat));
+    for (int y = 0; y < height; ++y) {
+      source.read_row(y, row.data());
+      pack_row(row.data(), source.channels, width, kFormat, packed.data());
+      out.clamped += out.write_row(0, y, width, kFormat, packed.data());
+    }
+    return;
+  }
+  if (source.pixels == pixels.data() && source.channels == 4) return;
   std::vector<float> copy(static_cast<std::size_t>(source.size.area()) * 4);
   for (int y = 0; y < height; ++y) {
     const auto first = static_cast<std::ptrdiff_t>(y) * width;

@@ -1,13 +1,12 @@
 // What a frame is given, checked against what its program reads.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <map>
 #include <string>
 #include <vector>
 
 #include "exec/frame.h"
+#include "gpu/vulkan.h"
 
 namespace afterglow {
 
@@ -21,7 +20,7 @@ std::map<std::string, ImageId> inputs_of(const Graph& graph);
 /// Depths keep one channel; everything but the source is stored as full floats, whatever the storage of the stack.
 VkFormat input_format(const std::string& name, const HostImage& image, VkFormat storage);
 
-/// The source as RGBA; `pixels` may be its own memory.
-void copy_source(const HostImage& source, std::vector<float>& pixels);
+/// The source as RGBA; the result's pixels may be its own memory. Pictures with `read_row` go to a `write_row`.
+void copy_source(const HostImage& source, HostResult& out);
 
 }  // namespace afterglow

@@ -14,8 +14,8 @@ Result<VkQueryPool> KernelTimer::queries(std::size_t count) {
                                    .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                    .queryCount = static_cast<std::uint32_t>(count)};
   VkQueryPool pool = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateQueryPool(device_->handle(), &info, nullptr, &pool), "cannot create a query pool");
-  pool_ = QueryPoolHandle(device_->handle(), pool);
+  AFTERGLOW_VK(device_->vk().vkCreateQueryPool(device_->handle(), &info, nullptr, &pool), "cannot create a query pool");
+  pool_ = QueryPoolHandle(*device_, pool);
   size_ = count;
   ++pools_;
   return pool;
@@ -23,10 +23,11 @@ Result<VkQueryPool> KernelTimer::queries(std::size_t count) {
 
 Result<std::vector<KernelTime>> KernelTimer::read(const Plan& plan) const {
   std::vector<std::uint64_t> ticks(plan.kernels.size() + 1);
-  AFTERGLOW_VK(vkGetQueryPoolResults(device_->handle(), pool_.get(), 0, static_cast<std::uint32_t>(ticks.size()),
-                                     ticks.size() * sizeof ticks[0], ticks.data(), sizeof ticks[0],
-                                     VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
-               "cannot read timestamps");
+  AFTERGLOW_VK(
+      device_->vk().vkGetQueryPoolResults(device_->handle(), pool_.get(), 0, static_cast<std::uint32_t>(ticks.size()),
+                                          ticks.size() * sizeof ticks[0], ticks.data(), sizeof ticks[0],
+                                          VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+      "cannot read timestamps");
   const double milliseconds_per_tick = static_cast<double>(device_->properties().limits.timestampPeriod) * 1e-6;
   std::vector<KernelTime> times;
   for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
@@ -38,8 +39,8 @@ Result<std::vector<KernelTime>> KernelTimer::read(const Plan& plan) const {
 
 Result<double> KernelTimer::between() const {
   std::array<std::uint64_t, 2> ticks{};
-  AFTERGLOW_VK(vkGetQueryPoolResults(device_->handle(), pool_.get(), 0, 2, sizeof ticks, ticks.data(), sizeof ticks[0],
-                                     VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+  AFTERGLOW_VK(device_->vk().vkGetQueryPoolResults(device_->handle(), pool_.get(), 0, 2, sizeof ticks, ticks.data(),
+                                                   sizeof ticks[0], VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
                "cannot read timestamps");
   return static_cast<double>((ticks[1] - ticks[0]) & device_->timestamp_mask()) *
          static_cast<double>(device_->properties().limits.timestampPeriod) * 1e-6;

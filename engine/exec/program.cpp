@@ -100,10 +100,11 @@ void Program::record(VkCommandBuffer commands, int only, VkQueryPool timestamps,
   }
   const auto stamp = [&](std::size_t query) {
     if (timestamps == VK_NULL_HANDLE) return;
-    vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, timestamps, static_cast<std::uint32_t>(query));
+    s.device.vk().vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, timestamps,
+                                       static_cast<std::uint32_t>(query));
   };
   if (timestamps != VK_NULL_HANDLE) {
-    vkCmdResetQueryPool(commands, timestamps, 0, static_cast<std::uint32_t>(count + 1));
+    s.device.vk().vkCmdResetQueryPool(commands, timestamps, 0, static_cast<std::uint32_t>(count + 1));
   }
   stamp(0);
   if (s.histories) s.record_initial(commands);

@@ -1,8 +1,6 @@
 // A graph made runnable on a device: pipelines, memory, descriptors. Record it into any command buffer.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -13,6 +11,7 @@
 #include "core/diagnostics.h"
 #include "core/result.h"
 #include "gpu/device.h"
+#include "gpu/vulkan.h"
 #include "graph/graph.h"
 #include "graph/plan.h"
 #include "graph/region.h"

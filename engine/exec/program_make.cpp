@@ -16,7 +16,7 @@ namespace {
 /// Whether optimally tiled images of the format can be used so.
 bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted) {
   VkFormatProperties properties{};
-  vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
+  device.vk().vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
   return (properties.optimalTilingFeatures & wanted) == wanted;
 }
 

@@ -82,9 +82,9 @@ void Program::State::record_initial(VkCommandBuffer commands) const {
     VkClearColorValue value{};
     for (std::size_t i = 0; i < 4; ++i) value.float32[i] = static_cast<float>(history.initial[i]);
     const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    afterglow::record_barriers(commands, &before, 1);
-    vkCmdClearColorImage(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &all);
-    afterglow::record_barriers(commands, &after, 1);
+    afterglow::record_barriers(device, commands, &before, 1);
+    device.vk().vkCmdClearColorImage(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &all);
+    afterglow::record_barriers(device, commands, &after, 1);
   }
 }
 
@@ -98,7 +98,7 @@ void Program::State::record_one(VkCommandBuffer commands, std::size_t kernel, Ke
 void Program::State::record_all(VkCommandBuffer commands, const std::function<void(std::size_t)>& stamp) const {
   const auto& all = kernels[static_cast<std::size_t>(parity())];
   const bool anew = begins_anew();
-  afterglow::record_barriers(commands, begin);
+  afterglow::record_barriers(device, commands, begin);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (anew)
       record_one(commands, i, all[i].barriers);
@@ -127,7 +127,7 @@ void Program::State::record_some(VkCommandBuffer commands, const std::vector<boo
   KernelBarriers linear_ones;  // those that run may never have been drawn before
   for (const ImageId id : targets)
     for (const VkImage image : arena.linear_images(id)) linear_ones.images.push_back(into_general(image));
-  afterglow::record_barriers(commands, linear_ones);
+  afterglow::record_barriers(device, commands, linear_ones);
   for (std::size_t i = 0, next = 0; i < run.size(); ++i) {
     if (run[i]) {
       KernelBarriers before = std::move(barriers[next++]);
@@ -142,9 +142,9 @@ void Program::record_again(VkCommandBuffer commands, std::size_t kernel, VkQuery
   const State& s = *state_;
   const auto stamp = [&](std::uint32_t query) {
     if (timestamps == VK_NULL_HANDLE) return;
-    vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, timestamps, query);
+    s.device.vk().vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, timestamps, query);
   };
-  if (timestamps != VK_NULL_HANDLE) vkCmdResetQueryPool(commands, timestamps, 0, 2);
+  if (timestamps != VK_NULL_HANDLE) s.device.vk().vkCmdResetQueryPool(commands, timestamps, 0, 2);
   std::vector<bool> run(s.plan.kernels.size(), false);
   run[kernel] = true;
   stamp(0);
@@ -156,7 +156,7 @@ void Program::record_again(VkCommandBuffer commands, std::size_t kernel, VkQuery
   if (s.linear || !s.arena.image(output)) return;
   KernelBarriers after;
   after.images = {before_reading(s.arena.image(output)->get(), s.read_layout())};
-  afterglow::record_barriers(commands, after);
+  afterglow::record_barriers(s.device, commands, after);
 }
 
 }  // namespace afterglow

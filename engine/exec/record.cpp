@@ -9,7 +9,7 @@ namespace afterglow {
 void record_kernel(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel,
                    const std::vector<VkImageView>& result) {
   device.begin_label(commands, kernel.name);
-  record_barriers(commands, kernel.barriers);
+  record_barriers(device, commands, kernel.barriers);
 
   const auto width = static_cast<std::uint32_t>(kernel.target_size.width);
   const auto height = static_cast<std::uint32_t>((kernel.target_size.height + kernel.rows - 1) / kernel.rows);
@@ -32,19 +32,20 @@ void record_kernel(const Device& device, VkCommandBuffer commands, const KernelC
                                   .layerCount = 1,
                                   .colorAttachmentCount = static_cast<std::uint32_t>(targets.size()),
                                   .pColorAttachments = colors.data()};
-  vkCmdBeginRendering(commands, &rendering);
+  device.vk().vkCmdBeginRendering(commands, &rendering);
   const VkViewport viewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1};
-  vkCmdSetViewport(commands, 0, 1, &viewport);
-  vkCmdSetScissor(commands, 0, 1, &area);
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, kernel.pipeline);
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, kernel.layout, 0, 1, &kernel.set, 0, nullptr);
+  device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
+  device.vk().vkCmdSetScissor(commands, 0, 1, &area);
+  device.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, kernel.pipeline);
+  device.vk().vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, kernel.layout, 0, 1, &kernel.set, 0,
+                                      nullptr);
   const std::array<std::int32_t, 4> sizes{kernel.target_size.width, kernel.target_size.height,
                                           kernel.first_image_size.width, kernel.first_image_size.height};
   static_assert(sizeof sizes == kPushConstantBytes);
-  vkCmdPushConstants(commands, kernel.layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof sizes, sizes.data());
-  vkCmdDraw(commands, 3, 1, 0, 0);
-  vkCmdEndRendering(commands);
-  record_barriers(commands, kernel.after);
+  device.vk().vkCmdPushConstants(commands, kernel.layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof sizes, sizes.data());
+  device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
+  device.vk().vkCmdEndRendering(commands);
+  record_barriers(device, commands, kernel.after);
   device.end_label(commands);
 }
 

@@ -129,7 +129,7 @@ Result<void> Renderer::submit(RenderRequest request) {
     s.forget_results_but_of(slot);
   } else {
     const auto source = request.inputs.find("source");
-    if (source == request.inputs.end() || !source->second.pixels)
+    if (source == request.inputs.end() || (!source->second.pixels && !source->second.read_row))
       return Error{ErrorKind::other, "the frame has no image 'source'"};
     slot.untouched = source->second;
   }
@@ -146,7 +146,7 @@ Result<FrameReport> Renderer::collect(HostResult& out) {
   if (!slot.runs) {
     out.clamped = 0;
     out.flagged = false;
-    copy_source(slot.untouched, out.pixels);
+    copy_source(slot.untouched, out);
     return std::move(slot.report);
   }
   AFTERGLOW_TRY(slot.report.times, slot.runner->finish(out));

@@ -95,16 +95,16 @@ Result<std::uint64_t> Staging::upload(const StagedImage& image, const PackRow& p
       if (is_first) {
         const auto begin = image_barrier(image.image, kShader, 0, VK_IMAGE_LAYOUT_UNDEFINED, kTransfer,
                                          VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-        record_barriers(commands, &begin, 1);
+        record_barriers(*device_, commands, &begin, 1);
       }
       const VkBufferImageCopy region = copy_of(image, first, rows);
-      vkCmdCopyBufferToImage(commands, band.buffer.get(), image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                             &region);
+      device_->vk().vkCmdCopyBufferToImage(commands, band.buffer.get(), image.image,
+                                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
       if (is_last) {
         const auto end =
             image_barrier(image.image, kTransfer, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                           kShader, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-        record_barriers(commands, &end, 1);
+        record_barriers(*device_, commands, &end, 1);
       }
     }));
   }
@@ -122,10 +122,10 @@ Result<void> Staging::submit_download(Band& band, const StagedImage& image, VkIm
       const auto begin = image_barrier(image.image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | kShader,
                                        VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, layout, kTransfer,
                                        VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-      record_barriers(commands, &begin, 1);
+      record_barriers(*device_, commands, &begin, 1);
     }
     const VkBufferImageCopy region = copy_of(image, first, rows);
-    vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, band.buffer.get(), 1,
+    device_->vk().vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, band.buffer.get(), 1,
                            &region);
     const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                                    .srcStageMask = kTransfer,
@@ -139,7 +139,7 @@ Result<void> Staging::submit_download(Band& band, const StagedImage& image, VkIm
                                       .pMemoryBarriers = &to_host,
                                       .imageMemoryBarrierCount = is_last ? 1u : 0u,
                                       .pImageMemoryBarriers = &end};
-    vkCmdPipelineBarrier2(commands, &dependency);
+    device_->vk().vkCmdPipelineBarrier2(commands, &dependency);
   }));
   band.first_row = first;
   band.rows = rows;

@@ -12,18 +12,19 @@ Result<Submitter> Submitter::create(const Device& device) {
                                           .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                           .queueFamilyIndex = device.queue_family()};
   VkCommandPool pool = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateCommandPool(device.handle(), &pool_info, nullptr, &pool), "cannot create a command pool");
-  out.pool_ = CommandPoolHandle(device.handle(), pool);
+  AFTERGLOW_VK(device.vk().vkCreateCommandPool(device.handle(), &pool_info, nullptr, &pool),
+               "cannot create a command pool");
+  out.pool_ = CommandPoolHandle(device, pool);
   const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                              .commandPool = pool,
                                              .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                              .commandBufferCount = kBuffers};
-  AFTERGLOW_VK(vkAllocateCommandBuffers(device.handle(), &allocate, out.commands_.data()),
+  AFTERGLOW_VK(device.vk().vkAllocateCommandBuffers(device.handle(), &allocate, out.commands_.data()),
                "cannot allocate a command buffer");
   const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
   VkFence fence = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateFence(device.handle(), &fence_info, nullptr, &fence), "cannot create a fence");
-  out.fence_ = FenceHandle(device.handle(), fence);
+  AFTERGLOW_VK(device.vk().vkCreateFence(device.handle(), &fence_info, nullptr, &fence), "cannot create a fence");
+  out.fence_ = FenceHandle(device, fence);
   return out;
 }
 
@@ -46,9 +47,9 @@ Result<void> Submitter::record(const std::function<void(VkCommandBuffer)>& recor
   VkCommandBuffer commands = commands_[static_cast<std::size_t>(which)];
   AFTERGLOW_CHECK(wait());
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  AFTERGLOW_VK(vkBeginCommandBuffer(commands, &begin), "cannot record commands");
+  AFTERGLOW_VK(device_->vk().vkBeginCommandBuffer(commands, &begin), "cannot record commands");
   record(commands);
-  AFTERGLOW_VK(vkEndCommandBuffer(commands), "cannot record commands");
+  AFTERGLOW_VK(device_->vk().vkEndCommandBuffer(commands), "cannot record commands");
   ++recordings_;
   return {};
 }
@@ -60,7 +61,7 @@ Result<void> Submitter::submit_again(int which) {
   const VkSubmitInfo2 info{
       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &buffer};
   const auto lock = device_->lock_queue();
-  AFTERGLOW_VK(vkQueueSubmit2(device_->queue(), 1, &info, fence_.get()), "cannot submit");
+  AFTERGLOW_VK(device_->vk().vkQueueSubmit2(device_->queue(), 1, &info, fence_.get()), "cannot submit");
   pending_ = true;
   return {};
 }
@@ -70,7 +71,7 @@ Result<void> Submitter::wait() {
   const VkFence fence = fence_.get();
   pending_ = false;
   AFTERGLOW_VK(wait_for_fence(*device_, fence), "the device did not finish");
-  AFTERGLOW_VK(vkResetFences(device_->handle(), 1, &fence), "cannot reset a fence");
+  AFTERGLOW_VK(device_->vk().vkResetFences(device_->handle(), 1, &fence), "cannot reset a fence");
   return {};
 }
 

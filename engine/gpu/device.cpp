@@ -13,7 +13,7 @@ namespace afterglow {
 
 namespace {
 
-Result<VkDevice> open_device(const PhysicalDevice& chosen, bool present) {
+Result<VkDevice> open_device(const VulkanFunctions& vk, const PhysicalDevice& chosen, bool present) {
   const char* swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
   const float priority = 1;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -30,7 +30,7 @@ Result<VkDevice> open_device(const PhysicalDevice& chosen, bool present) {
                                 .enabledExtensionCount = present ? 1u : 0u,
                                 .ppEnabledExtensionNames = &swapchain};
   VkDevice handle = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateDevice(chosen.handle, &info, nullptr, &handle),
+  AFTERGLOW_VK(vk.vkCreateDevice(chosen.handle, &info, nullptr, &handle),
                fmt::format("cannot open device '{}'", chosen.info.name));
   return handle;
 }
@@ -42,12 +42,13 @@ struct Opened {
 
 /// Opens the device that `choice` means. A GPU that is listed but cannot be opened (its driver is broken, its users are
 /// too many) does not keep "auto" from the ones behind it.
-Result<Opened> open_chosen(std::vector<DeviceInfo> infos, const std::vector<PhysicalDevice>& devices,
-                           const DeviceOptions& options, Diagnostics& diagnostics) {
+Result<Opened> open_chosen(const VulkanFunctions& vk, std::vector<DeviceInfo> infos,
+                           const std::vector<PhysicalDevice>& devices, const DeviceOptions& options,
+                           Diagnostics& diagnostics) {
   const std::string& choice = options.device;
   for (;;) {
     AFTERGLOW_TRY(const std::size_t index, choose_device(infos, choice));
-    auto opened = open_device(devices[index], options.presentation != nullptr);
+    auto opened = open_device(vk, devices[index], options.presentation != nullptr);
     if (opened) return Opened{index, *opened};
     const bool automatic = choice.empty() || choice == "auto";
     if (!automatic) return std::move(opened).error();
@@ -58,10 +59,11 @@ Result<Opened> open_chosen(std::vector<DeviceInfo> infos, const std::vector<Phys
 }
 
 /// With a window: judged by whether they can present to it. Its surface serves for that alone.
-Result<std::vector<PhysicalDevice>> devices_for(VkInstance instance, const Presentation* presentation) {
-  if (!presentation) return enumerate_devices(instance);
-  AFTERGLOW_TRY(const Surface surface, Surface::create(instance, *presentation));
-  return enumerate_devices(instance, surface.get());
+Result<std::vector<PhysicalDevice>> devices_for(const VulkanFunctions& vk, VkInstance instance,
+                                                const Presentation* presentation) {
+  if (!presentation) return enumerate_devices(vk, instance);
+  AFTERGLOW_TRY(const Surface surface, Surface::create(vk, instance, *presentation));
+  return enumerate_devices(vk, instance, surface.get());
 }
 
 }  // namespace
@@ -70,10 +72,11 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options, Dia
   auto log = std::make_shared<ValidationLog>();
   const auto extensions = options.presentation ? options.presentation->instance_extensions : std::vector<std::string>{};
   AFTERGLOW_TRY(Instance instance, Instance::create(options.validate ? log : nullptr, extensions));
-  AFTERGLOW_TRY(const auto devices, devices_for(instance.get(), options.presentation.get()));
+  AFTERGLOW_TRY(const auto devices, devices_for(instance.functions(), instance.get(), options.presentation.get()));
   std::vector<DeviceInfo> infos;
   for (const auto& device : devices) infos.push_back(device.info);
-  AFTERGLOW_TRY(const Opened opened, open_chosen(std::move(infos), devices, options, diagnostics));
+  AFTERGLOW_TRY(const Opened opened,
+                open_chosen(instance.functions(), std::move(infos), devices, options, diagnostics));
   const PhysicalDevice& chosen = devices[opened.index];
 
   std::unique_ptr<Device> device(new Device);
@@ -81,11 +84,11 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options, Dia
   device->presentation_ = options.presentation;
   device->log_ = std::move(log);
   device->device_ = opened.handle;
+  device->functions_ = instance.functions();
   device->instance_ = instance.release(device->messenger_);
   device->physical_ = chosen.handle;
   device->queue_family_ = chosen.queue_family;
   device->info_ = chosen.info;
-  vkGetDeviceQueue(opened.handle, chosen.queue_family, 0, &device->queue_);
   AFTERGLOW_CHECK(device->finish());
   diagnostics.note(fmt::format("device: {} ({}, {})", chosen.info.name, chosen.info.type, chosen.info.driver));
   return device;
@@ -96,21 +99,24 @@ Result<std::unique_ptr<Device>> Device::adopt(const AdoptedDevice& adopted, Diag
       adopted.device == VK_NULL_HANDLE || adopted.queue == VK_NULL_HANDLE) {
     return Error{ErrorKind::device, "an adopted device needs an instance, a physical device, a device and a queue"};
   }
-  const PhysicalDevice described = describe_device(adopted.physical_device);
+  AFTERGLOW_TRY(VulkanFunctions functions, VulkanFunctions::load(adopted.get_instance_proc_addr));
+  AFTERGLOW_CHECK(functions.load_instance(adopted.instance));
+  const PhysicalDevice described = describe_device(functions, adopted.physical_device);
   if (!described.info.usable) {
     return Error{ErrorKind::device,
                  fmt::format("adopted device '{}' is not usable: {}", described.info.name, described.info.why_not)};
   }
   std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, nullptr);
+  functions.vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, families.data());
+  functions.vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, families.data());
   if (adopted.queue_family >= count || !(families[adopted.queue_family].queueFlags & VK_QUEUE_GRAPHICS_BIT)) {
     return Error{ErrorKind::device, fmt::format("adopted queue family {} cannot draw", adopted.queue_family)};
   }
 
   std::unique_ptr<Device> device(new Device);
   device->log_ = std::make_shared<ValidationLog>();
+  device->functions_ = functions;
   device->instance_ = adopted.instance;
   device->physical_ = adopted.physical_device;
   device->device_ = adopted.device;
@@ -124,57 +130,58 @@ Result<std::unique_ptr<Device>> Device::adopt(const AdoptedDevice& adopted, Diag
 
 /// What created and adopted devices have in common.
 Result<void> Device::finish() {
+  AFTERGLOW_CHECK(functions_.load_device(device_));
+  if (owned_) functions_.vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+  // VK_EXT_debug_utils is enabled with validation, or by the caller whose instance it is.
+  if (owned_ && messenger_ == VK_NULL_HANDLE) {
+    functions_.vkSetDebugUtilsObjectNameEXT = nullptr;
+    functions_.vkCmdBeginDebugUtilsLabelEXT = nullptr;
+    functions_.vkCmdEndDebugUtilsLabelEXT = nullptr;
+  }
   VkPhysicalDeviceMaintenance3Properties limits{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
   VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &limits};
-  vkGetPhysicalDeviceProperties2(physical_, &properties);
+  functions_.vkGetPhysicalDeviceProperties2(physical_, &properties);
   properties_ = properties.properties;
   max_allocation_ = limits.maxMemoryAllocationSize;
-  vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
+  functions_.vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
 
   std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, nullptr);
+  functions_.vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, families.data());
+  functions_.vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, families.data());
   const std::uint32_t bits = families[queue_family_].timestampValidBits;
   if (properties_.limits.timestampPeriod > 0 && bits > 0) timestamp_mask_ = ~std::uint64_t{0} >> (64 - bits);
 
-  // Null unless VK_EXT_debug_utils was enabled on the instance, by us or by the caller whose instance it is.
-  if (messenger_ != VK_NULL_HANDLE || !owned_) {
-    const auto load = [this](const char* name) { return vkGetInstanceProcAddr(instance_, name); };
-    name_object_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(load("vkSetDebugUtilsObjectNameEXT"));
-    begin_label_ = reinterpret_cast<PFN_vkCmdBeginDebugUtilsLabelEXT>(load("vkCmdBeginDebugUtilsLabelEXT"));
-    end_label_ = reinterpret_cast<PFN_vkCmdEndDebugUtilsLabelEXT>(load("vkCmdEndDebugUtilsLabelEXT"));
-  }
-
   const VkPipelineCacheCreateInfo cache{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
-  AFTERGLOW_VK(vkCreatePipelineCache(device_, &cache, nullptr, &pipeline_cache_), "cannot create a pipeline cache");
+  AFTERGLOW_VK(functions_.vkCreatePipelineCache(device_, &cache, nullptr, &pipeline_cache_),
+               "cannot create a pipeline cache");
   return {};
 }
 
 Device::~Device() {
-  if (pipeline_cache_ != VK_NULL_HANDLE) vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
+  if (pipeline_cache_ != VK_NULL_HANDLE) functions_.vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
   if (!owned_) return;
-  vkDestroyDevice(device_, nullptr);
-  destroy_instance(instance_, messenger_);
+  functions_.vkDestroyDevice(device_, nullptr);
+  destroy_instance(functions_, instance_, messenger_);
 }
 
 void Device::set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const {
-  if (!name_object_) return;
+  if (!functions_.vkSetDebugUtilsObjectNameEXT) return;
   const VkDebugUtilsObjectNameInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
                                            .objectType = type,
                                            .objectHandle = handle,
                                            .pObjectName = name.c_str()};
-  name_object_(device_, &info);
+  functions_.vkSetDebugUtilsObjectNameEXT(device_, &info);
 }
 
 void Device::begin_label(VkCommandBuffer commands, const std::string& name) const {
-  if (!begin_label_) return;
+  if (!functions_.vkCmdBeginDebugUtilsLabelEXT) return;
   const VkDebugUtilsLabelEXT label{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, .pLabelName = name.c_str()};
-  begin_label_(commands, &label);
+  functions_.vkCmdBeginDebugUtilsLabelEXT(commands, &label);
 }
 
 void Device::end_label(VkCommandBuffer commands) const {
-  if (end_label_) end_label_(commands);
+  if (functions_.vkCmdEndDebugUtilsLabelEXT) functions_.vkCmdEndDebugUtilsLabelEXT(commands);
 }
 
 int Device::validation_errors() const { return log_->errors(); }

@@ -1,8 +1,6 @@
 // A Vulkan 1.3 device: picked by name, or adopted from the caller. Owns nothing global.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -12,6 +10,7 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
+#include "gpu/functions.h"
 
 namespace afterglow {
 
@@ -50,6 +49,8 @@ struct AdoptedDevice {
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t queue_family = 0;
+  /// Where all of Vulkan's functions come from; null: the system's loader.
+  PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
 };
 
 /// What the validation layer has said. Thread-safe; may outlive its Device, so that messages of the teardown are seen
@@ -82,6 +83,7 @@ class Device {
 
   VkInstance instance() const { return instance_; }
   VkDevice handle() const { return device_; }
+  const VulkanFunctions& vk() const { return functions_; }
   VkPhysicalDevice physical() const { return physical_; }
   VkQueue queue() const { return queue_; }
   std::unique_lock<std::mutex> lock_queue() const { return std::unique_lock(queue_mutex_); }
@@ -118,6 +120,7 @@ class Device {
  private:
   Device() = default;
   Result<void> finish();
+  VulkanFunctions functions_;
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
@@ -136,9 +139,6 @@ class Device {
   std::size_t cached_bytes_ = 0;
   std::shared_ptr<ValidationLog> log_;
   std::shared_ptr<const Presentation> presentation_;
-  PFN_vkSetDebugUtilsObjectNameEXT name_object_ = nullptr;
-  PFN_vkCmdBeginDebugUtilsLabelEXT begin_label_ = nullptr;
-  PFN_vkCmdEndDebugUtilsLabelEXT end_label_ = nullptr;
 };
 
 }  // namespace afterglow

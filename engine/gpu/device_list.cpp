@@ -35,44 +35,45 @@ int preference(const DeviceInfo& info) {
   return static_cast<int>(at - std::begin(kOrder));
 }
 
-bool can_present(VkPhysicalDevice device, std::uint32_t family, VkSurfaceKHR surface) {
+bool can_present(const VulkanFunctions& vk, VkPhysicalDevice device, std::uint32_t family, VkSurfaceKHR surface) {
   if (surface == VK_NULL_HANDLE) return true;
   VkBool32 supported = VK_FALSE;
-  return vkGetPhysicalDeviceSurfaceSupportKHR(device, family, surface, &supported) == VK_SUCCESS && supported;
+  return vk.vkGetPhysicalDeviceSurfaceSupportKHR(device, family, surface, &supported) == VK_SUCCESS && supported;
 }
 
-bool has_swapchains(VkPhysicalDevice device) {
+bool has_swapchains(const VulkanFunctions& vk, VkPhysicalDevice device) {
   std::uint32_t count = 0;
-  if (vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr) != VK_SUCCESS) return false;
+  if (vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr) != VK_SUCCESS) return false;
   std::vector<VkExtensionProperties> extensions(count);
-  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+  vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
   return std::ranges::any_of(
       extensions, [](const auto& e) { return std::string_view(e.extensionName) == VK_KHR_SWAPCHAIN_EXTENSION_NAME; });
 }
 
 /// The first family with graphics and compute (graphics alone is good enough for what we record) that can present to
 /// `surface`, when there is one: one queue does everything.
-std::optional<std::uint32_t> graphics_family(VkPhysicalDevice device, VkSurfaceKHR surface) {
+std::optional<std::uint32_t> graphics_family(const VulkanFunctions& vk, VkPhysicalDevice device, VkSurfaceKHR surface) {
   std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
   for (const VkQueueFlags wanted : {VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT, +VK_QUEUE_GRAPHICS_BIT}) {
     for (std::uint32_t i = 0; i < count; ++i) {
-      if ((families[i].queueFlags & wanted) == wanted && can_present(device, i, surface)) return i;
+      if ((families[i].queueFlags & wanted) == wanted && can_present(vk, device, i, surface)) return i;
     }
   }
   return std::nullopt;
 }
 
-bool can_draw_and_sample(VkPhysicalDevice device, VkFormat format) {
+bool can_draw_and_sample(const VulkanFunctions& vk, VkPhysicalDevice device, VkFormat format) {
   constexpr VkFormatFeatureFlags kWanted = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
   VkFormatProperties properties{};
-  vkGetPhysicalDeviceFormatProperties(device, format, &properties);
+  vk.vkGetPhysicalDeviceFormatProperties(device, format, &properties);
   return (properties.optimalTilingFeatures & kWanted) == kWanted;
 }
 
-std::string what_it_lacks(VkPhysicalDevice device, std::uint32_t api_version, VkSurfaceKHR surface) {
+std::string what_it_lacks(const VulkanFunctions& vk, VkPhysicalDevice device, std::uint32_t api_version,
+                          VkSurfaceKHR surface) {
   if (api_version < VK_API_VERSION_1_3) {
     return fmt::format("needs Vulkan 1.3, has {}.{}", VK_API_VERSION_MAJOR(api_version),
                        VK_API_VERSION_MINOR(api_version));
@@ -80,17 +81,17 @@ std::string what_it_lacks(VkPhysicalDevice device, std::uint32_t api_version, Vk
   std::vector<std::string> lacks;
   VkPhysicalDeviceVulkan13Features features13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
   VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &features13};
-  vkGetPhysicalDeviceFeatures2(device, &features);
+  vk.vkGetPhysicalDeviceFeatures2(device, &features);
   if (!features13.dynamicRendering) lacks.push_back("dynamicRendering");
   if (!features13.synchronization2) lacks.push_back("synchronization2");
-  if (!graphics_family(device, VK_NULL_HANDLE)) {
+  if (!graphics_family(vk, device, VK_NULL_HANDLE)) {
     lacks.push_back("a graphics queue");
-  } else if (!graphics_family(device, surface)) {
+  } else if (!graphics_family(vk, device, surface)) {
     lacks.push_back("a graphics queue that can show pictures in this window");
   }
-  if (surface != VK_NULL_HANDLE && !has_swapchains(device)) lacks.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-  if (!can_draw_and_sample(device, VK_FORMAT_R32G32B32A32_SFLOAT)) lacks.push_back("drawing to RGBA32F");
-  if (!can_draw_and_sample(device, VK_FORMAT_R16G16B16A16_SFLOAT)) lacks.push_back("drawing to RGBA16F");
+  if (surface != VK_NULL_HANDLE && !has_swapchains(vk, device)) lacks.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  if (!can_draw_and_sample(vk, device, VK_FORMAT_R32G32B32A32_SFLOAT)) lacks.push_back("drawing to RGBA32F");
+  if (!can_draw_and_sample(vk, device, VK_FORMAT_R16G16B16A16_SFLOAT)) lacks.push_back("drawing to RGBA16F");
   return lacks.empty() ? "" : "lacks " + join(lacks);
 }
 
@@ -120,35 +121,36 @@ Result<std::size_t> usable_or_error(std::span<const DeviceInfo> devices, std::si
 
 }  // namespace
 
-PhysicalDevice describe_device(VkPhysicalDevice device, VkSurfaceKHR surface) {
+PhysicalDevice describe_device(const VulkanFunctions& vk, VkPhysicalDevice device, VkSurfaceKHR surface) {
   VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
   VkPhysicalDeviceIDProperties id{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES, .pNext = &driver};
   VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &id};
   VkPhysicalDeviceProperties plain{};
-  vkGetPhysicalDeviceProperties(device, &plain);
+  vk.vkGetPhysicalDeviceProperties(device, &plain);
   // The driver's properties are of Vulkan 1.2; an older device may not be asked for them.
   if (plain.apiVersion < VK_API_VERSION_1_2) id.pNext = nullptr;
-  if (plain.apiVersion >= VK_API_VERSION_1_1) vkGetPhysicalDeviceProperties2(device, &properties);
+  if (plain.apiVersion >= VK_API_VERSION_1_1) vk.vkGetPhysicalDeviceProperties2(device, &properties);
 
-  PhysicalDevice out{.handle = device, .queue_family = graphics_family(device, surface).value_or(0), .info = {}};
+  PhysicalDevice out{.handle = device, .queue_family = graphics_family(vk, device, surface).value_or(0), .info = {}};
   out.info.name = plain.deviceName;
   out.info.type = type_name(plain.deviceType);
   out.info.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
   for (const auto byte : id.deviceUUID) out.info.uuid += fmt::format("{:02x}", byte);
   out.info.api_version = plain.apiVersion;
-  out.info.why_not = what_it_lacks(device, plain.apiVersion, surface);
+  out.info.why_not = what_it_lacks(vk, device, plain.apiVersion, surface);
   out.info.usable = out.info.why_not.empty();
   return out;
 }
 
-Result<std::vector<PhysicalDevice>> enumerate_devices(VkInstance instance, VkSurfaceKHR surface) {
+Result<std::vector<PhysicalDevice>> enumerate_devices(const VulkanFunctions& vk, VkInstance instance,
+                                                      VkSurfaceKHR surface) {
   std::uint32_t count = 0;
-  AFTERGLOW_VK(vkEnumeratePhysicalDevices(instance, &count, nullptr), "cannot list Vulkan devices");
+  AFTERGLOW_VK(vk.vkEnumeratePhysicalDevices(instance, &count, nullptr), "cannot list Vulkan devices");
   std::vector<VkPhysicalDevice> handles(count);
-  AFTERGLOW_VK(vkEnumeratePhysicalDevices(instance, &count, handles.data()), "cannot list Vulkan devices");
+  AFTERGLOW_VK(vk.vkEnumeratePhysicalDevices(instance, &count, handles.data()), "cannot list Vulkan devices");
   if (handles.empty()) return Error{ErrorKind::device, "no Vulkan device found"};
   std::vector<PhysicalDevice> devices;
-  for (auto* handle : handles) devices.push_back(describe_device(handle, surface));
+  for (auto* handle : handles) devices.push_back(describe_device(vk, handle, surface));
   std::ranges::stable_sort(devices, {}, [](const PhysicalDevice& d) { return preference(d.info); });
   return devices;
 }
@@ -188,7 +190,7 @@ Result<std::size_t> choose_device(std::span<const DeviceInfo> devices, const std
 
 Result<std::vector<DeviceInfo>> list_devices() {
   AFTERGLOW_TRY(const Instance instance, Instance::create(nullptr));
-  AFTERGLOW_TRY(const auto devices, enumerate_devices(instance.get()));
+  AFTERGLOW_TRY(const auto devices, enumerate_devices(instance.functions(), instance.get()));
   std::vector<DeviceInfo> out;
   for (const auto& device : devices) out.push_back(device.info);
   return out;

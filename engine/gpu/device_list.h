@@ -1,14 +1,13 @@
 // What devices there are, what they lack, and which one an option means. Used by gpu/device alone.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/result.h"
 #include "gpu/device.h"
+#include "gpu/vulkan.h"
 
 namespace afterglow {
 
@@ -19,10 +18,12 @@ struct PhysicalDevice {
 };
 
 /// All devices of the instance in the order of preference. Errors: device (none).
-Result<std::vector<PhysicalDevice>> enumerate_devices(VkInstance instance, VkSurfaceKHR surface = VK_NULL_HANDLE);
+Result<std::vector<PhysicalDevice>> enumerate_devices(const VulkanFunctions& vk, VkInstance instance,
+                                                      VkSurfaceKHR surface = VK_NULL_HANDLE);
 
 /// Name, type, driver, uuid and whether it can be used; with `surface`, whether it can present to it too.
-PhysicalDevice describe_device(VkPhysicalDevice device, VkSurfaceKHR surface = VK_NULL_HANDLE);
+PhysicalDevice describe_device(const VulkanFunctions& vk, VkPhysicalDevice device,
+                               VkSurfaceKHR surface = VK_NULL_HANDLE);
 
 /// Index into `devices` that `choice` (DeviceOptions::device) means. Pure. Errors: device, with the names there are and
 /// the nearest.

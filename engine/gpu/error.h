@@ -1,11 +1,10 @@
 // VkResult → Error.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <string_view>
 
 #include "core/result.h"
+#include "gpu/vulkan.h"
 
 namespace afterglow {
 

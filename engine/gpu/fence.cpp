@@ -6,8 +6,8 @@ namespace afterglow {
 
 VkResult wait_for_fence(const Device& device, VkFence fence) {
   const VkResult result =
-      vkWaitForFences(device.handle(), 1, &fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
-  if (result != VK_SUCCESS && result != VK_ERROR_DEVICE_LOST) vkDeviceWaitIdle(device.handle());
+      device.vk().vkWaitForFences(device.handle(), 1, &fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
+  if (result != VK_SUCCESS && result != VK_ERROR_DEVICE_LOST) device.vk().vkDeviceWaitIdle(device.handle());
   return result;
 }
 

@@ -1,20 +1,20 @@
 // Move-only owners of Vulkan objects.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <cstdint>
 #include <utility>
 
+#include "gpu/device.h"
+
 namespace afterglow {
 
-/// Owns one object that was made from a VkDevice; destroys it at the end of its life. The GPU must be done with it
-/// then.
-template <class T, void (*Destroy)(VkDevice, T, const VkAllocationCallbacks*)>
+/// Owns one object of a Device; destroys it at the end of its life. The GPU must be done with it then, and the Device
+/// still be there.
+template <class T, void (VKAPI_PTR* VulkanFunctions::*Destroy)(VkDevice, T, const VkAllocationCallbacks*)>
 class Handle {
  public:
   Handle() = default;
-  Handle(VkDevice device, T handle) : device_(device), handle_(handle) {}
+  Handle(const Device& device, T handle) : device_(&device), handle_(handle) {}
   Handle(Handle&& other) noexcept : device_(other.device_), handle_(std::exchange(other.handle_, T{VK_NULL_HANDLE})) {}
   Handle& operator=(Handle&& other) noexcept {
     std::swap(device_, other.device_);
@@ -22,7 +22,7 @@ class Handle {
     return *this;
   }
   ~Handle() {
-    if (handle_ != VK_NULL_HANDLE) Destroy(device_, handle_, nullptr);
+    if (handle_ != VK_NULL_HANDLE) (device_->vk().*Destroy)(device_->handle(), handle_, nullptr);
   }
 
   T get() const { return handle_; }
@@ -30,24 +30,24 @@ class Handle {
   std::uint64_t number() const { return reinterpret_cast<std::uint64_t>(handle_); }
 
  private:
-  VkDevice device_ = VK_NULL_HANDLE;
+  const Device* device_ = nullptr;
   T handle_ = VK_NULL_HANDLE;
 };
 
-using BufferHandle = Handle<VkBuffer, vkDestroyBuffer>;
-using CommandPoolHandle = Handle<VkCommandPool, vkDestroyCommandPool>;
-using DescriptorPoolHandle = Handle<VkDescriptorPool, vkDestroyDescriptorPool>;
-using FenceHandle = Handle<VkFence, vkDestroyFence>;
-using ImageHandle = Handle<VkImage, vkDestroyImage>;
-using ImageViewHandle = Handle<VkImageView, vkDestroyImageView>;
-using MemoryHandle = Handle<VkDeviceMemory, vkFreeMemory>;
-using PipelineHandle = Handle<VkPipeline, vkDestroyPipeline>;
-using PipelineLayoutHandle = Handle<VkPipelineLayout, vkDestroyPipelineLayout>;
-using QueryPoolHandle = Handle<VkQueryPool, vkDestroyQueryPool>;
-using SamplerHandle = Handle<VkSampler, vkDestroySampler>;
-using SetLayoutHandle = Handle<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout>;
-using SemaphoreHandle = Handle<VkSemaphore, vkDestroySemaphore>;
-using SwapchainHandle = Handle<VkSwapchainKHR, vkDestroySwapchainKHR>;
-using ShaderModuleHandle = Handle<VkShaderModule, vkDestroyShaderModule>;
+using BufferHandle = Handle<VkBuffer, &VulkanFunctions::vkDestroyBuffer>;
+using CommandPoolHandle = Handle<VkCommandPool, &VulkanFunctions::vkDestroyCommandPool>;
+using DescriptorPoolHandle = Handle<VkDescriptorPool, &VulkanFunctions::vkDestroyDescriptorPool>;
+using FenceHandle = Handle<VkFence, &VulkanFunctions::vkDestroyFence>;
+using ImageHandle = Handle<VkImage, &VulkanFunctions::vkDestroyImage>;
+using ImageViewHandle = Handle<VkImageView, &VulkanFunctions::vkDestroyImageView>;
+using MemoryHandle = Handle<VkDeviceMemory, &VulkanFunctions::vkFreeMemory>;
+using PipelineHandle = Handle<VkPipeline, &VulkanFunctions::vkDestroyPipeline>;
+using PipelineLayoutHandle = Handle<VkPipelineLayout, &VulkanFunctions::vkDestroyPipelineLayout>;
+using QueryPoolHandle = Handle<VkQueryPool, &VulkanFunctions::vkDestroyQueryPool>;
+using SamplerHandle = Handle<VkSampler, &VulkanFunctions::vkDestroySampler>;
+using SetLayoutHandle = Handle<VkDescriptorSetLayout, &VulkanFunctions::vkDestroyDescriptorSetLayout>;
+using SemaphoreHandle = Handle<VkSemaphore, &VulkanFunctions::vkDestroySemaphore>;
+using SwapchainHandle = Handle<VkSwapchainKHR, &VulkanFunctions::vkDestroySwapchainKHR>;
+using ShaderModuleHandle = Handle<VkShaderModule, &VulkanFunctions::vkDestroyShaderModule>;
 
 }  // namespace afterglow

@@ -27,8 +27,8 @@ Result<void> check_image(const Device& device, const ImageDesc& desc) {
   };
   if (width < 1 || height < 1) return fail("sizes start at 1×1");
   VkImageFormatProperties limits{};
-  const VkResult result = vkGetPhysicalDeviceImageFormatProperties(device.physical(), desc.format, VK_IMAGE_TYPE_2D,
-                                                                   desc.tiling, desc.usage, 0, &limits);
+  const VkResult result = device.vk().vkGetPhysicalDeviceImageFormatProperties(
+      device.physical(), desc.format, VK_IMAGE_TYPE_2D, desc.tiling, desc.usage, 0, &limits);
   if (result == VK_ERROR_FORMAT_NOT_SUPPORTED) return fail("the device does not support the format for this use");
   if (result != VK_SUCCESS) return vulkan_error(result, desc.name);
   const auto max_width = std::min(limits.maxExtent.width, device.properties().limits.maxFramebufferWidth);
@@ -62,18 +62,18 @@ Result<UnboundImage> UnboundImage::create(const Device& device, const ImageDesc&
       .usage = desc.usage,
       .initialLayout = initial_layout(desc)};
   VkImage handle = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateImage(device.handle(), &info, nullptr, &handle),
+  AFTERGLOW_VK(device.vk().vkCreateImage(device.handle(), &info, nullptr, &handle),
                fmt::format("cannot create image '{}' of {}×{} pixels", desc.name, desc.size.width, desc.size.height));
   UnboundImage out;
   out.desc_ = desc;
-  out.image_ = ImageHandle(device.handle(), handle);
-  vkGetImageMemoryRequirements(device.handle(), handle, &out.needs_);
+  out.image_ = ImageHandle(device, handle);
+  device.vk().vkGetImageMemoryRequirements(device.handle(), handle, &out.needs_);
   device.set_name(VK_OBJECT_TYPE_IMAGE, out.image_.number(), desc.name);
   return out;
 }
 
 Result<void> UnboundImage::bind(const Device& device, VkDeviceMemory memory, VkDeviceSize offset) {
-  AFTERGLOW_VK(vkBindImageMemory(device.handle(), image_.get(), memory, offset), desc_.name);
+  AFTERGLOW_VK(device.vk().vkBindImageMemory(device.handle(), image_.get(), memory, offset), desc_.name);
   constexpr VkImageUsageFlags kViewed = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
   if (!(desc_.usage & kViewed)) return {};
   const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
@@ -82,8 +82,8 @@ Result<void> UnboundImage::bind(const Device& device, VkDeviceMemory memory, VkD
                                    .format = desc_.format,
                                    .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
   VkImageView view = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateImageView(device.handle(), &info, nullptr, &view), desc_.name);
-  view_ = ImageViewHandle(device.handle(), view);
+  AFTERGLOW_VK(device.vk().vkCreateImageView(device.handle(), &info, nullptr, &view), desc_.name);
+  view_ = ImageViewHandle(device, view);
   return {};
 }
 
@@ -101,7 +101,7 @@ Result<GpuImage> GpuImage::create(const Device& device, UnboundImage image, cons
   AFTERGLOW_CHECK(out.image_.bind(device, out.memory_.get(), 0));
   if (access != HostAccess::none) {
     const VkImageSubresource subresource{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0};
-    vkGetImageSubresourceLayout(device.handle(), out.get(), &subresource, &out.layout_);
+    device.vk().vkGetImageSubresourceLayout(device.handle(), out.get(), &subresource, &out.layout_);
   }
   return out;
 }
@@ -123,12 +123,13 @@ VkImageMemoryBarrier2 image_barrier(VkImage image, VkPipelineStageFlags2 from_st
           .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
 }
 
-void record_barriers(VkCommandBuffer commands, const VkImageMemoryBarrier2* barriers, std::size_t count) {
+void record_barriers(const Device& device, VkCommandBuffer commands, const VkImageMemoryBarrier2* barriers,
+                     std::size_t count) {
   if (count == 0) return;
   const VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                               .imageMemoryBarrierCount = static_cast<std::uint32_t>(count),
                               .pImageMemoryBarriers = barriers};
-  vkCmdPipelineBarrier2(commands, &info);
+  device.vk().vkCmdPipelineBarrier2(commands, &info);
 }
 
 }  // namespace afterglow

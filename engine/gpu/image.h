@@ -79,6 +79,7 @@ VkImageMemoryBarrier2 image_barrier(VkImage image, VkPipelineStageFlags2 from_st
                                     VkImageLayout to);
 
 /// Records image barriers as one dependency; nothing when there are none.
-void record_barriers(VkCommandBuffer commands, const VkImageMemoryBarrier2* barriers, std::size_t count);
+void record_barriers(const Device& device, VkCommandBuffer commands, const VkImageMemoryBarrier2* barriers,
+                     std::size_t count);
 
 }  // namespace afterglow

@@ -37,11 +37,11 @@ void keep_libraries_loaded() {
 constexpr const char* kLayer = "VK_LAYER_KHRONOS_validation";
 constexpr std::size_t kMaxMessages = 1000;
 
-bool has_layer() {
+bool has_layer(const VulkanFunctions& vk) {
   std::uint32_t count = 0;
-  if (vkEnumerateInstanceLayerProperties(&count, nullptr) != VK_SUCCESS) return false;
+  if (vk.vkEnumerateInstanceLayerProperties(&count, nullptr) != VK_SUCCESS) return false;
   std::vector<VkLayerProperties> layers(count);
-  vkEnumerateInstanceLayerProperties(&count, layers.data());
+  vk.vkEnumerateInstanceLayerProperties(&count, layers.data());
   return std::ranges::any_of(layers, [](const auto& l) { return std::strcmp(l.layerName, kLayer) == 0; });
 }
 
@@ -76,10 +76,12 @@ std::vector<std::string> ValidationLog::messages() const {
 }
 
 Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log, const std::vector<std::string>& extensions) {
+  Instance out;
+  AFTERGLOW_TRY(out.functions_, VulkanFunctions::load());
   std::uint32_t version = VK_API_VERSION_1_0;
-  vkEnumerateInstanceVersion(&version);
+  if (out.functions_.vkEnumerateInstanceVersion) out.functions_.vkEnumerateInstanceVersion(&version);
   if (version < VK_API_VERSION_1_3) return Error{ErrorKind::device, "the Vulkan loader is older than 1.3"};
-  if (log && !has_layer()) {
+  if (log && !has_layer(out.functions_)) {
     return Error{ErrorKind::device, std::string("validation was asked for, but the layer ") + kLayer +
                                         " is not installed (Debian: vulkan-validationlayers)"};
   }
@@ -115,9 +117,8 @@ Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log, const std:
   info.enabledExtensionCount = static_cast<std::uint32_t>(names.size());
   info.ppEnabledExtensionNames = names.data();
 
-  Instance out;
   out.log_ = log;
-  const VkResult created = vkCreateInstance(&info, nullptr, &out.instance_);
+  const VkResult created = out.functions_.vkCreateInstance(&info, nullptr, &out.instance_);
   if (created == VK_ERROR_INCOMPATIBLE_DRIVER) {
     return Error{ErrorKind::device,
                  "no Vulkan driver found (Debian: mesa-vulkan-drivers brings one that runs on the CPU)"};
@@ -128,11 +129,11 @@ Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log, const std:
                                                 join(extensions))};
   }
   AFTERGLOW_VK(created, "cannot create a Vulkan instance");
+  AFTERGLOW_CHECK(out.functions_.load_instance(out.instance_));
   keep_libraries_loaded();
   if (log) {
     out.debug_utils_ = true;
-    const auto create_messenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
-        vkGetInstanceProcAddr(out.instance_, "vkCreateDebugUtilsMessengerEXT"));
+    const auto create_messenger = out.functions_.vkCreateDebugUtilsMessengerEXT;
     if (!create_messenger) return Error{ErrorKind::device, "the validation layer offers no VK_EXT_debug_utils"};
     AFTERGLOW_VK(create_messenger(out.instance_, &messenger, nullptr, &out.messenger_),
                  "cannot listen to the validation layer");
@@ -141,6 +142,7 @@ Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log, const std:
 }
 
 Instance& Instance::operator=(Instance&& other) noexcept {
+  std::swap(functions_, other.functions_);
   std::swap(instance_, other.instance_);
   std::swap(messenger_, other.messenger_);
   std::swap(log_, other.log_);
@@ -148,21 +150,17 @@ Instance& Instance::operator=(Instance&& other) noexcept {
   return *this;
 }
 
-Instance::~Instance() { destroy_instance(instance_, messenger_); }
+Instance::~Instance() { destroy_instance(functions_, instance_, messenger_); }
 
 VkInstance Instance::release(VkDebugUtilsMessengerEXT& messenger) {
   messenger = std::exchange(messenger_, VK_NULL_HANDLE);
   return std::exchange(instance_, VK_NULL_HANDLE);
 }
 
-void destroy_instance(VkInstance instance, VkDebugUtilsMessengerEXT messenger) {
+void destroy_instance(const VulkanFunctions& vk, VkInstance instance, VkDebugUtilsMessengerEXT messenger) {
   if (instance == VK_NULL_HANDLE) return;
-  if (messenger != VK_NULL_HANDLE) {
-    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
-        vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"));
-    destroy(instance, messenger, nullptr);
-  }
-  vkDestroyInstance(instance, nullptr);
+  if (messenger != VK_NULL_HANDLE) vk.vkDestroyDebugUtilsMessengerEXT(instance, messenger, nullptr);
+  vk.vkDestroyInstance(instance, nullptr);
 }
 
 }  // namespace afterglow

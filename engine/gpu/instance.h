@@ -1,8 +1,6 @@
 // Vulkan instances and what the validation layer says. Used by gpu/device alone.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -11,6 +9,7 @@
 
 #include "core/result.h"
 #include "gpu/device.h"
+#include "gpu/vulkan.h"
 
 namespace afterglow {
 
@@ -26,17 +25,19 @@ class Instance {
   ~Instance();
 
   VkInstance get() const { return instance_; }
+  const VulkanFunctions& functions() const { return functions_; }
   bool debug_utils() const { return debug_utils_; }
   /// Gives up ownership of the instance and its messenger.
   VkInstance release(VkDebugUtilsMessengerEXT& messenger);
 
  private:
+  VulkanFunctions functions_;
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   std::shared_ptr<ValidationLog> log_;
   bool debug_utils_ = false;
 };
 
-void destroy_instance(VkInstance instance, VkDebugUtilsMessengerEXT messenger);
+void destroy_instance(const VulkanFunctions& vk, VkInstance instance, VkDebugUtilsMessengerEXT messenger);
 
 }  // namespace afterglow

@@ -67,23 +67,23 @@ Result<Memory> Memory::allocate(const Device& device, const VkMemoryRequirements
   const VkMemoryAllocateInfo info{
       .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size, .memoryTypeIndex = *type};
   VkDeviceMemory handle = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkAllocateMemory(device.handle(), &info, nullptr, &handle),
+  AFTERGLOW_VK(device.vk().vkAllocateMemory(device.handle(), &info, nullptr, &handle),
                fmt::format("cannot allocate {} for {}", bytes_text(needs.size), what));
   Memory out;
-  out.device_ = device.handle();
-  out.memory_ = MemoryHandle(device.handle(), handle);
+  out.device_ = &device;
+  out.memory_ = MemoryHandle(device, handle);
   out.size_ = needs.size;
   out.coherent_ = device.memory().memoryTypes[*type].propertyFlags & VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   if (access != HostAccess::none) {
     void* mapped = nullptr;
-    AFTERGLOW_VK(vkMapMemory(device.handle(), handle, 0, VK_WHOLE_SIZE, 0, &mapped), what);
+    AFTERGLOW_VK(device.vk().vkMapMemory(device.handle(), handle, 0, VK_WHOLE_SIZE, 0, &mapped), what);
     out.mapped_ = static_cast<std::byte*>(mapped);
     if (device.is_cpu()) use_large_pages(out.mapped_, needs.size);
   } else if (device.is_cpu() && is_visible(device, *type)) {
     void* mapped = nullptr;
-    AFTERGLOW_VK(vkMapMemory(device.handle(), handle, 0, VK_WHOLE_SIZE, 0, &mapped), what);
+    AFTERGLOW_VK(device.vk().vkMapMemory(device.handle(), handle, 0, VK_WHOLE_SIZE, 0, &mapped), what);
     use_large_pages(static_cast<std::byte*>(mapped), needs.size);
-    vkUnmapMemory(device.handle(), handle);
+    device.vk().vkUnmapMemory(device.handle(), handle);
   }
   return out;
 }
@@ -92,28 +92,28 @@ void Memory::flush() const {
   if (coherent_ || !mapped_) return;
   const VkMappedMemoryRange range{
       .sType = VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, .memory = memory_.get(), .size = VK_WHOLE_SIZE};
-  vkFlushMappedMemoryRanges(device_, 1, &range);
+  device_->vk().vkFlushMappedMemoryRanges(device_->handle(), 1, &range);
 }
 
 void Memory::invalidate() const {
   if (coherent_ || !mapped_) return;
   const VkMappedMemoryRange range{
       .sType = VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, .memory = memory_.get(), .size = VK_WHOLE_SIZE};
-  vkInvalidateMappedMemoryRanges(device_, 1, &range);
+  device_->vk().vkInvalidateMappedMemoryRanges(device_->handle(), 1, &range);
 }
 
 Result<Buffer> Buffer::create(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage, HostAccess access,
                               std::string_view name) {
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
   VkBuffer handle = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateBuffer(device.handle(), &info, nullptr, &handle), name);
+  AFTERGLOW_VK(device.vk().vkCreateBuffer(device.handle(), &info, nullptr, &handle), name);
   Buffer out;
-  out.buffer_ = BufferHandle(device.handle(), handle);
+  out.buffer_ = BufferHandle(device, handle);
   out.size_ = size;
   VkMemoryRequirements needs{};
-  vkGetBufferMemoryRequirements(device.handle(), handle, &needs);
+  device.vk().vkGetBufferMemoryRequirements(device.handle(), handle, &needs);
   AFTERGLOW_TRY(out.memory_, Memory::allocate(device, needs, access, name));
-  AFTERGLOW_VK(vkBindBufferMemory(device.handle(), handle, out.memory_.get(), 0), name);
+  AFTERGLOW_VK(device.vk().vkBindBufferMemory(device.handle(), handle, out.memory_.get(), 0), name);
   device.set_name(VK_OBJECT_TYPE_BUFFER, out.buffer_.number(), std::string(name));
   return out;
 }

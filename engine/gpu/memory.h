@@ -35,7 +35,7 @@ class Memory {
   void invalidate() const;
 
  private:
-  VkDevice device_ = VK_NULL_HANDLE;
+  const Device* device_ = nullptr;
   MemoryHandle memory_;
   VkDeviceSize size_ = 0;
   std::byte* mapped_ = nullptr;

@@ -40,9 +40,9 @@ Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface&
                                                  .pBindings = bindings.data()};
   DrawLayout out;
   VkDescriptorSetLayout set = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateDescriptorSetLayout(device.handle(), &set_info, nullptr, &set),
+  AFTERGLOW_VK(device.vk().vkCreateDescriptorSetLayout(device.handle(), &set_info, nullptr, &set),
                "cannot create a descriptor layout");
-  out.set = SetLayoutHandle(device.handle(), set);
+  out.set = SetLayoutHandle(device, set);
 
   const VkPushConstantRange push{VK_SHADER_STAGE_FRAGMENT_BIT, 0, interface.push_bytes};
   const VkPipelineLayoutCreateInfo layout_info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
@@ -51,9 +51,9 @@ Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface&
                                                .pushConstantRangeCount = interface.push_bytes ? 1u : 0u,
                                                .pPushConstantRanges = &push};
   VkPipelineLayout layout = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreatePipelineLayout(device.handle(), &layout_info, nullptr, &layout),
+  AFTERGLOW_VK(device.vk().vkCreatePipelineLayout(device.handle(), &layout_info, nullptr, &layout),
                "cannot create a pipeline layout");
-  out.pipeline = PipelineLayoutHandle(device.handle(), layout);
+  out.pipeline = PipelineLayoutHandle(device, layout);
   return out;
 }
 
@@ -62,9 +62,9 @@ Result<ShaderModuleHandle> create_shader_module(const Device& device, std::span<
   const VkShaderModuleCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
   VkShaderModule module = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateShaderModule(device.handle(), &info, nullptr, &module),
+  AFTERGLOW_VK(device.vk().vkCreateShaderModule(device.handle(), &info, nullptr, &module),
                "cannot load the shader of '" + name + "'");
-  ShaderModuleHandle out(device.handle(), module);
+  ShaderModuleHandle out(device, module);
   device.set_name(VK_OBJECT_TYPE_SHADER_MODULE, out.number(), name);
   return out;
 }
@@ -122,9 +122,10 @@ Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayo
                                           .layout = layout.pipeline.get(),
                                           .basePipelineIndex = -1};
   VkPipeline pipeline = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateGraphicsPipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr, &pipeline),
-               "cannot create the pipeline of '" + name + "'");
-  PipelineHandle out(device.handle(), pipeline);
+  AFTERGLOW_VK(
+      device.vk().vkCreateGraphicsPipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr, &pipeline),
+      "cannot create the pipeline of '" + name + "'");
+  PipelineHandle out(device, pipeline);
   device.set_name(VK_OBJECT_TYPE_PIPELINE, out.number(), name);
   return out;
 }
@@ -138,8 +139,8 @@ Result<SamplerHandle> create_sampler(const Device& device, VkFilter filter) {
                                  .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                  .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
   VkSampler sampler = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateSampler(device.handle(), &info, nullptr, &sampler), "cannot create a sampler");
-  return SamplerHandle(device.handle(), sampler);
+  AFTERGLOW_VK(device.vk().vkCreateSampler(device.handle(), &info, nullptr, &sampler), "cannot create a sampler");
+  return SamplerHandle(device, sampler);
 }
 
 }  // namespace afterglow

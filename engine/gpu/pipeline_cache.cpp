@@ -57,19 +57,19 @@ void Device::use_pipeline_cache(const std::string& folder) {
                                        .initialDataSize = data.size(),
                                        .pInitialData = data.data()};
   VkPipelineCache loaded = VK_NULL_HANDLE;
-  if (vkCreatePipelineCache(device_, &info, nullptr, &loaded) != VK_SUCCESS) return;
-  if (vkMergePipelineCaches(device_, pipeline_cache_, 1, &loaded) == VK_SUCCESS) cached_bytes_ = data.size();
-  vkDestroyPipelineCache(device_, loaded, nullptr);
+  if (functions_.vkCreatePipelineCache(device_, &info, nullptr, &loaded) != VK_SUCCESS) return;
+  if (functions_.vkMergePipelineCaches(device_, pipeline_cache_, 1, &loaded) == VK_SUCCESS) cached_bytes_ = data.size();
+  functions_.vkDestroyPipelineCache(device_, loaded, nullptr);
 }
 
 void Device::save_pipeline_cache() const {
   if (cache_file_.empty()) return;
   std::size_t size = 0;
-  if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS) return;
+  if (functions_.vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS) return;
   // Caches only grow: the same size means that nothing was added. A bare header (lavapipe's) is not worth a file.
   if (size == cached_bytes_ || size <= sizeof(StoredHeader)) return;
   std::string data(size, '\0');
-  if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, data.data()) != VK_SUCCESS) return;
+  if (functions_.vkGetPipelineCacheData(device_, pipeline_cache_, &size, data.data()) != VK_SUCCESS) return;
   data.resize(size);
   std::error_code ignored;
   // Vulkan takes nothing out of a cache: one that has grown too large goes, and the next process begins it with what it

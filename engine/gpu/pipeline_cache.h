@@ -2,9 +2,9 @@
 // more than the header, and a file cut short by a full disk must not reach them.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <string>
+
+#include "gpu/vulkan.h"
 
 namespace afterglow {
 

@@ -8,7 +8,7 @@ namespace {
 VkSubresourceLayout layout_of(const Device& device, VkImage image) {
   const VkImageSubresource subresource{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0};
   VkSubresourceLayout layout{};
-  vkGetImageSubresourceLayout(device.handle(), image, &subresource, &layout);
+  device.vk().vkGetImageSubresourceLayout(device.handle(), image, &subresource, &layout);
   return layout;
 }
 

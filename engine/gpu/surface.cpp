@@ -2,16 +2,17 @@
 
 namespace afterglow {
 
-Result<Surface> Surface::create(VkInstance instance, const Presentation& presentation) {
+Result<Surface> Surface::create(const VulkanFunctions& vk, VkInstance instance, const Presentation& presentation) {
   AFTERGLOW_TRY(const VkSurfaceKHR surface, presentation.make_surface(instance));
   Surface out;
   out.instance_ = instance;
+  out.destroy_ = vk.vkDestroySurfaceKHR;
   out.surface_ = surface;
   return out;
 }
 
 Surface::~Surface() {
-  if (surface_ != VK_NULL_HANDLE) vkDestroySurfaceKHR(instance_, surface_, nullptr);
+  if (surface_ != VK_NULL_HANDLE) destroy_(instance_, surface_, nullptr);
 }
 
 }  // namespace afterglow

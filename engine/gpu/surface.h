@@ -1,11 +1,10 @@
 // Owner of a window's surface.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <utility>
 
 #include "gpu/device.h"
+#include "gpu/vulkan.h"
 
 namespace afterglow {
 
@@ -13,12 +12,13 @@ namespace afterglow {
 class Surface {
  public:
   /// Errors: device.
-  static Result<Surface> create(VkInstance instance, const Presentation& presentation);
+  static Result<Surface> create(const VulkanFunctions& vk, VkInstance instance, const Presentation& presentation);
   Surface() = default;
   Surface(Surface&& other) noexcept
-      : instance_(other.instance_), surface_(std::exchange(other.surface_, VK_NULL_HANDLE)) {}
+      : instance_(other.instance_), destroy_(other.destroy_), surface_(std::exchange(other.surface_, VK_NULL_HANDLE)) {}
   Surface& operator=(Surface&& other) noexcept {
     std::swap(instance_, other.instance_);
+    std::swap(destroy_, other.destroy_);
     std::swap(surface_, other.surface_);
     return *this;
   }
@@ -28,6 +28,7 @@ class Surface {
 
  private:
   VkInstance instance_ = VK_NULL_HANDLE;
+  PFN_vkDestroySurfaceKHR destroy_ = nullptr;
   VkSurfaceKHR surface_ = VK_NULL_HANDLE;
 };
 

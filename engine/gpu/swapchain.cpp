@@ -28,8 +28,8 @@ VkCompositeAlphaFlagBitsKHR choose_alpha(VkCompositeAlphaFlagsKHR supported) {
 Result<SemaphoreHandle> make_semaphore(const Device& device, const char* name) {
   const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
   VkSemaphore semaphore = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateSemaphore(device.handle(), &info, nullptr, &semaphore), "cannot create a semaphore");
-  SemaphoreHandle out(device.handle(), semaphore);
+  AFTERGLOW_VK(device.vk().vkCreateSemaphore(device.handle(), &info, nullptr, &semaphore), "cannot create a semaphore");
+  SemaphoreHandle out(device, semaphore);
   device.set_name(VK_OBJECT_TYPE_SEMAPHORE, out.number(), name);
   return out;
 }
@@ -67,33 +67,34 @@ Result<void> Swapchain::make_slots() {
                                             .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
                                             .queueFamilyIndex = device_.queue_family()};
     VkCommandPool pool = VK_NULL_HANDLE;
-    AFTERGLOW_VK(vkCreateCommandPool(device_.handle(), &pool_info, nullptr, &pool), "cannot create a command pool");
-    slot.pool = CommandPoolHandle(device_.handle(), pool);
+    AFTERGLOW_VK(device_.vk().vkCreateCommandPool(device_.handle(), &pool_info, nullptr, &pool),
+                 "cannot create a command pool");
+    slot.pool = CommandPoolHandle(device_, pool);
     const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                                .commandPool = pool,
                                                .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                                .commandBufferCount = 1};
-    AFTERGLOW_VK(vkAllocateCommandBuffers(device_.handle(), &allocate, &slot.commands),
+    AFTERGLOW_VK(device_.vk().vkAllocateCommandBuffers(device_.handle(), &allocate, &slot.commands),
                  "cannot allocate a command buffer");
     const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     VkFence fence = VK_NULL_HANDLE;
-    AFTERGLOW_VK(vkCreateFence(device_.handle(), &fence_info, nullptr, &fence), "cannot create a fence");
-    slot.done = FenceHandle(device_.handle(), fence);
+    AFTERGLOW_VK(device_.vk().vkCreateFence(device_.handle(), &fence_info, nullptr, &fence), "cannot create a fence");
+    slot.done = FenceHandle(device_, fence);
     AFTERGLOW_TRY(slot.acquired, make_semaphore(device_, "image acquired"));
   }
   return {};
 }
 
 Result<void> Swapchain::make_surface() {
-  AFTERGLOW_TRY(surface_, Surface::create(device_.instance(), *device_.presentation()));
+  AFTERGLOW_TRY(surface_, Surface::create(device_.vk(), device_.instance(), *device_.presentation()));
   ++counters_.surfaces;
   VkBool32 presents = VK_FALSE;
-  AFTERGLOW_VK(
-      vkGetPhysicalDeviceSurfaceSupportKHR(device_.physical(), device_.queue_family(), surface_.get(), &presents),
-      "cannot ask about the window");
+  AFTERGLOW_VK(device_.vk().vkGetPhysicalDeviceSurfaceSupportKHR(device_.physical(), device_.queue_family(),
+                                                                 surface_.get(), &presents),
+               "cannot ask about the window");
   if (!presents) return Error{ErrorKind::device, "device '" + device_.info().name + "' cannot present to the window"};
   const auto formats = all_of<VkSurfaceFormatKHR>([&](std::uint32_t* count, VkSurfaceFormatKHR* out) {
-    return vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_.get(), count, out);
+    return device_.vk().vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_.get(), count, out);
   });
   const auto chosen = choose_surface_format(formats);
   if (!chosen) return Error{ErrorKind::device, "the window has no format of sRGB codes"};
@@ -107,17 +108,17 @@ Result<void> Swapchain::make_surface() {
 /// False when the window has no area.
 Result<bool> Swapchain::make_chain(Size window) {
   VkSurfaceCapabilitiesKHR surface{};
-  VkResult asked = vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_.get(), &surface);
+  VkResult asked = device_.vk().vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_.get(), &surface);
   if (asked == VK_ERROR_SURFACE_LOST_KHR) {
     AFTERGLOW_CHECK(lose_surface());
-    asked = vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_.get(), &surface);
+    asked = device_.vk().vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_.get(), &surface);
   }
   AFTERGLOW_VK(asked, "cannot ask about the window");
   const Size size = choose_extent(surface, window);
   if (size.area() == 0) return false;
 
   const auto modes = all_of<VkPresentModeKHR>([&](std::uint32_t* count, VkPresentModeKHR* out) {
-    return vkGetPhysicalDeviceSurfacePresentModesKHR(device_.physical(), surface_.get(), count, out);
+    return device_.vk().vkGetPhysicalDeviceSurfacePresentModesKHR(device_.physical(), surface_.get(), count, out);
   });
   readable_ = options_.readback && (surface.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
   VkImageUsageFlags usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
@@ -138,9 +139,10 @@ Result<bool> Swapchain::make_chain(Size window) {
       .clipped = VK_TRUE,
       .oldSwapchain = chain_ ? chain_->swapchain.get() : VK_NULL_HANDLE};
   VkSwapchainKHR swapchain = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &swapchain), "cannot create a swapchain");
+  AFTERGLOW_VK(device_.vk().vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &swapchain),
+               "cannot create a swapchain");
   auto chain = std::make_shared<Chain>();
-  chain->swapchain = SwapchainHandle(device_.handle(), swapchain);
+  chain->swapchain = SwapchainHandle(device_, swapchain);
   chain->size = size;
   AFTERGLOW_CHECK(fill_chain(*chain));
   retire_chain();
@@ -155,7 +157,7 @@ Result<bool> Swapchain::make_chain(Size window) {
 
 Result<void> Swapchain::fill_chain(Chain& chain) {
   const auto images = all_of<VkImage>([&](std::uint32_t* count, VkImage* out) {
-    return vkGetSwapchainImagesKHR(device_.handle(), chain.swapchain.get(), count, out);
+    return device_.vk().vkGetSwapchainImagesKHR(device_.handle(), chain.swapchain.get(), count, out);
   });
   if (images.empty()) return Error{ErrorKind::device, "the swapchain has no images"};
   for (VkImage image : images) {
@@ -165,10 +167,11 @@ Result<void> Swapchain::fill_chain(Chain& chain) {
                                      .format = format_.format,
                                      .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
     VkImageView view = VK_NULL_HANDLE;
-    AFTERGLOW_VK(vkCreateImageView(device_.handle(), &info, nullptr, &view), "cannot create an image view");
+    AFTERGLOW_VK(device_.vk().vkCreateImageView(device_.handle(), &info, nullptr, &view),
+                 "cannot create an image view");
     Image& made = chain.images.emplace_back();
     made.image = image;
-    made.view = ImageViewHandle(device_.handle(), view);
+    made.view = ImageViewHandle(device_, view);
     AFTERGLOW_TRY(made.drawn, make_semaphore(device_, "frame drawn"));
     device_.set_name(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<std::uint64_t>(image), "window");
   }
@@ -204,8 +207,8 @@ Result<Swapchain::Drawn> Swapchain::draw(Size window, const Draw& draw) {
 /// None when there is no image to draw to now; `stale_` when the swapchain must be made anew first.
 Result<std::optional<std::uint32_t>> Swapchain::acquire(Slot& slot) {
   std::uint32_t index = 0;
-  const VkResult result = vkAcquireNextImageKHR(device_.handle(), chain_->swapchain.get(), kAcquireNanoseconds,
-                                                slot.acquired.get(), VK_NULL_HANDLE, &index);
+  const VkResult result = device_.vk().vkAcquireNextImageKHR(
+      device_.handle(), chain_->swapchain.get(), kAcquireNanoseconds, slot.acquired.get(), VK_NULL_HANDLE, &index);
   switch (result) {
     case VK_SUBOPTIMAL_KHR:  // its semaphore will be signalled: the image has to be drawn and presented
       note_suboptimal();
@@ -227,25 +230,25 @@ Result<std::optional<std::uint32_t>> Swapchain::acquire(Slot& slot) {
 }
 
 Result<void> Swapchain::submit(Slot& slot, const Image& image, const Draw& draw) {
-  AFTERGLOW_VK(vkResetCommandPool(device_.handle(), slot.pool.get(), 0), "cannot reset commands");
+  AFTERGLOW_VK(device_.vk().vkResetCommandPool(device_.handle(), slot.pool.get(), 0), "cannot reset commands");
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-  AFTERGLOW_VK(vkBeginCommandBuffer(slot.commands, &begin), "cannot record commands");
+  AFTERGLOW_VK(device_.vk().vkBeginCommandBuffer(slot.commands, &begin), "cannot record commands");
   // Behind the semaphore's wait, which is for the same stage.
   const auto into = image_barrier(image.image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0,
                                   VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                   VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT,
                                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-  record_barriers(slot.commands, &into, 1);
+  record_barriers(device_, slot.commands, &into, 1);
   draw(slot.commands, {image.image, image.view.get(), format_.format, chain_->size, next_slot_});
   const auto out_of = image_barrier(image.image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                                     VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);
-  record_barriers(slot.commands, &out_of, 1);
-  AFTERGLOW_VK(vkEndCommandBuffer(slot.commands), "cannot record commands");
+  record_barriers(device_, slot.commands, &out_of, 1);
+  AFTERGLOW_VK(device_.vk().vkEndCommandBuffer(slot.commands), "cannot record commands");
 
   const VkFence fence = slot.done.get();
-  AFTERGLOW_VK(vkResetFences(device_.handle(), 1, &fence), "cannot reset a fence");
+  AFTERGLOW_VK(device_.vk().vkResetFences(device_.handle(), 1, &fence), "cannot reset a fence");
   const VkSemaphoreSubmitInfo wait{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
                                    .semaphore = slot.acquired.get(),
                                    .stageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT};
@@ -263,7 +266,7 @@ Result<void> Swapchain::submit(Slot& slot, const Image& image, const Draw& draw)
                            .pSignalSemaphoreInfos = &signal};
   {
     const auto lock = device_.lock_queue();
-    AFTERGLOW_VK(vkQueueSubmit2(device_.queue(), 1, &info, fence), "cannot submit a frame");
+    AFTERGLOW_VK(device_.vk().vkQueueSubmit2(device_.queue(), 1, &info, fence), "cannot submit a frame");
   }
   slot.pending = true;
   slot.frame = ++frame_number_;
@@ -281,7 +284,7 @@ Result<void> Swapchain::present(Image& image, std::uint32_t index) {
                               .pImageIndices = &index};
   const VkResult result = [&] {
     const auto lock = device_.lock_queue();
-    return vkQueuePresentKHR(device_.queue(), &info);
+    return device_.vk().vkQueuePresentKHR(device_.queue(), &info);
   }();
   image.presented = true;
   ++counters_.presented;
@@ -338,7 +341,7 @@ void Swapchain::retire_chain() {
 Result<void> Swapchain::drain() {
   {
     const auto lock = device_.lock_queue();
-    AFTERGLOW_VK(vkQueueWaitIdle(device_.queue()), "the device did not finish");
+    AFTERGLOW_VK(device_.vk().vkQueueWaitIdle(device_.queue()), "the device did not finish");
   }
   AFTERGLOW_CHECK(finish());
   proven_chain_ = chain_number_ + (chain_ ? 0 : 1);

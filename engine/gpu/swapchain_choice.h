@@ -1,13 +1,12 @@
 // What a swapchain is to be like, from what a surface can do: pure functions.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
 #include <cstdint>
 #include <optional>
 #include <span>
 
 #include "core/geometry.h"
+#include "gpu/vulkan.h"
 
 namespace afterglow {
 

@@ -142,7 +142,7 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
   state->shaders = &shaders;
   auto record = options.record ? options.record : std::make_shared<FileRecord>();
   AFTERGLOW_TRY(state->runtime,
-                Runtime::create(search_path_for(file, options.paths, std::move(record)), options.limits, diagnostics));
+                Runtime::create(search_path_for(file, options.paths, std::move(record), options.installation), options.limits, diagnostics));
   Sandbox& box = *state->runtime->box;
   const StackEntry* current = nullptr;
   auto error = box.run(state->file, [&](lua_State* lua) {

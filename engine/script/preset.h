@@ -102,6 +102,7 @@ struct ScriptLimits {
 
 struct PresetOptions {
   std::vector<std::filesystem::path> paths;  ///< --path
+  std::filesystem::path installation;        ///< empty: find_installation()
   std::vector<Override> overrides;
   bool leave_out_unfit = false;          ///< overrides that do not fit the stack are warned about, and are no errors
   std::optional<Position> at;            ///< --at: where the picture is seen from, for volumes

@@ -60,10 +60,10 @@ Result<void> Painter::record(VkCommandBuffer commands, const PresentTarget& targ
       .layerCount = 1,
       .colorAttachmentCount = 1,
       .pColorAttachments = &color};
-  vkCmdBeginRendering(commands, &rendering);
+  device_.vk().vkCmdBeginRendering(commands, &rendering);
   if (view) view_pass_->record(commands, target.slot, *view);
   ui_->record(commands, target.slot, interface);
-  vkCmdEndRendering(commands);
+  device_.vk().vkCmdEndRendering(commands);
   return {};
 }
 
@@ -72,15 +72,15 @@ void Painter::record_copy(VkCommandBuffer commands, const PresentTarget& target,
       image_barrier(target.image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                     VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-  record_barriers(commands, &into, 1);
+  record_barriers(device_, commands, &into, 1);
   const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                .imageExtent = {static_cast<std::uint32_t>(target.size.width),
                                                static_cast<std::uint32_t>(target.size.height), 1}};
-  vkCmdCopyImageToBuffer(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.get(), 1, &copy);
+  device_.vk().vkCmdCopyImageToBuffer(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.get(), 1, &copy);
   const auto back = image_barrier(target.image, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                   0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-  record_barriers(commands, &back, 1);
+  record_barriers(device_, commands, &back, 1);
   const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                                  .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
                                  .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
@@ -88,7 +88,7 @@ void Painter::record_copy(VkCommandBuffer commands, const PresentTarget& target,
                                  .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
   const VkDependencyInfo dependency{
       .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &to_host};
-  vkCmdPipelineBarrier2(commands, &dependency);
+  device_.vk().vkCmdPipelineBarrier2(commands, &dependency);
 }
 
 Result<Swapchain::Drawn> Painter::paint(Size window, const std::optional<ViewFrame>& view,

@@ -21,9 +21,9 @@ Result<void> make_layouts(const Device& device, UiPipeline& out) {
   const VkDescriptorSetLayoutCreateInfo set_info{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, .bindingCount = 1, .pBindings = &atlas};
   VkDescriptorSetLayout set = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateDescriptorSetLayout(device.handle(), &set_info, nullptr, &set),
+  AFTERGLOW_VK(device.vk().vkCreateDescriptorSetLayout(device.handle(), &set_info, nullptr, &set),
                "cannot create a descriptor layout");
-  out.set = SetLayoutHandle(device.handle(), set);
+  out.set = SetLayoutHandle(device, set);
   const VkPushConstantRange push{VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(UiPush)};
   const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                         .setLayoutCount = 1,
@@ -31,8 +31,9 @@ Result<void> make_layouts(const Device& device, UiPipeline& out) {
                                         .pushConstantRangeCount = 1,
                                         .pPushConstantRanges = &push};
   VkPipelineLayout layout = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreatePipelineLayout(device.handle(), &info, nullptr, &layout), "cannot create a pipeline layout");
-  out.layout = PipelineLayoutHandle(device.handle(), layout);
+  AFTERGLOW_VK(device.vk().vkCreatePipelineLayout(device.handle(), &info, nullptr, &layout),
+               "cannot create a pipeline layout");
+  out.layout = PipelineLayoutHandle(device, layout);
   return {};
 }
 
@@ -103,9 +104,10 @@ Result<PipelineHandle> make_pipeline(const Device& device, VkPipelineLayout layo
                                           .pDynamicState = &states,
                                           .layout = layout};
   VkPipeline made = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateGraphicsPipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr, &made),
-               "cannot create the pipeline of the interface");
-  PipelineHandle out(device.handle(), made);
+  AFTERGLOW_VK(
+      device.vk().vkCreateGraphicsPipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr, &made),
+      "cannot create the pipeline of the interface");
+  PipelineHandle out(device, made);
   device.set_name(VK_OBJECT_TYPE_PIPELINE, out.number(), "interface");
   return out;
 }

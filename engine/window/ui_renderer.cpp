@@ -54,14 +54,16 @@ Result<void> UiRenderer::make_set() {
   const VkDescriptorPoolCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1, .poolSizeCount = 1, .pPoolSizes = &size};
   VkDescriptorPool pool = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateDescriptorPool(device_.handle(), &info, nullptr, &pool), "cannot create a descriptor pool");
-  pool_ = DescriptorPoolHandle(device_.handle(), pool);
+  AFTERGLOW_VK(device_.vk().vkCreateDescriptorPool(device_.handle(), &info, nullptr, &pool),
+               "cannot create a descriptor pool");
+  pool_ = DescriptorPoolHandle(device_, pool);
   const VkDescriptorSetLayout layout = pipeline_.set.get();
   const VkDescriptorSetAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                              .descriptorPool = pool,
                                              .descriptorSetCount = 1,
                                              .pSetLayouts = &layout};
-  AFTERGLOW_VK(vkAllocateDescriptorSets(device_.handle(), &allocate, &set_), "cannot allocate descriptors");
+  AFTERGLOW_VK(device_.vk().vkAllocateDescriptorSets(device_.handle(), &allocate, &set_),
+               "cannot allocate descriptors");
   return {};
 }
 
@@ -86,7 +88,7 @@ Result<void> UiRenderer::take_fonts() {
                                    .descriptorCount = 1,
                                    .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                                    .pImageInfo = &image};
-  vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
+  device_.vk().vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
   pending_ = true;
   return {};
 }
@@ -95,16 +97,17 @@ void UiRenderer::upload_atlas(VkCommandBuffer commands) {
   const auto into =
       image_barrier(atlas_.get(), VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COPY_BIT,
                     VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-  record_barriers(commands, &into, 1);
+  record_barriers(device_, commands, &into, 1);
   const Size size = atlas_.desc().size;
   const VkBufferImageCopy copy{
       .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
       .imageExtent = {static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height), 1}};
-  vkCmdCopyBufferToImage(commands, staging_.get(), atlas_.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+  device_.vk().vkCmdCopyBufferToImage(commands, staging_.get(), atlas_.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                                      &copy);
   const auto ready = image_barrier(atlas_.get(), VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                                    VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-  record_barriers(commands, &ready, 1);
+  record_barriers(device_, commands, &ready, 1);
   pending_ = false;
 }
 
@@ -138,19 +141,20 @@ void UiRenderer::record(VkCommandBuffer commands, std::size_t slot_index, const 
   if (data.TotalVtxCount == 0 || target.area() == 0) return;
   const Slot& slot = slots_[slot_index];
   device_.begin_label(commands, "interface");
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.pipeline.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.layout.get(), 0, 1, &set_, 0, nullptr);
+  device_.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.pipeline.get());
+  device_.vk().vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.layout.get(), 0, 1, &set_,
+                                       0, nullptr);
   const VkBuffer vertices = slot.vertices.get();
   const VkDeviceSize start = 0;
-  vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &start);
-  vkCmdBindIndexBuffer(commands, slot.indices.get(), 0,
-                       sizeof(ImDrawIdx) == 2 ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32);
+  device_.vk().vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &start);
+  device_.vk().vkCmdBindIndexBuffer(commands, slot.indices.get(), 0,
+                                    sizeof(ImDrawIdx) == 2 ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32);
   const VkViewport viewport{0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0, 1};
-  vkCmdSetViewport(commands, 0, 1, &viewport);
+  device_.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
   UiPush push{.linear = linear_ ? 1 : 0};
   push.scale = {2 / data.DisplaySize.x, 2 / data.DisplaySize.y};
   push.shift = {-1 - data.DisplayPos.x * push.scale[0], -1 - data.DisplayPos.y * push.scale[1]};
-  vkCmdPushConstants(commands, pipeline_.layout.get(), VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
+  device_.vk().vkCmdPushConstants(commands, pipeline_.layout.get(), VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
 
   std::uint32_t first_vertex = 0, first_index = 0;
   for (int i = 0; i < data.CmdListsCount; ++i) {
@@ -159,9 +163,9 @@ void UiRenderer::record(VkCommandBuffer commands, std::size_t slot_index, const 
       if (command.UserCallback) continue;  // nobody here uses them
       const VkRect2D scissor = scissor_of(command.ClipRect, data, target);
       if (scissor.extent.width == 0 || scissor.extent.height == 0) continue;
-      vkCmdSetScissor(commands, 0, 1, &scissor);
-      vkCmdDrawIndexed(commands, command.ElemCount, 1, first_index + command.IdxOffset,
-                       static_cast<std::int32_t>(first_vertex + command.VtxOffset), 0);
+      device_.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
+      device_.vk().vkCmdDrawIndexed(commands, command.ElemCount, 1, first_index + command.IdxOffset,
+                                    static_cast<std::int32_t>(first_vertex + command.VtxOffset), 0);
     }
     first_vertex += static_cast<std::uint32_t>(list.VtxBuffer.Size);
     first_index += static_cast<std::uint32_t>(list.IdxBuffer.Size);

@@ -100,8 +100,9 @@ Result<void> ViewPass::State::make_sets(std::size_t count) {
   const VkDescriptorPoolCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = sets, .poolSizeCount = 1, .pPoolSizes = &size};
   VkDescriptorPool made = VK_NULL_HANDLE;
-  AFTERGLOW_VK(vkCreateDescriptorPool(device.handle(), &info, nullptr, &made), "cannot create descriptors of the view");
-  pool = DescriptorPoolHandle(device.handle(), made);
+  AFTERGLOW_VK(device.vk().vkCreateDescriptorPool(device.handle(), &info, nullptr, &made),
+               "cannot create descriptors of the view");
+  pool = DescriptorPoolHandle(device, made);
   slots.resize(count);
   for (Slot& slot : slots) {
     const VkDescriptorSetLayout set = layout.set.get();
@@ -109,7 +110,7 @@ Result<void> ViewPass::State::make_sets(std::size_t count) {
                                                .descriptorPool = made,
                                                .descriptorSetCount = 1,
                                                .pSetLayouts = &set};
-    AFTERGLOW_VK(vkAllocateDescriptorSets(device.handle(), &allocate, &slot.set),
+    AFTERGLOW_VK(device.vk().vkAllocateDescriptorSets(device.handle(), &allocate, &slot.set),
                  "cannot create descriptors of the view");
   }
   return {};
@@ -128,7 +129,7 @@ void ViewPass::State::bind(Slot& slot, const std::array<ViewImage, kImages>& ima
                  .descriptorType = kImageType,
                  .pImageInfo = &infos[i]};
   }
-  vkUpdateDescriptorSets(device.handle(), kImages, writes.data(), 0, nullptr);
+  device.vk().vkUpdateDescriptorSets(device.handle(), kImages, writes.data(), 0, nullptr);
 }
 
 Result<std::unique_ptr<ViewPass>> ViewPass::create(const Device& device, VkFormat target, std::size_t slots) {
@@ -152,14 +153,15 @@ void ViewPass::record(VkCommandBuffer commands, std::size_t slot, const ViewFram
   const auto height = static_cast<std::uint32_t>(frame.area.height);
   const VkViewport viewport{x, y, static_cast<float>(width), static_cast<float>(height), 0, 1};
   const VkRect2D scissor{{frame.area.x, frame.area.y}, {width, height}};
-  vkCmdSetViewport(commands, 0, 1, &viewport);
-  vkCmdSetScissor(commands, 0, 1, &scissor);
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, s.pipeline.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, s.layout.pipeline.get(), 0, 1, &s.slots[slot].set,
-                          0, nullptr);
+  s.device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
+  s.device.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
+  s.device.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, s.pipeline.get());
+  s.device.vk().vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, s.layout.pipeline.get(), 0, 1,
+                                        &s.slots[slot].set, 0, nullptr);
   const Push push = push_of(frame, s.encode);
-  vkCmdPushConstants(commands, s.layout.pipeline.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push, &push);
-  vkCmdDraw(commands, 3, 1, 0, 0);
+  s.device.vk().vkCmdPushConstants(commands, s.layout.pipeline.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
+                                   &push);
+  s.device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
   s.device.end_label(commands);
 }
 

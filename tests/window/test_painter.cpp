@@ -77,7 +77,7 @@ class PainterTest : public testing::Test {
       const auto barrier = image_barrier(picture_.get(), VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT,
                                          VK_IMAGE_LAYOUT_PREINITIALIZED, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                                          VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-      record_barriers(commands, &barrier, 1);
+      record_barriers(*device_, commands, &barrier, 1);
     }));
     ASSERT_TRUE(submitter->wait());
   }

@@ -39,7 +39,7 @@ Result<FrameImage> upload_image(const Device& device, const Image& image, VkForm
         image_barrier(out.image.get(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT,
                       VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT, out.layout,
                       VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, layout);
-    record_barriers(commands, &barrier, 1);
+    record_barriers(device, commands, &barrier, 1);
   }));
   AFTERGLOW_CHECK(submitter.wait());
   out.layout = layout;
@@ -48,6 +48,7 @@ Result<FrameImage> upload_image(const Device& device, const Image& image, VkForm
 
 Result<DevicePicture> DevicePicture::create(const Device& device, const Picture& picture, const PictureKind& kind) {
   DevicePicture out;
+  out.device_ = &device;
   AFTERGLOW_TRY(out.inputs_["source"], upload_image(device, picture.color, kind.source,
                                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT, kRest));
   for (const auto& [name, image] : picture.auxiliary) {
@@ -93,14 +94,14 @@ void DevicePicture::before(VkCommandBuffer commands, VkImageLayout source_layout
     barriers.push_back(image_barrier(source().image, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, kRest,
                                      VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(source_layout),
                                      source_layout));
-  record_barriers(commands, barriers.data(), barriers.size());
+  record_barriers(*device_, commands, barriers.data(), barriers.size());
 }
 
 void DevicePicture::after(VkCommandBuffer commands, VkImageLayout source_layout) const {
   if (source_layout == kRest) return;
   const auto barrier = image_barrier(source().image, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, source_layout,
                                      VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(kRest), kRest);
-  record_barriers(commands, &barrier, 1);
+  record_barriers(*device_, commands, &barrier, 1);
 }
 
 }  // namespace afterglow

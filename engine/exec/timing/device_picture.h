@@ -35,6 +35,7 @@ class DevicePicture {
   void after(VkCommandBuffer commands, VkImageLayout source_layout) const;
 
  private:
+  const Device* device_ = nullptr;
   std::map<std::string, FrameImage> inputs_;
   FrameImage result_;
 };

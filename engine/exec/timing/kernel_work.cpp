@@ -49,12 +49,12 @@ Result<BufferCopy> BufferCopy::create(const Device& device, VkDeviceSize bytes) 
                 Buffer::create(device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::none, "copied to"));
   // Memory that nothing has written may be no memory at all.
   AFTERGLOW_TRY(TimedWork fill, TimedWork::create(device, [&](VkCommandBuffer commands) {
-                  vkCmdFillBuffer(commands, out.from_.get(), 0, VK_WHOLE_SIZE, 0x3f000000);
+                  device.vk().vkCmdFillBuffer(commands, out.from_.get(), 0, VK_WHOLE_SIZE, 0x3f000000);
                 }));
   AFTERGLOW_CHECK(fill.run());
   AFTERGLOW_TRY(out.work_, TimedWork::create(device, [&](VkCommandBuffer commands) {
                   const VkBufferCopy all{.size = bytes};
-                  vkCmdCopyBuffer(commands, out.from_.get(), out.to_.get(), 1, &all);
+                  device.vk().vkCmdCopyBuffer(commands, out.from_.get(), out.to_.get(), 1, &all);
                 }));
   return out;
 }

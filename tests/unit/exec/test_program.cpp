@@ -264,10 +264,10 @@ TEST_F(ProgramTest, RecordsTwiceIntoACallersCommandBufferWithTimestamps) {
     const auto to_clear = image_barrier(source->get(), VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_UNDEFINED,
                                         VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    record_barriers(commands, &to_clear, 1);
+    record_barriers(device(), commands, &to_clear, 1);
     const VkClearColorValue grey{{0.25f, 0.5f, 1.0f, 1.0f}};
     const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    vkCmdClearColorImage(commands, source->get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &grey, 1, &range);
+    device().vk().vkCmdClearColorImage(commands, source->get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &grey, 1, &range);
     const VkImageMemoryBarrier2 ready[] = {
         image_barrier(source->get(), VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
@@ -275,14 +275,14 @@ TEST_F(ProgramTest, RecordsTwiceIntoACallersCommandBufferWithTimestamps) {
         image_barrier(result->get(), VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_UNDEFINED,
                       VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
                       VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)};
-    record_barriers(commands, ready, 2);
+    record_barriers(device(), commands, ready, 2);
     made->record(commands);
     // The result is drawn a second time: that order is the caller's to keep.
     const auto again = image_barrier(result->get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                                      VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    record_barriers(commands, &again, 1);
+    record_barriers(device(), commands, &again, 1);
     made->record(commands, -1, *queries);
   }));
   ASSERT_TRUE(submitter->wait());
@@ -301,14 +301,11 @@ TEST_F(ProgramTest, AnAdoptedDeviceGivesTheSamePixels) {
   const auto pixels = noise(size, 15);
   const std::map<std::string, HostImage> inputs{{"source", {pixels.data(), size, 4}}};
   const auto expected = run(pyramid(size), inputs);
-  const VkApplicationInfo app{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_3};
-  const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, .pApplicationInfo = &app};
-  VkInstance instance = VK_NULL_HANDLE;
-  ASSERT_EQ(vkCreateInstance(&info, nullptr, &instance), VK_SUCCESS);
   Diagnostics diagnostics;
   {
     auto adopted = Device::adopt(
-        {instance, device().physical(), device().handle(), device().queue(), device().queue_family()}, diagnostics);
+        {device().instance(), device().physical(), device().handle(), device().queue(), device().queue_family()},
+        diagnostics);
     ASSERT_TRUE(adopted) << adopted.error().text();
     auto made = Program::create(**adopted, *library_, *compiler_, pyramid(size), {});
     auto runner = FrameRunner::create(**adopted, 1u << 30);
@@ -317,7 +314,6 @@ TEST_F(ProgramTest, AnAdoptedDeviceGivesTheSamePixels) {
     ASSERT_TRUE((*runner)->run(**made, inputs, out, KernelTiming::none));
     EXPECT_EQ(out.pixels, expected.pixels);
   }
-  vkDestroyInstance(instance, nullptr);
 }
 
 TEST_F(ProgramTest, ALostDeviceNamesKernels) {

@@ -102,8 +102,8 @@ TEST(DeviceTest, ValidationHearsAMistake) {
   const VkBufferCreateInfo empty{
       .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = 0, .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
   VkBuffer buffer = VK_NULL_HANDLE;
-  if (vkCreateBuffer(device->handle(), &empty, nullptr, &buffer) == VK_SUCCESS)
-    vkDestroyBuffer(device->handle(), buffer, nullptr);
+  if (device->vk().vkCreateBuffer(device->handle(), &empty, nullptr, &buffer) == VK_SUCCESS)
+    device->vk().vkDestroyBuffer(device->handle(), buffer, nullptr);
   EXPECT_GT(device->validation_errors(), 0);
   ASSERT_FALSE(device->validation_messages().empty());
   EXPECT_THAT(device->validation_messages().front(), HasSubstr("VUID-VkBufferCreateInfo-size-00912"));
@@ -118,7 +118,7 @@ TEST(DeviceTest, TheLogOutlivesTheDeviceAndHearsLeaks) {
   const auto log = device->validation_log();
   const VkFenceCreateInfo info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
   VkFence leaked = VK_NULL_HANDLE;
-  ASSERT_EQ(vkCreateFence(device->handle(), &info, nullptr, &leaked), VK_SUCCESS);
+  ASSERT_EQ(device->vk().vkCreateFence(device->handle(), &info, nullptr, &leaked), VK_SUCCESS);
   EXPECT_EQ(log->errors(), 0);
   device.reset();
   EXPECT_GT(log->errors(), 0);
@@ -137,14 +137,9 @@ TEST(DeviceTest, AdoptUsesAndKeepsTheCallersObjects) {
   auto owner = validated_device();
   ASSERT_TRUE(owner);
   const auto log = owner->validation_log();
-  // The instance handle is private to a Device; any instance of the loader serves for looking functions up.
-  const VkApplicationInfo app{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_3};
-  const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, .pApplicationInfo = &app};
-  VkInstance instance = VK_NULL_HANDLE;
-  ASSERT_EQ(vkCreateInstance(&info, nullptr, &instance), VK_SUCCESS);
   Diagnostics diagnostics;
   {
-    auto adopted = Device::adopt({.instance = instance,
+    auto adopted = Device::adopt({.instance = owner->instance(),
                                   .physical_device = owner->physical(),
                                   .device = owner->handle(),
                                   .queue = owner->queue(),
@@ -155,10 +150,36 @@ TEST(DeviceTest, AdoptUsesAndKeepsTheCallersObjects) {
     EXPECT_EQ((*adopted)->info().name, owner->info().name);
     EXPECT_TRUE(Buffer::create(**adopted, 64, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, HostAccess::write, "test"));
   }
-  EXPECT_EQ(vkQueueWaitIdle(owner->queue()), VK_SUCCESS);  // still alive
-  vkDestroyInstance(instance, nullptr);
+  EXPECT_EQ(owner->vk().vkQueueWaitIdle(owner->queue()), VK_SUCCESS);  // still alive
   owner.reset();
   EXPECT_EQ(log->errors(), 0) << testing::PrintToString(log->messages());
+}
+
+PFN_vkGetInstanceProcAddr the_loader = nullptr;
+int asked = 0;
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL ask(VkInstance instance, const char* name) {
+  ++asked;
+  return std::string_view(name) == "vkGetPhysicalDeviceFeatures2" && asked < 0 ? nullptr : the_loader(instance, name);
+}
+
+TEST(DeviceTest, AnAdoptedDeviceTakesItsFunctionsFromTheCaller) {
+  auto owner = validated_device();
+  ASSERT_TRUE(owner);
+  the_loader = owner->vk().vkGetInstanceProcAddr;
+  const AdoptedDevice objects{.instance = owner->instance(),
+                              .physical_device = owner->physical(),
+                              .device = owner->handle(),
+                              .queue = owner->queue(),
+                              .queue_family = owner->queue_family(),
+                              .get_instance_proc_addr = ask};
+  Diagnostics diagnostics;
+  asked = 0;
+  EXPECT_TRUE(Device::adopt(objects, diagnostics));
+  EXPECT_GT(asked, 10);
+  asked = -1000;  // one that lacks a function
+  const auto lacking = Device::adopt(objects, diagnostics);
+  ASSERT_FALSE(lacking);
+  EXPECT_THAT(lacking.error().message, HasSubstr("vkGetPhysicalDeviceFeatures2"));
 }
 
 TEST(DeviceTest, AdoptRefusesWhatItCannotUse) {
@@ -166,7 +187,7 @@ TEST(DeviceTest, AdoptRefusesWhatItCannotUse) {
   EXPECT_FALSE(Device::adopt({}, diagnostics));
   auto owner = validated_device();
   ASSERT_TRUE(owner);
-  const auto bad_family = Device::adopt({.instance = reinterpret_cast<VkInstance>(1),
+  const auto bad_family = Device::adopt({.instance = owner->instance(),
                                          .physical_device = owner->physical(),
                                          .device = owner->handle(),
                                          .queue = owner->queue(),

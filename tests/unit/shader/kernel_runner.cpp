@@ -66,14 +66,15 @@ KernelRunner::KernelRunner() {
   device_ = need(Device::create({.device = "auto", .validate = true}, diagnostics));
   const VkCommandPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                      .queueFamilyIndex = device_->queue_family()};
-  need(vkCreateCommandPool(device_->handle(), &info, nullptr, &pool_));
+  need(device_->vk().vkCreateCommandPool(device_->handle(), &info, nullptr, &pool_));
 }
 
-KernelRunner::~KernelRunner() { vkDestroyCommandPool(device_->handle(), pool_, nullptr); }
+KernelRunner::~KernelRunner() { device_->vk().vkDestroyCommandPool(device_->handle(), pool_, nullptr); }
 
 TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<TestImage>& images, Size target,
                             const std::vector<std::byte>& block, bool half_target) {
   const VkDevice device = device_->handle();
+  const VulkanFunctions& vk = device_->vk();
   const VkFormat format = half_target ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
   const std::size_t pixel_bytes = half_target ? 8 : 16;
   if (images.size() != kernel.images.size() || block.size() < kernel.block_size)
@@ -114,15 +115,15 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
   const VkDescriptorPoolCreateInfo pool_info{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1, .poolSizeCount = 2, .pPoolSizes = sizes};
   VkDescriptorPool raw_pool = VK_NULL_HANDLE;
-  need(vkCreateDescriptorPool(device, &pool_info, nullptr, &raw_pool));
-  const DescriptorPoolHandle descriptors(device, raw_pool);
+  need(vk.vkCreateDescriptorPool(device, &pool_info, nullptr, &raw_pool));
+  const DescriptorPoolHandle descriptors(*device_, raw_pool);
   const VkDescriptorSetLayout set_layout = layout.set.get();
   const VkDescriptorSetAllocateInfo set_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                              .descriptorPool = raw_pool,
                                              .descriptorSetCount = 1,
                                              .pSetLayouts = &set_layout};
   VkDescriptorSet set = VK_NULL_HANDLE;
-  need(vkAllocateDescriptorSets(device, &set_info, &set));
+  need(vk.vkAllocateDescriptorSets(device, &set_info, &set));
   const VkDescriptorBufferInfo buffer{uniforms.get(), 0, VK_WHOLE_SIZE};
   std::vector<VkDescriptorImageInfo> views;
   for (const auto& input : inputs) views.push_back({sampler.get(), input.view(), kRead});
@@ -138,16 +139,16 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
   if (kernel.block_size > 0) write(0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER).pBufferInfo = &buffer;
   for (std::size_t i = 0; i < views.size(); ++i)
     write(static_cast<std::uint32_t>(i) + 1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER).pImageInfo = &views[i];
-  vkUpdateDescriptorSets(device, static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
+  vk.vkUpdateDescriptorSets(device, static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
 
   const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                              .commandPool = pool_,
                                              .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                              .commandBufferCount = 1};
   VkCommandBuffer commands = VK_NULL_HANDLE;
-  need(vkAllocateCommandBuffers(device, &allocate, &commands));
+  need(vk.vkAllocateCommandBuffers(device, &allocate, &commands));
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  need(vkBeginCommandBuffer(commands, &begin));
+  need(vk.vkBeginCommandBuffer(commands, &begin));
   std::vector<VkImageMemoryBarrier2> barriers;
   for (const auto& input : inputs)
     barriers.push_back(image_barrier(input.get(), VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT,
@@ -160,7 +161,7 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
   };
   barriers.push_back(before(output.get()));
   for (int k = 0; k < rows.rows(); ++k) barriers.push_back(before(rows.image(k)));
-  record_barriers(commands, barriers.data(), barriers.size());
+  record_barriers(*device_, commands, barriers.data(), barriers.size());
   const VkExtent2D size{static_cast<std::uint32_t>(target.width), static_cast<std::uint32_t>(target.height)};
   const VkRect2D area{{0, 0},
                       {size.width, static_cast<std::uint32_t>((target.height + kernel.rows - 1) / kernel.rows)}};
@@ -177,30 +178,32 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
                                   .layerCount = 1,
                                   .colorAttachmentCount = static_cast<std::uint32_t>(attachments.size()),
                                   .pColorAttachments = attachments.data()};
-  vkCmdBeginRendering(commands, &rendering);
+  vk.vkCmdBeginRendering(commands, &rendering);
   const VkViewport viewport{0, 0, static_cast<float>(area.extent.width), static_cast<float>(area.extent.height), 0, 1};
-  vkCmdSetViewport(commands, 0, 1, &viewport);
-  vkCmdSetScissor(commands, 0, 1, &area);
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout.pipeline.get(), 0, 1, &set, 0, nullptr);
+  vk.vkCmdSetViewport(commands, 0, 1, &viewport);
+  vk.vkCmdSetScissor(commands, 0, 1, &area);
+  vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.get());
+  vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout.pipeline.get(), 0, 1, &set, 0, nullptr);
   const int push[4] = {target.width, target.height, images.empty() ? 0 : images[0].size.width,
                        images.empty() ? 0 : images[0].size.height};
-  vkCmdPushConstants(commands, layout.pipeline.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push, push);
-  vkCmdDraw(commands, 3, 1, 0, 0);
-  vkCmdEndRendering(commands);
+  vk.vkCmdPushConstants(commands, layout.pipeline.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push, push);
+  vk.vkCmdDraw(commands, 3, 1, 0, 0);
+  vk.vkCmdEndRendering(commands);
   const auto to_copy = image_barrier(output.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, drawn, VK_PIPELINE_STAGE_2_COPY_BIT,
                                      VK_ACCESS_2_TRANSFER_READ_BIT, kCopy);
-  record_barriers(commands, &to_copy, 1);
+  record_barriers(*device_, commands, &to_copy, 1);
   const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                  .imageExtent = {size.width, size.height, 1}};
-  vkCmdCopyImageToBuffer(commands, output.get(), kCopy, staging.get(), 1, &region);
-  need(vkEndCommandBuffer(commands));
-  const VkSubmitInfo submit{
-      .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands};
-  need(vkQueueSubmit(device_->queue(), 1, &submit, VK_NULL_HANDLE));
-  need(vkQueueWaitIdle(device_->queue()));
-  vkFreeCommandBuffers(device, pool_, 1, &commands);
+  vk.vkCmdCopyImageToBuffer(commands, output.get(), kCopy, staging.get(), 1, &region);
+  need(vk.vkEndCommandBuffer(commands));
+  const VkCommandBufferSubmitInfo buffers{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                          .commandBuffer = commands};
+  const VkSubmitInfo2 submit{
+      .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &buffers};
+  need(vk.vkQueueSubmit2(device_->queue(), 1, &submit, VK_NULL_HANDLE));
+  need(vk.vkQueueWaitIdle(device_->queue()));
+  vk.vkFreeCommandBuffers(device, pool_, 1, &commands);
 
   staging.memory().invalidate();
   TestImage out{target, std::vector<float>(static_cast<std::size_t>(target.area()) * 4)};

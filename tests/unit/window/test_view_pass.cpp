@@ -101,7 +101,7 @@ class ViewPassTest : public testing::Test {
     before.push_back(image_barrier(target.get(), VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_UNDEFINED,
                                    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL));
-    record_barriers(commands, before.data(), before.size());
+    record_barriers(*device_, commands, before.data(), before.size());
     const VkRenderingAttachmentInfo color{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                           .imageView = target.view(),
                                           .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
@@ -114,17 +114,18 @@ class ViewPassTest : public testing::Test {
                                     .layerCount = 1,
                                     .colorAttachmentCount = 1,
                                     .pColorAttachments = &color};
-    vkCmdBeginRendering(commands, &rendering);
+    device_->vk().vkCmdBeginRendering(commands, &rendering);
     pass.record(commands, 0, frame);
-    vkCmdEndRendering(commands);
+    device_->vk().vkCmdEndRendering(commands);
     const auto into = image_barrier(target.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                                     VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                                     VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    record_barriers(commands, &into, 1);
+    record_barriers(*device_, commands, &into, 1);
     const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                  .imageExtent = {extent.width, extent.height, 1}};
-    vkCmdCopyImageToBuffer(commands, target.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.get(), 1, &copy);
+    device_->vk().vkCmdCopyImageToBuffer(commands, target.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.get(), 1,
+                                         &copy);
     const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                                    .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
                                    .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
@@ -132,7 +133,7 @@ class ViewPassTest : public testing::Test {
                                    .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
     const VkDependencyInfo dependency{
         .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &to_host};
-    vkCmdPipelineBarrier2(commands, &dependency);
+    device_->vk().vkCmdPipelineBarrier2(commands, &dependency);
   }
 
   /// Draws and compares each pixel of the area. How many pixels were neither the surroundings nor equal to all others.

@@ -1,0 +1,137 @@
+#include "api/backend.h"
+
+#include <algorithm>
+
+
+namespace afterglow::api {
+
+Result<void> SharedDevice::open(const DeviceOptions& options, const std::filesystem::path& cache_folder) {
+  AFTERGLOW_TRY(device, Device::create(options, diagnostics));
+  share(cache_folder);
+  return {};
+}
+
+Result<void> SharedDevice::adopt(const AdoptedDevice& adopted, const std::filesystem::path& cache_folder) {
+  AFTERGLOW_TRY(device, Device::adopt(adopted, diagnostics));
+  share(cache_folder);
+  return {};
+}
+
+void SharedDevice::share(const std::filesystem::path& cache_folder) {
+  shared = std::make_shared<SharedKernels>(cache_folder.empty() ? cache_folder : cache_folder / "shaders");
+  if (!cache_folder.empty()) device->use_pipeline_cache((cache_folder / "pipelines").string());
+}
+
+Backend::Backend(std::shared_ptr<SharedDevice> device, const BackendOptions& options)
+    : device_(std::move(device)), options_(options), diagnostics_(options.message) {}
+Backend::~Backend() = default;
+
+Result<std::unique_ptr<Backend>> Backend::open(std::shared_ptr<SharedDevice> device, const BackendOptions& options) {
+  std::unique_ptr<Backend> out(new Backend(std::move(device), options));
+  out->options_.stack.shared = out->device_->shared;
+  const auto make = options.follow ? follow_source : load_source;
+  AFTERGLOW_TRY(out->source_, make(*out->device_, out->options_, out->diagnostics_));
+  if (!options.commands) {
+    AFTERGLOW_TRY(out->renderer_, Renderer::create(*out->device_->device, {.max_memory = options.stack.max_memory}));
+  }
+  return out;
+}
+
+Result<void> Backend::set(const Override& one) {
+  std::vector<Override> all = overrides_;
+  std::erase_if(all, [&](const Override& o) { return o.entry == one.entry && o.setting == one.setting; });
+  all.push_back(one);
+  return set_all(std::move(all));
+}
+
+Result<void> Backend::unset(const std::string& name) {
+  std::vector<Override> all = overrides_;
+  std::erase_if(all, [&](const Override& o) { return name.empty() || o.entry + "." + o.setting == name; });
+  if (all.size() == overrides_.size()) return {};
+  return set_all(std::move(all));
+}
+
+Result<void> Backend::set_all(std::vector<Override> all) {
+  AFTERGLOW_CHECK(source_->set(all));
+  overrides_ = std::move(all);
+  forget();
+  return {};
+}
+
+Result<bool> Backend::update() {
+  auto changed = source_->update();
+  if (!changed || *changed) forget();
+  return changed;
+}
+
+Result<void> Backend::reload(const std::optional<std::string>& text) {
+  forget();
+  return source_->reload(text);
+}
+
+/// What was prepared may be of a stack that is no more.
+void Backend::forget() {
+  prepared_ = false;
+  last_ = {};
+  clamped_ = 0;
+}
+
+Result<void> Backend::prepare(const Shape& shape) {
+  forget();
+  AFTERGLOW_CHECK(source_->prepare(shape));
+  prepared_ = true;
+  return {};
+}
+
+Result<void> Backend::run(const Shape& shape, const std::map<std::string, HostImage>& inputs, HostResult& result) {
+  forget();
+  AFTERGLOW_TRY(RenderRequest request, source_->request(shape));
+  request.inputs = inputs;
+  if (options_.time_kernels)
+    request.timing =
+        device_->device->timestamps_mean_draws() ? KernelTiming::timestamps : KernelTiming::submissions;
+  AFTERGLOW_TRY(last_, renderer_->render(std::move(request), result));
+  prepared_ = true;
+  clamped_ = result.clamped;
+  return {};
+}
+
+Result<void> Backend::bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result) {
+  AFTERGLOW_CHECK(source_->stack().bind(inputs, result));
+  bound_ = true;
+  return {};
+}
+
+Result<void> Backend::record(VkCommandBuffer commands) {
+  const auto early = [](const char* what) { return Error{ErrorKind::usage, what}; };
+  if (!prepared_) return early("nothing is prepared: call afterglow_stack_prepare first");
+  Stack& stack = source_->stack();
+  if (!stack.runs()) return {};
+  if (!bound_ || stack.program()->bindings() == 0)
+    return early("no images are bound for what was prepared: call afterglow_stack_bind first");
+  stack.record(commands);
+  last_.kernels.clear();
+  for (const auto& kernel : stack.program()->plan().kernels) last_.kernels.push_back(kernel.name);
+  return {};
+}
+
+BackendReport Backend::report() const {
+  Stack& stack = source_->stack();
+  BackendReport out;
+  out.preset = options_.preset.string();
+  out.device = device_->device->info().name;
+  out.choice = execution_name(stack.choice().execution);
+  out.choice_from = stack.choice().from;
+  out.max_error = stack.choice().max_error;
+  out.kernels = last_.kernels;
+  out.skipped = stack.skipped();
+  out.skipped.insert(out.skipped.end(), last_.skipped.begin(), last_.skipped.end());
+  if (const Program* program = stack.program()) out.memory = program->memory();
+  out.clamped = clamped_;
+  out.script = stack.script_milliseconds();
+  out.compile = stack.compile_milliseconds();
+  out.times = last_.times;
+  return out;
+}
+
+}  // namespace afterglow::api

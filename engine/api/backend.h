@@ -1,0 +1,131 @@
+// What the C interface needs of the engine, and nothing else. The files named backend… are the only ones of this room
+// that know how the engine runs a stack.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "gpu/device.h"
+#include "script/preset.h"
+#include "session/stack.h"
+
+namespace afterglow::api {
+
+/// A device and what its stacks share. Stacks may use it on several threads.
+struct SharedDevice {
+  Diagnostics diagnostics;
+  std::unique_ptr<Device> device;
+  std::shared_ptr<SharedKernels> shared;
+
+  explicit SharedDevice(Diagnostics::Sink sink) : diagnostics(std::move(sink)) {}
+  /// Caches below `cache_folder`; empty: none on disk. Errors: device.
+  Result<void> open(const DeviceOptions& options, const std::filesystem::path& cache_folder);
+  Result<void> adopt(const AdoptedDevice& adopted, const std::filesystem::path& cache_folder);
+
+ private:
+  void share(const std::filesystem::path& cache_folder);
+};
+
+struct BackendOptions {
+  std::filesystem::path preset;
+  StackOptions stack;
+  bool commands = false;  ///< recorded into the caller's command buffers
+  bool follow = false, time_kernels = false;
+  Diagnostics::Sink message;
+  std::function<void()> wake;
+};
+
+/// What a frame is made for.
+struct Shape {
+  BuildContext context;
+  std::optional<DisplayEncoding> encoding;
+  std::optional<Rect> region;
+};
+
+/// Where a stack comes from: loaded once, or following its files. One thread at a time.
+class Source {
+ public:
+  virtual ~Source() = default;
+  virtual Stack& stack() = 0;  ///< the last good one
+  /// All of them. When there is an error the ones before stay.
+  virtual Result<void> set(const std::vector<Override>& overrides) = 0;
+  virtual Result<bool> update() = 0;
+  virtual Result<void> reload(const std::optional<std::string>& text) = 0;
+  /// For the caller's command buffers.
+  virtual Result<void> prepare(const Shape& shape) = 0;
+  /// For a Renderer: what to run, without the pictures.
+  virtual Result<RenderRequest> request(const Shape& shape) = 0;
+};
+Result<std::unique_ptr<Source>> load_source(SharedDevice& device, const BackendOptions& options,
+                                            Diagnostics& diagnostics);
+Result<std::unique_ptr<Source>> follow_source(SharedDevice& device, const BackendOptions& options,
+                                              Diagnostics& diagnostics);
+
+/// What `Backend::report` tells.
+struct BackendReport {
+  std::string preset, device, choice, choice_from;
+  double max_error = 0;
+  std::vector<std::string> kernels;
+  std::vector<Skipped> skipped;
+  ProgramMemory memory;
+  std::uint64_t clamped = 0;
+  double script = 0, compile = 0;  ///< milliseconds so far
+  FrameTimes times;                ///< of the last frame
+};
+
+/// A stack of the interface. One thread at a time.
+class Backend {
+ public:
+  static Result<std::unique_ptr<Backend>> open(std::shared_ptr<SharedDevice> device, const BackendOptions& options);
+  ~Backend();
+
+  const BackendOptions& options() const { return options_; }
+  Diagnostics& diagnostics() { return diagnostics_; }
+  Preset& preset() const { return source_->stack().preset(); }
+  /// What was prepared or run last; null before it.
+  const std::shared_ptr<const Build>& build() const { return source_->stack().build(); }
+
+  /// One more override; one of the same name goes. Errors: usage, script: then the ones before stay.
+  Result<void> set(const Override& one);
+  Result<void> unset(const std::string& name);
+  Result<bool> update();
+  Result<void> reload(const std::optional<std::string>& text);
+
+  Result<void> prepare(const Shape& shape);
+  bool prepared() const { return prepared_; }
+  bool runs() const { return source_->stack().runs(); }
+  void reset_histories() { source_->stack().reset_histories(); }
+
+  /// `inputs` and `result` with `read_row` and `write_row`.
+  Result<void> run(const Shape& shape, const std::map<std::string, HostImage>& inputs, HostResult& result);
+
+  VkFormat result_format() const { return source_->stack().result_format(); }
+  Result<void> bind(const std::map<std::string, ImageBinding>& inputs, const ImageBinding& result);
+  Result<void> record(VkCommandBuffer commands);
+
+  BackendReport report() const;
+
+ private:
+  Backend(std::shared_ptr<SharedDevice> device, const BackendOptions& options);
+  Result<void> set_all(std::vector<Override> all);
+  void forget();
+  std::shared_ptr<SharedDevice> device_;  // last to go
+  BackendOptions options_;
+  Diagnostics diagnostics_;
+  std::vector<Override> overrides_;
+  std::unique_ptr<Source> source_;
+  std::unique_ptr<Renderer> renderer_;  // first to go: it waits for what is in flight
+  bool prepared_ = false, bound_ = false;
+  // Of the last frame.
+  FrameReport last_;
+  std::uint64_t clamped_ = 0;
+};
+
+}  // namespace afterglow::api

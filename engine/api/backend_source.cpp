@@ -1,0 +1,166 @@
+// Where stacks come from.
+#include <mutex>
+
+#include "api/backend.h"
+#include "session/live.h"
+
+namespace afterglow::api {
+namespace {
+
+Result<RenderRequest> request_of(Stack& stack, const Shape& shape) {
+  AFTERGLOW_TRY(auto build, stack.evaluate(shape.context));
+  return stack.request(request_for(std::move(build), shape.encoding, shape.region));
+}
+
+/// Loaded in the caller's thread, whenever it asks.
+class Loaded : public Source {
+ public:
+  Loaded(SharedDevice& device, const BackendOptions& options, Diagnostics& diagnostics)
+      : device_(device), options_(options), diagnostics_(diagnostics) {}
+
+  Result<void> load(const StackOptions& wanted) {
+    AFTERGLOW_TRY(auto later, Stack::load(options_.preset, wanted, diagnostics_));
+    later->use(*device_.device, !options_.commands);
+    const bool same_way = stack_ && stack_->choice().execution == later->choice().execution &&
+                          stack_->choice().max_error == later->choice().max_error;
+    if (same_way) later->take_over(*stack_, true);  // programs stay
+    stack_ = std::move(later);
+    options_.stack = wanted;
+    return {};
+  }
+
+  Stack& stack() override { return *stack_; }
+  Result<void> set(const std::vector<Override>& overrides) override {
+    StackOptions wanted = options_.stack;
+    wanted.preset.overrides = overrides;
+    return load(wanted);
+  }
+  Result<bool> update() override { return false; }
+  Result<void> reload(const std::optional<std::string>& text) override {
+    StackOptions wanted = options_.stack;
+    if (text) wanted.preset.text = *text;
+    return load(wanted);
+  }
+  Result<void> prepare(const Shape& shape) override {
+    return stack_->prepare(shape.context, shape.encoding, shape.region);
+  }
+  Result<RenderRequest> request(const Shape& shape) override { return request_of(*stack_, shape); }
+
+ private:
+  SharedDevice& device_;
+  BackendOptions options_;
+  Diagnostics& diagnostics_;
+  std::unique_ptr<Stack> stack_;
+};
+
+/// Built on a thread of the library's when files change.
+class Followed : public Source {
+ public:
+  Followed(const BackendOptions& options, Diagnostics& diagnostics) : options_(options), diagnostics_(diagnostics) {}
+
+  Result<void> open(SharedDevice& device) {
+    LiveOptions live;
+    live.stack = options_.stack;
+    live.own_images = !options_.commands;
+    live.notify = options_.wake;
+    AFTERGLOW_TRY(live_, LiveStack::open(*device.device, options_.preset, live, silent_));
+    if (!live_->stack()) return failed();
+    tell_warnings();
+    return {};
+  }
+
+  Stack& stack() override { return *live_->stack(); }
+
+  Result<void> set(const std::vector<Override>& overrides) override {
+    // Tried here first, since a LiveStack leaves out what does not fit.
+    PresetOptions wanted = options_.stack.preset;
+    wanted.overrides = overrides;
+    ShaderLibrary shaders(search_path_for(options_.preset, wanted.paths, nullptr, wanted.installation));
+    AFTERGLOW_TRY(const Preset fits, Preset::load(options_.preset, wanted, shaders, silent_));
+    live_->set_overrides(overrides);
+    return settle();
+  }
+
+  Result<bool> update() override {
+    const bool changed = live_->update();
+    if (changed) tell_warnings();
+    const LiveStatus status = live_->status();
+    const std::string text = status.error ? status.error->text() : "";
+    if (text == told_error_) return changed;
+    told_error_ = text;
+    if (status.error) return *status.error;
+    return changed;
+  }
+
+  Result<void> reload(const std::optional<std::string>&) override {
+    live_->reload();
+    return settle();
+  }
+
+  Result<void> prepare(const Shape& shape) override {
+    Stack& stack = stack_for(shape);
+    auto prepared = stack.prepare(shape.context, shape.encoding, shape.region);
+    live_->also_follow(stack.preset().looked_at());
+    return prepared;
+  }
+  Result<RenderRequest> request(const Shape& shape) override {
+    Stack& stack = stack_for(shape);
+    auto request = request_of(stack, shape);
+    live_->also_follow(stack.preset().looked_at());
+    return request;
+  }
+
+ private:
+  Stack& stack_for(const Shape& shape) {
+    const bool new_shape = !context_ || context_->size != shape.context.size ||
+                           context_->auxiliary != shape.context.auxiliary || encoding_ != shape.encoding;
+    context_ = shape.context;
+    encoding_ = shape.encoding;
+    live_->set_context(shape.context, shape.encoding);
+    if (new_shape) {
+      live_->settle();
+      if (live_->update()) tell_warnings();
+    }
+    return *live_->stack();
+  }
+  Result<void> settle() {
+    live_->settle();
+    if (live_->update()) tell_warnings();
+    const LiveStatus status = live_->status();
+    told_error_ = status.error ? status.error->text() : "";
+    return status.error ? failed() : Result<void>();
+  }
+  Error failed() const {
+    const LiveStatus status = live_->status();
+    return status.error ? *status.error : Error{ErrorKind::script, "the preset cannot be loaded"};
+  }
+  void tell_warnings() {
+    for (const auto& warning : live_->status().warnings) diagnostics_.warn(warning);
+  }
+
+  BackendOptions options_;
+  Diagnostics& diagnostics_;
+  Diagnostics silent_;  ///< warnings of builds come with the status of the one that is shown
+  std::unique_ptr<LiveStack> live_;
+  std::optional<BuildContext> context_;
+  std::optional<DisplayEncoding> encoding_;
+  std::string told_error_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Source>> load_source(SharedDevice& device, const BackendOptions& options,
+                                            Diagnostics& diagnostics) {
+  auto source = std::make_unique<Loaded>(device, options, diagnostics);
+  AFTERGLOW_CHECK(source->load(options.stack));
+  return std::unique_ptr<Source>(std::move(source));
+}
+
+Result<std::unique_ptr<Source>> follow_source(SharedDevice& device, const BackendOptions& options,
+                                              Diagnostics& diagnostics) {
+  auto source = std::make_unique<Followed>(options, diagnostics);
+  AFTERGLOW_CHECK(source->open(device));
+  return std::unique_ptr<Source>(std::move(source));
+}
+
+}  // namespace afterglow::api

@@ -1,0 +1,60 @@
+// Devices of the C interface.
+#include "api/documents.h"
+#include "api/handles.h"
+
+using namespace afterglow;
+using namespace afterglow::api;
+
+namespace {
+
+/// `open` makes the device of a SharedDevice.
+template <class Open>
+Result<void> make(afterglow_message_callback message, void* user, afterglow_device** out, Open open) {
+  auto shared = std::make_shared<SharedDevice>(sink_of(message, user));
+  AFTERGLOW_CHECK(open(*shared));
+  *out = new afterglow_device{std::move(shared)};
+  return {};
+}
+
+}  // namespace
+
+afterglow_error* afterglow_device_open(const afterglow_device_options* options, afterglow_device** out) {
+  return call([&]() -> Result<void> {
+    if (!out) return usage("afterglow_device_open: out is NULL");
+    *out = nullptr;
+    afterglow_device_options given = afterglow_device_options_default();
+    if (options) {
+      AFTERGLOW_TRY(given, take(options, given, "afterglow_device_options"));
+    }
+    DeviceOptions wanted;
+    if (is_given(given.device)) wanted.device = text_of(given.device);
+    wanted.validate = given.validate;
+    return make(given.message, given.user, out,
+                [&](SharedDevice& device) { return device.open(wanted, text_of(given.cache_folder)); });
+  });
+}
+
+afterglow_error* afterglow_device_adopt(const afterglow_adopted_device* adopted, afterglow_device** out) {
+  return call([&]() -> Result<void> {
+    if (!out) return usage("afterglow_device_adopt: out is NULL");
+    *out = nullptr;
+    AFTERGLOW_TRY(const auto given, take(adopted, afterglow_adopted_device_default(), "afterglow_adopted_device"));
+    const AdoptedDevice objects{.instance = given.instance,
+                                .physical_device = given.physical_device,
+                                .device = given.device,
+                                .queue = given.queue,
+                                .queue_family = given.queue_family,
+                                .get_instance_proc_addr = given.get_instance_proc_addr};
+    return make(given.message, given.user, out,
+                [&](SharedDevice& device) { return device.adopt(objects, text_of(given.cache_folder)); });
+  });
+}
+
+void afterglow_device_free(afterglow_device* device) { delete device; }
+
+afterglow_error* afterglow_device_describe(const afterglow_device* device, afterglow_text** out) {
+  return call([&]() -> Result<void> {
+    if (!device) return usage("afterglow_device_describe: device is NULL");
+    return give(device_document(*device->shared->device), out, "afterglow_device_describe");
+  });
+}

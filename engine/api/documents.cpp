@@ -1,0 +1,111 @@
+#include "api/documents.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "script/explanation.h"
+#include "script/setting_json.h"
+
+namespace afterglow::api {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Names of files and texts of scripts are any bytes: what is no UTF-8 becomes U+FFFD.
+std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json history_json(const SettingHistory& setting) {
+  Json out{{"name", setting.name}, {"default", value_json(setting.default_value)}};
+  if (setting.preset) out["preset"] = {{"value", value_json(*setting.preset)}, {"kind", setting.kind}};
+  out["volumes"] = Json::array();
+  for (const auto& step : setting.volumes)
+    out["volumes"].push_back({{"volume", step.volume},
+                              {"factor", step.factor},
+                              {"value", value_json(step.value)},
+                              {"result", value_json(step.result)}});
+  if (setting.overridden) out["override"] = value_json(*setting.overridden);
+  out["final"] = value_json(setting.value);
+  return out;
+}
+
+Json volume_json(const VolumeState& volume) {
+  Json out{{"name", volume.name}, {"priority", volume.priority}, {"weight", volume.weight}, {"factor", volume.factor}};
+  if (volume.distance) out["distance"] = *volume.distance;
+  if (!volume.reason.empty()) out["reason"] = volume.reason;
+  return out;
+}
+
+}  // namespace
+
+std::string device_document(const Device& device) {
+  const DeviceInfo& info = device.info();
+  return dumped(Json{{"name", info.name},
+                     {"type", info.type},
+                     {"driver", info.driver},
+                     {"uuid", info.uuid},
+                     {"validation_errors", device.validation_errors()},
+                     {"validation_messages", device.validation_messages()}});
+}
+
+std::string settings_document(const Preset& preset) {
+  Json out = Json::array();
+  for (const auto& entry : preset.entries()) {
+    Json item{{"name", entry.name},       {"effect", entry.effect}, {"at", entry.at},    {"order", entry.order},
+              {"enabled", entry.enabled}, {"file", entry.file},     {"line", entry.line}};
+    item["settings"] = Json::array();
+    const EffectSchema& schema = preset.schema(entry.effect);
+    for (const auto& declared : schema.settings) {
+      Json setting = setting_json(declared);
+      const auto found = std::ranges::find(entry.settings, declared.name, [](const auto& pair) { return pair.first; });
+      if (found != entry.settings.end()) setting["value"] = value_json(found->second);
+      item["settings"].push_back(std::move(setting));
+    }
+    out.push_back(std::move(item));
+  }
+  return dumped(out);
+}
+
+std::string explain_document(const Preset& preset, const std::vector<Skipped>& skipped) {
+  const Explanation& explanation = preset.explanation();
+  Json out{{"name", preset.name()}};
+  if (explanation.position) out["position"] = {{"at", *explanation.position}, {"from", explanation.position_from}};
+  out["volumes"] = Json::array();
+  for (const auto& volume : explanation.volumes) out["volumes"].push_back(volume_json(volume));
+  out["entries"] = Json::array();
+  const auto& entries = preset.entries();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    Json item{{"name", entries[i].name}, {"effect", entries[i].effect}};
+    const auto reason = std::ranges::find(skipped, entries[i].name, &Skipped::name);
+    item["state"] = reason == skipped.end() ? "runs" : "skipped";
+    if (reason != skipped.end()) item["reason"] = reason->reason;
+    item["settings"] = Json::array();
+    if (i < explanation.entries.size())
+      for (const auto& setting : explanation.entries[i].settings) item["settings"].push_back(history_json(setting));
+    out["entries"].push_back(std::move(item));
+  }
+  return dumped(out);
+}
+
+std::string report_document(const BackendReport& report, std::uint64_t mended) {
+  Json out{{"preset", report.preset},
+           {"device", report.device},
+           {"choice", report.choice},
+           {"choice_from", report.choice_from},
+           {"max_error", report.max_error},
+           {"kernels", report.kernels},
+           {"skipped", Json::array()},
+           {"image_memory",
+            {{"shared", report.memory.arena}, {"unshared", report.memory.sum}, {"histories", report.memory.histories}}},
+           {"clamped_samples", report.clamped},
+           {"mended_samples", mended}};
+  for (const auto& skipped : report.skipped)
+    out["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
+  Json times{{"script", report.script},         {"compile", report.compile},          {"upload", report.times.upload},
+             {"execute", report.times.execute}, {"read_back", report.times.readback}, {"kernels", Json::array()}};
+  for (const auto& kernel : report.times.kernels)
+    times["kernels"].push_back({{"name", kernel.name}, {"milliseconds", kernel.milliseconds}});
+  out["milliseconds"] = std::move(times);
+  return dumped(out);
+}
+
+}  // namespace afterglow::api

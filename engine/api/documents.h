@@ -1,0 +1,16 @@
+// What hosts are told as JSON.
+#pragma once
+
+#include <string>
+
+#include "api/backend.h"
+
+namespace afterglow::api {
+
+std::string device_document(const Device& device);
+std::string settings_document(const Preset& preset);
+/// `skipped`: effects and passes of the last frame.
+std::string explain_document(const Preset& preset, const std::vector<Skipped>& skipped);
+std::string report_document(const BackendReport& report, std::uint64_t mended);
+
+}  // namespace afterglow::api

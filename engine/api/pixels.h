@@ -1,0 +1,50 @@
+// Pictures of the caller as rows of floats, and rows of results as the caller's samples.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "api/afterglow.h"
+#include "core/geometry.h"
+#include "core/result.h"
+#include "exec/frame.h"
+
+namespace afterglow::api {
+
+/// An afterglow_image that was checked, with its strides.
+struct Pixels {
+  std::byte* data = nullptr;
+  Size size;
+  int channels = 0;
+  afterglow_samples samples = AFTERGLOW_FLOAT;
+  std::ptrdiff_t row_stride = 0, pixel_stride = 0;
+
+  std::byte* at(int x, int y) const { return data + y * row_stride + x * pixel_stride; }
+  std::size_t sample_bytes() const { return samples == AFTERGLOW_FLOAT ? 4 : samples == AFTERGLOW_HALF ? 2 : 1; }
+  bool packed() const {
+    return pixel_stride == static_cast<std::ptrdiff_t>(sample_bytes() * static_cast<std::size_t>(channels));
+  }
+};
+
+enum class ImageRole { color, depth, normal, motion };
+
+/// Errors (usage): no data, sizes, channels or samples that the role does not allow, strides shorter than a pixel.
+Result<Pixels> check_image(const afterglow_image& given, ImageRole role, const char* name);
+
+/// Samples that had to be made finite, or were negative colours. Thread-safe.
+using Mended = std::atomic<std::uint64_t>;
+
+/// The picture as an input of a frame. Colour comes as RGBA, scene-linear, alpha associated, finite and ≥ 0. `mended`
+/// and what `pixels` points at must outlive it.
+HostImage input_image(const Pixels& pixels, ImageRole role, Mended& mended);
+
+/// Writes results into `to`, in `region` alone. `source`: where alpha comes from when the result's storage is too
+/// coarse for it.
+struct ResultRules {
+  Pixels to, source;
+  Rect region;
+  bool dither = false;  ///< of 8-bit results that the device has not encoded
+};
+HostResult result_rows(const ResultRules& rules);
+
+}  // namespace afterglow::api

@@ -1,0 +1,96 @@
+from os import PathLike
+from typing import Any, Callable, Iterable, Literal, Optional, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+__version__: str
+
+_Path = Union[str, PathLike[str]]
+_Message = Callable[[Literal["info", "warning"], str], None]
+_Value = Union[bool, float, str, Sequence[float]]
+
+class Error(Exception):
+    message: str
+    file: Optional[str]
+    line: Optional[int]
+    allowed: Optional[str]
+    nearest: Optional[str]
+
+class UsageError(Error, ValueError): ...
+class ScriptError(Error): ...
+class FileError(Error, OSError): ...
+class DeviceError(Error, RuntimeError): ...
+
+class Device:
+    """A Vulkan device, and the kernels that its stacks share. `device`: "auto", an index, or a part of a name or uuid.
+    `cache`: a folder where compiled shaders are kept; None: nowhere. Messages go to `message`, or to the logger
+    "afterglow"."""
+
+    def __init__(
+        self,
+        device: str = "auto",
+        *,
+        validate: bool = False,
+        cache: Optional[str] = None,
+        message: Optional[_Message] = None,
+    ) -> None: ...
+    def describe(self) -> dict[str, Any]: ...
+
+class Stack:
+    """A preset made runnable on a device. Several threads may use one: their calls wait for each other. Two stacks run
+    at the same time."""
+
+    def __init__(
+        self,
+        preset: Optional[_Path] = None,
+        *,
+        text: str = "",
+        device: Optional[Device] = None,
+        paths: Iterable[_Path] = (),
+        installation: Optional[_Path] = None,
+        calibration: Optional[_Path] = None,
+        precision: Literal["auto", "fp32", "fp16"] = "auto",
+        max_error: float = 0,
+        max_memory: int = 0,
+        reference: bool = False,
+        time_kernels: bool = False,
+        follow: bool = False,
+        message: Optional[_Message] = None,
+        wake: Optional[Callable[[], None]] = None,
+    ) -> None: ...
+    def run(
+        self,
+        source: NDArray[Any],
+        *,
+        depth: Optional[NDArray[Any]] = None,
+        normal: Optional[NDArray[Any]] = None,
+        motion: Optional[NDArray[Any]] = None,
+        out: Optional[NDArray[Any]] = None,
+        dtype: Optional[DTypeLike] = None,
+        frame: float = 1,
+        time: float = 0,
+        fps: float = 24,
+        step: float = 1,
+        restart: bool = False,
+        position: Optional[Tuple[float, float, float]] = None,
+        region: Optional[Tuple[int, int, int, int]] = None,
+        dither: bool = False,
+    ) -> NDArray[Any]:
+        """Runs the stack on a picture of (height, width, 3 or 4). float32 and float16 are scene-linear with associated
+        alpha, uint8 are sRGB codes with straight alpha. Other numbers become float32. The result is a new array like
+        the source, of `dtype` where that is given, or `out`, which may be the source itself. With `region` the rest of
+        a new array is undefined."""
+
+    def set(self, name: str, value: _Value) -> None:
+        """Sets ENTRY.SETTING, as in "bloom.intensity". Text is read as on the command line."""
+
+    def unset(self, name: Optional[str] = None) -> None: ...
+    def get(self, name: str) -> Any: ...
+    @property
+    def settings(self) -> list[dict[str, Any]]: ...
+    def explain(self) -> dict[str, Any]: ...
+    def report(self) -> dict[str, Any]: ...
+    def reload(self, text: Optional[str] = None) -> None: ...
+    def update(self) -> bool: ...
+    def reset_history(self) -> None: ...

@@ -1,0 +1,79 @@
+#include "arrays.h"
+
+#include <limits>
+
+namespace afterglow::python {
+namespace {
+
+bool is_half(const py::dtype& type) { return type.kind() == 'f' && type.itemsize() == 2; }
+bool is_float(const py::dtype& type) { return type.kind() == 'f' && type.itemsize() == 4; }
+bool is_codes(const py::dtype& type) { return type.kind() == 'u' && type.itemsize() == 1; }
+bool is_native(const py::dtype& type) { return type.byteorder() == '=' || type.byteorder() == '|'; }
+bool is_known(const py::dtype& type) { return is_native(type) && (is_half(type) || is_float(type) || is_codes(type)); }
+
+std::string shape_text(const py::array& array) { return py::str(array.attr("shape")).cast<std::string>(); }
+
+/// Channels lie next to each other, pixels go to the right, and every sample is aligned.
+bool is_readable(const py::array& array) {
+  const auto channels = array.ndim() == 3 ? array.shape(2) : 1;
+  const auto item = array.itemsize();
+  const bool together = array.ndim() == 2 || channels == 1 || array.strides(2) == item;
+  return together && (array.shape(1) == 1 || array.strides(1) >= channels * item);
+}
+
+afterglow_image image_of(py::array& array, const char* name) {
+  const auto limit = std::numeric_limits<std::int32_t>::max();
+  if (array.ndim() < 2 || array.ndim() > 3 || array.shape(0) > limit || array.shape(1) > limit ||
+      (array.ndim() == 3 && array.shape(2) > 4))
+    throw py::value_error(std::string(name) + ": the shape is " + shape_text(array) +
+                          "; allowed: (height, width, channels)");
+  afterglow_image image{};
+  image.data = const_cast<void*>(array.data());
+  image.height = static_cast<std::int32_t>(array.shape(0));
+  image.width = static_cast<std::int32_t>(array.shape(1));
+  image.channels = array.ndim() == 3 ? static_cast<std::int32_t>(array.shape(2)) : 1;
+  image.row_stride = array.strides(0);
+  image.pixel_stride = array.shape(1) == 1 ? 0 : array.strides(1);
+  image.samples = is_half(array.dtype()) ? AFTERGLOW_HALF : is_codes(array.dtype()) ? AFTERGLOW_UINT8 : AFTERGLOW_FLOAT;
+  if (array.shape(0) == 1) image.row_stride = 0;
+  return image;
+}
+
+}  // namespace
+
+Picture input(const py::object& given, const char* name, bool may_be_flat) {
+  py::array array = py::array::ensure(given);
+  if (!array) throw py::value_error(std::string(name) + " is no array");
+  if (!is_known(array.dtype())) array = array.attr("astype")("float32");
+  if (array.ndim() == 2 && !may_be_flat)
+    throw py::value_error(std::string(name) + ": the shape is " + shape_text(array) +
+                          "; allowed: (height, width, 3) or (height, width, 4)");
+  if (array.ndim() >= 2 && array.ndim() <= 3 && !is_readable(array))
+    array = py::module_::import("numpy").attr("ascontiguousarray")(array);
+  Picture out{array, {}};
+  out.image = image_of(out.array, name);
+  return out;
+}
+
+Picture output(const py::object& given) {
+  if (!py::isinstance<py::array>(given)) throw py::value_error("out is no numpy array");
+  auto array = py::reinterpret_borrow<py::array>(given);
+  if (!array.writeable()) throw py::value_error("out is read-only");
+  if (!is_known(array.dtype())) throw py::value_error("out must be of float32, float16 or uint8");
+  if (array.ndim() != 3 || !is_readable(array))
+    throw py::value_error("out must be (height, width, channels), with the channels next to each other");
+  Picture out{array, {}};
+  out.image = image_of(out.array, "out");
+  return out;
+}
+
+Picture output_like(const Picture& source, const py::object& dtype) {
+  const py::dtype type = dtype.is_none() ? source.array.dtype() : py::dtype::from_args(dtype);
+  if (!is_known(type)) throw py::value_error("dtype must be float32, float16 or uint8");
+  py::array array = py::module_::import("numpy").attr("empty")(source.array.attr("shape"), type);
+  Picture out{array, {}};
+  out.image = image_of(out.array, "out");
+  return out;
+}
+
+}  // namespace afterglow::python

@@ -1,0 +1,41 @@
+// The Python module: afterglow.hpp with arrays of numpy. What users read stands in __init__.pyi.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "stack.h"
+
+namespace py = pybind11;
+using afterglow::python::PyDevice;
+using afterglow::python::PyStack;
+
+PYBIND11_MODULE(_afterglow, module) {
+  module.attr("__version__") = std::to_string(AFTERGLOW_VERSION_MAJOR) + "." + std::to_string(AFTERGLOW_VERSION_MINOR) +
+                               "." + std::to_string(AFTERGLOW_VERSION_PATCH);
+
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const afterglow::Error& error) {
+      afterglow::python::raise(error);
+    }
+  });
+
+  py::class_<PyDevice, std::shared_ptr<PyDevice>>(module, "Device", "A Vulkan device.")
+      .def(py::init<const std::string&, bool, const std::optional<std::string>&, py::object>(),
+           py::arg("device") = "auto", py::kw_only(), py::arg("validate") = false, py::arg("cache") = py::none(),
+           py::arg("message") = py::none())
+      .def("describe", &PyDevice::describe, "Name, type, driver, uuid and what the validation layer has said.");
+
+  py::class_<PyStack>(module, "Stack", "A preset made runnable on a device.")
+      .def(py::init<const py::object&, const py::kwargs&>(), py::arg("preset") = py::none())
+      .def("run", &PyStack::run, py::arg("source"), "Runs the stack on a picture; returns the result.")
+      .def("set", &PyStack::set, py::arg("name"), py::arg("value"), "Sets ENTRY.SETTING.")
+      .def("unset", &PyStack::unset, py::arg("name") = py::none(), "Back to what the preset says.")
+      .def("get", &PyStack::get, py::arg("name"), "The value of ENTRY.SETTING in the last frame.")
+      .def_property_readonly("settings", &PyStack::settings, "Entries with their settings.")
+      .def("explain", &PyStack::explain, "How the settings of the last frame came about.")
+      .def("report", &PyStack::report, "What ran in the last frame, what did not and why, times.")
+      .def("reload", &PyStack::reload, py::arg("text") = py::none(), "Reads the files again, or takes another text.")
+      .def("update", &PyStack::update, "With follow=True: takes edits; true when there were any.")
+      .def("reset_history", &PyStack::reset_history, "Forgets earlier frames.");
+}

@@ -1,0 +1,78 @@
+// What a call over the C interface costs beside the engine itself: both make the same 1920×1080 picture in turns.
+//
+//   embed_cost PRESET [ROUNDS]
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "afterglow.h"
+#include "session/session.h"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+void need(afterglow_error* error) {
+  if (!error) return;
+  std::fprintf(stderr, "%s\n", afterglow_error_get_text(error).data);
+  std::exit(1);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) return std::fprintf(stderr, "usage: embed_cost PRESET [ROUNDS]\n"), 2;
+  const int rounds = argc > 2 ? std::atoi(argv[2]) : 30;
+  constexpr int kWidth = 1920, kHeight = 1080;
+  std::vector<float> source(static_cast<std::size_t>(kWidth) * kHeight * 4), result(source.size());
+  for (std::size_t i = 0; i < source.size(); ++i) source[i] = i % 4 == 3 ? 1.0f : static_cast<float>(i * 37 % 101) / 32;
+
+  afterglow::Diagnostics none;
+  const auto session = afterglow::Session::open(argv[1], {}, none);
+  if (!session) return std::fprintf(stderr, "%s\n", session.error().text().c_str()), 1;
+  afterglow::Picture picture;
+  picture.color = afterglow::Image(kWidth, kHeight, 4);
+
+  afterglow_device* device = nullptr;
+  afterglow_stack* stack = nullptr;
+  need(afterglow_device_open(nullptr, &device));
+  afterglow_stack_options options = afterglow_stack_options_default();
+  options.preset_file = afterglow_str(argv[1]);
+  need(afterglow_stack_create(device, &options, &stack));
+  afterglow_run_info info = afterglow_run_info_default();
+  info.source = {source.data(), kWidth, kHeight, 4, AFTERGLOW_FLOAT, 0, 0};
+  info.result = {result.data(), kWidth, kHeight, 4, AFTERGLOW_FLOAT, 0, 0};
+
+  std::vector<double> engine, interface, ratio;
+  for (int round = -2; round < rounds; ++round) {  // the first ones make shaders and memory
+    std::copy(source.begin(), source.end(), picture.color.pixels.begin());
+    auto start = Clock::now();
+    if (const auto done = (*session)->process(picture); !done)
+      return std::fprintf(stderr, "%s\n", done.error().text().c_str()), 1;
+    const double own = milliseconds_since(start);
+    start = Clock::now();
+    need(afterglow_stack_run(stack, &info));
+    const double call = milliseconds_since(start);
+    if (round < 0) continue;
+    engine.push_back(own);
+    interface.push_back(call);
+    ratio.push_back(call / own);
+  }
+  const bool same = result == picture.color.pixels;
+  std::printf("engine %.2f ms, C interface %.2f ms, median of the ratios of %d rounds %.4f; pixels %s\n",
+              median(engine), median(interface), rounds, median(ratio), same ? "equal" : "DIFFER");
+  afterglow_stack_free(stack);
+  afterglow_device_free(device);
+  return same ? 0 : 1;
+}

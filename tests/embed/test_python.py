@@ -1,0 +1,251 @@
+"""The Python module: arrays in and out, settings, errors, reload, threads."""
+import logging
+import os
+import pathlib
+import threading
+
+import numpy as np
+import pytest
+
+import afterglow
+
+PROJECT = pathlib.Path(os.environ["AFTERGLOW_PROJECT"])
+
+GAIN = """
+local fx = require "afterglow"
+return fx.effect {
+  name = "gain", doc = "Multiplies.", at = "post_process", order = 10,
+  settings = { amount = fx.float { default = 1, min = 0, max = 1e6, doc = "Factor." },
+               tint = fx.color { default = {1, 1, 1}, doc = "Colour." },
+               off = fx.bool { default = false, doc = "Does nothing." } },
+  active = function(s) return not s.off, "off is set" end,
+  build = function(g, s, source)
+    return g:pass { shader = "gain/gain", source = source, amount = s.amount, tint = s.tint }
+  end,
+}
+"""
+SHADER = """
+uniform float amount;
+uniform vec3 tint;
+vec4 apply(vec4 color) { return vec4(color.rgb * amount * tint, color.a); }
+"""
+
+
+def look(entries):
+    return 'local fx = require "afterglow"\nreturn fx.stack { %s }\n' % entries
+
+
+@pytest.fixture(scope="session")
+def device():
+    device = afterglow.Device(validate=True)
+    yield device
+    assert device.describe()["validation_errors"] == 0
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "effects").mkdir()
+    (tmp_path / "shaders/gain").mkdir(parents=True)
+    (tmp_path / "effects/gain.lua").write_text(GAIN)
+    (tmp_path / "shaders/gain/gain.glsl").write_text(SHADER)
+    (tmp_path / "look.lua").write_text(look("fx.gain { amount = 2 }"))
+    return tmp_path
+
+
+@pytest.fixture
+def stack(folder, device):
+    return afterglow.Stack(folder / "look.lua", device=device)
+
+
+def picture(height=9, width=16, channels=4, dtype=np.float32):
+    values = (np.arange(height * width * channels, dtype=np.float32) % 23) / 16
+    return values.reshape(height, width, channels).astype(dtype)
+
+
+def test_floats(stack):
+    source = picture()
+    before = source.copy()
+    result = stack.run(source)
+    assert result.dtype == np.float32 and result.shape == source.shape
+    np.testing.assert_array_equal(result[..., :3], before[..., :3] * 2)
+    np.testing.assert_array_equal(result[..., 3], before[..., 3])
+    np.testing.assert_array_equal(source, before)
+
+
+def test_in_place_and_into_a_given_array(stack):
+    source = picture()
+    wanted = stack.run(source)
+    out = np.zeros((9, 20, 4), np.float32)[:, 2:18]  # a part of another array
+    assert stack.run(source, out=out) is out
+    np.testing.assert_array_equal(out, wanted)
+    assert stack.run(source, out=source) is source
+    np.testing.assert_array_equal(source, wanted)
+
+
+def test_views_need_no_copy_of_the_caller(stack):
+    source = picture()
+    wanted = stack.run(source)
+    np.testing.assert_array_equal(stack.run(source[::-1]), wanted[::-1])
+    np.testing.assert_array_equal(stack.run(source[:, ::-1]), wanted[:, ::-1])
+    np.testing.assert_array_equal(stack.run(source[2:7, 3:11]), wanted[2:7, 3:11])
+    np.testing.assert_array_equal(stack.run(np.asfortranarray(source)), wanted)
+    np.testing.assert_array_equal(stack.run(source[..., :3]), wanted[..., :3])
+    np.testing.assert_array_equal(stack.run(source.astype(np.float64)), wanted)
+
+
+def test_halves_and_codes(stack):
+    half = picture(dtype=np.float16)
+    result = stack.run(half)
+    assert result.dtype == np.float16
+    np.testing.assert_array_equal(result[..., :3], half[..., :3] * 2)
+    assert stack.run(half, dtype=np.float32).dtype == np.float32
+    codes = np.full((4, 4, 3), 255, np.uint8)
+    np.testing.assert_array_equal(stack.run(codes), codes)
+    np.testing.assert_array_equal(stack.run(codes, dtype="float32"), np.full((4, 4, 3), 2, np.float32))
+
+
+def test_a_region(stack):
+    source = picture()
+    out = np.full_like(source, -1)
+    stack.run(source, out=out, region=(3, 2, 5, 4))
+    wanted = np.full_like(source, -1)
+    wanted[2:6, 3:8] = stack.run(source)[2:6, 3:8]
+    np.testing.assert_array_equal(out, wanted)
+
+
+def test_settings(stack):
+    assert stack.get("gain.amount") == 2
+    stack.set("gain.amount", 3)
+    assert stack.get("gain.amount") == 3
+    stack.set("gain.tint", (1, 0.5, np.float64(0.25)))
+    assert stack.get("gain.tint") == [1, 0.5, 0.25]
+    one = np.ones((1, 1, 3), np.float32)
+    np.testing.assert_array_equal(stack.run(one)[0, 0], (3, 1.5, 0.75))
+    stack.set("gain.off", True)
+    np.testing.assert_array_equal(stack.run(one), one)
+    stack.unset("gain.off")
+    stack.set("gain.tint", "#ffffff")
+    stack.set("gain.amount", np.float32(5))
+    np.testing.assert_array_equal(stack.run(one), 5 * one)
+    stack.unset()
+    np.testing.assert_array_equal(stack.run(one), 2 * one)
+    [entry] = stack.settings
+    assert entry["name"] == "gain"
+    amount = next(s for s in entry["settings"] if s["name"] == "amount")
+    assert amount["default"] == 1 and amount["max"] == 1e6 and amount["doc"] == "Factor."
+    assert stack.explain()["entries"][0]["state"] == "runs"
+    assert stack.report()["kernels"] == ["gain.gain"]
+
+
+def test_errors_name_file_and_line(folder, device, stack):
+    with pytest.raises(afterglow.UsageError) as caught:
+        stack.set("gain.amonut", 1)
+    assert caught.value.nearest == "amount"
+    assert isinstance(caught.value, ValueError)
+    with pytest.raises(afterglow.UsageError):
+        stack.get("gain.amonut")
+    (folder / "look.lua").write_text('local fx = require "afterglow"\nreturn fx.stack {\n  fx.gain { amount = "x" },\n}\n')
+    with pytest.raises(afterglow.ScriptError) as caught:
+        afterglow.Stack(folder / "look.lua", device=device)
+    assert caught.value.file == str(folder / "look.lua")
+    assert caught.value.line == 3
+    assert str(caught.value).startswith(f"{folder / 'look.lua'}:3: error: ")
+    assert caught.value.message in str(caught.value)
+    with pytest.raises(afterglow.DeviceError):
+        afterglow.Device("no such device")
+    with pytest.raises(afterglow.Error):
+        afterglow.Stack("no_such_preset", device=device)
+
+
+def test_wrong_arguments(stack):
+    with pytest.raises(ValueError, match="shape"):
+        stack.run(np.zeros((4, 4), np.float32))
+    with pytest.raises(afterglow.UsageError, match="2 channels"):
+        stack.run(np.zeros((4, 4, 2), np.float32))
+    with pytest.raises(TypeError, match="dethp"):
+        stack.run(picture(), dethp=None)
+    with pytest.raises(ValueError, match="read-only"):
+        out = picture()
+        out.flags.writeable = False
+        stack.run(picture(), out=out)
+    with pytest.raises(ValueError, match="allowed: auto, fp32, fp16"):
+        afterglow.Stack("neon_night", precision="double")
+
+
+def test_reload(folder, stack):
+    one = np.ones((1, 1, 3), np.float32)
+    (folder / "look.lua").write_text(look("fx.gain { amount = 7 }"))
+    np.testing.assert_array_equal(stack.run(one), 2 * one)
+    stack.reload()
+    np.testing.assert_array_equal(stack.run(one), 7 * one)
+    stack.reload(look("fx.gain { amount = 9 }"))
+    np.testing.assert_array_equal(stack.run(one), 9 * one)
+    with pytest.raises(afterglow.ScriptError):
+        stack.reload(look("fx.gian {}"))
+    np.testing.assert_array_equal(stack.run(one), 9 * one)
+
+
+def test_follow(folder, device):
+    woken = threading.Event()
+    stack = afterglow.Stack(folder / "look.lua", device=device, follow=True, wake=woken.set)
+    one = np.ones((1, 1, 3), np.float32)
+    np.testing.assert_array_equal(stack.run(one), 2 * one)
+    (folder / "look.lua").write_text(look("fx.gain { amount = 7 }"))
+    changed = False
+    while not changed:
+        assert woken.wait(120)
+        woken.clear()
+        changed = stack.update()
+    np.testing.assert_array_equal(stack.run(one), 7 * one)
+
+
+def test_depth(device):
+    stack = afterglow.Stack("ink_outline", device=device)
+    source = np.full((16, 16, 3), 0.5, np.float32)
+    depth = np.full((16, 16), 5, np.float32)
+    depth[4:12, 4:12] = 1
+    normal = np.zeros((16, 16, 3), np.float16)
+    normal[..., 2] = 1
+    with_lines = stack.run(source, depth=depth, normal=normal)
+    assert with_lines.min() < 0.3 < source.min()
+    # What a look lacks is skipped and told.
+    without = stack.run(source)
+    assert without.min() > 0.3
+    assert any("depth" in s["reason"] or "normal" in s["reason"] for s in stack.report()["skipped"])
+
+
+def test_threads_share_a_stack(stack):
+    one = np.ones((64, 64, 3), np.float32)
+    failures = []
+
+    def work():
+        for _ in range(5):
+            if not np.array_equal(stack.run(one), 2 * one):
+                failures.append("wrong pixels")
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not failures
+
+
+def test_messages(folder, device, caplog):
+    source = np.full((1, 1, 3), np.nan, np.float32)
+    told = []
+    stack = afterglow.Stack(folder / "look.lua", device=device, message=lambda level, text: told.append((level, text)))
+    assert not stack.run(source).any()
+    assert len(told) == 1 and told[0][0] == "warning" and "3 samples" in told[0][1]
+    with caplog.at_level(logging.WARNING, "afterglow"):
+        afterglow.Stack(folder / "look.lua", device=device).run(source)
+    assert "3 samples" in caplog.text
+
+
+def test_the_stub_names_what_there_is():
+    stub = (pathlib.Path(afterglow.__file__).parent / "__init__.pyi").read_text()
+    for cls in (afterglow.Stack, afterglow.Device):
+        for name in vars(cls):
+            if not name.startswith("_"):
+                assert f"def {name}(" in stub, name
+    assert (pathlib.Path(afterglow.__file__).parent / "py.typed").exists()

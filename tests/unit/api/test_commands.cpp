@@ -1,0 +1,71 @@
+// Recording: what is refused before there is anything to record. examples/vulkan.c records.
+#include "fixture.h"
+
+namespace afterglow::test {
+namespace {
+
+class CommandsTest : public ApiTest {
+ protected:
+  static afterglow_stack_options recording() {
+    afterglow_stack_options options = afterglow_stack_options_default();
+    options.use = AFTERGLOW_USE_COMMANDS;
+    return options;
+  }
+  static afterglow_shape shape() {
+    afterglow_shape out = afterglow_shape_default();
+    out.width = 8;
+    out.height = 4;
+    return out;
+  }
+};
+
+TEST_F(CommandsTest, TheOrderOfCallsIsKept) {
+  const StackPtr stack = this->stack(recording());
+  auto* commands = reinterpret_cast<VkCommandBuffer>(1);  // never reached
+  const ErrorPtr early(afterglow_stack_record(stack.get(), commands));
+  EXPECT_THAT(text_of(early.get()), HasSubstr("afterglow_stack_prepare first"));
+  const afterglow_shape wanted = shape();
+  ASSERT_TRUE(fine(afterglow_stack_prepare(stack.get(), &wanted, nullptr)));
+  EXPECT_TRUE(afterglow_stack_runs(stack.get()));
+  const ErrorPtr unbound(afterglow_stack_record(stack.get(), commands));
+  EXPECT_THAT(text_of(unbound.get()), HasSubstr("afterglow_stack_bind first"));
+  const afterglow_bindings nothing = afterglow_bindings_default();
+  EXPECT_TRUE(ErrorPtr(afterglow_stack_bind(stack.get(), &nothing)));
+  EXPECT_EQ(afterglow_error_get_kind(ErrorPtr(afterglow_stack_record(stack.get(), nullptr)).get()),
+            AFTERGLOW_ERROR_USAGE);
+}
+
+TEST_F(CommandsTest, AStackIsForOneUse) {
+  const StackPtr memory = this->stack();
+  const afterglow_bindings bindings = afterglow_bindings_default();
+  EXPECT_EQ(afterglow_error_get_kind(ErrorPtr(afterglow_stack_bind(memory.get(), &bindings)).get()),
+            AFTERGLOW_ERROR_USAGE);
+  const StackPtr commands = this->stack(recording());
+  const afterglow_run_info info = afterglow_run_info_default();
+  const ErrorPtr run(afterglow_stack_run(commands.get(), &info));
+  EXPECT_THAT(text_of(run.get()), HasSubstr("afterglow_stack_record"));
+}
+
+TEST_F(CommandsTest, TheResultsFormatIsTold) {
+  afterglow_stack_options options = recording();
+  options.precision = AFTERGLOW_PRECISION_FP16;
+  const StackPtr halves = this->stack(options);
+  afterglow_shape wanted = shape();
+  ASSERT_TRUE(fine(afterglow_stack_prepare(halves.get(), &wanted, nullptr)));
+  EXPECT_EQ(afterglow_stack_result_format(halves.get()), VK_FORMAT_R16G16B16A16_SFLOAT);
+  const StackPtr codes = this->stack(recording());
+  wanted.display_codes = true;
+  ASSERT_TRUE(fine(afterglow_stack_prepare(codes.get(), &wanted, nullptr)));
+  EXPECT_EQ(afterglow_stack_result_format(codes.get()), VK_FORMAT_R8G8B8A8_UNORM);
+}
+
+TEST_F(CommandsTest, AdoptedDevicesAreChecked) {
+  afterglow_device* device = nullptr;
+  const afterglow_adopted_device nothing = afterglow_adopted_device_default();
+  const ErrorPtr error(afterglow_device_adopt(&nothing, &device));
+  EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_DEVICE);
+  EXPECT_EQ(device, nullptr);
+}
+
+}  // namespace
+}  // namespace afterglow::test

@@ -1,0 +1,105 @@
+// Errors as objects, structures of other versions, arguments that are not there.
+#include "fixture.h"
+
+namespace afterglow::test {
+namespace {
+
+using ErrorTest = ApiTest;
+
+TEST_F(ErrorTest, NamesKindFileLineAllowedAndNearest) {
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack {\n  fx.gain { amonut = 2 },\n}\n");
+  const ErrorPtr error = broken();
+  EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_SCRIPT);
+  EXPECT_EQ(str(afterglow_error_get_file(error.get())), file("look.lua"));
+  EXPECT_EQ(afterglow_error_get_line(error.get()), 3);
+  EXPECT_THAT(str(afterglow_error_get_message(error.get())), HasSubstr("has no setting 'amonut'"));
+  EXPECT_THAT(str(afterglow_error_get_allowed(error.get())), HasSubstr("tint"));
+  EXPECT_EQ(str(afterglow_error_get_nearest(error.get())), "amount");
+  EXPECT_THAT(text_of(error.get()), HasSubstr("look.lua:3: error: "));
+  EXPECT_THAT(text_of(error.get()), HasSubstr("did you mean 'amount'?"));
+}
+
+TEST_F(ErrorTest, NothingIsNoError) {
+  EXPECT_EQ(afterglow_error_get_kind(nullptr), AFTERGLOW_ERROR_NONE);
+  EXPECT_EQ(str(afterglow_error_get_text(nullptr)), "");
+  EXPECT_EQ(afterglow_error_get_line(nullptr), 0);
+  afterglow_error_free(nullptr);
+  EXPECT_EQ(str(afterglow_text_get(nullptr)), "");
+  afterglow_text_free(nullptr);
+  afterglow_device_free(nullptr);
+  afterglow_stack_free(nullptr);
+  EXPECT_FALSE(afterglow_stack_runs(nullptr));
+}
+
+TEST_F(ErrorTest, MissingArgumentsAreUsageErrors) {
+  const StackPtr stack = this->stack();
+  afterglow_stack_options options = afterglow_stack_options_default();
+  afterglow_stack* out = nullptr;
+  afterglow_text* text = nullptr;
+  const afterglow_run_info info = afterglow_run_info_default();
+  const ErrorPtr errors[] = {
+      ErrorPtr(afterglow_device_open(nullptr, nullptr)),
+      ErrorPtr(afterglow_stack_create(nullptr, &options, &out)),
+      ErrorPtr(afterglow_stack_create(device_, nullptr, &out)),
+      ErrorPtr(afterglow_stack_create(device_, &options, nullptr)),
+      ErrorPtr(afterglow_stack_create(device_, &options, &out)),  // no preset
+      ErrorPtr(afterglow_stack_run(nullptr, &info)),
+      ErrorPtr(afterglow_stack_run(stack.get(), nullptr)),
+      ErrorPtr(afterglow_stack_run(stack.get(), &info)),  // no picture
+      ErrorPtr(afterglow_stack_settings(nullptr, &text)),
+      ErrorPtr(afterglow_stack_settings(stack.get(), nullptr)),
+      ErrorPtr(afterglow_stack_set_numbers(stack.get(), str("gain.amount"), nullptr, 1)),
+      ErrorPtr(afterglow_stack_get_number(stack.get(), str("gain.amount"), nullptr)),
+      ErrorPtr(afterglow_stack_prepare(stack.get(), nullptr, nullptr)),
+      ErrorPtr(afterglow_device_describe(nullptr, &text)),
+  };
+  for (const auto& error : errors) EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_USAGE);
+  EXPECT_EQ(out, nullptr);
+  EXPECT_EQ(text, nullptr);
+}
+
+TEST_F(ErrorTest, StructuresOfOtherVersionsAreTaken) {
+  // An older host knows no more than the name of the preset.
+  struct Older {
+    size_t struct_size;
+    afterglow_string preset_file;
+  } older{sizeof(Older), {}};
+  const std::string look = file("look.lua");
+  older.preset_file = str(look);
+  afterglow_stack* out = nullptr;
+  EXPECT_TRUE(fine(afterglow_stack_create(device_, reinterpret_cast<afterglow_stack_options*>(&older), &out)));
+  afterglow_stack_free(out);
+
+  // A newer one has more, which counts when it is not zero.
+  struct Newer {
+    afterglow_stack_options known;
+    int more;
+  } newer{afterglow_stack_options_default(), 0};
+  newer.known.struct_size = sizeof(Newer);
+  newer.known.preset_file = str(look);
+  out = nullptr;
+  EXPECT_TRUE(fine(afterglow_stack_create(device_, &newer.known, &out)));
+  afterglow_stack_free(out);
+  newer.more = 1;
+  const ErrorPtr refused(afterglow_stack_create(device_, &newer.known, &out));
+  EXPECT_EQ(afterglow_error_get_kind(refused.get()), AFTERGLOW_ERROR_USAGE);
+  EXPECT_THAT(text_of(refused.get()), HasSubstr("this version of the library does not know"));
+
+  newer.known.struct_size = 0;
+  const ErrorPtr unset(afterglow_stack_create(device_, &newer.known, &out));
+  EXPECT_THAT(text_of(unset.get()), HasSubstr("struct_size is not set"));
+}
+
+TEST_F(ErrorTest, DevicesThatAreNotThereAreDeviceErrors) {
+  afterglow_device_options options = afterglow_device_options_default();
+  options.device = afterglow_str("no such device");
+  afterglow_device* device = nullptr;
+  const ErrorPtr error(afterglow_device_open(&options, &device));
+  EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_DEVICE);
+  EXPECT_EQ(device, nullptr);
+}
+
+TEST_F(ErrorTest, TheVersionIsThatOfTheHeader) { EXPECT_EQ(afterglow_version(), AFTERGLOW_VERSION); }
+
+}  // namespace
+}  // namespace afterglow::test

@@ -1,0 +1,107 @@
+// Frames of a sequence, devices that go before their stacks, stacks on several threads.
+#include <thread>
+
+#include "fixture.h"
+
+namespace afterglow::test {
+namespace {
+
+class FrameTest : public ApiTest {
+ protected:
+  void SetUp() override {
+    ApiTest::SetUp();
+    // Adds half of what the frame before was.
+    write("effects/trail.lua", R"(
+      local fx = require "afterglow"
+      return fx.effect {
+        name = "trail", doc = "Leaves a trail.", at = "post_process", order = 20, settings = {},
+        build = function(g, s, source)
+          local before = g:history { name = "before", size = source, first = { 0, 0, 0, 0 } }
+          local now = g:pass { shader = "gain/trail", source = source, before = before, name = "now" }
+          g:keep(before, now)
+          return now
+        end,
+      })");
+    write("shaders/gain/trail.glsl",
+          "uniform sampler2D source;\nuniform sampler2D before;\n"
+          "vec4 sample_at(ivec2 p) { vec4 c = fetch(source, p); return vec4(c.rgb + 0.5 * fetch(before, p).rgb, c.a); "
+          "}\n");
+  }
+};
+
+/// Runs one pixel of 1 as that frame.
+float run_frame(afterglow_stack* stack, double number, bool restart = false) {
+  float source[4] = {1, 1, 1, 1}, result[4] = {};
+  afterglow_frame frame = afterglow_frame_default();
+  frame.number = number;
+  frame.restart = restart;
+  afterglow_run_info info = afterglow_run_info_default();
+  info.frame = &frame;
+  info.source = {source, 1, 1, 4, AFTERGLOW_FLOAT, 0, 0};
+  info.result = {result, 1, 1, 4, AFTERGLOW_FLOAT, 0, 0};
+  EXPECT_TRUE(fine(afterglow_stack_run(stack, &info)));
+  return result[0];
+}
+
+TEST_F(FrameTest, SettingsFollowTheFrame) {
+  look("fx.gain { amount = fx.curve { { 1, 2 }, { 3, 6 } } }");
+  const StackPtr stack = this->stack();
+  EXPECT_FLOAT_EQ(run_frame(stack.get(), 1), 2);
+  EXPECT_FLOAT_EQ(run_frame(stack.get(), 3), 6);
+  double amount = 0;
+  ASSERT_TRUE(fine(afterglow_stack_get_number(stack.get(), str("gain.amount"), &amount)));
+  EXPECT_EQ(amount, 6);
+}
+
+TEST_F(FrameTest, EffectsLookBackAtTheFrameBefore) {
+  look("fx.trail {}");
+  const StackPtr stack = this->stack();
+  EXPECT_EQ(run_frame(stack.get(), 1), 1);
+  EXPECT_EQ(run_frame(stack.get(), 2), 1.5f);
+  EXPECT_EQ(run_frame(stack.get(), 3), 1.75f);
+  EXPECT_EQ(run_frame(stack.get(), 3), 1.75f);  // the same frame once more
+  EXPECT_EQ(run_frame(stack.get(), 9), 1);      // another place in the sequence
+  EXPECT_EQ(run_frame(stack.get(), 10), 1.5f);
+  EXPECT_EQ(run_frame(stack.get(), 11, true), 1);  // told to begin anew
+  afterglow_stack_reset_history(stack.get());
+  EXPECT_EQ(run_frame(stack.get(), 12), 1);
+}
+
+TEST_F(FrameTest, AStackKeepsItsDevice) {
+  afterglow_device* device = nullptr;
+  ASSERT_TRUE(fine(afterglow_device_open(nullptr, &device)));
+  afterglow_stack_options options = afterglow_stack_options_default();
+  const std::string look = file("look.lua");
+  options.preset_file = str(look);
+  afterglow_stack* out = nullptr;
+  ASSERT_TRUE(fine(afterglow_stack_create(device, &options, &out)));
+  const StackPtr stack(out);
+  afterglow_device_free(device);
+  EXPECT_FLOAT_EQ(run_frame(stack.get(), 1), 2);
+}
+
+TEST_F(FrameTest, StacksRunOnSeveralThreads) {
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 3; ++i)
+    threads.emplace_back([this, i] {
+      const StackPtr stack = this->stack();
+      for (int frame = 1; frame <= 3; ++frame) {
+        EXPECT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), i + frame)));
+        EXPECT_FLOAT_EQ(run_frame(stack.get(), frame), static_cast<float>(i + frame));
+      }
+    });
+  for (auto& thread : threads) thread.join();
+}
+
+TEST_F(FrameTest, KernelsAreTimedWhenAsked) {
+  afterglow_stack_options options = afterglow_stack_options_default();
+  options.time_kernels = true;
+  const StackPtr stack = this->stack(options);
+  run_frame(stack.get(), 1);
+  const auto times = json_of(afterglow_stack_report, stack.get())["milliseconds"]["kernels"];
+  ASSERT_EQ(times.size(), 1u);
+  EXPECT_EQ(times[0]["name"], "gain.gain");
+}
+
+}  // namespace
+}  // namespace afterglow::test

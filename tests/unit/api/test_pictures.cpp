@@ -1,0 +1,221 @@
+// Pictures in host memory, in every form: the same pixels as a Session makes.
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "exec/half.h"
+#include "fixture.h"
+#include "image/color_encoding.h"
+#include "session/session.h"
+
+namespace afterglow::test {
+namespace {
+
+constexpr int kWidth = 37, kHeight = 21;
+
+class PictureTest : public ApiTest {
+ protected:
+  void SetUp() override {
+    ApiTest::SetUp();
+    look("fx.bloom { mode = \"scattering\", threshold = 0.5 }, fx.gain { amount = 2 }");
+  }
+
+  /// What a Session makes of it.
+  Picture expected(const std::vector<float>& pixels, const std::optional<DisplayEncoding>& encoding = {}) const {
+    Diagnostics diagnostics;
+    auto session = Session::open(file("look.lua"), {}, diagnostics);
+    EXPECT_TRUE(session) << session.error().text();
+    Picture picture;
+    picture.color = Image(kWidth, kHeight, 4);
+    picture.color.pixels = pixels;
+    const auto done = (*session)->process(picture, {}, encoding);
+    EXPECT_TRUE(done) << done.error().text();
+    return picture;
+  }
+
+  static void run(const StackPtr& stack, const afterglow_image& source, const afterglow_image& result) {
+    afterglow_run_info info = afterglow_run_info_default();
+    info.source = source;
+    info.result = result;
+    ASSERT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
+  }
+};
+
+TEST_F(PictureTest, FloatsAreThoseOfASession) {
+  std::vector<float> source = pixels(kWidth, kHeight), result(source.size());
+  const std::vector<float> before = source;
+  const Picture wanted = expected(source);
+  const StackPtr stack = this->stack();
+  run(stack, image(source, kWidth, kHeight), image(result, kWidth, kHeight));
+  EXPECT_EQ(result, wanted.color.pixels);
+  EXPECT_EQ(source, before);
+  // The source may be the result.
+  run(stack, image(source, kWidth, kHeight), image(source, kWidth, kHeight));
+  EXPECT_EQ(source, wanted.color.pixels);
+}
+
+TEST_F(PictureTest, ThreeChannelsAreOpaque) {
+  std::vector<float> opaque = pixels(kWidth, kHeight), three;
+  for (std::size_t i = 0; i < opaque.size(); ++i) {
+    if (i % 4 == 3)
+      opaque[i] = 1;
+    else
+      three.push_back(opaque[i]);
+  }
+  const Picture wanted = expected(opaque);
+  std::vector<float> result(three.size());
+  const StackPtr stack = this->stack();
+  run(stack, image(three, kWidth, kHeight, 3), image(result, kWidth, kHeight, 3));
+  for (std::size_t i = 0; i < result.size(); ++i) ASSERT_EQ(result[i], wanted.color.pixels[i / 3 * 4 + i % 3]) << i;
+  std::vector<float> four(opaque.size());
+  run(stack, image(three, kWidth, kHeight, 3), image(four, kWidth, kHeight));
+  EXPECT_EQ(four, wanted.color.pixels);
+}
+
+TEST_F(PictureTest, StridesAreKeptAndGapsLeftAlone) {
+  const std::vector<float> source = pixels(kWidth, kHeight);
+  const Picture wanted = expected(source);
+  constexpr int kPixel = 6, kRow = kWidth * kPixel + 5;  // floats
+  std::vector<float> spread(static_cast<std::size_t>(kRow) * kHeight, -7), result(spread);
+  const auto at = [&](std::vector<float>& all, int x, int y) {  // the last row comes first
+    return &all[static_cast<std::size_t>((kHeight - 1 - y) * kRow + x * kPixel)];
+  };
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      std::memcpy(at(spread, x, y), &source[static_cast<std::size_t>(y * kWidth + x) * 4], 16);
+  const auto view = [&](std::vector<float>& all) {
+    return afterglow_image{at(all, 0, 0), kWidth, kHeight, 4, AFTERGLOW_FLOAT, -kRow * 4, kPixel * 4};
+  };
+  run(this->stack(), view(spread), view(result));
+  std::size_t touched = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      ASSERT_EQ(0,
+                std::memcmp(at(result, x, y), &wanted.color.pixels[static_cast<std::size_t>(y * kWidth + x) * 4], 16))
+          << x << " " << y;
+  for (const float value : result) touched += value != -7;
+  EXPECT_EQ(touched, source.size());
+}
+
+TEST_F(PictureTest, HalvesAreReadAndWritten) {
+  std::vector<float> source = pixels(kWidth, kHeight);
+  std::vector<std::uint16_t> halves(source.size()), result(source.size()), rounded(source.size());
+  halves_from_floats(source.data(), source.size(), halves.data());
+  floats_from_halves(halves.data(), halves.size(), source.data());
+  const Picture wanted = expected(source);
+  halves_from_floats(wanted.color.pixels.data(), rounded.size(), rounded.data());
+  run(this->stack(), {halves.data(), kWidth, kHeight, 4, AFTERGLOW_HALF, 0, 0},
+      {result.data(), kWidth, kHeight, 4, AFTERGLOW_HALF, 0, 0});
+  EXPECT_EQ(result, rounded);
+}
+
+TEST_F(PictureTest, CodesAreThoseOfAFile) {
+  std::vector<std::uint8_t> codes(static_cast<std::size_t>(kWidth) * kHeight * 4), result(codes.size());
+  for (std::size_t i = 0; i < codes.size(); ++i) codes[i] = static_cast<std::uint8_t>(i * 7 % 256);
+  Image read(kWidth, kHeight, 4);
+  for (std::size_t i = 0; i < codes.size(); ++i) read.pixels[i] = static_cast<float>(codes[i]) / 255.0f;
+  SanitizeCounts counts;
+  decode_color({.curve = TransferCurve::srgb, .alpha = AlphaKind::straight, .max_code = 255}, read, counts);
+  const Picture wanted = expected(read.pixels, DisplayEncoding{.straight_alpha = true});
+  ASSERT_FALSE(wanted.codes.empty());
+  const StackPtr stack = this->stack();
+  run(stack, {codes.data(), kWidth, kHeight, 4, AFTERGLOW_UINT8, 0, 0},
+      {result.data(), kWidth, kHeight, 4, AFTERGLOW_UINT8, 0, 0});
+  EXPECT_EQ(result, wanted.codes);
+
+  // To floats, and in three channels.
+  const Picture linear = expected(read.pixels);
+  std::vector<float> floats(codes.size());
+  run(stack, {codes.data(), kWidth, kHeight, 4, AFTERGLOW_UINT8, 0, 0}, image(floats, kWidth, kHeight));
+  EXPECT_EQ(floats, linear.color.pixels);
+}
+
+TEST_F(PictureTest, ALookThatDoesNothingHandsThePictureOver) {
+  look("fx.gain { off = true }");
+  std::vector<float> source = pixels(kWidth, kHeight), result(source.size());
+  const StackPtr stack = this->stack();
+  run(stack, image(source, kWidth, kHeight), image(result, kWidth, kHeight));
+  EXPECT_EQ(result, source);
+  EXPECT_FALSE(afterglow_stack_runs(stack.get()));
+  std::vector<std::uint8_t> codes(source.size() / 4 * 3);
+  source.assign(source.size(), 1.0f);
+  run(stack, image(source, kWidth, kHeight), {codes.data(), kWidth, kHeight, 3, AFTERGLOW_UINT8, 0, 0});
+  EXPECT_EQ(codes, std::vector<std::uint8_t>(codes.size(), 255));
+}
+
+TEST_F(PictureTest, OnlyTheRegionIsWritten) {
+  std::vector<float> source = pixels(kWidth, kHeight), result(source.size(), -7);
+  const Picture wanted = expected(source);
+  const StackPtr stack = this->stack();
+  afterglow_run_info info = afterglow_run_info_default();
+  info.source = image(source, kWidth, kHeight);
+  info.result = image(result, kWidth, kHeight);
+  info.region = {5, 3, 11, 9};
+  ASSERT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const bool inside = x >= 5 && x < 16 && y >= 3 && y < 12;
+      const std::size_t i = static_cast<std::size_t>(y * kWidth + x) * 4;
+      for (std::size_t c = 0; c < 4; ++c)
+        ASSERT_EQ(result[i + c], inside ? wanted.color.pixels[i + c] : -7) << x << " " << y;
+    }
+  info.region = {30, 0, 8, 1};
+  const ErrorPtr outside(afterglow_stack_run(stack.get(), &info));
+  EXPECT_EQ(afterglow_error_get_kind(outside.get()), AFTERGLOW_ERROR_USAGE);
+}
+
+TEST_F(PictureTest, WhatIsNotFiniteIsMendedAndTold) {
+  look("fx.gain { amount = 2 }");
+  const StackPtr stack = this->stack(listening());
+  std::vector<float> source(4 * 4, 0.5f), result(source.size());
+  source[0] = std::numeric_limits<float>::quiet_NaN();
+  source[1] = -1;
+  source[7] = std::numeric_limits<float>::infinity();  // an alpha
+  for (int i = 0; i < 2; ++i) run(stack, image(source, 2, 2), image(result, 2, 2));
+  EXPECT_EQ(result[0], 0);
+  EXPECT_EQ(result[1], 0);
+  EXPECT_EQ(result[2], 1);
+  EXPECT_EQ(result[7], 1);
+  EXPECT_EQ(json_of(afterglow_stack_report, stack.get())["mended_samples"], 3);
+  ASSERT_EQ(messages_.size(), 1u);
+  EXPECT_THAT(messages_[0], HasSubstr("3 samples"));
+}
+
+TEST_F(PictureTest, DepthIsReadWhereALookNeedsIt) {
+  look("fx.fog {}");
+  const StackPtr stack = this->stack();
+  std::vector<float> source(2 * 2 * 4, 0.5f), result(source.size());
+  std::vector<std::uint16_t> depth(4, half_from_float(3));
+  afterglow_run_info info = afterglow_run_info_default();
+  info.source = image(source, 2, 2);
+  info.result = image(result, 2, 2);
+  info.depth = {depth.data(), 2, 2, 1, AFTERGLOW_HALF, 0, 0};
+  ASSERT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
+  EXPECT_EQ(result[0], 3.5f);
+  EXPECT_EQ(result[3], 0.5f);
+
+  info.depth = {};
+  ASSERT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
+  EXPECT_EQ(result, source);
+  const auto skipped = json_of(afterglow_stack_report, stack.get())["skipped"];
+  ASSERT_EQ(skipped.size(), 1u);
+  EXPECT_THAT(skipped[0]["reason"].get<std::string>(), HasSubstr("depth"));
+
+  info.depth = {depth.data(), 1, 2, 1, AFTERGLOW_HALF, 0, 0};
+  const ErrorPtr small(afterglow_stack_run(stack.get(), &info));
+  EXPECT_THAT(text_of(small.get()), HasSubstr("image 'depth' has 1×2 pixels, the source 2×2"));
+  info.depth = {depth.data(), 2, 2, 3, AFTERGLOW_HALF, 0, 0};
+  const ErrorPtr channels(afterglow_stack_run(stack.get(), &info));
+  EXPECT_THAT(text_of(channels.get()), HasSubstr("3 channels; allowed: 1"));
+}
+
+TEST_F(PictureTest, HalfStorageKeepsAlphaExactly) {
+  afterglow_stack_options options = afterglow_stack_options_default();
+  options.precision = AFTERGLOW_PRECISION_FP16;
+  std::vector<float> source = pixels(kWidth, kHeight), result(source.size());
+  run(this->stack(options), image(source, kWidth, kHeight), image(result, kWidth, kHeight));
+  for (std::size_t i = 3; i < source.size(); i += 4) ASSERT_EQ(result[i], source[i]);
+}
+
+}  // namespace
+}  // namespace afterglow::test

@@ -1,0 +1,156 @@
+// Presets from files and texts, loaded again, followed.
+#include <condition_variable>
+#include <mutex>
+
+#include "fixture.h"
+
+namespace afterglow::test {
+namespace {
+
+/// Counts wakes; the waiting test sleeps meanwhile.
+struct Waker {
+  std::mutex mutex;
+  std::condition_variable changed;
+  int wakes = 0;
+  static void wake(void* user) {
+    auto* self = static_cast<Waker*>(user);
+    const std::lock_guard lock(self->mutex);
+    ++self->wakes;
+    self->changed.notify_all();
+  }
+  void wait_for_more(int than) {
+    std::unique_lock lock(mutex);
+    ASSERT_TRUE(changed.wait_for(lock, std::chrono::minutes(2), [&] { return wakes > than; }));
+  }
+  int count() {
+    const std::lock_guard lock(mutex);
+    return wakes;
+  }
+};
+
+class ReloadTest : public ApiTest {
+ protected:
+  static float first_sample(const StackPtr& stack) {
+    std::vector<float> source(4, 0.5f), result(4);
+    afterglow_run_info info = afterglow_run_info_default();
+    info.source = image(source, 1, 1);
+    info.result = image(result, 1, 1);
+    EXPECT_TRUE(fine(afterglow_stack_run(stack.get(), &info)));
+    return result[0];
+  }
+  /// Updates until something was taken or an error came.
+  static ErrorPtr update(const StackPtr& stack, Waker& waker) {
+    for (;;) {
+      const int before = waker.count();
+      bool changed = false;
+      ErrorPtr error(afterglow_stack_update(stack.get(), &changed));
+      if (error || changed) return error;
+      waker.wait_for_more(before);
+      if (HasFatalFailure()) return {};
+    }
+  }
+};
+
+TEST_F(ReloadTest, FilesAreReadAgainWhenAsked) {
+  const StackPtr stack = this->stack();
+  EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+  look("fx.gain { amount = 4 }");
+  EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+  ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+  EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
+
+  // A broken one leaves the last good one; what was set stays.
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), 8)));
+  look("fx.gain { amount = ");
+  const ErrorPtr error(afterglow_stack_reload(stack.get(), afterglow_str(nullptr)));
+  EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_SCRIPT);
+  EXPECT_EQ(afterglow_error_get_line(error.get()), 2);
+  EXPECT_FLOAT_EQ(first_sample(stack), 4.0f);
+  look("fx.gain { amount = 1 }");
+  ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+  EXPECT_FLOAT_EQ(first_sample(stack), 4.0f);
+}
+
+TEST_F(ReloadTest, APresetMayBeAText) {
+  afterglow_stack_options options = afterglow_stack_options_default();
+  const std::string name = file("never_written.lua");
+  const auto text = [](const char* amount) {
+    return std::string("local fx = require \"afterglow\"\nreturn fx.stack { fx.gain { amount = ") + amount + " } }\n";
+  };
+  std::string preset = text("6");
+  options.preset_file = str(name);
+  options.preset_text = str(preset);
+  const StackPtr stack = this->stack(options);
+  preset.assign(preset.size(), '!');  // it was copied
+  EXPECT_FLOAT_EQ(first_sample(stack), 3.0f);
+  ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), str(text("10")))));
+  EXPECT_FLOAT_EQ(first_sample(stack), 5.0f);
+  const ErrorPtr error(afterglow_stack_reload(stack.get(), str(text("\"ten\""))));
+  EXPECT_EQ(str(afterglow_error_get_file(error.get())), name);
+  EXPECT_EQ(afterglow_error_get_line(error.get()), 2);
+  EXPECT_FLOAT_EQ(first_sample(stack), 5.0f);
+
+  options.preset_text = str("return nil");
+  options.follow = true;
+  EXPECT_EQ(afterglow_error_get_kind(broken(options).get()), AFTERGLOW_ERROR_USAGE);
+}
+
+TEST_F(ReloadTest, EditsOfAFollowedFileAreTakenByUpdate) {
+  Waker waker;
+  afterglow_stack_options options = afterglow_stack_options_default();
+  options.follow = true;
+  options.wake = Waker::wake;
+  options.user = &waker;
+  const StackPtr stack = this->stack(options);
+  EXPECT_FLOAT_EQ(first_sample(stack), 1.0f);
+
+  look("fx.gain { amount = 4 }");
+  ASSERT_FALSE(update(stack, waker));
+  EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
+
+  // A broken edit is told once, and the last good one stays.
+  look("fx.gain { amount = \"many\" }");
+  const ErrorPtr error = update(stack, waker);
+  EXPECT_EQ(afterglow_error_get_kind(error.get()), AFTERGLOW_ERROR_SCRIPT);
+  EXPECT_EQ(afterglow_error_get_line(error.get()), 2);
+  EXPECT_TRUE(fine(afterglow_stack_update(stack.get(), nullptr)));
+  EXPECT_FLOAT_EQ(first_sample(stack), 2.0f);
+
+  look("fx.gain { amount = 6 }");
+  ASSERT_FALSE(update(stack, waker));
+  EXPECT_FLOAT_EQ(first_sample(stack), 3.0f);
+
+  // Settings stand above edits, and are refused as in a stack that follows nothing.
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), 8)));
+  EXPECT_FLOAT_EQ(first_sample(stack), 4.0f);
+  const ErrorPtr refused(afterglow_stack_set_number(stack.get(), str("gain.amonut"), 8));
+  EXPECT_EQ(str(afterglow_error_get_nearest(refused.get())), "amount");
+  EXPECT_FLOAT_EQ(first_sample(stack), 4.0f);
+  ASSERT_TRUE(fine(afterglow_stack_unset(stack.get(), str("gain.amount"))));
+  EXPECT_FLOAT_EQ(first_sample(stack), 3.0f);
+
+  look("fx.gain { amount = 10 }");
+  ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+  EXPECT_FLOAT_EQ(first_sample(stack), 5.0f);
+}
+
+TEST_F(ReloadTest, ABrokenPresetCannotBeFollowed) {
+  look("fx.gain { amount = \"many\" }");
+  afterglow_stack_options options = afterglow_stack_options_default();
+  options.follow = true;
+  EXPECT_EQ(afterglow_error_get_kind(broken(options).get()), AFTERGLOW_ERROR_SCRIPT);
+}
+
+TEST_F(ReloadTest, TheInstallationMayBeNamed) {
+  write("empty/scripts/afterglow.lua", "error('another installation')\n");
+  afterglow_stack_options options = afterglow_stack_options_default();
+  const std::string elsewhere = file("empty");
+  options.installation = str(elsewhere);
+  EXPECT_THAT(text_of(broken(options).get()), HasSubstr("another installation"));
+  const std::string project = AFTERGLOW_PROJECT_FOLDER;
+  options.installation = str(project);
+  EXPECT_FLOAT_EQ(first_sample(stack(options)), 1.0f);
+}
+
+}  // namespace
+}  // namespace afterglow::test

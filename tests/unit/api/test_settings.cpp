@@ -1,0 +1,129 @@
+// Settings by name: their schema, values in and out.
+#include "fixture.h"
+
+namespace afterglow::test {
+namespace {
+
+class SettingsTest : public ApiTest {
+ protected:
+  void SetUp() override {
+    ApiTest::SetUp();
+    stack_ = stack();
+  }
+  void TearDown() override {
+    stack_.reset();
+    ApiTest::TearDown();
+  }
+  float first_sample() {
+    std::vector<float> source(4, 0.5f), result(4);
+    afterglow_run_info info = afterglow_run_info_default();
+    info.source = image(source, 1, 1);
+    info.result = image(result, 1, 1);
+    EXPECT_TRUE(fine(afterglow_stack_run(stack_.get(), &info)));
+    return result[0];
+  }
+  StackPtr stack_;
+};
+
+TEST_F(SettingsTest, TheSchemaIsJson) {
+  const auto entries = json_of(afterglow_stack_settings, stack_.get());
+  ASSERT_EQ(entries.size(), 1u);
+  EXPECT_EQ(entries[0]["name"], "gain");
+  EXPECT_EQ(entries[0]["at"], "post_process");
+  EXPECT_EQ(entries[0]["line"], 2);
+  const auto& settings = entries[0]["settings"];
+  ASSERT_EQ(settings.size(), 4u);
+  const auto amount = *std::ranges::find(settings, "amount", [](const auto& s) { return s["name"]; });
+  EXPECT_EQ(amount["type"], "float");
+  EXPECT_EQ(amount["value"], 2);
+  EXPECT_EQ(amount["default"], 1);
+  EXPECT_EQ(amount["min"], 0);
+  EXPECT_EQ(amount["max"], 1e6);
+  EXPECT_EQ(amount["unit"], "times");
+  EXPECT_EQ(amount["doc"], "Factor.");
+  const auto way = *std::ranges::find(settings, "way", [](const auto& s) { return s["name"]; });
+  EXPECT_EQ(way["choices"], (nlohmann::json{"once", "twice"}));
+}
+
+TEST_F(SettingsTest, EveryTypeGoesInAndOut) {
+  EXPECT_FLOAT_EQ(first_sample(), 1.0f);
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.amount"), 3)));
+  double number = 0;
+  ASSERT_TRUE(fine(afterglow_stack_get_number(stack_.get(), str("gain.amount"), &number)));
+  EXPECT_EQ(number, 3);
+  EXPECT_FLOAT_EQ(first_sample(), 1.5f);
+
+  ASSERT_TRUE(fine(afterglow_stack_set_text(stack_.get(), str("gain.way"), str("twice"))));
+  afterglow_text* text = nullptr;
+  ASSERT_TRUE(fine(afterglow_stack_get_text(stack_.get(), str("gain.way"), &text)));
+  EXPECT_EQ(str(afterglow_text_get(text)), "twice");
+  afterglow_text_free(text);
+  EXPECT_FLOAT_EQ(first_sample(), 4.5f);
+
+  const double tint[] = {0.5, 0.25, 1};
+  ASSERT_TRUE(fine(afterglow_stack_set_numbers(stack_.get(), str("gain.tint"), tint, 3)));
+  double out[3] = {};
+  size_t count = 0;
+  ASSERT_TRUE(fine(afterglow_stack_get_numbers(stack_.get(), str("gain.tint"), out, 2, &count)));
+  EXPECT_EQ(count, 3u);
+  EXPECT_EQ(out[1], 0.25);
+  EXPECT_EQ(out[2], 0);  // beyond the capacity
+  EXPECT_FLOAT_EQ(first_sample(), 2.25f);
+
+  ASSERT_TRUE(fine(afterglow_stack_set_boolean(stack_.get(), str("gain.off"), true)));
+  bool off = false;
+  ASSERT_TRUE(fine(afterglow_stack_get_boolean(stack_.get(), str("gain.off"), &off)));
+  EXPECT_TRUE(off);
+  EXPECT_FLOAT_EQ(first_sample(), 0.5f);
+
+  ASSERT_TRUE(fine(afterglow_stack_unset(stack_.get(), str("gain.off"))));
+  EXPECT_FLOAT_EQ(first_sample(), 2.25f);
+  ASSERT_TRUE(fine(afterglow_stack_set(stack_.get(), str("gain.tint"), str("#ffffff"))));
+  EXPECT_FLOAT_EQ(first_sample(), 4.5f);
+  ASSERT_TRUE(fine(afterglow_stack_unset(stack_.get(), afterglow_str(nullptr))));
+  EXPECT_FLOAT_EQ(first_sample(), 1.0f);
+  ASSERT_TRUE(fine(afterglow_stack_set(stack_.get(), str("gain.enabled"), str("false"))));
+  EXPECT_FLOAT_EQ(first_sample(), 0.5f);
+  ASSERT_TRUE(fine(afterglow_stack_get_boolean(stack_.get(), str("gain.enabled"), &off)));
+  EXPECT_FALSE(off);
+}
+
+TEST_F(SettingsTest, WhatIsNotAllowedIsRefusedAndChangesNothing) {
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.amount"), 3)));
+  const ErrorPtr name(afterglow_stack_set_number(stack_.get(), str("gain.amonut"), 1));
+  EXPECT_EQ(afterglow_error_get_kind(name.get()), AFTERGLOW_ERROR_USAGE);
+  EXPECT_EQ(str(afterglow_error_get_nearest(name.get())), "amount");
+  const ErrorPtr range(afterglow_stack_set_number(stack_.get(), str("gain.amount"), -1));
+  EXPECT_EQ(afterglow_error_get_kind(range.get()), AFTERGLOW_ERROR_USAGE);
+  EXPECT_FALSE(str(afterglow_error_get_allowed(range.get())).empty());
+  const ErrorPtr infinite(afterglow_stack_set_number(stack_.get(), str("gain.amount"), 1.0 / 0.0));
+  EXPECT_EQ(afterglow_error_get_kind(infinite.get()), AFTERGLOW_ERROR_USAGE);
+  const ErrorPtr choice(afterglow_stack_set_text(stack_.get(), str("gain.way"), str("thrice")));
+  EXPECT_THAT(str(afterglow_error_get_allowed(choice.get())), HasSubstr("twice"));
+  double number = 0;
+  const ErrorPtr type(afterglow_stack_get_number(stack_.get(), str("gain.way"), &number));
+  EXPECT_THAT(text_of(type.get()), HasSubstr("'gain.way' is no number"));
+  const ErrorPtr entry(afterglow_stack_get_number(stack_.get(), str("gian.amount"), &number));
+  EXPECT_EQ(str(afterglow_error_get_nearest(entry.get())), "gain");
+  EXPECT_FLOAT_EQ(first_sample(), 1.5f);
+}
+
+TEST_F(SettingsTest, ExplanationsTellWhereValuesComeFrom) {
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack_.get(), str("gain.amount"), 3)));
+  first_sample();
+  const auto told = json_of(afterglow_stack_explain, stack_.get());
+  const auto& gain = told["entries"][0];
+  EXPECT_EQ(gain["state"], "runs");
+  const auto amount = *std::ranges::find(gain["settings"], "amount", [](const auto& s) { return s["name"]; });
+  EXPECT_EQ(amount["default"], 1);
+  EXPECT_EQ(amount["preset"]["value"], 2);
+  EXPECT_EQ(amount["override"], 3);
+  EXPECT_EQ(amount["final"], 3);
+
+  const auto report = json_of(afterglow_stack_report, stack_.get());
+  EXPECT_EQ(report["kernels"], nlohmann::json{"gain.gain"});
+  EXPECT_GT(report["milliseconds"]["script"], 0);
+}
+
+}  // namespace
+}  // namespace afterglow::test
