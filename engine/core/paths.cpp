@@ -173,7 +173,7 @@ Result<fs::path> find_preset_file(const std::string& given, const std::vector<fs
     name = fs::path(given).lexically_normal().stem().string();
   } else {
     if (fs::exists(given, ec) || !is_preset_name(given)) return fs::path(given);
-    path = search_path_for({}, extra, installation);
+    path = search_path_for({}, extra, nullptr, installation);
   }
   if (path.error) return *path.error;
   if (const auto hits = path.find_preset(name); !hits.empty()) return hits.front();
