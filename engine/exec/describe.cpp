@@ -28,7 +28,8 @@ Result<KernelStage> stage_of(ShaderLibrary& shaders, const Pass& pass) {
     if (error.file.empty()) error.file = pass.file, error.line = pass.line;
     return error;
   }
-  return KernelStage{.shader = std::move(shader).value(), .constants = pass.constants, .label = pass.name};
+  return KernelStage{
+      .shader = std::move(shader).value(), .constants = pass.constants, .label = pass.name, .straight = pass.straight};
 }
 
 const PassInput* find_input(const Pass& pass, const std::string& name) {

@@ -242,7 +242,7 @@ Result<Program*> FrameRunner::State::run(Program& program, const std::map<std::s
 
   Program* chosen = &program;
   if (choose) {
-    AFTERGLOW_TRY(chosen, choose(inputs.brightest("source")));
+    AFTERGLOW_TRY(chosen, choose(inputs.found("source")));
   }
   if (!chosen) return chosen;
   if (chosen != &program) AFTERGLOW_CHECK(take_result(*chosen));

@@ -10,6 +10,7 @@
 
 #include "core/hash.h"
 #include "exec/program.h"
+#include "graph/condition.h"
 
 namespace afterglow {
 
@@ -63,9 +64,9 @@ class FrameRunner {
   /// takes the way over staging buffers that every GPU can go. Errors: device.
   static Result<std::unique_ptr<FrameRunner>> create(Device& device, std::uint64_t max_memory, bool direct = true);
   ~FrameRunner();
-  /// Which program runs a frame, asked once its source has been packed. `brightest`: the largest red, green or blue of
-  /// it, see exec/brightest.h. It must take the same inputs; null: nothing has to run, the result is the source.
-  using Choose = std::function<Result<Program*>(float brightest)>;
+  /// Which program runs a frame, asked once its source has been packed. It must take the same inputs; null: nothing has
+  /// to run, the result is the source.
+  using Choose = std::function<Result<Program*>(const SourceContent& content)>;
 
   /// Uploads "source" and the auxiliary images that the graph asks for, runs, reads the result back into `out` (RGBA
   /// float; resized by it). What is known to be the same as before is not done again: uploads of the same content, and

@@ -169,6 +169,16 @@ FunctionRef read_function(lua_State* lua, TableReader& table, const char* name, 
   return {};
 }
 
+// "associated" or "straight": the colour that the effect's pixel shaders see.
+std::string read_alpha(TableReader& table) {
+  static const std::vector<std::string> kWords{"associated", "straight"};
+  const std::string word = table.text("alpha").value_or(kWords.front());
+  if (std::find(kWords.begin(), kWords.end(), word) == kWords.end())
+    table.fail(failure(fmt::format("fx.effect: alpha cannot be '{}'", tidy_message(word, 60)), {"alpha"}, join(kWords),
+                       nearest_name(word, kWords)));
+  return word;
+}
+
 InputList read_inputs(lua_State* lua, TableReader& table, const char* name) {
   const int top = lua_gettop(lua);
   table.push(name);
@@ -229,8 +239,9 @@ int declare_effect(lua_State* lua) {
   if (!runtime.declaring) throw failure("fx.effect can only be used while a script loads");
   if (runtime.effects.size() >= kMaxDeclared) throw failure(fmt::format("more than {} effects", kMaxDeclared));
   TableReader table(lua, 1, "fx.effect");
-  table.allow({"active", "at", "build", "doc", "holds", "idle", "name", "needs", "optional", "order", "settings"},
-              false);
+  table.allow(
+      {"active", "alpha", "at", "build", "doc", "holds", "idle", "name", "needs", "optional", "order", "settings"},
+      false);
   Effect effect;
   EffectSchema& schema = effect.schema;
   schema.name = table.text("name", 65).value_or("");
@@ -244,6 +255,7 @@ int declare_effect(lua_State* lua) {
     table.fail(failure(fmt::format("fx.effect: unknown injection point '{}'", tidy_message(schema.at, 60)), {"at"},
                        join(injection_points()), nearest_name(schema.at, injection_points())));
   schema.order = table.integer("order").value_or(0);
+  schema.straight = read_alpha(table) == "straight";
   read_settings(lua, table, schema);
   read_holds(lua, table, effect);
   effect.active = read_function(lua, table, "active", false);

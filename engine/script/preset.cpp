@@ -193,7 +193,7 @@ ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBu
     return source;
   }
   for (auto& input : optional_inputs(lua, run)) inputs.push_back(std::move(input));
-  graph.begin(entry, std::move(inputs));
+  graph.begin(entry, std::move(inputs), runtime->effects[static_cast<std::size_t>(run.effect)].schema.straight);
   const ImageRef image = run_build(lua, run, graph, source);
   graph.end();
   if (image.id == source.id)

@@ -62,6 +62,7 @@ struct HoldSchema {
 struct EffectSchema {
   std::string name, doc, at;
   int order = 0;
+  bool straight = false;                ///< its pixel shaders see straight colour: `alpha = "straight"`
   std::vector<SettingSchema> settings;  ///< in order of declaration
   std::vector<HoldSchema> holds;        ///< what it promises
   std::filesystem::path file;

@@ -96,8 +96,8 @@ Result<bool> LiveSession::State::prepare_aside(const BuildContext& next) {
 /// Frames whose content makes effects idle run without them.
 FrameRunner::Choose LiveSession::State::choose() {
   if (!live->stack() || !live->stack()->depends_on_content()) return {};
-  return [this](float brightest) -> Result<Program*> {
-    AFTERGLOW_TRY(const IdlePrograms::Choice choice, live->stack()->program_for(brightest));
+  return [this](const SourceContent& content) -> Result<Program*> {
+    AFTERGLOW_TRY(const IdlePrograms::Choice choice, live->stack()->program_for(content));
     skipped_now = *choice.skipped;
     return ran = choice.program;
   };

@@ -102,8 +102,8 @@ Result<void> Session::process(Picture& picture, const BuildContext& frame,
   picture.content.erase("source");
   FrameRunner::Choose choose;
   if (state_->stack->depends_on_content())
-    choose = [this](float brightest) -> Result<Program*> {
-      AFTERGLOW_TRY(const IdlePrograms::Choice choice, state_->stack->program_for(brightest));
+    choose = [this](const SourceContent& content) -> Result<Program*> {
+      AFTERGLOW_TRY(const IdlePrograms::Choice choice, state_->stack->program_for(content));
       state_->skipped_now = *choice.skipped;
       return state_->ran = choice.program;
     };

@@ -165,7 +165,8 @@ void Stack::keep_programs_of(Stack& other) {
 
 Result<void> Stack::warm_up(WarmUp& on) {
   if (!runs()) return {};
-  return on.draw(*state_->scripts.shaders, state_->shared->compiler, state_->graph, state_->options_of_programs());
+  return on.draw(*state_->scripts.shaders, state_->shared->compiler, state_->graph_of_program(),
+                 state_->options_of_programs());
 }
 
 Result<std::unique_ptr<Program>> Stack::program_by_passes(const Graph& graph, const std::optional<Rect>& region) const {
@@ -189,16 +190,17 @@ std::filesystem::path Stack::shader_file(const std::string& shader) const {
 
 bool Stack::depends_on_content() const {
   const StackOptions& options = state_->options;
-  return state_->program && options.skip_idle && !options.reference && !state_->graph.idle.empty();
+  return state_->program && options.skip_idle && !options.reference &&
+         (!state_->graph.idle.empty() || straight_passes(state_->graph) > 0);
 }
 
-Result<IdlePrograms::Choice> Stack::program_for(float brightest) {
+Result<IdlePrograms::Choice> Stack::program_for(const SourceContent& content) {
   const auto start = Clock::now();
   const int before = state_->idle.size();
   ProgramOptions options = state_->options_of_programs();
   options.max_memory -= std::min(options.max_memory, state_->program->memory().arena);
   auto choice = state_->idle.choose(*state_->device, *state_->scripts.shaders, state_->shared->compiler,
-                                    *state_->program, state_->graph, options, brightest);
+                                    *state_->program, state_->graph, options, content);
   if (state_->idle.size() > before) {
     state_->device->save_pipeline_cache();
     state_->compile_ms += milliseconds_since(start);

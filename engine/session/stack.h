@@ -135,9 +135,9 @@ class Stack {
 
   /// Whether the content of a frame may make effects idle: then ask `program_for` for the program of each frame.
   bool depends_on_content() const;
-  /// The program for a frame whose source is at most this bright (see IdlePrograms), and what it leaves out. Programs
-  /// are made when they are first wanted, and kept. Errors: those of `prepare`.
-  Result<IdlePrograms::Choice> program_for(float brightest);
+  /// The program for a frame with such a source (see IdlePrograms), and what it leaves out. Programs are made when they
+  /// are first wanted, and kept. Errors: those of `prepare`.
+  Result<IdlePrograms::Choice> program_for(const SourceContent& content);
   /// The region of the last `prepare`.
   const std::optional<Rect>& region() const;
   /// Programs made for the present structure.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/stopwatch.h"
+#include "graph/condition.h"
 #include "graph/history.h"
 #include "graph/region.h"
 #include "session/stack_state.h"
@@ -31,6 +32,11 @@ ProgramOptions Stack::State::options_of_programs() const {
   out.images = &shared->images;
   out.histories = histories;
   return out;
+}
+
+Graph Stack::State::graph_of_program() const {
+  const bool asked_for_each_frame = own_images && options.skip_idle && !options.reference;
+  return asked_for_each_frame ? without_division(graph) : graph;
 }
 
 void Stack::State::cut(Graph& built) {
@@ -134,7 +140,7 @@ Result<void> Stack::State::take(Next next, const BuildContext& context) {
     AFTERGLOW_CHECK(make());
   }
   if (found || next.present) {
-    if (program) program->set_parameters(graph);
+    if (program) program->set_parameters(graph_of_program());
     idle.set_parameters(graph);
   }
   drop_spares();
@@ -154,7 +160,7 @@ Result<void> Stack::State::make() {
   if (graph.result == graph.source) return {};
   const auto start = Clock::now();
   AFTERGLOW_CHECK(fit_histories());
-  auto made = Program::create(*device, *scripts.shaders, shared->compiler, graph, options_of_programs());
+  auto made = Program::create(*device, *scripts.shaders, shared->compiler, graph_of_program(), options_of_programs());
   prepared = made.ok();
   if (!made) return std::move(made).error();
   program = std::move(made).value();

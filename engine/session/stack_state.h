@@ -53,6 +53,9 @@ struct Stack::State {
   /// Of all shaders of a graph, with what they include.
   Result<Hash> texts_of(const Graph& built);
   ProgramOptions options_of_programs() const;
+  /// What `program` is made of: the graph, or what is left of it for opaque pictures, which most are. Frames with
+  /// another alpha get a program of their own (`program_for`).
+  Graph graph_of_program() const;
   /// The program of `graph`.
   Result<void> make();
   /// What `prepare` would do.

@@ -51,7 +51,12 @@ class Assembler {
     out_.file_names = {"", "lib/prelude.glsl"};
     AFTERGLOW_CHECK(head());
     if (watches()) row_ += "  float ag_light = 0.0;\n" + add_light("ag_color");
-    for (const auto& stage : kernel_.stages) AFTERGLOW_CHECK(add_stage(stage, ShaderKind::pixel));
+    for (std::size_t i = 0; i < kernel_.stages.size(); ++i) {
+      const auto straight = [&](std::size_t at) { return at < kernel_.stages.size() && kernel_.stages[at].straight; };
+      if (straight(i) && !straight(i - 1)) divide();
+      AFTERGLOW_CHECK(add_stage(kernel_.stages[i], ShaderKind::pixel));
+      if (straight(i) && !straight(i + 1)) multiply();
+    }
     if (out_.images.size() > kMaxImages) {
       Error error{ErrorKind::script, fmt::format("the joined passes read {} images", out_.images.size())};
       error.allowed = fmt::format("at most {}", kMaxImages);
@@ -89,6 +94,15 @@ class Assembler {
 
  private:
   bool watches() const { return kernel_.watch != Watch::none; }
+
+  /// From associated to straight colour. Held within finite numbers: no light is lost where alpha is tiny.
+  void divide() {
+    row_ += fmt::format(
+        "  float ag_alpha{0} = ag_color.a, ag_cover{0} = mix(1.0, ag_color.a, ag_color.a > 0.0);\n"
+        "  ag_color = vec4(clamp(ag_color.rgb / ag_cover{0}, -3.4028234e38, 3.4028234e38), ag_color.a);\n",
+        ++divisions_);
+  }
+  void multiply() { row_ += fmt::format("  ag_color = vec4(ag_color.rgb * ag_cover{0}, ag_alpha{0});\n", divisions_); }
 
   Result<void> head() {
     if (kernel_.sample) return add_stage(*kernel_.sample, ShaderKind::sample);
@@ -267,7 +281,7 @@ class Assembler {
   std::string row_, row_parameters_, row_arguments_;  ///< what is done to one row's colour
   std::string body_;                                  ///< of main()
   std::vector<Library> libraries_;
-  int stage_count_ = 0;
+  int stage_count_ = 0, divisions_ = 0;
 };
 
 }  // namespace

@@ -22,6 +22,9 @@ struct KernelStage {
   std::shared_ptr<const ShaderSource> shader;
   std::map<std::string, double> constants;
   std::string label;  ///< name of the pass, for messages and comments: "glow.threshold"
+  /// Its colour is divided by its alpha before and multiplied behind; of neighbours that want it, once around all. An
+  /// alpha that is not above 0 counts as 1. What such a stage returns as alpha does not count.
+  bool straight = false;
 };
 
 /// How source and target sizes of a filter head relate on an axis; the executor picks it from the sizes, the

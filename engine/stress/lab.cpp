@@ -119,8 +119,8 @@ Result<Made> Lab::State::run(const Look& look, const Picture& picture, double fr
   if (!one->stack->runs()) return untouched(picture);
   FrameRunner::Choose choose;
   if (way.skip_idle && one->stack->depends_on_content())
-    choose = [&](float brightest) -> Result<Program*> {
-      AFTERGLOW_TRY(const IdlePrograms::Choice choice, one->stack->program_for(brightest));
+    choose = [&](const SourceContent& content) -> Result<Program*> {
+      AFTERGLOW_TRY(const IdlePrograms::Choice choice, one->stack->program_for(content));
       return choice.program;
     };
   auto inputs = picture_inputs(picture, one->stack->prepared_graph());

@@ -271,5 +271,27 @@ TEST_F(Join, ConstantsThatDoNotFitAreRefused) {
   EXPECT_THAT(outcome(join({stage})), HasSubstr("a.glsl:2: error: constant 'n' cannot be"));
 }
 
+std::size_t count_of(const std::string& text, const std::string& what) {
+  std::size_t count = 0;
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+  return count;
+}
+
+TEST_F(Join, NeighboursThatWantStraightColourDivideOnce) {
+  const auto plain = files_.stage("a/plain", "vec4 apply(vec4 c) { return c * 2.0; }\n");
+  auto straight = files_.stage("a/curve", "vec4 apply(vec4 c) { return sqrt(c); }\n");
+  straight.straight = true;
+  const auto divisions = [&](std::vector<KernelStage> stages) {
+    const auto text = assembled(join(stages));
+    EXPECT_EQ(outcome(join(stages)), "ok");
+    EXPECT_EQ(count_of(text, "/ ag_cover"), count_of(text, "* ag_cover"));
+    return count_of(text, "/ ag_cover");
+  };
+  EXPECT_EQ(divisions({plain, plain}), 0u);
+  EXPECT_EQ(divisions({straight}), 1u);
+  EXPECT_EQ(divisions({plain, straight, straight, straight, plain}), 1u);
+  EXPECT_EQ(divisions({straight, plain, straight, straight}), 2u);
+}
+
 }  // namespace
 }  // namespace afterglow
