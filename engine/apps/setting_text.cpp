@@ -26,6 +26,8 @@ const char* type_text(SettingType type) {
       return "vec3";
     case SettingType::file:
       return "file";
+    case SettingType::text:
+      return "text";
   }
   return "?";
 }
@@ -34,6 +36,7 @@ std::string allowed_text(const SettingSchema& setting) {
   const std::string unit = setting.unit.empty() ? "" : " " + setting.unit;
   if (setting.type == SettingType::boolean) return "true, false";
   if (setting.type == SettingType::enumeration) return join(setting.choices);
+  if (setting.type == SettingType::text) return "a text";
   if (setting.type == SettingType::file) return "." + join(setting.choices, ", .");
   if (setting.min && setting.max)
     return fmt::format("{} to {}{}", number_text(*setting.min), number_text(*setting.max), unit);
@@ -52,6 +55,7 @@ nlohmann::json value_json(const SettingValue& value) {
       return value.number[0] != 0;
     case SettingType::enumeration:
     case SettingType::file:
+    case SettingType::text:
       return value.choice;
     case SettingType::vec2:
       return {value.number[0], value.number[1]};

@@ -37,6 +37,26 @@ const PassInput* find_input(const Pass& pass, const std::string& name) {
   return found == pass.inputs.end() ? nullptr : &*found;
 }
 
+/// Images that stages of a kernel read at the own pixel: by which stage and input first.
+using OwnReads = std::map<ImageId, std::pair<int, std::string>>;
+
+/// Where stage `number` of the kernel, which is `pass`, gets its colour and its pixel-wise inputs.
+void connect(const Graph& graph, const PlanKernel& kernel, const Pass& pass, int number, OwnReads& own_reads,
+             KernelStage& stage) {
+  for (const auto& input : pass.inputs) {
+    if (!reads_own_pixel(pass, input)) continue;
+    const bool is_color = &input == &pass.inputs.front();
+    const auto value = value_in(graph, kernel, input.image);
+    if (is_color) stage.color = value.value_or(kOwnImage);
+    if (value) {
+      if (!is_color) stage.values[input.name] = *value;
+      continue;
+    }
+    const auto [first, is_new] = own_reads.try_emplace(input.image, number, input.name);
+    if (!is_new) stage.again[input.name] = first->second;
+  }
+}
+
 /// How an image is best read: as a storage image where it is one.
 ImageRead read_of(const Graph& graph, ImageId image, const DescribeOptions& options) {
   if (graph.images[image].data) return ImageRead::storage_rgba32f;  // whatever the stack's own images are
@@ -65,7 +85,9 @@ std::vector<ImageRead> reads_of(const Graph& graph, const PlanKernel& kernel, co
     add(-1, "source");
   int stage = 0;
   const auto add_inputs = [&](const KernelStage& of) {
-    for (const auto& input : of.shader->interface.inputs) add(stage, input.name);
+    if (of.color == kOwnImage && !of.again.contains("source")) add(stage, "source");
+    for (const auto& input : of.shader->interface.inputs)
+      if (!of.values.contains(input.name) && !of.again.contains(input.name)) add(stage, input.name);
     ++stage;
   };
   if (desc.sample) add_inputs(*desc.sample);
@@ -117,8 +139,11 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
   } else {
     first_stage = 0;
   }
+  OwnReads own_reads;
   for (std::size_t i = first_stage; i < kernel.passes.size(); ++i) {
-    AFTERGLOW_TRY(KernelStage stage, stage_of(shaders, graph.passes[kernel.passes[i]]));
+    const Pass& pass = graph.passes[kernel.passes[i]];
+    AFTERGLOW_TRY(KernelStage stage, stage_of(shaders, pass));
+    connect(graph, kernel, pass, static_cast<int>(desc.stages.size()) + (desc.sample ? 1 : 0), own_reads, stage);
     desc.stages.push_back(std::move(stage));
   }
   // What has no stages hands on by itself.

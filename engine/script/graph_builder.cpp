@@ -54,9 +54,11 @@ ImageId GraphBuilder::add_image(std::string name, Size size, int producer) {
   return static_cast<ImageId>(graph_.images.size()) - 1;
 }
 
-void GraphBuilder::begin(const StackEntry& entry, std::vector<std::string> inputs, bool straight) {
+void GraphBuilder::begin(const StackEntry& entry, std::vector<std::string> inputs, bool straight,
+                         const std::string& prefix) {
   entry_ = &entry;
   straight_ = straight;
+  prefix_ = prefix;
   inputs_ = std::move(inputs);
   skip_reason_.reset();
   open_histories_.clear();
@@ -80,11 +82,11 @@ Pass GraphBuilder::start(std::string name, const std::optional<std::string>& giv
   pass.effect = entry_->name;
   pass.file = place.file;
   pass.line = place.line;
-  pass.name = entry_->name + "." + name;
+  pass.name = entry_->name + "." + prefix_ + name;
   if (given && !is_pass_name(*given))
     fail(pass, fmt::format("'{}' cannot be the name of a pass", tidy_message(*given, 60)), {"name"},
          "1 to 64 letters, digits, '_', '-', '[' and ']'");
-  if (given) pass.name = entry_->name + "." + *given;
+  if (given) pass.name = entry_->name + "." + prefix_ + *given;
   const std::string wanted = pass.name;
   int n = names_[wanted];
   while (n > 0 && names_.contains(pass.name = fmt::format("{}#{}", wanted, n + 1))) ++n;
