@@ -43,6 +43,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field keep fun(self: afterglow.Graph, history: afterglow.Image, next: afterglow.Image)    the next frame gets this image as that history; of its size
 ---@field lookup fun(self: afterglow.Graph, lookup: { file: string }): afterglow.Lut            reads a look-up table (.cube, …), for the shader lut/apply
 ---@field image fun(self: afterglow.Graph, image: { file: string }): afterglow.Image       reads a picture: scene-linear, associated alpha
+---@field cryptomatte fun(self: afterglow.Graph, objects: { layer: string, names: string }): number[]  ids of the objects of these names, with commas between them; those that the picture lacks are warned about
 ---@field skip fun(self: afterglow.Graph, reason: string)                                 records why the effect does nothing; then `return source`
 
 ---A look-up table taken apart into steps, see engine/image/lut_file.h. scripts/effects/lut.lua shows what to do with it.
@@ -100,6 +101,32 @@ fx.stack = core.stack
 ---@type fun(preset: string, changes?: table): afterglow.Stack
 fx.extend = core.extend
 
+---Effects that run together, in their own order: the group's result is put over what it was given, by its `opacity`, `blend` and
+---`mask`, as that of one effect. It stands where the first of its effects would, or where `at` and `order` say.
+---Errors: other keys, items that are no effects, lists of such, or stacks without volumes.
+---@type fun(group: { opacity?: number|afterglow.Moving, blend?: string, mask?: afterglow.Mask|number, at?: string, order?: integer, enabled?: boolean, name?: string, [integer]: any }): afterglow.Entry
+fx.group = core.group
+
+---From one look to another: `amount` 0 is the first, 1 the second. Each is a stack, a group, an effect or a list of effects. The
+---other keys are those of a group.
+---@type fun(mix: { [1]: any, [2]: any, amount?: number|afterglow.Moving, opacity?: number|afterglow.Moving, blend?: string, mask?: afterglow.Mask|number, at?: string, order?: integer, enabled?: boolean, name?: string }): afterglow.Entry
+fx.mix = core.mix
+
+---Arguments of the preset: names and setting types. Returns a table of their values, the default ones or those of `--arg NAME=VALUE`.
+---@type fun(arguments: table<string, afterglow.SettingType>): table<string, any>
+function fx.args(arguments) return core.read_only(core.args(arguments), "argument") end
+
+---How much of an entry's result counts where, 0 to 1: `mask` of every entry. Masks and numbers combine by + (held to 1), - (held to 0)
+---and *; `invert = true` in any of them, or `1 - mask`, turns it round. A mask of yours is masks/NAME.lua, written like an effect: the
+---red of the image that it builds is the mask.
+---@class afterglow.Mask
+---@operator add(afterglow.Mask|number): afterglow.Mask
+---@operator sub(afterglow.Mask|number): afterglow.Mask
+---@operator mul(afterglow.Mask|number): afterglow.Mask
+
+---@type table<string, fun(settings: table): afterglow.Mask>
+fx.mask = core.mask
+
 ---Settings that hold in a part of the scene, or everywhere. Volumes are blended in by ascending `priority` (default 0), equal ones
 ---in the order of the list, with factor = clamp01(weight), times 1 − d²/B² at the distance d from the shape with blend distance B
 ---(beyond it, and outside when B is 0: nothing). Numbers, vectors and colours go from what was there towards the volume's value by
@@ -121,6 +148,7 @@ fx.curve = core.curve
 ---Declares an effect; its file effects/NAME.lua returns it.
 --- - `at` injection point: "after_opaque_and_sky", "before_post_process", "post_process" (default), "after_post_process"
 --- - `order` integer, default 0: place among the effects of that point, smaller first
+--- - `alpha` "straight" for effects that bend colour: their pixel shaders see it divided by its alpha. Default "associated".
 --- - `settings` names and their types, in the order in which people see them
 --- - `active(s)` false when the settings make the effect an identity, with the reason as second value
 --- - `needs`, `optional` auxiliary inputs ("depth", "normal", "motion"), or a function of the settings that returns them. Without a
@@ -131,7 +159,7 @@ fx.curve = core.curve
 ---   `NAME = { when = function(s, source) … end, … }`; docs/writing_effects.md lists them. Nothing else relies on it.
 --- - `build(g, s, source)` describes the passes with `g` and returns the image that replaces `source`
 ---Errors: unknown or missing keys, wrong types, unknown injection point or input.
----@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, settings?: table<string, afterglow.SettingType>, active?: (fun(s: table): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image): { brightest: number }?), holds?: table, build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
+---@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, alpha?: "associated"|"straight", settings?: table<string, afterglow.SettingType>, active?: (fun(s: table): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image): { brightest: number }?), holds?: table, build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
 fx.effect = core.effect
 
 ---An integer from `min` to `max` (both included, both optional). 4.0 is one, 4.5 is not. `unit` is for people: "px", "EV".
@@ -168,6 +196,10 @@ fx.vec3 = core.vec3
 ---be given.
 ---@type fun(setting: { extensions: string[], default?: string, doc?: string }): afterglow.SettingType
 fx.file = core.file
+
+---A text, as the name of a layer or of an object; "" unless `default` says more.
+---@type fun(setting: { default?: string, doc?: string }): afterglow.SettingType
+fx.text = core.text
 
 ---Makers of filters for `g:filter`. Each returns a new table, which may be changed.
 ---@class afterglow.Filters

@@ -39,8 +39,18 @@ std::string origin_text(const SettingHistory& setting) {
   return setting.kind == "fixed" ? "" : "(" + setting.kind + ")";
 }
 
+// "opacity 0.5, blend screen, mask luma * radial", or what of it is said.
+std::string composition_text(const StackEntry& entry) {
+  std::string out;
+  if (entry.opacity != 1) out += fmt::format(", opacity {:.6g}", entry.opacity);
+  if (entry.blend != "normal") out += ", blend " + entry.blend;
+  if (entry.mask) out += ", mask " + entry.mask->text();
+  return out;
+}
+
 std::string entry_text(const Look& look, const StackEntry& entry, std::size_t place) {
-  std::string out = fmt::format("{}. {}  at {}, order {}{}{}\n", place, entry.name, entry.at, entry.order,
+  std::string out = fmt::format("{}{}. {}  at {}, order {}{}{}{}\n", std::string(2 * entry.depth, ' '), place,
+                                entry.name, entry.at, entry.order, composition_text(entry),
                                 entry.required ? ", required" : "", entry.enabled ? "" : ", not enabled");
   if (const auto* reason = skip_reason(look, entry)) out += fmt::format("   skipped: {}\n", *reason);
   Table table;
@@ -71,6 +81,14 @@ std::string as_text(const Look& look, const std::string& file, const std::vector
   const auto& entries = *look.build.entries;
   std::string out = fmt::format("{}: {}\n", file, look.preset->name());
   for (std::size_t i = 0; i < entries.size(); ++i) out += entry_text(look, entries[i], i + 1);
+  if (const auto& arguments = look.preset->arguments(); !arguments.empty()) {
+    out += "arguments (--arg NAME=VALUE)\n";
+    Table table;
+    for (const auto& argument : arguments)
+      table.add({argument.schema.name, argument.value.text(), argument.given ? "(--arg)" : "(default)",
+                 allowed_text(argument.schema), argument.schema.doc});
+    out += table.text("   ");
+  }
   for (const auto& note : shadows) out += note + "\n";
   return out + fmt::format("{} effects, {} passes in {} kernels: no errors\n", entries.size(),
                            look.build.graph.passes.size(), look.plan.kernels.size());
@@ -83,8 +101,19 @@ std::string as_json(const Look& look, const std::string& file, const std::vector
               {"order", entry.order}, {"enabled", entry.enabled}, {"required", entry.required}};
     for (const auto& [name, value] : entry.settings) item["settings"][name] = Json(value_json(value));
     item["changed"] = entry.changed;
+    item["opacity"] = entry.opacity;
+    item["blend"] = entry.blend;
+    if (entry.mask) item["mask"] = entry.mask->text();
+    if (entry.members > 0) item["members"] = entry.members;
     if (const auto* reason = skip_reason(look, entry)) item["skipped"] = *reason;
     out["entries"].push_back(std::move(item));
+  }
+  out["arguments"] = Json::array();
+  for (const auto& argument : look.preset->arguments()) {
+    Json item = setting_json(argument.schema);
+    item["value"] = Json(value_json(argument.value));
+    item["given"] = argument.given;
+    out["arguments"].push_back(std::move(item));
   }
   out["passes"] = look.build.graph.passes.size();
   out["kernels"] = look.plan.kernels.size();

@@ -1,9 +1,10 @@
-// A layered drawing made here, so that `--format svg` needs no graphviz: a row is as deep as the longest way from an
-// input, and the passes of a row are ordered by where their inputs stand.
+// A drawing by levels made here, so that `--format svg` needs no graphviz: images of one size stand side by side in the
+// order in which they are made, smaller ones below, so that a pyramid looks like one. Long rows are wrapped.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
+#include <map>
+#include <utility>
 
 #include "apps/graph_view.h"
 #include "graph/history.h"
@@ -11,15 +12,16 @@
 namespace afterglow {
 namespace {
 
-constexpr double kBoxWidth = 250, kBoxHeight = 44, kGapX = 30, kGapY = 46, kMargin = 24, kTitle = 40, kLine = 18,
-                 kMostSwing = 120;
+constexpr double kBoxWidth = 250, kBoxHeight = 44, kGapX = 30, kGapY = 46, kMargin = 24, kTitle = 40, kLine = 18;
+constexpr std::size_t kMostColumns = 8;
 
 struct Node {
   std::string label, detail, color;
   std::vector<std::size_t> inputs;
-  std::size_t row = 0;
-  double x = 0, y = 0;
+  Size size;
   bool rounded = false;
+  std::size_t row = 0, column = 0;
+  double x = 0, y = 0;
 };
 
 std::string escaped(const std::string& text) {
@@ -60,74 +62,74 @@ std::vector<Node> nodes_of(const Graph& graph, const Plan& plan) {
                      size.width, size.height),
          "#eeeeee",
          {},
-         0,
-         0,
-         0,
+         size,
          true});
   }
   for (std::size_t p = 0; p < graph.passes.size(); ++p) {
     const Pass& pass = graph.passes[p];
     const int kernel = kernel_of(plan, static_cast<int>(p));
     if (kernel < 0) continue;
-    Node node{pass.name, fmt::format("{} {}, kernel {}", kind_text(pass.kind), size_text(graph, pass), kernel),
-              tint(plan, kernel)};
+    Node node{pass.name,
+              fmt::format("{} {}, kernel {}", kind_text(pass.kind), size_text(graph, pass), kernel),
+              tint(plan, kernel),
+              {},
+              graph.images[static_cast<std::size_t>(pass.output)].size};
     for (const auto& input : pass.inputs) node.inputs.push_back(of_image[static_cast<std::size_t>(input.image)]);
     of_image[static_cast<std::size_t>(pass.output)] = nodes.size();
     nodes.push_back(std::move(node));
   }
-  nodes.push_back({"result", "", "#eeeeee", {of_image[static_cast<std::size_t>(graph.result)]}, 0, 0, 0, true});
+  nodes.push_back({"result",
+                   "",
+                   "#eeeeee",
+                   {of_image[static_cast<std::size_t>(graph.result)]},
+                   graph.images[graph.result].size,
+                   true});
   return nodes;
 }
 
 /// Returns the width of the widest row.
 double lay_out(std::vector<Node>& nodes) {
-  std::size_t rows = 0;
+  const auto level = [](const Node& node) {
+    return std::pair(-node.size.area(), -node.size.width);
+  };  // large ones first
+  std::map<std::pair<long long, int>, std::size_t> count;
+  for (const auto& node : nodes) ++count[level(node)];
+  std::map<std::pair<long long, int>, std::size_t> first_row, placed;
+  std::size_t rows = 0, columns = 0;
+  for (const auto& [of, number] : count) {
+    first_row[of] = rows;
+    rows += (number + kMostColumns - 1) / kMostColumns;
+    columns = std::max(columns, std::min(number, kMostColumns));
+  }
   for (auto& node : nodes) {
-    for (const auto input : node.inputs) node.row = std::max(node.row, nodes[input].row + 1);
-    rows = std::max(rows, node.row + 1);
+    const std::size_t place = placed[level(node)]++;
+    node.row = first_row[level(node)] + place / kMostColumns;
+    node.column = place % kMostColumns;
+    node.x = kMargin + static_cast<double>(node.column) * (kBoxWidth + kGapX);
+    node.y = kTitle + kMargin + static_cast<double>(node.row) * (kBoxHeight + kGapY);
   }
-  double width = 0;
-  std::vector<std::vector<std::size_t>> by_row(rows);
-  for (std::size_t i = 0; i < nodes.size(); ++i) by_row[nodes[i].row].push_back(i);
-  for (const auto& row : by_row) width = std::max(width, static_cast<double>(row.size()) * (kBoxWidth + kGapX) - kGapX);
-  for (std::size_t r = 0; r < rows; ++r) {
-    auto& row = by_row[r];
-    const auto mean_x = [&](std::size_t i) {
-      if (nodes[i].inputs.empty()) return 0.0;
-      double sum = 0;
-      for (const auto input : nodes[i].inputs) sum += nodes[input].x;
-      return sum / static_cast<double>(nodes[i].inputs.size());
-    };
-    std::stable_sort(row.begin(), row.end(), [&](auto a, auto b) { return mean_x(a) < mean_x(b); });
-    const double used = static_cast<double>(row.size()) * (kBoxWidth + kGapX) - kGapX;
-    double x = kMargin + kMostSwing + (width - used) / 2;
-    for (const auto i : row) {
-      nodes[i].x = x;
-      nodes[i].y = kTitle + kMargin + static_cast<double>(r) * (kBoxHeight + kGapY);
-      x += kBoxWidth + kGapX;
-    }
-  }
-  return width;
+  return static_cast<double>(columns) * (kBoxWidth + kGapX) - kGapX;
 }
 
-/// How far an edge over several rows swings out to the left of the boxes between.
-double swing(const Node& from, const Node& to) {
-  const auto rows = to.row - from.row;
-  return rows < 2 ? 0 : std::min(kMostSwing, 24 + 8 * static_cast<double>(rows));
+std::string curve(double x0, double y0, double x1, double y1, double bend_x, double bend_y) {
+  return fmt::format(
+      "<path d=\"M{:.0f} {:.0f} C{:.0f} {:.0f} {:.0f} {:.0f} {:.0f} {:.0f}\" marker-end=\"url(#arrow)\"/>\n", x0, y0,
+      x0 + bend_x, y0 + bend_y, x1 - bend_x, y1 + (bend_x == 0 ? -bend_y : bend_y), x1, y1);
 }
 
 std::string edge(const Node& from, const Node& to) {
-  if (const double out = swing(from, to); out > 0) {
-    const double y0 = from.y + kBoxHeight / 2, y1 = to.y + kBoxHeight / 2;
+  const double middle_from = from.x + kBoxWidth / 2, middle_to = to.x + kBoxWidth / 2;
+  if (from.row == to.row && to.column == from.column + 1)
+    return curve(from.x + kBoxWidth, from.y + kBoxHeight / 2, to.x, to.y + kBoxHeight / 2, kGapX / 2, 0);
+  if (from.row == to.row) {  // over the boxes between
+    const double up = -0.6 * kGapY;
     return fmt::format(
-        "<path d=\"M{:.0f} {:.0f} C{:.0f} {:.0f} {:.0f} {:.0f} {:.0f} {:.0f}\" marker-end=\"url(#arrow)\"/>\n", from.x,
-        y0, from.x - out, y0, to.x - out, y1, to.x, y1);
+        "<path d=\"M{:.0f} {:.0f} C{:.0f} {:.0f} {:.0f} {:.0f} {:.0f} {:.0f}\" marker-end=\"url(#arrow)\"/>\n",
+        middle_from, from.y, middle_from, from.y + up, middle_to, to.y + up, middle_to, to.y);
   }
-  const double x0 = from.x + kBoxWidth / 2, y0 = from.y + kBoxHeight, x1 = to.x + kBoxWidth / 2, y1 = to.y;
-  const double bend = std::max(20.0, (y1 - y0) / 2);
-  return fmt::format(
-      "<path d=\"M{:.0f} {:.0f} C{:.0f} {:.0f} {:.0f} {:.0f} {:.0f} {:.0f}\" marker-end=\"url(#arrow)\"/>\n", x0, y0,
-      x0, y0 + bend, x1, y1 - bend, x1, y1);
+  const bool down = from.row < to.row;
+  const double y0 = down ? from.y + kBoxHeight : from.y, y1 = down ? to.y : to.y + kBoxHeight;
+  return curve(middle_from, y0, middle_to, y1, 0, (y1 - y0) / 2);
 }
 
 std::string box(const Node& node) {
@@ -147,7 +149,7 @@ std::string box(const Node& node) {
 
 std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& title) {
   auto nodes = nodes_of(graph, plan);
-  double width = lay_out(nodes) + 2 * kMargin + kMostSwing;
+  double width = lay_out(nodes) + 2 * kMargin;
   const auto skipped = all_skipped(graph, plan);
   std::vector<std::string> lines;
   if (std::ranges::any_of(plan.kernels, [](const auto& k) { return k.passes.size() > 1; }))

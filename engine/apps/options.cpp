@@ -39,6 +39,14 @@ void PresetArguments::add(CLI::App& command) {
       .add_option("--at", at, "Where the picture is seen from, for volumes (default: the preset's, else the file's)")
       ->type_name("X,Y,Z")
       ->group("Preset");
+  command
+      .add_option("--arg", values,
+                  "Value of an argument that the preset declares by fx.args: strength=0.3 (repeatable)")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all()
+      ->group("Preset");
   add_paths(command);
 }
 
@@ -57,6 +65,15 @@ void PresetArguments::add_paths(CLI::App& command) {
 Result<PresetOptions> PresetArguments::options() const {
   PresetOptions options;
   options.paths.assign(paths.begin(), paths.end());
+  for (const auto& path : paths) {
+    std::error_code ec;
+    if (!std::filesystem::exists(path, ec))
+      return Error{ErrorKind::usage, fmt::format("--path '{}': there is no such folder or zip", path)};
+  }
+  for (const auto& text : values) {
+    AFTERGLOW_TRY(ArgumentValue parsed, parse_argument(text));
+    options.arguments.push_back(std::move(parsed));
+  }
   for (const auto& text : overrides) {
     AFTERGLOW_TRY(Override parsed, parse_override(text));
     options.overrides.push_back(std::move(parsed));
@@ -219,6 +236,14 @@ Result<BuildContext> AssumedPicture::context(const Preset& preset) const {
   context.frame = frame;
   context.fps = fps;
   context.time = frame / fps;
+  std::vector<std::string> known{"depth", "normal", "motion"};
+  for (const auto& name : preset.needs())
+    if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+  for (const auto& name : without)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      return Error{
+          ErrorKind::usage,         fmt::format("--without '{}': there is no such input", name), "", 0, join(known),
+          nearest_name(name, known)};
   for (const auto& name : preset.needs())
     if (std::find(without.begin(), without.end(), name) == without.end()) context.auxiliary[name] = context.size;
   return context;

@@ -26,6 +26,7 @@ struct MessageArguments {
 struct PresetArguments {
   std::string file;
   std::vector<std::string> overrides;
+  std::vector<std::string> values;  ///< --arg
   std::string at;
   std::vector<std::string> paths;
   void add(CLI::App& command);

@@ -10,6 +10,7 @@ std::string allowed_text(const SettingSchema& setting) {
   const std::string unit = setting.unit.empty() ? "" : " " + setting.unit;
   if (setting.type == SettingType::boolean) return "true, false";
   if (setting.type == SettingType::enumeration) return join(setting.choices);
+  if (setting.type == SettingType::text) return "a text";
   if (setting.type == SettingType::file) return "." + join(setting.choices, ", .");
   if (setting.min && setting.max)
     return fmt::format("{} to {}{}", number_text(*setting.min), number_text(*setting.max), unit);

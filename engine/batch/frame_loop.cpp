@@ -161,6 +161,8 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   for (const auto& name : header->auxiliary)
     if (std::find(options.auxiliary.begin(), options.auxiliary.end(), name) != options.auxiliary.end())
       context.auxiliary[name] = context.size;
+  context.layers = header->layers;
+  context.metadata = {header->facts, &header->facts->metadata};
   context.frame = frame.job.frame;
   context.fps = options_.fps;
   context.time = frame.job.frame / options_.fps;

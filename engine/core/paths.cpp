@@ -65,9 +65,9 @@ bool is_installation(const fs::path& folder) { return is_file(folder / "scripts"
 
 }  // namespace
 
-std::vector<fs::path> SearchPath::find_effect(const std::string& name) const {
+std::vector<fs::path> SearchPath::find_script(const std::string& name, const std::string& kind) const {
   std::vector<fs::path> hits;
-  for (const auto& folder : effect_folders())
+  for (const auto& folder : script_folders(kind))
     if (is_file(folder / (name + ".lua"), record.get())) hits.push_back(folder / (name + ".lua"));
   return hits;
 }
@@ -81,10 +81,10 @@ std::vector<fs::path> SearchPath::find_shader(const std::string& name) const {
   return hits;
 }
 
-std::vector<fs::path> SearchPath::effect_folders() const {
+std::vector<fs::path> SearchPath::script_folders(const std::string& kind) const {
   std::vector<fs::path> folders;
-  for (const auto& root : user) folders.push_back(root / "effects");
-  if (!installation.empty()) folders.push_back(installation / "scripts" / "effects");
+  for (const auto& root : user) folders.push_back(root / kind);
+  if (!installation.empty()) folders.push_back(installation / "scripts" / kind);
   return folders;
 }
 
@@ -182,8 +182,10 @@ Result<fs::path> find_preset_file(const std::string& given, const std::vector<fs
   if (is_pack)
     return Error{ErrorKind::script, names.empty() ? "the pack holds no preset" : "the pack holds several presets",
                  given, 0, names.empty() ? "" : "--path " + given + " and one of: " + join(names)};
-  return Error{ErrorKind::script,         fmt::format("there is no preset '{}'", given), "", 0, join(names),
-               nearest_name(given, names)};
+  // A file that lies there and only lacks its ending is what was meant.
+  const bool beside = fs::exists(given + ".lua", ec);
+  return Error{ErrorKind::script, fmt::format("there is no preset '{}'", given),       "", 0,
+               join(names),       beside ? given + ".lua" : nearest_name(given, names)};
 }
 
 fs::path cache_folder() {

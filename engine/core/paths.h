@@ -24,7 +24,9 @@ struct SearchPath {
   std::shared_ptr<FileRecord> record = {};
 
   /// `effects/NAME.lua` or the installation's `scripts/effects/NAME.lua`; all hits, the winner first.
-  std::vector<std::filesystem::path> find_effect(const std::string& name) const;
+  std::vector<std::filesystem::path> find_effect(const std::string& name) const { return find_script(name, "effects"); }
+  /// The same in folders of another name: `masks/NAME.lua`, `scripts/masks/NAME.lua`.
+  std::vector<std::filesystem::path> find_script(const std::string& name, const std::string& folder) const;
   /// `shaders/NAME` (with extension, e.g. "glow/threshold.glsl"); all hits, the winner first.
   std::vector<std::filesystem::path> find_shader(const std::string& name) const;
   /// The preset of that name: `NAME.lua` or `NAME/NAME.lua`, in each folder itself and in its `presets/`; all hits, the
@@ -33,7 +35,8 @@ struct SearchPath {
   /// Names that `find_preset` knows, sorted.
   std::vector<std::string> preset_names() const;
   /// Folders that may hold effect scripts, in order.
-  std::vector<std::filesystem::path> effect_folders() const;
+  std::vector<std::filesystem::path> effect_folders() const { return script_folders("effects"); }
+  std::vector<std::filesystem::path> script_folders(const std::string& folder) const;
   /// Folders that may hold presets, in order.
   std::vector<std::filesystem::path> preset_folders() const;
 };

@@ -31,6 +31,11 @@ std::string decimal_text(double value) {
   return fmt::format("{}", value);
 }
 
+// A colour of a display code, as numbers of 16 digits that nobody wrote.
+bool has_many_digits(const SettingValue& color) {
+  return std::ranges::any_of(color.number, [](double v) { return decimal_text(v).size() > 9; });
+}
+
 bool has(std::string_view text, char a) { return text.find(a) != std::string_view::npos; }
 
 // Zeros behind the point, where the old number was written with more than it needed: 1.0, 0.50.
@@ -153,6 +158,7 @@ std::string literal_like(const LuaText& text, std::size_t first, std::size_t end
       break;
     case SettingType::enumeration:
     case SettingType::file:
+    case SettingType::text:
       if (is_text) return quoted(old.text, value.choice);
       break;
     case SettingType::color:
@@ -163,6 +169,7 @@ std::string literal_like(const LuaText& text, std::size_t first, std::size_t end
           for (char& c : code) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
         return quoted(old.text, code);
       }
+      if (const auto hex = hex_color(value); hex && !is_text && has_many_digits(value)) return quoted("\"", *hex);
       [[fallthrough]];
     case SettingType::vec2:
     case SettingType::vec3: {
@@ -187,6 +194,7 @@ std::string literal_text(const SettingValue& value, char quote, bool spaced) {
       return value.number[0] != 0 ? "true" : "false";
     case SettingType::enumeration:
     case SettingType::file:
+    case SettingType::text:
       return quoted(std::string(1, quote), value.choice);
     case SettingType::color:
     case SettingType::vec2:

@@ -1,4 +1,4 @@
-// The brightest value of a picture, found while it is packed for the device.
+// What is known of a picture: its brightest value, and whether it is opaque. Found while it is packed for the device.
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,11 @@ class Brightest {
   /// negative (−0 too) or not finite.
   float value(Storage storage) const;
 
+  /// Is every alpha exactly 1? Rows of less than four channels have none.
+  bool opaque() const { return opaque_.load(std::memory_order_relaxed); }
+
  private:
+  std::atomic<bool> opaque_{true};
   std::atomic<std::uint32_t> bits_{
       0};  ///< of floats; as integers, those that are ≥ 0 sort as they do, all others above them
 };

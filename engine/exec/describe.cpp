@@ -30,7 +30,28 @@ Result<KernelStage> stage_of(ShaderLibrary& shaders, const Pass& pass) {
     if (error.file.empty()) error.file = pass.file, error.line = pass.line;
     return error;
   }
-  return KernelStage{.shader = std::move(shader).value(), .constants = pass.constants, .label = pass.name};
+  return KernelStage{
+      .shader = std::move(shader).value(), .constants = pass.constants, .label = pass.name, .straight = pass.straight};
+}
+
+/// Images that stages of a kernel read at the own pixel: by which stage and input first.
+using OwnReads = std::map<ImageId, std::pair<int, std::string>>;
+
+/// Where stage `number` of the kernel, which is `pass`, gets its colour and its pixel-wise inputs.
+void connect(const Graph& graph, const PlanKernel& kernel, const Pass& pass, int number, OwnReads& own_reads,
+             KernelStage& stage) {
+  for (const auto& input : pass.inputs) {
+    if (!reads_own_pixel(pass, input)) continue;
+    const bool is_color = &input == &pass.inputs.front();
+    const auto value = value_in(graph, kernel, input.image);
+    if (is_color) stage.color = value.value_or(kOwnImage);
+    if (value) {
+      if (!is_color) stage.values[input.name] = *value;
+      continue;
+    }
+    const auto [first, is_new] = own_reads.try_emplace(input.image, number, input.name);
+    if (!is_new) stage.again[input.name] = first->second;
+  }
 }
 
 }  // namespace
@@ -60,8 +81,11 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
   } else {
     first_stage = 0;
   }
+  OwnReads own_reads;
   for (std::size_t i = first_stage; i < kernel.passes.size(); ++i) {
-    AFTERGLOW_TRY(KernelStage stage, stage_of(shaders, graph.passes[kernel.passes[i]]));
+    const Pass& pass = graph.passes[kernel.passes[i]];
+    AFTERGLOW_TRY(KernelStage stage, stage_of(shaders, pass));
+    connect(graph, kernel, pass, static_cast<int>(desc.stages.size()) + (desc.sample ? 1 : 0), own_reads, stage);
     desc.stages.push_back(std::move(stage));
   }
   // What has no stages hands on by itself.

@@ -9,6 +9,7 @@
 
 #include "core/hash.h"
 #include "exec/program.h"
+#include "graph/condition.h"
 
 namespace afterglow {
 

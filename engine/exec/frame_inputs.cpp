@@ -92,12 +92,12 @@ Result<void> FrameInputs::upload(Staging& staging, const std::string& name, cons
                                  bool look, Storage storage) {
   Held& known = held_[name];
   const bool same = given.content && known.content == given.content && known.part == part;
-  if (same && (!look || known.brightest)) return {};
+  if (same && (!look || known.found)) return {};
   Brightest brightest;
-  known = {.content = {}, .part = part, .version = next_version(), .clamped = 0, .brightest = {}};
+  known = {.content = {}, .part = part, .version = next_version(), .clamped = 0, .found = {}};
   AFTERGLOW_TRY(known.clamped, write_pixels(staging, images_.at(name), given, part, look ? &brightest : nullptr));
   known.content = given.content;
-  if (look) known.brightest = brightest.value(storage);
+  if (look) known.found = SourceContent{brightest.value(storage), brightest.opaque()};
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include "exec/frame.h"
 #include "exec/frame_image.h"
 #include "exec/staging.h"
+#include "graph/condition.h"
 
 namespace afterglow {
 
@@ -27,13 +28,13 @@ class FrameInputs {
   /// Makes images for these inputs and no others; those that fit stay. True when one is new. Errors: device.
   Result<bool> prepare(const std::map<std::string, ImageDesc>& wanted);
 
-  /// Uploads one input, if it may hold other pixels in `part` than those it is given. `look`: find out how bright it
-  /// is, as stored so. Errors: device.
+  /// Uploads one input, if it may hold other pixels in `part` than those it is given. `look`: find out what it
+  /// shows, as stored so. Errors: device.
   Result<void> upload(Staging& staging, const std::string& name, const HostImage& given, const Rect& part, bool look,
                       Storage storage);
   /// See Program::InputVersions.
   Program::InputVersions versions() const;
-  float brightest(const std::string& name) const { return *held_.at(name).brightest; }
+  const SourceContent& found(const std::string& name) const { return *held_.at(name).found; }
   /// Samples of what is held that were clamped to ±65504.
   std::uint64_t clamped() const;
 
@@ -53,7 +54,7 @@ class FrameInputs {
     Rect part;
     std::uint64_t version = 0;
     std::uint64_t clamped = 0;
-    std::optional<float> brightest;
+    std::optional<SourceContent> found;
   };
   Device* device_;
   bool direct_;

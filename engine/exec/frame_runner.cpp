@@ -279,7 +279,7 @@ Result<void> FrameRunner::State::start(Program& program, const std::map<std::str
 
   Program* chosen = &program;
   if (choose.program) {
-    AFTERGLOW_TRY(chosen, choose.program(choose.look ? inputs.brightest("source") : 0));
+    AFTERGLOW_TRY(chosen, choose.program(choose.look ? inputs.found("source") : SourceContent{}));
   }
   if (!chosen) return {};
   if (chosen != &program) AFTERGLOW_CHECK(take_result(*chosen));

@@ -12,11 +12,11 @@
 namespace afterglow {
 
 /// Which program runs a frame, asked once its inputs have been packed: from then on the program is touched. It must take
-/// the same inputs; null: nothing has to run, the result is the source. `brightest`: the largest red, green or blue of
-/// the source (exec/brightest.h), when it was asked for.
+/// the same inputs; null: nothing has to run, the result is the source. `content`: of the source
+/// (graph/condition.h), when it was asked for.
 struct ChooseProgram {
-  std::function<Result<Program*>(float brightest)> program{};
-  bool look = false;  ///< find out how bright the source is
+  std::function<Result<Program*>(const SourceContent& content)> program{};
+  bool look = false;  ///< find out what is in the source
 };
 
 /// Images, staging memory, command buffer and fence for one frame at a time; reused while sizes stay the same. What a

@@ -2,44 +2,48 @@
 
 #include <algorithm>
 
-#include "graph/condition.h"
-
 namespace afterglow {
 
-namespace {
+Graph IdlePrograms::graph_of(const Graph& graph, const Key& key) {
+  Graph out = key.divides ? graph : without_division(graph);
+  return std::ranges::find(key.idle, true) == key.idle.end() ? out : without_idle(out, key.idle);
+}
 
-std::vector<Skipped> skipped_by(const Graph& graph, const std::vector<bool>& idle) {
+std::vector<Skipped> IdlePrograms::skipped_by(const Graph& graph, const Key& key) {
   std::vector<Skipped> out;
-  for (std::size_t i = 0; i < idle.size(); ++i)
-    if (idle[i]) out.push_back({graph.idle[i].effect, idle_reason(graph.idle[i])});
+  for (std::size_t i = 0; i < key.idle.size(); ++i)
+    if (key.idle[i]) out.push_back({graph.idle[i].effect, idle_reason(graph.idle[i])});
+  const int passes = straight_passes(graph);
+  if (passes > 0 && !key.divides) out.push_back(skipped_division(passes));
   return out;
 }
 
-}  // namespace
-
 Result<IdlePrograms::Choice> IdlePrograms::choose(Device& device, ShaderLibrary& shaders, KernelCompiler& compiler,
                                                   Program& whole, const Graph& graph, const ProgramOptions& options,
-                                                  float brightest) {
-  static const std::vector<Skipped> kNone;
-  const std::vector<bool> idle = idle_effects(graph, brightest);
-  if (std::ranges::none_of(idle, [](bool is) { return is; })) return Choice{&whole, &kNone};
-  auto found = variants_.find(idle);
+                                                  const SourceContent& content) {
+  const Key key{idle_effects(graph, content.brightest), straight_passes(graph) > 0 && !content.opaque};
+  auto found = variants_.find(key);
   if (found == variants_.end()) {
-    const Graph reduced = without_idle(graph, idle);
     Variant variant;
-    variant.skipped = skipped_by(graph, idle);
-    if (reduced.result != reduced.source) {
-      AFTERGLOW_TRY(variant.program, Program::create(device, shaders, compiler, reduced, options));
+    variant.skipped = skipped_by(graph, key);
+    variant.whole =
+        std::ranges::find(key.idle, true) == key.idle.end() && key.divides == (straight_passes(whole.graph()) > 0);
+    if (!variant.whole) {
+      const Graph reduced = graph_of(graph, key);
+      if (reduced.result != reduced.source) {
+        AFTERGLOW_TRY(variant.program, Program::create(device, shaders, compiler, reduced, options));
+      }
     }
-    found = variants_.emplace(idle, std::move(variant)).first;
+    found = variants_.emplace(key, std::move(variant)).first;
   }
-  return Choice{found->second.program.get(), &found->second.skipped};
+  const Variant& variant = found->second;
+  return Choice{variant.whole ? &whole : variant.program.get(), &variant.skipped};
 }
 
 void IdlePrograms::set_parameters(const Graph& graph) {
-  for (auto& [idle, variant] : variants_) {
-    if (variant.program) variant.program->set_parameters(without_idle(graph, idle));
-    variant.skipped = skipped_by(graph, idle);
+  for (auto& [key, variant] : variants_) {
+    if (variant.program) variant.program->set_parameters(graph_of(graph, key));
+    variant.skipped = skipped_by(graph, key);
   }
 }
 
@@ -50,9 +54,14 @@ Program* IdlePrograms::program(std::uint64_t id) const {
 }
 
 Result<void> IdlePrograms::use(const std::shared_ptr<Histories>& histories) {
-  for (auto& [idle, variant] : variants_)
+  for (auto& [key, variant] : variants_)
     if (variant.program) AFTERGLOW_CHECK(variant.program->use(histories));
   return {};
+}
+
+int IdlePrograms::size() const {
+  return static_cast<int>(
+      std::ranges::count_if(variants_, [](const auto& entry) { return entry.second.program != nullptr; }));
 }
 
 }  // namespace afterglow

@@ -11,6 +11,7 @@
 #include "exec/describe.h"
 #include "exec/histories.h"
 #include "exec/idle_programs.h"
+#include "graph/condition.h"
 #include "graph/history.h"
 #include "graph/region.h"
 
@@ -43,6 +44,12 @@ struct ProgramCache::State {
   }
   Result<void> fit_histories();
   ProgramOptions program_options() const;
+  /// What a whole program is made of: the graph, or what is left of it for opaque pictures, which most are. Frames with
+  /// another alpha get a program of their own (`for_content`).
+  Graph graph_of_program(const Graph& graph) const {
+    const bool asked_for_each_frame = options.own_images && options.skip_idle && !options.reference;
+    return asked_for_each_frame ? without_division(graph) : graph;
+  }
   Result<void> make(FrameWork work, ShaderLibrary& shaders);
   void drop_spares();
 };
@@ -133,7 +140,8 @@ Result<void> ProgramCache::State::make(FrameWork work, ShaderLibrary& shaders) {
   if (!entry.work.runs()) return {};
   const auto start = Clock::now();
   AFTERGLOW_CHECK(fit_histories());
-  AFTERGLOW_TRY(entry.program, Program::create(device, shaders, shared->compiler, entry.work.graph, program_options()));
+  AFTERGLOW_TRY(entry.program, Program::create(device, shaders, shared->compiler, graph_of_program(entry.work.graph),
+                                               program_options()));
   if (options.diagnostics)
     for (const auto& warning : entry.program->warnings()) options.diagnostics->warn_once(warning, warning);
   device.save_pipeline_cache();
@@ -188,7 +196,7 @@ Result<void> ProgramCache::begin() {
     AFTERGLOW_CHECK(entry.idle.use(s.histories));
   }
   s.moved = false;
-  if (!s.fresh && entry.program) entry.program->set_parameters(work.graph);
+  if (!s.fresh && entry.program) entry.program->set_parameters(s.graph_of_program(work.graph));
   if (!s.fresh) entry.idle.set_parameters(work.graph);
   s.drop_spares();
   if (work.runs())
@@ -205,10 +213,11 @@ Result<void> ProgramCache::prepare(FrameWork work, ShaderLibrary& shaders) {
 
 bool ProgramCache::depends_on_content() const {
   const ProgramCacheOptions& options = state_->options;
-  return program() && options.skip_idle && !options.reference && !work()->graph.idle.empty();
+  return program() && options.skip_idle && !options.reference &&
+         (!work()->graph.idle.empty() || straight_passes(work()->graph) > 0);
 }
 
-Result<ProgramCache::Choice> ProgramCache::for_content(float brightest, ShaderLibrary& shaders) {
+Result<ProgramCache::Choice> ProgramCache::for_content(const SourceContent& content, ShaderLibrary& shaders) {
   State& s = *state_;
   const auto start = Clock::now();
   State::Entry& entry = s.entries.front();
@@ -217,7 +226,7 @@ Result<ProgramCache::Choice> ProgramCache::for_content(float brightest, ShaderLi
   options.max_memory -= std::min(options.max_memory, entry.program->memory().arena);
   AFTERGLOW_TRY(
       const IdlePrograms::Choice choice,
-      entry.idle.choose(s.device, shaders, s.shared->compiler, *entry.program, entry.work.graph, options, brightest));
+      entry.idle.choose(s.device, shaders, s.shared->compiler, *entry.program, entry.work.graph, options, content));
   if (entry.idle.size() > before) {
     s.device.save_pipeline_cache();
     s.milliseconds += milliseconds_since(start);

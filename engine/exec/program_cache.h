@@ -98,9 +98,8 @@ class ProgramCache {
   };
   /// Whether the content of a frame may make effects idle: then ask `for_content`.
   bool depends_on_content() const;
-  /// The program for a frame whose source is at most this bright (exec/brightest.h), without the effects that it makes
-  /// idle. Made when it is first wanted, and kept. Errors: those of `find`.
-  Result<Choice> for_content(float brightest, ShaderLibrary& shaders);
+  /// The program for a frame with such a source, without the effects and the work on alpha that it makes idle. Made when it is first wanted, and kept. Errors: those of `find`.
+  Result<Choice> for_content(const SourceContent& content, ShaderLibrary& shaders);
 
   /// The frame that began was recorded or has run.
   void made();

@@ -84,12 +84,12 @@ ChooseProgram Renderer::State::choose(const RenderRequest& request, Program& pro
   ProgramCache& programs = *request.programs;
   ShaderLibrary& shaders = *request.shaders;
   const bool look = programs.depends_on_content();
-  const auto ask = [this, &programs, &shaders, &program, &slot, look](float brightest) -> Result<Program*> {
+  const auto ask = [this, &programs, &shaders, &program, &slot, look](const SourceContent& content) -> Result<Program*> {
     AFTERGLOW_CHECK(wait());
     AFTERGLOW_CHECK(programs.begin());
     Program* chosen = &program;
     if (look) {
-      AFTERGLOW_TRY(ProgramCache::Choice choice, programs.for_content(brightest, shaders));
+      AFTERGLOW_TRY(ProgramCache::Choice choice, programs.for_content(content, shaders));
       slot.report.skipped = std::move(choice.skipped);
       chosen = choice.program;
     }

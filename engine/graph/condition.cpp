@@ -72,6 +72,20 @@ Graph without_idle(const Graph& graph, const std::vector<bool>& idle) {
   return out;
 }
 
+int straight_passes(const Graph& graph) {
+  return static_cast<int>(std::ranges::count(graph.passes, true, &Pass::straight));
+}
+
+Graph without_division(Graph graph) {
+  if (const int passes = straight_passes(graph); passes > 0) graph.skipped.push_back(skipped_division(passes));
+  for (auto& pass : graph.passes) pass.straight = false;
+  return graph;
+}
+
+Skipped skipped_division(int passes) {
+  return {fmt::format("division by alpha in {} {}", passes, passes == 1 ? "pass" : "passes"), "alpha is 1 everywhere"};
+}
+
 std::string idle_reason(const IdleCondition& condition) {
   return fmt::format("nothing is brighter than {:.4g}", condition.limit);
 }

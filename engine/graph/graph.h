@@ -58,6 +58,8 @@ struct Pass {
   /// Of a sample pass: how far from the point that corresponds to a target pixel's centre it reads, in texels of each
   /// input. Empty: anywhere. Decides what a region needs, nothing else.
   std::optional<double> reach;
+  /// Of a pixel pass: its colour is divided by its alpha before and multiplied by it behind (math.md §1).
+  bool straight = false;
   ImageId output = kNoImage;
   std::string file;  ///< script and line that asked for it, for messages
   int line = 0;

@@ -37,6 +37,7 @@ Json pass_json(const Graph& graph, const Pass& pass) {
   for (const auto& input : pass.inputs) out["inputs"][input.name] = graph.images[input.image].name;
   for (const auto& [name, value] : pass.params) out["parameters"][name] = value_json(value);
   for (const auto& [name, value] : pass.constants) out["constants"][name] = value;
+  if (pass.straight) out["alpha"] = "straight";
   if (pass.reach) out["reach"] = *pass.reach;
   const auto& image = graph.images[pass.output];
   out["output"] = {{"image", image.name}, {"width", image.size.width}, {"height", image.size.height}};

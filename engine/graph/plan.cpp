@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "graph/history.h"
 
@@ -33,13 +34,28 @@ std::vector<int> count_readers(const Graph& graph, const std::vector<bool>& keep
   return readers;
 }
 
-// Images that a kernel binds: all inputs of its first pass, of the others all but the colour that flows through.
+bool is_head(const Pass& pass) { return pass.kind != PassKind::pixel; }
+
+// Images that a kernel binds: those that its passes do not hand on to each other, each once where it is read at the own
+// pixel.
 std::size_t bound_images(const Graph& graph, const PlanKernel& kernel) {
   std::size_t count = 0;
-  for (const int pass : kernel.passes) count += graph.passes[pass].inputs.size();
-  return count - (kernel.passes.size() - 1);
+  std::vector<ImageId> own;
+  for (const int index : kernel.passes)
+    for (const auto& input : graph.passes[index].inputs) {
+      const int producer = graph.images[input.image].producer;
+      if (std::ranges::find(kernel.passes, producer) != kernel.passes.end()) continue;
+      if (!reads_own_pixel(graph.passes[index], input)) {
+        ++count;
+      } else if (std::ranges::find(own, input.image) == own.end()) {
+        own.push_back(input.image);
+      }
+    }
+  return count + own.size();
 }
 
+// Passes are taken in order; each begins a kernel of its own and draws in those that make what it reads, as soon as all
+// readers of an image stand in one kernel.
 class Joiner {
  public:
   Joiner(const Graph& graph, const std::vector<bool>& keep)
@@ -47,15 +63,12 @@ class Joiner {
 
   void add(int index, Joining joining) {
     const Pass& pass = graph_.passes[index];
-    PlanKernel kernel{{index}, pass.name, pass.output};
-    const int feeder = pass.kind == PassKind::pixel ? feeder_of(pass, joining) : -1;
-    if (feeder >= 0) {
-      // The joined kernel runs where its last pass stood, so that everything its later passes read is there.
-      PlanKernel& first = kernels_[feeder];
-      kernel.passes.insert(kernel.passes.begin(), first.passes.begin(), first.passes.end());
-      kernel.name = first.name + "+" + pass.name;
-      first.passes.clear();
-    }
+    PlanKernel kernel{{index}, "", pass.output};
+    if (joining != Joining::none && pass.kind == PassKind::pixel)
+      for (int feeder = feeder_of(kernel, joining); feeder >= 0; feeder = feeder_of(kernel, joining))
+        kernel = joined(kernels_[feeder], kernel);
+    for (const int of : kernel.passes) kernel.name += (kernel.name.empty() ? "" : "+") + graph_.passes[of].name;
+    // It runs where its last pass stands, so that everything that its passes read is there.
     kernels_.push_back(std::move(kernel));
     kernel_of_[pass.output] = static_cast<int>(kernels_.size()) - 1;
   }
@@ -66,20 +79,44 @@ class Joiner {
   }
 
  private:
-  // The kernel that makes the colour of this pixel pass, when nobody else reads that image; -1: none.
-  int feeder_of(const Pass& pass, Joining joining) const {
-    if (joining == Joining::none) return -1;
-    const ImageId color = pass.inputs.front().image;
-    const int feeder = kernel_of_[color];
-    if (feeder < 0 || readers_[color] != 1) return -1;
-    if (joining == Joining::heads && !is_head_of(kernels_[feeder], pass)) return -1;
-    if (bound_images(graph_, kernels_[feeder]) + pass.inputs.size() - 1 > kMaxImagesPerKernel) return -1;
-    return feeder;
+  // A kernel whose image is read by passes of this one alone, each at its own pixel; -1: none that may join.
+  int feeder_of(const PlanKernel& kernel, Joining joining) const {
+    for (const int index : kernel.passes)
+      for (const auto& input : graph_.passes[index].inputs) {
+        const int feeder = kernel_of_[input.image];
+        if (feeder < 0 || kernels_[feeder].passes.empty() || !reads_own_pixel(graph_.passes[index], input)) continue;
+        if (own_readers(kernel, input.image) != readers_[input.image]) continue;
+        if (joining == Joining::heads && !is_head_of(kernels_[feeder], kernel)) continue;
+        if (is_head(first(kernel)) && is_head(first(kernels_[feeder]))) continue;
+        PlanKernel both{kernel.passes, "", kernel.output};
+        both.passes.insert(both.passes.end(), kernels_[feeder].passes.begin(), kernels_[feeder].passes.end());
+        if (bound_images(graph_, both) <= kMaxImagesPerKernel) return feeder;
+      }
+    return -1;
   }
 
-  bool is_head_of(const PlanKernel& kernel, const Pass& pass) const {
-    const Pass& head = graph_.passes[kernel.passes.front()];
-    return kernel.passes.size() == 1 && head.kind == PassKind::filter && head.effect == pass.effect;
+  const Pass& first(const PlanKernel& kernel) const { return graph_.passes[kernel.passes.front()]; }
+
+  int own_readers(const PlanKernel& kernel, ImageId image) const {
+    int count = 0;
+    for (const int index : kernel.passes)
+      for (const auto& input : graph_.passes[index].inputs)
+        count += input.image == image && reads_own_pixel(graph_.passes[index], input);
+    return count;
+  }
+
+  bool is_head_of(const PlanKernel& feeder, const PlanKernel& kernel) const {
+    return feeder.passes.size() == 1 && kernel.passes.size() == 1 && first(feeder).kind == PassKind::filter &&
+           first(feeder).effect == first(kernel).effect &&
+           first(kernel).inputs.front().image == graph_.passes[feeder.passes.front()].output;
+  }
+
+  PlanKernel joined(PlanKernel& feeder, const PlanKernel& kernel) const {
+    PlanKernel out{kernel.passes, "", kernel.output};
+    out.passes.insert(out.passes.end(), feeder.passes.begin(), feeder.passes.end());
+    std::ranges::sort(out.passes, {}, [&](int pass) { return std::pair(!is_head(graph_.passes[pass]), pass); });
+    feeder.passes.clear();
+    return out;
   }
 
   const Graph& graph_;
@@ -106,6 +143,19 @@ void find_lifetimes(const Graph& graph, Plan& plan) {
 }
 
 }  // namespace
+
+bool reads_own_pixel(const Pass& pass, const PassInput& input) {
+  return input.pixelwise || (pass.kind == PassKind::pixel && &input == &pass.inputs.front());
+}
+
+std::optional<int> value_in(const Graph& graph, const PlanKernel& kernel, ImageId image) {
+  const Pass& head = graph.passes[kernel.passes.front()];
+  const int first_stage = is_head(head) ? 0 : 1;  // number of the first pass: a head makes value 0
+  for (std::size_t i = 0; i < kernel.passes.size(); ++i)
+    if (graph.passes[kernel.passes[i]].output == image) return static_cast<int>(i) + first_stage;
+  if (!is_head(head) && head.inputs.front().image == image) return 0;
+  return std::nullopt;
+}
 
 Plan make_plan(const Graph& graph, const ExecutionConfig& config) {
   Plan plan;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,9 @@
 
 namespace afterglow {
 
-/// One draw: a head pass and the pixel passes joined to it. Indices into Graph::passes, in order.
+/// One draw: a head pass and the pixel passes joined to it. Indices into Graph::passes: a filter or sample pass first,
+/// then pixel passes, each behind those whose colours it takes. The last one makes the kernel's image; what the others
+/// make is read by passes of the kernel alone, at their own pixel.
 struct PlanKernel {
   std::vector<int> passes;
   std::string name;  ///< "glow.up[0]+glow.combine+curve"
@@ -32,6 +35,14 @@ struct Plan {
 
 /// Of `config` it reads `joining`.
 Plan make_plan(const Graph& graph, const ExecutionConfig& config);
+
+/// Is input `input` of a pass read at the target's own pixel alone: the colour of a pixel pass, a pixel-wise input?
+bool reads_own_pixel(const Pass& pass, const PassInput& input);
+
+/// Where the kernel has an image's colour at hand when one of its passes wants it, as a number: 0 for the colour that
+/// the head makes or reads, n for what the n-th pixel pass makes (the first stage, KernelStage, is 1). Nothing: it has
+/// to be read.
+std::optional<int> value_in(const Graph& graph, const PlanKernel& kernel, ImageId image);
 
 /// A block of memory wanted from kernel `first` to kernel `last` (inclusive).
 struct Block {

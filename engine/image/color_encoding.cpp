@@ -108,7 +108,8 @@ void sanitize_linear(float* rgba, std::size_t pixels, SanitizeCounts& counts) {
         const float positive = v >= kSmallestColor ? v : 0.0f;  // NaN fails the test
         pixel[c] = positive < kLargestColor ? positive : kLargestColor;
       }
-      const bool finite = std::abs(pixel[3]) <= kLargestColor;  // as light: filters sum alpha too, and must not overflow
+      const bool finite =
+          std::abs(pixel[3]) <= kLargestColor;  // as light: filters sum alpha too, and must not overflow
       block_alpha += !finite;
       pixel[3] = finite ? pixel[3] : 1.0f;
     }

@@ -106,7 +106,10 @@ const Layer* best_color(const std::vector<const Layer*>& layers) {
   return best;
 }
 
-/// The layers that `name` may mean: by prefix, by part, by part and prefix, or as the view layer in front of several.
+bool ends_so(const std::string& full, const std::string& end) { return full.ends_with("." + end); }
+
+/// The layers that `name` may mean: by prefix, by part, by part and prefix, as the view layer in front of several, or
+/// by its end where all that end so have one name.
 std::vector<const Layer*> layers_named(const std::vector<FilePart>& parts, const std::vector<Layer>& layers,
                                        const std::string& name) {
   std::vector<const Layer*> exact, wider;
@@ -119,10 +122,26 @@ std::vector<const Layer*> layers_named(const std::vector<FilePart>& parts, const
       wider.push_back(&layer);
     }
   }
-  return exact.empty() ? wider : exact;
+  if (!exact.empty()) return exact;
+  if (!wider.empty()) return wider;
+  std::vector<const Layer*> ending;
+  for (const Layer& layer : layers)
+    if (ends_so(layer.name, name)) ending.push_back(&layer);
+  const bool unlike = std::ranges::any_of(ending, [&](const Layer* l) { return l->name != ending.front()->name; });
+  return unlike ? std::vector<const Layer*>() : ending;
 }
 
-/// A single channel by its full name, or by part and name.
+/// Channels whose names end so.
+std::vector<ChannelChoice> channels_ending(const std::vector<FilePart>& parts, const std::string& name) {
+  std::vector<ChannelChoice> out;
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    for (std::size_t c = 0; c < parts[p].channels.size(); ++c)
+      if (parts[p].unreadable.empty() && ends_so(parts[p].channels[c], name))
+        out.push_back({static_cast<int>(p), {static_cast<int>(c)}});
+  return out;
+}
+
+/// A single channel by its full name, by part and name, or by its end where no other ends so.
 std::optional<ChannelChoice> channel_named(const std::vector<FilePart>& parts, const std::string& name) {
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (!parts[p].unreadable.empty()) continue;
@@ -130,7 +149,8 @@ std::optional<ChannelChoice> channel_named(const std::vector<FilePart>& parts, c
       if (parts[p].channels[c] == name || parts[p].name + "." + parts[p].channels[c] == name)
         return ChannelChoice{static_cast<int>(p), {static_cast<int>(c)}};
   }
-  return std::nullopt;
+  const auto ending = channels_ending(parts, name);
+  return ending.size() == 1 ? std::optional(ending.front()) : std::nullopt;
 }
 
 std::vector<std::string> layer_names(const std::vector<Layer>& layers) {
@@ -166,8 +186,13 @@ Error not_found(const std::vector<FilePart>& parts, const std::vector<Layer>& la
                 const std::string& name) {
   for (const FilePart& part : parts)
     if (part.name == name && !part.unreadable.empty()) return Error{ErrorKind::io, part.unreadable};
-  std::vector<std::string> known = layer_names(layers);
+  std::vector<std::string> known = layer_names(layers), ending;
   for (const std::string& channel : channel_names(parts)) known.push_back(channel);
+  for (const std::string& full : known)
+    if (ends_so(full, name)) ending.push_back(full);
+  if (ending.size() > 1)
+    return Error{ErrorKind::io, fmt::format("has several of which each may be the {} '{}'", what, name), "", 0,
+                 listed(ending)};
   return Error{
       ErrorKind::io, fmt::format("has no {} '{}'", what, name), "", 0, listed(known), nearest_name(name, known)};
 }
@@ -274,6 +299,12 @@ Result<std::optional<ChannelChoice>> find_depth(const std::vector<FilePart>& par
     return std::optional<ChannelChoice>();
   }
   if (const auto channel = channel_named(parts, name)) return channel;
+  // Of several channels that end so ("Z"), the one that is depth.
+  std::vector<ChannelChoice> depths;
+  for (const ChannelChoice& channel : channels_ending(parts, name))
+    for (const Layer& layer : layers)
+      if (layer.part == channel.part && depth_of(layer, true) == channel.channels[0]) depths.push_back(channel);
+  if (depths.size() == 1) return std::optional(depths.front());
   for (const Layer* layer : layers_named(parts, layers, name))
     if (const int channel = depth_of(*layer, true); channel >= 0)
       return std::optional(ChannelChoice{layer->part, {channel}});
@@ -313,5 +344,26 @@ Result<std::optional<ChannelChoice>> find_motion(const std::vector<FilePart>& pa
         return std::optional(ChannelChoice{layer->part, std::move(*channels)});
   return not_found(parts, layers, "motion layer", name);
 }
+
+std::optional<ChannelChoice> find_layer(const std::vector<FilePart>& parts, const std::string& name) {
+  const std::vector<Layer> layers = layers_of(parts);
+  const auto named = layers_named(parts, layers, name);
+  if (named.empty() || (named.size() > 1 && named.front()->name != name)) return channel_named(parts, name);
+  const Layer& layer = *named.front();
+  for (const auto& usual : {std::vector<const char*>{"r", "g", "b", "a"},
+                            {"red", "green", "blue", "alpha"},
+                            {"x", "y", "z", "w"},
+                            {"u", "v"}}) {
+    std::vector<int> channels;
+    for (const char* suffix : usual)
+      if (const int channel = layer.find({suffix}); channel >= 0) channels.push_back(channel);
+    if (!channels.empty()) return ChannelChoice{layer.part, std::move(channels)};
+  }
+  std::vector<int> channels = layer.channels;
+  channels.resize(std::min<std::size_t>(channels.size(), 4));
+  return ChannelChoice{layer.part, std::move(channels)};
+}
+
+std::vector<std::string> layer_names(const std::vector<FilePart>& parts) { return layer_names(layers_of(parts)); }
 
 }  // namespace afterglow

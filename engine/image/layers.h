@@ -28,6 +28,9 @@ struct ChannelChoice {
   std::vector<int> channels;
 };
 
+/// Names of layers and channels may be given by their end, from behind a point on, where no other ends so: "albedo" for
+/// "ViewLayer.albedo".
+
 /// --layer NAME, or the usual colour layer when `name` is empty. Names: layer ("ViewLayer.Combined"), view layer
 /// ("ViewLayer"), part, or a single channel (shown grey). Errors: io (there is none; lists the layers, names the
 /// nearest).
@@ -46,5 +49,12 @@ Result<std::optional<ChannelChoice>> find_normal(const std::vector<FilePart>& pa
 /// next).
 Result<std::optional<ChannelChoice>> find_motion(const std::vector<FilePart>& parts, const std::string& name,
                                                  const ChannelChoice* color);
+
+/// A layer by name, one to four channels in their usual order (R G B A, X Y Z, …), or a single channel. Nothing: there
+/// is none of that name, or several whose names end so.
+std::optional<ChannelChoice> find_layer(const std::vector<FilePart>& parts, const std::string& name);
+
+/// The names that `find_layer` knows, without those of single channels.
+std::vector<std::string> layer_names(const std::vector<FilePart>& parts);
 
 }  // namespace afterglow

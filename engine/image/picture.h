@@ -38,9 +38,10 @@ struct Picture {
   Image color;  ///< RGBA; scene-linear Rec.709, alpha associated (premultiplied), finite, ≥ 0
   /// Auxiliary inputs by name. "depth": 1 channel, view-space distance in scene units (background 1e10), or device
   /// depth as stored; "normal": 3 channels as stored; "motion": 2 channels, how far the pixel's content moves in
-  /// one frame, in pixels, x to the right and y down. Only those that the file (or --depth/--normal/--motion) holds and
-  /// the caller asked for.
+  /// one frame, in pixels, x to the right and y down; "layer:NAME": up to 4 channels as stored, finite. Only those that
+  /// the file (or --depth/--normal/--motion) holds and the caller asked for.
   std::map<std::string, Image> auxiliary;
+  std::vector<std::string> layers;  ///< names of all layers of the file, read or not
   /// Hashes of `color` ("source") and of auxiliary images, where they are known: equal hashes mean equal pixels.
   std::map<std::string, Hash> content;
   /// When not empty, `color` as 8-bit display codes that need no more encoding, RGBA: sRGB, alpha straight.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "core/exception.h"
@@ -29,10 +31,14 @@ constexpr AuxiliaryKind kNormal{"normal", 3, 0.0f};
 constexpr AuxiliaryKind kMotion{"motion", 2, 0.0f};
 constexpr std::array kKinds{&kDepth, &kNormal, &kMotion};
 
+constexpr std::string_view kLayerPrefix = "layer:";  ///< any other layer, by its name, as it is stored
+bool is_layer(const std::string& name) { return name.starts_with(kLayerPrefix); }
+
 /// One auxiliary image: where it will come from.
 struct AuxiliaryPlan {
-  const AuxiliaryKind* kind = nullptr;
-  std::unique_ptr<PictureFile> other;  ///< null: the picture's own file
+  std::string name;
+  const AuxiliaryKind* kind = nullptr;  ///< null: a layer
+  std::unique_ptr<PictureFile> other;   ///< null: the picture's own file
   ChannelChoice choice;
 };
 
@@ -104,6 +110,7 @@ std::optional<ChannelChoice> sole_layer(const PictureFile& file, const Auxiliary
 Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, const LayerChoice& wanted,
                                                     const Plan& plan, const ReadOptions& options) {
   AuxiliaryPlan made;
+  made.name = kind.name;
   made.kind = &kind;
   if (!wanted.file.empty()) {
     AFTERGLOW_TRY(made.other, open_picture(wanted.file, limits_of(options)));
@@ -141,6 +148,12 @@ Result<Plan> make_plan(const fs::path& file, const ReadOptions& options, const s
   AFTERGLOW_CHECK(check_sides(plan.color_part().data_window, "data window", limits_of(options), file));
   AFTERGLOW_CHECK(check_sides(plan.color_part().display_window, "display window", limits_of(options), file));
   for (const std::string& name : auxiliary) {
+    if (is_layer(name)) {
+      // Whoever asks for a layer that is not there is told so by name, with what is there.
+      if (auto choice = find_layer(plan.file->parts(), name.substr(kLayerPrefix.size())))
+        plan.auxiliary.push_back({.name = name, .kind = nullptr, .other = nullptr, .choice = std::move(*choice)});
+      continue;
+    }
     const auto kind = std::ranges::find(kKinds, name, &AuxiliaryKind::name);
     if (kind == kKinds.end()) continue;  // kinds that no file holds
     const LayerChoice& choice = *kind == &kDepth ? options.depth : *kind == &kNormal ? options.normal : options.motion;
@@ -157,9 +170,11 @@ std::uint64_t host_bytes(const Plan& plan, const std::vector<std::string>& wante
   std::uint64_t second = plan.color_part().orientation > 1 ? images : 0;
   std::uint64_t buffers = plan.file->buffer_bytes(plan.color.part);
   for (const AuxiliaryPlan& auxiliary : plan.auxiliary) {
-    if (std::find(wanted.begin(), wanted.end(), auxiliary.kind->name) == wanted.end()) continue;
+    if (std::find(wanted.begin(), wanted.end(), auxiliary.name) == wanted.end()) continue;
     const FilePart& part = plan.part_of(auxiliary);
-    const std::uint64_t pixel = static_cast<std::uint64_t>(auxiliary.kind->channels) * sizeof(float);
+    const std::uint64_t pixel =
+        (auxiliary.kind ? static_cast<std::uint64_t>(auxiliary.kind->channels) : auxiliary.choice.channels.size()) *
+        sizeof(float);
     images += area(plan.color_part().data_window) * pixel;
     second = std::max(second, area(part.data_window) * pixel);
     buffers = std::max(buffers, plan.file_of(auxiliary).buffer_bytes(auxiliary.choice.part));
@@ -193,7 +208,7 @@ Image placed(Image image, const Rect& window, const Rect& wanted, float backgrou
   return out;
 }
 
-void note_layer(Picture& picture, const char* layer, const NonFinite& found) {
+void note_layer(Picture& picture, const std::string& layer, const NonFinite& found) {
   if (found.count() == 0) return;
   NonFinite& noted = picture.non_finite[layer] = found;
   // Places are counted from the display window's corner, like those of --region.
@@ -248,6 +263,7 @@ Result<Picture> read_planned(Plan& plan, NanPolicy policy, Diagnostics& diagnost
   picture.display_window = upright_display(part);
   picture.has_alpha = plan.color.channels[3] >= 0;
   picture.facts = std::make_shared<FileFacts>(plan.file->facts(plan.color));
+  picture.layers = layer_names(plan.file->parts());
   const ColorEncoding encoding = plan.file->color_encoding(plan.color, diagnostics);
 
   // Everything from the colour's own part is read in one go: the file is decompressed once.
@@ -298,12 +314,15 @@ Result<Picture> read_planned(Plan& plan, NanPolicy policy, Diagnostics& diagnost
       found.first->x += window.x - picture.data_window.x;
       found.first->y += window.y - picture.data_window.y;
     }
-    note_layer(picture, extra.kind->name, found);
+    note_layer(picture, extra.name, found);
     if (extra.kind == &kMotion) image = motion_of(image);
-    image = placed(std::move(image), window, picture.data_window, extra.kind->background);
+    image = placed(std::move(image), window, picture.data_window, extra.kind ? extra.kind->background : 0.0f);
     if (extra.kind == &kDepth) sanitize_depth(image, picture.sanitized);
     if (extra.kind == &kNormal) sanitize_normal(image, picture.sanitized);
-    picture.auxiliary.emplace(extra.kind->name, std::move(image));
+    if (!extra.kind)
+      for (float& value : image.pixels)
+        if (!std::isfinite(value)) value = 0;
+    picture.auxiliary.emplace(extra.name, std::move(image));
   }
   if (policy == NanPolicy::fail && !picture.non_finite.empty()) return non_finite_error(picture, plan.file->path());
   report(picture, policy, plan.file->path(), diagnostics);
@@ -326,14 +345,22 @@ LayerChoice parse_layer_choice(const std::string& text) {
   return {"", text};
 }
 
+/// Auxiliary images that a header tells of: the usual ones, and layers that are asked for.
+static std::vector<std::string> of_header(const ReadOptions& options) {
+  std::vector<std::string> names{kDepth.name, kNormal.name, kMotion.name};
+  std::ranges::copy_if(options.auxiliary, std::back_inserter(names), is_layer);
+  return names;
+}
+
 Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& options) {
   try {
-    AFTERGLOW_TRY(const Plan plan, make_plan(file, options, {kDepth.name, kNormal.name}));
+    AFTERGLOW_TRY(const Plan plan, make_plan(file, options, of_header(options)));
     PictureHeader header;
     header.data_window = upright_data(plan.color_part());
     header.display_window = upright_display(plan.color_part());
     header.channels = static_cast<int>(plan.color_part().channels.size());
-    for (const AuxiliaryPlan& extra : plan.auxiliary) header.auxiliary.push_back(extra.kind->name);
+    for (const AuxiliaryPlan& extra : plan.auxiliary) header.auxiliary.push_back(extra.name);
+    header.layers = layer_names(plan.file->parts());
     header.has_alpha = plan.color.channels[3] >= 0;
     header.facts = std::make_shared<const FileFacts>(plan.file->facts(plan.color));
     header.format = plan.file->format();

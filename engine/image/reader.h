@@ -28,7 +28,8 @@ struct ReadOptions {
   /// --layer: colour layer ("ViewLayer.Combined", "ViewLayer", part name, channel); empty: the first usual one
   std::string layer;
   LayerChoice depth, normal, motion;
-  std::vector<std::string> auxiliary;  ///< what the stack asks for: "depth", "normal", "motion"; only these are read
+  std::vector<std::string>
+      auxiliary;  ///< what the stack asks for: "depth", "normal", "motion", "layer:NAME"; only these are read
   NanPolicy nan_policy = NanPolicy::zero;  ///< fail: a picture with values that are not finite is an error (io)
   int max_side = 16384;                    ///< larger sides are refused from the header
   std::uint64_t max_bytes = 6ull << 30;  ///< pictures whose own host memory would be larger are refused from the header
@@ -38,7 +39,8 @@ struct ReadOptions {
 struct PictureHeader {
   Rect data_window, display_window;  ///< after orientation
   int channels = 0;
-  std::vector<std::string> auxiliary;  ///< "depth", "normal" that reading would find
+  std::vector<std::string> auxiliary;  ///< "depth", "normal", "motion", layers asked for: those that reading would find
+  std::vector<std::string> layers;     ///< names of all layers
   bool has_alpha = false;
   std::shared_ptr<const FileFacts> facts;
   std::string format;            ///< OIIO format name: "openexr", "png", …

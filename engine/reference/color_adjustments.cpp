@@ -41,7 +41,7 @@ DoubleImage color_adjustments(const DoubleImage& source, const ColorAdjustments&
   if (settings.post_exposure == 0 && settings.contrast == 0 && settings.color_filter == Rgb(1) &&
       settings.hue_shift == 0 && settings.saturation == 0)
     return source;  // not even the clamp to 60
-  return map_color(source, [&](const Rgb& c) { return adjust_color(c, settings); });
+  return map_straight(source, [&](const Rgb& c) { return adjust_color(c, settings); });
 }
 
 }  // namespace afterglow::reference

@@ -58,7 +58,7 @@ DoubleImage channel_mixer(const DoubleImage& source, const ChannelMix& mix) {
 }
 
 DoubleImage split_toning(const DoubleImage& source, const SplitToning& s) {
-  return map_color(source, [&](const Rgb& c) {
+  return map_straight(source, [&](const Rgb& c) {
     Rgb out;
     for (int i = 0; i < 3; ++i) out[i] = std::pow(c[i], 1 / 2.2);
     const double bright = saturate(luminance(glm::min(out, Rgb(1))) + s.balance / 100);
@@ -78,7 +78,7 @@ DoubleImage shadows_midtones_highlights(const DoubleImage& source, const Shadows
   const auto behind = [](double end, double start) { return std::max(end, start * 1.0001 + 1e-5); };
   const double shadows_end = behind(s.shadows_end, s.shadows_start),
                highlights_end = behind(s.highlights_end, s.highlights_start);
-  return map_color(source, [&](const Rgb& c) {
+  return map_straight(source, [&](const Rgb& c) {
     const double y = luminance(c);
     const double in_shadows = 1 - smoothstep(s.shadows_start, shadows_end, y);
     const double in_highlights = smoothstep(s.highlights_start, highlights_end, y);
@@ -91,7 +91,7 @@ DoubleImage lift_gamma_gain(const DoubleImage& source, const LiftGammaGain& s) {
   const Rgb lift = chroma(s.lift, 0.15) + s.lift_offset;
   const Rgb power = 1.0 / glm::max(chroma(s.gamma, 0.8) + 1.0 + s.gamma_offset, Rgb(1e-3));
   const Rgb gain = chroma(s.gain, 0.8) + 1.0 + s.gain_offset;
-  return map_color(source, [&](const Rgb& c) {
+  return map_straight(source, [&](const Rgb& c) {
     const Rgb scaled = c * gain + lift;
     Rgb out;
     for (int i = 0; i < 3; ++i) out[i] = scaled[i] > 0 ? std::pow(scaled[i], power[i]) : 0;

@@ -56,7 +56,7 @@ DoubleImage film_grain(const DoubleImage& source, const FilmGrain& s) {
     Rgb n = noise(x, y, s);
     n = Rgb(n.g) + s.colored * (n - Rgb(n.g));
     const Rgba& p = source.at(x, y);
-    const double dark = 1 - std::sqrt(glm::clamp(luminance(Rgb(p)), 0.0, 1.0));
+    const double dark = 1 - std::sqrt(glm::clamp(luminance(Rgb(p) / cover(p)), 0.0, 1.0));
     const double response = 1 + (dark - 1) * s.response;
     return Rgba(glm::max(Rgb(p) + Rgb(p) * n * (0.25 * s.intensity * response), Rgb(0)), p.a);
   });

@@ -28,6 +28,7 @@ class Settings {
     return {v[0], v[1]};
   }
   bool is(const char* name, const char* choice) const { return values_.at(name).choice == choice; }
+  const std::string& text(const char* name) const { return values_.at(name).choice; }
   /// The value whose name was chosen.
   template <class T>
   T choice(const char* name, std::initializer_list<std::pair<const char*, T>> all) const {

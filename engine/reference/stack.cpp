@@ -4,6 +4,7 @@
 #include "reference/box_bloom.h"
 #include "reference/color_adjustments.h"
 #include "reference/color_blit.h"
+#include "reference/composite.h"
 #include "reference/outline.h"
 #include "reference/settings.h"
 #include "reference/tone_mapping.h"
@@ -91,14 +92,44 @@ const Oracle* oracle_of(const Entry& entry) {
 }  // namespace
 
 std::string effect_without_oracle(std::span<const Entry> entries) {
-  for (const auto& entry : entries)
-    if (!oracle_of(entry)) return entry.effect;
+  for (const auto& entry : entries) {
+    const bool group = entry.effect == "group" || entry.effect == "mix";
+    if (!group && !oracle_of(entry)) return entry.effect;
+    if (entry.mask && !is_known(*entry.mask)) return "the mask of " + entry.effect;
+  }
   return {};
 }
 
-DoubleImage evaluate(const DoubleImage& source, const Inputs& inputs, std::span<const Entry> entries) {
+namespace {
+
+/// The entries, one behind the other, without restoring alpha.
+DoubleImage run(const DoubleImage& source, const Inputs& inputs, std::span<const Entry> entries) {
   DoubleImage image = source;
-  for (const auto& entry : entries) image = oracle_of(entry)->run(image, inputs, Settings(entry));
+  while (!entries.empty()) {
+    const Entry& entry = entries.front();
+    const auto members = entries.subspan(1, static_cast<std::size_t>(entry.members));
+    const auto middle = static_cast<std::size_t>(entry.middle);
+    entries = entries.subspan(1 + members.size());
+    DoubleImage made;
+    if (entry.effect == "group")
+      made = run(image, inputs, members);
+    else if (entry.effect == "mix")
+      made = composite(run(image, inputs, members.first(middle)), run(image, inputs, members.subspan(middle)),
+                       Settings(entry).number("amount"), "normal", nullptr);
+    else
+      made = oracle_of(entry)->run(image, inputs, Settings(entry));
+    const auto mask = entry.mask ? mask_of(image, inputs, *entry.mask) : std::vector<double>();
+    if (entry.mask || entry.opacity != 1 || entry.blend != "normal")
+      made = composite(image, made, entry.opacity, entry.blend, entry.mask ? &mask : nullptr);
+    image = std::move(made);
+  }
+  return image;
+}
+
+}  // namespace
+
+DoubleImage evaluate(const DoubleImage& source, const Inputs& inputs, std::span<const Entry> entries) {
+  DoubleImage image = run(source, inputs, entries);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i].a = source.pixels[i].a;
   return image;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -16,10 +17,25 @@ struct Value {
   std::string choice;
 };
 
-/// An effect that runs, with all its settings.
+/// Where an entry counts: a mask by name, a number, or two of them combined.
+struct Mask {
+  enum class Kind { named, number, add, subtract, multiply };
+  Kind kind = Kind::number;
+  double number = 0;
+  std::string name;
+  std::map<std::string, Value> settings;
+  std::shared_ptr<const Mask> a, b;
+};
+
+/// An effect that runs, with all its settings; a "group", or a "mix" by its setting `amount`.
 struct Entry {
   std::string effect;
   std::map<std::string, Value> settings;
+  double opacity = 1;
+  std::string blend = "normal";
+  std::shared_ptr<const Mask> mask = {};  ///< null: everywhere
+  int members = 0;                        ///< of a group or mix: so many entries behind it belong to it
+  int middle = 0;                         ///< of a mix: so many of them are its first look
 };
 
 /// Auxiliary inputs (null: the picture has none), and when the picture is seen.
@@ -27,10 +43,11 @@ struct Inputs {
   const DoubleImage* depth = nullptr;
   const DoubleImage* normal = nullptr;
   const DoubleImage* motion = nullptr;
-  double frame = 1, time = 0;  ///< number in its sequence; seconds
+  double frame = 1, time = 0;                             ///< number in its sequence; seconds
+  std::map<std::string, const DoubleImage*> layers = {};  ///< by the names that effects ask by, without "layer:"
 };
 
-/// The first effect that no oracle knows; empty when all are known.
+/// The first effect or mask that no oracle knows; empty when all are known.
 std::string effect_without_oracle(std::span<const Entry> entries);
 
 /// The result of the stack, alpha that of the source. `entries` are those that run, in order; every effect is known,

@@ -112,7 +112,7 @@ Rgb tone_map(const Rgb& c, ToneMode mode) {
 }
 
 DoubleImage tone_mapping(const DoubleImage& source, ToneMode mode) {
-  return map_color(source, [&](const Rgb& c) { return tone_map(c, mode); });
+  return map_straight(source, [&](const Rgb& c) { return tone_map(c, mode); });
 }
 
 }  // namespace afterglow::reference

@@ -144,7 +144,7 @@ Result<Animated> check_animated(lua_State* lua, const std::string& full_name, co
     return animated;
   }
   if (schema.type == SettingType::boolean || schema.type == SettingType::enumeration ||
-      schema.type == SettingType::file)
+      schema.type == SettingType::file || schema.type == SettingType::text)
     return Error{ErrorKind::script, fmt::format("{} cannot be a curve: it has nothing between its values", full_name),
                  "", 0, allowed_text(schema) + ", a function of t"};
   const DeclaredCurve& declared = Runtime::of(lua).curves[static_cast<std::size_t>(given.curve)];

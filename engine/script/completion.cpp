@@ -23,6 +23,7 @@ std::string lua_type(const SettingSchema& setting) {
     case SettingType::vec3:
       return "number[]|afterglow.Moving";
     case SettingType::file:
+    case SettingType::text:
       return "string|afterglow.OfTime";
     case SettingType::enumeration:
       break;
@@ -69,7 +70,13 @@ std::string completion_text(const std::vector<EffectSchema>& effects) {
       "---@field order? integer     place among the effects of the injection point, smaller first\n"
       "---@field enabled? boolean   false: left out, default true\n"
       "---@field required? boolean  true: a missing input (depth, normal) is an error, default false\n"
-      "---@field name? string       how messages and --set call it, default: the effect's name\n";
+      "---@field name? string       how messages and --set call it, default: the effect's name\n"
+      "---@field opacity? number|afterglow.Moving  how much of the result counts, 0…1; at 0 the effect does not run, "
+      "default 1\n"
+      "---@field blend? \"normal\"|\"add\"|\"screen\"|\"multiply\"|\"overlay\"|\"soft_light\"|\"lighten\"|\"darken\"  "
+      "how it "
+      "is put over what the effect was given\n"
+      "---@field mask? afterglow.Mask|number  where it counts, default everywhere\n";
   for (const auto& effect : effects) out += "\n" + settings_class(effect);
   out += "\n---@class afterglow\n";
   for (const auto& effect : effects)

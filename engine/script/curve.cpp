@@ -7,7 +7,8 @@ namespace afterglow::script {
 
 SettingValue interpolate(const SettingValue& a, const SettingValue& b, double factor, double snap_at) {
   if (factor <= 0) return a;
-  if (b.type == SettingType::boolean || b.type == SettingType::enumeration || b.type == SettingType::file)
+  if (b.type == SettingType::boolean || b.type == SettingType::enumeration || b.type == SettingType::file ||
+      b.type == SettingType::text)
     return factor >= snap_at ? b : a;
   if (factor >= 1) return b;
   SettingValue mixed = a;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxDeclared = 4096;  // settings, effects, entries of one state
 
-constexpr const char* kMakers[] = {"int", "float", "bool", "enum", "color", "vec2", "vec3", "file"};
+constexpr const char* kMakers[] = {"int", "float", "bool", "enum", "color", "vec2", "vec3", "file", "text"};
 
 std::vector<std::string> known_keys(SettingType type) {
   switch (type) {
@@ -78,8 +78,8 @@ void read_extensions(lua_State* lua, TableReader& table, SettingSchema& schema) 
 
 void read_default(TableReader& table, SettingSchema& schema) {
   const Value given = table.value("default");
-  if (given.kind == Value::Kind::nothing && schema.type == SettingType::file) {
-    schema.default_value.type = SettingType::file;
+  if (given.kind == Value::Kind::nothing && (schema.type == SettingType::file || schema.type == SettingType::text)) {
+    schema.default_value.type = schema.type;
     return;
   }
   if (given.kind == Value::Kind::nothing) {
@@ -121,7 +121,6 @@ int make_setting(lua_State* lua, SettingType type) {
 }
 
 void read_settings(lua_State* lua, TableReader& table, EffectSchema& schema) {
-  Runtime& runtime = Runtime::of(lua);
   table.push("settings");
   if (lua_isnil(lua, -1)) {
     lua_pop(lua, 1);
@@ -133,29 +132,8 @@ void read_settings(lua_State* lua, TableReader& table, EffectSchema& schema) {
     lua_pop(lua, 1);
     return;
   }
-  const TableReader settings(lua, -1, "settings");
-  std::vector<std::pair<int, SettingSchema>> found;
-  for (const auto& key : settings.keys()) {
-    const KeyPath place{"settings", key.name};
-    settings.push(key);
-    const Handle* handle = to_object<Handle>(lua, -1, kSettingKind);
-    const std::string shown = read_value(lua, -1).shown();
-    lua_pop(lua, 1);
-    if (key.position > 0 || !is_identifier(key.name))
-      table.fail(failure(fmt::format("{}: a setting needs a name", table.what()), place, "letters, digits and '_'"));
-    else if (std::find(entry_keys().begin(), entry_keys().end(), key.name) != entry_keys().end())
-      table.fail(failure(fmt::format("{}: no setting may be named '{}', which every entry has", table.what(), key.name),
-                         place));
-    else if (!handle)
-      table.fail(failure(fmt::format("{}: setting '{}' = {} is not a setting type", table.what(), key.name, shown),
-                         place, "fx.int, fx.float, fx.bool, fx.enum, fx.color, fx.vec2, fx.vec3, fx.file"));
-    else
-      found.emplace_back(handle->index, runtime.settings[static_cast<std::size_t>(handle->index)].schema).second.name =
-          key.name;
-  }
-  // A table keeps no order; the types were made one after the other, in the order in which they are written.
-  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (auto& [order, setting] : found) schema.settings.push_back(std::move(setting));
+  TableReader settings(lua, -1, table.what(), table, {"settings"});
+  schema.settings = read_setting_types(lua, settings, entry_keys());
   lua_pop(lua, 1);
 }
 
@@ -167,6 +145,16 @@ FunctionRef read_function(lua_State* lua, TableReader& table, const char* name, 
         failure(fmt::format("{}: {} = {} is not a function", table.what(), name, read_value(lua, -1).shown()), {name}));
   lua_pop(lua, 1);
   return {};
+}
+
+// "associated" or "straight": the colour that the effect's pixel shaders see.
+std::string read_alpha(TableReader& table) {
+  static const std::vector<std::string> kWords{"associated", "straight"};
+  const std::string word = table.text("alpha").value_or(kWords.front());
+  if (std::find(kWords.begin(), kWords.end(), word) == kWords.end())
+    table.fail(failure(fmt::format("fx.effect: alpha cannot be '{}'", tidy_message(word, 60)), {"alpha"}, join(kWords),
+                       nearest_name(word, kWords)));
+  return word;
 }
 
 InputList read_inputs(lua_State* lua, TableReader& table, const char* name) {
@@ -201,6 +189,7 @@ template int declare_setting<SettingType::color>(lua_State*);
 template int declare_setting<SettingType::vec2>(lua_State*);
 template int declare_setting<SettingType::vec3>(lua_State*);
 template int declare_setting<SettingType::file>(lua_State*);
+template int declare_setting<SettingType::text>(lua_State*);
 
 std::vector<std::string> pop_input_names(lua_State* lua, const std::string& what) {
   if (!lua_istable(lua, -1))
@@ -215,13 +204,45 @@ std::vector<std::string> pop_input_names(lua_State* lua, const std::string& what
     if (key.position == 0 || given.kind != Value::Kind::text)
       throw failure(fmt::format("{} holds {}, not the name of an input", what, given.shown()), {key.name},
                     join(auxiliary_inputs()));
-    if (std::find(auxiliary_inputs().begin(), auxiliary_inputs().end(), given.text) == auxiliary_inputs().end())
+    const bool layer = given.text.starts_with(kLayerPrefix) && given.text.size() > kLayerPrefix.size();
+    if (!layer &&
+        std::find(auxiliary_inputs().begin(), auxiliary_inputs().end(), given.text) == auxiliary_inputs().end())
       throw failure(fmt::format("{}: unknown input '{}'", what, tidy_message(given.text, 60)), {key.name},
-                    join(auxiliary_inputs()), nearest_name(given.text, auxiliary_inputs()));
+                    join(auxiliary_inputs()) + ", layer:NAME", nearest_name(given.text, auxiliary_inputs()));
     names.push_back(given.text);
   }
   lua_pop(lua, 1);
   return names;
+}
+
+std::vector<SettingSchema> read_setting_types(lua_State* lua, TableReader& table,
+                                              const std::vector<std::string>& taken) {
+  const Runtime& runtime = Runtime::of(lua);
+  std::vector<std::pair<int, SettingSchema>> found;
+  for (const auto& key : table.keys()) {
+    table.push(key);
+    const Handle* handle = to_object<Handle>(lua, -1, kSettingKind);
+    const std::string shown = read_value(lua, -1).shown();
+    lua_pop(lua, 1);
+    if (key.position > 0 || !is_identifier(key.name))
+      table.fail(
+          failure(fmt::format("{}: a setting needs a name", table.what()), {key.name}, "letters, digits and '_'"));
+    else if (std::ranges::count(taken, key.name) > std::ranges::count(replaceable_keys(), key.name))
+      table.fail(failure(fmt::format("{}: no setting may be named '{}', which every entry has", table.what(), key.name),
+                         {key.name}));
+    else if (!handle)
+      table.fail(failure(fmt::format("{}: setting '{}' = {} is not a setting type", table.what(), key.name, shown),
+                         {key.name},
+                         "fx.int, fx.float, fx.bool, fx.enum, fx.color, fx.vec2, fx.vec3, fx.file, fx.text"));
+    else
+      found.emplace_back(handle->index, runtime.settings[static_cast<std::size_t>(handle->index)].schema).second.name =
+          key.name;
+  }
+  // A table keeps no order; the types were made one after the other, in the order in which they are written.
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<SettingSchema> out;
+  for (auto& [order, setting] : found) out.push_back(std::move(setting));
+  return out;
 }
 
 int declare_effect(lua_State* lua) {
@@ -229,8 +250,9 @@ int declare_effect(lua_State* lua) {
   if (!runtime.declaring) throw failure("fx.effect can only be used while a script loads");
   if (runtime.effects.size() >= kMaxDeclared) throw failure(fmt::format("more than {} effects", kMaxDeclared));
   TableReader table(lua, 1, "fx.effect");
-  table.allow({"active", "at", "build", "doc", "holds", "idle", "name", "needs", "optional", "order", "settings"},
-              false);
+  table.allow(
+      {"active", "alpha", "at", "build", "doc", "holds", "idle", "name", "needs", "optional", "order", "settings"},
+      false);
   Effect effect;
   EffectSchema& schema = effect.schema;
   schema.name = table.text("name", 65).value_or("");
@@ -244,6 +266,7 @@ int declare_effect(lua_State* lua) {
     table.fail(failure(fmt::format("fx.effect: unknown injection point '{}'", tidy_message(schema.at, 60)), {"at"},
                        join(injection_points()), nearest_name(schema.at, injection_points())));
   schema.order = table.integer("order").value_or(0);
+  schema.straight = read_alpha(table) == "straight";
   read_settings(lua, table, schema);
   read_holds(lua, table, effect);
   effect.active = read_function(lua, table, "active", false);

@@ -5,7 +5,10 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "script/animated.h"
 #include "script/injection.h"
+#include "script/mask.h"
+#include "script/overrides.h"
 
 namespace afterglow::script {
 namespace {
@@ -15,14 +18,43 @@ bool is_entry_name(const std::string& name) {
   return std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
 }
 
-// Keys that every entry has.
-void read_entry_keys(TableReader& table, DeclaredEntry& declared) {
+bool has_setting(const EffectSchema& schema, const std::string& name) {
+  return std::ranges::find(schema.settings, name, &SettingSchema::name) != schema.settings.end();
+}
+
+// How the entry's result is put over what it was given.
+void read_composition(lua_State* lua, TableReader& table, const EffectSchema& schema, DeclaredEntry& declared) {
+  read_mask(lua, table, declared);
+  if (!has_setting(schema, "opacity")) {
+    table.push("opacity");
+    const Given given = read_given(lua, -1);
+    lua_pop(lua, 1);
+    if (given.value.kind != Value::Kind::nothing) {
+      auto checked = check_animated(lua, schema.name + ".opacity", entry_key_schema("opacity"), given);
+      if (checked)
+        declared.opacity = std::move(*checked);
+      else
+        table.fail({checked.error(), {"opacity"}, {}});
+    }
+  }
+  if (has_setting(schema, "blend")) return;
+  declared.entry.blend = table.text("blend").value_or(declared.entry.blend);
+  if (std::ranges::find(blend_modes(), declared.entry.blend) == blend_modes().end())
+    table.fail(failure(fmt::format("unknown blend mode '{}'", tidy_message(declared.entry.blend, 60)), {"blend"},
+                       join(blend_modes()), nearest_name(declared.entry.blend, blend_modes())));
+}
+
+// Where and whether the entry runs.
+void read_place(TableReader& table, DeclaredEntry& declared) {
   StackEntry& entry = declared.entry;
-  entry.at = table.text("at").value_or(entry.at);
+  const auto at = table.text("at");
+  const auto order = table.integer("order");
+  declared.placed = declared.placed || at || order;
+  entry.at = at.value_or(entry.at);
   if (std::find(injection_points().begin(), injection_points().end(), entry.at) == injection_points().end())
     table.fail(failure(fmt::format("unknown injection point '{}'", tidy_message(entry.at, 60)), {"at"},
                        join(injection_points()), nearest_name(entry.at, injection_points())));
-  entry.order = table.integer("order").value_or(entry.order);
+  entry.order = order.value_or(entry.order);
   entry.enabled = table.boolean("enabled").value_or(entry.enabled);
   entry.required = table.boolean("required").value_or(entry.required);
   const auto name = table.text("name");
@@ -33,7 +65,8 @@ void read_entry_keys(TableReader& table, DeclaredEntry& declared) {
                        "1 to 64 letters, digits, '_' and '-'"));
 }
 
-void fail_unknown(TableReader& table, const EffectSchema& schema, const TableReader::Key& key) {
+void fail_unknown(TableReader& table, const EffectSchema& schema, const TableReader::Key& key,
+                  const std::vector<std::string>& others) {
   std::vector<std::string> names;
   for (const auto& setting : schema.settings) names.push_back(setting.name);
   if (key.position > 0) {
@@ -42,7 +75,7 @@ void fail_unknown(TableReader& table, const EffectSchema& schema, const TableRea
     return;
   }
   std::vector<std::string> near = names;
-  near.insert(near.end(), entry_keys().begin(), entry_keys().end());
+  near.insert(near.end(), others.begin(), others.end());
   table.fail(failure(fmt::format("effect '{}' has no setting '{}'", schema.name, tidy_message(key.name, 60)),
                      {key.name}, join(names), nearest_name(key.name, near)));
 }
@@ -60,14 +93,24 @@ DeclaredEntry new_entry(const Runtime& runtime, int effect) {
   return declared;
 }
 
+void read_entry_keys(lua_State* lua, TableReader& table, const EffectSchema& schema, DeclaredEntry& declared) {
+  read_place(table, declared);
+  read_composition(lua, table, schema, declared);
+}
+
 void read_entry(lua_State* lua, TableReader& table, const EffectSchema& schema, DeclaredEntry& declared) {
-  read_entry_keys(table, declared);
+  read_entry_keys(lua, table, schema, declared);
+  read_settings_of(lua, table, schema, declared, entry_keys());
+}
+
+void read_settings_of(lua_State* lua, TableReader& table, const EffectSchema& schema, DeclaredEntry& declared,
+                      const std::vector<std::string>& others) {
   for (const auto& key : table.keys()) {
-    if (std::find(entry_keys().begin(), entry_keys().end(), key.name) != entry_keys().end()) continue;
+    if (std::ranges::find(others, key.name) != others.end() && !has_setting(schema, key.name)) continue;
     const auto found =
         std::find_if(schema.settings.begin(), schema.settings.end(), [&](const auto& s) { return s.name == key.name; });
     if (found == schema.settings.end()) {
-      fail_unknown(table, schema, key);
+      fail_unknown(table, schema, key, others);
       continue;
     }
     table.push(key);

@@ -166,6 +166,10 @@ ImageRef run_build(lua_State* lua, const EntryRun& run, GraphBuilder& graph, con
             fmt::format("build of effect '{}' returned an image of another run", effect.schema.name));
   const ImageRef image = *result;
   lua_pop(lua, 1);
+  if (image.size != source.size)
+    fail_in(lua, effect.build,
+            fmt::format("build of effect '{}' returned an image of {}×{} for a picture of {}×{}", effect.schema.name,
+                        image.size.width, image.size.height, source.size.width, source.size.height));
   if (graph.skip_reason() && image.id != source.id)
     fail_in(lua, effect.build,
             fmt::format("build of effect '{}' called g:skip, but did not return its source", effect.schema.name));

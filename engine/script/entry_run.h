@@ -1,6 +1,7 @@
 // Runs the functions of one entry's effect: `active`, `needs`, `optional`, `build`.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,12 +11,24 @@
 
 namespace afterglow::script {
 
+struct EntryRun;
+
+/// A mask whose scripts can be run.
+struct MaskRun {
+  EntryMask::Kind kind = EntryMask::Kind::number;
+  double number = 0;
+  std::shared_ptr<EntryRun> named;  ///< of a mask's script; its entry has the name of the one that is masked
+  std::shared_ptr<MaskRun> a, b;    ///< of operators
+};
+
 /// An entry in its place, with its settings as a Lua table.
 struct EntryRun {
   StackEntry entry;
   int effect = 0;
   std::vector<SettingSource> sources;  ///< as DeclaredEntry::sources
   int settings_ref = LUA_NOREF;        ///< read-only table in the registry
+  std::optional<Animated> opacity;
+  std::shared_ptr<MaskRun> mask;  ///< null: none
 };
 
 /// All throw ScriptError.

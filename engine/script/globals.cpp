@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "script/absent.h"
 #include "script/metatables.h"
 #include "script/native.h"
 #include "script/read_only.h"
@@ -240,6 +241,7 @@ void push_environment(lua_State* lua) {
 
 void open_globals(lua_State* lua) {
   lua_createtable(lua, 0, 32);
+  name_absent(lua, "");
   lua_rawsetp(lua, LUA_REGISTRYINDEX, &kGlobals);
 
   luaL_requiref(lua, LUA_GNAME, luaopen_base, 0);

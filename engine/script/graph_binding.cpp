@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <cmath>
+#include <map>
 
 #include "core/text.h"
+#include "image/cryptomatte.h"
 #include "script/filter_reader.h"
 #include "script/object.h"
 #include "script/runtime.h"
@@ -214,6 +217,48 @@ int graph_image(lua_State* lua) {
   return 1;
 }
 
+// The ids of the objects that a cryptomatte's names stand for, as floats. Names that the picture's manifest lacks are
+// warned about: they cover nothing.
+int graph_cryptomatte(lua_State* lua) {
+  constexpr std::size_t kMost = 8;
+  GraphBuilder& graph = graph_of(lua, "g:cryptomatte { layer = …, names = … }");
+  TableReader table(lua, 2, fmt::format("effect '{}': g:cryptomatte", graph.entry().effect));
+  table.allow({"layer", "names"}, false);
+  const std::string layer = table.text("layer").value_or(""), names = table.text("names").value_or("");
+  table.finish("cryptomatte");
+  const auto& metadata = graph.context().metadata;
+  std::map<std::string, std::uint32_t> manifest;
+  if (metadata) {
+    auto found = find_cryptomatte(*metadata, layer);
+    if (!found) throw failure(found.error().message);
+    if (*found) manifest = std::move((*found)->manifest);
+  }
+  std::vector<std::string> known;
+  for (const auto& [name, id] : manifest) known.push_back(name);
+  lua_createtable(lua, kMost, 0);
+  int count = 0;
+  for (const auto& part : split(names, ',')) {
+    const std::string name = trim(part);
+    if (name.empty()) continue;
+    if (count == static_cast<int>(kMost))
+      throw failure(fmt::format("effect '{}': more than {} names of a cryptomatte", graph.entry().effect, kMost), {},
+                    "further ones in a second mask, added by +");
+    const auto given = manifest.find(name);
+    if (given == manifest.end() && !manifest.empty()) {
+      const std::string nearest = nearest_name(name, known);
+      Runtime::of(lua).box->diagnostics->warn_once(
+          "cryptomatte " + layer + " " + name,
+          fmt::format("effect '{}': the cryptomatte '{}' has no '{}'{}", graph.entry().name, layer,
+                      tidy_message(name, 100), nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+      continue;
+    }
+    const std::uint32_t id = given == manifest.end() ? cryptomatte_id(name) : given->second;
+    lua_pushnumber(lua, std::bit_cast<float>(id));
+    lua_rawseti(lua, -2, ++count);
+  }
+  return 1;
+}
+
 int graph_skip(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:skip(\"reason\")");
   const Value reason = read_value(lua, 2);
@@ -239,8 +284,8 @@ int graph_index(lua_State* lua) {
   else if (name == "frame_time")
     lua_pushnumber(lua, context.step / context.fps);
   else {
-    const std::vector<std::string> names{"filter", "fps",  "frame",  "frame_time", "history", "image",
-                                         "input",  "keep", "lookup", "pass",       "skip",    "time"};
+    const std::vector<std::string> names{"cryptomatte", "filter", "fps",    "frame", "frame_time", "history", "image",
+                                         "input",       "keep",   "lookup", "pass",  "skip",       "time"};
     throw failure(fmt::format("the graph has no {}", key.shown()), {}, join(names), nearest_name(name, names));
   }
   return 1;
@@ -270,11 +315,15 @@ int image_equal(lua_State* lua) {
 
 void open_graph_binding(lua_State* lua) {
   push_kind(lua, kGraphKind);
-  const luaL_Reg methods[] = {
-      {"pass", &native<graph_pass, "pass">},          {"filter", &native<graph_filter, "filter">},
-      {"history", &native<graph_history, "history">}, {"keep", &native<graph_keep, "keep">},
-      {"image", &native<graph_image, "image">},       {"lookup", &native<graph_lookup, "lookup">},
-      {"input", &native<graph_input, "input">},       {"skip", &native<graph_skip, "skip">}};
+  const luaL_Reg methods[] = {{"pass", &native<graph_pass, "pass">},
+                              {"filter", &native<graph_filter, "filter">},
+                              {"history", &native<graph_history, "history">},
+                              {"keep", &native<graph_keep, "keep">},
+                              {"image", &native<graph_image, "image">},
+                              {"lookup", &native<graph_lookup, "lookup">},
+                              {"input", &native<graph_input, "input">},
+                              {"skip", &native<graph_skip, "skip">},
+                              {"cryptomatte", &native<graph_cryptomatte, "cryptomatte">}};
   lua_createtable(lua, 0, static_cast<int>(std::size(methods)));
   for (const auto& [name, function] : methods) {
     lua_pushcfunction(lua, function);

@@ -54,8 +54,11 @@ ImageId GraphBuilder::add_image(std::string name, Size size, int producer) {
   return static_cast<ImageId>(graph_.images.size()) - 1;
 }
 
-void GraphBuilder::begin(const StackEntry& entry, std::vector<std::string> inputs) {
+void GraphBuilder::begin(const StackEntry& entry, std::vector<std::string> inputs, bool straight,
+                         const std::string& prefix) {
   entry_ = &entry;
+  straight_ = straight;
+  prefix_ = prefix;
   inputs_ = std::move(inputs);
   skip_reason_.reset();
   open_histories_.clear();
@@ -79,11 +82,11 @@ Pass GraphBuilder::start(std::string name, const std::optional<std::string>& giv
   pass.effect = entry_->name;
   pass.file = place.file;
   pass.line = place.line;
-  pass.name = entry_->name + "." + name;
+  pass.name = entry_->name + "." + prefix_ + name;
   if (given && !is_pass_name(*given))
     fail(pass, fmt::format("'{}' cannot be the name of a pass", tidy_message(*given, 60)), {"name"},
          "1 to 64 letters, digits, '_', '-', '[' and ']'");
-  if (given) pass.name = entry_->name + "." + *given;
+  if (given) pass.name = entry_->name + "." + prefix_ + *given;
   const std::string wanted = pass.name;
   int n = names_[wanted];
   while (n > 0 && names_.contains(pass.name = fmt::format("{}#{}", wanted, n + 1))) ++n;
@@ -146,6 +149,9 @@ ImageRef GraphBuilder::pass(const PassRequest& request, const CallPlace& place) 
   pass.kind = interface.kind == ShaderKind::pixel ? PassKind::pixel : PassKind::sample;
   pass.shader = request.shader;
   pass.reach = request.reach;
+  if (straight_ && pass.kind != PassKind::pixel)
+    fail(pass, "alpha = \"straight\" is for effects whose shaders are pixel shaders (apply)", {"shader"});
+  pass.straight = straight_;
   if (pass.reach && pass.kind == PassKind::pixel)
     fail(pass, "a pixel shader reads its own pixel alone; leave out reach", {"reach"});
   if (pass.reach && !(*pass.reach >= 0 && *pass.reach <= kMaxSide))
@@ -265,6 +271,7 @@ Size GraphBuilder::target_size(const Pass& pass, const PassRequest& request) con
 ImageRef GraphBuilder::filter(FilterRequest request, const CallPlace& place) {
   Pass pass = start("filter", request.name, place);
   pass.kind = PassKind::filter;
+  if (straight_) fail(pass, "alpha = \"straight\" is for effects of pixel shaders, not of filters");
   if (!request.source) fail(pass, "needs 'source', an image");
   check_image(pass, "source", *request.source);
   if (request.size) check_size(pass, *request.size);

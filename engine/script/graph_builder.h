@@ -71,8 +71,10 @@ class GraphBuilder {
   std::uint64_t build() const { return build_; }
   const BuildContext& context() const { return context_; }
 
-  /// Passes that follow belong to this entry. `inputs`: auxiliary images that it may ask for.
-  void begin(const StackEntry& entry, std::vector<std::string> inputs);
+  /// Passes that follow belong to this entry. `inputs`: auxiliary images that it may ask for. `straight`: its effect
+  /// wants straight colour, see Pass::straight. `prefix` stands before the names of its passes: "glow.mask.luma".
+  void begin(const StackEntry& entry, std::vector<std::string> inputs, bool straight = false,
+             const std::string& prefix = "");
   const StackEntry& entry() const { return *entry_; }
 
   ImageRef pass(const PassRequest& request, const CallPlace& place);
@@ -126,6 +128,8 @@ class GraphBuilder {
   Graph graph_;
   const StackEntry* entry_ = nullptr;
   std::vector<std::string> inputs_;
+  bool straight_ = false;
+  std::string prefix_;
   /// Of the present entry: histories that wait for `keep`, and the places that asked for them.
   std::vector<std::pair<std::string, CallPlace>> open_histories_;
   std::map<std::string, int> names_;  // taken names; how often each was wanted

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace afterglow::script {
@@ -13,22 +14,39 @@ inline const std::vector<std::string>& injection_points() {
   return points;
 }
 
-/// Images besides the picture that an effect may ask for.
+/// A layer of the picture, by its name: "layer:albedo".
+inline constexpr std::string_view kLayerPrefix = "layer:";
+
+/// Images besides the picture that an effect may ask for; layers by name too.
 inline const std::vector<std::string>& auxiliary_inputs() {
   static const std::vector<std::string> inputs{"depth", "normal", "motion"};
   return inputs;
 }
 
-/// Keys of an entry besides settings; no setting may have such a name.
+/// How an entry's result is put over what it was given (math.md §20).
+inline const std::vector<std::string>& blend_modes() {
+  static const std::vector<std::string> modes{"normal",  "add",        "screen",  "multiply",
+                                              "overlay", "soft_light", "lighten", "darken"};
+  return modes;
+}
+
+/// Keys of an entry besides settings; no setting may have such a name, but for those below.
 inline const std::vector<std::string>& entry_keys() {
-  static const std::vector<std::string> keys{"at", "enabled", "name", "order", "required"};
+  static const std::vector<std::string> keys{"at", "blend", "enabled", "mask", "name", "opacity", "order", "required"};
+  return keys;
+}
+
+/// Keys of an entry that an effect may have as settings of its own: its entries then have no others.
+inline const std::vector<std::string>& replaceable_keys() {
+  static const std::vector<std::string> keys{"blend", "opacity"};
   return keys;
 }
 
 /// What `fx` itself holds; an effect of such a name could never be reached.
 inline const std::vector<std::string>& library_names() {
-  static const std::vector<std::string> names{"bool", "color", "curve", "effect", "enum", "extend", "filters",
-                                              "file", "float", "int",   "stack",  "vec2", "vec3",   "volume"};
+  static const std::vector<std::string> names{"args",  "bool",    "color", "curve", "effect", "enum", "extend",
+                                              "file",  "filters", "float", "group", "int",    "mask", "mix",
+                                              "stack", "text",    "vec2",  "vec3",  "volume"};
   return names;
 }
 

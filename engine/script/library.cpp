@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include "core/text.h"
+#include "script/arguments.h"
 #include "script/declare.h"
 #include "script/globals.h"
+#include "script/items.h"
+#include "script/mask.h"
 #include "script/native.h"
 #include "script/object.h"
 #include "script/read_only.h"
@@ -67,8 +70,12 @@ void push_core(lua_State* lua) {
       {"vec2", &native<declare_setting<SettingType::vec2>, "vec2">},
       {"vec3", &native<declare_setting<SettingType::vec3>, "vec3">},
       {"file", &native<declare_setting<SettingType::file>, "file">},
+      {"text", &native<declare_setting<SettingType::text>, "text">},
       {"curve", &native<declare_curve, "curve">},
       {"extend", &native<declare_extend, "extend">},
+      {"args", &native<declare_arguments, "args">},
+      {"group", &native<declare_group, "group">},
+      {"mix", &native<declare_mix, "mix">},
       {"volume", &native<declare_volume, "volume">},
       {"fail", &native<fail, "fail">},
       {"show", &native<show, "show">},
@@ -79,6 +86,8 @@ void push_core(lua_State* lua) {
     lua_pushcfunction(lua, function);
     lua_setfield(lua, -2, name);
   }
+  push_masks(lua);
+  lua_setfield(lua, -2, "mask");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "script/absent.h"
 #include "script/globals.h"
 #include "script/metatables.h"
 #include "script/native.h"
@@ -178,6 +179,7 @@ void push_string_library(lua_State* lua) {
   lua_rotate(lua, -3, 1);
   lua_setfield(lua, -3, "rep");
   lua_setfield(lua, -2, "format");
+  name_absent(lua, "string");
   make_read_only(lua);
   // Methods of strings come from the same table, and nobody may replace them.
   lua_pushliteral(lua, "");
@@ -204,6 +206,7 @@ void push_table_library(lua_State* lua) {
   set(lua, "insert", &native<table_insert, "insert">);
   set(lua, "remove", &native<table_remove, "remove">);
   set(lua, "concat", &native<table_concat, "concat">);
+  name_absent(lua, "table");
   make_read_only(lua);
 }
 
@@ -212,6 +215,7 @@ void push_math_library(lua_State* lua) {
   pick(lua, {"deg",   "rad",  "abs",  "acos", "asin",      "atan",       "ceil", "cos",        "exp",
              "floor", "fmod", "huge", "log",  "max",       "maxinteger", "min",  "mininteger", "modf",
              "pi",    "sin",  "sqrt", "tan",  "tointeger", "type",       "ult"});
+  name_absent(lua, "math");
   make_read_only(lua);
 }
 

@@ -23,6 +23,8 @@ constexpr std::size_t kMaxScript = 1u << 20;    // bytes; presets are a page lon
 constexpr std::size_t kMaxScripts = 16u << 20;  // of one state: their texts live outside of Lua's memory
 const char kModules = 0;                        // registry key of the cache of modules
 
+std::string folder_of(ScriptKind kind) { return kind == ScriptKind::mask ? "masks" : "effects"; }
+
 // Marks a name as being loaded, for the life of the object.
 class Loading {
  public:
@@ -191,9 +193,9 @@ void push_require(lua_State* lua) {
   lua_pushcfunction(lua, (&native<do_require, "require">));
 }
 
-std::vector<std::string> effect_names(const SearchPath& path) {
+std::vector<std::string> effect_names(const SearchPath& path, ScriptKind kind) {
   std::set<std::string> names;
-  for (const auto& folder : path.effect_folders()) {
+  for (const auto& folder : path.script_folders(folder_of(kind))) {
     std::error_code ec;
     for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec))
       if (it->path().extension() == ".lua" && is_identifier(it->path().stem().string()))
@@ -202,14 +204,16 @@ std::vector<std::string> effect_names(const SearchPath& path) {
   return {names.begin(), names.end()};
 }
 
-int find_effect(lua_State* lua, const std::string& name) {
+int find_effect(lua_State* lua, const std::string& name, ScriptKind kind) {
   Runtime& runtime = Runtime::of(lua);
-  if (const auto it = runtime.effect_by_name.find(name); it != runtime.effect_by_name.end()) return it->second;
+  const std::string folder = folder_of(kind), what = kind == ScriptKind::mask ? "mask" : "effect";
+  const std::string known_as = kind == ScriptKind::mask ? "mask " + name : name;
+  if (const auto it = runtime.effect_by_name.find(known_as); it != runtime.effect_by_name.end()) return it->second;
   std::vector<fs::path> hits;
   runtime.box->charge(kFileCost);
   if (is_identifier(name)) {
     const Sandbox::Pause pause(*runtime.box);
-    for (const auto& hit : runtime.path.find_effect(name)) {
+    for (const auto& hit : runtime.path.find_script(name, folder)) {
       std::error_code ec;
       const bool twice =
           std::any_of(hits.begin(), hits.end(), [&](const auto& other) { return fs::equivalent(hit, other, ec); });
@@ -217,24 +221,25 @@ int find_effect(lua_State* lua, const std::string& name) {
     }
   }
   if (hits.empty()) {
-    const auto names = effect_names(runtime.path);
-    throw failure(fmt::format("unknown effect '{}'", tidy_message(name, 60)), {}, join(names),
+    const auto names = effect_names(runtime.path, kind);
+    throw failure(fmt::format("unknown {} '{}'", what, tidy_message(name, 60)), {}, join(names),
                   nearest_name(name, names));
   }
   // An installation may be made of links; what comes with a preset may not reach out of its folder.
   for (const auto& root : runtime.path.user)
-    if (hits[0].parent_path() == root / "effects" && !lies_in(hits[0], root))
-      throw failure(fmt::format("effect '{}' is a link that leads out of {}", name, root.string()));
+    if (hits[0].parent_path() == root / folder && !lies_in(hits[0], root))
+      throw failure(fmt::format("{} '{}' is a link that leads out of {}", what, name, root.string()));
 
-  const Loading loading(runtime, "effects." + name);
+  const Loading loading(runtime, folder + "." + name);
   load_chunk(lua, hits[0]);
   call(lua, 0, 1);
   const Handle* made = to_object<Handle>(lua, -1, kEffectKind);
   const std::string file = hits[0].string();
   if (!made)
-    throw ScriptError{
-        {ErrorKind::script,
-         fmt::format("an effect's file must return fx.effect {{ … }}, not {}", read_value(lua, -1).shown()), file}};
+    throw ScriptError{{ErrorKind::script,
+                       fmt::format("{} file must return fx.effect {{ … }}, not {}",
+                                   kind == ScriptKind::mask ? "a mask's" : "an effect's", read_value(lua, -1).shown()),
+                       file}};
   Effect& effect = runtime.effects[static_cast<std::size_t>(made->index)];
   if (effect.schema.name != name)
     throw ScriptError{
@@ -242,11 +247,11 @@ int find_effect(lua_State* lua, const std::string& name) {
          fmt::format("declares the effect '{}', but its file is named '{}.lua'", effect.schema.name, name), file}};
   effect.schema.file = hits[0];
   effect.schema.shadowed.assign(hits.begin() + 1, hits.end());
-  if (hits.size() > 1 && hits.back().parent_path() == runtime.path.installation / "scripts" / "effects" &&
+  if (hits.size() > 1 && hits.back().parent_path() == runtime.path.installation / "scripts" / folder &&
       runtime.box->diagnostics)
     runtime.box->diagnostics->note(
-        fmt::format("effect '{}' of {} shadows the built-in {}", name, file, hits.back().string()));
-  runtime.effect_by_name[name] = made->index;
+        fmt::format("{} '{}' of {} shadows the built-in {}", what, name, file, hits.back().string()));
+  runtime.effect_by_name[known_as] = made->index;
   const int index = made->index;
   lua_pop(lua, 1);
   return index;

@@ -11,6 +11,8 @@ namespace afterglow::script {
 inline constexpr const char* kSettingKind = "setting type";
 inline constexpr const char* kEffectKind = "effect";
 inline constexpr const char* kEntryKind = "effect entry";
+inline constexpr const char* kMaskKind = "mask";
+inline constexpr const char* kGroupKind = "group of entries";
 inline constexpr const char* kStackKind = "stack";
 inline constexpr const char* kCurveKind = "curve";
 inline constexpr const char* kVolumeKind = "volume";

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/text.h"
 #include "script/injection.h"
@@ -30,6 +31,15 @@ SettingSchema entry_key_schema(const std::string& name) {
     schema.min = -1e6;
     schema.max = 1e6;
   }
+  if (name == "opacity") {
+    schema.min = 0;
+    schema.max = 1;
+    schema.default_value.number[0] = 1;
+  }
+  if (name == "blend") {
+    schema.type = SettingType::enumeration;
+    schema.choices = blend_modes();
+  }
   if (name == "at") {
     schema.type = SettingType::enumeration;
     schema.choices = injection_points();
@@ -40,35 +50,46 @@ SettingSchema entry_key_schema(const std::string& name) {
 namespace {
 
 constexpr std::string_view kCommandLine = "--set ";
+constexpr std::array kKeys{"at", "blend", "enabled", "opacity", "order"};  // that --set knows besides settings
 
 // Whoever gives commands may name any file; names of scripts go along the search path.
-std::optional<SettingValue> named_file(const Override& given, const SettingSchema& schema) {
+std::optional<SettingValue> named_file(const std::string& text, const SettingSchema& schema) {
   std::error_code ec;
-  const std::filesystem::path file(parse_value(given.value).text);
+  const std::filesystem::path file(parse_value(text).text);
   if (file.empty() || !has_extension(schema, file.string()) || !std::filesystem::is_regular_file(file, ec)) return {};
   return SettingValue{SettingType::file, {1}, std::filesystem::absolute(file, ec).string()};
 }
 
 }  // namespace
 
-Result<SettingValue> parse_setting(const Override& given, const SettingSchema& schema, std::string_view where) {
-  Value value = parse_value(given.value);
+Result<SettingValue> parse_value_of(const std::string& text, const SettingSchema& schema, const std::string& full_name,
+                                    bool any_file) {
+  Value value = parse_value(text);
   // A choice may look like something else: `mode=2d`, `mode=true`.
   if (schema.type == SettingType::enumeration && value.kind != Value::Kind::text) {
     value.kind = Value::Kind::text;
-    value.text = trim(given.value);
+    value.text = trim(text);
+  }
+  if (schema.type == SettingType::text && value.kind != Value::Kind::text) {
+    value.kind = Value::Kind::text;
+    value.text = text;
   }
   if (schema.type == SettingType::file) {
-    if (where == kCommandLine)
-      if (auto file = named_file(given, schema)) return *file;
+    if (any_file)
+      if (auto file = named_file(text, schema)) return *file;
     value.kind = Value::Kind::text;
-    value.text = trim(given.value);
+    value.text = trim(text);
   }
-  auto result = check_setting(fmt::format("{}{}.{}", where, given.entry, given.setting), schema, value);
+  auto result = check_setting(full_name, schema, value);
   if (result) return result;
   Error error = result.error();
   error.kind = ErrorKind::usage;
   return error;
+}
+
+Result<SettingValue> parse_setting(const Override& given, const SettingSchema& schema, std::string_view where) {
+  return parse_value_of(given.value, schema, fmt::format("{}{}.{}", where, given.entry, given.setting),
+                        where == kCommandLine);
 }
 
 namespace {
@@ -82,16 +103,19 @@ Result<void> apply(DeclaredEntry& declared, const Override& given, const EffectS
     declared.sources[static_cast<std::size_t>(found - schema.settings.begin())].overridden = std::move(value);
     return {};
   }
-  if (given.setting == "enabled" || given.setting == "order" || given.setting == "at") {
+  if (std::ranges::find(kKeys, given.setting) != kKeys.end()) {
     AFTERGLOW_TRY(const SettingValue value, parse_setting(given, entry_key_schema(given.setting), kCommandLine));
     if (given.setting == "enabled") entry.enabled = value.number[0] != 0;
     if (given.setting == "order") entry.order = static_cast<int>(value.number[0]);
     if (given.setting == "at") entry.at = value.choice;
+    if (given.setting == "order" || given.setting == "at") declared.placed = true;
+    if (given.setting == "blend") entry.blend = value.choice;
+    if (given.setting == "opacity") declared.opacity = Animated{.fixed = value, .curve = {}, .function = {}};
     return {};
   }
   std::vector<std::string> names;
   for (const auto& setting : schema.settings) names.push_back(setting.name);
-  for (const char* key : {"at", "enabled", "order"}) names.emplace_back(key);
+  for (const char* key : kKeys) names.emplace_back(key);
   return Error{ErrorKind::usage,
                fmt::format("--set {}.{}: effect '{}' has no such setting", given.entry, given.setting, schema.name),
                "",

@@ -6,11 +6,14 @@
 
 #include "core/file_record.h"
 #include "core/text.h"
+#include "script/arguments.h"
+#include "script/composite.h"
 #include "script/build.h"
 #include "script/entry_run.h"
 #include "script/graph_binding.h"
 #include "script/hold_reader.h"
 #include "script/injection.h"
+#include "script/items.h"
 #include "script/native.h"
 #include "script/object.h"
 #include "script/overrides.h"
@@ -40,21 +43,13 @@ struct Preset::State {
   void note_needs(lua_State* lua, const StackEntry*& current);
   ImageRef build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
                        Diagnostics& diagnostics);
+  bool is_left_out(lua_State* lua, const EntryRun& run, GraphBuilder& graph, Diagnostics& diagnostics);
+  /// Those from `begin` to `end`, one behind the other; `current`: the one being built.
+  ImageRef build_entries(lua_State* lua, std::size_t begin, std::size_t end, GraphBuilder& graph, ImageRef image,
+                         const StackEntry*& current, Diagnostics& diagnostics);
 };
 
 namespace {
-
-std::ptrdiff_t point_index(const std::string& at) {
-  const auto& points = injection_points();
-  return std::find(points.begin(), points.end(), at) - points.begin();
-}
-
-void sort_entries(std::vector<DeclaredEntry>& entries) {
-  std::stable_sort(entries.begin(), entries.end(), [](const DeclaredEntry& a, const DeclaredEntry& b) {
-    const auto point_a = point_index(a.entry.at), point_b = point_index(b.entry.at);
-    return point_a != point_b ? point_a < point_b : a.entry.order < b.entry.order;
-  });
-}
 
 void warn_without_position(const Explanation& explanation, Diagnostics& diagnostics) {
   if (explanation.position) return;
@@ -64,6 +59,21 @@ void warn_without_position(const Explanation& explanation, Diagnostics& diagnost
                             fmt::format("volume '{}' and others like it do not count: no position is "
                                         "known (--at, position in the preset, worldToCamera in the file)",
                                         volume.name));
+}
+
+// What layers there are, where one is missing.
+std::string layers_text(const std::vector<std::string>& missing, const BuildContext& context) {
+  constexpr std::size_t kMost = 20;
+  for (const auto& name : missing) {
+    if (!name.starts_with(kLayerPrefix)) continue;
+    if (context.layers.empty()) return "; the picture has no named layers";
+    std::vector<std::string> known = context.layers;
+    const std::string nearest = nearest_name(name.substr(kLayerPrefix.size()), known);
+    if (known.size() > kMost) known.resize(kMost), known.emplace_back("…");
+    return fmt::format("; the picture has the layers {}{}", join(known),
+                       nearest.empty() ? "" : "; did you mean '" + nearest + "'?");
+  }
+  return {};
 }
 
 // Errors in an effect's own file say which entry ran it.
@@ -77,8 +87,10 @@ Error with_entry(Error error, const StackEntry* entry) {
 
 void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   open_graph_binding(lua);
+  runtime->given_arguments = options.arguments;
   DeclaredStack stack = load_stack(lua, file, options.text);
   runtime->declaring = false;
+  check_arguments(*runtime);
   shaders->search(runtime->path);
   Diagnostics* left_out = options.leave_out_unfit ? runtime->box->diagnostics : nullptr;
   if (auto applied = apply_overrides(stack.entries, options.overrides, runtime->effects, left_out); !applied)
@@ -91,7 +103,13 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
     for (std::size_t i = 0; i < schema.settings.size(); ++i)
       if (declared.sources[i].preset || declared.sources[i].overridden)
         declared.entry.changed.push_back(schema.settings[i].name);
-    runs.push_back({std::move(declared.entry), declared.effect, std::move(declared.sources)});
+    EntryRun run;
+    run.entry = std::move(declared.entry);
+    run.effect = declared.effect;
+    run.sources = std::move(declared.sources);
+    run.opacity = std::move(declared.opacity);
+    run.mask = make_mask_run(*runtime, declared.mask, run.entry);
+    runs.push_back(std::move(run));
   }
   surroundings = {std::move(stack.volumes), std::move(stack.position), options.at};
   std::stable_sort(surroundings.volumes.begin(), surroundings.volumes.end(),
@@ -124,6 +142,9 @@ void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
     if (!run.entry.enabled || (!changes && inactive_reason(lua, run))) continue;
     note(needed_inputs(lua, run));
     note(optional_inputs(lua, run));
+    std::vector<std::string> of_masks;
+    add_mask_inputs(lua, run, of_masks);
+    note(of_masks);
     // Other settings may ask for other inputs: what an effect asks for by a function cannot be known before.
     const Effect& effect = runtime->effects[static_cast<std::size_t>(run.effect)];
     if (changes && (effect.needs.function.set() || effect.optional.function.set())) note(auxiliary_inputs());
@@ -156,6 +177,7 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
 
 const std::string& Preset::name() const { return state_->name; }
 std::optional<double> Preset::max_error() const { return state_->max_error; }
+const std::vector<PresetArgument>& Preset::arguments() const { return state_->runtime->arguments; }
 bool Preset::may_change() const { return state_->may_change; }
 const std::vector<StackEntry>& Preset::entries() const { return *state_->loaded; }
 const Explanation& Preset::explanation() const { return *state_->loaded_so; }
@@ -182,35 +204,83 @@ std::size_t Preset::memory_used() const {
 ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
                                     Diagnostics& diagnostics) {
   const StackEntry& entry = run.entry;
-  if (!entry.enabled) {
-    graph.add_skipped(entry.name, "disabled");
-    return source;
-  }
+  if (is_left_out(lua, run, graph, diagnostics)) return source;
   if (auto reason = inactive_reason(lua, run)) {
     graph.add_skipped(entry.name, std::move(*reason));
     return source;
   }
-  std::vector<std::string> inputs = needed_inputs(lua, run), missing;
-  for (const auto& input : inputs)
-    if (!graph.context().auxiliary.contains(input)) missing.push_back(input);
-  if (!missing.empty()) {
-    const std::string reason = fmt::format("no {} input", join(missing, " and "));
-    if (entry.required)
-      throw ScriptError{{ErrorKind::script, fmt::format("effect '{}' is required, but there is {}", entry.name, reason),
-                         entry.file, entry.line}};
-    graph.add_skipped(entry.name, reason);
-    diagnostics.warn_once(fmt::format("{}:{}: {}", entry.file, entry.name, reason),
-                          fmt::format("effect '{}' is skipped: {}", entry.name, reason));
-    return source;
-  }
+  std::vector<std::string> inputs = needed_inputs(lua, run);
   for (auto& input : optional_inputs(lua, run)) inputs.push_back(std::move(input));
-  graph.begin(entry, std::move(inputs));
+  graph.begin(entry, std::move(inputs), runtime->effects[static_cast<std::size_t>(run.effect)].schema.straight);
   const ImageRef image = run_build(lua, run, graph, source);
   graph.end();
-  if (image.id == source.id)
+  if (image.id == source.id) {
     graph.add_skipped(entry.name, graph.skip_reason().value_or("returned its source"));
-  else if (const auto limit = idle_limit(lua, run, source))
-    graph.add_idle(source, image, *limit);
+    return image;
+  }
+  // What an idle effect makes is its source; that over the source is made all the same.
+  if (const auto limit = idle_limit(lua, run, source)) graph.add_idle(source, image, *limit);
+  const ImageRef seen = composite(lua, run, graph, source, image);
+  if (seen.id == source.id) graph.add_skipped(entry.name, "its mask selects nothing");
+  return seen;
+}
+
+/// Disabled, unseen, or without an input that it needs; said why.
+bool Preset::State::is_left_out(lua_State* lua, const EntryRun& run, GraphBuilder& graph, Diagnostics& diagnostics) {
+  const StackEntry& entry = run.entry;
+  if (!entry.enabled) {
+    graph.add_skipped(entry.name, "disabled");
+    return true;
+  }
+  if (auto reason = unseen_reason(lua, run)) {
+    graph.add_skipped(entry.name, std::move(*reason));
+    return true;
+  }
+  std::vector<std::string> inputs, missing;
+  if (!inactive_reason(lua, run)) inputs = needed_inputs(lua, run);
+  add_mask_inputs(lua, run, inputs);
+  for (const auto& input : inputs)
+    if (!graph.context().auxiliary.contains(input)) missing.push_back(input);
+  if (missing.empty()) return false;
+  const std::string reason = fmt::format("no {} input", join(missing, " and ")) + layers_text(missing, graph.context());
+  if (entry.required)
+    throw ScriptError{{ErrorKind::script, fmt::format("effect '{}' is required, but there is {}", entry.name, reason),
+                       entry.file, entry.line}};
+  graph.add_skipped(entry.name, reason);
+  diagnostics.warn_once(fmt::format("{}:{}: {}", entry.file, entry.name, reason),
+                        fmt::format("effect '{}' is skipped: {}", entry.name, reason));
+  return true;
+}
+
+ImageRef Preset::State::build_entries(lua_State* lua, std::size_t begin, std::size_t end, GraphBuilder& graph,
+                                      ImageRef image, const StackEntry*& current, Diagnostics& diagnostics) {
+  for (std::size_t i = begin; i < end;) {
+    const EntryRun& run = runs[i];
+    const StackEntry& entry = run.entry;
+    current = &entry;
+    const std::size_t first = i + 1, middle = first + static_cast<std::size_t>(entry.middle),
+                      last = first + static_cast<std::size_t>(entry.members);
+    i = last;
+    if (!runtime->effects[static_cast<std::size_t>(run.effect)].is_group()) {
+      image = build_entry(lua, run, graph, image, diagnostics);
+      continue;
+    }
+    if (is_left_out(lua, run, graph, diagnostics)) continue;
+    ImageRef made = image;
+    if (entry.settings.empty()) {
+      made = build_entries(lua, first, last, graph, image, current, diagnostics);
+    } else {
+      const ImageRef one = build_entries(lua, first, middle, graph, image, current, diagnostics);
+      const ImageRef other = build_entries(lua, middle, last, graph, image, current, diagnostics);
+      current = &entry;
+      made = mixed(run, graph, one, other, entry.settings.front().second.number[0]);
+    }
+    current = &entry;
+    if (made.id == image.id)
+      graph.add_skipped(entry.name, "nothing in it runs");
+    else
+      image = composite(lua, run, graph, image, made);
+  }
   return image;
 }
 
@@ -225,10 +295,7 @@ Result<Build> Preset::evaluate(const BuildContext& context, Diagnostics& diagnos
   auto error = box.run(state.file, [&](lua_State* lua) {
     if (state.may_change) state.resolve(lua, context);
     warn_without_position(*state.explanation, diagnostics);
-    for (const auto& run : state.runs) {
-      current = &run.entry;
-      image = state.build_entry(lua, run, graph, image, diagnostics);
-    }
+    image = state.build_entries(lua, 0, state.runs.size(), graph, image, current, diagnostics);
   });
   state.runtime->graph = nullptr;
   box.diagnostics = nullptr;

@@ -17,11 +17,12 @@
 #include "core/paths.h"
 #include "core/result.h"
 #include "graph/graph.h"
+#include "image/metadata.h"
 #include "shader/library.h"
 
 namespace afterglow {
 
-enum class SettingType { integer, number, boolean, enumeration, color, vec2, vec3, file };
+enum class SettingType { integer, number, boolean, enumeration, color, vec2, vec3, file, text };
 
 /// In the scene: x, y, z in its units.
 using Position = std::array<double, 3>;
@@ -32,7 +33,7 @@ struct SettingValue {
   std::array<double, 3>
       number{};  ///< integer and number in [0]; boolean as 0/1 in [0]; vec2 in [0..1]; colour, vec3 in [0..2]
   /// enumeration: the choice. file: its name, as `find_asset` takes it, or an absolute path when [0] of `number` is 1
-  /// (the command line's, which may name any file); empty: none.
+  /// (the command line's, which may name any file); empty: none. text: itself.
   std::string choice;
   friend bool operator==(const SettingValue&, const SettingValue&) = default;
   std::string text() const;  ///< as one would write it in Lua
@@ -63,13 +64,25 @@ struct HoldSchema {
 struct EffectSchema {
   std::string name, doc, at;
   int order = 0;
+  bool straight = false;                ///< its pixel shaders see straight colour: `alpha = "straight"`
   std::vector<SettingSchema> settings;  ///< in order of declaration
   std::vector<HoldSchema> holds;        ///< what it promises
   std::filesystem::path file;
   std::vector<std::filesystem::path> shadowed;  ///< files of the same name further down the search path
 };
 
-/// One effect of a stack, in its resolved place.
+/// Where an entry counts, and how much: a mask with the settings of the last build.
+struct EntryMask {
+  enum class Kind { named, number, add, subtract, multiply };
+  Kind kind = Kind::number;
+  double number = 0;
+  std::string name;  ///< of the mask's script: "luma"
+  std::vector<std::pair<std::string, SettingValue>> settings;
+  std::shared_ptr<const EntryMask> a, b;  ///< of operators
+  std::string text() const;               ///< "luma * (1 - radial)"
+};
+
+/// One effect of a stack, in its resolved place, or a group or mix of such.
 struct StackEntry {
   std::string name;  ///< unique in the stack: "glow"; a second one is "glow#2"
   std::string effect;
@@ -77,6 +90,12 @@ struct StackEntry {
   int order = 0;
   bool enabled = true;
   bool required = false;  ///< a missing auxiliary input is an error
+  double opacity = 1;     ///< of the frame
+  std::string blend = "normal";
+  std::shared_ptr<const EntryMask> mask;  ///< null: everywhere
+  int members = 0;  ///< of a group or mix: so many entries behind it belong to it, with those that belong to them
+  int middle = 0;   ///< of a mix: so many of them are its first look
+  int depth = 0;    ///< in how many groups it stands
   /// All of them, in the schema's order.
   std::vector<std::pair<std::string, SettingValue>> settings;
   std::vector<std::string> changed;  ///< names of those that the preset or an override set
@@ -91,6 +110,20 @@ struct Override {
 /// Errors: usage.
 Result<Override> parse_override(const std::string& text);
 
+/// An argument that a preset declares by fx.args, and its value.
+struct PresetArgument {
+  SettingSchema schema;
+  SettingValue value;
+  bool given = false;  ///< by --arg
+};
+
+/// `--arg strength=0.3`.
+struct ArgumentValue {
+  std::string name, value;
+};
+/// Errors: usage.
+Result<ArgumentValue> parse_argument(const std::string& text);
+
 struct ScriptLimits {
   std::size_t memory = 64u << 20;           ///< bytes
   std::uint64_t instructions = 50'000'000;  ///< per load or build
@@ -104,6 +137,7 @@ struct PresetOptions {
   std::vector<std::filesystem::path> paths;  ///< --path
   std::filesystem::path installation;        ///< empty: find_installation()
   std::vector<Override> overrides;
+  std::vector<ArgumentValue> arguments;  ///< --arg
   bool leave_out_unfit = false;          ///< overrides that do not fit the stack are warned about, and are no errors
   std::optional<Position> at;            ///< --at: where the picture is seen from, for volumes
   std::optional<std::string> text = {};  ///< of the preset, instead of what its file holds; the file need not exist
@@ -115,11 +149,13 @@ struct PresetOptions {
 /// What `evaluate` may ask about the picture.
 struct BuildContext {
   Size size;                              ///< of the source
-  std::map<std::string, Size> auxiliary;  ///< inputs that the picture has: "depth", "normal"
+  std::map<std::string, Size> auxiliary;  ///< inputs that the picture has: "depth", "normal", "layer:albedo"
   double frame = 1, time = 0, fps = 24;   ///< number in its sequence, seconds, pictures a second
   double step = 1;       ///< frames since the one before it, whose images its histories hold (graph/history.h)
   bool restart = false;  ///< no frame is before it: histories begin anew
-  std::optional<Position> position = {};  ///< of its camera, when the picture says it
+  std::optional<Position> position = {};          ///< of its camera, when the picture says it
+  std::vector<std::string> layers = {};           ///< names of all layers that it has, for messages
+  std::shared_ptr<const Metadata> metadata = {};  ///< of its file; null: unknown
   friend bool operator==(const BuildContext&, const BuildContext&) = default;
 };
 
@@ -141,6 +177,7 @@ class Preset {
   const std::vector<StackEntry>& entries() const;
   const Explanation& explanation() const;                       ///< the same for Build::explanation
   const EffectSchema& schema(const std::string& effect) const;  ///< of an effect that the stack uses
+  const std::vector<PresetArgument>& arguments() const;         ///< that scripts of the preset declare, in their order
   /// May settings differ from frame to frame or from place to place (curves, functions, volumes)?
   bool may_change() const;
   /// Names of auxiliary inputs that enabled, active effects ask for; where settings may change, those that they could

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "script/composite.h"
+
 namespace afterglow::script {
 namespace {
 
@@ -87,7 +89,7 @@ bool may_change(const EntryRun& run, const Surroundings& surroundings) {
     return std::any_of(volume.targets.begin(), volume.targets.end(),
                        [&](const auto& target) { return target.entry == run.entry.name; });
   };
-  return std::any_of(run.sources.begin(), run.sources.end(), moves) ||
+  return composition_moves(run) || std::any_of(run.sources.begin(), run.sources.end(), moves) ||
          std::any_of(surroundings.volumes.begin(), surroundings.volumes.end(), aimed_at);
 }
 
@@ -105,6 +107,7 @@ Explanation resolve_settings(lua_State* lua, std::vector<EntryRun>& runs, const 
     blend_in(lua, volume, out.volumes.back(), runs, context, out.entries);
   }
   for (std::size_t i = 0; i < runs.size(); ++i) {
+    settle_composition(lua, runs[i], context);
     auto& settings = runs[i].entry.settings;
     settings.clear();
     for (auto& history : out.entries[i].settings) {

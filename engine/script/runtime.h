@@ -41,6 +41,7 @@ struct Effect {
   std::vector<DeclaredHold> holds;  ///< parallel to the schema's
   FunctionRef active, build, idle;
   InputList needs, optional;
+  bool is_group() const { return !build.set(); }  ///< of fx.group and fx.mix: no script made it
 };
 
 /// What the preset and the command line say about one setting.
@@ -53,8 +54,25 @@ struct SettingSource {
 struct DeclaredEntry {
   int effect = 0;  ///< index in Runtime::effects
   std::optional<std::string> name;
-  StackEntry entry;                    ///< its settings are filled in when they are resolved
+  std::optional<Animated> opacity;
+  int mask = -1;        ///< index in Runtime::masks, or -1
+  bool placed = false;  ///< says itself where it stands; a group that does not stands where its first entry would
+  StackEntry entry;     ///< its settings are filled in when they are resolved
   std::vector<SettingSource> sources;  ///< parallel to the schema's settings
+};
+
+/// A mask as fx.mask.NAME{…} and operators made it.
+struct DeclaredMask {
+  EntryMask::Kind kind = EntryMask::Kind::number;
+  double number = 0;
+  int a = -1, b = -1;  ///< of operators: indices in Runtime::masks
+  DeclaredEntry named;
+};
+
+/// What fx.group{…} and fx.mix{…} made: an entry, and those that belong to it, in the preset's order.
+struct DeclaredGroup {
+  DeclaredEntry entry;
+  std::vector<DeclaredEntry> members;
 };
 
 struct DeclaredStack {
@@ -83,17 +101,24 @@ struct Runtime {
   std::set<std::string> loading;  ///< effects and modules that are being loaded: cycles
   std::vector<DeclaredSetting> settings;
   std::vector<DeclaredEntry> entries;
+  std::vector<DeclaredGroup> groups;
+  std::vector<DeclaredMask> masks;
   std::vector<DeclaredStack> stacks;
+  std::vector<PresetArgument> arguments;       ///< declared so far
+  std::vector<ArgumentValue> given_arguments;  ///< --arg
   std::vector<DeclaredCurve> curves;
   std::vector<DeclaredVolume> volumes;
   Assets assets;
-  std::size_t curve_keys = 0, wanted = 0;  ///< of all curves; settings of all volumes: limited
-  bool declaring = true;                   ///< false once the preset is loaded
-  GraphBuilder* graph = nullptr;           ///< while `build` runs
+  std::size_t curve_keys = 0, wanted = 0, group_members = 0;  ///< of all curves, volumes, groups: limited
+  bool declaring = true;                                      ///< false once the preset is loaded
+  GraphBuilder* graph = nullptr;                              ///< while `build` runs
 };
 
+/// What a file that declares by fx.effect is for, which is the folder that it lies in.
+enum class ScriptKind { effect, mask };
+
 /// Names a file of an effect that declares `name`; finds, loads and remembers it. Errors: throws ScriptError.
-int find_effect(lua_State* lua, const std::string& name);
+int find_effect(lua_State* lua, const std::string& name, ScriptKind kind = ScriptKind::effect);
 
 /// Runs a preset's file, or `text` in its place; the stack that it returns. Errors: throws ScriptError.
 DeclaredStack load_stack(lua_State* lua, const std::filesystem::path& file,
@@ -115,7 +140,7 @@ void push_library(lua_State* lua);
 /// Names that effects and modules may have: letters, digits and '_', not starting with a digit.
 bool is_identifier(const std::string& name);
 
-/// Every effect name on the search path, sorted, each once.
-std::vector<std::string> effect_names(const SearchPath& path);
+/// Every effect (or mask) name on the search path, sorted, each once.
+std::vector<std::string> effect_names(const SearchPath& path, ScriptKind kind = ScriptKind::effect);
 
 }  // namespace afterglow::script

@@ -30,6 +30,7 @@ std::string SettingValue::text() const {
       return number[0] != 0 ? "true" : "false";
     case SettingType::enumeration:
     case SettingType::file:
+    case SettingType::text:
       return '"' + choice + '"';
     case SettingType::color:
       return list_text(*this, 3);
@@ -45,6 +46,7 @@ namespace script {
 namespace {
 
 constexpr double kMaxInteger = 2147483647;
+constexpr std::size_t kMaxText = 1000;
 
 std::string range_text(const SettingSchema& schema) {
   if (schema.min && schema.max) return number_text(*schema.min) + "…" + number_text(*schema.max);
@@ -92,7 +94,8 @@ std::optional<std::string> hex_color(const SettingValue& color) {
 }
 
 const char* type_name(SettingType type) {
-  static constexpr const char* kNames[] = {"integer", "number", "boolean", "choice", "colour", "vec2", "vec3", "file"};
+  static constexpr const char* kNames[] = {"integer", "number", "boolean", "choice", "colour",
+                                           "vec2",    "vec3",   "file",    "text"};
   return kNames[static_cast<int>(type)];
 }
 
@@ -116,6 +119,8 @@ std::string allowed_text(const SettingSchema& schema) {
     case SettingType::file:
       return "\"\" for none, the name of a file beside the preset or on the search path: ." +
              join(schema.choices, ", .");
+    case SettingType::text:
+      return fmt::format("a text of at most {} bytes", kMaxText);
   }
   return {};
 }
@@ -154,6 +159,11 @@ Result<SettingValue> check_setting(const std::string& full_name, const SettingSc
           return value;
         }
       return fail("not a choice", nearest_name(given.text, schema.choices));
+    case SettingType::text:
+      if (given.kind != Kind::text) return fail("not a text");
+      if (given.text.size() > kMaxText) return fail("too long");
+      value.choice = given.text;
+      return value;
     case SettingType::file:
       if (given.kind != Kind::text) return fail("not the name of a file");
       value.choice = given.text;
@@ -194,6 +204,7 @@ void push_setting(lua_State* lua, const SettingValue& value) {
       return;
     case SettingType::enumeration:
     case SettingType::file:
+    case SettingType::text:
       lua_pushlstring(lua, value.choice.data(), value.choice.size());
       return;
     case SettingType::color:

@@ -22,6 +22,8 @@ const char* type_text(SettingType type) {
       return "vec3";
     case SettingType::file:
       return "file";
+    case SettingType::text:
+      return "text";
   }
   return "?";
 }
@@ -36,6 +38,7 @@ nlohmann::json value_json(const SettingValue& value) {
       return value.number[0] != 0;
     case SettingType::enumeration:
     case SettingType::file:
+    case SettingType::text:
       return value.choice;
     case SettingType::vec2:
       return {value.number[0], value.number[1]};

@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "script/entry_reader.h"
+#include "script/items.h"
 #include "script/object.h"
 #include "script/runtime.h"
 #include "script/table_reader.h"
@@ -41,27 +42,6 @@ int make_entry(lua_State* lua) {
   }
   push_object(lua, kEntryKind, Handle{static_cast<int>(runtime.entries.size()) - 1});
   return 1;
-}
-
-// The values without a name: effects and volumes, added to what the stack holds.
-void read_items(lua_State* lua, TableReader& table, DeclaredStack& stack) {
-  const Runtime& runtime = Runtime::of(lua);
-  for (const auto& key : table.keys()) {
-    if (key.position == 0) continue;
-    table.push(key);
-    const std::string place = fmt::format("{}: position {} is", table.what(), key.position);
-    const std::string allowed = "fx.NAME { … }, fx.volume { … }";
-    if (const Handle* entry = to_object<Handle>(lua, -1, kEntryKind))
-      stack.entries.push_back(runtime.entries[static_cast<std::size_t>(entry->index)]);
-    else if (const Handle* volume = to_object<Handle>(lua, -1, kVolumeKind))
-      stack.volumes.push_back(runtime.volumes[static_cast<std::size_t>(volume->index)]);
-    else if (lua_iscfunction(lua, -1))
-      table.fail(failure(place + " an effect without settings", {key.name}, allowed));
-    else
-      table.fail(failure(fmt::format("{} {}, not an effect or a volume", place, read_value(lua, -1).shown()),
-                         {key.name}, allowed));
-    lua_pop(lua, 1);
-  }
 }
 
 void read_position(lua_State* lua, TableReader& table, DeclaredStack& stack) {
@@ -109,7 +89,7 @@ void read_stack(lua_State* lua, TableReader& table, DeclaredStack& stack) {
     table.fail(failure(fmt::format("{}: max_error = {} is out of range", table.what(), number_text(*stack.max_error)),
                        {"max_error"}, "> 0"));
   read_position(lua, table, stack);
-  read_items(lua, table, stack);
+  read_items(lua, table, stack.entries, &stack.volumes);
   if (!table.failed()) name_entries(table, stack);
 }
 

@@ -251,7 +251,7 @@ void LiveBuilder::warm_up(Stack& stack, BuildTimes& times) {
   }
   const ProgramCache& programs = *stack.programs();
   if (programs.program())
-    (void)warm_up_->draw(stack.shaders(), options_.stack.shared->compiler, programs.work()->graph,
+    (void)warm_up_->draw(stack.shaders(), options_.stack.shared->compiler, programs.program()->graph(),
                          programs.program_options());
   times.warm_up = milliseconds_since(start);
 }

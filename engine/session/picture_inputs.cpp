@@ -1,5 +1,9 @@
 #include "session/picture_inputs.h"
 
+#include <fmt/format.h>
+
+#include "image/facts.h"
+
 namespace afterglow {
 namespace {
 
@@ -21,6 +25,8 @@ BuildContext context_of(const Picture& picture, const BuildContext& frame) {
   BuildContext context = frame;
   context.size = picture.color.size();
   context.auxiliary.clear();
+  context.layers = picture.layers;
+  if (picture.facts) context.metadata = {picture.facts, &picture.facts->metadata};
   for (const auto& [name, image] : picture.auxiliary) context.auxiliary[name] = image.size();
   return context;
 }

@@ -53,7 +53,8 @@ class Assembler {
     out_.file_names = {"", "lib/prelude.glsl"};
     AFTERGLOW_CHECK(head());
     if (watches()) row_ += "  float ag_light = 0.0;\n" + add_light("ag_color");
-    for (const auto& stage : kernel_.stages) AFTERGLOW_CHECK(add_stage(stage, ShaderKind::pixel));
+    keep(0);
+    for (std::size_t i = 0; i < kernel_.stages.size(); ++i) AFTERGLOW_CHECK(pixel_stage(i));
     if (out_.images.size() > kMaxImages) {
       Error error{ErrorKind::script, fmt::format("the joined passes read {} images", out_.images.size())};
       error.allowed = fmt::format("at most {}", kMaxImages);
@@ -92,6 +93,69 @@ class Assembler {
 
  private:
   bool watches() const { return kernel_.watch != Watch::none; }
+
+  /// The number of the colour that flows into a stage.
+  int color_of(std::size_t stage) const { return kernel_.stages[stage].color.value_or(static_cast<int>(stage)); }
+
+  /// Is this colour wanted by others than the stage right behind it?
+  bool is_kept(std::size_t value) const {
+    const auto is_it = [&](int other) { return other == static_cast<int>(value); };
+    for (std::size_t i = 0; i < kernel_.stages.size(); ++i) {
+      if (i != value && is_it(color_of(i))) return true;
+      for (const auto& [name, of_input] : kernel_.stages[i].values)
+        if (is_it(of_input)) return true;
+    }
+    return false;
+  }
+  void keep(std::size_t value) {
+    if (is_kept(value)) row_ += fmt::format("  vec4 ag_value{} = ag_color;\n", value);
+  }
+
+  /// A pixel stage, with division and multiplication by alpha around each run of those that want straight colour.
+  Result<void> pixel_stage(std::size_t i) {
+    const auto flows_on = [&](std::size_t at) {  // from the stage before it alone
+      return at < kernel_.stages.size() && color_of(at) == static_cast<int>(at) && !is_kept(at);
+    };
+    const auto straight = [&](std::size_t at) { return kernel_.stages[at].straight; };
+    const KernelStage& stage = kernel_.stages[i];
+    if (color_of(i) == kOwnImage) {
+      take_own_image(stage);
+    } else if (color_of(i) != static_cast<int>(i)) {
+      row_ += fmt::format("  ag_color = ag_value{};\n", color_of(i));
+    }
+    if (straight(i) && !(i > 0 && straight(i - 1) && flows_on(i))) divide();
+    AFTERGLOW_CHECK(add_stage(stage, ShaderKind::pixel));
+    if (straight(i) && !(i + 1 < kernel_.stages.size() && straight(i + 1) && flows_on(i + 1))) multiply();
+    keep(i + 1);
+    return {};
+  }
+
+  /// The colour of the next stage is an image's.
+  void take_own_image(const KernelStage& stage) {
+    row_ += fmt::format("  ag_color = {};\n", read_own_pixel(stage, "source"));
+  }
+
+  /// An image that is read at the target's pixel; the name of its colour in the row's function.
+  std::string read_own_pixel(const KernelStage& stage, const std::string& input) {
+    if (const auto again = stage.again.find(input); again != stage.again.end()) return own_reads_.at(again->second);
+    const std::string variable = fmt::format("ag_image{}", out_.images.size());
+    const ImageRead read = add_image(stage_count_, input, variable, true);
+    const std::string name = "ag_in" + std::to_string(out_.images.size());
+    own_reads_[{stage_count_, input}] = name;
+    if (watches()) row_ += add_light(name);
+    row_parameters_ += ", vec4 " + name;
+    row_arguments_ += ", " + texel(read, variable, "ag_pixel{0}");
+    return name;
+  }
+
+  /// From associated to straight colour. Held within finite numbers: no light is lost where alpha is tiny.
+  void divide() {
+    row_ += fmt::format(
+        "  float ag_alpha{0} = ag_color.a, ag_cover{0} = mix(1.0, ag_color.a, ag_color.a > 0.0);\n"
+        "  ag_color = vec4(clamp(ag_color.rgb / ag_cover{0}, -3.4028234e38, 3.4028234e38), ag_color.a);\n",
+        ++divisions_);
+  }
+  void multiply() { row_ += fmt::format("  ag_color = vec4(ag_color.rgb * ag_cover{0}, ag_alpha{0});\n", divisions_); }
 
   Result<void> head() {
     if (kernel_.sample) return add_stage(*kernel_.sample, ShaderKind::sample);
@@ -178,16 +242,15 @@ class Assembler {
     StorageReaders readers;
     std::string arguments = "ag_color";
     for (const auto& input : source.interface.inputs) {
-      const std::string variable =
-          input.pixelwise ? fmt::format("ag_image{}", out_.images.size()) : prefix + input.name;
-      const bool by_engine = input.pixelwise || read_by_prelude_alone(scanned.tokens, input.name);
-      const ImageRead read = add_image(stage_count_, input.name, variable, by_engine);
-      if (input.pixelwise) {
-        arguments += ", ag_in" + std::to_string(out_.images.size());
-        if (watches()) row_ += add_light("ag_in" + std::to_string(out_.images.size()));
-        row_parameters_ += ", vec4 ag_in" + std::to_string(out_.images.size());
-        row_arguments_ += ", " + texel(read, variable, "ag_pixel{0}");
-      } else if (read != ImageRead::sampled) {
+      if (const auto value = stage.values.find(input.name); value != stage.values.end()) {
+        arguments += fmt::format(", ag_value{}", value->second);
+      } else if (input.pixelwise) {
+        arguments += ", " + read_own_pixel(stage, input.name);
+      } else {
+        const std::string variable = prefix + input.name;
+        const ImageRead read =
+            add_image(stage_count_, input.name, variable, read_by_prelude_alone(scanned.tokens, input.name));
+        if (read == ImageRead::sampled) continue;
         const std::string reader = fmt::format("ag_r{}_", out_.images.size());
         readers_ += storage_reads(reader, variable);
         readers[input.name] = reader;
@@ -280,7 +343,8 @@ class Assembler {
   std::string row_, row_parameters_, row_arguments_;  ///< what is done to one row's colour
   std::string body_;                                  ///< of main()
   std::vector<Library> libraries_;
-  int stage_count_ = 0;
+  std::map<std::pair<int, std::string>, std::string> own_reads_;  ///< names of colours, by stage and input
+  int stage_count_ = 0, divisions_ = 0;
 };
 
 }  // namespace

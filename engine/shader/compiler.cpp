@@ -100,14 +100,20 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   if (desc.config.hide_uniforms) kernel.spirv = hide_uniforms(kernel.spirv);
   AFTERGLOW_TRY(const Reflection reflection, reflect(kernel.spirv));
   kernel.block_size = reflection.block_size;
+  // Of a block that no shader reads the compiler leaves nothing: there are no bytes to give.
+  const bool unread = reflection.members.empty();
   for (const auto& param : assembled.params) {
+    if (unread) {
+      kernel.offsets.push_back(KernelParam::kUnread);
+      continue;
+    }
     const auto member = reflection.members.find(fmt::format("ag_s{}_{}", param.stage, param.name));
     if (member == reflection.members.end() ||
         member->second.components != static_cast<std::uint32_t>(component_count(param.type)))
       return Error{ErrorKind::other, fmt::format("parameter '{}' is not in the compiled shader", param.name)};
     kernel.offsets.push_back(member->second.offset);
   }
-  if (reflection.members.size() != assembled.params.size())
+  if (!unread && reflection.members.size() != assembled.params.size())
     return Error{ErrorKind::other, "the compiled shader has other parameters than declared"};
   for (const auto binding : reflection.image_bindings)
     if (binding < 1 || binding > assembled.images.size())
@@ -145,6 +151,7 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   out.images = std::move(assembled.images);
   out.params = std::move(assembled.params);
   for (std::size_t i = 0; i < out.params.size(); ++i) out.params[i].offset = made->offsets[i];
+  std::erase_if(out.params, [](const KernelParam& param) { return param.offset == KernelParam::kUnread; });
   out.block_size = made->block_size;
   out.rows = desc.config.rows;
   out.target = desc.target;

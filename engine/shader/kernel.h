@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/filter.h"
@@ -18,11 +19,25 @@
 
 namespace afterglow {
 
+/// Colours inside a kernel have numbers: 0 is the head's, n what the n-th pixel stage made.
+inline constexpr int kOwnImage = -1;  ///< no such colour: it is read from an image, at the target's pixel
+
 /// One author's shader in a kernel with the values of its specialised parameters (by name; missing: the default).
 struct KernelStage {
   std::shared_ptr<const ShaderSource> shader;
   std::map<std::string, double> constants;
   std::string label;  ///< name of the pass, for messages and comments: "glow.threshold"
+  /// Its colour is divided by its alpha before and multiplied behind; of neighbours that want it, once around all. An
+  /// alpha that is not above 0 counts as 1. What such a stage returns as alpha does not count.
+  bool straight = false;
+  /// Of a pixel stage: the number of the colour that flows into `apply`, or kOwnImage. Nothing: that of the stage
+  /// before it.
+  std::optional<int> color = {};
+  /// Pixel-wise inputs that are colours of this kernel, by name; the others are images.
+  std::map<std::string, int> values = {};
+  /// Pixel-wise inputs ("source": the colour) whose image an earlier stage has read at the own pixel: that stage, as in
+  /// KernelParam::stage, and its input's name. They need no slot of their own.
+  std::map<std::string, std::pair<int, std::string>> again = {};
 };
 
 /// How source and target sizes of a filter head relate on an axis; the executor picks it from the sizes, the
@@ -71,7 +86,8 @@ struct KernelParam {
   int stage = 0;  ///< 0-based over [sample, stages…] (the sample stage, when there is one, is 0)
   std::string name;
   ParamType type = ParamType::float1;
-  std::uint32_t offset = 0;  ///< bytes, from SPIR-V reflection
+  std::uint32_t offset = 0;                      ///< bytes, from SPIR-V reflection
+  static constexpr std::uint32_t kUnread = ~0u;  ///< offset of one that the compiled shader does not have
 };
 
 /// GLSL ready for the compiler, with what the executor must bind.
@@ -83,7 +99,9 @@ struct KernelParam {
 struct AssembledKernel {
   std::string glsl;
   /// Image slots: the head's source (filter or own pixel) or the sample stage's sampler2D inputs in order of
-  /// declaration, then each pixel stage's pixel-wise and sampler2D inputs in order of declaration.
+  /// declaration, then of each pixel stage the image that is its colour (`kOwnImage`: "source") and its pixel-wise and
+  /// sampler2D inputs in order of declaration, without those that are colours of the kernel
+  /// or were read before.
   struct ImageSlot {
     int stage = -1;    ///< -1: the head's source; else as in KernelParam::stage
     std::string name;  ///< input name, or "source" for the head

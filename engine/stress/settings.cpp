@@ -96,7 +96,7 @@ std::vector<SettingValue> hard_values(const SettingSchema& setting) {
   const auto add = [&](const SettingValue& value) {
     if (!(value == setting.default_value) && std::ranges::find(out, value) == out.end()) out.push_back(value);
   };
-  if (setting.type == SettingType::file) return out;
+  if (setting.type == SettingType::file || setting.type == SettingType::text) return out;
   if (setting.type == SettingType::enumeration) {
     for (const auto& choice : setting.choices) add(with_choice(setting, choice));
     return out;
@@ -110,6 +110,7 @@ SettingValue random_value(const SettingSchema& setting, Random& random) {
     case SettingType::enumeration:
       return with_choice(setting, random.pick(setting.choices));
     case SettingType::file:
+    case SettingType::text:
       return setting.default_value;
     case SettingType::boolean:
       return with_number(setting, random.chance(0.5) ? 1 : 0);

@@ -142,7 +142,8 @@ std::optional<SettingValue> setting_widget(const Ui& ui, const char* name, const
     case SettingType::enumeration:
       changed = choice_row(name, schema, out.choice);
       break;
-    case SettingType::file: {
+    case SettingType::file:
+    case SettingType::text: {
       std::array<char, 512> text{};
       out.choice.copy(text.data(), text.size() - 1);
       changed = ImGui::InputText(name, text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue);

@@ -10,7 +10,7 @@ local encodings = { linear = 0, srgb = 1, acescct = 2 }
 return fx.effect {
   name = "lut",
   doc = "Colours by a look-up table from a file (.cube and others).",
-  at = "after_post_process", order = 100,
+  at = "after_post_process", order = 100, alpha = "straight",
   settings = {
     file = fx.file {
       extensions = { "cube", "3dl", "csp", "spi1d", "spi3d", "clf", "cub", "lut", "hdl", "itx", "m3d", "mga", "vf", "cc", "cdl" },

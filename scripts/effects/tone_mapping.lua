@@ -7,7 +7,7 @@ local function by_curve(aces, other) return function(s) return s.mode == "aces" 
 return fx.effect {
   name = "tone_mapping",
   doc = "Brings scene-linear light into display range.",
-  at = "post_process", order = 200,
+  at = "post_process", order = 200, alpha = "straight",
   settings = {
     mode = fx.enum { "none", "aces", "neutral", "reinhard", default = "aces",
       doc = "Curve. aces: filmic contrast, bright colours turn white. neutral: Hable's curve, white at 4, hues kept. reinhard: x/(1+x), soft and flat." },

@@ -152,5 +152,46 @@ TEST_F(Inspect, EffectsOfAPathAreListedToo) {
   EXPECT_THAT(outcome.out, ContainsRegex("halve +post_process +1 +Half the light\\."));
 }
 
+TEST_F(Inspect, NamesOfInputsAndFoldersAreChecked) {
+  const Outcome input = run({"check", "look.lua", "--without", "deepth"});
+  EXPECT_EQ(input.exit_code, kUsage);
+  EXPECT_THAT(input.err, HasSubstr("--without 'deepth': there is no such input; allowed: depth, normal, motion; did you "
+                                   "mean 'depth'?"));
+  const Outcome path = run({"check", "look.lua", "--path", "nope"});
+  EXPECT_EQ(path.exit_code, kUsage);
+  EXPECT_THAT(path.err, HasSubstr("--path 'nope': there is no such folder or zip"));
+  const Outcome preset = run({"check", "look"});
+  EXPECT_EQ(preset.exit_code, kScript);
+  EXPECT_THAT(preset.err, HasSubstr("did you mean 'look.lua'?"));
+}
+
+TEST_F(Inspect, ArgumentsAndCompositionAreShown) {
+  write("args.lua",
+        "local fx = require \"afterglow\"\n"
+        "local args = fx.args { strength = fx.float { min = 0, max = 1, default = 0.3, doc = \"How much.\" } }\n"
+        "return fx.stack { fx.group { opacity = args.strength, fx.bloom { mask = fx.mask.radial { } * 0.5 } } }\n");
+  const Outcome plain = run({"check", "args.lua"});
+  EXPECT_EQ(plain.exit_code, kDone) << plain.err;
+  EXPECT_THAT(plain.out, HasSubstr("opacity 0.3"));
+  EXPECT_THAT(plain.out, HasSubstr("mask radial * 0.5"));
+  EXPECT_THAT(plain.out, ContainsRegex("strength +0.3 +\\(default\\) +0 to 1 +How much"));
+  const json given = parsed({"check", "args.lua", "--arg", "strength=0.5", "--json"});
+  EXPECT_EQ(given["entries"][0]["opacity"], 0.5);
+  EXPECT_EQ(given["entries"][0]["members"], 1);
+  EXPECT_EQ(given["arguments"][0]["value"], 0.5);
+  EXPECT_EQ(given["arguments"][0]["given"], true);
+  const Outcome wrong = run({"run", "args.lua", "a.exr", "-o", "b.exr", "--arg", "strenght=1"});
+  EXPECT_EQ(wrong.exit_code, kUsage) << wrong.err;
+  EXPECT_THAT(wrong.err, HasSubstr("did you mean 'strength'?"));
+}
+
+TEST_F(Inspect, AGraphIsDrawnByLevels) {
+  const Outcome drawn = run({"graph", "look.lua", "--format", "svg"});
+  ASSERT_EQ(drawn.exit_code, kDone) << drawn.err;
+  const auto at = drawn.out.find("height=\"");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_LT(std::stoi(drawn.out.substr(at + 8)), 2000);  // a pyramid of 1920×1080 has nine levels
+}
+
 }  // namespace
 }  // namespace afterglow::test

@@ -48,6 +48,14 @@ TEST_F(New, ItsTestFindsMistakes) {
   EXPECT_THAT(with("tint *", "tnt *"), HasSubstr("FAILED: check finds an error"));
 }
 
+TEST_F(New, ItsTestHasLightAboveWhite) {
+  ASSERT_EQ(run({"new", "effect", "haze"}).exit_code, kDone);
+  write("shaders/haze/haze.glsl",
+        "uniform float strength;\nuniform vec3 tint;\n"
+        "vec4 apply(vec4 color) { return vec4(color.rgb - strength * tint * max(color.rgb - 2.0, 0.0), color.a); }\n");
+  EXPECT_EQ(own_test("haze"), 0) << read("test.log");
+}
+
 TEST_F(New, NeverOverwrites) {
   write("haze.lua", "mine");
   const Outcome outcome = run({"new", "effect", "haze"});

@@ -48,6 +48,7 @@ BuildContext context_of(const Scene& scene) {
   if (scene.depth) context.auxiliary["depth"] = scene.depth->size();
   if (scene.normal) context.auxiliary["normal"] = scene.normal->size();
   if (scene.motion) context.auxiliary["motion"] = scene.motion->size();
+  for (const auto& [name, image] : scene.layers) context.auxiliary["layer:" + name] = image.size();
   return context;
 }
 
@@ -91,6 +92,9 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
   std::vector<float> depth, normal, motion;
   if (scene.motion) inputs["motion"] = {(motion = floats(*scene.motion)).data(), scene.motion->size(), 4};
   if (scene.depth) inputs["depth"] = {(depth = floats(*scene.depth)).data(), scene.depth->size(), 4};
+  std::map<std::string, std::vector<float>> layers;
+  for (const auto& [name, image] : scene.layers)
+    inputs["layer:" + name] = {(layers[name] = floats(image)).data(), image.size(), 4};
   if (scene.normal) inputs["normal"] = {(normal = floats(*scene.normal)).data(), scene.normal->size(), 4};
   HostResult result;
   need(runner->run(*program, inputs, result, KernelTiming::none));

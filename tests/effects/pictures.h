@@ -2,6 +2,7 @@
 // start alike.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ struct Scene {
   std::optional<reference::DoubleImage> depth, normal;
   double frame = 1;                                   ///< number in a sequence
   std::optional<reference::DoubleImage> motion = {};  ///< .xy: pixels a frame, y down
+  std::map<std::string, reference::DoubleImage> layers = {};  ///< by name, without "layer:"
 };
 
 /// Every value rounded to a float.

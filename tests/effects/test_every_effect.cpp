@@ -57,6 +57,8 @@ std::string at_limit(const SettingSchema& setting, Side side) {
       return side == Side::low ? "false" : "true";
     case SettingType::enumeration:
       return fmt::format("\"{}\"", side == Side::low ? setting.choices.front() : setting.choices.back());
+    case SettingType::text:
+      return "\"\"";
     case SettingType::file:
       return fmt::format("\"{}\"", sample_file(setting));
   }

@@ -59,9 +59,10 @@ DoubleImage by_ocio(const DoubleImage& source, const std::filesystem::path& file
       OCIO::BIT_DEPTH_F32, OCIO::BIT_DEPTH_F32, OCIO::OPTIMIZATION_NONE);
   DoubleImage out = source;
   for (auto& p : out.pixels) {
-    float rgb[3] = {static_cast<float>(p.r), static_cast<float>(p.g), static_cast<float>(p.b)};
+    const Rgb straight = Rgb(p) / cover(p);
+    float rgb[3] = {static_cast<float>(straight.r), static_cast<float>(straight.g), static_cast<float>(straight.b)};
     cpu->applyRGB(rgb);
-    p = Rgba(glm::clamp(Rgb(rgb[0], rgb[1], rgb[2]), -1e30, 1e30), p.a);  // no effect returns more
+    p = Rgba(glm::clamp(Rgb(rgb[0], rgb[1], rgb[2]), -1e30, 1e30) * cover(p), p.a);  // no effect returns more
   }
   return out;
 }

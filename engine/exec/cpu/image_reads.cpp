@@ -36,7 +36,9 @@ std::vector<ImageRead> storage_reads_of(const Graph& graph, const PlanKernel& ke
     add(-1, "source");
   int stage = 0;
   const auto add_inputs = [&](const KernelStage& of) {
-    for (const auto& input : of.shader->interface.inputs) add(stage, input.name);
+    if (of.color == kOwnImage && !of.again.contains("source")) add(stage, "source");
+    for (const auto& input : of.shader->interface.inputs)
+      if (!of.values.contains(input.name) && !of.again.contains(input.name)) add(stage, input.name);
     ++stage;
   };
   if (desc.sample) add_inputs(*desc.sample);

@@ -11,20 +11,29 @@ fail() {
   exit 1
 }
 
-# run NAME OPTIONS…: the example on the test picture, as $work/NAME.png
+# run NAME OPTIONS…: the example on the test picture, as $work/NAME.exr
 run() {
   name=$1
   shift
-  "$program" run "$preset" "$work/in.ppm" -o "$work/$name.png" -q "$@" || fail "it does not run: $*"
+  "$program" run "$preset" "$work/in.pfm" -o "$work/$name.exr" -q "$@" || fail "it does not run: $*"
 }
 
-same() { cmp -s "$work/$1.png" "$work/$2.png"; }
+same() { cmp -s "$work/$1.exr" "$work/$2.exr"; }
 
-# Four by four pixels, from dark to bright.
+# Four by four pixels of linear light, from black to 16 times white, as 32-bit floats.
 {
-  echo P3 4 4 255
-  for value in 0 1 16 32 48 64 80 96 112 128 144 160 192 224 254 255; do echo "$value 64 $((255 - value))"; done
-} >"$work/in.ppm"
+  printf 'PF\n4 4\n-1.0\n'
+  for red in 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15; do
+    for value in $red 5 $((15 - red)); do
+      case $value in # 2^(value - 11), but for 0
+        0) printf '\000\000\000\000' ;; 1) printf '\000\000\200\072' ;; 2) printf '\000\000\000\073' ;; 3) printf '\000\000\200\073' ;;
+        4) printf '\000\000\000\074' ;; 5) printf '\000\000\200\074' ;; 6) printf '\000\000\000\075' ;; 7) printf '\000\000\200\075' ;;
+        8) printf '\000\000\000\076' ;; 9) printf '\000\000\200\076' ;; 10) printf '\000\000\000\077' ;; 11) printf '\000\000\200\077' ;;
+        12) printf '\000\000\000\100' ;; 13) printf '\000\000\200\100' ;; 14) printf '\000\000\000\101' ;; *) printf '\000\000\200\101' ;;
+      esac
+    done
+  done
+} >"$work/in.pfm"
 
 "$program" check "$preset" >/dev/null || fail "check finds an error"
 run off --set my_effect.enabled=false

@@ -53,5 +53,27 @@ TEST(Brightest, OfSeveralRowsIsTheLargest) {
   EXPECT_EQ(out.value(Storage::fp32), 0.8f);
 }
 
+TEST(Brightest, KnowsWhetherEveryAlphaIsOne) {
+  const auto opaque = [](const std::vector<float>& row, int channels) {
+    Brightest out;
+    out.add_row(row.data(), channels, static_cast<int>(row.size()) / channels);
+    return out.opaque();
+  };
+  for (int width = 1; width < 20; ++width) {
+    std::vector<float> row(static_cast<std::size_t>(width) * 4, 1.0f);
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (i % 4 != 3) row[i] = 3.5f;
+    EXPECT_TRUE(opaque(row, 4)) << width;
+    for (const float value : {0.0f, 0.5f, std::nextafter(1.0f, 0.0f), std::nextafter(1.0f, 2.0f), -1.0f, std::nanf("")})
+      for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
+        std::vector<float> other = row;
+        other[4 * x + 3] = value;
+        EXPECT_FALSE(opaque(other, 4)) << width << " " << x << " " << value;
+      }
+  }
+  EXPECT_TRUE(opaque({0.1f, 0.7f, 0.2f, 0.3f, 0.4f, 0.5f}, 3));
+  EXPECT_FALSE(opaque({0.1f, 0.2f, 0.3f, 1, 9, 0.4f, 0.5f, 0.6f, 0.9f, 9}, 5));
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -131,5 +131,18 @@ TEST(Condition, WhatCannotBeIsRefused) {
   EXPECT_EQ(refused({"", 0, g.add, 1}), "");
 }
 
+TEST(Condition, OpaqueSourcesNeedNoDivision) {
+  Glow g;
+  for (auto& pass : g.b.graph.passes) pass.straight = pass.kind == PassKind::pixel;
+  EXPECT_EQ(straight_passes(g.b.graph), 2);
+  const Graph out = without_division(g.b.graph);
+  EXPECT_EQ(straight_passes(out), 0);
+  EXPECT_EQ(out.passes.size(), g.b.graph.passes.size());
+  ASSERT_EQ(out.skipped.size(), 1u);
+  EXPECT_EQ(out.skipped[0].name, "division by alpha in 2 passes");
+  EXPECT_FALSE(same_structure(out, g.b.graph));
+  EXPECT_TRUE(without_division(out).skipped.size() == 1);  // nothing more to leave out
+}
+
 }  // namespace
 }  // namespace afterglow

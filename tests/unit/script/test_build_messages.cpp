@@ -152,7 +152,7 @@ TEST_F(BuildMessages, TheGraphAndImages) {
   EXPECT_EQ(error("g.pass { shader = \"plain\" }"),
             "effects/probe.lua:4: error: the first argument is a table, not the graph; allowed: g:pass { … }");
   EXPECT_EQ(error("g:pas {}"),
-            "effects/probe.lua:4: error: the graph has no \"pas\"; allowed: filter, fps, frame, "
+            "effects/probe.lua:4: error: the graph has no \"pas\"; allowed: cryptomatte, filter, fps, frame, "
             "frame_time, history, image, input, keep, lookup, pass, skip, time; did you mean 'pass'?");
   EXPECT_EQ(error("local w = source.widht"),
             "effects/probe.lua:4: error: an image has no \"widht\"; allowed: width, height; did you mean 'width'?");

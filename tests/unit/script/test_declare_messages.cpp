@@ -19,10 +19,11 @@ std::string declared(const std::string& body) {
 std::string setting(const std::string& type) { return declared("  settings = {\n    amount = " + type + ",\n  },"); }
 
 TEST(DeclareMessages, Effects) {
-  EXPECT_EQ(declared("  odrer = 3,"),
-            "effects/glow.lua:3: error: fx.effect has no 'odrer'; allowed: active, at, build, doc, holds, idle, name, "
-            "needs, optional, order, "
-            "settings; did you mean 'order'?");
+  EXPECT_EQ(
+      declared("  odrer = 3,"),
+      "effects/glow.lua:3: error: fx.effect has no 'odrer'; allowed: active, alpha, at, build, doc, holds, idle, name, "
+      "needs, optional, order, "
+      "settings; did you mean 'order'?");
   EXPECT_EQ(declared("\n  at = \"post\","),
             "effects/glow.lua:4: error: fx.effect: unknown injection point 'post'; allowed: after_opaque_and_sky, "
             "before_post_process, post_process, after_post_process");
@@ -32,17 +33,18 @@ TEST(DeclareMessages, Effects) {
   EXPECT_EQ(declared("  active = true,"), "effects/glow.lua:3: error: fx.effect: active = true is not a function");
   EXPECT_EQ(declared("  settings = 4,"), "effects/glow.lua:3: error: fx.effect: settings = 4 is not a table");
   EXPECT_EQ(declared("  needs = {\n   \"dept\" },"),
-            "effects/glow.lua:4: error: fx.effect: needs: unknown input 'dept'; allowed: depth, normal, motion; did "
+            "effects/glow.lua:4: error: fx.effect: needs: unknown input 'dept'; allowed: depth, normal, motion, "
+            "layer:NAME; did "
             "you mean 'depth'?");
   EXPECT_EQ(declared("  optional = { 1 },"),
             "effects/glow.lua:3: error: fx.effect: optional holds 1, not the name of an input; allowed: depth, normal, "
             "motion");
   EXPECT_EQ(declared("  needs = \"depth\","),
             "effects/glow.lua:3: error: fx.effect: needs = \"depth\" is not a list of inputs; allowed: { \"depth\" }");
-  EXPECT_EQ(
-      declared("  7,"),
-      "effects/glow.lua:3: error: fx.effect has a value without a name at position 1; allowed: active, at, build, doc, "
-      "holds, idle, name, needs, optional, order, settings");
+  EXPECT_EQ(declared("  7,"),
+            "effects/glow.lua:3: error: fx.effect has a value without a name at position 1; allowed: active, alpha, "
+            "at, build, doc, "
+            "holds, idle, name, needs, optional, order, settings");
 }
 
 TEST(DeclareMessages, EffectFiles) {
@@ -70,7 +72,7 @@ TEST(DeclareMessages, Settings) {
   EXPECT_EQ(setting("5"),
             "effects/glow.lua:4: error: fx.effect: setting 'amount' = 5 is not a setting type; allowed: fx.int, "
             "fx.float, fx.bool, "
-            "fx.enum, fx.color, fx.vec2, fx.vec3, fx.file");
+            "fx.enum, fx.color, fx.vec2, fx.vec3, fx.file, fx.text");
   EXPECT_EQ(
       setting("fx.float {\n mim = 0, default = 0 }"),
       "effects/glow.lua:5: error: fx.float has no 'mim'; allowed: default, doc, max, min, unit; did you mean 'min'?");
@@ -109,7 +111,8 @@ TEST(DeclareMessages, FunctionsOfSettings) {
             "effects/glow.lua:4: error: active of effect 'glow' returned nil, not true or false\n  in effect 'glow' of "
             "preset.lua:3");
   EXPECT_EQ(declared("\n  needs = function(s) return { \"sky\" } end,"),
-            "effects/glow.lua:4: error: needs of effect 'glow': unknown input 'sky'; allowed: depth, normal, motion\n"
+            "effects/glow.lua:4: error: needs of effect 'glow': unknown input 'sky'; allowed: depth, normal, motion, "
+            "layer:NAME\n"
             "  in effect 'glow' of preset.lua:3");
   EXPECT_EQ(declared("  active = function(s)\n    s.x = 1\n  end,"),
             "effects/glow.lua:4: error: this table is read-only\n  in effect 'glow' of preset.lua:3");

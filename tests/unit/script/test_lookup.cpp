@@ -134,7 +134,7 @@ TEST(ListEffects, AllOfThePathByName) {
   EXPECT_THAT(names, testing::Not(testing::Contains("broken")));
   EXPECT_THAT(scene.warnings,
               ElementsAre("effect 'broken' is left out: effects/broken.lua:3: error: fx.effect has no "
-                          "'odrer'; allowed: active, at, build, "
+                          "'odrer'; allowed: active, alpha, at, build, "
                           "doc, holds, idle, name, needs, optional, order, settings; did you mean 'order'?"));
 }
 
@@ -147,9 +147,8 @@ TEST(ListEffects, NamesOfTheLibraryAreReserved) {
     print(table.concat(names, " "))
     return fx.stack {})");
   ASSERT_EQ(scene.load_error(), "");
-  EXPECT_THAT(
-      scene.notes,
-      ElementsAre("preset.lua:4: bool color curve effect enum extend file filters float int stack vec2 vec3 volume"));
+  EXPECT_THAT(scene.notes, ElementsAre("preset.lua:4: args bool color curve effect enum extend file filters float "
+                                       "group int mask mix stack text vec2 vec3 volume"));
 }
 
 // Every effect of the installation, as the design's table has it, can be listed without a complaint.

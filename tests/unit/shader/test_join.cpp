@@ -271,5 +271,64 @@ TEST_F(Join, ConstantsThatDoNotFitAreRefused) {
   EXPECT_THAT(outcome(join({stage})), HasSubstr("a.glsl:2: error: constant 'n' cannot be"));
 }
 
+std::size_t count_of(const std::string& text, const std::string& what) {
+  std::size_t count = 0;
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+  return count;
+}
+
+TEST_F(Join, NeighboursThatWantStraightColourDivideOnce) {
+  const auto plain = files_.stage("a/plain", "vec4 apply(vec4 c) { return c * 2.0; }\n");
+  auto straight = files_.stage("a/curve", "vec4 apply(vec4 c) { return sqrt(c); }\n");
+  straight.straight = true;
+  const auto divisions = [&](std::vector<KernelStage> stages) {
+    const auto text = assembled(join(stages));
+    EXPECT_EQ(outcome(join(stages)), "ok");
+    EXPECT_EQ(count_of(text, "/ ag_cover"), count_of(text, "* ag_cover"));
+    return count_of(text, "/ ag_cover");
+  };
+  EXPECT_EQ(divisions({plain, plain}), 0u);
+  EXPECT_EQ(divisions({straight}), 1u);
+  EXPECT_EQ(divisions({plain, straight, straight, straight, plain}), 1u);
+  EXPECT_EQ(divisions({straight, plain, straight, straight}), 2u);
+}
+
+TEST_F(Join, StagesTakeColoursOfEarlierOnes) {
+  auto effect = files_.stage("a/effect", "vec4 apply(vec4 c) { return c * 2.0; }\n");
+  auto mask = files_.stage("a/mask", "vec4 apply(vec4 c) { return c.rrrr; }\n");
+  auto blend = files_.stage("a/blend", "vec4 apply(vec4 c, vec4 below, vec4 mask) { return mix(below, c, mask); }\n");
+  effect.straight = true;
+  mask.color = 0;  // of the head, not of the effect
+  blend.color = 1;
+  blend.values = {{"below", 0}, {"mask", 2}};
+  const KernelDesc kernel = join({effect, mask, blend});
+  EXPECT_EQ(outcome(kernel), "ok");
+  const auto made = assemble(kernel);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->images.size(), 1u);  // the head's
+  EXPECT_THAT(made->glsl, HasSubstr("ag_color = ag_s2_apply(ag_color, ag_value0, ag_value2);"));
+  EXPECT_EQ(count_of(made->glsl, "/ ag_cover"), 1u);
+
+  // Two stages that read one image at their pixel read it once.
+  mask.color = kOwnImage;
+  blend.values.erase("below");
+  blend.again["below"] = {1, "source"};
+  const auto shared = assemble(join({effect, mask, blend}));
+  ASSERT_TRUE(shared);
+  ASSERT_EQ(shared->images.size(), 2u);
+  EXPECT_EQ(shared->images[1].stage, 1);
+  EXPECT_EQ(shared->images[1].name, "source");
+  EXPECT_EQ(outcome(join({effect, mask, blend})), "ok");
+}
+
+TEST_F(Join, UniformsThatNobodyReadsTakeNoBytes) {
+  KernelCompiler compiler{std::filesystem::path()};
+  const auto made = compiler.compile(
+      join({files_.stage("a/unread", "uniform float k;\nuniform vec3 other;\nvec4 apply(vec4 c) { return c; }\n")}));
+  ASSERT_TRUE(made) << made.error().text();
+  EXPECT_TRUE(made->params.empty());
+  EXPECT_EQ(made->block_size, 0u);
+}
+
 }  // namespace
 }  // namespace afterglow

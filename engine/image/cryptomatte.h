@@ -1,0 +1,34 @@
+// Cryptomatte (Psyop's specification 1.2.0): which objects, materials or assets cover a pixel, and by how much. Pure
+// data.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+#include "image/metadata.h"
+
+namespace afterglow {
+
+/// The id of a name, as its bits stand in a 32-bit float: MurmurHash3 (x86, 32 bits), with exponents that are neither 0
+/// nor 255, so that it is an ordinary number.
+std::uint32_t cryptomatte_id(std::string_view name);
+
+/// One cryptomatte of a file, as its header says.
+struct Cryptomatte {
+  std::string layer;                              ///< "ViewLayer.CryptoObject"
+  std::map<std::string, std::uint32_t> manifest;  ///< ids by name; empty: the file has none in its header
+};
+
+/// The one whose layer is called so or ends so ("CryptoObject"); nothing: there is none. Errors: io (its manifest is no
+/// JSON of names and ids).
+Result<std::optional<Cryptomatte>> find_cryptomatte(const Metadata& metadata, const std::string& layer);
+
+/// The layers of all cryptomattes that the header names.
+std::vector<std::string> cryptomatte_layers(const Metadata& metadata);
+
+}  // namespace afterglow

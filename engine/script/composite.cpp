@@ -1,0 +1,253 @@
+#include "script/composite.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <variant>
+
+#include "script/injection.h"
+#include "script/overrides.h"
+
+namespace afterglow {
+
+std::string EntryMask::text() const {
+  const auto part = [](const EntryMask& mask) {
+    const bool simple = mask.kind == Kind::named || mask.kind == Kind::number;
+    return simple ? mask.text() : "(" + mask.text() + ")";
+  };
+  switch (kind) {
+    case Kind::named:
+      return name;
+    case Kind::number:
+      return fmt::format("{:.6g}", number);
+    case Kind::add:
+      return part(*a) + " + " + part(*b);
+    case Kind::subtract:
+      return part(*a) + " - " + part(*b);
+    case Kind::multiply:
+      return part(*a) + " * " + part(*b);
+  }
+  return {};
+}
+
+namespace script {
+namespace {
+
+using Kind = EntryMask::Kind;
+using Part = std::variant<double, ImageRef>;  ///< of a mask: the same everywhere, or an image
+
+double clamped(double value) { return std::clamp(value, 0.0, 1.0); }
+
+double combined(Kind kind, double a, double b) {
+  return clamped(kind == Kind::add ? a + b : kind == Kind::subtract ? a - b : a * b);
+}
+
+void settle(lua_State* lua, MaskRun& mask, const BuildContext& context) {
+  if (mask.a) settle(lua, *mask.a, context), settle(lua, *mask.b, context);
+  if (!mask.named) return;
+  EntryRun& run = *mask.named;
+  const EffectSchema& schema = Runtime::of(lua).effects[static_cast<std::size_t>(run.effect)].schema;
+  std::vector<std::pair<std::string, SettingValue>> settings;
+  for (std::size_t i = 0; i < schema.settings.size(); ++i) {
+    const SettingSchema& setting = schema.settings[i];
+    const auto& given = run.sources[i].preset;
+    settings.emplace_back(setting.name, given
+                                            ? evaluate(lua, *given, schema.name + "." + setting.name, setting, context)
+                                            : setting.default_value);
+  }
+  if (run.settings_ref != LUA_NOREF && run.entry.settings == settings) return;
+  run.entry.settings = std::move(settings);
+  make_settings(lua, run);
+}
+
+bool moves(const MaskRun& mask) {
+  if (mask.a) return moves(*mask.a) || moves(*mask.b);
+  return mask.named && std::ranges::any_of(mask.named->sources, [](const SettingSource& source) {
+           return source.preset && source.preset->moves();
+         });
+}
+
+std::shared_ptr<const EntryMask> shown(const MaskRun& mask) {
+  auto out = std::make_shared<EntryMask>();
+  out->kind = mask.kind;
+  out->number = mask.number;
+  if (mask.named) out->name = mask.named->entry.effect, out->settings = mask.named->entry.settings;
+  if (mask.a) out->a = shown(*mask.a), out->b = shown(*mask.b);
+  return out;
+}
+
+/// What the mask is everywhere, if that is known; `reason`: why a part of it selects nothing.
+std::optional<double> constant(lua_State* lua, const MaskRun& mask, std::string& reason) {
+  if (mask.kind == Kind::number) return clamped(mask.number);
+  if (mask.named) {
+    auto why = inactive_reason(lua, *mask.named);
+    if (!why) return {};
+    reason = fmt::format("{}: {}", mask.named->entry.effect, *why);
+    return 0;
+  }
+  const auto a = constant(lua, *mask.a, reason), b = constant(lua, *mask.b, reason);
+  if (a && b)
+    return combined(mask.kind, mask.a->kind == Kind::number ? mask.a->number : *a,
+                    mask.b->kind == Kind::number ? mask.b->number : *b);
+  const bool zero_a = a && *a <= 0, zero_b = b && *b <= 0;
+  if ((mask.kind == Kind::multiply && (zero_a || zero_b)) || (mask.kind == Kind::subtract && zero_a)) return 0;
+  return {};
+}
+
+void add_inputs(lua_State* lua, const MaskRun& mask, std::vector<std::string>& names) {
+  if (mask.a) add_inputs(lua, *mask.a, names), add_inputs(lua, *mask.b, names);
+  if (!mask.named || inactive_reason(lua, *mask.named)) return;
+  for (auto& name : needed_inputs(lua, *mask.named))
+    if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
+}
+
+Argument image_argument(std::string name, const ImageRef& image) { return {std::move(name), image, {}}; }
+Argument number_argument(std::string name, double number) {
+  Argument out{std::move(name), {}, {}};
+  out.value.kind = Value::Kind::number;
+  out.value.number = number;
+  return out;
+}
+
+class MaskBuilder {
+ public:
+  MaskBuilder(lua_State* lua, GraphBuilder& graph, const EntryRun& owner, const ImageRef& source)
+      : lua_(lua), graph_(graph), owner_(owner), source_(source) {}
+
+  Part part(const MaskRun& mask) {
+    if (mask.kind == Kind::number) return mask.number;
+    if (mask.named) return named(*mask.named);
+    const Part a = part(*mask.a), b = part(*mask.b);
+    const double *first = std::get_if<double>(&a), *second = std::get_if<double>(&b);
+    if (first && second) return combined(mask.kind, *first, *second);
+    if (!first && !second) return joined(mask.kind, std::get<ImageRef>(a), std::get<ImageRef>(b));
+    const ImageRef& image = std::get<ImageRef>(first ? b : a);
+    const double number = first ? *first : *second;
+    switch (mask.kind) {
+      case Kind::multiply:
+        return scaled(image, number, 0);
+      case Kind::subtract:
+        return first ? scaled(image, -1, number) : scaled(image, 1, -number);
+      default:
+        return scaled(image, 1, number);
+    }
+  }
+
+ private:
+  Part named(const EntryRun& run) {
+    if (inactive_reason(lua_, run)) return 0.0;
+    std::vector<std::string> inputs = needed_inputs(lua_, run);
+    for (auto& input : optional_inputs(lua_, run)) inputs.push_back(std::move(input));
+    const bool straight = Runtime::of(lua_).effects[static_cast<std::size_t>(run.effect)].schema.straight;
+    graph_.begin(run.entry, std::move(inputs), straight, "mask.");
+    const ImageRef image = run_build(lua_, run, graph_, source_);
+    graph_.end();
+    if (image.id == source_.id) return 0.0;  // g:skip
+    return image;
+  }
+
+  ImageRef joined(Kind kind, const ImageRef& a, const ImageRef& b) {
+    const char* name = kind == Kind::add ? "add" : kind == Kind::subtract ? "subtract" : "multiply";
+    return pass(name, {image_argument("source", a), image_argument("other", b)});
+  }
+  Part scaled(const ImageRef& image, double factor, double offset) {
+    return pass("scale", {image_argument("source", image), number_argument("factor", factor),
+                          number_argument("offset", offset)});
+  }
+  ImageRef pass(const std::string& what, std::vector<Argument> arguments) {
+    graph_.begin(owner_.entry, {}, false, "mask.");
+    PassRequest request;
+    request.name = what;
+    request.shader = "composite/mask_" + what;
+    request.arguments = std::move(arguments);
+    return graph_.pass(request, {owner_.entry.file, owner_.entry.line});
+  }
+
+  lua_State* lua_;
+  GraphBuilder& graph_;
+  const EntryRun& owner_;
+  const ImageRef& source_;
+};
+
+ImageRef blended(const EntryRun& run, GraphBuilder& graph, const ImageRef& below, const ImageRef& image, double opacity,
+                 const std::string& blend, const std::optional<ImageRef>& mask, const char* name) {
+  graph.begin(run.entry, {});
+  PassRequest request;
+  request.name = name;
+  request.shader = mask ? "composite/blend_masked" : "composite/blend";
+  const auto mode = std::ranges::find(blend_modes(), blend) - blend_modes().begin();
+  request.arguments = {image_argument("source", image), image_argument("below", below),
+                       number_argument("opacity", opacity), number_argument("mode", static_cast<double>(mode))};
+  if (mask) request.arguments.push_back(image_argument("mask", *mask));
+  return graph.pass(request, {run.entry.file, run.entry.line});
+}
+
+}  // namespace
+
+std::shared_ptr<MaskRun> make_mask_run(const Runtime& runtime, int mask, const StackEntry& owner) {
+  if (mask < 0) return nullptr;
+  const DeclaredMask& declared = runtime.masks[static_cast<std::size_t>(mask)];
+  auto out = std::make_shared<MaskRun>();
+  out->kind = declared.kind;
+  out->number = declared.number;
+  out->a = make_mask_run(runtime, declared.a, owner);
+  out->b = make_mask_run(runtime, declared.b, owner);
+  if (declared.kind == Kind::named) {
+    out->named = std::make_shared<EntryRun>();
+    out->named->entry = declared.named.entry;
+    out->named->entry.name = owner.name;
+    out->named->effect = declared.named.effect;
+    out->named->sources = declared.named.sources;
+  }
+  return out;
+}
+
+void settle_composition(lua_State* lua, EntryRun& run, const BuildContext& context) {
+  if (run.opacity)
+    run.entry.opacity =
+        evaluate(lua, *run.opacity, run.entry.name + ".opacity", entry_key_schema("opacity"), context).number[0];
+  if (!run.mask) return;
+  settle(lua, *run.mask, context);
+  run.entry.mask = shown(*run.mask);
+}
+
+bool composition_moves(const EntryRun& run) {
+  return (run.opacity && run.opacity->moves()) || (run.mask && moves(*run.mask));
+}
+
+std::optional<std::string> unseen_reason(lua_State* lua, const EntryRun& run) {
+  if (run.entry.opacity <= 0) return "opacity is 0";
+  std::string reason;
+  const auto everywhere = run.mask ? constant(lua, *run.mask, reason) : std::nullopt;
+  if (!everywhere || *everywhere > 0) return {};
+  return reason.empty() ? "its mask selects nothing" : "its mask selects nothing: " + reason;
+}
+
+void add_mask_inputs(lua_State* lua, const EntryRun& run, std::vector<std::string>& names) {
+  if (run.mask) add_inputs(lua, *run.mask, names);
+}
+
+ImageRef composite(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
+                   const ImageRef& image) {
+  double opacity = run.entry.opacity;
+  std::optional<ImageRef> mask;
+  if (run.mask) {
+    const Part part = MaskBuilder(lua, graph, run, source).part(*run.mask);
+    if (const double* number = std::get_if<double>(&part))
+      opacity *= clamped(*number);
+    else
+      mask = std::get<ImageRef>(part);
+  }
+  if (opacity <= 0) return source;
+  if (!mask && opacity >= 1 && run.entry.blend == "normal") return image;
+  return blended(run, graph, source, image, opacity, run.entry.blend, mask, "blend");
+}
+
+ImageRef mixed(const EntryRun& run, GraphBuilder& graph, const ImageRef& first, const ImageRef& second, double amount) {
+  if (amount <= 0 || first.id == second.id) return first;
+  if (amount >= 1) return second;
+  return blended(run, graph, first, second, amount, "normal", {}, "mix");
+}
+
+}  // namespace script
+}  // namespace afterglow

@@ -1,0 +1,35 @@
+// How much of an entry's result counts and where: opacity, blend modes and masks (math.md §20), as passes behind those
+// of its effect. Pixel passes, so that they run in the entry's last kernel.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "script/entry_run.h"
+
+namespace afterglow::script {
+
+/// All throw ScriptError.
+
+/// A mask of Runtime::masks, for the entry that it masks.
+std::shared_ptr<MaskRun> make_mask_run(const Runtime& runtime, int mask, const StackEntry& owner);
+
+/// Opacity and the settings of masks for a frame, noted in the entry.
+void settle_composition(lua_State* lua, EntryRun& run, const BuildContext& context);
+bool composition_moves(const EntryRun& run);
+
+/// Why nothing of the entry's result would be seen; empty when something may be.
+std::optional<std::string> unseen_reason(lua_State* lua, const EntryRun& run);
+
+/// Auxiliary inputs that its masks need, behind `names`.
+void add_mask_inputs(lua_State* lua, const EntryRun& run, std::vector<std::string>& names);
+
+/// `image`, which the entry made of `source`, put over it.
+ImageRef composite(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
+                   const ImageRef& image);
+/// From one look to the other by `amount`.
+ImageRef mixed(const EntryRun& run, GraphBuilder& graph, const ImageRef& first, const ImageRef& second, double amount);
+
+}  // namespace afterglow::script

@@ -1,0 +1,17 @@
+-- A picture beside the preset.
+local fx = require "afterglow"
+
+local channels = { r = 0, g = 1, b = 2, a = 3, luma = 4 }
+
+return fx.effect {
+  name = "file",
+  doc = "A picture from a file, stretched over the whole picture.",
+  settings = {
+    file = fx.file { extensions = { "exr", "png", "tif", "tiff", "hdr", "jpg", "jpeg" }, doc = "The picture." },
+    channel = fx.enum { "r", "g", "b", "a", "luma", default = "luma", doc = "What of it is the mask; linear." },
+  },
+  active = function(s) return s.file ~= "", "no file is named" end,
+  build = function(g, s, source)
+    return g:pass { shader = "mask/file", size = source, picture = g:image { file = s.file }, channel = channels[s.channel] }
+  end,
+}

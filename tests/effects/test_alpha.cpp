@@ -1,0 +1,184 @@
+// Soft edges: effects that bend colour see it without its alpha, whatever that is (math.md §19).
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cases.h"
+#include "core/paths.h"
+#include "files.h"
+#include "reference/tone_mapping.h"
+#include "session/session.h"
+
+namespace afterglow {
+namespace {
+
+using namespace reference;
+
+/// Colours from dark to far above white by row, and an alpha ramp from almost nothing to 1 by column.
+struct Ramp {
+  Scene opaque, soft;
+  explicit Ramp(Size size = {64, 24}) {
+    opaque.name = "opaque";
+    soft.name = "soft";
+    opaque.source = soft.source = DoubleImage(size);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        const double light = 0.01 * std::exp2(y * 0.5), a = std::exp2(-6.0 * (size.width - 1 - x) / (size.width - 1));
+        const Rgb color = light * Rgb(1, 0.4 + 0.02 * y, 1.5 - 0.05 * y);
+        opaque.source.at(x, y) = Rgba(color, 1);
+        soft.source.at(x, y) = Rgba(color * a, a);
+      }
+    opaque.source = in_floats(opaque.source);
+    soft.source = in_floats(soft.source);
+  }
+};
+
+/// Largest difference of straight colours, relative where they are above 0.01.
+double difference(const std::vector<float>& soft, const std::vector<float>& opaque, const Scene& scene) {
+  double worst = 0;
+  for (std::size_t i = 0; i < scene.source.pixels.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double a = scene.source.pixels[i].a, wanted = opaque[4 * i + c];
+      worst = std::max(worst, std::abs(soft[4 * i + c] / a - wanted) / (std::abs(wanted) + 0.01));
+    }
+  return worst;
+}
+
+void expect_straight(const std::string& entries, double tolerance = 1e-5) {
+  const Ramp ramp;
+  for (const Way way : {Way::plain, Way::joined}) {
+    const Made soft = run_stack(entries, ramp.soft, way), opaque = run_stack(entries, ramp.opaque, way);
+    ASSERT_TRUE(soft.ran()) << entries;
+    EXPECT_LE(difference(soft.result, opaque.result, ramp.soft), tolerance) << entries;
+    EXPECT_TRUE(alpha_is_kept(soft, ramp.soft)) << entries;
+  }
+}
+
+/// Settings with which each effect that asks for straight colour has something to do.
+const std::map<std::string, std::vector<std::string>>& bending() {
+  static const std::map<std::string, std::vector<std::string>> all{
+      {"color_adjustments",
+       {"contrast = 35", "post_exposure = 0.5, contrast = -20, hue_shift = 40, saturation = 30", "saturation = -60"}},
+      {"film_grain", {"intensity = 0.6", "intensity = 0.6, size = 2.5"}},
+      {"lift_gamma_gain",
+       {"gamma_offset = 0.3", "lift_offset = 0.1, gain_offset = 0.2, gamma = { 1, 0.9, 0.8 }", "lift_offset = -0.02"}},
+      {"lut", {"file = \"bent.cube\"", "file = \"bent.cube\", input = \"linear\", intensity = 0.5"}},
+      {"shadows_midtones_highlights", {"shadows_offset = -0.4, highlights_offset = 0.2"}},
+      {"split_toning", {"shadows = \"#204080\", highlights = \"#c09040\", balance = 20"}},
+      {"tone_mapping", {"mode = \"aces\"", "mode = \"neutral\"", "mode = \"reinhard\""}},
+  };
+  return all;
+}
+
+void write_bent_cube() {
+  std::string text = "LUT_3D_SIZE 3\n";
+  for (int i = 0; i < 27; ++i)
+    text += fmt::format("{:.3f} {:.3f} {:.3f}\n", std::sqrt(i % 3 * 0.5), i / 3 % 3 * 0.45 + 0.1, i / 9 * i / 9 * 0.25);
+  write_test_file("bent.cube", text);
+}
+
+TEST_F(Effects, SoftEdgesKeepTheirColourThroughEveryEffectThatBendsIt) {
+  write_bent_cube();
+  Diagnostics diagnostics;
+  const auto effects = list_effects(search_path_for({}, {}), diagnostics);
+  ASSERT_TRUE(effects);
+  for (const auto& effect : *effects) {
+    if (!effect.straight) continue;
+    const auto known = bending().find(effect.name);
+    if (known == bending().end()) {
+      expect_straight(fmt::format("fx.{} {{ }}", effect.name));  // a new one: at least as it comes
+      continue;
+    }
+    for (const auto& settings : known->second) expect_straight(fmt::format("fx.{} {{ {} }}", effect.name, settings));
+  }
+}
+
+TEST_F(Effects, SoftEdgesKeepTheirColourThroughEffectsThatScaleIt) {
+  for (const char* entry :
+       {"fx.channel_mixer { red_out_green_in = 30, blue_out_red_in = -20 }", "fx.white_balance { temperature = 30 }",
+        "fx.color_blit { intensity = 0.7 }", "fx.vignette { intensity = 0.5 }"})
+    expect_straight(entry);
+}
+
+TEST_F(Effects, SoftEdgesKeepTheirColourThroughWholeStacks) {
+  expect_straight(
+      "fx.color_adjustments { contrast = 20 }, fx.split_toning { shadows = \"#304060\" }, fx.white_balance { "
+      "temperature "
+      "= 12 }, fx.lift_gamma_gain { gamma_offset = 0.1 }, fx.tone_mapping { mode = \"neutral\" }, fx.vignette { }",
+      3e-5);
+}
+
+TEST_F(Effects, AUsersEffectMayAskForStraightColour) {
+  write_test_file("shaders/bend/square.glsl",
+                  "vec4 apply(vec4 color, vec4 other) { return vec4(color.rgb * color.rgb + 0.1, other.a * 0.3); }\n");
+  const auto effect = [](const std::string& alpha) {
+    write_test_file("effects/bend.lua",
+                    "local fx = require \"afterglow\"\nreturn fx.effect { name = \"bend\", " + alpha +
+                        " build = function(g, s, source) return g:pass { shader = \"bend/square\", source = source, "
+                        "other = source } end }\n");
+  };
+  effect("alpha = \"straight\",");
+  expect_straight("fx.bend { }");
+  effect("");
+  const Ramp ramp;
+  EXPECT_GT(difference(run_stack("fx.bend { }", ramp.soft, Way::joined).result,
+                       run_stack("fx.bend { }", ramp.opaque, Way::joined).result, ramp.soft),
+            0.1);
+}
+
+TEST_F(Effects, LightWithoutCoverageIsGradedAsItIs) {
+  Scene glow{"glow", DoubleImage(4, 1, Rgba(0.5, 2, 0.125, 0)), {}, {}};
+  for (const Way way : {Way::plain, Way::joined})
+    EXPECT_TRUE(agrees(run_stack("fx.tone_mapping { mode = \"reinhard\" }", glow, way).result,
+                       tone_mapping(glow.source, ToneMode::reinhard), 1e-6, kRgb));
+  EXPECT_NEAR(tone_mapping(glow.source, ToneMode::reinhard).pixels[0].g, 2.0 / 3, 1e-12);
+}
+
+TEST_F(Effects, StraightColourStaysFiniteWhereAlphaIsTiny) {
+  Scene scene{"tiny", DoubleImage(3, 1, Rgba(1e30, 1, 0, 1e-30)), {}, {}};
+  scene.source = in_floats(scene.source);
+  const Made made = run_stack("fx.tone_mapping { mode = \"reinhard\" }", scene, Way::joined);
+  EXPECT_TRUE(all_finite(made.result));
+}
+
+/// As users run it: whole pictures, of which it is known whether they are opaque.
+TEST_F(Effects, OpaquePicturesDivideNothingAndKeepTheirBytes) {
+  const auto file = write_test_file("opaque.lua",
+                                    "local fx = require \"afterglow\"\nreturn fx.stack { fx.color_adjustments { "
+                                    "contrast = 20 }, fx.tone_mapping { } }\n");
+  Diagnostics diagnostics;
+  const auto run = [&](Image image, bool skip) {
+    SessionOptions options;
+    options.device.validate = true;
+    options.stack.skip_idle = skip;
+    auto session = Session::open(file, options, diagnostics);
+    EXPECT_TRUE(session) << session.error().text();
+    Picture picture;
+    picture.color = std::move(image);
+    EXPECT_TRUE((*session)->process(picture));
+    return std::pair{picture.color.pixels, (*session)->report()};
+  };
+  Image opaque(64, 24, 4);
+  for (std::size_t i = 0; i < opaque.pixels.size(); ++i)
+    opaque.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>(i % 97) * 0.05f;
+  const auto [skipped, report] = run(opaque, true);
+  const auto [whole, whole_report] = run(opaque, false);
+  EXPECT_EQ(skipped, whole);
+  ASSERT_EQ(report.skipped_now.size(), 1u);
+  EXPECT_EQ(report.skipped_now[0].name, "division by alpha in 2 passes");
+  EXPECT_EQ(report.skipped_now[0].reason, "alpha is 1 everywhere");
+  EXPECT_EQ(report.counters.programs, 1);  // what most pictures need is made first
+  EXPECT_TRUE(whole_report.skipped_now.empty());
+
+  Image soft = opaque;
+  soft.pixels[4 * 500 + 3] = 0.5f;
+  const auto [softened, soft_report] = run(soft, true);
+  EXPECT_TRUE(soft_report.skipped_now.empty());
+  EXPECT_EQ(soft_report.counters.programs, 2);
+  EXPECT_EQ(softened, run(soft, false).first);
+  EXPECT_NE(softened[4 * 500], whole[4 * 500]);
+}
+
+}  // namespace
+}  // namespace afterglow

@@ -1,0 +1,174 @@
+// How entries are put together: opacity, blend, masks, groups, mixes, arguments; and what is said where it is wrong.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scene.h"
+
+namespace afterglow::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+struct Composition : testing::Test {
+  Composition() {
+    for (const std::string name : {"a", "b", "c"})
+      scene.effect(name, "order = " + std::string(name == "c" ? "5" : "10") + R"(,
+        settings = { strength = fx.float { min = 0, max = 10, default = 1 } },
+        build = function(g, s, source) return g:pass { shader = "pixel", source = source } end,)");
+    scene.write("shaders/pixel.glsl", "vec4 apply(vec4 color) { return color * 0.5; }\n");
+  }
+  std::string error(const std::string& entries) {
+    scene.stack(entries);
+    return scene.build_error();
+  }
+  std::vector<std::string> order(const std::string& entries) {
+    scene.stack(entries);
+    auto preset = scene.load();
+    if (!preset) return {preset.error().text()};
+    std::vector<std::string> out;
+    for (const auto& entry : preset->entries()) out.push_back(std::string(entry.depth, '>') + entry.name);
+    return out;
+  }
+  std::vector<std::string> passes(const std::string& entries) {
+    scene.stack(entries);
+    std::vector<std::string> out;
+    const Graph graph = scene.graph();
+    for (const auto& pass : graph.passes) out.push_back(pass.name);
+    return out;
+  }
+  Scene scene;
+};
+
+TEST_F(Composition, ListsInListsAndFalseAreItems) {
+  EXPECT_THAT(order("{ fx.a {}, { fx.b {} } }, false, 1 > 2 and fx.c {}"), ElementsAre("a", "b"));
+  EXPECT_THAT(error("{ fx.a {}, name = 3 }"), HasSubstr("a list in it has a name, 'name'"));
+  EXPECT_THAT(error("true"), HasSubstr("position 1 is true, not an effect or a volume"));
+  EXPECT_THAT(error("{ 3 }"), HasSubstr("position 1 is 3, not an effect"));
+}
+
+TEST_F(Composition, AGroupStandsTogetherWhereItsFirstEffectWould) {
+  EXPECT_THAT(order("fx.b {}, fx.group { fx.a {}, fx.c {} }"), ElementsAre("group", ">c", ">a", "b"));
+  EXPECT_THAT(order("fx.b {}, fx.group { order = 11, fx.a {}, fx.c {} }"), ElementsAre("b", "group", ">c", ">a"));
+  EXPECT_THAT(order("fx.group { fx.group { fx.a {} }, fx.c {} }, fx.group { }"),
+              ElementsAre("group#3", "group", ">c", ">group#2", ">>a"));
+  scene.options.overrides = {{"group", "order", "20"}};
+  EXPECT_THAT(order("fx.b {}, fx.group { fx.c {} }"), ElementsAre("b", "group", ">c"));
+}
+
+TEST_F(Composition, PassesOfMasksAndBlendsFollowThoseOfTheEffect) {
+  EXPECT_THAT(passes("fx.a { }"), ElementsAre("a.pixel"));
+  EXPECT_THAT(passes("fx.a { opacity = 0.5 }"), ElementsAre("a.pixel", "a.blend"));
+  EXPECT_THAT(passes("fx.a { blend = \"screen\" }"), ElementsAre("a.pixel", "a.blend"));
+  EXPECT_THAT(passes("fx.a { mask = fx.mask.luma { } * 0.5 }"),
+              ElementsAre("a.pixel", "a.mask.luma", "a.mask.scale", "a.blend"));
+  EXPECT_THAT(passes("fx.group { opacity = 0.5, fx.a {}, fx.b {} }"), ElementsAre("a.pixel", "b.pixel", "group.blend"));
+  EXPECT_THAT(passes("fx.mix { fx.a {}, fx.b {}, amount = 0.25 }"), ElementsAre("a.pixel", "b.pixel", "mix.mix"));
+}
+
+TEST_F(Composition, OpacityMovesAndIsSet) {
+  scene.stack("fx.a { opacity = fx.curve { { 0, 0 }, { 10, 1 } } }");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  EXPECT_TRUE(preset->may_change());
+  scene.context.frame = 5;
+  ASSERT_TRUE(scene.build(*preset));
+  EXPECT_DOUBLE_EQ(preset->entries()[0].opacity, 0.5);
+  scene.context.frame = 0;
+  const auto graph = scene.build(*preset);
+  ASSERT_TRUE(graph);
+  ASSERT_EQ(graph->skipped.size(), 1u);
+  EXPECT_EQ(graph->skipped[0].reason, "opacity is 0");
+  scene.options.overrides = {{"a", "opacity", "0.25"}, {"a", "blend", "add"}};
+  EXPECT_THAT(passes("fx.a { }"), ElementsAre("a.pixel", "a.blend"));
+}
+
+TEST_F(Composition, WhatIsWrongIsSaid) {
+  EXPECT_THAT(error("fx.a { blend = \"sceen\" }"),
+              HasSubstr("unknown blend mode 'sceen'; allowed: normal, add, screen, multiply, overlay, soft_light, "
+                        "lighten, darken; did you mean 'screen'?"));
+  EXPECT_THAT(error("fx.a { opacity = 2 }"), HasSubstr("a.opacity = 2 is out of range; allowed: 0…1"));
+  EXPECT_THAT(error("fx.a { mask = \"luma\" }"), HasSubstr("mask = \"luma\" is not a mask; allowed: fx.mask.NAME"));
+  EXPECT_THAT(error("fx.a { mask = fx.mask.lumma { } }"), HasSubstr("unknown mask 'lumma'"));
+  EXPECT_THAT(error("fx.a { mask = fx.mask.lumma { } }"), HasSubstr("did you mean 'luma'?"));
+  EXPECT_THAT(error("fx.a { mask = fx.mask.luma { form = 1 } }"), HasSubstr("did you mean 'from'?"));
+  EXPECT_THAT(error("fx.a { mask = fx.mask.luma { } + {} }"), HasSubstr("a mask cannot be combined with"));
+  EXPECT_THAT(error("fx.group { opacty = 1, fx.a {} }"), HasSubstr("did you mean 'opacity'?"));
+  EXPECT_THAT(error("fx.mix { fx.a {} }"), HasSubstr("fx.mix has 1 looks; allowed: two"));
+  EXPECT_THAT(error("fx.group { fx.volume { settings = {} } }"), HasSubstr("not an effect"));
+}
+
+TEST_F(Composition, AMissingLayerIsNamedWithThoseThatAreThere) {
+  scene.context.layers = {"ViewLayer.albedo", "ViewLayer.Depth"};
+  scene.stack("fx.a { mask = fx.mask.layer { layer = \"albdo\" } }");
+  const Graph graph = scene.graph();
+  ASSERT_EQ(graph.skipped.size(), 1u);
+  EXPECT_EQ(graph.skipped[0].reason,
+            "no layer:albdo input; the picture has the layers ViewLayer.albedo, ViewLayer.Depth");
+  EXPECT_EQ(scene.warnings.size(), 1u);
+  EXPECT_THAT(error("fx.a { required = true, mask = fx.mask.layer { layer = \"albdo\" } }"),
+              HasSubstr("preset.lua:3: error: effect 'a' is required, but there is no layer:albdo input"));
+  scene.context.auxiliary["layer:albdo"] = scene.context.size;
+  EXPECT_EQ(error("fx.a { required = true, mask = fx.mask.layer { layer = \"albdo\" } }"), "");
+}
+
+TEST_F(Composition, AnEffectMayAskForLayers) {
+  scene.effect("layered", R"(needs = { "layer:albedo" },
+    build = function(g, s, source) return g:pass { shader = "two", source = source, other = g:input("layer:albedo") } end,)");
+  scene.write("shaders/two.glsl", "vec4 apply(vec4 color, vec4 other) { return color * other; }\n");
+  scene.context.auxiliary["layer:albedo"] = scene.context.size;
+  EXPECT_EQ(error("fx.layered { }"), "");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset);
+  EXPECT_THAT(preset->needs(), ElementsAre("layer:albedo"));
+}
+
+TEST_F(Composition, ArgumentsComeFromTheCommandLine) {
+  const std::string text = R"(local fx = require "afterglow"
+local args = fx.args { strength = fx.float { min = 0, max = 2, default = 0.5, doc = "How much." },
+                       warm = fx.bool { default = false }, name = fx.text { } }
+return fx.stack { fx.a { strength = args.strength }, args.warm and fx.b { } })";
+  const auto strength = [&] {
+    scene.preset(text);
+    auto preset = scene.load();
+    if (!preset) return preset.error().text();
+    return preset->entries()[0].settings[0].second.text() + " " + std::to_string(preset->entries().size());
+  };
+  EXPECT_EQ(strength(), "0.5 1");
+  scene.options.arguments = {{"strength", "1.5"}, {"warm", "true"}};
+  EXPECT_EQ(strength(), "1.5 2");
+  scene.options.arguments = {{"strength", "3"}};
+  EXPECT_THAT(strength(), HasSubstr("--arg strength = 3 is out of range; allowed: 0…2"));
+  scene.options.arguments = {{"strenght", "1"}};
+  EXPECT_THAT(strength(), HasSubstr("--arg strenght: the preset declares no argument of this name; allowed: strength, "
+                                    "warm, name; did you mean 'strength'?"));
+  scene.options.arguments = {{"x", "1"}};
+  scene.stack("fx.a { }");
+  EXPECT_THAT(scene.load_error(), HasSubstr("the preset declares no arguments (fx.args)"));
+}
+
+TEST_F(Composition, AnArgumentThatIsNotDeclaredIsAnError) {
+  scene.preset(
+      "local fx = require \"afterglow\"\nlocal args = fx.args { strength = fx.float { default = 1 } }\n"
+      "return fx.stack { fx.a { strength = args.strenght } }");
+  EXPECT_THAT(scene.load_error(), HasSubstr("did you mean 'strength'?"));
+}
+
+TEST_F(Composition, StraightColourIsForPixelShaders) {
+  scene.effect("bent", R"(alpha = "straight",
+    build = function(g, s, source) return g:pass { shader = "pixel", source = source } end,)");
+  scene.stack("fx.bent { }");
+  EXPECT_TRUE(scene.graph().passes[0].straight);
+  scene.effect("blurred", R"(alpha = "straight",
+    build = function(g, s, source) return g:filter { source = source, filter = fx.filters.tent() } end,)");
+  EXPECT_THAT(error("fx.blurred { }"), HasSubstr("is for effects of pixel shaders, not of filters"));
+  scene.effect("wrong", R"(alpha = "strait",
+    build = function(g, s, source) return source end,)");
+  EXPECT_THAT(
+      error("fx.wrong { }"),
+      HasSubstr("effects/wrong.lua:3: error: fx.effect: alpha cannot be 'strait'; allowed: associated, straight; did "
+                "you mean 'straight'?"));
+}
+
+}  // namespace
+}  // namespace afterglow::test
