@@ -223,7 +223,7 @@ FrameListRequest files_of(const RunArguments& a) {
 
 /// How many earlier frames the frames of this run need; empty when none depends on another. Where settings change from
 /// frame to frame some frames are asked.
-Result<std::optional<int>> pre_roll_of(Run& run) {
+Result<std::optional<int>> pre_roll_of(Run& run, FrameLoop& loop) {
   constexpr std::size_t kMostAsked = 64;
   const auto& frames = run.report.frames;
   Preset& preset = run.session->preset();
@@ -234,8 +234,11 @@ Result<std::optional<int>> pre_roll_of(Run& run) {
     assumed.frame = frames[i * frames.size() / asked].job.frame;
     assumed.fps = run.arguments.fps;
     AFTERGLOW_TRY(const BuildContext context, assumed.context(preset));
-    AFTERGLOW_TRY(const auto build, run.session->evaluate(context));
-    const Graph& graph = build->graph;
+    // A picture alone is asked itself, and what is said of it is what runs.
+    auto build = frames.size() == 1 ? loop.look_at(frames.front().job) : run.session->evaluate(context);
+    if (!build && frames.size() == 1 && build.error().kind == ErrorKind::io) build = run.session->evaluate(context);
+    if (!build) return std::move(build).error();
+    const Graph& graph = (*build)->graph;
     if (!graph.histories.empty()) most = std::max(most.value_or(0), run.arguments.pre_roll.value_or(pre_roll(graph)));
   }
   return most;
@@ -330,15 +333,16 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   AFTERGLOW_TRY(run.session, Session::open(preset, opened, run.console.diagnostics()));
   run.loop.read.auxiliary = run.session->preset().needs();
   AFTERGLOW_CHECK(prepare_lock(run));
-  AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run));
-  run.loop.histories = earlier.has_value();
+  FrameLoop loop(*run.session, run.loop, events_of(run.console));
+  AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run, loop));
+  if (earlier) loop.follow_histories();
   if (earlier && a.resume) note_earlier_files(run.report.frames, files_of(a), *earlier);
   AFTERGLOW_CHECK(prepare_resume(run));
   Schedule schedule =
       earlier ? schedule_with_histories(run.report.frames, files_of(a), *earlier) : plain_schedule(run.report.frames);
   run.report.pre_roll = schedule.earlier.size();
   run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
-  FrameLoop loop(*run.session, run.loop, events_of(run.console));
+  loop.record_look(run.loop.record_look);
   auto done = loop.run(schedule);
   run.report.memory_needed = loop.largest_need();
   return done;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "batch/crop.h"
 #include "batch/resume.h"
@@ -113,15 +114,76 @@ Result<FrameLoop::Need> FrameLoop::need_of(const PictureHeader& header, const Bu
 Result<void> FrameLoop::place_in_time(Reading& reading) {
   if (!options_.histories || reading.refused) return {};
   if (reading.restart) last_.reset();
+  reading.request.restart = !last_;
+  reading.request.step = last_ ? reading.frame->job.frame - *last_ : 1;
+  if (reading.request.step == reading.request.build->context.step) return {};
   BuildContext context = reading.request.build->context;
-  context.restart = !last_;
-  context.step = last_ ? reading.frame->job.frame - *last_ : 1;
-  if (context != reading.request.build->context) {
-    AFTERGLOW_TRY(reading.request.build, session_.evaluate(context));
-  }
-  reading.request.restart = context.restart;
-  reading.request.step = context.step;
+  context.step = reading.request.step;
+  context.restart = reading.request.restart;
+  AFTERGLOW_TRY(reading.request.build, session_.evaluate(context));
   return {};
+}
+
+ReadOptions FrameLoop::read_options(const FrameJob& job) const {
+  ReadOptions options = options_.read;
+  options.depth = job.depth;
+  options.normal = job.normal;
+  options.motion = job.motion;
+  options.nan_policy = options_.nan_policy;
+  return options;
+}
+
+/// What is wanted of the picture with this header.
+Result<FrameRequest> FrameLoop::request_of(const FrameJob& job, const PictureHeader& header, double step,
+                                           bool restart) {
+  FrameRequest request;
+  const Size display = header.display_window.size();
+  BuildContext context;
+  context.size =
+      options_.size ? scaled_size(header.data_window.size(), display, *options_.size) : header.data_window.size();
+  if (options_.region) {
+    const Rect& data = header.data_window;
+    const Rect window = options_.size ? scaled_window(data, header.display_window, *options_.size) : data;
+    const Rect shown = options_.size ? Rect{header.display_window.x, header.display_window.y, options_.size->width,
+                                            options_.size->height}
+                                     : header.display_window;
+    AFTERGLOW_TRY(request.region, part_of_region(*options_.region, window, shown));
+  }
+  const auto& wanted = options_.read.auxiliary;
+  for (const auto& name : header.auxiliary)
+    if (std::find(wanted.begin(), wanted.end(), name) != wanted.end()) context.auxiliary[name] = context.size;
+  context.layers = header.layers;
+  context.metadata = {header.facts, &header.facts->metadata};
+  context.frame = job.frame;
+  context.fps = options_.fps;
+  context.time = job.frame / options_.fps;
+  context.position = camera_position(header.facts->metadata);
+  context.step = request.step = step;
+  context.restart = request.restart = restart;
+  if (const auto codes = display_codes(job.output, options_.write, header.has_alpha, header.facts.get()))
+    request.encoding = DisplayEncoding{codes->straight_alpha, codes->dither};
+  auto build = session_.evaluate(context);
+  if (!build) return std::move(build).error();
+  request.build = std::move(*build);
+  return request;
+}
+
+Result<FrameLoop::Planned> FrameLoop::plan(const FrameJob& job, double step, bool restart) {
+  Planned planned;
+  auto header = read_header(job.input, read_options(job));
+  if (!header) return named(std::move(header).error(), job);
+  planned.header = std::move(*header);
+  auto request = request_of(job, planned.header, step, restart);
+  if (!request) return named(std::move(request).error(), job);
+  planned.request = std::move(*request);
+  return planned;
+}
+
+Result<std::shared_ptr<const Build>> FrameLoop::look_at(const FrameJob& job) {
+  AFTERGLOW_TRY(Planned planned, plan(job, 1, true));
+  planned.job = &job;
+  planned_ = std::move(planned);
+  return planned_->request.build;
 }
 
 std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFrame& scheduled) {
@@ -130,71 +192,35 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   reading->frame = &frame;
   reading->pre_roll = scheduled.pre_roll;
   reading->restart = scheduled.restart;
-  ReadOptions options = options_.read;
-  options.depth = frame.job.depth;
-  options.normal = frame.job.normal;
-  options.motion = frame.job.motion;
-  options.nan_policy = options_.nan_policy;
-  reading->options = options;
-  const auto header = read_header(frame.job.input, options);
-  if (!header) {
-    reading->refused = named(header.error(), frame.job);
-    return reading;
-  }
-  const Size display = header->display_window.size();
-  BuildContext context;
-  context.size =
-      options_.size ? scaled_size(header->data_window.size(), display, *options_.size) : header->data_window.size();
-  if (options_.region) {
-    const Rect& data = header->data_window;
-    const Rect window = options_.size ? scaled_window(data, header->display_window, *options_.size) : data;
-    const Rect shown = options_.size ? Rect{header->display_window.x, header->display_window.y, options_.size->width,
-                                            options_.size->height}
-                                     : header->display_window;
-    const auto part = part_of_region(*options_.region, window, shown);
-    if (!part) {
-      reading->refused = named(part.error(), frame.job);
-      return reading;
-    }
-    reading->request.region = *part;
-  }
-  for (const auto& name : header->auxiliary)
-    if (std::find(options.auxiliary.begin(), options.auxiliary.end(), name) != options.auxiliary.end())
-      context.auxiliary[name] = context.size;
-  context.layers = header->layers;
-  context.metadata = {header->facts, &header->facts->metadata};
-  context.frame = frame.job.frame;
-  context.fps = options_.fps;
-  context.time = frame.job.frame / options_.fps;
-  context.position = camera_position(header->facts->metadata);
-  if (const auto codes = display_codes(frame.job.output, options_.write, header->has_alpha, header->facts.get()))
-    reading->request.encoding = DisplayEncoding{codes->straight_alpha, codes->dither};
-  if (options_.histories) {
-    if (scheduled.restart) begun_.reset();
-    context.restart = !begun_;
-    context.step = begun_ ? frame.job.frame - *begun_ : 1;
-  }
-  auto build = session_.evaluate(context);
-  if (!build) {
-    reading->refused = std::move(build).error();
+  reading->options = read_options(frame.job);
+  if (scheduled.restart) begun_.reset();
+  const bool follows = options_.histories && begun_;
+  const double step = follows ? frame.job.frame - *begun_ : 1;
+  const bool known = planned_ && planned_->job == &frame.job && step == 1;
+  auto planned = known ? Result<Planned>(*std::exchange(planned_, std::nullopt))
+                       : plan(frame.job, step, options_.histories && !begun_);
+  if (!planned) {
+    reading->refused = std::move(planned).error();
     return reading;
   }
   begun_ = frame.job.frame;
-  reading->request = request_for(std::move(*build), reading->request.encoding, reading->request.region);
-  const auto need = need_of(*header, *reading->request.build, frame.job);
+  reading->request = std::move(planned->request);
+  const auto need = need_of(planned->header, *reading->request.build, frame.job);
   if (!need) {
     reading->refused = need.error();
     return reading;
   }
   overlap_ = total_ + pre_roll_ > 1 && need->three_frames() <= options_.max_memory;
-  reading->picture = std::async(std::launch::async, [this, &frame, options]() -> Result<Picture> {
-    const auto start = Clock::now();
-    auto picture = read_picture(frame.job.input, options, events_.diagnostics);
-    if (picture && options_.size) scale_picture(*picture, *options_.size);
-    if (picture && options_.reuse && total_ + pre_roll_ > 1) note_content(*picture);
-    frame.read = milliseconds_since(start);
-    return picture;
-  });
+  reading->picture =
+      std::async(std::launch::async,
+                 [this, &frame, options = reading->options, header = std::move(planned->header)]() -> Result<Picture> {
+                   const auto start = Clock::now();
+                   auto picture = read_picture(header, options, events_.diagnostics);
+                   if (picture && options_.size) scale_picture(*picture, *options_.size);
+                   if (picture && options_.reuse && total_ + pre_roll_ > 1) note_content(*picture);
+                   frame.read = milliseconds_since(start);
+                   return picture;
+                 });
   return reading;
 }
 

@@ -43,6 +43,14 @@ class FrameLoop {
   /// and left out, as if it was not there. Errors: that of the only frame, or one that counts the failed ones.
   Result<void> run(Schedule& schedule);
 
+  /// The header of a frame's picture, and what the preset says of that frame: kept for `run`, if it comes first there.
+  /// Errors: those of reading the header and of the script.
+  Result<std::shared_ptr<const Build>> look_at(const FrameJob& job);
+  /// Pictures depend on the frames before them: see FrameLoopOptions.
+  void follow_histories() { options_.histories = true; }
+  /// Leaves notes for --resume.
+  void record_look(const std::optional<Hash>& look) { options_.record_look = look; }
+
   std::uint64_t largest_need() const { return largest_need_; }
 
  private:
@@ -56,6 +64,15 @@ class FrameLoop {
     }  ///< one is read, one processed, one written
   };
 
+  /// Of a frame whose picture has not been read.
+  struct Planned {
+    const FrameJob* job = nullptr;
+    PictureHeader header;
+    FrameRequest request;
+  };
+  ReadOptions read_options(const FrameJob& job) const;
+  Result<FrameRequest> request_of(const FrameJob& job, const PictureHeader& header, double step, bool restart);
+  Result<Planned> plan(const FrameJob& job, double step, bool restart);
   Result<Need> need_of(const PictureHeader& header, const Build& build, const FrameJob& job);
   std::unique_ptr<Reading> begin_reading(const ScheduledFrame& scheduled);
   Result<void> place_in_time(Reading& reading);
@@ -76,6 +93,7 @@ class FrameLoop {
   FrameLoopOptions options_;
   RunEvents events_;
   std::deque<std::unique_ptr<Reading>> running_;  ///< whose frames are in flight, the oldest first
+  std::optional<Planned> planned_;
   std::unique_ptr<Writing> writing_;
   NonFiniteRecord non_finite_;
   std::size_t total_ = 0, pre_roll_ = 0, done_ = 0, failed_ = 0;

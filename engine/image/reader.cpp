@@ -345,17 +345,74 @@ LayerChoice parse_layer_choice(const std::string& text) {
   return {"", text};
 }
 
+namespace {
+
+/// A picture whose header was parsed and whose pixels were not read yet.
+struct Opened : OpenedPicture {
+  Plan plan;
+  FileLooks looks;  ///< what the files were before
+  bool read = false;
+};
+
+void note_stamp(const fs::path& file, FileLooks& looks) {
+  std::error_code ec;
+  looks.emplace(fs::absolute(file, ec), look_at(file, FileLook::Kind::stamp));
+}
+
+/// May throw.
+Result<std::shared_ptr<Opened>> open_with(const fs::path& file, const ReadOptions& options,
+                                          const std::vector<std::string>& auxiliary) {
+  auto opened = std::make_shared<Opened>();
+  note_stamp(file, opened->looks);
+  AFTERGLOW_TRY(opened->plan, make_plan(file, options, auxiliary));
+  for (const AuxiliaryPlan& extra : opened->plan.auxiliary)
+    note_stamp(opened->plan.file_of(extra).path(), opened->looks);
+  return opened;
+}
+
+/// Only what was asked for, in that order.
+void keep_wanted(std::vector<AuxiliaryPlan>& plans, const std::vector<std::string>& wanted) {
+  const auto place = [&](const AuxiliaryPlan& plan) { return std::ranges::find(wanted, plan.name); };
+  std::erase_if(plans, [&](const AuxiliaryPlan& plan) { return place(plan) == wanted.end(); });
+  std::ranges::stable_sort(plans, {}, place);
+}
+
+Result<Picture> read_opened(Opened& opened, const ReadOptions& options, Diagnostics& diagnostics) {
+  Plan& plan = opened.plan;
+  if (std::exchange(opened.read, true))
+    return Error{ErrorKind::other, "was read before with this header", plan.file->path().string()};
+  keep_wanted(plan.auxiliary, options.auxiliary);
+  if (const std::uint64_t bytes = host_bytes(plan, options.auxiliary); bytes > options.max_bytes)
+    return Error{ErrorKind::io,
+                 fmt::format("needs {} MiB of memory, more than the {} MiB allowed (--max-memory)", bytes >> 20,
+                             options.max_bytes >> 20),
+                 plan.file->path().string()};
+  auto picture = read_planned(plan, options.nan_policy, diagnostics);
+  // Whatever was read then, it is neither the old picture nor the new one.
+  if (const auto changed = first_changed(opened.looks))
+    return Error{ErrorKind::io, "changed while it was read", changed->string()};
+  return picture;
+}
+
+Error unreadable(const std::exception& error, const fs::path& file) {
+  return {ErrorKind::io, fmt::format("cannot be read: {}", exception_text(error)), file.string()};
+}
+
 /// Auxiliary images that a header tells of: the usual ones, and layers that are asked for.
-static std::vector<std::string> of_header(const ReadOptions& options) {
+std::vector<std::string> of_header(const ReadOptions& options) {
   std::vector<std::string> names{kDepth.name, kNormal.name, kMotion.name};
   std::ranges::copy_if(options.auxiliary, std::back_inserter(names), is_layer);
   return names;
 }
 
+}  // namespace
+
 Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& options) {
   try {
-    AFTERGLOW_TRY(const Plan plan, make_plan(file, options, of_header(options)));
     PictureHeader header;
+    AFTERGLOW_TRY(const auto opened, open_with(file, options, of_header(options)));
+    header.opened = opened;
+    const Plan& plan = opened->plan;
     header.data_window = upright_data(plan.color_part());
     header.display_window = upright_display(plan.color_part());
     header.channels = static_cast<int>(plan.color_part().channels.size());
@@ -367,44 +424,26 @@ Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& optio
     header.host_bytes = host_bytes(plan, options.auxiliary);
     return header;
   } catch (const std::exception& error) {
-    return Error{ErrorKind::io, fmt::format("cannot be read: {}", exception_text(error)), file.string()};
+    return unreadable(error, file);
   }
 }
 
-namespace {
-
-void note_stamp(const fs::path& file, FileLooks& looks) {
-  std::error_code ec;
-  looks.emplace(fs::absolute(file, ec), look_at(file, FileLook::Kind::stamp));
-}
-
-/// Notes in `looks` what the files are before they are read.
-Result<Picture> read_noting(const fs::path& file, const ReadOptions& options, Diagnostics& diagnostics,
-                            FileLooks& looks) {
+Result<Picture> read_picture(const PictureHeader& header, const ReadOptions& options, Diagnostics& diagnostics) {
+  auto& opened = static_cast<Opened&>(*header.opened);
   try {
-    note_stamp(file, looks);
-    AFTERGLOW_TRY(Plan plan, make_plan(file, options, options.auxiliary));
-    for (const AuxiliaryPlan& extra : plan.auxiliary) note_stamp(plan.file_of(extra).path(), looks);
-    if (const std::uint64_t bytes = host_bytes(plan, options.auxiliary); bytes > options.max_bytes)
-      return Error{ErrorKind::io,
-                   fmt::format("needs {} MiB of memory, more than the {} MiB allowed (--max-memory)", bytes >> 20,
-                               options.max_bytes >> 20),
-                   file.string()};
-    return read_planned(plan, options.nan_policy, diagnostics);
+    return read_opened(opened, options, diagnostics);
   } catch (const std::exception& error) {
-    return Error{ErrorKind::io, fmt::format("cannot be read: {}", exception_text(error)), file.string()};
+    return unreadable(error, opened.plan.file->path());
   }
 }
-
-}  // namespace
 
 Result<Picture> read_picture(const fs::path& file, const ReadOptions& options, Diagnostics& diagnostics) {
-  FileLooks looks;
-  auto picture = read_noting(file, options, diagnostics, looks);
-  // Whatever was read then, it is neither the old picture nor the new one.
-  if (const auto changed = first_changed(looks))
-    return Error{ErrorKind::io, "changed while it was read", changed->string()};
-  return picture;
+  try {
+    AFTERGLOW_TRY(const auto opened, open_with(file, options, options.auxiliary));
+    return read_opened(*opened, options, diagnostics);
+  } catch (const std::exception& error) {
+    return unreadable(error, file);
+  }
 }
 
 }  // namespace afterglow

@@ -35,7 +35,12 @@ struct ReadOptions {
   std::uint64_t max_bytes = 6ull << 30;  ///< pictures whose own host memory would be larger are refused from the header
 };
 
-/// What the header says; cheap, allocates nothing large.
+/// What stays open between the header and the pixels.
+struct OpenedPicture {
+  virtual ~OpenedPicture() = default;
+};
+
+/// What the header says; cheap, allocates nothing large. The file stays open until the last copy goes.
 struct PictureHeader {
   Rect data_window, display_window;  ///< after orientation
   int channels = 0;
@@ -45,9 +50,13 @@ struct PictureHeader {
   std::shared_ptr<const FileFacts> facts;
   std::string format;            ///< OIIO format name: "openexr", "png", …
   std::uint64_t host_bytes = 0;  ///< host memory that read_picture would take at its peak
+  std::shared_ptr<OpenedPicture> opened;
 };
 
 Result<PictureHeader> read_header(const std::filesystem::path& file, const ReadOptions& options);
+/// Reads the picture of a header, which is not parsed again; once. `options` are those that the header was read with.
+/// Errors: those of reading a file, other (it was read before).
+Result<Picture> read_picture(const PictureHeader& header, const ReadOptions& options, Diagnostics& diagnostics);
 Result<Picture> read_picture(const std::filesystem::path& file, const ReadOptions& options, Diagnostics& diagnostics);
 
 }  // namespace afterglow

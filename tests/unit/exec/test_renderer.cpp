@@ -84,7 +84,9 @@ TEST_F(RendererTest, SteadyFramesMakeNothingNew) {
   HostResult out;
   Renderer::Counters steady;
   for (int i = 0; i < 10; ++i) {
-    if (ring->in_flight() == 2) ASSERT_TRUE(ring->collect(out));
+    if (ring->in_flight() == 2) {
+      ASSERT_TRUE(ring->collect(out));
+    }
     if (i == 4) steady = ring->counters();
     ASSERT_TRUE(ring->submit(request(*programs, graph(i + 1), pixels)));
   }

@@ -277,5 +277,47 @@ TEST_F(SessionTest, ALaterFrameMayBeEvaluatedFirst) {
   EXPECT_EQ(session.stack().build()->entries->at(0).settings.at(0).second.text(), "2");
 }
 
+/// Over staging buffers, as on a device with its own memory, with two frames in flight: the same bits.
+TEST_F(SessionTest, FramesInFlightAreThoseOfOneAtATime) {
+  preset("fx.gain { amount = function(t) return 1 + t.frame end }");
+  SessionOptions ahead;
+  ahead.direct = false;
+  ahead.frames = 2;
+  auto ring = open(ahead), one = open();
+  ASSERT_TRUE(ring && one);
+  Session& session = **ring;
+  ASSERT_EQ(session.frames(), 2);
+  const auto make = [](int frame) {
+    Picture p = picture(13, 7);
+    for (auto& value : p.color.pixels) value += static_cast<float>(frame) / 8;
+    return p;
+  };
+  int collected = 0;
+  const auto collect = [&] {
+    Picture made, expected = make(collected);
+    ASSERT_TRUE(session.collect(made));
+    BuildContext context;
+    context.frame = collected;
+    ASSERT_TRUE((*one)->process(expected, context));
+    EXPECT_EQ(made.color.pixels, expected.color.pixels) << collected;
+    EXPECT_EQ(session.report().kernels, std::vector<std::string>{"gain.gain"});
+    ++collected;
+  };
+  for (int frame = 0; frame < 12; ++frame) {
+    if (session.in_flight() == session.frames()) collect();
+    BuildContext context{.size = {13, 7}};
+    context.frame = frame;
+    const auto build = session.evaluate(context);
+    ASSERT_TRUE(build) << build.error().text();
+    ASSERT_TRUE(session.submit(make(frame), FrameRequest{.build = *build}));
+  }
+  Picture alone = make(0);
+  EXPECT_FALSE(session.process(alone)) << "others are in flight";
+  while (session.in_flight() > 0) collect();
+  EXPECT_EQ(collected, 12);
+  EXPECT_TRUE(session.process(alone));
+  EXPECT_EQ(session.device().validation_errors(), 0);
+}
+
 }  // namespace
 }  // namespace afterglow
