@@ -37,13 +37,17 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
+bool is_file_like_option(const std::string& word) {
+  std::error_code none;
+  return word.size() > 1 && word[0] == '-' && std::filesystem::exists(word, none);
+}
+
 /// An option or word that the command does not know, with the nearest that it does.
 Error unknown_argument(const CLI::App& command, const std::string& argument) {
   const std::string where = "afterglow " + command.get_name();
   if (argument.empty() || argument[0] != '-')
     return {ErrorKind::usage, fmt::format("unexpected argument '{}'", argument), where};
-  std::error_code none;
-  if (std::filesystem::exists(argument, none))
+  if (is_file_like_option(argument))
     return {ErrorKind::usage, fmt::format("'{}' is read as an option; name the file ./{}", argument, argument), where};
   const std::string name = argument.substr(0, argument.find('='));
   Error error{ErrorKind::usage, fmt::format("unknown option '{}'", name), where};
@@ -101,6 +105,8 @@ std::optional<int> parse(CLI::App& program, const std::vector<Command>& commands
         const std::string word = argv[i];
         const std::string name = word.substr(0, word.find('='));
         if (word == "--") break;
+        if (is_file_like_option(word) && std::find(known.begin(), known.end(), name) == known.end())
+          return fail(console, unknown_argument(*command->options, word));
         if (word.starts_with("--") && std::find(known.begin(), known.end(), name) == known.end())
           return fail(console, unknown_argument(*command->options, word));
       }

@@ -7,10 +7,12 @@
 namespace afterglow {
 namespace {
 
-int g_reason = 0;  // errno of the first failure
+bool g_failed = false;
+int g_reason = 0;  // errno of the first failure; 0: not known
 
 void note_failure() {
-  if (g_reason == 0) g_reason = errno != 0 ? errno : EIO;
+  if (!g_failed) g_reason = errno;
+  g_failed = true;
 }
 
 }  // namespace
@@ -23,8 +25,9 @@ void output_text(const std::string& text) {
 Result<void> finish_output() {
   errno = 0;
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) note_failure();
-  if (g_reason == 0 || g_reason == EPIPE) return {};
-  return Error{ErrorKind::io, fmt::format("cannot be written: {}", std::strerror(g_reason)), "standard output"};
+  if (!g_failed || g_reason == EPIPE) return {};
+  const std::string reason = g_reason != 0 ? std::string(": ") + std::strerror(g_reason) : std::string();
+  return Error{ErrorKind::io, "cannot be written" + reason, "standard output"};
 }
 
 }  // namespace afterglow

@@ -187,7 +187,6 @@ Result<ContainerFacts> check_container(const fs::path& file) {
     return Error{ErrorKind::io, missing ? "no such file" : "cannot be read: " + ec.message(), file.string()};
   }
   if (fs::is_directory(status)) return malformed(file, "is a folder, not a picture");
-  if (fs::is_fifo(status)) return malformed(file, "is a pipe, not a file");
   if (!fs::is_regular_file(status)) return malformed(file, "is not a regular file");
   const std::uint64_t size = fs::file_size(file, ec);
   if (ec) return Error{ErrorKind::io, "cannot be read: " + ec.message(), file.string()};

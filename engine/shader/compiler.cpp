@@ -17,6 +17,7 @@
 #include "shader/kernel.h"
 #include "shader/kernel_file.h"
 #include "shader/reflect.h"
+#include "shader/weight.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -93,6 +94,7 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   KernelFile kernel;
   kernel.text = assembled.hash;
   AFTERGLOW_TRY(kernel.spirv, compile_glsl(assembled.glsl, assembled.file_names));
+  AFTERGLOW_CHECK(check_weight(kernel.spirv, desc));
   ValuesGiven given = give_values(std::move(kernel.spirv), assembled.unset);
   kernel.spirv = std::move(given.spirv);
   kernel.unset = std::move(given.read);

@@ -81,6 +81,61 @@ TEST(Hostile, SizesAreLimited) {
               HasSubstr("reads at most 16 images"));
 }
 
+/// Drivers unfold them, and take minutes, gigabytes or their own death for it.
+TEST(Hostile, WhatAShaderHoldsIsLimited) {
+  const auto refused = [](const std::string& text, int line, const std::string& name) {
+    const std::string said = outcome(text);
+    EXPECT_THAT(said, HasSubstr("x.glsl:" + std::to_string(line) + ": error: ")) << said;
+    EXPECT_THAT(said, HasSubstr("'" + name + "'")) << said;
+    EXPECT_THAT(said, HasSubstr("allowed: at most ")) << said;
+  };
+  refused(in_apply("int i = int(c.r);\nfloat a[2000000000]; a[i] = 1.0; c.r = a[i + 1];"), 3, "a");
+  refused(in_apply("mat4 a[30000][30000]; a[int(c.r)][3] = mat4(c.g); c = a[1][int(c.b)][2];"), 2, "a");
+  refused("float many[100000];\nvec4 apply(vec4 c) { many[int(c.r)] = c.g; return vec4(many[int(c.b)]); }\n", 1,
+          "many");
+  refused(
+      "struct S { vec4 far[100]; vec4 more[200]; };\nvec4 apply(vec4 c) {\n  S s;\n  s.more[int(c.r)] = c;\n  return "
+      "s.far[1]; }\n",
+      3, "s");
+  refused("const int kSide = 64;\n#define COUNT (kSide * kSide)\n" +
+              in_apply("float a[COUNT]; a[int(c.r)] = 1.0; c.r = a[int(c.g)];"),
+          4, "a");
+  // Each by itself is small.
+  std::string all, sum;
+  for (int i = 0; i < 20; ++i) {
+    all += "vec4 a" + std::to_string(i) + "[64]; a" + std::to_string(i) + "[int(c.r)] = c;\n";
+    sum += "c += a" + std::to_string(i) + "[int(c.g)];\n";
+  }
+  EXPECT_THAT(outcome(in_apply(all + sum)), HasSubstr("holds 20480 bytes in variables"));
+  // As many times as they are called.
+  std::string calls = "float f0(float x) { float a[64]; a[int(x)] = x; return a[int(x) + 1]; }\n";
+  for (int i = 1; i < 40; ++i)
+    calls += "float f" + std::to_string(i) + "(float x) { return f" + std::to_string(i - 1) + "(x) + f" +
+             std::to_string(i - 1) + "(x + 1.0); }\n";
+  EXPECT_THAT(outcome(calls + in_apply("c.r = f39(c.r);")), HasSubstr("in variables"));
+}
+
+TEST(Hostile, WhatAShaderCopiesIsLimited) {
+  EXPECT_THAT(outcome("struct S { float a[256]; };\n" +
+                      in_apply("S s, t; s.a[int(c.r)] = 1.0;\nt = s; S u = t; S v = u; S w = v; S x = w;\nc.r = "
+                               "x.a[int(c.g)];")),
+              HasSubstr("copies arrays of 5120 bytes as a whole"));
+  EXPECT_EQ(outcome("struct S { float a[8]; };\nS twice(S s) { s.a[1] *= 2.0; return s; }\n" +
+                    in_apply("S s; s.a[int(c.r)] = 1.0; c.r = twice(s).a[int(c.g)];")),
+            "ok");
+}
+
+TEST(Hostile, CallsThatMultiplyAreLimited) {
+  std::string calls = "float f0(float x) { return sin(x); }\n";
+  for (int i = 1; i < 70; ++i)
+    calls += "float f" + std::to_string(i) + "(float x) { return f" + std::to_string(i - 1) + "(x) + f" +
+             std::to_string(i - 1) + "(x + 1.0); }\n";
+  const std::string said = outcome(calls + in_apply("c.r = f69(c.r);"));
+  EXPECT_THAT(said,
+              HasSubstr("x.glsl:70: error: the shader has more instructions than can be counted, with the calls of "
+                        "'f69'"));
+}
+
 TEST(Hostile, MacrosThatExplodeAreRefused) {
   std::string object = "#define M0 1.0 + 1.0\n", function = "#define F0(x) x + x\n";
   for (int i = 1; i < 40; ++i) {

@@ -1,0 +1,21 @@
+// What authors' shaders may hold at most. Drivers unfold arrays, copies and calls into single instructions, and take
+// minutes, gigabytes or their own death for what stands in a short line; nothing ends a driver. Internal to the room.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/result.h"
+#include "shader/kernel.h"
+
+namespace afterglow {
+
+inline constexpr std::uint64_t kMaxVariableBytes = 4096;  ///< one variable, constant or value
+inline constexpr std::uint64_t kMaxHeldBytes = 16384;     ///< all of a kernel, once for each call of a function
+inline constexpr std::uint64_t kMaxCopiedBytes = 4096;    ///< arrays that are copied whole, once for each call
+inline constexpr std::uint64_t kMaxInstructions = 65536;  ///< of a kernel, once for each call
+
+/// `spirv` was made of `kernel`. Errors (script): a limit, with file and line of the variable or the function.
+Result<void> check_weight(const std::vector<std::uint32_t>& spirv, const KernelDesc& kernel);
+
+}  // namespace afterglow
