@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "exec/brightest.h"
 #include "exec/frame.h"
 
 namespace afterglow::bench {
@@ -27,6 +28,12 @@ std::vector<KernelTime> medians(const std::vector<FrameTimes>& runs) {
   return out;
 }
 
+bool is_opaque(const Image& image) {
+  Brightest found;
+  for (int y = 0; y < image.height; ++y) found.add_row(image.at(0, y), image.channels, image.width);
+  return found.opaque();
+}
+
 }  // namespace
 
 BuildContext context_of(const Picture& picture) {
@@ -45,6 +52,7 @@ Result<PreparedStack> PreparedStack::create(Device& device, const std::filesyste
   options.choice = variant.choice;
   options.flag_non_finite = variant.watch;
   options.preset.overrides.insert(options.preset.overrides.end(), variant.overrides.begin(), variant.overrides.end());
+  options.skip_idle = options.skip_idle && is_opaque(picture.color);  // or the program would take it for such
   AFTERGLOW_TRY(out.stack_, Stack::load(preset, options, diagnostics));
   out.stack_->use(device, true);
   AFTERGLOW_CHECK(out.stack_->prepare(context_of(picture), variant.encoding));
