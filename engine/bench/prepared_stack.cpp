@@ -26,6 +26,16 @@ std::vector<KernelTime> medians(const std::vector<FrameTimes>& runs) {
   return out;
 }
 
+bool is_opaque(const Image& image) {
+  if (image.channels < 4) return true;
+  for (int y = 0; y < image.height; ++y) {
+    const float* row = image.at(0, y);
+    for (int x = 0; x < image.width; ++x)
+      if (row[static_cast<std::size_t>(x) * static_cast<std::size_t>(image.channels) + 3] != 1) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 BuildContext context_of(const Picture& picture) {
@@ -44,6 +54,7 @@ Result<PreparedStack> PreparedStack::create(Device& device, const std::filesyste
   options.choice = variant.choice;
   options.flag_non_finite = variant.watch;
   options.preset.overrides.insert(options.preset.overrides.end(), variant.overrides.begin(), variant.overrides.end());
+  options.skip_idle = options.skip_idle && is_opaque(picture.color);  // or the program would take it for such
   AFTERGLOW_TRY(out.stack_, Stack::load(preset, options, diagnostics));
   out.stack_->use(device, true);
   AFTERGLOW_CHECK(out.stack_->prepare(context_of(picture), variant.encoding));

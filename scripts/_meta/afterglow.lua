@@ -8,6 +8,9 @@
 ---@field enabled? boolean   false: left out, default true
 ---@field required? boolean  true: a missing input (depth, normal) is an error, default false
 ---@field name? string       how messages and --set call it, default: the effect's name
+---@field opacity? number|afterglow.Moving  how much of the result counts, 0…1; at 0 the effect does not run, default 1
+---@field blend? "normal"|"add"|"screen"|"multiply"|"overlay"|"soft_light"|"lighten"|"darken"  how it is put over what the effect was given
+---@field mask? afterglow.Mask|number  where it counts, default everywhere
 
 ---Long horizontal flares from bright lights, as of an anamorphic lens.
 ---@class afterglow.settings.anamorphic_streaks : afterglow.EntryKeys

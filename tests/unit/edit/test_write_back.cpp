@@ -107,6 +107,11 @@ TEST_F(WriteBack, ColoursStayHexWhereTheyCan) {
             "fx.glow { tint = '#8000FF' }");
   EXPECT_EQ(inside("fx.glow { tint = \"#ffffff\" }", {{"glow", "tint", color(2, 0.5, 1)}}),
             "fx.glow { tint = { 2, 0.5, 1 } }");
+  // Over numbers, where it would be many digits.
+  EXPECT_EQ(inside("fx.glow { tint = { 0, 0, 0 } }", {{"glow", "tint", color(half, 0, 1)}}),
+            "fx.glow { tint = \"#8000ff\" }");
+  EXPECT_EQ(inside("fx.glow { tint = { 0.5, 0, 0 } }", {{"glow", "tint", color(1, 0, 1)}}),
+            "fx.glow { tint = { 1, 0, 1 } }");
 }
 
 TEST_F(WriteBack, NewSettingsFollowTheirNeighbours) {
