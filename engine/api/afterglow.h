@@ -203,7 +203,7 @@ AFTERGLOW_API afterglow_error *afterglow_stack_create(afterglow_device *device, 
 AFTERGLOW_API void afterglow_stack_free(afterglow_stack *stack);
 
 /* ---- settings -----------------------------------------------------------------------------------------------------
- * A setting is named "ENTRY.SETTING", as in "bloom.intensity". A value that was set stays over reloads, and stands
+ * A setting is named "ENTRY.SETTING", as in "glow.intensity". A value that was set stays over reloads, and stands
  * above what the preset says, also over curves and volumes. One thread at a time, for all functions below. */
 
 /* The entries in the order of execution with their settings, as JSON:

@@ -2,7 +2,7 @@
 //
 //   afterglow::Device device;
 //   afterglow::Stack stack(device, "look.lua");
-//   stack.set("bloom.intensity", 0.4);
+//   stack.set("glow.intensity", 0.4);
 //   stack.run(afterglow::image(pixels.data(), width, height), afterglow::image(pixels.data(), width, height));
 //
 // Threads: as afterglow.h says of the functions of the same names. Everything is inline: this header only needs the

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-
 namespace afterglow::api {
 
 Result<void> SharedDevice::open(const DeviceOptions& options, const std::filesystem::path& cache_folder) {
@@ -72,27 +71,37 @@ Result<void> Backend::reload(const std::optional<std::string>& text) {
 /// What was prepared may be of a stack that is no more.
 void Backend::forget() {
   prepared_ = false;
+  build_.reset();
   last_ = {};
-  clamped_ = 0;
 }
 
 Result<void> Backend::prepare(const Shape& shape) {
   forget();
-  AFTERGLOW_CHECK(source_->prepare(shape));
+  AFTERGLOW_TRY(build_, source_->evaluate(shape));
+  AFTERGLOW_CHECK(source_->stack().prepare(request_for(build_, shape.encoding, shape.region)));
+  skipped_ = source_->stack().skipped();
   prepared_ = true;
   return {};
 }
 
 Result<void> Backend::run(const Shape& shape, const std::map<std::string, HostImage>& inputs, HostResult& result) {
   forget();
-  AFTERGLOW_TRY(RenderRequest request, source_->request(shape));
+  clamped_ = 0;
+  AFTERGLOW_TRY(build_, source_->evaluate(shape));
+  Stack& stack = source_->stack();
+  AFTERGLOW_TRY(RenderRequest request, stack.request(request_for(build_, shape.encoding, shape.region)));
+  const bool runs = request.work.runs();
+  if (!runs) {
+    AFTERGLOW_CHECK(stack.programs()->prepare(std::move(request.work), stack.shaders()));
+    request = {};  // the result is the source
+  }
   request.inputs = inputs;
-  if (options_.time_kernels)
-    request.timing =
-        device_->device->timestamps_mean_draws() ? KernelTiming::timestamps : KernelTiming::submissions;
+  if (runs && options_.time_kernels)
+    request.timing = device_->device->timestamps_mean_draws() ? KernelTiming::timestamps : KernelTiming::submissions;
   AFTERGLOW_TRY(last_, renderer_->render(std::move(request), result));
-  prepared_ = true;
+  skipped_ = stack.skipped();
   clamped_ = result.clamped;
+  prepared_ = true;
   return {};
 }
 
@@ -112,11 +121,12 @@ Result<void> Backend::record(VkCommandBuffer commands) {
   stack.record(commands);
   last_.kernels.clear();
   for (const auto& kernel : stack.program()->plan().kernels) last_.kernels.push_back(kernel.name);
+  last_.memory = stack.program()->memory();
   return {};
 }
 
 BackendReport Backend::report() const {
-  Stack& stack = source_->stack();
+  const Stack& stack = source_->stack();
   BackendReport out;
   out.preset = options_.preset.string();
   out.device = device_->device->info().name;
@@ -124,9 +134,9 @@ BackendReport Backend::report() const {
   out.choice_from = stack.choice().from;
   out.max_error = stack.choice().max_error;
   out.kernels = last_.kernels;
-  out.skipped = stack.skipped();
+  out.skipped = skipped_;
   out.skipped.insert(out.skipped.end(), last_.skipped.begin(), last_.skipped.end());
-  if (const Program* program = stack.program()) out.memory = program->memory();
+  out.memory = last_.memory;
   out.clamped = clamped_;
   out.script = stack.script_milliseconds();
   out.compile = stack.compile_milliseconds();

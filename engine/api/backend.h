@@ -12,8 +12,9 @@
 #include <vector>
 
 #include "core/diagnostics.h"
+#include "exec/renderer.h"
 #include "gpu/device.h"
-#include "script/preset.h"
+#include "script/build.h"
 #include "session/stack.h"
 
 namespace afterglow::api {
@@ -58,10 +59,8 @@ class Source {
   virtual Result<void> set(const std::vector<Override>& overrides) = 0;
   virtual Result<bool> update() = 0;
   virtual Result<void> reload(const std::optional<std::string>& text) = 0;
-  /// For the caller's command buffers.
-  virtual Result<void> prepare(const Shape& shape) = 0;
-  /// For a Renderer: what to run, without the pictures.
-  virtual Result<RenderRequest> request(const Shape& shape) = 0;
+  /// What the preset says about the frame; edits that have to be waited for are taken first.
+  virtual Result<std::shared_ptr<const Build>> evaluate(const Shape& shape) = 0;
 };
 Result<std::unique_ptr<Source>> load_source(SharedDevice& device, const BackendOptions& options,
                                             Diagnostics& diagnostics);
@@ -89,8 +88,9 @@ class Backend {
   const BackendOptions& options() const { return options_; }
   Diagnostics& diagnostics() { return diagnostics_; }
   Preset& preset() const { return source_->stack().preset(); }
-  /// What was prepared or run last; null before it.
-  const std::shared_ptr<const Build>& build() const { return source_->stack().build(); }
+  /// As they are in the frame that was prepared last; before there is one, for no frame in particular.
+  const std::vector<StackEntry>& entries() const { return build_ ? *build_->entries : preset().entries(); }
+  const Explanation& explanation() const { return build_ ? *build_->explanation : preset().explanation(); }
 
   /// One more override; one of the same name goes. Errors: usage, script: then the ones before stay.
   Result<void> set(const Override& one);
@@ -124,6 +124,8 @@ class Backend {
   std::unique_ptr<Renderer> renderer_;  // first to go: it waits for what is in flight
   bool prepared_ = false, bound_ = false;
   // Of the last frame.
+  std::shared_ptr<const Build> build_;
+  std::vector<Skipped> skipped_;
   FrameReport last_;
   std::uint64_t clamped_ = 0;
 };

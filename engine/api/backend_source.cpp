@@ -7,11 +7,6 @@
 namespace afterglow::api {
 namespace {
 
-Result<RenderRequest> request_of(Stack& stack, const Shape& shape) {
-  AFTERGLOW_TRY(auto build, stack.evaluate(shape.context));
-  return stack.request(request_for(std::move(build), shape.encoding, shape.region));
-}
-
 /// Loaded in the caller's thread, whenever it asks.
 class Loaded : public Source {
  public:
@@ -21,9 +16,10 @@ class Loaded : public Source {
   Result<void> load(const StackOptions& wanted) {
     AFTERGLOW_TRY(auto later, Stack::load(options_.preset, wanted, diagnostics_));
     later->use(*device_.device, !options_.commands);
-    const bool same_way = stack_ && stack_->choice().execution == later->choice().execution &&
-                          stack_->choice().max_error == later->choice().max_error;
-    if (same_way) later->take_over(*stack_, true);  // programs stay
+    if (stack_) {
+      const StackChoice &before = stack_->choice(), &now = later->choice();
+      later->take_over(*stack_, before.execution == now.execution && before.max_error == now.max_error);
+    }
     stack_ = std::move(later);
     options_.stack = wanted;
     return {};
@@ -41,10 +37,7 @@ class Loaded : public Source {
     if (text) wanted.preset.text = *text;
     return load(wanted);
   }
-  Result<void> prepare(const Shape& shape) override {
-    return stack_->prepare(shape.context, shape.encoding, shape.region);
-  }
-  Result<RenderRequest> request(const Shape& shape) override { return request_of(*stack_, shape); }
+  Result<std::shared_ptr<const Build>> evaluate(const Shape& shape) override { return stack_->evaluate(shape.context); }
 
  private:
   SharedDevice& device_;
@@ -97,21 +90,7 @@ class Followed : public Source {
     return settle();
   }
 
-  Result<void> prepare(const Shape& shape) override {
-    Stack& stack = stack_for(shape);
-    auto prepared = stack.prepare(shape.context, shape.encoding, shape.region);
-    live_->also_follow(stack.preset().looked_at());
-    return prepared;
-  }
-  Result<RenderRequest> request(const Shape& shape) override {
-    Stack& stack = stack_for(shape);
-    auto request = request_of(stack, shape);
-    live_->also_follow(stack.preset().looked_at());
-    return request;
-  }
-
- private:
-  Stack& stack_for(const Shape& shape) {
+  Result<std::shared_ptr<const Build>> evaluate(const Shape& shape) override {
     const bool new_shape = !context_ || context_->size != shape.context.size ||
                            context_->auxiliary != shape.context.auxiliary || encoding_ != shape.encoding;
     context_ = shape.context;
@@ -121,8 +100,12 @@ class Followed : public Source {
       live_->settle();
       if (live_->update()) tell_warnings();
     }
-    return *live_->stack();
+    AFTERGLOW_TRY(auto build, live_->stack()->evaluate(shape.context));
+    live_->also_follow(build->files);
+    return build;
   }
+
+ private:
   Result<void> settle() {
     live_->settle();
     if (live_->update()) tell_warnings();

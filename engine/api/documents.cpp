@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "script/explanation.h"
-#include "script/setting_json.h"
 
 namespace afterglow::api {
 namespace {
@@ -47,13 +46,13 @@ std::string device_document(const Device& device) {
                      {"validation_messages", device.validation_messages()}});
 }
 
-std::string settings_document(const Preset& preset) {
+std::string settings_document(const Backend& backend) {
   Json out = Json::array();
-  for (const auto& entry : preset.entries()) {
+  for (const auto& entry : backend.entries()) {
     Json item{{"name", entry.name},       {"effect", entry.effect}, {"at", entry.at},    {"order", entry.order},
               {"enabled", entry.enabled}, {"file", entry.file},     {"line", entry.line}};
     item["settings"] = Json::array();
-    const EffectSchema& schema = preset.schema(entry.effect);
+    const EffectSchema& schema = backend.preset().schema(entry.effect);
     for (const auto& declared : schema.settings) {
       Json setting = setting_json(declared);
       const auto found = std::ranges::find(entry.settings, declared.name, [](const auto& pair) { return pair.first; });
@@ -65,14 +64,15 @@ std::string settings_document(const Preset& preset) {
   return dumped(out);
 }
 
-std::string explain_document(const Preset& preset, const std::vector<Skipped>& skipped) {
-  const Explanation& explanation = preset.explanation();
-  Json out{{"name", preset.name()}};
+std::string explain_document(const Backend& backend) {
+  const Explanation& explanation = backend.explanation();
+  const std::vector<Skipped> skipped = backend.report().skipped;
+  Json out{{"name", backend.preset().name()}};
   if (explanation.position) out["position"] = {{"at", *explanation.position}, {"from", explanation.position_from}};
   out["volumes"] = Json::array();
   for (const auto& volume : explanation.volumes) out["volumes"].push_back(volume_json(volume));
   out["entries"] = Json::array();
-  const auto& entries = preset.entries();
+  const auto& entries = backend.entries();
   for (std::size_t i = 0; i < entries.size(); ++i) {
     Json item{{"name", entries[i].name}, {"effect", entries[i].effect}};
     const auto reason = std::ranges::find(skipped, entries[i].name, &Skipped::name);

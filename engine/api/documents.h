@@ -8,9 +8,8 @@
 namespace afterglow::api {
 
 std::string device_document(const Device& device);
-std::string settings_document(const Preset& preset);
-/// `skipped`: effects and passes of the last frame.
-std::string explain_document(const Preset& preset, const std::vector<Skipped>& skipped);
+std::string settings_document(const Backend& backend);
+std::string explain_document(const Backend& backend);
 std::string report_document(const BackendReport& report, std::uint64_t mended);
 
 }  // namespace afterglow::api

@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "api/call.h"
-#include "exec/convert.h"
-#include "exec/half.h"
+#include "core/half.h"
 #include "gpu/image.h"
-#include "image/color_encoding.h"
 #include "image/encode.h"
+#include "image/picture.h"
 #include "image/srgb.h"
 
 namespace afterglow::api {
@@ -84,9 +83,8 @@ void read_color(const Pixels& p, int y, float* row, Mended& mended) {
   if (p.samples == AFTERGLOW_UINT8) return decode_codes(p, y, row);
   read_floats(p, y, row);
   if (p.channels == 3) add_alpha(row, p.size.width);
-  static const ColorEncoding kLinear{.alpha = AlphaKind::associated};
   SanitizeCounts counts;
-  decode_color(kLinear, row, static_cast<std::size_t>(p.size.width), counts);
+  sanitize_color(row, static_cast<std::size_t>(p.size.width), counts);
   if (const auto sum = total(counts)) mended += sum;
 }
 
@@ -179,7 +177,8 @@ std::uint64_t write_row(const ResultRules& rules, int x, int y, int width, VkFor
   if (format == VK_FORMAT_R32G32B32A32_SFLOAT)
     return write_floats(rules, x, y, width, reinterpret_cast<const float*>(from));
   floats.resize(static_cast<std::size_t>(width) * 4);
-  const std::uint64_t held = unpack_row(from, format, width, floats.data());
+  const std::uint64_t held =
+      floats_from_halves(reinterpret_cast<const std::uint16_t*>(from), floats.size(), floats.data());
   for (int i = 0; i < width; ++i) floats[static_cast<std::size_t>(i) * 4 + 3] = alpha_at(rules.source, x + i, y);
   return held + write_floats(rules, x, y, width, floats.data());
 }

@@ -21,7 +21,13 @@ Result<Override> override_of(afterglow_string name, const std::string& value) {
 Result<void> set(afterglow_stack* stack, const char* function, afterglow_string name, const std::string& value) {
   AFTERGLOW_TRY(Backend * backend, backend_of(stack, function));
   AFTERGLOW_TRY(const Override one, override_of(name, value));
-  return backend->set(one);
+  auto done = backend->set(one);
+  if (done) return done;
+  // The engine speaks to users of the command line.
+  Error error = std::move(done).error();
+  constexpr std::string_view kOption = "--set ";
+  if (error.message.starts_with(kOption)) error.message.erase(0, kOption.size());
+  return error;
 }
 
 Result<std::string> number(double value) {
@@ -33,7 +39,7 @@ Result<std::string> number(double value) {
 Result<SettingValue> value_of(const afterglow_stack* stack, const char* function, afterglow_string name) {
   AFTERGLOW_TRY(Backend * backend, backend_of(stack, function));
   AFTERGLOW_TRY(const Override parts, override_of(name, "0"));
-  const auto& entries = backend->preset().entries();
+  const auto& entries = backend->entries();
   std::vector<std::string> names;
   for (const auto& entry : entries) names.push_back(entry.name);
   const auto entry = std::ranges::find(entries, parts.entry, &StackEntry::name);
@@ -90,7 +96,7 @@ using namespace afterglow::api;
 afterglow_error* afterglow_stack_settings(const afterglow_stack* stack, afterglow_text** out) {
   return call([&]() -> Result<void> {
     AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_settings"));
-    return give(settings_document(backend->preset()), out, "afterglow_stack_settings");
+    return give(settings_document(*backend), out, "afterglow_stack_settings");
   });
 }
 

@@ -212,7 +212,7 @@ afterglow_error* afterglow_stack_reload(afterglow_stack* stack, afterglow_string
 afterglow_error* afterglow_stack_explain(const afterglow_stack* stack, afterglow_text** out) {
   return call([&]() -> Result<void> {
     AFTERGLOW_TRY(Backend * backend, backend_of(stack, "afterglow_stack_explain"));
-    return give(explain_document(backend->preset(), backend->report().skipped), out, "afterglow_stack_explain");
+    return give(explain_document(*backend), out, "afterglow_stack_explain");
   });
 }
 

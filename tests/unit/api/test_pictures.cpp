@@ -3,7 +3,7 @@
 #include <cstring>
 #include <limits>
 
-#include "exec/half.h"
+#include "core/half.h"
 #include "fixture.h"
 #include "image/color_encoding.h"
 #include "session/session.h"

@@ -93,6 +93,7 @@ TEST_F(SettingsTest, WhatIsNotAllowedIsRefusedAndChangesNothing) {
   const ErrorPtr name(afterglow_stack_set_number(stack_.get(), str("gain.amonut"), 1));
   EXPECT_EQ(afterglow_error_get_kind(name.get()), AFTERGLOW_ERROR_USAGE);
   EXPECT_EQ(str(afterglow_error_get_nearest(name.get())), "amount");
+  EXPECT_THAT(text_of(name.get()), testing::StartsWith("error: gain.amonut: "));
   const ErrorPtr range(afterglow_stack_set_number(stack_.get(), str("gain.amount"), -1));
   EXPECT_EQ(afterglow_error_get_kind(range.get()), AFTERGLOW_ERROR_USAGE);
   EXPECT_FALSE(str(afterglow_error_get_allowed(range.get())).empty());

@@ -1,4 +1,4 @@
-"""Afterglow finishes rendered pictures: bloom, tone mapping, colour, outlines.
+"""Afterglow finishes rendered pictures: glow, tone mapping, colour, outlines.
 
     import afterglow
     stack = afterglow.Stack("look.lua")

@@ -83,7 +83,7 @@ class Stack:
         a new array is undefined."""
 
     def set(self, name: str, value: _Value) -> None:
-        """Sets ENTRY.SETTING, as in "bloom.intensity". Text is read as on the command line."""
+        """Sets ENTRY.SETTING, as in "glow.intensity". Text is read as on the command line."""
 
     def unset(self, name: Optional[str] = None) -> None: ...
     def get(self, name: str) -> Any: ...
