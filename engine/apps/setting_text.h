@@ -4,7 +4,7 @@
 #include <string>
 
 #include "script/preset.h"
-#include "script/setting_json.h"
+#include "script/explanation.h"
 
 namespace afterglow {
 

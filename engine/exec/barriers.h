@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "gpu/device.h"
-#include "gpu/vulkan.h"
 #include "graph/plan.h"
 
 namespace afterglow {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "gpu/vulkan.h"
+#include "gpu/device.h"
 
 namespace afterglow {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "exec/frame.h"
-#include "gpu/vulkan.h"
+#include "gpu/device.h"
 
 namespace afterglow {
 

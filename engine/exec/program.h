@@ -11,7 +11,6 @@
 #include "core/diagnostics.h"
 #include "core/result.h"
 #include "gpu/device.h"
-#include "gpu/vulkan.h"
 #include "graph/graph.h"
 #include "graph/plan.h"
 #include "graph/region.h"

@@ -56,6 +56,9 @@ struct Picture {
   std::shared_ptr<const FileFacts> facts;  ///< never null after reading; may be null for pictures made in memory
 };
 
+/// Makes RGBA of scene-linear light finite and its colours ≥ 0, as `SanitizeCounts` says, and counts that.
+void sanitize_color(float* rgba, std::size_t pixels, SanitizeCounts& counts);
+
 /// Fills in `content`. Whoever changes pixels afterwards has to clear it.
 void note_content(Picture& picture);
 

@@ -1,7 +1,8 @@
-// How the settings of a frame came about: what `afterglow explain` prints.
+// How the settings of a frame came about: what `afterglow explain` prints. Settings as JSON.
 #pragma once
 
 #include <array>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,5 +51,9 @@ struct Explanation {
   std::vector<VolumeState> volumes;   ///< in the order of blending
   std::vector<EntryHistory> entries;  ///< in the order of execution
 };
+
+const char* type_text(SettingType type);  ///< "int", "float", "bool", "enum", "color", "vec2", "vec3", "file"
+nlohmann::json value_json(const SettingValue& value);
+nlohmann::json setting_json(const SettingSchema& setting);
 
 }  // namespace afterglow

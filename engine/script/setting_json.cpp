@@ -1,6 +1,6 @@
-#include "script/setting_json.h"
-
 #include <nlohmann/json.hpp>
+
+#include "script/explanation.h"
 
 namespace afterglow {
 
