@@ -121,6 +121,9 @@ fx.curve = core.curve
 ---Declares an effect; its file effects/NAME.lua returns it.
 --- - `at` injection point: "after_opaque_and_sky", "before_post_process", "post_process" (default), "after_post_process"
 --- - `order` integer, default 0: place among the effects of that point, smaller first
+--- - `space` what light the effect is made for: "scene" (scene-linear, no upper end), "display" (display-linear, 0 to 1), or
+---   { needs = …, makes = … } where it makes the other, as a tone curve does; a function of the settings may return these. `check` warns of
+---   entries that get other light. Default: any.
 --- - `settings` names and their types, in the order in which people see them
 --- - `active(s)` false when the settings make the effect an identity, with the reason as second value
 --- - `needs`, `optional` auxiliary inputs ("depth", "normal", "motion"), or a function of the settings that returns them. Without a
@@ -131,7 +134,7 @@ fx.curve = core.curve
 ---   `NAME = { when = function(s, source) … end, … }`; docs/writing_effects.md lists them. Nothing else relies on it.
 --- - `build(g, s, source)` describes the passes with `g` and returns the image that replaces `source`
 ---Errors: unknown or missing keys, wrong types, unknown injection point or input.
----@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, settings?: table<string, afterglow.SettingType>, active?: (fun(s: table): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image): { brightest: number }?), holds?: table, build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
+---@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, space?: "scene"|"display"|{ needs?: "scene"|"display", makes?: "scene"|"display" }|(fun(s: table): any), settings?: table<string, afterglow.SettingType>, active?: (fun(s: table): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image): { brightest: number }?), holds?: table, build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
 fx.effect = core.effect
 
 ---An integer from `min` to `max` (both included, both optional). 4.0 is one, 4.5 is not. `unit` is for people: "px", "EV".

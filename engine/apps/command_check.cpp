@@ -10,6 +10,7 @@
 #include "apps/json_text.h"
 #include "apps/look.h"
 #include "apps/setting_text.h"
+#include "apps/space_text.h"
 #include "apps/table.h"
 #include "core/printable.h"
 #include "script/explanation.h"
@@ -40,8 +41,11 @@ std::string origin_text(const SettingHistory& setting) {
 }
 
 std::string entry_text(const Look& look, const StackEntry& entry, std::size_t place) {
-  std::string out = fmt::format("{}. {}  at {}, order {}{}{}\n", place, entry.name, entry.at, entry.order,
-                                entry.required ? ", required" : "", entry.enabled ? "" : ", not enabled");
+  const EntrySpace& space = look.spaces[place - 1];
+  std::string out = fmt::format("{}. {}  at {}, order {}; {}{}{}\n", place, entry.name, entry.at, entry.order,
+                                space_text(space), entry.required ? "; required" : "",
+                                entry.enabled ? "" : "; not enabled");
+  if (!space.warning.empty()) out += fmt::format("   warning: {}\n", space.warning);
   if (const auto* reason = skip_reason(look, entry)) out += fmt::format("   skipped: {}\n", *reason);
   Table table;
   for (const auto& setting : look.preset->explanation().entries[place - 1].settings)
@@ -78,11 +82,13 @@ std::string as_text(const Look& look, const std::string& file, const std::vector
 
 std::string as_json(const Look& look, const std::string& file, const std::vector<std::string>& shadows) {
   Json out{{"file", file}, {"name", look.preset->name()}, {"entries", Json::array()}};
-  for (const auto& entry : look.preset->entries()) {
+  for (std::size_t i = 0; i < look.preset->entries().size(); ++i) {
+    const auto& entry = look.preset->entries()[i];
     Json item{{"name", entry.name},   {"effect", entry.effect},   {"at", entry.at},
               {"order", entry.order}, {"enabled", entry.enabled}, {"required", entry.required}};
     for (const auto& [name, value] : entry.settings) item["settings"][name] = Json(value_json(value));
     item["changed"] = entry.changed;
+    item["light"] = space_json(look.spaces[i]);
     if (const auto* reason = skip_reason(look, entry)) item["skipped"] = *reason;
     out["entries"].push_back(std::move(item));
   }

@@ -31,9 +31,9 @@ struct RunArguments {
   ExecutionArguments execution;
   FrameListRequest files;
   std::string layer, depth, normal, motion, size, region;
-  std::string type = "auto", compression, nan_policy = "zero";
+  std::string type = "auto", dither = "auto", compression, nan_policy = "zero";
   int png_level = 1, jpeg_quality = 95;
-  bool dither = false, keep_layers = false, resume = false, fail_fast = false;
+  bool keep_layers = false, resume = false, fail_fast = false;
   double fps = 24;
   std::optional<int> pre_roll;
   std::string stats, report, lock, locked;
@@ -111,7 +111,12 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->check(CLI::Range(1, 100))
       ->type_name("N")
       ->group(output);
-  app.add_flag("--dither", a.dither, "Ordered noise before rounding to integers; the same every time")->group(output);
+  app.add_option("--dither", a.dither,
+                 "auto, blue or none: blue noise between two codes, the same every time; none rounds to the nearest (auto: "
+                 "blue into 8 bits)")
+      ->check(CLI::IsMember({"auto", "blue", "none"}))
+      ->type_name("NOISE")
+      ->group(output);
   app.add_flag("--keep-layers", a.keep_layers, "EXR to EXR: copy all other channels and parts unchanged")
       ->group(output);
 }
@@ -167,7 +172,7 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--compression", a.compression},
           {"--png-level", fmt::format("{}", a.png_level)},
           {"--jpeg-quality", fmt::format("{}", a.jpeg_quality)},
-          {"--dither", flag(a.dither)},
+          {"--dither", a.dither},
           {"--keep-layers", flag(a.keep_layers)}};
 }
 
@@ -206,7 +211,7 @@ WriteOptions write_options(const RunArguments& a) {
   options.compression = a.compression;
   options.png_level = a.png_level;
   options.jpeg_quality = a.jpeg_quality;
-  options.dither = a.dither;
+  if (a.dither != "auto") options.dither = a.dither == "blue";
   options.keep_layers = a.keep_layers;
   return options;
 }

@@ -21,6 +21,7 @@ Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& a
   AFTERGLOW_TRY(const BuildContext context, assumed.context(*look.preset));
   AFTERGLOW_TRY(look.graph, look.preset->build(context, console.diagnostics()));
   AFTERGLOW_CHECK(validate(look.graph));
+  AFTERGLOW_TRY(look.spaces, look.preset->spaces());
   look.plan = make_plan(look.graph, {});
   if (!assumed.region.empty()) {
     AFTERGLOW_TRY(const Rect region, parse_region(assumed.region));
@@ -81,7 +82,7 @@ std::vector<Error> shader_errors(const Look& look) {
   // The last kernel once more, as it is for display files without and with transparency.
   for (const bool straight : {false, true}) {
     Graph graph = look.graph;
-    encode_for_display(graph, {.straight_alpha = straight});
+    encode_for_display(graph, {.straight_alpha = straight, .dither = true});
     DescribeOptions options = kAssumed;
     options.codes = true;
     const Plan plan = make_plan(graph, {});

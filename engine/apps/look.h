@@ -15,6 +15,7 @@ struct Look {
   std::unique_ptr<ShaderLibrary> shaders;
   std::unique_ptr<Preset> preset;
   Graph graph;
+  std::vector<EntrySpace> spaces;  ///< of the preset's entries
   Plan plan;  ///< as `run` would make it
 };
 

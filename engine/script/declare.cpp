@@ -10,6 +10,7 @@
 #include "script/injection.h"
 #include "script/object.h"
 #include "script/setting.h"
+#include "script/space.h"
 #include "script/table_reader.h"
 
 namespace afterglow::script {
@@ -229,7 +230,7 @@ int declare_effect(lua_State* lua) {
   if (!runtime.declaring) throw failure("fx.effect can only be used while a script loads");
   if (runtime.effects.size() >= kMaxDeclared) throw failure(fmt::format("more than {} effects", kMaxDeclared));
   TableReader table(lua, 1, "fx.effect");
-  table.allow({"active", "at", "build", "doc", "holds", "idle", "name", "needs", "optional", "order", "settings"},
+  table.allow({"active", "at", "build", "doc", "holds", "idle", "name", "needs", "optional", "order", "settings", "space"},
               false);
   Effect effect;
   EffectSchema& schema = effect.schema;
@@ -244,6 +245,7 @@ int declare_effect(lua_State* lua) {
     table.fail(failure(fmt::format("fx.effect: unknown injection point '{}'", tidy_message(schema.at, 60)), {"at"},
                        join(injection_points()), nearest_name(schema.at, injection_points())));
   schema.order = table.integer("order").value_or(0);
+  read_space(lua, table, effect);
   read_settings(lua, table, schema);
   read_holds(lua, table, effect);
   effect.active = read_function(lua, table, "active", false);

@@ -13,6 +13,7 @@
 #include "script/object.h"
 #include "script/overrides.h"
 #include "script/resolve.h"
+#include "script/space.h"
 
 namespace afterglow {
 
@@ -232,6 +233,14 @@ Result<std::vector<Hold>> Preset::holds(const std::string& entry, Size size) {
     for (const auto& run : state.runs)
       if (run.entry.name == entry) out = holds_of(lua, run, size);
   });
+  if (error) return std::move(*error);
+  return out;
+}
+
+Result<std::vector<EntrySpace>> Preset::spaces() {
+  State& state = *state_;
+  std::vector<EntrySpace> out;
+  auto error = state.runtime->box->run(state.file, [&](lua_State* lua) { out = trace_spaces(lua, state.runs); });
   if (error) return std::move(*error);
   return out;
 }

@@ -59,9 +59,30 @@ struct HoldSchema {
   bool conditional = false;           ///< holds for some settings or sizes alone
 };
 
+/// What the numbers of a colour mean: light of a scene, which has no upper end, or light of a display, 0…1. Both linear.
+enum class LightSpace { any, scene, display };
+/// "scene-linear", "display-linear", "any".
+const char* space_name(LightSpace space);
+
+/// What light an effect is made for, and what it makes of it.
+struct SpaceUse {
+  LightSpace needs = LightSpace::any;  ///< any: whatever comes
+  LightSpace makes = LightSpace::any;  ///< any: what came
+};
+
+/// The light in which an entry of a stack runs.
+struct EntrySpace {
+  SpaceUse use;                           ///< with the entry's settings
+  LightSpace before = LightSpace::scene;  ///< what it gets
+  LightSpace behind = LightSpace::scene;  ///< what the next one gets
+  std::string warning;                    ///< why it stands in the wrong place; empty: it does not
+};
+
 struct EffectSchema {
   std::string name, doc, at;
   int order = 0;
+  SpaceUse space;                       ///< where it is the same for all settings
+  bool space_by_settings = false;       ///< it depends on settings
   std::vector<SettingSchema> settings;  ///< in order of declaration
   std::vector<HoldSchema> holds;        ///< what it promises
   std::filesystem::path file;
@@ -137,6 +158,8 @@ class Preset {
   bool may_change() const;
   /// How the settings of the last build came about.
   const Explanation& explanation() const;
+  /// The light in which each entry runs, in the order of execution, with the settings of the last build.
+  Result<std::vector<EntrySpace>> spaces();
   /// What the entry's effect promises for pictures of this size with the settings of the last build.
   Result<std::vector<Hold>> holds(const std::string& entry, Size size);
   /// Names of auxiliary inputs that enabled, active effects ask for; where settings may change, those that they could

@@ -39,7 +39,7 @@ struct DeclaredHold {
 struct Effect {
   EffectSchema schema;
   std::vector<DeclaredHold> holds;  ///< parallel to the schema's
-  FunctionRef active, build, idle;
+  FunctionRef active, build, idle, space;
   InputList needs, optional;
 };
 

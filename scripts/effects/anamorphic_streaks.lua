@@ -10,7 +10,7 @@ local function gain(s) return s.intensity * math.max(s.tint[1], s.tint[2], s.tin
 return fx.effect {
   name = "anamorphic_streaks",
   doc = "Long horizontal flares from bright lights, as of an anamorphic lens.",
-  at = "post_process", order = 110,
+  at = "post_process", order = 110, space = "scene",
   settings = {
     threshold = fx.float { min = 0, max = 1e6, default = 2, doc = "Brightness (largest channel) from which light streaks; linear." },
     stretch = fx.float { min = 0, max = 1, default = 0.75, doc = "Length of the streaks: the share that each level takes from the coarser one." },

@@ -75,7 +75,7 @@ local function scatters(s) return s.mode == "scattering" end
 return fx.effect {
   name = "bloom",
   doc = "Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.",
-  at = "post_process", order = 100,
+  at = "post_process", order = 100, space = "scene",
   settings = {
     mode = fx.enum { "additive", "scattering", default = "additive",
       doc = "additive: glow is added, the picture gets brighter. scattering: light is spread as in a lens, its sum stays." },

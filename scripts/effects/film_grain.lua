@@ -5,7 +5,7 @@ local fx = require "afterglow"
 return fx.effect {
   name = "film_grain",
   doc = "Grain of film: fine noise, new in each frame; best after tone mapping.",
-  at = "after_post_process", order = 140,
+  at = "after_post_process", order = 140, space = "display",
   settings = {
     intensity = fx.float { min = 0, max = 1, default = 0.3, doc = "Strength; at 1 the grain of blacks is a quarter of their light. 0: none." },
     response = fx.float { min = 0, max = 1, default = 0.8, doc = "How much less grain there is in bright places: 0 equally much, 1 none in white." },

@@ -5,7 +5,7 @@ local fx = require "afterglow"
 return fx.effect {
   name = "fxaa",
   doc = "Fast approximate anti-aliasing: smooths jagged edges; after tone mapping.",
-  at = "after_post_process", order = 110,
+  at = "after_post_process", order = 110, space = "display",
   settings = {
     fixed_threshold = fx.float { min = 0.0312, max = 0.0833, default = 0.0833, doc = "Contrast of luma below which nothing is done." },
     relative_threshold = fx.float { min = 0.063, max = 0.333, default = 0.166, doc = "The same as a share of the brightest neighbour." },

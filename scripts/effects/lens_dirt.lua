@@ -5,7 +5,7 @@ local fx = require "afterglow"
 return fx.effect {
   name = "lens_dirt",
   doc = "Dust on the lens that lights up around bright lights.",
-  at = "post_process", order = 120,
+  at = "post_process", order = 120, space = "scene",
   settings = {
     intensity = fx.float { min = 0, max = 100, default = 1, doc = "Factor of the light that the dirt scatters. 0: none." },
     threshold = fx.float { min = 0, max = 1e6, default = 1, doc = "Brightness (largest channel) from which light shows the dirt; linear." },

@@ -8,7 +8,7 @@ local fx = require "afterglow"
 return fx.effect {
   name = "motion_blur",
   doc = "Blurs what moves, by motion vectors.",
-  at = "post_process", order = 20,
+  at = "post_process", order = 20, space = "scene",
   settings = {
     shutter_angle = fx.float { min = 0, max = 720, default = 180, unit = "degrees", doc = "How long the shutter is open: 360 is the whole frame. 0: no blur." },
     samples = fx.int { min = 3, max = 128, default = 24, doc = "Reads for each pixel that moves: more are smoother, and dearer." },

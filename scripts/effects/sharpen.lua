@@ -5,7 +5,7 @@ local fx = require "afterglow"
 return fx.effect {
   name = "sharpen",
   doc = "Contrast-adaptive sharpening of fine detail; best after tone mapping.",
-  at = "after_post_process", order = 120,
+  at = "after_post_process", order = 120, space = "display",
   settings = {
     intensity = fx.float { min = 0, max = 1, default = 0.6, doc = "Share of the sharpened picture. 0: none." },
     contrast = fx.float { min = 0, max = 1, default = 0, doc = "How much is sharpened: 0 CAS at its softest, 1 at its strongest." },
