@@ -35,6 +35,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field frame number  number of the picture in its sequence, from 1
 ---@field time number   seconds
 ---@field fps number    pictures per second
+---@field length_scale number  pixels of the picture for each pixel that settings in px are given in: below 1 in previews
 ---@field frame_time number  seconds since the frame before, which histories hold
 ---@field pass fun(self: afterglow.Graph, pass: afterglow.Pass): afterglow.Image          runs a shader
 ---@field filter fun(self: afterglow.Graph, pass: afterglow.FilterPass): afterglow.Image  resamples an image
@@ -88,9 +89,10 @@ local fx = {}
 
 ---Makes the stack that a preset returns. Effects run by injection point, then `order`, then position in the list.
 ---`max_error` is the error that the executor may make for the sake of speed, by |x − exact| / (|exact| + 0.01).
+---`reference_height` makes lengths resolution-free: settings in px are pixels of a picture of that height, whatever is run.
 ---`position` says where the picture is seen from, for volumes; `--at` goes before it.
 ---Errors: other keys, positions that hold neither an effect nor a volume, two entries of one name.
----@type fun(stack: { name?: string, max_error?: number, position?: number[]|afterglow.Moving, [integer]: afterglow.Entry|afterglow.Volume }): afterglow.Stack
+---@type fun(stack: { name?: string, max_error?: number, position?: number[]|afterglow.Moving, reference_height?: integer, [integer]: afterglow.Entry|afterglow.Volume }): afterglow.Stack
 fx.stack = core.stack
 
 ---The stack of another preset, found by name (beside this one, in `--path`, `AFTERGLOW_PATH`, the installation), with some of it

@@ -58,7 +58,8 @@ void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("--motion", a.motion, "Motion vectors from another file or layer; FILE may be a pattern")
       ->type_name("FILE[:LAYER]")
       ->group(input);
-  app.add_option("--size", a.size, "Scale the picture first, for a quick look")->type_name("WxH")->group(input);
+  app.add_option("--size", a.size, "Scale the picture first, for a quick look: 640x360, 640 (the width), x360, 50%; lengths scale with it")
+      ->type_name("SIZE")->group(input);
   app.add_option(
          "--nan-policy", a.nan_policy,
          "For values that are not finite, in pictures or made by passes: zero (default), neighbour (the mean of "
@@ -301,7 +302,7 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   run.loop.read.layer = a.layer;
   run.loop.read.max_bytes = options.stack.max_memory;
   if (!a.size.empty()) {
-    AFTERGLOW_TRY(run.loop.size, parse_size(a.size));
+    AFTERGLOW_TRY(run.loop.size, parse_size_wish(a.size));
     if (a.keep_layers)
       return Error{ErrorKind::usage, "--keep-layers copies layers as they are and cannot go with --size",
                    "afterglow run"};

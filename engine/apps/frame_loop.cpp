@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/crop.h"
 #include "apps/interrupt.h"
@@ -31,6 +32,7 @@ struct FrameLoop::Reading {
   bool pre_roll = false, restart = false;
   std::optional<Error> refused;  ///< by the header; nothing was read
   BuildContext context;
+  std::optional<Size> size;  ///< that the display window is scaled to
   std::optional<Rect> part;  ///< of the picture, when there is a region
   std::optional<DisplayEncoding> encoding;
   ReadOptions options;
@@ -136,14 +138,18 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   }
   const Size display = header->display_window.size();
   BuildContext& context = reading->context;
-  context.size =
-      options_.size ? scaled_size(header->data_window.size(), display, *options_.size) : header->data_window.size();
+  context.size = header->data_window.size();
+  if (options_.size) {
+    reading->size = options_.size->of(display);
+    context.size = scaled_size(header->data_window.size(), display, *reading->size);
+    context.length_scale = std::sqrt(double(reading->size->width) * reading->size->height / (double(display.width) * display.height));
+  }
   if (options_.region) {
     const Rect& data = header->data_window;
-    const Rect window = options_.size ? scaled_window(data, header->display_window, *options_.size) : data;
-    const Rect shown = options_.size ? Rect{header->display_window.x, header->display_window.y, options_.size->width,
-                                            options_.size->height}
-                                     : header->display_window;
+    const auto& size = reading->size;
+    const Rect window = size ? scaled_window(data, header->display_window, *size) : data;
+    const Rect shown =
+        size ? Rect{header->display_window.x, header->display_window.y, size->width, size->height} : header->display_window;
     const auto part = part_of_region(*options_.region, window, shown);
     if (!part) {
       reading->refused = named(part.error(), frame.job);
@@ -166,10 +172,10 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
     return reading;
   }
   overlap_ = total_ + pre_roll_ > 1 && need->three_frames() <= options_.max_memory;
-  reading->picture = std::async(std::launch::async, [this, &frame, options]() -> Result<Picture> {
+  reading->picture = std::async(std::launch::async, [this, &frame, options, size = reading->size]() -> Result<Picture> {
     const auto start = Clock::now();
     auto picture = read_picture(frame.job.input, options, console_.diagnostics());
-    if (picture && options_.size) scale_picture(*picture, *options_.size);
+    if (picture && size) scale_picture(*picture, *size);
     if (picture && options_.reuse && total_ + pre_roll_ > 1) note_content(*picture);
     frame.read = milliseconds_since(start);
     return picture;
@@ -232,7 +238,7 @@ Result<void> FrameLoop::make(Reading& reading, Picture& picture) {
 Result<Trace> FrameLoop::trace_again(const Reading& reading) {
   Diagnostics quiet;  // reading has said all there is to say
   AFTERGLOW_TRY(Picture source, read_picture(reading.frame->job.input, reading.options, quiet));
-  if (options_.size) scale_picture(source, *options_.size);
+  if (reading.size) scale_picture(source, *reading.size);
   return session_.trace(source, reading.context, reading.encoding, reading.part, options_.nan_policy);
 }
 

@@ -10,6 +10,7 @@
 #include "apps/console.h"
 #include "apps/non_finite_record.h"
 #include "apps/run_report.h"
+#include "apps/scale.h"
 #include "apps/schedule.h"
 #include "core/hash.h"
 #include "image/reader.h"
@@ -21,7 +22,7 @@ namespace afterglow {
 struct FrameLoopOptions {
   ReadOptions read;  ///< depth, normal and motion are those of each frame
   WriteOptions write;
-  std::optional<Size> size;    ///< display window to scale pictures to before the stack
+  std::optional<SizeWish> size;  ///< of the display window; pictures are scaled to it before the stack
   std::optional<Rect> region;  ///< part of the display window that is wanted
   bool reuse = true;           ///< pictures that were just run are not run again
   double fps = 24;

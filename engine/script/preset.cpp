@@ -24,6 +24,8 @@ struct Preset::State {
   ShaderLibrary* shaders = nullptr;
   std::string file, name;
   std::optional<double> max_error;
+  std::optional<int> reference_height;
+  double length_scale = 1;          // of the settings in `runs`
   std::vector<EntryRun> runs;       // in the order of execution
   std::vector<StackEntry> entries;  // the same
   std::vector<std::string> needs;
@@ -34,6 +36,7 @@ struct Preset::State {
 
   void load(lua_State* lua, const PresetOptions& options);
   void resolve(lua_State* lua, const BuildContext& context);
+  void scale_lengths(lua_State* lua, const BuildContext& context);
   void note_needs(lua_State* lua, const StackEntry*& current);
   ImageRef build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
                        Diagnostics& diagnostics);
@@ -83,6 +86,7 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   sort_entries(stack.entries);
   name = stack.name.empty() ? std::filesystem::path(file).stem().string() : stack.name;
   max_error = stack.max_error;
+  reference_height = stack.reference_height;
   for (auto& declared : stack.entries) {
     const auto& schema = runtime->effects[static_cast<std::size_t>(declared.effect)].schema;
     for (std::size_t i = 0; i < schema.settings.size(); ++i)
@@ -103,8 +107,16 @@ void Preset::State::resolve(lua_State* lua, const BuildContext& context) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (runs[i].settings_ref != LUA_NOREF && entries[i].settings == runs[i].entry.settings) continue;
     entries[i].settings = runs[i].entry.settings;
-    make_settings(lua, runs[i]);
+    make_settings(lua, runs[i], length_scale);
   }
+}
+
+// Lengths of this frame: what scripts read of settings in px follows.
+void Preset::State::scale_lengths(lua_State* lua, const BuildContext& context) {
+  const double scale = reference_height ? double(context.size.height) / *reference_height : context.length_scale;
+  if (scale == length_scale) return;
+  length_scale = scale;
+  for (auto& run : runs) make_settings(lua, run, length_scale);
 }
 
 void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
@@ -213,6 +225,8 @@ Result<Graph> Preset::build(const BuildContext& context, Diagnostics& diagnostic
   state.runtime->graph = &graph;
   box.diagnostics = &diagnostics;
   auto error = box.run(state.file, [&](lua_State* lua) {
+    state.scale_lengths(lua, context);
+    graph.scale_lengths(state.length_scale);
     if (state.may_change) state.resolve(lua, context);
     warn_without_position(state.explanation, diagnostics);
     for (const auto& run : state.runs) {

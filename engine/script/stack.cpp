@@ -108,6 +108,10 @@ void read_stack(lua_State* lua, TableReader& table, DeclaredStack& stack) {
   if (stack.max_error && *stack.max_error <= 0)
     table.fail(failure(fmt::format("{}: max_error = {} is out of range", table.what(), number_text(*stack.max_error)),
                        {"max_error"}, "> 0"));
+  if (const auto height = table.integer("reference_height")) stack.reference_height = height;
+  if (stack.reference_height && (*stack.reference_height < 1 || *stack.reference_height > 16384))
+    table.fail(failure(fmt::format("{}: reference_height = {} is out of range", table.what(), *stack.reference_height),
+                       {"reference_height"}, "1…16384"));
   read_position(lua, table, stack);
   read_items(lua, table, stack);
   if (!table.failed()) name_entries(table, stack);
@@ -122,7 +126,7 @@ void push_stack(lua_State* lua, DeclaredStack stack) {
 }
 
 const std::vector<std::string>& stack_keys() {
-  static const std::vector<std::string> keys{"max_error", "name", "position"};
+  static const std::vector<std::string> keys{"max_error", "name", "position", "reference_height"};
   return keys;
 }
 

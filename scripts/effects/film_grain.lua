@@ -16,8 +16,9 @@ return fx.effect {
   active = function(s) return s.intensity > 0, "intensity is 0" end,
   holds = { "black", error = 1e-5 },
   build = function(g, s, source)
-    local coarse = math.floor(s.size * 64) / 64
+    local size = math.max(1, s.size)  -- a preview cannot show finer grain
+    local coarse = math.floor(size * 64) / 64
     return g:pass { shader = "film_grain/grain", source = source, strength = 0.25 * s.intensity, response = s.response,
-                    size_of_grain = { coarse, s.size - coarse }, colored = s.colored, frame = math.floor(g.frame) & 0x7fffffff, seed = s.seed, fine = s.size == 1 }
+                    size_of_grain = { coarse, size - coarse }, colored = s.colored, frame = math.floor(g.frame) & 0x7fffffff, seed = s.seed, fine = size == 1 }
   end,
 }

@@ -13,6 +13,8 @@ return fx.effect {
   active = function(s) return s.intensity > 0, "intensity is 0" end,
   holds = { "black", "constant", "mirror", "turn_180", "turn_90", error = 1e-5 },
   build = function(g, s, source)
-    return g:pass { shader = "sharpen/contrast_adaptive", source = source, amount = s.intensity, peak = 1 / (8 - 3 * s.contrast) }
+    -- Detail is finer than a preview's pixels; in a picture larger than the one that lengths belong to it is coarser.
+    local finer, apart = math.min(1, g.length_scale), math.max(1, math.floor(g.length_scale + 0.5))
+    return g:pass { shader = "sharpen/contrast_adaptive", source = source, amount = s.intensity * finer * finer, apart = apart, reach = apart, peak = 1 / (8 - 3 * s.contrast) }
   end,
 }

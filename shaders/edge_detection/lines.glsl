@@ -9,10 +9,11 @@ uniform float threshold;
 uniform vec3 ink;
 uniform vec3 paper;
 uniform float opacity;
+uniform int apart;  // pixels between those that are compared
 
 vec2 gradient(ivec2 pixel) {
   float y[9];
-  for (int i = 0; i < 9; ++i) y[i] = perceived(fetch(source, pixel + ivec2(i % 3, i / 3) - 1).rgb);
+  for (int i = 0; i < 9; ++i) y[i] = perceived(fetch(source, pixel + apart * (ivec2(i % 3, i / 3) - 1)).rgb);
   // Roberts' cross: the diagonals of the pixel and its neighbours to the right and below. A straight step shows in both.
   if (operator == 2) return vec2(y[4] - y[8], y[5] - y[7]) * 0.70710678;
   float side = operator == 1 ? 3.0 : 1.0, middle = operator == 1 ? 10.0 : 2.0;

@@ -15,7 +15,8 @@ layout(constant_id = 7) const bool combine_max = false;  // the stronger of the 
 uniform sampler2D depth;   // what is not used may be any image: it is never read
 uniform sampler2D normal;
 uniform vec2 inverse_clip;    // 1/near, 1/far
-uniform float width;          // pixels
+uniform float width;          // pixels of the delivered picture
+uniform float scale;          // pixels for each of those; 1 but in previews
 uniform float fade_distance;
 uniform float depth_scale, normal_scale;  // ≥ 0
 uniform float normal_factor;
@@ -51,7 +52,10 @@ int reach(ivec2 pixel) {
 
 vec4 sample_at(ivec2 pixel) {
   ivec2 centre = derivative ? (pixel / 2) * 2 : pixel;
-  int apart = derivative ? 1 : reach(pixel);
+  // Where lines are thinner than a preview's pixels, these show so much less of them.
+  float thick = derivative ? scale : float(reach(pixel)) * scale;
+  int apart = derivative ? 1 : thick > 0.0 ? max(int(floor(thick + 0.5)), 1) : 0;
+  float covered = min(thick, 1.0);
   ivec2 right = centre + ivec2(apart, 0), below = centre + ivec2(0, apart);
 
   float depth_edge = 0.0, normal_edge = 0.0;
@@ -68,5 +72,6 @@ vec4 sample_at(ivec2 pixel) {
   if (use_depth && use_normal)
     edge = combine_max ? max(depth_edge, normal_edge) : normal_factor * normal_edge + (1.0 - normal_factor) * depth_edge;
   edge = min(edge / divide_factor, kMaxEdge);
-  return vec4(clamp((edge - 0.5) * contrast + 0.5, 0.0, 1.0));
+  float line = clamp((edge - 0.5) * contrast + 0.5, 0.0, 1.0);
+  return vec4(scale < 1.0 ? line * covered : line);
 }
