@@ -135,7 +135,7 @@ Rgb tone_agx(const Rgb& x, AgxLook look) {
     c[i] = sigmoid(glm::clamp((std::log2(std::max(c[i], 1e-10) / 0.18) + 10) / 16.5, 0.0, 1.0));
   c = glm::max(c, Rgb(0));
   if (look == AgxLook::punchy) c = cdl_of(c, Rgb(1), 1.35, 1.4);
-  if (look == AgxLook::golden) c = cdl_of(c, Rgb(1, 0.9, 0.5), 0.8, 1.3);
+  if (look == AgxLook::golden) c = cdl_of(c, Rgb(1, 0.9, 0.5), 0.8, 0.8);
   c = glm::pow(glm::max(outset * c, Rgb(0)), Rgb(2.2));
   return glm::clamp(glm::inverse(rec2020_from_rec709()) * c, Rgb(0), Rgb(1));
 }

@@ -1,4 +1,4 @@
-// AgX (T. Sobotka, 2022) with Blender 4.0's matrices over Rec.2020 and Filament's looks: light of 10 stops below middle grey to 6.5 above,
+// AgX (T. Sobotka, 2022) with Blender 4.0's matrices over Rec.2020 and B. Wrensch's looks: light of 10 stops below middle grey to 6.5 above,
 // as a logarithm, through Sobotka's sigmoid; the matrix before it pulls saturated light towards white, so that bright light bleaches as on film.
 layout(constant_id = 0) const int look = 0;  // 0 base, 1 punchy, 2 golden
 
@@ -28,7 +28,7 @@ vec4 apply(vec4 color) {
   c = agx_sigmoid(clamp((log2(max(c, 1e-10)) - kLowest) * (1.0 / 16.5), 0.0, 1.0));
   c = max(c, 0.0);
   if (look == 1) c = agx_look(c, vec3(1.0), 1.35, 1.4);
-  if (look == 2) c = agx_look(c, vec3(1.0, 0.9, 0.5), 0.8, 1.3);
+  if (look == 2) c = agx_look(c, vec3(1.0, 0.9, 0.5), 0.8, 0.8);
   c = max(vec3(dot(c, vec3(1.1271005818, -0.1106066431, -0.0164939387)),  // the outset
                dot(c, vec3(-0.1413297635, 1.1578237022, -0.0164939387)),
                dot(c, vec3(-0.1413297635, -0.1106066431, 1.2519364066))), 0.0);
