@@ -42,9 +42,9 @@ std::string origin_text(const SettingHistory& setting) {
 
 std::string entry_text(const Look& look, const StackEntry& entry, std::size_t place) {
   const EntrySpace& space = look.spaces[place - 1];
-  std::string out = fmt::format("{}. {}  at {}, order {}; {}{}{}\n", place, entry.name, entry.at, entry.order,
-                                space_text(space), entry.required ? "; required" : "",
-                                entry.enabled ? "" : "; not enabled");
+  std::string out =
+      fmt::format("{}. {}  at {}, order {}; {}{}{}\n", place, entry.name, entry.at, entry.order, space_text(space),
+                  entry.required ? "; required" : "", entry.enabled ? "" : "; not enabled");
   if (!space.warning.empty()) out += fmt::format("   warning: {}\n", space.warning);
   if (const auto* reason = skip_reason(look, entry)) out += fmt::format("   skipped: {}\n", *reason);
   Table table;

@@ -58,8 +58,11 @@ void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("--motion", a.motion, "Motion vectors from another file or layer; FILE may be a pattern")
       ->type_name("FILE[:LAYER]")
       ->group(input);
-  app.add_option("--size", a.size, "Scale the picture first, for a quick look: 640x360, 640 (the width), x360, 50%; lengths scale with it")
-      ->type_name("SIZE")->group(input);
+  app.add_option(
+         "--size", a.size,
+         "Scale the picture first, for a quick look: 640x360, 640 (the width), x360, 50%; lengths scale with it")
+      ->type_name("SIZE")
+      ->group(input);
   app.add_option(
          "--nan-policy", a.nan_policy,
          "For values that are not finite, in pictures or made by passes: zero (default), neighbour (the mean of "
@@ -112,9 +115,10 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->check(CLI::Range(1, 100))
       ->type_name("N")
       ->group(output);
-  app.add_option("--dither", a.dither,
-                 "auto, blue or none: blue noise between two codes, the same every time; none rounds to the nearest (auto: "
-                 "blue into 8 bits)")
+  app.add_option(
+         "--dither", a.dither,
+         "auto, blue or none: blue noise between two codes, the same every time; none rounds to the nearest (auto: "
+         "blue into 8 bits)")
       ->check(CLI::IsMember({"auto", "blue", "none"}))
       ->type_name("NOISE")
       ->group(output);

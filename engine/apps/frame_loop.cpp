@@ -142,14 +142,15 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   if (options_.size) {
     reading->size = options_.size->of(display);
     context.size = scaled_size(header->data_window.size(), display, *reading->size);
-    context.length_scale = std::sqrt(double(reading->size->width) * reading->size->height / (double(display.width) * display.height));
+    context.length_scale =
+        std::sqrt(double(reading->size->width) * reading->size->height / (double(display.width) * display.height));
   }
   if (options_.region) {
     const Rect& data = header->data_window;
     const auto& size = reading->size;
     const Rect window = size ? scaled_window(data, header->display_window, *size) : data;
-    const Rect shown =
-        size ? Rect{header->display_window.x, header->display_window.y, size->width, size->height} : header->display_window;
+    const Rect shown = size ? Rect{header->display_window.x, header->display_window.y, size->width, size->height}
+                            : header->display_window;
     const auto part = part_of_region(*options_.region, window, shown);
     if (!part) {
       reading->refused = named(part.error(), frame.job);

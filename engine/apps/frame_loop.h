@@ -23,8 +23,8 @@ struct FrameLoopOptions {
   ReadOptions read;  ///< depth, normal and motion are those of each frame
   WriteOptions write;
   std::optional<SizeWish> size;  ///< of the display window; pictures are scaled to it before the stack
-  std::optional<Rect> region;  ///< part of the display window that is wanted
-  bool reuse = true;           ///< pictures that were just run are not run again
+  std::optional<Rect> region;    ///< part of the display window that is wanted
+  bool reuse = true;             ///< pictures that were just run are not run again
   double fps = 24;
   std::uint64_t max_memory = 6ull << 30;
   std::optional<Hash> record_look;  ///< leave notes for --resume

@@ -16,7 +16,7 @@ struct Look {
   std::unique_ptr<Preset> preset;
   Graph graph;
   std::vector<EntrySpace> spaces;  ///< of the preset's entries
-  Plan plan;  ///< as `run` would make it
+  Plan plan;                       ///< as `run` would make it
 };
 
 /// Errors: script, usage.

@@ -110,8 +110,8 @@ Result<SizeWish> parse_size_wish(const std::string& text) {
   } else {
     const std::size_t x = text.find_first_of("xX");
     const std::string_view all = text;
-    good = whole(all.substr(0, x), wish.width) &&
-           (x == std::string::npos || whole(all.substr(x + 1), wish.height)) && (wish.width > 0 || wish.height > 0);
+    good = whole(all.substr(0, x), wish.width) && (x == std::string::npos || whole(all.substr(x + 1), wish.height)) &&
+           (wish.width > 0 || wish.height > 0);
   }
   if (good) return wish;
   return Error{ErrorKind::usage, "'" + text + "' is no size", "--size", 0,

@@ -1,4 +1,5 @@
-// Blue noise for dithering: thresholds that spread evenly, without the grid of ordered noise or the clumps of white noise.
+// Blue noise for dithering: thresholds that spread evenly, without the grid of ordered noise or the clumps of white
+// noise.
 #pragma once
 
 #include <memory>

@@ -39,9 +39,9 @@ __attribute__((target("avx,f16c"))) std::size_t to_half_f16c(const float* values
 }
 #endif
 
-/// The code below or above a value by the pixel's threshold, so that an area of them has the light that was meant. Between
-/// two codes the sRGB curve bends a little: a share of t pixels at the upper one makes t(1 + rt)/(1 + r) of the step. What
-/// lies within a thousandth of a code is that code everywhere. shaders/lib/dither.glsl does the same.
+/// The code below or above a value by the pixel's threshold, so that an area of them has the light that was meant.
+/// Between two codes the sRGB curve bends a little: a share of t pixels at the upper one makes t(1 + rt)/(1 + r) of the
+/// step. What lies within a thousandth of a code is that code everywhere. shaders/lib/dither.glsl does the same.
 std::uint32_t dithered(float linear, float threshold, int max_code) {
   const double clamped = linear > 0 ? std::min(static_cast<double>(linear), 1.0) : 0.0;
   const double encoded = std::min(linear_to_srgb(clamped), 1.0) * max_code, code = std::floor(encoded);
@@ -64,8 +64,8 @@ void encode(const CodeRules& rules, const float* rgba, int width, int x0, int y,
     const bool divide = rules.alpha && alpha > 0 && alpha != 1;
     for (int c = 0; c < 3; ++c) {
       const float linear = divide ? rgba[c] / alpha : rgba[c];
-      *codes++ = static_cast<Code>(
-          rules.dither ? dithered(linear, blue_noise(x0 + x, y), rules.max_code) : encoder(linear));
+      *codes++ =
+          static_cast<Code>(rules.dither ? dithered(linear, blue_noise(x0 + x, y), rules.max_code) : encoder(linear));
     }
     if (rules.alpha) *codes++ = static_cast<Code>(linear_code(alpha, rules.max_code));
   }

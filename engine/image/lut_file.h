@@ -44,7 +44,8 @@ inline constexpr int kLutRow = 256;  ///< colours a row of one-dimensional table
 /// is wrong or has no place in steps; io: the module with OpenColorIO is not installed.
 Result<Lut> read_lut(const std::filesystem::path& file);
 
-/// What of a configuration of OpenColorIO is wanted: the picture's light as a display shows it, or in another colour space.
+/// What of a configuration of OpenColorIO is wanted: the picture's light as a display shows it, or in another colour
+/// space.
 struct OcioRequest {
   std::filesystem::path config;  ///< its file
   /// Colour space of the picture. Empty: linear Rec.709, by one of its usual names, or else through the role
@@ -55,9 +56,10 @@ struct OcioRequest {
   std::string looks;          ///< "+name, -name"; empty: those of the view
 };
 
-/// The same for a configuration. Where its steps cannot be done one by one, the whole is baked: a curve over half floats, then
-/// a cube of 65³ over 2^-12…2^12; `Lut::baked_error` tells how far that is from OpenColorIO's own processor. Thread-safe.
-/// Errors (script, with the configuration's file): missing, unknown names with those that there are.
+/// The same for a configuration. Where its steps cannot be done one by one, the whole is baked: a curve over half
+/// floats, then a cube of 65³ over 2^-12…2^12; `Lut::baked_error` tells how far that is from OpenColorIO's own
+/// processor. Thread-safe. Errors (script, with the configuration's file): missing, unknown names with those that there
+/// are.
 Result<Lut> read_ocio(const OcioRequest& request);
 
 /// What the module with OpenColorIO gives.

@@ -89,8 +89,7 @@ bool LutTaker::add_range(const OCIO::RangeTransform& range) {
 bool LutTaker::add_table(const OCIO::Lut1DTransform& table) {
   if (table.getHueAdjust() != OCIO::HUE_NONE) throw Unsupported{"holds a table with hue adjustment"};
   const auto length = static_cast<int>(table.getLength());
-  begin(table.getInputHalfDomain() ? LutKind::table_half : LutKind::table1d, length,
-        (length + kLutRow - 1) / kLutRow);
+  begin(table.getInputHalfDomain() ? LutKind::table_half : LutKind::table1d, length, (length + kLutRow - 1) / kLutRow);
   for (int i = 0; i < length; ++i) {
     float r = 0, g = 0, b = 0;
     table.getValue(static_cast<unsigned long>(i), r, g, b);
@@ -106,8 +105,8 @@ bool LutTaker::add_table(const OCIO::Lut3DTransform& table) {
     for (int g = 0; g < size; ++g)
       for (int b = 0; b < size; ++b) {
         float red = 0, green = 0, blue = 0;
-        table.getValue(static_cast<unsigned long>(r), static_cast<unsigned long>(g), static_cast<unsigned long>(b),
-                       red, green, blue);
+        table.getValue(static_cast<unsigned long>(r), static_cast<unsigned long>(g), static_cast<unsigned long>(b), red,
+                       green, blue);
         put(r + size * (b & 1), g + size * (b >> 1), {red, green, blue, 1});
       }
   return true;

@@ -1,4 +1,5 @@
-// A chain of OpenColorIO's transforms taken apart into steps that a shader can do. For the module with OpenColorIO alone.
+// A chain of OpenColorIO's transforms taken apart into steps that a shader can do. For the module with OpenColorIO
+// alone.
 #pragma once
 
 #include <OpenColorIO/OpenColorIO.h>
@@ -18,8 +19,9 @@ struct Unsupported {
   std::string what;
 };
 
-/// Turns transforms into steps, in order. Matrices, ranges, tables, CDLs and exponents are steps of their own; whatever else
-/// treats each channel by itself becomes a table over half floats, made by OpenColorIO's own processor. Throws Unsupported.
+/// Turns transforms into steps, in order. Matrices, ranges, tables, CDLs and exponents are steps of their own; whatever
+/// else treats each channel by itself becomes a table over half floats, made by OpenColorIO's own processor. Throws
+/// Unsupported.
 class LutTaker {
  public:
   explicit LutTaker(OCIO::ConstConfigRcPtr config) : config_(std::move(config)) {}

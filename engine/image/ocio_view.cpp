@@ -19,9 +19,22 @@ constexpr std::array kLinearRec709{"Linear Rec.709 (sRGB)", "lin_rec709_srgb", "
                                    "Linear Rec.709",        "lin_srgb",        "lin_709",    "Linear BT.709"};
 
 // Linear Rec.709 to ACES2065-1, Bradford-adapted, as OpenColorIO's own configurations have it.
-constexpr std::array<double, 16> kAp0FromRec709{0.439632981919, 0.382988698151, 0.177378319930, 0, 0.089776442959, 0.813439428749,
-                                                0.096784128292, 0,              0.017541170380, 0.111546553302, 0.870912276318,
-                                                0,              0,              0,              0,              1};
+constexpr std::array<double, 16> kAp0FromRec709{0.439632981919,
+                                                0.382988698151,
+                                                0.177378319930,
+                                                0,
+                                                0.089776442959,
+                                                0.813439428749,
+                                                0.096784128292,
+                                                0,
+                                                0.017541170380,
+                                                0.111546553302,
+                                                0.870912276318,
+                                                0,
+                                                0,
+                                                0,
+                                                0,
+                                                1};
 
 template <class Count, class Name>
 std::vector<std::string> list(Count count, Name name) {
@@ -162,7 +175,8 @@ Lut baked(const OCIO::ConstConfigRcPtr& config, const OCIO::CPUProcessor& proces
     for (std::size_t k = 0; k < 3; ++k) exact[k] = static_cast<float>(c[k] = std::exp2(level + 3 * next() - 1.5));
     const auto found = tetrahedral(cube, c);
     processor.applyRGB(exact.data());
-    for (std::size_t k = 0; k < 3; ++k) lut.baked_error = std::max(lut.baked_error, std::abs(double(found[k]) - double(exact[k])));
+    for (std::size_t k = 0; k < 3; ++k)
+      lut.baked_error = std::max(lut.baked_error, std::abs(double(found[k]) - double(exact[k])));
   }
   return lut;
 }

@@ -47,9 +47,8 @@ DoubleImage run_tone_mapping(const DoubleImage& source, const Inputs&, const Set
                        .exposure = s.number("exposure"),
                        .white = s.number("white"),
                        .full_white = s.flag("full_white"),
-                       .look = s.choice<AgxLook>("look", {{"base", AgxLook::base},
-                                                          {"punchy", AgxLook::punchy},
-                                                          {"golden", AgxLook::golden}}),
+                       .look = s.choice<AgxLook>(
+                           "look", {{"base", AgxLook::base}, {"punchy", AgxLook::punchy}, {"golden", AgxLook::golden}}),
                        .toe = s.number("toe"),
                        .toe_length = s.number("toe_length"),
                        .shoulder_length = s.number("shoulder_length"),

@@ -1,7 +1,7 @@
 // The newer tone curves (docs/math.md §19), each in the steps in which its author published it.
 #include <array>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
+#include <glm/common.hpp>
 #include <glm/matrix.hpp>
 
 #include "reference/color.h"
@@ -10,7 +10,7 @@
 namespace afterglow::reference {
 namespace {
 
-glm::dmat3 rows(const Rgb& a, const Rgb& b, const Rgb& c) { return glm::transpose(glm::dmat3(a, b, c)); }
+glm::dmat3 from_rows(const Rgb& a, const Rgb& b, const Rgb& c) { return glm::transpose(glm::dmat3(a, b, c)); }
 
 struct Chromaticity {
   double x, y;
@@ -25,9 +25,8 @@ glm::dmat3 to_xyz(const std::array<Chromaticity, 3>& primaries) {
 }
 
 const glm::dmat3& rec2020_from_rec709() {
-  static const glm::dmat3 matrix =
-      glm::inverse(to_xyz({{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}}})) *
-      to_xyz({{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}}});
+  static const glm::dmat3 matrix = glm::inverse(to_xyz({{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}}})) *
+                                   to_xyz({{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}}});
   return matrix;
 }
 
@@ -40,8 +39,8 @@ double sigmoid(double x) {
   constexpr double kXPivot = 10.0 / 16.5, kYPivot = 0.5, kSlope = 2;
   const bool above = x >= kXPivot;
   const double power = above ? 3.25 : 3.0;
-  const double scale = above ? sigmoid_scale(1 - kXPivot, 1 - kYPivot, kSlope, power)
-                             : -sigmoid_scale(kXPivot, kYPivot, kSlope, power);
+  const double scale =
+      above ? sigmoid_scale(1 - kXPivot, 1 - kYPivot, kSlope, power) : -sigmoid_scale(kXPivot, kYPivot, kSlope, power);
   const double term = kSlope * (x - kXPivot) / scale;
   return scale * term / std::pow(1 + std::pow(term, power), 1 / power) + kYPivot;
 }
@@ -103,15 +102,10 @@ class HableCurve {
   Segment toe_, middle_, shoulder_;
 };
 
-double smoothstep(double from, double to, double x) {
-  const double t = glm::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
-
 double gt(double x) {
   constexpr double P = 1, a = 1, m = 0.22, l = 0.4, c = 1.33, b = 0;
   constexpr double l0 = (P - m) * l / a, S0 = m + l0, S1 = m + a * l0, C2 = a * P / (P - S1);
-  const double w0 = 1 - smoothstep(0, m, x), w2 = x < m + l0 ? 0 : 1, w1 = 1 - w0 - w2;
+  const double w0 = 1 - glm::smoothstep(0.0, m, x), w2 = x < m + l0 ? 0 : 1, w1 = 1 - w0 - w2;
   const double T = m * std::pow(x / m, c) + b, L = m + a * (x - m), S = P - (P - S1) * std::exp(-C2 * (x - S0) / P);
   return T * w0 + L * w1 + S * w2;
 }
@@ -124,12 +118,12 @@ Rgb tone_reinhard_extended(const Rgb& x, double white) {
 }
 
 Rgb tone_agx(const Rgb& x, AgxLook look) {
-  const auto inset = rows({0.856627153315983, 0.0951212405381588, 0.0482516061458583},
-                          {0.137318972929847, 0.761241990602591, 0.101439036467562},
-                          {0.11189821299995, 0.0767994186031903, 0.811302368396859});
-  const auto outset = rows({1.1271005818144368, -0.11060664309660323, -0.016493938717834573},
-                           {-0.1413297634984383, 1.157823702216272, -0.016493938717834257},
-                           {-0.14132976349843826, -0.11060664309660294, 1.2519364065950405});
+  const auto inset = from_rows({0.856627153315983, 0.0951212405381588, 0.0482516061458583},
+                               {0.137318972929847, 0.761241990602591, 0.101439036467562},
+                               {0.11189821299995, 0.0767994186031903, 0.811302368396859});
+  const auto outset = from_rows({1.1271005818144368, -0.11060664309660323, -0.016493938717834573},
+                                {-0.1413297634984383, 1.157823702216272, -0.016493938717834257},
+                                {-0.14132976349843826, -0.11060664309660294, 1.2519364065950405});
   Rgb c = inset * (rec2020_from_rec709() * x);
   for (int i = 0; i < 3; ++i)
     c[i] = sigmoid(glm::clamp((std::log2(std::max(c[i], 1e-10) / 0.18) + 10) / 16.5, 0.0, 1.0));

@@ -17,7 +17,8 @@ struct ToneMapping {
   double toe = 0.5, toe_length = 0.5, shoulder_length = 0.6, shoulder_angle = 0.2;  ///< hable
 };
 
-/// The curves alone, without the clamp that the pass puts before them: to 60 in the first three, to 65504 in the others.
+/// The curves alone, without the clamp that the pass puts before them: to 60 in the first three, to 65504 in the
+/// others.
 Rgb tone_reinhard(const Rgb& x);
 /// Hable's curve with Unity's neutral constants; white at 5.3.
 Rgb tone_neutral(const Rgb& x);

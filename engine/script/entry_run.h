@@ -19,8 +19,9 @@ struct EntryRun {
 };
 
 /// All throw ScriptError.
-/// Makes the table `s` anew from the entry's settings: reading a setting that does not exist is an error. Settings in px
-/// are multiplied by `length_scale`: numbers as they are, whatever their least value; integers rounded, and not below it.
+/// Makes the table `s` anew from the entry's settings: reading a setting that does not exist is an error. Settings in
+/// px are multiplied by `length_scale`: numbers as they are, whatever their least value; integers rounded, and not
+/// below it.
 void make_settings(lua_State* lua, EntryRun& run, double length_scale);
 /// Why the effect has nothing to do with these settings; empty when it is active.
 std::optional<std::string> inactive_reason(lua_State* lua, const EntryRun& run);

@@ -59,7 +59,8 @@ struct HoldSchema {
   bool conditional = false;           ///< holds for some settings or sizes alone
 };
 
-/// What the numbers of a colour mean: light of a scene, which has no upper end, or light of a display, 0…1. Both linear.
+/// What the numbers of a colour mean: light of a scene, which has no upper end, or light of a display, 0…1. Both
+/// linear.
 enum class LightSpace { any, scene, display };
 /// "scene-linear", "display-linear", "any".
 const char* space_name(LightSpace space);
@@ -137,8 +138,8 @@ struct BuildContext {
   double step = 1;       ///< frames since the one before it, whose images its histories hold (graph/history.h)
   bool restart = false;  ///< no frame is before it: histories begin anew
   std::optional<Position> position = {};  ///< of its camera, when the picture says it
-  /// Pixels of `size` for each pixel of the picture that is delivered: below 1 in previews that run smaller. Settings in
-  /// px are lengths of that picture. A stack's `reference_height` goes before it.
+  /// Pixels of `size` for each pixel of the picture that is delivered: below 1 in previews that run smaller. Settings
+  /// in px are lengths of that picture. A stack's `reference_height` goes before it.
   double length_scale = 1;
 };
 

@@ -14,17 +14,18 @@ const char* space_name(LightSpace space) {
 namespace script {
 namespace {
 
-const std::vector<std::string>& names() {
+const std::vector<std::string>& space_names() {
   static const std::vector<std::string> all{"scene", "display"};
   return all;
 }
 
 LightSpace space_of(const std::string& what, const Value& given, const KeyPath& place) {
   if (given.kind == Value::Kind::nothing) return LightSpace::any;
-  for (std::size_t i = 0; i < names().size(); ++i)
-    if (given.kind == Value::Kind::text && given.text == names()[i]) return i == 0 ? LightSpace::scene : LightSpace::display;
-  throw failure(fmt::format("{} = {} is no space", what, given.shown()), place, join(names()),
-                given.kind == Value::Kind::text ? nearest_name(given.text, names()) : "");
+  for (std::size_t i = 0; i < space_names().size(); ++i)
+    if (given.kind == Value::Kind::text && given.text == space_names()[i])
+      return i == 0 ? LightSpace::scene : LightSpace::display;
+  throw failure(fmt::format("{} = {} is no space", what, given.shown()), place, join(space_names()),
+                given.kind == Value::Kind::text ? nearest_name(given.text, space_names()) : "");
 }
 
 // The use on top of the stack (popped): a name or a table.

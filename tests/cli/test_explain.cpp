@@ -94,8 +94,9 @@ TEST_F(Explain, Messages) {
                                    "color_adjustments, tone_mapping; did you mean 'tone_mapping'?"));
   const Outcome setting = run({"explain", "cave.lua", "tone_mapping.mod"});
   EXPECT_EQ(setting.exit_code, kUsage);
-  EXPECT_THAT(setting.err, HasSubstr("'tone_mapping' has no setting 'mod'; allowed: mode, exposure, white, full_white, look, toe, "
-                                     "toe_length, shoulder_length, shoulder_angle; did you mean 'mode'?"));
+  EXPECT_THAT(setting.err,
+              HasSubstr("'tone_mapping' has no setting 'mod'; allowed: mode, exposure, white, full_white, look, toe, "
+                        "toe_length, shoulder_length, shoulder_angle; did you mean 'mode'?"));
   const Outcome at = run({"explain", "cave.lua", "--at", "1,2"});
   EXPECT_EQ(at.exit_code, kUsage);
   EXPECT_THAT(at.err, HasSubstr("--at: error: '1,2' is no position; allowed: X,Y,Z, three numbers"));

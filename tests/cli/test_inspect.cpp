@@ -61,11 +61,13 @@ TEST_F(Inspect, CheckTellsTheLightOfEachEntryAndWhatStandsWrong) {
         "  fx.exposure { ev = 1, at = \"after_post_process\" } }\n");
   const Outcome outcome = run({"check", "wrong.lua"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("1. sharpen  at post_process, order 10; scene-linear light\n   warning: 'sharpen' is "
-                                     "made for display-linear light, but 'tone_mapping', which makes it, comes behind "
-                                     "it\n"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("1. sharpen  at post_process, order 10; scene-linear light\n   warning: 'sharpen' is "
+                        "made for display-linear light, but 'tone_mapping', which makes it, comes behind "
+                        "it\n"));
   EXPECT_THAT(outcome.out, HasSubstr("2. bloom  at post_process, order 100; scene-linear light\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("3. tone_mapping  at post_process, order 200; scene-linear light to display-linear\n"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("3. tone_mapping  at post_process, order 200; scene-linear light to display-linear\n"));
   EXPECT_THAT(outcome.out, HasSubstr("4. exposure  at after_post_process, order 0; display-linear light\n   warning: "
                                      "'exposure' is made for scene-linear light, but 'tone_mapping' before it makes "
                                      "display-linear light\n"));

@@ -58,10 +58,13 @@ TEST_F(Effects, ToneCurvesAgreeOnDarkAndSaturatedColours) {
 }
 
 std::string lua(const ToneMapping& s) {
-  static const std::map<ToneMode, std::string> kModes{
-      {ToneMode::aces, "aces"}, {ToneMode::reinhard, "reinhard"}, {ToneMode::reinhard_extended, "reinhard_extended"},
-      {ToneMode::agx, "agx"},   {ToneMode::gt, "gt"},             {ToneMode::khronos_neutral, "khronos_neutral"},
-      {ToneMode::hable, "hable"}};
+  static const std::map<ToneMode, std::string> kModes{{ToneMode::aces, "aces"},
+                                                      {ToneMode::reinhard, "reinhard"},
+                                                      {ToneMode::reinhard_extended, "reinhard_extended"},
+                                                      {ToneMode::agx, "agx"},
+                                                      {ToneMode::gt, "gt"},
+                                                      {ToneMode::khronos_neutral, "khronos_neutral"},
+                                                      {ToneMode::hable, "hable"}};
   static constexpr const char* kLooks[] = {"base", "punchy", "golden"};
   return fmt::format(
       "fx.tone_mapping {{ mode = \"{}\", exposure = {}, white = {}, full_white = {}, look = \"{}\", toe = {}, "
@@ -82,7 +85,12 @@ TEST_F(Effects, NewerToneCurvesAgree) {
       {.mode = ToneMode::hable},
       {.mode = ToneMode::hable, .white = 4, .toe = 0, .toe_length = 0, .shoulder_length = 1, .shoulder_angle = 0},
       {.mode = ToneMode::hable, .white = 0.5, .toe = 0.9, .toe_length = 1, .shoulder_length = 0, .shoulder_angle = 1},
-      {.mode = ToneMode::hable, .white = 100, .toe = 0.8, .toe_length = 0.7, .shoulder_length = 0.8, .shoulder_angle = 1},
+      {.mode = ToneMode::hable,
+       .white = 100,
+       .toe = 0.8,
+       .toe_length = 0.7,
+       .shoulder_length = 0.8,
+       .shoulder_angle = 1},
       {.mode = ToneMode::gt},
       {.mode = ToneMode::gt, .exposure = 2},
       {.mode = ToneMode::aces, .exposure = 0.5, .full_white = true},
@@ -122,10 +130,11 @@ TEST_F(Effects, ExposureComesFirst) {
   const auto scene = neon_scene({160, 90}, 560, 330);
   const BloomSettings glow{.threshold = 1, .intensity = 0.4};
   const auto expected = tone_mapping(bloom(exposure(scene.source, 1.5), glow).result, ToneMode::reinhard);
-  check(scene,
-        "fx.tone_mapping { mode = \"reinhard\" }, fx.bloom { mode = \"additive\", intensity = 0.4 }, fx.exposure { ev = "
-        "1.5 }",
-        expected);
+  check(
+      scene,
+      "fx.tone_mapping { mode = \"reinhard\" }, fx.bloom { mode = \"additive\", intensity = 0.4 }, fx.exposure { ev = "
+      "1.5 }",
+      expected);
   const Made made = run_stack("fx.exposure {}", scene, Way::plain);
   EXPECT_EQ(made.graph.skipped.at(0).reason, "ev is 0");
 }

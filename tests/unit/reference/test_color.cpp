@@ -138,7 +138,8 @@ TEST(ToneMapping, NewerCurvesAreWhereTheirSourcesHaveThem) {
   // Saturated light bleaches: far above white nothing of its colour is left but a little.
   const Rgb neon = tone_agx(Rgb(0.1, 0.2, 60), AgxLook::base);
   EXPECT_GT(std::min({neon.r, neon.g, neon.b}), 0.4);
-  // Hable: no toe and no shoulder is light over white; the toe ends on the line y = x − (x₀ − y₀), the line has slope 1.
+  // Hable: no toe and no shoulder is light over white; the toe ends on the line y = x − (x₀ − y₀), the line has
+  // slope 1.
   const ToneMapping straight{.white = 1, .toe = 0, .toe_length = 0, .shoulder_length = 0, .shoulder_angle = 0};
   for (const double x : {0.1, 0.5, 0.9}) EXPECT_NEAR(tone_hable(Rgb(x), straight).r, x, 1e-4);
   const ToneMapping filmic{.white = 6, .toe = 0.5, .toe_length = 0.5, .shoulder_length = 0.5, .shoulder_angle = 0};

@@ -46,8 +46,10 @@ TEST_F(Order, InjectionPointsComeFirst) {
 
 TEST_F(Order, LightIsFollowedThroughTheStack) {
   const auto effect = [&](const std::string& name, const std::string& space) {
-    scene.effect(name, space + " active = function(s) return s.on, \"off\" end, settings = { on = fx.bool { default = true } },"
-                               " build = function(g, s, source) return source end,");
+    scene.effect(name,
+                 space +
+                     " active = function(s) return s.on, \"off\" end, settings = { on = fx.bool { default = true } },"
+                     " build = function(g, s, source) return source end,");
   };
   effect("curve", "order = 10, space = { needs = \"scene\", makes = \"display\" },");
   effect("grade", "space = \"scene\",");
@@ -79,7 +81,8 @@ TEST_F(Order, LightIsFollowedThroughTheStack) {
   auto preset = scene.load();
   const auto wrong = preset->spaces();
   ASSERT_FALSE(wrong.ok());
-  EXPECT_NE(wrong.error().text().find("space of effect 'shine' = 7 is no space; allowed: scene, display"), std::string::npos)
+  EXPECT_NE(wrong.error().text().find("space of effect 'shine' = 7 is no space; allowed: scene, display"),
+            std::string::npos)
       << wrong.error().text();
 }
 
