@@ -19,6 +19,7 @@
 #include "core/stopwatch.h"
 #include "core/text.h"
 #include "graph/history.h"
+#include "image/input_space.h"
 #include "image/reader.h"
 #include "image/writer.h"
 
@@ -30,7 +31,7 @@ struct RunArguments {
   DeviceArguments device;
   ExecutionArguments execution;
   FrameListRequest files;
-  std::string layer, depth, normal, motion, size, region;
+  std::string layer, input_space, depth, normal, motion, size, region;
   std::string type = "auto", dither = "auto", compression, nan_policy = "zero";
   int png_level = 1, jpeg_quality = 95;
   bool keep_layers = false, resume = false, fail_fast = false;
@@ -38,6 +39,12 @@ struct RunArguments {
   std::optional<int> pre_roll;
   std::string stats, report, lock, locked;
 };
+
+std::string space_list() {
+  std::vector<std::string> names;
+  for (const InputSpace& space : input_spaces()) names.emplace_back(space.name);
+  return join(names);
+}
 
 void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("INPUT", a.files.inputs, "Pictures: files, or sequences like shot.####.exr and shot.%04d.exr")
@@ -47,6 +54,10 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->required();
   const std::string input = "Input", sequence = "Sequences", output = "Output";
   app.add_option("--layer", a.layer, "Colour layer or part (default: the usual names, Combined and plain R,G,B first)")
+      ->type_name("NAME")
+      ->group(input);
+  app.add_option("--input-space", a.input_space,
+                 "Colour space that pictures are stored in, whatever they say: " + space_list())
       ->type_name("NAME")
       ->group(input);
   app.add_option("--depth", a.depth, "Depth from another file or channel; FILE may be a pattern")
@@ -165,6 +176,7 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--max-error", number(a.execution.max_error)},
           {"--reference", flag(a.execution.reference)},
           {"--layer", a.layer},
+          {"--input-space", a.input_space},
           {"--depth", a.depth},
           {"--normal", a.normal},
           {"--motion", a.motion},
@@ -324,6 +336,7 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   AFTERGLOW_TRY(const std::filesystem::path preset, a.preset.preset_file());
   AFTERGLOW_TRY(run.session, Session::open(preset, options, run.console.diagnostics()));
   run.loop.read.auxiliary = run.session->preset().needs();
+  run.loop.read.input_space = a.input_space.empty() ? run.session->preset().input_space() : a.input_space;
   AFTERGLOW_CHECK(prepare_lock(run));
   AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run));
   run.loop.histories = earlier.has_value();

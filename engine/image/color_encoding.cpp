@@ -62,6 +62,8 @@ class CurveDecoder {
         return static_cast<float>(stored < 0.081 ? stored / 4.5 : std::pow((stored + 0.099) / 1.099, 1 / 0.45));
       case TransferCurve::power:
         return static_cast<float>(std::copysign(std::pow(std::abs(stored), encoding_.exponent), stored));
+      case TransferCurve::formula:
+        return static_cast<float>(encoding_.formula(stored));
       default:
         return static_cast<float>(stored);
     }
@@ -108,7 +110,8 @@ void sanitize_linear(float* rgba, std::size_t pixels, SanitizeCounts& counts) {
         const float positive = v >= kSmallestColor ? v : 0.0f;  // NaN fails the test
         pixel[c] = positive < kLargestColor ? positive : kLargestColor;
       }
-      const bool finite = std::abs(pixel[3]) <= kLargestColor;  // as light: filters sum alpha too, and must not overflow
+      const bool finite =
+          std::abs(pixel[3]) <= kLargestColor;  // as light: filters sum alpha too, and must not overflow
       block_alpha += !finite;
       pixel[3] = finite ? pixel[3] : 1.0f;
     }

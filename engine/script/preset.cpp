@@ -22,7 +22,7 @@ using namespace script;
 struct Preset::State {
   std::unique_ptr<Runtime> runtime;
   ShaderLibrary* shaders = nullptr;
-  std::string file, name;
+  std::string file, name, input_space;
   std::optional<double> max_error;
   std::optional<int> reference_height;
   double length_scale = 1;          // of the settings in `runs`
@@ -87,6 +87,7 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   name = stack.name.empty() ? std::filesystem::path(file).stem().string() : stack.name;
   max_error = stack.max_error;
   reference_height = stack.reference_height;
+  input_space = stack.input_space;
   for (auto& declared : stack.entries) {
     const auto& schema = runtime->effects[static_cast<std::size_t>(declared.effect)].schema;
     for (std::size_t i = 0; i < schema.settings.size(); ++i)
@@ -159,6 +160,7 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
 }
 
 const std::string& Preset::name() const { return state_->name; }
+const std::string& Preset::input_space() const { return state_->input_space; }
 std::optional<double> Preset::max_error() const { return state_->max_error; }
 const std::vector<StackEntry>& Preset::entries() const { return state_->entries; }
 bool Preset::may_change() const { return state_->may_change; }

@@ -155,6 +155,7 @@ class Preset {
   ~Preset();
 
   const std::string& name() const;                              ///< of the stack
+  const std::string& input_space() const;                       ///< `input_space` of the stack; empty: none
   std::optional<double> max_error() const;                      ///< `max_error` of the stack
   const std::vector<StackEntry>& entries() const;               ///< in the order of execution
   const EffectSchema& schema(const std::string& effect) const;  ///< of an effect that the stack uses

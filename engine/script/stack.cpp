@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "image/input_space.h"
 #include "script/entry_reader.h"
 #include "script/object.h"
 #include "script/runtime.h"
@@ -108,6 +109,12 @@ void read_stack(lua_State* lua, TableReader& table, DeclaredStack& stack) {
   if (stack.max_error && *stack.max_error <= 0)
     table.fail(failure(fmt::format("{}: max_error = {} is out of range", table.what(), number_text(*stack.max_error)),
                        {"max_error"}, "> 0"));
+  if (const auto space = table.text("input_space")) {
+    stack.input_space = *space;
+    if (const auto found = find_input_space(*space); !found)
+      table.fail(failure(fmt::format("{}: input_space: {}", table.what(), found.error().message), {"input_space"},
+                         found.error().allowed, found.error().nearest));
+  }
   if (const auto height = table.integer("reference_height")) stack.reference_height = height;
   if (stack.reference_height && (*stack.reference_height < 1 || *stack.reference_height > 16384))
     table.fail(failure(fmt::format("{}: reference_height = {} is out of range", table.what(), *stack.reference_height),
@@ -126,7 +133,7 @@ void push_stack(lua_State* lua, DeclaredStack stack) {
 }
 
 const std::vector<std::string>& stack_keys() {
-  static const std::vector<std::string> keys{"max_error", "name", "position", "reference_height"};
+  static const std::vector<std::string> keys{"input_space", "max_error", "name", "position", "reference_height"};
   return keys;
 }
 
