@@ -124,7 +124,7 @@ def main():
         file.write('local fx = require "afterglow"\nreturn fx.stack { fx.tone_mapping {} }\n')
 
     def run(output, mode, settings):
-        exact = ["--type", "float", "--compression", "none"] if output.endswith(".exr") else []
+        exact = ["--type", "float", "--compression", "none"] if output.endswith(".exr") else ["--dither", "none"]
         chosen = [word for pair in {"mode": mode, **settings}.items() for word in ("--set", f"tone_mapping.{pair[0]}={pair[1]}")]
         subprocess.run([program, "run", preset, f"{folder}/ramps.pfm", "-o", output, "-q", *exact, *chosen], check=True)
 

@@ -228,7 +228,7 @@ DoubleImage run_fxaa(const DoubleImage& source, const Inputs&, const Settings& s
                            {{"low", FxaaQuality::low}, {"medium", FxaaQuality::medium}, {"high", FxaaQuality::high}})});
 }
 
-constexpr Oracle kOracles[] = {
+constexpr Oracle kMoreOracles[] = {
     {"anamorphic_streaks", run_anamorphic_streaks},
     {"bokeh_blur", run_bokeh_blur},
     {"cdl", run_cdl},
@@ -257,6 +257,6 @@ constexpr Oracle kOracles[] = {
 
 }  // namespace
 
-std::span<const Oracle> more_oracles() { return kOracles; }
+std::span<const Oracle> more_oracles() { return kMoreOracles; }
 
 }  // namespace afterglow::reference

@@ -59,7 +59,8 @@ void call_with_settings(lua_State* lua, const FunctionRef& function, const Entry
   const Blaming blaming(lua, run.entry);
   lua_rawgeti(lua, LUA_REGISTRYINDEX, function.ref);
   lua_rawgeti(lua, LUA_REGISTRYINDEX, run.settings_ref);
-  call(lua, 1, results);
+  lua_pushnumber(lua, run.length_scale);
+  call(lua, 2, results);
 }
 
 std::vector<std::string> input_names(lua_State* lua, const EntryRun& run, const InputList& list, const char* what) {
@@ -92,6 +93,7 @@ SettingValue scaled(SettingValue value, const SettingSchema& schema, double scal
 
 void make_settings(lua_State* lua, EntryRun& run, double length_scale) {
   const EffectSchema& schema = effect_of(lua, run).schema;
+  run.length_scale = length_scale;
   luaL_unref(lua, LUA_REGISTRYINDEX, run.settings_ref);
   run.settings_ref = LUA_NOREF;
   lua_createtable(lua, 0, static_cast<int>(run.entry.settings.size()));
@@ -138,7 +140,8 @@ std::optional<double> idle_limit(lua_State* lua, const EntryRun& run, const Imag
     lua_rawgeti(lua, LUA_REGISTRYINDEX, effect.idle.ref);
     lua_rawgeti(lua, LUA_REGISTRYINDEX, run.settings_ref);
     push_image(lua, source);
-    call(lua, 2, 1);
+    lua_pushnumber(lua, run.length_scale);
+    call(lua, 3, 1);
   }
   const std::string what = fmt::format("idle of effect '{}'", effect.schema.name);
   const Value given = read_value(lua, -1);

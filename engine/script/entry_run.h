@@ -16,6 +16,7 @@ struct EntryRun {
   int effect = 0;
   std::vector<SettingSource> sources;  ///< as DeclaredEntry::sources
   int settings_ref = LUA_NOREF;        ///< read-only table in the registry
+  double length_scale = 1;             ///< of the lengths in that table
 };
 
 /// All throw ScriptError.

@@ -28,14 +28,26 @@ LightSpace space_of(const std::string& what, const Value& given, const KeyPath& 
                 given.kind == Value::Kind::text ? nearest_name(given.text, space_names()) : "");
 }
 
-// The use on top of the stack (popped): a name or a table.
+// The use in a table; what is wrong with it is noted there.
+SpaceUse use_in(TableReader& table) {
+  SpaceUse use;
+  table.allow({"makes", "needs"}, false);
+  for (const auto& [key, space] : {std::pair{"needs", &use.needs}, {"makes", &use.makes}}) {
+    try {
+      *space = space_of(table.what() + ": " + key, table.value(key), {key});
+    } catch (ScriptError& error) {
+      table.fail(std::move(error));
+    }
+  }
+  return use;
+}
+
+// What a function of an effect returned (popped).
 SpaceUse pop_use(lua_State* lua, const std::string& what) {
   SpaceUse use;
   if (lua_istable(lua, -1)) {
     TableReader table(lua, -1, what);
-    table.allow({"makes", "needs"}, false);
-    use.needs = space_of(what + ": needs", table.value("needs"), {"needs"});
-    use.makes = space_of(what + ": makes", table.value("makes"), {"makes"});
+    use = use_in(table);
     table.finish("space");
   } else {
     use.needs = space_of(what, read_value(lua, -1), {});
@@ -61,20 +73,24 @@ SpaceUse use_of(lua_State* lua, const EntryRun& run) {
 }  // namespace
 
 void read_space(lua_State* lua, TableReader& table, Effect& effect) {
-  const int top = lua_gettop(lua);
   table.push("space");
   if (lua_isfunction(lua, -1)) {
     effect.space = {luaL_ref(lua, LUA_REGISTRYINDEX)};
     effect.schema.space_by_settings = true;
     return;
   }
-  try {
-    effect.schema.space = pop_use(lua, table.what() + ": space");
-  } catch (ScriptError& error) {
-    lua_settop(lua, top);
-    error.key.insert(error.key.begin(), "space");
-    table.fail(std::move(error));
+  const std::string what = table.what() + ": space";
+  if (lua_istable(lua, -1)) {
+    TableReader inner(lua, -1, what, table, {"space"});
+    effect.schema.space = use_in(inner);
+  } else {
+    try {
+      effect.schema.space.needs = space_of(what, read_value(lua, -1), {"space"});
+    } catch (ScriptError& error) {
+      table.fail(std::move(error));
+    }
   }
+  lua_pop(lua, 1);
 }
 
 std::vector<EntrySpace> trace_spaces(lua_State* lua, const std::vector<EntryRun>& runs) {

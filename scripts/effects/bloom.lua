@@ -94,10 +94,10 @@ return fx.effect {
 
   -- Light below (1 - knee) of the threshold does not bloom. Half the size of an even picture is the mean of four texels, never above
   -- the largest of them; other sizes weigh texels with rounded numbers, which may lift the mean by some 1e-7.
-  idle = function(s, source)
+  idle = function(s, source, length_scale)
     local knee = knee_vector(s)
     local even = source.width % 2 == 0 and source.height % 2 == 0
-    local slack = s.reference_height > 0 and 1e-5 or even and 0 or 1e-6
+    local slack = (s.reference_height > 0 or length_scale ~= 1) and 1e-5 or even and 0 or 1e-6
     return { brightest = -knee[2] * (1 - slack) }
   end,
 

@@ -16,7 +16,9 @@ return fx.effect {
   },
 
   -- The weights of luma add up to 1 but for their rounding.
-  idle = function(s) return { brightest = s.threshold * (s.brightness == "max" and 1 or 1 - 1e-6) } end,
+  idle = function(s, _, length_scale)
+    return { brightest = s.threshold * (1 - (length_scale ~= 1 and 1e-5 or s.brightness == "max" and 0 or 1e-6)) }
+  end,
 
   holds = {
     "black", "constant", "mirror", "turn_180", "monotone", "turn_90",

@@ -38,7 +38,7 @@ local function hable(s)
   local at_white = end_y - height * ((end_x - 1) / (end_x - x1)) ^ power
   return {
     inverse_white = 1 / white, joints = { x0, x1 }, toe = { y0, slope * x0 / y0 }, line = { slope, start },
-    shoulder = { end_x, end_y, height, power }, scale = 1 / at_white,
+    shoulder = { end_x, y1, height, power }, scale = 1 / at_white,
   }
 end
 
@@ -66,7 +66,7 @@ return fx.effect {
                 when = function(s) return s.mode ~= "none" and curves[s.mode].to ~= nil end },
     continuous = { slope = function(s) return (curves[s.mode].slope or 1) * 2 ^ s.exposure end,
                    when = function(s) return s.mode ~= "none" and curves[s.mode].slope ~= nil and (s.mode ~= "agx" or s.look == "base") end },
-    error = { fp32 = by_curve(3e-5, 2e-5) },
+    error = { fp32 = function(s) return (s.mode == "aces" or s.mode == "agx") and 5e-5 or 2e-5 end },
   },
   build = function(g, s, source)
     local pass = { shader = "tone_mapping/" .. s.mode, name = s.mode }

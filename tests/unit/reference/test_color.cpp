@@ -113,8 +113,8 @@ TEST(ToneMapping, NeutralReachesWhereTheDocumentSays) {
 // What the authors' own pages and listings say of their curves.
 TEST(ToneMapping, NewerCurvesAreWhereTheirSourcesHaveThem) {
   // Reinhard's equation 4: white becomes 1, greys far below it y/(1 + y).
-  EXPECT_NEAR(tone_reinhard_extended(Rgb(4), 4).r, 1, 1e-12);
-  EXPECT_NEAR(tone_reinhard_extended(Rgb(1), 1e6).g, 0.5, 1e-9);
+  EXPECT_NEAR(tone_reinhard_extended(Rgb(4), 4).r, 1, 1e-6);  // the weights of luminance add up to 1.0000001
+  EXPECT_NEAR(tone_reinhard_extended(Rgb(1), 1e6).g, 0.5, 1e-6);
   const Rgb red = tone_reinhard_extended(Rgb(2, 0.5, 0.1), 4);  // ratios stay
   EXPECT_NEAR(red.r / red.g, 4, 1e-12);
   // PBR Neutral: below 0.8 a colour loses the 4 % of its reflection and nothing else; far above it goes to white.
@@ -162,7 +162,7 @@ TEST(ToneMapping, NewerCurvesRiseAndStayInTheirRange) {
       const double y = tone_map(Rgb(x), s).r;
       EXPECT_GE(y, before - 1e-9) << x;
       EXPECT_GE(y, 0);
-      if (s.mode != ToneMode::hable) EXPECT_LE(y, 1);
+      EXPECT_TRUE(y <= 1 || s.mode == ToneMode::hable) << y;
       before = y;
     }
   }
