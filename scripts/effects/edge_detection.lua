@@ -31,6 +31,6 @@ return fx.effect {
     -- A preview's pixels show so much less of a line; larger pictures have broader ones.
     local finer, apart = math.min(1, g.length_scale), math.max(1, math.floor(g.length_scale + 0.5))
     return g:pass { shader = "edge_detection/lines", source = source, operator = ({ sobel = 0, scharr = 1, roberts = 2 })[s.operator],
-                    intensity = s.intensity * finer, apart = apart, reach = apart, threshold = s.threshold, ink = s.color, paper = s.background, opacity = s.background_opacity }
+                    intensity = s.intensity, finer = finer, apart = apart, reach = apart, threshold = s.threshold, ink = s.color, paper = s.background, opacity = s.background_opacity }
   end,
 }

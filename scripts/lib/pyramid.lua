@@ -27,11 +27,11 @@ function pyramid.resized(g, image, width, height, name)
   return image
 end
 
--- The coarsest of `sizes` ({ width, height }, each at most the one before) that still shows what a preview of this size has.
+-- The coarsest of `sizes` ({ width, height }, each at most the one before) that still has all pixels of a preview of this size.
 function pyramid.start(sizes, width, height)
   local start = 1
   for i, size in ipairs(sizes) do
-    if 4 * size[1] >= 3 * width and 4 * size[2] >= 3 * height then start = i end
+    if size[1] >= width and size[2] >= height then start = i end
   end
   return start
 end

@@ -9,6 +9,7 @@ uniform float threshold;
 uniform vec3 ink;
 uniform vec3 paper;
 uniform float opacity;
+uniform float finer;  // below 1 in a preview: how much a line of one pixel covers of its own
 uniform int apart;  // pixels between those that are compared
 
 vec2 gradient(ivec2 pixel) {
@@ -24,6 +25,6 @@ vec2 gradient(ivec2 pixel) {
 
 vec4 sample_at(ivec2 pixel) {
   vec4 color = fetch(source, pixel);
-  float line = clamp((length(gradient(pixel)) - threshold) * intensity, 0.0, 1.0);
+  float line = clamp((length(gradient(pixel)) - threshold) * intensity * finer, 0.0, finer);
   return vec4(lerp(lerp(color.rgb, paper, opacity), ink, line), color.a);
 }
