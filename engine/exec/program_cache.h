@@ -9,6 +9,7 @@
 #include "exec/image_pool.h"
 #include "exec/pipeline_pool.h"
 #include "exec/program.h"
+#include "graph/condition.h"
 
 namespace afterglow {
 

@@ -34,9 +34,9 @@ DoubleImage truth(const std::string& entries, const Scene& scene) {
     context.auxiliary["layer:" + name] = image.size();
     inputs.layers[name] = &image;
   }
-  const auto graph = preset->build(context, diagnostics);
-  if (!graph) throw std::runtime_error(graph.error().text());
-  const auto all = bench::oracle_entries(*preset, *graph);
+  const auto build = preset->evaluate(context, diagnostics);
+  if (!build) throw std::runtime_error(build.error().text());
+  const auto all = bench::oracle_entries(*build);
   EXPECT_EQ(effect_without_oracle(all), "");
   return evaluate(scene.source, inputs, all);
 }
