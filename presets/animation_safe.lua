@@ -6,6 +6,6 @@ return fx.stack {
   name = "Animation-safe glow",
   fx.bloom { mode = "scattering", threshold = 1.1, knee = 1.0, intensity = 0.15, scatter = 0.8, fade_fireflies = true,
              downscale_limit = 8 },
-  fx.tone_mapping { mode = "aces" },
   fx.color_adjustments { post_exposure = 0.4 },
+  fx.tone_mapping { mode = "aces" },
 }

@@ -9,8 +9,8 @@ return fx.stack {
   fx.white_balance { temperature = 18, tint = -6 },
   fx.channel_mixer { red_out_red_in = 90, red_out_green_in = 10, green_out_green_in = 92, green_out_red_in = 8,
                      blue_out_blue_in = 80, blue_out_green_in = 20 },
-  fx.lift_gamma_gain { lift = { 0.95, 1, 1.06 }, lift_offset = 0.008, gamma_offset = 0.12, gain = { 1.08, 1, 0.88 } },
+  fx.lift_gamma_gain { lift = { 0.96, 1, 1.05 }, lift_offset = 0.004, gamma_offset = 0.04, gain = { 1.08, 1, 0.88 } },
+  fx.color_adjustments { post_exposure = 0.9, contrast = 2, saturation = -14 },
   fx.tone_mapping { mode = "neutral" },
-  fx.color_adjustments { post_exposure = 0.8, contrast = -12, saturation = -22 },
-  fx.film_grain { intensity = 0.45, response = 0.6, size = 2 },
+  fx.film_grain { intensity = 0.22, response = 0.7, size = 2 },
 }

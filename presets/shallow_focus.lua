@@ -9,7 +9,7 @@ return fx.stack {
   fx.lens_dirt { threshold = 2, intensity = 0.1, density = 0.35, size = 0.09 },
   fx.vignette { intensity = 0.25, smoothness = 0.5 },
   fx.shadows_midtones_highlights { shadows = { 0.9, 0.98, 1.1 }, highlights = { 1.04, 1, 0.94 } },
+  fx.color_adjustments { post_exposure = 1.0, contrast = 4, saturation = 5 },
   fx.tone_mapping { mode = "aces" },
-  fx.color_adjustments { post_exposure = 1.7, contrast = 4, saturation = 5 },
   fx.sharpen { intensity = 0.4 },
 }

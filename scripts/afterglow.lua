@@ -35,6 +35,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field frame number  number of the picture in its sequence, from 1
 ---@field time number   seconds
 ---@field fps number    pictures per second
+---@field length_scale number  pixels of the picture for each pixel that settings in px are given in: below 1 in previews
 ---@field frame_time number  seconds since the frame before, which histories hold
 ---@field pass fun(self: afterglow.Graph, pass: afterglow.Pass): afterglow.Image          runs a shader
 ---@field filter fun(self: afterglow.Graph, pass: afterglow.FilterPass): afterglow.Image  resamples an image
@@ -89,9 +90,12 @@ local fx = {}
 
 ---Makes the stack that a preset returns. Effects run by injection point, then `order`, then position in the list.
 ---`max_error` is the error that the executor may make for the sake of speed, by |x − exact| / (|exact| + 0.01).
+---`reference_height` makes lengths resolution-free: settings in px are pixels of a picture of that height, whatever is run.
+---`input_space` says how the colours of pictures are stored, whatever they say themselves: "acescct", "logc3", "slog3", "pq", "hlg", "gamma22",
+---"gamma24", "linear", "srgb"; `--input-space` goes before it.
 ---`position` says where the picture is seen from, for volumes; `--at` goes before it.
 ---Errors: other keys, positions that hold neither an effect nor a volume, two entries of one name.
----@type fun(stack: { name?: string, max_error?: number, position?: number[]|afterglow.Moving, [integer]: afterglow.Entry|afterglow.Volume }): afterglow.Stack
+---@type fun(stack: { name?: string, max_error?: number, position?: number[]|afterglow.Moving, reference_height?: integer, input_space?: string, [integer]: afterglow.Entry|afterglow.Volume }): afterglow.Stack
 fx.stack = core.stack
 
 ---The stack of another preset, found by name (beside this one, in `--path`, `AFTERGLOW_PATH`, the installation), with some of it
@@ -149,17 +153,20 @@ fx.curve = core.curve
 --- - `at` injection point: "after_opaque_and_sky", "before_post_process", "post_process" (default), "after_post_process"
 --- - `order` integer, default 0: place among the effects of that point, smaller first
 --- - `alpha` "straight" for effects that bend colour: their pixel shaders see it divided by its alpha. Default "associated".
+--- - `space` what light the effect is made for: "scene" (scene-linear, no upper end), "display" (display-linear, 0 to 1), or
+---   { needs = …, makes = … } where it makes the other, as a tone curve does; a function of the settings may return these. `check` warns of
+---   entries that get other light. Default: any.
 --- - `settings` names and their types, in the order in which people see them
---- - `active(s)` false when the settings make the effect an identity, with the reason as second value
+--- - `active(s, length_scale)` false when the settings make the effect an identity, with the reason as second value
 --- - `needs`, `optional` auxiliary inputs ("depth", "normal", "motion"), or a function of the settings that returns them. Without a
 ---   needed one the effect is skipped with a warning.
---- - `idle(s, source)` what makes the effect an identity in a frame: `{ brightest = L }` says that it changes no pixel, to the
+--- - `idle(s, source, length_scale)` what makes the effect an identity in a frame: `{ brightest = L }` says that it changes no pixel, to the
 ---   last bit, as long as no red, green or blue of `source` is above L. Frames of which that is known are run without it.
 --- - `holds` what the effect promises of its result, for `afterglow stress` to check: names ("black"), `NAME = number` and
 ---   `NAME = { when = function(s, source) … end, … }`; docs/writing_effects.md lists them. Nothing else relies on it.
 --- - `build(g, s, source)` describes the passes with `g` and returns the image that replaces `source`
 ---Errors: unknown or missing keys, wrong types, unknown injection point or input.
----@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, alpha?: "associated"|"straight", settings?: table<string, afterglow.SettingType>, active?: (fun(s: table): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image): { brightest: number }?), holds?: table, build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
+---@type fun(effect: { name: string, doc?: string, at?: string, order?: integer, alpha?: "associated"|"straight", space?: "scene"|"display"|{ needs?: "scene"|"display", makes?: "scene"|"display" }|(fun(s: table): any), settings?: table<string, afterglow.SettingType>, active?: (fun(s: table, length_scale: number): boolean, string?), needs?: string[]|(fun(s: table): string[]), optional?: string[]|(fun(s: table): string[]), idle?: (fun(s: table, source: afterglow.Image, length_scale: number): { brightest: number }?), holds?: table, build: fun(g: afterglow.Graph, s: table, source: afterglow.Image): afterglow.Image }): afterglow.Effect
 fx.effect = core.effect
 
 ---An integer from `min` to `max` (both included, both optional). 4.0 is one, 4.5 is not. `unit` is for people: "px", "EV".

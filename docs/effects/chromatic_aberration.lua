@@ -2,6 +2,6 @@ local fx = require "afterglow"
 
 return fx.stack {
   fx.chromatic_aberration { intensity = 0.6, samples = 12 },
-  fx.tone_mapping { mode = "neutral" },
   fx.color_adjustments { post_exposure = 1.5 },
+  fx.tone_mapping { mode = "neutral" },
 }

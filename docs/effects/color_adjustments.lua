@@ -1,6 +1,6 @@
 local fx = require "afterglow"
 
 return fx.stack {
-  fx.tone_mapping { mode = "neutral" },
   fx.color_adjustments { post_exposure = 1.5, contrast = 30, saturation = 40, hue_shift = 30 },
+  fx.tone_mapping { mode = "neutral" },
 }

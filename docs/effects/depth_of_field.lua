@@ -2,6 +2,6 @@ local fx = require "afterglow"
 
 return fx.stack {
   fx.depth_of_field { focus_distance = 4.5, aperture = 0.7, focal_length = 50, max_radius = 8 },
-  fx.tone_mapping { mode = "neutral" },
   fx.color_adjustments { post_exposure = 1.5 },
+  fx.tone_mapping { mode = "neutral" },
 }

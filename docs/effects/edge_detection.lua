@@ -2,6 +2,6 @@ local fx = require "afterglow"
 
 return fx.stack {
   fx.edge_detection { operator = "scharr", intensity = 3, color = { 1, 1, 1 }, background = { 0, 0, 0 }, background_opacity = 0.85 },
-  fx.tone_mapping { mode = "neutral" },
   fx.color_adjustments { post_exposure = 1.5 },
+  fx.tone_mapping { mode = "neutral" },
 }

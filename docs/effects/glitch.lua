@@ -2,6 +2,6 @@ local fx = require "afterglow"
 
 return fx.stack {
   fx.glitch { scan_line_jitter = 0.65, line_height = 3, rgb_split = 0.4 },
-  fx.tone_mapping { mode = "neutral" },
   fx.color_adjustments { post_exposure = 1.5 },
+  fx.tone_mapping { mode = "neutral" },
 }

@@ -3,6 +3,6 @@ local fx = require "afterglow"
 
 return fx.stack {
   fx.motion_blur { shutter_angle = 300, samples = 48 },
-  fx.tone_mapping { mode = "neutral" },
   fx.color_adjustments { post_exposure = 1.5 },
+  fx.tone_mapping { mode = "neutral" },
 }

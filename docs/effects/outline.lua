@@ -2,6 +2,6 @@ local fx = require "afterglow"
 
 return fx.stack {
   fx.outline { combine = "max", fade_distance = 40, depth_scale = 4, normal_scale = 0.7, contrast = 5 },
-  fx.tone_mapping { mode = "neutral" },
   fx.color_adjustments { post_exposure = 1.5 },
+  fx.tone_mapping { mode = "neutral" },
 }

@@ -2,6 +2,6 @@ local fx = require "afterglow"
 
 return fx.stack {
   fx.split_toning { shadows = "#2a5a80", highlights = "#c89050" },
-  fx.tone_mapping { mode = "neutral" },
   fx.color_adjustments { post_exposure = 1.5 },
+  fx.tone_mapping { mode = "neutral" },
 }

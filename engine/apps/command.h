@@ -28,5 +28,6 @@ Command add_bench_command(CLI::App& program);
 Command add_calibrate_command(CLI::App& program);
 Command add_play_command(CLI::App& program);
 Command add_stress_command(CLI::App& program);
+Command add_bake_command(CLI::App& program);
 
 }  // namespace afterglow

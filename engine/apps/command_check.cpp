@@ -11,6 +11,7 @@
 #include "apps/setting_text.h"
 #include "batch/json_text.h"
 #include "batch/table.h"
+#include "apps/space_text.h"
 #include "core/printable.h"
 #include "script/explanation.h"
 
@@ -49,9 +50,11 @@ std::string composition_text(const StackEntry& entry) {
 }
 
 std::string entry_text(const Look& look, const StackEntry& entry, std::size_t place) {
-  std::string out = fmt::format("{}{}. {}  at {}, order {}{}{}{}\n", std::string(2 * entry.depth, ' '), place,
-                                entry.name, entry.at, entry.order, composition_text(entry),
-                                entry.required ? ", required" : "", entry.enabled ? "" : ", not enabled");
+  const EntrySpace& space = look.spaces[place - 1];
+  std::string out = fmt::format("{}{}. {}  at {}, order {}; {}{}{}{}\n", std::string(2 * entry.depth, ' '), place,
+                                entry.name, entry.at, entry.order, space_text(space), composition_text(entry),
+                                entry.required ? "; required" : "", entry.enabled ? "" : "; not enabled");
+  if (!space.warning.empty()) out += fmt::format("   warning: {}\n", space.warning);
   if (const auto* reason = skip_reason(look, entry)) out += fmt::format("   skipped: {}\n", *reason);
   Table table;
   for (const auto& setting : look.build.explanation->entries[place - 1].settings)
@@ -96,7 +99,8 @@ std::string as_text(const Look& look, const std::string& file, const std::vector
 
 std::string as_json(const Look& look, const std::string& file, const std::vector<std::string>& shadows) {
   Json out{{"file", file}, {"name", look.preset->name()}, {"entries", Json::array()}};
-  for (const auto& entry : *look.build.entries) {
+  for (std::size_t i = 0; i < look.build.entries->size(); ++i) {
+    const auto& entry = (*look.build.entries)[i];
     Json item{{"name", entry.name},   {"effect", entry.effect},   {"at", entry.at},
               {"order", entry.order}, {"enabled", entry.enabled}, {"required", entry.required}};
     for (const auto& [name, value] : entry.settings) item["settings"][name] = Json(value_json(value));
@@ -105,6 +109,7 @@ std::string as_json(const Look& look, const std::string& file, const std::vector
     item["blend"] = entry.blend;
     if (entry.mask) item["mask"] = entry.mask->text();
     if (entry.members > 0) item["members"] = entry.members;
+    item["light"] = space_json(look.spaces[i]);
     if (const auto* reason = skip_reason(look, entry)) item["skipped"] = *reason;
     out["entries"].push_back(std::move(item));
   }

@@ -26,6 +26,10 @@ struct EffectsArguments {
   bool json = false, markdown = false, completion = false;
 };
 
+nlohmann::json space_json(const EffectSchema& effect, LightSpace space) {
+  return effect.space_by_settings ? "by settings" : space_name(space);
+}
+
 nlohmann::json as_json(const EffectSchema& effect) {
   auto settings = nlohmann::json::array();
   for (const auto& setting : effect.settings) settings.push_back(setting_json(setting));
@@ -33,6 +37,8 @@ nlohmann::json as_json(const EffectSchema& effect) {
                      {"doc", effect.doc},
                      {"at", effect.at},
                      {"order", effect.order},
+                     {"needs_light", space_json(effect, effect.space.needs)},
+                     {"makes_light", space_json(effect, effect.space.makes)},
                      {"file", effect.file.string()},
                      {"settings", std::move(settings)}};
   for (const auto& hold : effect.holds) out["holds"].push_back(hold_text(hold));
@@ -51,8 +57,8 @@ std::string effect_text(const EffectSchema& effect) {
   for (const auto& setting : effect.settings)
     table.add(
         {setting.name, type_text(setting.type), allowed_text(setting), setting.default_value.text(), setting.doc});
-  std::string out = fmt::format("{}: {}\nat {}, order {}; {}\n\n{}", effect.name, effect.doc, effect.at, effect.order,
-                                effect.file.string(), table.text("  "));
+  std::string out = fmt::format("{}: {}\nat {}, order {}; {}\n{}\n\n{}", effect.name, effect.doc, effect.at,
+                                effect.order, effect.file.string(), space_text(effect), table.text("  "));
   if (!effect.holds.empty()) {
     std::vector<std::string> promises;
     for (const auto& hold : effect.holds) promises.push_back(hold_text(hold));

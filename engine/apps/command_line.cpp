@@ -129,7 +129,8 @@ int run(Console& console, int argc, char** argv, Work work) {
       add_run_command(program),       add_check_command(program),   add_graph_command(program),
       add_explain_command(program),   add_effects_command(program), add_new_command(program),
       add_set_command(program),       add_devices_command(program), add_bench_command(program),
-      add_calibrate_command(program), add_play_command(program),    add_stress_command(program)};
+      add_calibrate_command(program), add_play_command(program),    add_stress_command(program),
+      add_bake_command(program)};
   MessageArguments messages;
   for (const auto& command : commands) messages.add(*command.options);
 

@@ -19,6 +19,7 @@
 #include "core/stopwatch.h"
 #include "core/text.h"
 #include "graph/history.h"
+#include "image/input_space.h"
 #include "image/reader.h"
 #include "image/writer.h"
 
@@ -30,14 +31,20 @@ struct RunArguments {
   DeviceArguments device;
   ExecutionArguments execution;
   FrameListRequest files;
-  std::string layer, depth, normal, motion, size, region;
-  std::string type = "auto", compression, nan_policy = "zero";
+  std::string layer, input_space, depth, normal, motion, size, region;
+  std::string type = "auto", dither = "auto", compression, nan_policy = "zero";
   int png_level = 1, jpeg_quality = 95;
-  bool dither = false, keep_layers = false, resume = false, fail_fast = false;
+  bool keep_layers = false, resume = false, fail_fast = false;
   double fps = 24;
   std::optional<int> pre_roll;
   std::string stats, report, lock, locked;
 };
+
+std::string space_list() {
+  std::vector<std::string> names;
+  for (const InputSpace& space : input_spaces()) names.emplace_back(space.name);
+  return join(names);
+}
 
 void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("INPUT", a.files.inputs, "Pictures: files, or sequences like shot.####.exr and shot.%04d.exr")
@@ -49,6 +56,10 @@ void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("--layer", a.layer, "Colour layer or part (default: the usual names, Combined and plain R,G,B first)")
       ->type_name("NAME")
       ->group(input);
+  app.add_option("--input-space", a.input_space,
+                 "Colour space that pictures are stored in, whatever they say: " + space_list())
+      ->type_name("NAME")
+      ->group(input);
   app.add_option("--depth", a.depth, "Depth from another file or channel; FILE may be a pattern")
       ->type_name("FILE[:CHANNEL]")
       ->group(input);
@@ -58,7 +69,11 @@ void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("--motion", a.motion, "Motion vectors from another file or layer; FILE may be a pattern")
       ->type_name("FILE[:LAYER]")
       ->group(input);
-  app.add_option("--size", a.size, "Scale the picture first, for a quick look")->type_name("WxH")->group(input);
+  app.add_option(
+         "--size", a.size,
+         "Scale the picture first, for a quick look: 640x360, 640 (the width), x360, 50%; lengths scale with it")
+      ->type_name("SIZE")
+      ->group(input);
   app.add_option(
          "--nan-policy", a.nan_policy,
          "For values that are not finite, in pictures or made by passes: zero (default), neighbour (the mean of "
@@ -111,7 +126,13 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->check(CLI::Range(1, 100))
       ->type_name("N")
       ->group(output);
-  app.add_flag("--dither", a.dither, "Ordered noise before rounding to integers; the same every time")->group(output);
+  app.add_option(
+         "--dither", a.dither,
+         "auto, blue or none: blue noise between two codes, the same every time; none rounds to the nearest (auto: "
+         "blue into 8 bits)")
+      ->check(CLI::IsMember({"auto", "blue", "none"}))
+      ->type_name("NOISE")
+      ->group(output);
   app.add_flag("--keep-layers", a.keep_layers, "EXR to EXR: copy all other channels and parts unchanged")
       ->group(output);
 }
@@ -157,6 +178,7 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--max-error", number(a.execution.max_error)},
           {"--reference", flag(a.execution.reference)},
           {"--layer", a.layer},
+          {"--input-space", a.input_space},
           {"--depth", a.depth},
           {"--normal", a.normal},
           {"--motion", a.motion},
@@ -169,7 +191,7 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--compression", a.compression},
           {"--png-level", fmt::format("{}", a.png_level)},
           {"--jpeg-quality", fmt::format("{}", a.jpeg_quality)},
-          {"--dither", flag(a.dither)},
+          {"--dither", a.dither},
           {"--keep-layers", flag(a.keep_layers)}};
 }
 
@@ -208,7 +230,7 @@ WriteOptions write_options(const RunArguments& a) {
   options.compression = a.compression;
   options.png_level = a.png_level;
   options.jpeg_quality = a.jpeg_quality;
-  options.dither = a.dither;
+  if (a.dither != "auto") options.dither = a.dither == "blue";
   options.keep_layers = a.keep_layers;
   return options;
 }
@@ -312,7 +334,7 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   run.loop.read.layer = a.layer;
   run.loop.read.max_bytes = options.stack.max_memory;
   if (!a.size.empty()) {
-    AFTERGLOW_TRY(run.loop.size, parse_size(a.size));
+    AFTERGLOW_TRY(run.loop.size, parse_size_wish(a.size));
     if (a.keep_layers)
       return Error{ErrorKind::usage, "--keep-layers copies layers as they are and cannot go with --size",
                    "afterglow run"};
@@ -332,6 +354,7 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   opened.frames = run.report.frames.size() > 1 ? kFramesInFlight : 1;
   AFTERGLOW_TRY(run.session, Session::open(preset, opened, run.console.diagnostics()));
   run.loop.read.auxiliary = run.session->preset().needs();
+  run.loop.read.input_space = a.input_space.empty() ? run.session->preset().input_space() : a.input_space;
   AFTERGLOW_CHECK(prepare_lock(run));
   FrameLoop loop(*run.session, run.loop, events_of(run.console));
   AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run, loop));

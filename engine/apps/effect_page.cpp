@@ -33,10 +33,19 @@ std::string cell(std::string_view text) {
 
 }  // namespace
 
+std::string space_text(const EffectSchema& effect) {
+  if (effect.space_by_settings) return "Which light it is made for depends on its settings.";
+  const auto& [needs, makes] = effect.space;
+  if (needs == LightSpace::any && makes == LightSpace::any) return "Works on any light.";
+  if (makes == LightSpace::any) return fmt::format("Made for {} light.", space_name(needs));
+  return fmt::format("Takes {}{} light, makes {} light.", needs == LightSpace::any ? "" : space_name(needs),
+                     needs == LightSpace::any ? "any" : "", space_name(makes));
+}
+
 std::string effect_page(const EffectSchema& effect) {
   std::string out = fmt::format("## {}\n\n{}\n\n", effect.name, effect.doc);
   if (const auto notes = head_comment(effect.file); !notes.empty()) out += notes + "\n";
-  out += fmt::format("Runs at `{}`, order {}.\n\n", effect.at, effect.order);
+  out += fmt::format("Runs at `{}`, order {}. {}\n\n", effect.at, effect.order, space_text(effect));
   if (effect.settings.empty()) return out;
   out += "| setting | type | allowed | default | what it does |\n|---|---|---|---|---|\n";
   for (const auto& setting : effect.settings)

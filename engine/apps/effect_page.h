@@ -7,7 +7,9 @@
 
 namespace afterglow {
 
-/// Markdown: heading, purpose, notes (the comment), where it runs, a table of settings.
+/// One sentence: what light the effect is made for, and what it makes.
+std::string space_text(const EffectSchema& effect);
+/// Markdown: heading, purpose, notes (the comment), where it runs, in what light, a table of settings.
 std::string effect_page(const EffectSchema& effect);
 
 }  // namespace afterglow

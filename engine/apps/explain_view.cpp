@@ -9,6 +9,7 @@
 #include "apps/setting_text.h"
 #include "batch/json_text.h"
 #include "batch/table.h"
+#include "apps/space_text.h"
 #include "core/text.h"
 
 namespace afterglow {
@@ -86,8 +87,10 @@ std::string history_text(const Graph& graph, const History& history) {
 std::string entry_text(const ExplainView& view, const StackEntry& entry, const EntryHistory& history,
                        std::size_t place) {
   const auto* reason = skip_reason(view.look, entry.name);
-  std::string out = fmt::format("\n{}. {}  at {}, order {}: {}\n", place, entry.name, entry.at, entry.order,
-                                reason ? "skipped, " + *reason : "runs");
+  std::string out = fmt::format("\n{}. {}  at {}, order {}; {}: {}\n", place, entry.name, entry.at, entry.order,
+                                space_text(view.look.spaces[place - 1]), reason ? "skipped, " + *reason : "runs");
+  if (const auto& warning = view.look.spaces[place - 1].warning; !warning.empty())
+    out += fmt::format("   warning: {}\n", warning);
   Table settings({"setting", "default", "preset", "volumes", "--set", "final"});
   bool any = false;
   for (const auto& setting : history.settings) {
@@ -168,6 +171,7 @@ std::string explain_json(const ExplainView& view) {
     const auto* reason = skip_reason(view.look, entries[i].name);
     item["state"] = reason ? "skipped" : "runs";
     if (reason) item["reason"] = *reason;
+    item["light"] = space_json(view.look.spaces[i]);
     item["settings"] = Json::array();
     for (const auto& setting : explanation.entries[i].settings)
       if (shown(view.setting, setting.name)) item["settings"].push_back(setting_json(setting));

@@ -22,6 +22,7 @@ Result<Look> load_look(const PresetArguments& arguments, const AssumedPicture& a
   AFTERGLOW_TRY(const BuildContext context, assumed.context(*look.preset));
   AFTERGLOW_TRY(look.build, look.preset->evaluate(context, console.diagnostics()));
   AFTERGLOW_CHECK(validate(look.build.graph));
+  AFTERGLOW_TRY(look.spaces, look.preset->spaces());
   look.plan = make_plan(look.build.graph, {});
   if (!assumed.region.empty()) {
     AFTERGLOW_TRY(const Rect region, parse_region(assumed.region));
@@ -53,7 +54,7 @@ ShaderFindings check_shaders(const Look& look) {
     // The last kernel once more, as it is for display files without and with transparency.
     for (const bool straight : {false, true}) {
       FrameWork work{.graph = look.build.graph, .codes = true};
-      encode_for_display(work.graph, {.straight_alpha = straight});
+      encode_for_display(work.graph, {.straight_alpha = straight, .dither = true});
       ShaderFindings more = check_kernels(*look.shaders, compiler, work, config);
       std::ranges::move(more.errors, std::back_inserter(found.errors));
       std::ranges::move(more.warnings, std::back_inserter(found.warnings));

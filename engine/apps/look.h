@@ -16,7 +16,8 @@ struct Look {
   std::unique_ptr<ShaderLibrary> shaders;
   std::unique_ptr<Preset> preset;
   Build build;
-  Plan plan;  ///< as `run` would make it
+  std::vector<EntrySpace> spaces;  ///< of the preset's entries
+  Plan plan;                       ///< as `run` would make it
 };
 
 /// Errors: script, usage.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "batch/crop.h"
@@ -32,6 +33,7 @@ struct FrameLoop::Reading {
   FrameRecord* frame = nullptr;
   bool pre_roll = false, restart = false;
   std::optional<Error> refused;  ///< by the header; nothing was read
+  std::optional<Size> size;      ///< that the display window is scaled to
   FrameRequest request{};        ///< its region: of the picture, when a part of the display window is wanted
   ReadOptions options;
   std::future<Result<Picture>> picture;
@@ -134,19 +136,27 @@ ReadOptions FrameLoop::read_options(const FrameJob& job) const {
 }
 
 /// What is wanted of the picture with this header.
+/// What the display window is scaled to.
+std::optional<Size> FrameLoop::size_of(const PictureHeader& header) const {
+  if (!options_.size) return std::nullopt;
+  return options_.size->of(header.display_window.size());
+}
+
 Result<FrameRequest> FrameLoop::request_of(const FrameJob& job, const PictureHeader& header, double step,
                                            bool restart) {
   FrameRequest request;
   const Size display = header.display_window.size();
   BuildContext context;
-  context.size =
-      options_.size ? scaled_size(header.data_window.size(), display, *options_.size) : header.data_window.size();
+  const std::optional<Size> size = size_of(header);
+  context.size = size ? scaled_size(header.data_window.size(), display, *size) : header.data_window.size();
+  if (size)
+    context.length_scale = std::sqrt(static_cast<double>(size->width) * size->height /
+                                     (static_cast<double>(display.width) * display.height));
   if (options_.region) {
     const Rect& data = header.data_window;
-    const Rect window = options_.size ? scaled_window(data, header.display_window, *options_.size) : data;
-    const Rect shown = options_.size ? Rect{header.display_window.x, header.display_window.y, options_.size->width,
-                                            options_.size->height}
-                                     : header.display_window;
+    const Rect window = size ? scaled_window(data, header.display_window, *size) : data;
+    const Rect shown = size ? Rect{header.display_window.x, header.display_window.y, size->width, size->height}
+                            : header.display_window;
     AFTERGLOW_TRY(request.region, part_of_region(*options_.region, window, shown));
   }
   const auto& wanted = options_.read.auxiliary;
@@ -204,6 +214,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
     return reading;
   }
   begun_ = frame.job.frame;
+  reading->size = size_of(planned->header);
   reading->request = std::move(planned->request);
   const auto need = need_of(planned->header, *reading->request.build, frame.job);
   if (!need) {
@@ -211,16 +222,16 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
     return reading;
   }
   overlap_ = total_ + pre_roll_ > 1 && need->three_frames() <= options_.max_memory;
-  reading->picture =
-      std::async(std::launch::async,
-                 [this, &frame, options = reading->options, header = std::move(planned->header)]() -> Result<Picture> {
-                   const auto start = Clock::now();
-                   auto picture = read_picture(header, options, events_.diagnostics);
-                   if (picture && options_.size) scale_picture(*picture, *options_.size);
-                   if (picture && options_.reuse && total_ + pre_roll_ > 1) note_content(*picture);
-                   frame.read = milliseconds_since(start);
-                   return picture;
-                 });
+  reading->picture = std::async(std::launch::async,
+                                [this, &frame, options = reading->options, size = reading->size,
+                                 header = std::move(planned->header)]() -> Result<Picture> {
+                                  const auto start = Clock::now();
+                                  auto picture = read_picture(header, options, events_.diagnostics);
+                                  if (picture && size) scale_picture(*picture, *size);
+                                  if (picture && options_.reuse && total_ + pre_roll_ > 1) note_content(*picture);
+                                  frame.read = milliseconds_since(start);
+                                  return picture;
+                                });
   return reading;
 }
 
@@ -306,7 +317,7 @@ Result<void> FrameLoop::make(Reading& reading, Picture& picture) {
 Result<Trace> FrameLoop::trace_again(const Reading& reading) {
   Diagnostics quiet;  // reading has said all there is to say
   AFTERGLOW_TRY(Picture source, read_picture(reading.frame->job.input, reading.options, quiet));
-  if (options_.size) scale_picture(source, *options_.size);
+  if (reading.size) scale_picture(source, *reading.size);
   return session_.trace(source, reading.request, options_.nan_policy);
 }
 

@@ -11,6 +11,7 @@
 #include "batch/non_finite_record.h"
 #include "batch/run_events.h"
 #include "batch/run_report.h"
+#include "batch/scale.h"
 #include "batch/schedule.h"
 #include "core/hash.h"
 #include "image/reader.h"
@@ -22,9 +23,9 @@ namespace afterglow {
 struct FrameLoopOptions {
   ReadOptions read;  ///< depth, normal and motion are those of each frame
   WriteOptions write;
-  std::optional<Size> size;    ///< display window to scale pictures to before the stack
-  std::optional<Rect> region;  ///< part of the display window that is wanted
-  bool reuse = true;           ///< pictures that were just run are not run again
+  std::optional<SizeWish> size;  ///< of the display window; pictures are scaled to it before the stack
+  std::optional<Rect> region;    ///< part of the display window that is wanted
+  bool reuse = true;             ///< pictures that were just run are not run again
   double fps = 24;
   std::uint64_t max_memory = 6ull << 30;
   std::optional<Hash> record_look;  ///< leave notes for --resume
@@ -71,6 +72,7 @@ class FrameLoop {
     FrameRequest request;
   };
   ReadOptions read_options(const FrameJob& job) const;
+  std::optional<Size> size_of(const PictureHeader& header) const;
   Result<FrameRequest> request_of(const FrameJob& job, const PictureHeader& header, double step, bool restart);
   Result<Planned> plan(const FrameJob& job, double step, bool restart);
   Result<Need> need_of(const PictureHeader& header, const Build& build, const FrameJob& job);

@@ -1,7 +1,9 @@
 #include "batch/scale.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 namespace afterglow {
@@ -82,6 +84,39 @@ Image nearest(const Image& source, Size size) {
 }
 
 }  // namespace
+
+Size SizeWish::of(Size display) const {
+  const auto side = [](double length) { return static_cast<int>(std::clamp(std::round(length), 1.0, 16384.0)); };
+  if (width > 0 && height > 0) return {width, height};
+  const double scale = width > 0    ? static_cast<double>(width) / display.width
+                       : height > 0 ? static_cast<double>(height) / display.height
+                                    : share;
+  return {width > 0 ? width : side(display.width * scale), height > 0 ? height : side(display.height * scale)};
+}
+
+Result<SizeWish> parse_size_wish(const std::string& text) {
+  const auto whole = [](std::string_view part, int& out) {
+    if (part.empty()) return true;
+    const auto [end, ec] = std::from_chars(part.data(), part.data() + part.size(), out);
+    return ec == std::errc() && end == part.data() + part.size() && out >= 1 && out <= 16384;
+  };
+  SizeWish wish;
+  bool good = false;
+  if (text.ends_with('%')) {
+    const char* end = text.data() + text.size() - 1;
+    const auto [stop, ec] = std::from_chars(text.data(), end, wish.share);
+    wish.share /= 100;
+    good = ec == std::errc() && stop == end && wish.share > 0 && wish.share <= 16;
+  } else {
+    const std::size_t x = text.find_first_of("xX");
+    const std::string_view all = text;
+    good = whole(all.substr(0, x), wish.width) && (x == std::string::npos || whole(all.substr(x + 1), wish.height)) &&
+           (wish.width > 0 || wish.height > 0);
+  }
+  if (good) return wish;
+  return Error{ErrorKind::usage, "'" + text + "' is no size", "--size", 0,
+               "WIDTHxHEIGHT, WIDTH, xHEIGHT (1 to 16384) or a share like 50%"};
+}
 
 Size scaled_size(Size data, Size display, Size target) {
   return {std::max(1, scaled(data.width, display.width, target.width)),

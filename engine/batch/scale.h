@@ -1,10 +1,24 @@
 // --size: pictures made smaller (or larger) before the stack, for a quick look.
 #pragma once
 
+#include <string>
+
 #include "core/geometry.h"
+#include "core/result.h"
 #include "image/picture.h"
 
 namespace afterglow {
+
+/// What --size asks for: both sides, one of them, or a share; what is left open keeps the picture's shape.
+struct SizeWish {
+  int width = 0, height = 0;  ///< 0: left open
+  double share = 0;           ///< of both sides, when neither is given
+  /// At least 1×1, at most 16384 on a side that is given.
+  Size of(Size display) const;
+};
+
+/// "1280x720", "1280" (the width), "x720", "50%". Errors: usage.
+Result<SizeWish> parse_size_wish(const std::string& text);
 
 /// Size of a data window when its display window is scaled to `target`; at least 1×1.
 Size scaled_size(Size data, Size display, Size target);

@@ -62,6 +62,8 @@ class CurveDecoder {
         return static_cast<float>(stored < 0.081 ? stored / 4.5 : std::pow((stored + 0.099) / 1.099, 1 / 0.45));
       case TransferCurve::power:
         return static_cast<float>(std::copysign(std::pow(std::abs(stored), encoding_.exponent), stored));
+      case TransferCurve::formula:
+        return static_cast<float>(encoding_.formula(stored));
       default:
         return static_cast<float>(stored);
     }

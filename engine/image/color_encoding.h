@@ -22,12 +22,13 @@ class ProfileTransform {
   virtual void apply(float* rgb, std::size_t pixels) const = 0;
 };
 
-enum class TransferCurve { linear, srgb, rec709, power, tables };
+enum class TransferCurve { linear, srgb, rec709, power, tables, formula };
 enum class AlphaKind { none, associated, straight };
 
 struct ColorEncoding {
   TransferCurve curve = TransferCurve::linear;
   double exponent = 1;                         ///< of `power`
+  double (*formula)(double) = nullptr;         ///< of `formula`: stored value to light
   std::array<std::vector<float>, 3> tables{};  ///< of `tables`: linear values for equally spaced stored values 0…1
   std::optional<Matrix3> matrix;               ///< to Rec.709, when the primaries are others
   std::shared_ptr<const ProfileTransform> transform;  ///< replaces curve and matrix

@@ -67,6 +67,8 @@ Matrix3 to_rec709(const Chromaticities& primaries) {
   const Matrix3 to_xyz = rgb_to_xyz(primaries);
   const Matrix3 check = inverse(to_xyz);
   if (check == Matrix3{}) return {};
+  // XYZ itself: its white of equal energy is where the axes are, not the light that the scene was seen under.
+  if (nearly_equal(to_xyz, kIdentity, 1e-3)) return inverse(rgb_to_xyz(kRec709));
   return multiply(inverse(rgb_to_xyz(kRec709)), multiply(adapt_white(primaries.white, kRec709.white), to_xyz));
 }
 

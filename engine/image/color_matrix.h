@@ -21,7 +21,8 @@ Matrix3 rgb_to_xyz(const Chromaticities& primaries);
 /// XYZ seen under white `from` to XYZ seen under white `to`, both as x, y (Bradford).
 Matrix3 adapt_white(const std::array<double, 2>& from, const std::array<double, 2>& to);
 
-/// Linear RGB of these primaries to linear Rec.709, white to D65. All zero for primaries that make no sense.
+/// Linear RGB of these primaries to linear Rec.709, white to D65; CIE XYZ as it is, without adaptation. All zero for
+/// primaries that make no sense.
 Matrix3 to_rec709(const Chromaticities& primaries);
 /// XYZ under D50 (the connection space of ICC profiles) to linear Rec.709.
 Matrix3 xyz_d50_to_rec709();

@@ -3,7 +3,6 @@
 #include <half.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #if defined(__x86_64__)
@@ -11,6 +10,7 @@
 #endif
 
 #include "core/processor.h"
+#include "image/blue_noise.h"
 #include "image/srgb.h"
 
 namespace afterglow {
@@ -39,28 +39,15 @@ __attribute__((target("avx,f16c"))) std::size_t to_half_f16c(const float* values
 }
 #endif
 
-/// 8×8 ordered noise (Bayer), centred: multiples of 1/64 in (−½, ½).
-constexpr std::array<std::array<float, 8>, 8> bayer() {
-  std::array<std::array<float, 8>, 8> out{};
-  for (unsigned y = 0; y < 8; ++y) {
-    for (unsigned x = 0; x < 8; ++x) {
-      unsigned rank = 0;
-      for (unsigned bit = 0; bit < 3; ++bit) {
-        const unsigned bx = x >> bit & 1, by = y >> bit & 1;
-        rank |= (bx ^ by) << (2 * (2 - bit) + 1) | by << (2 * (2 - bit));
-      }
-      out[y][x] = (static_cast<float>(rank) + 0.5f) / 64.0f - 0.5f;
-    }
-  }
-  return out;
-}
-constexpr auto kBayer = bayer();
-
-std::uint32_t dithered(float linear, float noise, int max_code) {
+/// The code below or above a value by the pixel's threshold, so that an area of them has the light that was meant.
+/// Between two codes the sRGB curve bends a little: a share of t pixels at the upper one makes t(1 + rt)/(1 + r) of the
+/// step. What lies within a thousandth of a code is that code everywhere. shaders/lib/dither.glsl does the same.
+std::uint32_t dithered(float linear, float threshold, int max_code) {
   const double clamped = linear > 0 ? std::min(static_cast<double>(linear), 1.0) : 0.0;
-  // Black and white stay what they are: the noise is below half a step.
-  return static_cast<std::uint32_t>(
-      std::clamp(linear_to_srgb(clamped) * max_code + static_cast<double>(noise) + 0.5, 0.0, max_code + 0.5));
+  const double encoded = std::min(linear_to_srgb(clamped), 1.0) * max_code, code = std::floor(encoded);
+  const double from = code / max_code, r = from > 0.03925 ? 0.7 / (max_code * (from + 0.055)) : 0;
+  const double t = (encoded - code) * (1 + r * (encoded - code)) / (1 + r);
+  return static_cast<std::uint32_t>(std::min(code + (t * 1.002 - 0.001 > threshold ? 1 : 0), double(max_code)));
 }
 
 /// The nearest code of a linear quantity; exact, since the product of a float and 65535 fits a double.
@@ -72,14 +59,13 @@ std::uint32_t linear_code(float value, int max_code) {
 template <class Code>
 void encode(const CodeRules& rules, const float* rgba, int width, int x0, int y, Code* codes) {
   const CodeEncoder& encoder = CodeEncoder::srgb(rules.max_code);
-  const auto& noise = kBayer[static_cast<unsigned>(y) % 8];
   for (int x = 0; x < width; ++x, rgba += 4) {
     const float alpha = rgba[3];
     const bool divide = rules.alpha && alpha > 0 && alpha != 1;
     for (int c = 0; c < 3; ++c) {
       const float linear = divide ? rgba[c] / alpha : rgba[c];
-      *codes++ = static_cast<Code>(
-          rules.dither ? dithered(linear, noise[static_cast<unsigned>(x0 + x) % 8], rules.max_code) : encoder(linear));
+      *codes++ =
+          static_cast<Code>(rules.dither ? dithered(linear, blue_noise(x0 + x, y), rules.max_code) : encoder(linear));
     }
     if (rules.alpha) *codes++ = static_cast<Code>(linear_code(alpha, rules.max_code));
   }

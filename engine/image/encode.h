@@ -23,10 +23,10 @@ struct CodeRules {
   int max_code = 255;   ///< 255 or 65535
   bool alpha = false;   ///< four codes a pixel: straight alpha, colour divided by it in linear light where it is above
                         ///< 0; else three
-  bool dither = false;  ///< ±½ step of ordered noise on colour
+  bool dither = false;  ///< colour between two codes becomes one of them by blue noise; else the nearest
 };
 
-/// Codes of one row, sRGB-encoded, each the nearest to the encoded value. `x`, `y`: position of the first pixel, for
+/// Codes of one row, sRGB-encoded. `x`, `y`: position of the first pixel, for
 /// the noise.
 void encode_row(const CodeRules& rules, const float* rgba, int width, int x, int y, std::uint8_t* codes);
 void encode_row(const CodeRules& rules, const float* rgba, int width, int x, int y, std::uint16_t* codes);

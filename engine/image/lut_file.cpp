@@ -44,4 +44,12 @@ Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record) {
   return module->read(file);
 }
 
+Result<Lut> read_ocio(const OcioRequest& request) {
+  AFTERGLOW_TRY(const LutModule* module, lut_module());
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(request.config, ec))
+    return Error{ErrorKind::script, "there is no such OpenColorIO configuration", request.config.string()};
+  return module->view(request);
+}
+
 }  // namespace afterglow

@@ -118,8 +118,9 @@ Result<void> read_back(const std::string& name) {
 /// Writes to `name`, or to `proxy` where there is one.
 Result<void> write_rows(const Picture& picture, const OutputFormat& format, const std::string& name, OiioOutput* proxy,
                         const WriteOptions& options) {
-  const StripForm form{sample_type(format, options, picture.facts.get()), picture.has_alpha && format.alpha,
-                       options.dither, options.dither_x, options.dither_y};
+  const SampleType type = sample_type(format, options, picture.facts.get());
+  const StripForm form{type, picture.has_alpha && format.alpha, dithers(options, type), options.dither_x,
+                       options.dither_y};
   const OIIO::ImageSpec spec = spec_for(picture, format, form.type, form.alpha, options);
   const auto output = OIIO::ImageOutput::create(format.name);
   if (!output) return Error{ErrorKind::io, fmt::format("cannot be written: OpenImageIO has no {} writer", format.name)};

@@ -29,6 +29,11 @@ Result<const OutputFormat*> output_format(const std::filesystem::path& file, con
 /// The type that `options.type` comes to for this format; `facts` of the input may be null.
 SampleType sample_type(const OutputFormat& format, const WriteOptions& options, const FileFacts* facts);
 
+/// Is noise put between the codes of this type?
+inline bool dithers(const WriteOptions& options, SampleType type) {
+  return options.dither.value_or(type == SampleType::uint8);
+}
+
 /// "dwaa:45" → name "dwaa", level 45 (−1 without one). Errors: usage (the level is no number).
 struct Compression {
   std::string name;

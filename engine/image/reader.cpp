@@ -14,6 +14,7 @@
 #include "core/saturated.h"
 #include "core/text.h"
 #include "image/color_encoding.h"
+#include "image/input_space.h"
 #include "image/orientation.h"
 #include "image/picture_file.h"
 
@@ -256,7 +257,8 @@ void report(const Picture& picture, NanPolicy policy, const fs::path& file, Diag
 }
 
 /// Allocates, reads and decodes everything of the plan. May throw std::bad_alloc.
-Result<Picture> read_planned(Plan& plan, NanPolicy policy, Diagnostics& diagnostics) {
+Result<Picture> read_planned(Plan& plan, const ReadOptions& options, Diagnostics& diagnostics) {
+  const NanPolicy policy = options.nan_policy;
   const FilePart& part = plan.color_part();
   Picture picture;
   picture.data_window = upright_data(part);
@@ -264,7 +266,11 @@ Result<Picture> read_planned(Plan& plan, NanPolicy policy, Diagnostics& diagnost
   picture.has_alpha = plan.color.channels[3] >= 0;
   picture.facts = std::make_shared<FileFacts>(plan.file->facts(plan.color));
   picture.layers = layer_names(plan.file->parts());
-  const ColorEncoding encoding = plan.file->color_encoding(plan.color, diagnostics);
+  ColorEncoding encoding = plan.file->color_encoding(plan.color, diagnostics);
+  if (!options.input_space.empty()) {
+    AFTERGLOW_TRY(const InputSpace* space, find_input_space(options.input_space));
+    use_input_space(*space, encoding);
+  }
 
   // Everything from the colour's own part is read in one go: the file is decompressed once.
   picture.color = Image(part.data_window.width, part.data_window.height, 4);
@@ -387,7 +393,7 @@ Result<Picture> read_opened(Opened& opened, const ReadOptions& options, Diagnost
                  fmt::format("needs {} MiB of memory, more than the {} MiB allowed (--max-memory)", bytes >> 20,
                              options.max_bytes >> 20),
                  plan.file->path().string()};
-  auto picture = read_planned(plan, options.nan_policy, diagnostics);
+  auto picture = read_planned(plan, options, diagnostics);
   // Whatever was read then, it is neither the old picture nor the new one.
   if (const auto changed = first_changed(opened.looks))
     return Error{ErrorKind::io, "changed while it was read", changed->string()};

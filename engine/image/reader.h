@@ -27,6 +27,8 @@ LayerChoice parse_layer_choice(const std::string& text);
 struct ReadOptions {
   /// --layer: colour layer ("ViewLayer.Combined", "ViewLayer", part name, channel); empty: the first usual one
   std::string layer;
+  /// Name of the space that colours are stored in (image/input_space.h), whatever the file says; empty: what it says.
+  std::string input_space;
   LayerChoice depth, normal, motion;
   std::vector<std::string>
       auxiliary;  ///< what the stack asks for: "depth", "normal", "motion", "layer:NAME"; only these are read

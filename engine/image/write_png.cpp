@@ -207,7 +207,7 @@ void run_batch(const StripEncoder& encoder, std::vector<Strip>& batch) {
 }  // namespace
 
 Result<void> write_png(const Picture& picture, SampleType type, OutputFile& out, const WriteOptions& options) {
-  const StripForm form{type, picture.has_alpha, options.dither, options.dither_x, options.dither_y};
+  const StripForm form{type, picture.has_alpha, dithers(options, type), options.dither_x, options.dither_y};
   write_header(picture, type, form.alpha, out);
   const StripEncoder encoder(picture, form, std::clamp(options.png_level, 0, 9));
   const int height = picture.display_window.height, rows = encoder.rows_per_strip();

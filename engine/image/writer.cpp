@@ -122,7 +122,7 @@ std::optional<DisplayCodes> display_codes(const fs::path& file, const WriteOptio
                                           const FileFacts* facts) {
   const auto format = output_format(file, options);
   if (!format || sample_type(**format, options, facts) != SampleType::uint8) return std::nullopt;
-  return DisplayCodes{.straight_alpha = has_alpha && (*format)->alpha, .dither = options.dither};
+  return DisplayCodes{.straight_alpha = has_alpha && (*format)->alpha, .dither = options.dither.value_or(true)};
 }
 
 Result<void> check_output(const fs::path& file, const WriteOptions& options) {

@@ -23,7 +23,8 @@ struct WriteOptions {
   std::string compression;
   int png_level = 1;  ///< zlib level 0–9
   int jpeg_quality = 95;
-  bool dither = false;             ///< ±½ step of ordered noise before quantising to integers; deterministic
+  /// Blue noise between two integer codes; deterministic. Empty: into 8 bits, not into 16.
+  std::optional<bool> dither = {};
   int dither_x = 0, dither_y = 0;  ///< where the picture's upper left pixel lies in the noise (≥ 0)
   bool keep_layers = false;  ///< EXR → EXR: copy all other channels and parts of `picture.facts`' file unchanged
 };

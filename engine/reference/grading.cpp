@@ -99,4 +99,16 @@ DoubleImage lift_gamma_gain(const DoubleImage& source, const LiftGammaGain& s) {
   });
 }
 
+DoubleImage exposure(const DoubleImage& source, double ev) {
+  return map_color(source, [&](const Rgb& c) { return c * std::exp2(ev); });
+}
+
+DoubleImage cdl(const DoubleImage& source, const Cdl& s) {
+  return map_color(source, [&](const Rgb& c) {
+    const Rgb graded = glm::pow(glm::max(c * s.slope + s.offset, Rgb(0)), s.power);
+    const double luma = glm::dot(graded, Rgb(0.2126, 0.7152, 0.0722));
+    return glm::max(luma + s.saturation * (graded - luma), Rgb(0));
+  });
+}
+
 }  // namespace afterglow::reference

@@ -34,4 +34,14 @@ struct LiftGammaGain {
 };
 DoubleImage lift_gamma_gain(const DoubleImage& source, const LiftGammaGain& settings);
 
+/// Light times 2^ev.
+DoubleImage exposure(const DoubleImage& source, double ev);
+
+/// ASC CDL v1.2 without the clamps to 1: (c·slope + offset)^power, saturation around Rec.709's luma.
+struct Cdl {
+  Rgb slope{1}, offset{0}, power{1};
+  double saturation = 1;
+};
+DoubleImage cdl(const DoubleImage& source, const Cdl& settings);
+
 }  // namespace afterglow::reference

@@ -35,10 +35,25 @@ DoubleImage run_box_bloom(const DoubleImage& source, const Inputs&, const Settin
 }
 
 DoubleImage run_tone_mapping(const DoubleImage& source, const Inputs&, const Settings& s) {
-  return tone_mapping(source, s.choice<ToneMode>("mode", {{"none", ToneMode::none},
-                                                          {"aces", ToneMode::aces},
-                                                          {"neutral", ToneMode::neutral},
-                                                          {"reinhard", ToneMode::reinhard}}));
+  return tone_mapping(source,
+                      {.mode = s.choice<ToneMode>("mode", {{"none", ToneMode::none},
+                                                           {"aces", ToneMode::aces},
+                                                           {"neutral", ToneMode::neutral},
+                                                           {"reinhard", ToneMode::reinhard},
+                                                           {"reinhard_extended", ToneMode::reinhard_extended},
+                                                           {"agx", ToneMode::agx},
+                                                           {"khronos_neutral", ToneMode::khronos_neutral},
+                                                           {"hable", ToneMode::hable},
+                                                           {"gt", ToneMode::gt}}),
+                       .exposure = s.number("exposure"),
+                       .white = s.number("white"),
+                       .full_white = s.flag("full_white"),
+                       .look = s.choice<AgxLook>(
+                           "look", {{"base", AgxLook::base}, {"punchy", AgxLook::punchy}, {"golden", AgxLook::golden}}),
+                       .toe = s.number("toe"),
+                       .toe_length = s.number("toe_length"),
+                       .shoulder_length = s.number("shoulder_length"),
+                       .shoulder_angle = s.number("shoulder_angle")});
 }
 
 DoubleImage run_color_adjustments(const DoubleImage& source, const Inputs&, const Settings& s) {

@@ -79,6 +79,17 @@ DoubleImage run_lift_gamma_gain(const DoubleImage& source, const Inputs&, const 
                                   .gain_offset = s.number("gain_offset")});
 }
 
+DoubleImage run_exposure(const DoubleImage& source, const Inputs&, const Settings& s) {
+  return exposure(source, s.number("ev"));
+}
+
+DoubleImage run_cdl(const DoubleImage& source, const Inputs&, const Settings& s) {
+  return cdl(source, {.slope = s.color("slope"),
+                      .offset = s.color("offset"),
+                      .power = s.color("power"),
+                      .saturation = s.number("saturation")});
+}
+
 // ---- lens and film
 
 DoubleImage run_vignette(const DoubleImage& source, const Inputs&, const Settings& s) {
@@ -217,15 +228,17 @@ DoubleImage run_fxaa(const DoubleImage& source, const Inputs&, const Settings& s
                            {{"low", FxaaQuality::low}, {"medium", FxaaQuality::medium}, {"high", FxaaQuality::high}})});
 }
 
-constexpr Oracle kOracles[] = {
+constexpr Oracle kMoreOracles[] = {
     {"anamorphic_streaks", run_anamorphic_streaks},
     {"bokeh_blur", run_bokeh_blur},
+    {"cdl", run_cdl},
     {"channel_mixer", run_channel_mixer},
     {"chromatic_aberration", run_chromatic_aberration},
     {"depth_of_field", run_depth_of_field},
     {"directional_blur", run_directional_blur},
     {"dual_kawase", run_dual_kawase},
     {"edge_detection", run_edge_detection},
+    {"exposure", run_exposure},
     {"film_grain", run_film_grain},
     {"fxaa", run_fxaa},
     {"glitch", run_glitch},
@@ -244,6 +257,6 @@ constexpr Oracle kOracles[] = {
 
 }  // namespace
 
-std::span<const Oracle> more_oracles() { return kOracles; }
+std::span<const Oracle> more_oracles() { return kMoreOracles; }
 
 }  // namespace afterglow::reference

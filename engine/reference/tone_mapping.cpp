@@ -96,23 +96,40 @@ Rgb tone_aces(const Rgb& x) {
   return kXyzToRec709 * (kD60ToD65 * (kAp1ToXyz * c));
 }
 
-Rgb tone_map(const Rgb& c, ToneMode mode) {
-  const Rgb x = glm::min(c, Rgb(60));
-  switch (mode) {
+Rgb tone_map(const Rgb& c, const ToneMapping& s) {
+  const Rgb light = c * std::exp2(s.exposure);
+  const Rgb x = glm::min(light, Rgb(60)), far = glm::clamp(light, Rgb(0), Rgb(65504));
+  switch (s.mode) {
     case ToneMode::none:
       return c;
     case ToneMode::aces:
-      return tone_aces(x);
+      return tone_aces(x) / (s.full_white ? tone_aces(Rgb(60)).r : 1.0);
     case ToneMode::neutral:
       return tone_neutral(x);
     case ToneMode::reinhard:
-      return tone_reinhard(x);
+      return tone_reinhard(x) / (s.full_white ? tone_reinhard(Rgb(60)).r : 1.0);
+    case ToneMode::reinhard_extended:
+      return tone_reinhard_extended(far, s.white);
+    case ToneMode::agx:
+      return tone_agx(far, s.look);
+    case ToneMode::khronos_neutral:
+      return tone_khronos_neutral(far);
+    case ToneMode::hable:
+      return tone_hable(far, s);
+    case ToneMode::gt:
+      return tone_gt(far);
   }
   return c;
 }
 
+Rgb tone_map(const Rgb& c, ToneMode mode) { return tone_map(c, ToneMapping{.mode = mode}); }
+
+DoubleImage tone_mapping(const DoubleImage& source, const ToneMapping& settings) {
+  return map_straight(source, [&](const Rgb& c) { return tone_map(c, settings); });
+}
+
 DoubleImage tone_mapping(const DoubleImage& source, ToneMode mode) {
-  return map_straight(source, [&](const Rgb& c) { return tone_map(c, mode); });
+  return tone_mapping(source, ToneMapping{.mode = mode});
 }
 
 }  // namespace afterglow::reference

@@ -10,6 +10,7 @@
 #include "script/injection.h"
 #include "script/object.h"
 #include "script/setting.h"
+#include "script/space.h"
 #include "script/table_reader.h"
 
 namespace afterglow::script {
@@ -251,7 +252,7 @@ int declare_effect(lua_State* lua) {
   if (runtime.effects.size() >= kMaxDeclared) throw failure(fmt::format("more than {} effects", kMaxDeclared));
   TableReader table(lua, 1, "fx.effect");
   table.allow(
-      {"active", "alpha", "at", "build", "doc", "holds", "idle", "name", "needs", "optional", "order", "settings"},
+      {"active", "alpha", "at", "build", "doc", "holds", "idle", "name", "needs", "optional", "order", "settings", "space"},
       false);
   Effect effect;
   EffectSchema& schema = effect.schema;
@@ -267,6 +268,7 @@ int declare_effect(lua_State* lua) {
                        join(injection_points()), nearest_name(schema.at, injection_points())));
   schema.order = table.integer("order").value_or(0);
   schema.straight = read_alpha(table) == "straight";
+  read_space(lua, table, effect);
   read_settings(lua, table, schema);
   read_holds(lua, table, effect);
   effect.active = read_function(lua, table, "active", false);

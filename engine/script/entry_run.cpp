@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/text.h"
 #include "script/declare.h"
@@ -57,7 +59,8 @@ void call_with_settings(lua_State* lua, const FunctionRef& function, const Entry
   const Blaming blaming(lua, run.entry);
   lua_rawgeti(lua, LUA_REGISTRYINDEX, function.ref);
   lua_rawgeti(lua, LUA_REGISTRYINDEX, run.settings_ref);
-  call(lua, 1, results);
+  lua_pushnumber(lua, run.length_scale);
+  call(lua, 2, results);
 }
 
 std::vector<std::string> input_names(lua_State* lua, const EntryRun& run, const InputList& list, const char* what) {
@@ -75,14 +78,28 @@ std::vector<std::string> input_names(lua_State* lua, const EntryRun& run, const 
   }
 }
 
+// A length of the delivered picture as one of the picture that runs.
+SettingValue scaled(SettingValue value, const SettingSchema& schema, double scale) {
+  if (schema.unit != "px" || scale == 1) return value;
+  const bool whole = schema.type == SettingType::integer;
+  for (double& number : value.number) {
+    number *= scale;
+    if (whole) number = std::max(std::round(number), schema.min.value_or(std::numeric_limits<double>::lowest()));
+  }
+  return value;
+}
+
 }  // namespace
 
-void make_settings(lua_State* lua, EntryRun& run) {
+void make_settings(lua_State* lua, EntryRun& run, double length_scale) {
+  const EffectSchema& schema = effect_of(lua, run).schema;
+  run.length_scale = length_scale;
   luaL_unref(lua, LUA_REGISTRYINDEX, run.settings_ref);
   run.settings_ref = LUA_NOREF;
   lua_createtable(lua, 0, static_cast<int>(run.entry.settings.size()));
-  for (const auto& [name, value] : run.entry.settings) {
-    push_setting(lua, value);
+  for (std::size_t i = 0; i < run.entry.settings.size(); ++i) {
+    const auto& [name, value] = run.entry.settings[i];
+    push_setting(lua, scaled(value, schema.settings[i], length_scale));
     lua_setfield(lua, -2, name.c_str());
   }
   lua_createtable(lua, 0, 1);
@@ -123,7 +140,8 @@ std::optional<double> idle_limit(lua_State* lua, const EntryRun& run, const Imag
     lua_rawgeti(lua, LUA_REGISTRYINDEX, effect.idle.ref);
     lua_rawgeti(lua, LUA_REGISTRYINDEX, run.settings_ref);
     push_image(lua, source);
-    call(lua, 2, 1);
+    lua_pushnumber(lua, run.length_scale);
+    call(lua, 3, 1);
   }
   const std::string what = fmt::format("idle of effect '{}'", effect.schema.name);
   const Value given = read_value(lua, -1);

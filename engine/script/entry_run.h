@@ -29,11 +29,14 @@ struct EntryRun {
   int settings_ref = LUA_NOREF;        ///< read-only table in the registry
   std::optional<Animated> opacity;
   std::shared_ptr<MaskRun> mask;  ///< null: none
+  double length_scale = 1;             ///< of the lengths in that table
 };
 
 /// All throw ScriptError.
-/// Makes the table `s` anew from the entry's settings: reading a setting that does not exist is an error.
-void make_settings(lua_State* lua, EntryRun& run);
+/// Makes the table `s` anew from the entry's settings: reading a setting that does not exist is an error. Settings in
+/// px are multiplied by `length_scale`: numbers as they are, whatever their least value; integers rounded, and not
+/// below it.
+void make_settings(lua_State* lua, EntryRun& run, double length_scale);
 /// Why the effect has nothing to do with these settings; empty when it is active.
 std::optional<std::string> inactive_reason(lua_State* lua, const EntryRun& run);
 std::vector<std::string> needed_inputs(lua_State* lua, const EntryRun& run);

@@ -70,6 +70,9 @@ class GraphBuilder {
   ImageRef source() const { return ref(graph_.source); }
   std::uint64_t build() const { return build_; }
   const BuildContext& context() const { return context_; }
+  /// Pixels of the picture for each pixel that settings in px are given in.
+  double length_scale() const { return length_scale_; }
+  void scale_lengths(double scale) { length_scale_ = scale; }
 
   /// Passes that follow belong to this entry. `inputs`: auxiliary images that it may ask for. `straight`: its effect
   /// wants straight colour, see Pass::straight. `prefix` stands before the names of its passes: "glow.mask.luma".
@@ -125,6 +128,7 @@ class GraphBuilder {
   BuildContext context_;
   ShaderLibrary& shaders_;
   std::uint64_t build_;
+  double length_scale_ = 1;
   Graph graph_;
   const StackEntry* entry_ = nullptr;
   std::vector<std::string> inputs_;

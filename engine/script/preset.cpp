@@ -18,6 +18,7 @@
 #include "script/object.h"
 #include "script/overrides.h"
 #include "script/resolve.h"
+#include "script/space.h"
 
 namespace afterglow {
 
@@ -26,8 +27,10 @@ using namespace script;
 struct Preset::State {
   std::unique_ptr<Runtime> runtime;
   ShaderLibrary* shaders = nullptr;
-  std::string file, name;
+  std::string file, name, input_space;
   std::optional<double> max_error;
+  std::optional<int> reference_height;
+  double length_scale = 1;  // of the settings in `runs`
   std::vector<EntryRun> runs;                              // in the order of execution
   std::shared_ptr<const std::vector<StackEntry>> entries;  // the same, as they were resolved last
   std::shared_ptr<const std::vector<StackEntry>> loaded;   // as they were first
@@ -40,6 +43,7 @@ struct Preset::State {
 
   void load(lua_State* lua, const PresetOptions& options);
   void resolve(lua_State* lua, const BuildContext& context);
+  void scale_lengths(lua_State* lua, const BuildContext& context);
   void note_needs(lua_State* lua, const StackEntry*& current);
   ImageRef build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
                        Diagnostics& diagnostics);
@@ -98,6 +102,8 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   sort_entries(stack.entries);
   name = stack.name.empty() ? std::filesystem::path(file).stem().string() : stack.name;
   max_error = stack.max_error;
+  reference_height = stack.reference_height;
+  input_space = stack.input_space;
   for (auto& declared : stack.entries) {
     const auto& schema = runtime->effects[static_cast<std::size_t>(declared.effect)].schema;
     for (std::size_t i = 0; i < schema.settings.size(); ++i)
@@ -125,10 +131,18 @@ void Preset::State::resolve(lua_State* lua, const BuildContext& context) {
   auto settled = std::make_shared<std::vector<StackEntry>>();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const bool as_before = entries && (*entries)[i].settings == runs[i].entry.settings;
-    if (runs[i].settings_ref == LUA_NOREF || !as_before) make_settings(lua, runs[i]);
+    if (runs[i].settings_ref == LUA_NOREF || !as_before) make_settings(lua, runs[i], length_scale);
     settled->push_back(runs[i].entry);
   }
   entries = std::move(settled);
+}
+
+// Lengths of this frame: what scripts read of settings in px follows.
+void Preset::State::scale_lengths(lua_State* lua, const BuildContext& context) {
+  const double scale = reference_height ? double(context.size.height) / *reference_height : context.length_scale;
+  if (scale == length_scale) return;
+  length_scale = scale;
+  for (auto& run : runs) make_settings(lua, run, length_scale);
 }
 
 void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
@@ -176,6 +190,7 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
 }
 
 const std::string& Preset::name() const { return state_->name; }
+const std::string& Preset::input_space() const { return state_->input_space; }
 std::optional<double> Preset::max_error() const { return state_->max_error; }
 const std::vector<PresetArgument>& Preset::arguments() const { return state_->runtime->arguments; }
 bool Preset::may_change() const { return state_->may_change; }
@@ -293,6 +308,8 @@ Result<Build> Preset::evaluate(const BuildContext& context, Diagnostics& diagnos
   state.runtime->graph = &graph;
   box.diagnostics = &diagnostics;
   auto error = box.run(state.file, [&](lua_State* lua) {
+    state.scale_lengths(lua, context);
+    graph.scale_lengths(state.length_scale);
     if (state.may_change) state.resolve(lua, context);
     warn_without_position(*state.explanation, diagnostics);
     image = state.build_entries(lua, 0, state.runs.size(), graph, image, current, diagnostics);
@@ -312,6 +329,14 @@ Result<Build> Preset::evaluate(const BuildContext& context, Diagnostics& diagnos
     for (const auto& run : state.runs) out.promises.push_back({run.entry.name, holds_of(lua, run, context.size)});
   });
   out.files = looked_at();
+  return out;
+}
+
+Result<std::vector<EntrySpace>> Preset::spaces() {
+  State& state = *state_;
+  std::vector<EntrySpace> out;
+  auto error = state.runtime->box->run(state.file, [&](lua_State* lua) { out = trace_spaces(lua, state.runs); });
+  if (error) return std::move(*error);
   return out;
 }
 

@@ -61,10 +61,32 @@ struct HoldSchema {
   bool conditional = false;           ///< holds for some settings or sizes alone
 };
 
+/// What the numbers of a colour mean: light of a scene, which has no upper end, or light of a display, 0…1. Both
+/// linear.
+enum class LightSpace { any, scene, display };
+/// "scene-linear", "display-linear", "any".
+const char* space_name(LightSpace space);
+
+/// What light an effect is made for, and what it makes of it.
+struct SpaceUse {
+  LightSpace needs = LightSpace::any;  ///< any: whatever comes
+  LightSpace makes = LightSpace::any;  ///< any: what came
+};
+
+/// The light in which an entry of a stack runs.
+struct EntrySpace {
+  SpaceUse use;                           ///< with the entry's settings
+  LightSpace before = LightSpace::scene;  ///< what it gets
+  LightSpace behind = LightSpace::scene;  ///< what the next one gets
+  std::string warning;                    ///< why it stands in the wrong place; empty: it does not
+};
+
 struct EffectSchema {
   std::string name, doc, at;
   int order = 0;
   bool straight = false;                ///< its pixel shaders see straight colour: `alpha = "straight"`
+  SpaceUse space;                       ///< where it is the same for all settings
+  bool space_by_settings = false;       ///< it depends on settings
   std::vector<SettingSchema> settings;  ///< in order of declaration
   std::vector<HoldSchema> holds;        ///< what it promises
   std::filesystem::path file;
@@ -154,6 +176,9 @@ struct BuildContext {
   double step = 1;       ///< frames since the one before it, whose images its histories hold (graph/history.h)
   bool restart = false;  ///< no frame is before it: histories begin anew
   std::optional<Position> position = {};          ///< of its camera, when the picture says it
+  /// Pixels of `size` for each pixel of the picture that is delivered: below 1 in previews that run smaller. Settings
+  /// in px are lengths of that picture. A stack's `reference_height` goes before it.
+  double length_scale = 1;
   std::vector<std::string> layers = {};           ///< names of all layers that it has, for messages
   std::shared_ptr<const Metadata> metadata = {};  ///< of its file; null: unknown
   friend bool operator==(const BuildContext&, const BuildContext&) = default;
@@ -172,6 +197,7 @@ class Preset {
   ~Preset();
 
   const std::string& name() const;          ///< of the stack
+  const std::string& input_space() const;   ///< `input_space` of the stack; empty: none
   std::optional<double> max_error() const;  ///< `max_error` of the stack
   /// In the order of execution, as they are for no frame in particular; those of a frame are Build::entries.
   const std::vector<StackEntry>& entries() const;
@@ -180,6 +206,8 @@ class Preset {
   const std::vector<PresetArgument>& arguments() const;         ///< that scripts of the preset declare, in their order
   /// May settings differ from frame to frame or from place to place (curves, functions, volumes)?
   bool may_change() const;
+  /// The light in which each entry runs, in the order of execution, with the settings of the last evaluation.
+  Result<std::vector<EntrySpace>> spaces();
   /// Names of auxiliary inputs that enabled, active effects ask for; where settings may change, those that they could
   /// ask for.
   std::vector<std::string> needs() const;

@@ -39,7 +39,7 @@ struct DeclaredHold {
 struct Effect {
   EffectSchema schema;
   std::vector<DeclaredHold> holds;  ///< parallel to the schema's
-  FunctionRef active, build, idle;
+  FunctionRef active, build, idle, space;
   InputList needs, optional;
   bool is_group() const { return !build.set(); }  ///< of fx.group and fx.mix: no script made it
 };
@@ -79,6 +79,8 @@ struct DeclaredStack {
   std::string name;
   std::optional<double> max_error;
   std::optional<Animated> position;
+  std::string input_space;              ///< that pictures are stored in; empty: what they say
+  std::optional<int> reference_height;  ///< of the picture whose pixels lengths are given in
   std::vector<DeclaredEntry> entries;   ///< in the preset's order
   std::vector<DeclaredVolume> volumes;  ///< the same
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "image/input_space.h"
 #include "script/entry_reader.h"
 #include "script/items.h"
 #include "script/object.h"
@@ -88,6 +89,16 @@ void read_stack(lua_State* lua, TableReader& table, DeclaredStack& stack) {
   if (stack.max_error && *stack.max_error <= 0)
     table.fail(failure(fmt::format("{}: max_error = {} is out of range", table.what(), number_text(*stack.max_error)),
                        {"max_error"}, "> 0"));
+  if (const auto space = table.text("input_space")) {
+    stack.input_space = *space;
+    if (const auto found = find_input_space(*space); !found)
+      table.fail(failure(fmt::format("{}: input_space: {}", table.what(), found.error().message), {"input_space"},
+                         found.error().allowed, found.error().nearest));
+  }
+  if (const auto height = table.integer("reference_height")) stack.reference_height = height;
+  if (stack.reference_height && (*stack.reference_height < 1 || *stack.reference_height > 16384))
+    table.fail(failure(fmt::format("{}: reference_height = {} is out of range", table.what(), *stack.reference_height),
+                       {"reference_height"}, "1…16384"));
   read_position(lua, table, stack);
   read_items(lua, table, stack.entries, &stack.volumes);
   if (!table.failed()) name_entries(table, stack);
@@ -102,7 +113,7 @@ void push_stack(lua_State* lua, DeclaredStack stack) {
 }
 
 const std::vector<std::string>& stack_keys() {
-  static const std::vector<std::string> keys{"max_error", "name", "position"};
+  static const std::vector<std::string> keys{"input_space", "max_error", "name", "position", "reference_height"};
   return keys;
 }
 

@@ -8,7 +8,7 @@ namespace afterglow {
 /// 8-bit display codes as the last kernel's work: sRGB-encoded, as a display file holds them.
 struct DisplayEncoding {
   bool straight_alpha = false;  ///< colours are divided by the source's alpha, which becomes the codes' alpha
-  bool dither = false;          ///< ±½ step of ordered noise
+  bool dither = false;          ///< blue noise between two codes
   friend bool operator==(const DisplayEncoding&, const DisplayEncoding&) = default;
 };
 

@@ -5,7 +5,7 @@ local fx = require "afterglow"
 return fx.stack {
   name = "Print",
   fx.bloom { mode = "scattering", intensity = 0.15, fade_fireflies = true },
-  fx.tone_mapping { mode = "neutral" },
   fx.color_adjustments { post_exposure = 2.4, contrast = -5, saturation = 20 },
+  fx.tone_mapping { mode = "neutral" },
   fx.halftone { cell = 6, angle = 30, ink = "#14101c", paper = "#f4ecd8", tint = 0.75 },
 }

@@ -34,13 +34,13 @@
 ---@class afterglow.settings.bloom : afterglow.EntryKeys
 ---@field mode? "additive"|"scattering"|afterglow.OfTime  additive: glow is added, the picture gets brighter. scattering: light is spread as in a lens, its sum stays. default "additive"
 ---@field max_iterations? integer|afterglow.Moving  Most levels of the pyramid; each doubles the reach. 0: no bloom. integer 0…16, default 16
----@field downscale_limit? integer|afterglow.Moving  No level gets smaller than this on either side; pictures below four times this get no bloom. integer ≥ 1 px, default 2
+---@field downscale_limit? integer|afterglow.Moving  No level gets smaller than this on either side; pictures below four times this get no bloom. integer ≥ 1 texels, default 2
 ---@field threshold? number|afterglow.Moving  Brightness (largest channel) from which light blooms, as a display (gamma) value: 1 is white, 2 is linear 4.59. ≥ 0, default 1
 ---@field knee? number|afterglow.Moving  Softness of the threshold: blooming begins at (1 - knee) of the linear threshold and is full from (1 + knee) on. 0…1, default 0.5
 ---@field intensity? number|afterglow.Moving  Strength. additive: factor of the glow. scattering: share of the spread light, held to 0.95. 0: no bloom. ≥ 0, default 0.2
 ---@field scatter? number|afterglow.Moving  Scattering mode: how far light spreads, as the share that each level takes from the coarser ones. 0.05…0.95, default 0.7
 ---@field bicubic_upsampling? boolean|afterglow.OfTime  Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow. default true
----@field reference_height? integer|afterglow.Moving  The glow is that of the picture scaled to this height: the same at every resolution. 0: of the picture as it is. integer 0…16384 px, default 0
+---@field reference_height? integer|afterglow.Moving  The glow is that of the picture scaled to this height: the same at every resolution. 0: of the picture as it is. integer 0…16384 lines, default 0
 ---@field fade_fireflies? boolean|afterglow.OfTime  Weigh down isolated very bright pixels before the pyramid, so that they do not flicker. default false
 
 ---Blurs the picture as a lens out of focus: bright points become discs or polygons.
@@ -56,6 +56,13 @@
 ---@field blur_iterations? integer|afterglow.Moving  Levels of blur; each doubles the reach. 0 and 1 add the thresholded light unblurred. integer 0…7, default 5
 ---@field pattern? "plus"|"box"|afterglow.OfTime  Where the four samples lie: beside, above and below, or at the corners. default "plus"
 ---@field brightness? "max"|"luma"|afterglow.OfTime  What the threshold compares: the largest channel, or 0.3 R + 0.59 G + 0.11 B. default "max"
+
+---Slope, offset, power and saturation of an ASC CDL.
+---@class afterglow.settings.cdl : afterglow.EntryKeys
+---@field slope? number[]|afterglow.Moving  Light times this; shows most in the brights. {x, y, z}, each 0…16, default {1, 1, 1}
+---@field offset? number[]|afterglow.Moving  Added behind it; shows most in the darks. {x, y, z}, each -4…4, default {0, 0, 0}
+---@field power? number[]|afterglow.Moving  The power taken of the sum: above 1 darkens what is below 1. {x, y, z}, each 0.1…10, default {1, 1, 1}
+---@field saturation? number|afterglow.Moving  Distance from luma: 0 grey, 1 as it is. 0…4, default 1
 
 ---Mixes red, green and blue into new channels; what would be negative is black.
 ---@class afterglow.settings.channel_mixer : afterglow.EntryKeys
@@ -118,6 +125,10 @@
 ---@field background? number[]|string|afterglow.Moving  Colour between the lines. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
 ---@field background_opacity? number|afterglow.Moving  0: lines over the picture. 1: lines over the background alone. 0…1, default 0
 
+---Exposure of the scene, in stops; before the bloom and the tone curve.
+---@class afterglow.settings.exposure : afterglow.EntryKeys
+---@field ev? number|afterglow.Moving  Light times 2^ev: 1 is twice as bright, -1 half. -64…64 EV, default 0
+
 ---Grain of film: fine noise, new in each frame; best after tone mapping.
 ---@class afterglow.settings.film_grain : afterglow.EntryKeys
 ---@field intensity? number|afterglow.Moving  Strength; at 1 the grain of blacks is a quarter of their light. 0: none. 0…1, default 0.3
@@ -144,7 +155,7 @@
 ---Scan lines that jump, a shaking picture, colours that part.
 ---@class afterglow.settings.glitch : afterglow.EntryKeys
 ---@field scan_line_jitter? number|afterglow.Moving  How many scan lines jump sideways, and how far. 0…1, default 0.3
----@field line_height? integer|afterglow.Moving  Height of a scan line. integer 1…1024 px, default 2
+---@field line_height? number|afterglow.Moving  Height of a scan line. 1…1024 px, default 2
 ---@field horizontal_shake? number|afterglow.Moving  How far the whole picture jumps sideways in each frame; 1: up to a tenth of it. 0…1, default 0
 ---@field rgb_split? number|afterglow.Moving  How far red and blue part; 1: up to a twenty-fifth of the picture each way. 0…1, default 0.1
 ---@field vertical_roll? number|afterglow.Moving  Speed at which the picture rolls; above 0 upwards. -30…30 pictures/s, default 0
@@ -211,7 +222,7 @@
 
 ---Large square pixels, each the mean of what it covers.
 ---@class afterglow.settings.pixelate : afterglow.EntryKeys
----@field size? integer|afterglow.Moving  Side of a square. 1: the picture as it is. integer 1…1024 px, default 8
+---@field size? number|afterglow.Moving  Side of a square. 1: the picture as it is. 1…1024 px, default 8
 
 ---Streaks towards a centre, as of a zoom or of speed.
 ---@class afterglow.settings.radial_blur : afterglow.EntryKeys
@@ -245,7 +256,15 @@
 
 ---Brings scene-linear light into display range.
 ---@class afterglow.settings.tone_mapping : afterglow.EntryKeys
----@field mode? "none"|"aces"|"neutral"|"reinhard"|afterglow.OfTime  Curve. aces: filmic contrast, bright colours turn white. neutral: Hable's curve, white at 4, hues kept. reinhard: x/(1+x), soft and flat. default "aces"
+---@field mode? "none"|"aces"|"neutral"|"reinhard"|"reinhard_extended"|"agx"|"khronos_neutral"|"hable"|"gt"|afterglow.OfTime  Curve. aces: filmic contrast, bright colours turn white. neutral: Hable's curve as Unity has it, white at 4. reinhard: x/(1+x), soft and flat. reinhard_extended: on luminance, with a white point. agx: bright saturated light bleaches as on film. khronos_neutral: base colours stay, for products. hable: a toe, a line and a shoulder of one's own. gt: light around middle grey stays as it is. default "aces"
+---@field exposure? number|afterglow.Moving  Light times 2^exposure before the curve; bloom and other effects before it do not see it. -16…16 EV, default 0
+---@field white? number|afterglow.Moving  reinhard_extended, hable: the light that becomes white (hable: at least about 1). 0.5…1000, default 8
+---@field full_white? boolean|afterglow.OfTime  aces, reinhard: their brightest white is 0.945 and 0.984 of the display's; this makes it 1. default false
+---@field look? "base"|"punchy"|"golden"|afterglow.OfTime  agx: base as it is, punchy with more contrast and colour, golden warm and light. default "base"
+---@field toe? number|afterglow.Moving  hable: how dark the darks get. 0: a straight line. 0…0.95, default 0.5
+---@field toe_length? number|afterglow.Moving  hable: how much of the darks the toe takes. 0…1, default 0.5
+---@field shoulder_length? number|afterglow.Moving  hable: how much of the display's range is left to the brights. 0…1, default 0.6
+---@field shoulder_angle? number|afterglow.Moving  hable: above 0 the shoulder is still rising at white, as of film that has more to give. 0…1, default 0.2
 
 ---Darkens or colours the picture towards its corners.
 ---@class afterglow.settings.vignette : afterglow.EntryKeys
@@ -266,6 +285,7 @@
 ---@field bloom fun(settings: afterglow.settings.bloom): afterglow.Entry  Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.
 ---@field bokeh_blur fun(settings: afterglow.settings.bokeh_blur): afterglow.Entry  Blurs the picture as a lens out of focus: bright points become discs or polygons.
 ---@field box_bloom fun(settings: afterglow.settings.box_bloom): afterglow.Entry  A simple, punchy glow: hard linear threshold, four-sample blur down and up, added to the picture.
+---@field cdl fun(settings: afterglow.settings.cdl): afterglow.Entry  Slope, offset, power and saturation of an ASC CDL.
 ---@field channel_mixer fun(settings: afterglow.settings.channel_mixer): afterglow.Entry  Mixes red, green and blue into new channels; what would be negative is black.
 ---@field chromatic_aberration fun(settings: afterglow.settings.chromatic_aberration): afterglow.Entry  Colour fringes that grow towards the corners.
 ---@field color_adjustments fun(settings: afterglow.settings.color_adjustments): afterglow.Entry  Exposure, contrast, colour filter, hue and saturation.
@@ -274,6 +294,7 @@
 ---@field directional_blur fun(settings: afterglow.settings.directional_blur): afterglow.Entry  Smears the picture along one direction, as a moving camera does.
 ---@field dual_kawase fun(settings: afterglow.settings.dual_kawase): afterglow.Entry  A wide, smooth, cheap blur of the whole picture.
 ---@field edge_detection fun(settings: afterglow.settings.edge_detection): afterglow.Entry  Draws lines where brightness changes: Sobel, Scharr or Roberts.
+---@field exposure fun(settings: afterglow.settings.exposure): afterglow.Entry  Exposure of the scene, in stops; before the bloom and the tone curve.
 ---@field film_grain fun(settings: afterglow.settings.film_grain): afterglow.Entry  Grain of film: fine noise, new in each frame; best after tone mapping.
 ---@field firefly_stabilisation fun(settings: afterglow.settings.firefly_stabilisation): afterglow.Entry  Takes down single bright pixels that flash up in one frame of a sequence.
 ---@field fxaa fun(settings: afterglow.settings.fxaa): afterglow.Entry  Fast approximate anti-aliasing: smooths jagged edges; after tone mapping.

@@ -1,6 +1,7 @@
 -- Anamorphic streaks: the horizontal flares of an anamorphic lens. A pyramid that is halved across alone; on the way up each level takes a
 -- share of the coarser one (after K. Takahashi's Kino/Streak for Unity, whose settings and tint these are).
 local fx = require "afterglow"
+local pyramids = require "lib.pyramid"
 
 local kHalving = { x = { { -1.5, 1 / 8 }, { -0.5, 3 / 8 }, { 0.5, 3 / 8 }, { 1.5, 1 / 8 } } }
 
@@ -10,7 +11,7 @@ local function gain(s) return s.intensity * math.max(s.tint[1], s.tint[2], s.tin
 return fx.effect {
   name = "anamorphic_streaks",
   doc = "Long horizontal flares from bright lights, as of an anamorphic lens.",
-  at = "post_process", order = 110,
+  at = "post_process", order = 110, space = "scene",
   settings = {
     threshold = fx.float { min = 0, max = 1e6, default = 2, doc = "Brightness (largest channel) from which light streaks; linear." },
     stretch = fx.float { min = 0, max = 1, default = 0.75, doc = "Length of the streaks: the share that each level takes from the coarser one." },
@@ -30,17 +31,35 @@ return fx.effect {
               when = function(s) return gain(s) <= 1e5 end },
   },
   build = function(g, s, source)
-    local image = g:filter { source = source, size = { math.max(source.width // 2, 1), math.max(source.height // 2, 1) },
-                             filter = fx.filters.bilinear(), name = "half" }
+    local width, height = pyramids.delivered(g, source)
+    width, height = math.max(width // 2, 1), math.max(height // 2, 1)
+    local sizes = { { width, height } }
+    while width >= 8 do
+      width = width // 2
+      sizes[#sizes + 1] = { width, height }
+    end
+    local start, image = 1, nil
+    if g.length_scale == 1 then
+      image = g:filter { source = source, size = sizes[1], filter = fx.filters.bilinear(), name = "half" }
+    else
+      height = math.min(height, source.height)
+      for _, size in ipairs(sizes) do size[2] = height end
+      if g.length_scale < 1 then start = pyramids.start(sizes, source.width, height) end
+      image = pyramids.resized(g, source, sizes[start][1], height, "scaled")
+    end
     image = g:pass { shader = "box_bloom/threshold", source = image, threshold = s.threshold, luma = false, name = "threshold" }
     local levels = { image }
-    while image.width >= 8 do
-      image = g:filter { source = image, size = { image.width // 2, image.height }, filter = kHalving, name = ("down[%d]"):format(#levels) }
+    for i = start + 1, #sizes do
+      image = g:filter { source = image, size = sizes[i], filter = kHalving, name = ("down[%d]"):format(#levels) }
       levels[#levels + 1] = image
     end
     for i = #levels - 1, 1, -1 do
       image = g:filter { source = image, size = levels[i], filter = fx.filters.bilinear(), name = ("up[%d]"):format(i) }
       image = g:pass { shader = "bloom/scatter", source = image, high = levels[i], amount = s.stretch, name = ("combine[%d]"):format(i) }
+    end
+    -- Levels that are finer than a preview look like it.
+    if start > 1 then
+      image = g:pass { shader = "bloom/scatter", source = image, high = levels[1], amount = s.stretch ^ (start - 1), name = "finer" }
     end
     image = g:filter { source = image, size = source, filter = fx.filters.bilinear(), name = "up" }
     local tint = {}

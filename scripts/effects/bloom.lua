@@ -2,6 +2,7 @@
 -- A Gaussian pyramid of the light above a soft threshold, added to or scattered over the picture.
 -- After Catlike Coding, "Custom SRP" parts 11 (Post Processing) and 12 (HDR): passes, weights and order are theirs.
 local fx = require "afterglow"
+local pyramids = require "lib.pyramid"
 
 local kScatterLimit = 0.95  -- in scattering mode the picture itself always contributes
 
@@ -28,21 +29,10 @@ local function size_of(s, source)
   return width, height
 end
 
--- The picture of that size: halved while that leaves at least as much, then the mean over what is left.
-local function scaled(g, s, source)
-  local width, height = size_of(s, source)
-  local image, i = source, 0
-  local function to(size, filter)
-    image = g:filter { source = image, size = size, filter = filter, name = ("scaled[%d]"):format(i) }
-    i = i + 1
-  end
-  while image.height >= 2 * height and image.width >= 2 * width do
-    to({ image.width // 2, image.height // 2 }, fx.filters.bilinear())
-  end
-  if image.width ~= width or image.height ~= height then
-    to({ width, height }, fx.filters.area(image.width / width, image.height / height))
-  end
-  return image
+-- What a halving blurs, without the halving.
+local function same_size_blur()
+  local taps = fx.filters.gaussian_vertical().y
+  return { interpolation = "linear", x = taps, y = taps }
 end
 
 -- Levels of the pyramid for a picture, and whether every size on the way down is half of the one before.
@@ -75,12 +65,12 @@ local function scatters(s) return s.mode == "scattering" end
 return fx.effect {
   name = "bloom",
   doc = "Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.",
-  at = "post_process", order = 100,
+  at = "post_process", order = 100, space = "scene",
   settings = {
     mode = fx.enum { "additive", "scattering", default = "additive",
       doc = "additive: glow is added, the picture gets brighter. scattering: light is spread as in a lens, its sum stays." },
     max_iterations = fx.int { min = 0, max = 16, default = 16, doc = "Most levels of the pyramid; each doubles the reach. 0: no bloom." },
-    downscale_limit = fx.int { min = 1, default = 2, unit = "px",
+    downscale_limit = fx.int { min = 1, default = 2, unit = "texels",
       doc = "No level gets smaller than this on either side; pictures below four times this get no bloom." },
     threshold = fx.float { min = 0, default = 1.0,
       doc = "Brightness (largest channel) from which light blooms, as a display (gamma) value: 1 is white, 2 is linear 4.59." },
@@ -91,7 +81,7 @@ return fx.effect {
     scatter = fx.float { min = 0.05, max = 0.95, default = 0.7,
       doc = "Scattering mode: how far light spreads, as the share that each level takes from the coarser ones." },
     bicubic_upsampling = fx.bool { default = true, doc = "Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow." },
-    reference_height = fx.int { min = 0, max = 16384, default = 0, unit = "px",
+    reference_height = fx.int { min = 0, max = 16384, default = 0, unit = "lines",
       doc = "The glow is that of the picture scaled to this height: the same at every resolution. 0: of the picture as it is." },
     fade_fireflies = fx.bool { default = false, doc = "Weigh down isolated very bright pixels before the pyramid, so that they do not flicker." },
   },
@@ -104,10 +94,10 @@ return fx.effect {
 
   -- Light below (1 - knee) of the threshold does not bloom. Half the size of an even picture is the mean of four texels, never above
   -- the largest of them; other sizes weigh texels with rounded numbers, which may lift the mean by some 1e-7.
-  idle = function(s, source)
+  idle = function(s, source, length_scale)
     local knee = knee_vector(s)
     local even = source.width % 2 == 0 and source.height % 2 == 0
-    local slack = s.reference_height > 0 and 1e-5 or even and 0 or 1e-6
+    local slack = (s.reference_height > 0 or length_scale ~= 1) and 1e-5 or even and 0 or 1e-6
     return { brightest = -knee[2] * (1 - slack) }
   end,
 
@@ -128,48 +118,76 @@ return fx.effect {
     error = { fp32 = 1e-5, fp16 = 2e-3, levels = "max_iterations" },
   },
   build = function(g, s, source)
-    local picture = s.reference_height > 0 and scaled(g, s, source) or source
-    local width, height = picture.width // 2, picture.height // 2
+    -- The picture whose glow is made. A preview stands for the delivered one, whose levels are counted.
+    local full_width, full_height = size_of(s, source)
+    local preview = s.reference_height == 0 and g.length_scale < 1
+    if s.reference_height == 0 then full_width, full_height = pyramids.delivered(g, source) end
+    local width, height = full_width // 2, full_height // 2
     if width < 2 * s.downscale_limit or height < 2 * s.downscale_limit then
       g:skip(("the picture is too small: %dx%d, downscale_limit %d needs %d on each side"):format(
-        picture.width, picture.height, s.downscale_limit, 4 * s.downscale_limit))
+        full_width, full_height, s.downscale_limit, 4 * s.downscale_limit))
       return source
     end
 
-    local knee = knee_vector(s)
-    local image
-    if s.fade_fireflies then
-      image = g:pass { shader = "bloom/fireflies", source = picture, size = { width, height }, knee = knee, reach = 3, name = "prefilter" }
-    else
-      image = g:filter { source = picture, size = { width, height }, filter = fx.filters.bilinear(), name = "half" }
-      image = g:pass { shader = "bloom/threshold", source = image, knee = knee, name = "prefilter" }
+    -- Sizes: half of the picture, then level 0, which is a quarter of it per axis. They are floored at each halving.
+    local sizes = { { width, height } }
+    width, height = width // 2, height // 2
+    while #sizes <= s.max_iterations and width >= s.downscale_limit and height >= s.downscale_limit do
+      sizes[#sizes + 1] = { width, height }
+      width, height = width // 2, height // 2
     end
 
-    -- Down: level 0 is a quarter of the picture per axis. Sizes are floored at each halving.
+    local knee = knee_vector(s)
+    local start = preview and pyramids.start(sizes, source.width, source.height) or 1
+    local image = source
+    if start == 1 then
+      image = pyramids.resized(g, image, full_width, full_height, "scaled")
+      if s.fade_fireflies then
+        image = g:pass { shader = "bloom/fireflies", source = image, size = sizes[1], knee = knee, reach = 3, name = "prefilter" }
+      else
+        image = g:filter { source = image, size = sizes[1], filter = fx.filters.bilinear(), name = "half" }
+      end
+    else
+      image = pyramids.resized(g, image, sizes[start][1], sizes[start][2], "scaled")
+    end
+    if not (start == 1 and s.fade_fireflies) then
+      image = g:pass { shader = "bloom/threshold", source = image, knee = knee, name = "prefilter" }
+    end
+    local light = image
+
+    -- Down. A preview's own pixels, blurred as that level would be, are its first level.
     local levels = {}
-    width, height = width // 2, height // 2
-    while #levels < s.max_iterations and width >= s.downscale_limit and height >= s.downscale_limit do
-      local i = #levels
-      image = g:filter { source = image, size = { width, height }, filter = fx.filters.gaussian_halving(), name = ("horizontal[%d]"):format(i) }
-      image = g:filter { source = image, size = image, filter = fx.filters.gaussian_vertical(), name = ("vertical[%d]"):format(i) }
-      levels[i + 1] = image
-      width, height = width // 2, height // 2
+    if start > 1 then levels[1] = g:filter { source = image, filter = same_size_blur(), name = ("level[%d]"):format(start - 2) } end
+    image = levels[1] or image
+    for i = start + 1, #sizes do
+      image = g:filter { source = image, size = sizes[i], filter = fx.filters.gaussian_halving(), name = ("horizontal[%d]"):format(i - 2) }
+      image = g:filter { source = image, size = image, filter = fx.filters.gaussian_vertical(), name = ("vertical[%d]"):format(i - 2) }
+      levels[#levels + 1] = image
     end
 
     -- Up: from the coarsest level to the finest.
     local enlarge = s.bicubic_upsampling and fx.filters.bspline() or fx.filters.bilinear()
+    local additive = s.mode == "additive"
     for i = #levels - 1, 1, -1 do
       local up = g:filter { source = image, size = levels[i], filter = enlarge, name = ("up[%d]"):format(i - 1) }
       local name = ("combine[%d]"):format(i - 1)
-      if s.mode == "additive" then
+      if additive then
         image = g:pass { shader = "bloom/add", source = up, high = levels[i], intensity = 1, name = name }
       else
         image = g:pass { shader = "bloom/scatter", source = up, high = levels[i], amount = s.scatter, name = name }
       end
     end
+    -- Levels that are finer than the preview look like it.
+    if start > 2 then
+      if additive then
+        image = g:pass { shader = "bloom/add", source = light, high = image, intensity = start - 2, name = "finer" }
+      else
+        image = g:pass { shader = "bloom/scatter", source = image, high = light, amount = s.scatter ^ (start - 2), name = "finer" }
+      end
+    end
 
     local up = g:filter { source = image, size = source, filter = enlarge, name = "up" }
-    if s.mode == "additive" then
+    if additive then
       return g:pass { shader = "bloom/add", source = up, high = source, intensity = math.min(s.intensity, 1e30), name = "final" }
     end
     return g:pass { shader = "bloom/scatter_final", source = up, high = source, amount = math.min(s.intensity, kScatterLimit),

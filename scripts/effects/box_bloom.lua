@@ -2,6 +2,7 @@
 -- After "Unity post-processing: bloom by box blur" tutorials; where their listings disagree or read an image while it is written, the
 -- well-defined reading is taken: the way up starts at the second coarsest level and uses the stored sizes.
 local fx = require "afterglow"
+local pyramids = require "lib.pyramid"
 
 return fx.effect {
   name = "box_bloom",
@@ -15,7 +16,9 @@ return fx.effect {
   },
 
   -- The weights of luma add up to 1 but for their rounding.
-  idle = function(s) return { brightest = s.threshold * (s.brightness == "max" and 1 or 1 - 1e-6) } end,
+  idle = function(s, _, length_scale)
+    return { brightest = s.threshold * (1 - (length_scale ~= 1 and 1e-5 or s.brightness == "max" and 0 or 1e-6)) }
+  end,
 
   holds = {
     "black", "constant", "mirror", "turn_180", "monotone", "turn_90",
@@ -24,24 +27,32 @@ return fx.effect {
   },
   build = function(g, s, source)
     local blur = s.pattern == "plus" and fx.filters.plus(1) or fx.filters.box(1)
-    local image = g:pass { shader = "box_bloom/threshold", source = source, threshold = s.threshold, luma = s.brightness == "luma", name = "threshold" }
-
-    -- Down: levels[1] has the size of the picture; stop before a size of 0.
-    local levels = { image }
-    while #levels < s.blur_iterations do
-      local width, height = image.width // 2, image.height // 2
-      if width == 0 or height == 0 then break end
-      image = g:filter { source = image, size = { width, height }, filter = blur, name = ("down[%d]"):format(#levels) }
-      levels[#levels + 1] = image
+    -- Down: the first level has the size of the picture; stop before a size of 0.
+    local width, height = pyramids.delivered(g, source)
+    local sizes = { { width, height } }
+    while #sizes < s.blur_iterations and width > 1 and height > 1 do
+      width, height = width // 2, height // 2
+      sizes[#sizes + 1] = { width, height }
+    end
+    local start = g.length_scale < 1 and pyramids.start(sizes, source.width, source.height) or 1
+    local image = source
+    if g.length_scale ~= 1 then image = pyramids.resized(g, source, sizes[start][1], sizes[start][2], "scaled") end
+    image = g:pass { shader = "box_bloom/threshold", source = image, threshold = s.threshold, luma = s.brightness == "luma", name = "threshold" }
+    local light, levels = image, { [start] = image }
+    for i = start + 1, #sizes do
+      image = g:filter { source = image, size = sizes[i], filter = blur, name = ("down[%d]"):format(i - 1) }
+      levels[i] = image
     end
 
     -- Up: each level adds the blurred coarser one, down to half the size of the picture.
-    for i = #levels - 1, 2, -1 do
+    for i = #sizes - 1, math.max(start, 2), -1 do
       local up = g:filter { source = image, size = levels[i], filter = blur, name = ("up[%d]"):format(i - 1) }
       image = g:pass { shader = "bloom/add", source = up, high = levels[i], intensity = 1, name = ("combine[%d]"):format(i - 1) }
     end
+    -- Levels that are finer than a preview look like it.
+    if start > 2 then image = g:pass { shader = "bloom/add", source = light, high = image, intensity = start - 2, name = "finer" } end
 
-    if #levels > 1 then
+    if image.width ~= source.width or image.height ~= source.height then
       image = g:filter { source = image, size = source, filter = fx.filters.bilinear(), name = "up" }
     end
     return g:pass { shader = "bloom/add", source = image, high = source, intensity = 1, name = "final" }

@@ -23,7 +23,7 @@ end
 return fx.effect {
   name = "channel_mixer",
   doc = "Mixes red, green and blue into new channels; what would be negative is black.",
-  at = "post_process", order = 160,
+  at = "post_process", order = 160, space = "scene",
   settings = {
     red_out_red_in = share(100, "red", "red"), red_out_green_in = share(0, "green", "red"), red_out_blue_in = share(0, "blue", "red"),
     green_out_red_in = share(0, "red", "green"), green_out_green_in = share(100, "green", "green"), green_out_blue_in = share(0, "blue", "green"),

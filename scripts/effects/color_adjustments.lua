@@ -18,7 +18,7 @@ local function bounded(x) return math.max(math.min(x, 1e28), -1e28) end
 return fx.effect {
   name = "color_adjustments",
   doc = "Exposure, contrast, colour filter, hue and saturation.",
-  at = "after_post_process", order = 99, alpha = "straight",
+  at = "post_process", order = 190, space = "scene", alpha = "straight",
   settings = {
     post_exposure = fx.float { default = 0, unit = "EV", doc = "Brightness in stops: light times 2^EV." },
     contrast = fx.float { min = -100, max = 100, default = 0, unit = "%",

@@ -7,7 +7,7 @@ local fx = require "afterglow"
 return fx.effect {
   name = "depth_of_field",
   doc = "Blurs what is out of focus, by depth, as a camera with this lens does.",
-  at = "post_process", order = 10,
+  at = "post_process", order = 10, space = "scene",
   settings = {
     focus_distance = fx.float { min = 0.01, max = 1e6, default = 10, unit = "m", doc = "Distance of what is sharp." },
     aperture = fx.float { min = 0.1, max = 64, default = 5.6, unit = "f-number", doc = "The smaller, the more blur." },

@@ -1,6 +1,7 @@
 -- Dual Kawase blur: the cheapest wide blur there is, five reads a level down and eight up. After M. Bjørge, "Bandwidth-Efficient Rendering",
 -- SIGGRAPH 2015 (ARM). Frosted glass behind titles and menus, dreamy overlays.
 local fx = require "afterglow"
+local pyramids = require "lib.pyramid"
 
 return fx.effect {
   name = "dual_kawase",
@@ -20,16 +21,28 @@ return fx.effect {
     local up = { taps = { { -o, 0, 1 / 12 }, { o, 0, 1 / 12 }, { 0, -o, 1 / 12 }, { 0, o, 1 / 12 },
                           { -h, -h, 1 / 6 }, { h, -h, 1 / 6 }, { -h, h, 1 / 6 }, { h, h, 1 / 6 } } }
 
-    local image, sizes = source, {}
-    while #sizes < s.iterations and image.width > 1 and image.height > 1 do
-      sizes[#sizes + 1] = { image.width, image.height }
-      image = g:filter { source = image, size = { image.width // 2, image.height // 2 }, filter = down, name = ("down[%d]"):format(#sizes - 1) }
+    local width, height = pyramids.delivered(g, source)
+    local sizes = { { width, height } }
+    while #sizes <= s.iterations and width > 1 and height > 1 do
+      width, height = width // 2, height // 2
+      sizes[#sizes + 1] = { width, height }
     end
-    if #sizes == 0 then
+    if #sizes == 1 then
       g:skip("the picture is a single row or column")
       return source
     end
-    for i = #sizes, 1, -1 do image = g:filter { source = image, size = sizes[i], filter = up, name = ("up[%d]"):format(i - 1) } end
+    local start, image = 1, source
+    if g.length_scale ~= 1 then
+      if g.length_scale < 1 then start = pyramids.start(sizes, source.width, source.height) end
+      image = pyramids.resized(g, source, sizes[start][1], sizes[start][2], "scaled")
+    end
+    for i = start + 1, #sizes do
+      image = g:filter { source = image, size = sizes[i], filter = down, name = ("down[%d]"):format(i - 2) }
+    end
+    for i = #sizes - 1, start, -1 do image = g:filter { source = image, size = sizes[i], filter = up, name = ("up[%d]"):format(i - 1) } end
+    if image.width ~= source.width or image.height ~= source.height then
+      image = g:filter { source = image, size = source, filter = fx.filters.bilinear(), name = "preview" }
+    end
     return g:pass { shader = "bloom/scatter", source = image, high = source, amount = 1, name = "final" }  -- alpha of the picture
   end,
 }

@@ -10,7 +10,7 @@ end
 return fx.effect {
   name = "edge_detection",
   doc = "Draws lines where brightness changes: Sobel, Scharr or Roberts.",
-  at = "after_post_process", order = 105,
+  at = "after_post_process", order = 105, space = "display",
   settings = {
     operator = fx.enum { "sobel", "scharr", "roberts", default = "sobel",
       doc = "sobel: 3x3, the usual one. scharr: 3x3, treats all directions alike. roberts: 2x2, thin lines." },
@@ -28,7 +28,9 @@ return fx.effect {
     error = { fp32 = function(s) return 4e-4 + 2 * rounding(s) end, fp16 = function(s) return 2e-3 + 500 * rounding(s) end, up_to = 50 },
   },
   build = function(g, s, source)
+    -- A preview's pixels show so much less of a line; larger pictures have broader ones.
+    local finer, apart = math.min(1, g.length_scale), math.max(1, math.floor(g.length_scale + 0.5))
     return g:pass { shader = "edge_detection/lines", source = source, operator = ({ sobel = 0, scharr = 1, roberts = 2 })[s.operator],
-                    intensity = s.intensity, threshold = s.threshold, ink = s.color, paper = s.background, opacity = s.background_opacity }
+                    intensity = s.intensity, finer = finer, apart = apart, reach = apart, threshold = s.threshold, ink = s.color, paper = s.background, opacity = s.background_opacity }
   end,
 }

@@ -5,7 +5,7 @@ local fx = require "afterglow"
 return fx.effect {
   name = "film_grain",
   doc = "Grain of film: fine noise, new in each frame; best after tone mapping.",
-  at = "after_post_process", order = 140, alpha = "straight",
+  at = "after_post_process", order = 140, space = "display", alpha = "straight",
   settings = {
     intensity = fx.float { min = 0, max = 1, default = 0.3, doc = "Strength; at 1 the grain of blacks is a quarter of their light. 0: none." },
     response = fx.float { min = 0, max = 1, default = 0.8, doc = "How much less grain there is in bright places: 0 equally much, 1 none in white." },
@@ -16,8 +16,9 @@ return fx.effect {
   active = function(s) return s.intensity > 0, "intensity is 0" end,
   holds = { "black", error = 1e-5 },
   build = function(g, s, source)
-    local coarse = math.floor(s.size * 64) / 64
+    local size = math.max(1, s.size)  -- a preview cannot show finer grain
+    local coarse = math.floor(size * 64) / 64
     return g:pass { shader = "film_grain/grain", source = source, strength = 0.25 * s.intensity, response = s.response,
-                    size_of_grain = { coarse, s.size - coarse }, colored = s.colored, frame = math.floor(g.frame) & 0x7fffffff, seed = s.seed, fine = s.size == 1 }
+                    size_of_grain = { coarse, size - coarse }, colored = s.colored, frame = math.floor(g.frame) & 0x7fffffff, seed = s.seed, fine = size == 1 }
   end,
 }

@@ -5,7 +5,7 @@ local fx = require "afterglow"
 return fx.effect {
   name = "fxaa",
   doc = "Fast approximate anti-aliasing: smooths jagged edges; after tone mapping.",
-  at = "after_post_process", order = 110,
+  at = "after_post_process", order = 110, space = "display",
   settings = {
     fixed_threshold = fx.float { min = 0.0312, max = 0.0833, default = 0.0833, doc = "Contrast of luma below which nothing is done." },
     relative_threshold = fx.float { min = 0.063, max = 0.333, default = 0.166, doc = "The same as a share of the brightest neighbour." },
@@ -16,6 +16,10 @@ return fx.effect {
   -- No bound on the error: where two edges are equally strong, rounding decides which one is followed.
   holds = { "black", "constant", "bounded" },
   build = function(g, s, source)
+    if g.length_scale <= 0.75 then
+      g:skip("the preview's pixels are coarser than the steps of edges")
+      return source
+    end
     local luma = g:pass { shader = "fxaa/luma", source = source, name = "luma" }
     return g:pass { shader = "fxaa/smooth_edges", source = source, luma = luma, quality = ({ low = 0, medium = 1, high = 2 })[s.quality],
                     fixed_threshold = s.fixed_threshold, relative_threshold = s.relative_threshold, subpixel_blending = s.subpixel_blending }

@@ -8,7 +8,7 @@ return fx.effect {
   at = "after_post_process", order = 145,
   settings = {
     scan_line_jitter = fx.float { min = 0, max = 1, default = 0.3, doc = "How many scan lines jump sideways, and how far." },
-    line_height = fx.int { min = 1, max = 1024, default = 2, unit = "px", doc = "Height of a scan line." },
+    line_height = fx.float { min = 1, max = 1024, default = 2, unit = "px", doc = "Height of a scan line." },
     horizontal_shake = fx.float { min = 0, max = 1, default = 0, doc = "How far the whole picture jumps sideways in each frame; 1: up to a tenth of it." },
     rgb_split = fx.float { min = 0, max = 1, default = 0.1, doc = "How far red and blue part; 1: up to a twenty-fifth of the picture each way." },
     vertical_roll = fx.float { min = -30, max = 30, default = 0, unit = "pictures/s", doc = "Speed at which the picture rolls; above 0 upwards." },

@@ -1,11 +1,12 @@
 -- Lens dirt: dust and smudges on the front glass, seen where bright light falls through them. The light is a wide blur of what exceeds a
 -- threshold; the dirt is made of discs at random places instead of read from a picture.
 local fx = require "afterglow"
+local pyramids = require "lib.pyramid"
 
 return fx.effect {
   name = "lens_dirt",
   doc = "Dust on the lens that lights up around bright lights.",
-  at = "post_process", order = 120,
+  at = "post_process", order = 120, space = "scene",
   settings = {
     intensity = fx.float { min = 0, max = 100, default = 1, doc = "Factor of the light that the dirt scatters. 0: none." },
     threshold = fx.float { min = 0, max = 1e6, default = 1, doc = "Brightness (largest channel) from which light shows the dirt; linear." },
@@ -21,13 +22,21 @@ return fx.effect {
     -- Where a spot begins, its opacity is a small difference of distances (3e-6 of it are rounding), and the light may be strong.
     error = { fp32 = function(s) return 5e-5 * math.max(1, s.intensity) end, fp16 = 5e-3, up_to = 50 } },
   build = function(g, s, source)
-    local image = g:filter { source = source, size = { math.max(source.width // 2, 1), math.max(source.height // 2, 1) },
-                             filter = fx.filters.bilinear(), name = "half" }
+    local width, height = pyramids.delivered(g, source)
+    local sizes = { { math.max(width // 2, 1), math.max(height // 2, 1) } }
+    while math.min(sizes[#sizes][1], sizes[#sizes][2]) >= 16 do
+      sizes[#sizes + 1] = { sizes[#sizes][1] // 2, sizes[#sizes][2] // 2 }
+    end
+    local start, image = 1, nil
+    if g.length_scale == 1 then
+      image = g:filter { source = source, size = sizes[1], filter = fx.filters.bilinear(), name = "half" }
+    else
+      if g.length_scale < 1 then start = pyramids.start(sizes, source.width, source.height) end
+      image = pyramids.resized(g, source, sizes[start][1], sizes[start][2], "scaled")
+    end
     image = g:pass { shader = "box_bloom/threshold", source = image, threshold = s.threshold, luma = false, name = "threshold" }
-    local level = 1
-    while math.min(image.width, image.height) >= 16 do
-      image = g:filter { source = image, size = { image.width // 2, image.height // 2 }, filter = fx.filters.tent(), name = ("down[%d]"):format(level) }
-      level = level + 1
+    for i = start + 1, #sizes do
+      image = g:filter { source = image, size = sizes[i], filter = fx.filters.tent(), name = ("down[%d]"):format(i - 1) }
     end
     local light = g:filter { source = image, size = source, filter = fx.filters.bspline(), name = "light" }
     local cell = math.max(s.size * source.height, 2)

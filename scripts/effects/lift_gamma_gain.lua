@@ -56,7 +56,7 @@ end
 return fx.effect {
   name = "lift_gamma_gain",
   doc = "The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.",
-  at = "post_process", order = 180, alpha = "straight",
+  at = "post_process", order = 180, space = "scene", alpha = "straight",
   settings = {
     lift = wheel("lift"), lift_offset = ring("Light added everywhere; shows most in the darks."),
     gamma = wheel("gamma"), gamma_offset = ring("Above 0 lightens the middle, below 0 darkens it; black stays."),

@@ -11,6 +11,11 @@ return fx.effect {
   name = "lut",
   doc = "Colours by a look-up table from a file (.cube and others).",
   at = "after_post_process", order = 100, alpha = "straight",
+  space = function(s)
+    local output = s.output == "same" and s.input or s.output
+    if s.input == "srgb" then return "display" end
+    return { needs = "scene", makes = output == "srgb" and "display" or nil }
+  end,
   settings = {
     file = fx.file {
       extensions = { "cube", "3dl", "csp", "spi1d", "spi3d", "clf", "cub", "lut", "hdl", "itx", "m3d", "mga", "vf", "cc", "cdl" },

@@ -8,7 +8,7 @@ local fx = require "afterglow"
 return fx.effect {
   name = "motion_blur",
   doc = "Blurs what moves, by motion vectors.",
-  at = "post_process", order = 20,
+  at = "post_process", order = 20, space = "scene",
   settings = {
     shutter_angle = fx.float { min = 0, max = 720, default = 180, unit = "degrees", doc = "How long the shutter is open: 360 is the whole frame. 0: no blur." },
     samples = fx.int { min = 3, max = 128, default = 24, doc = "Reads for each pixel that moves: more are smoother, and dearer." },
@@ -25,10 +25,11 @@ return fx.effect {
   build = function(g, s, source)
     local depth = g:input("depth")
     local shutter = 0.5 * s.shutter_angle / 360
-    local tile = math.ceil(s.max_radius)
+    local radius = math.max(1, s.max_radius)
+    local tile = math.ceil(radius)
     local across, down = (source.width + tile - 1) // tile, (source.height + tile - 1) // tile
     local motion = g:pass { shader = "motion_blur/motion", source = source, motion = g:input("motion"), depth = depth or source, has_depth = depth ~= nil,
-                            scale = { s.motion_scale[1] * shutter, s.motion_scale[2] * shutter }, max_radius = s.max_radius }
+                            scale = { s.motion_scale[1] * shutter, s.motion_scale[2] * shutter }, max_radius = radius }
     local rows = g:pass { shader = "motion_blur/longest", source = motion, size = { across, source.height }, block = tile, down = false, name = "rows" }
     local tiles = g:pass { shader = "motion_blur/longest", source = rows, size = { across, down }, block = tile, down = true, name = "tiles" }
     local neighbours = g:pass { shader = "motion_blur/neighbours", source = tiles }

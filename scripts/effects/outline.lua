@@ -50,8 +50,8 @@ return fx.effect {
   end,
   optional = function(s) return uses(s).fade and { "depth" } or {} end,
 
-  active = function(s)
-    if s.difference == "offset" and s.width < 0.5 and s.contrast >= 1 then return false, "width rounds to 0 pixels" end
+  active = function(s, length_scale)
+    if s.difference == "offset" and s.width < 0.5 * math.min(length_scale, 1) and s.contrast >= 1 then return false, "width rounds to 0 pixels" end
     if s.blend == "add" and s.color[1] == 0 and s.color[2] == 0 and s.color[3] == 0 then return false, "adds black" end
     return true
   end,
@@ -73,12 +73,12 @@ return fx.effect {
       shader = "outline/lines", size = source, name = "lines",
       depth = depth or source, normal = normal or source,  -- what is missing is not read
       use_depth = use.depth, use_normal = use.normal,
-      reach = s.difference == "derivative" and 1 or math.min(s.width, 16383) + 1,
+      reach = s.difference == "derivative" and 1 or math.min(s.width + math.max(1, g.length_scale), 16384),
       derivative = s.difference == "derivative", fade = use.fade and depth ~= nil,
       device_input = s.depth_space == "device", reversed_z = s.reversed_z, raw_depth = s.source == "device_depth",
       combine_max = s.combine == "max",
       inverse_clip = { 1 / s.near, 1 / s.far },
-      width = math.min(s.width, 16384), fade_distance = s.fade_distance,
+      width = math.min(s.width / g.length_scale, 16384), scale = g.length_scale, fade_distance = s.fade_distance,
       depth_scale = bounded(s.depth_scale), normal_scale = bounded(s.normal_scale), normal_factor = s.normal_factor,
       divide_factor = s.divide_factor, contrast = bounded(s.contrast),
     }

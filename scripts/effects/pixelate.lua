@@ -7,12 +7,12 @@ return fx.effect {
   doc = "Large square pixels, each the mean of what it covers.",
   at = "after_post_process", order = 130,
   settings = {
-    size = fx.int { min = 1, max = 1024, default = 8, unit = "px", doc = "Side of a square. 1: the picture as it is." },
+    size = fx.float { min = 1, max = 1024, default = 8, unit = "px", doc = "Side of a square. 1: the picture as it is." },
   },
   active = function(s) return s.size > 1, "size is 1" end,
   holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = 1e-5 },
   build = function(g, s, source)
-    local across, down = (source.width + s.size - 1) // s.size, (source.height + s.size - 1) // s.size
+    local across, down = math.ceil(source.width / s.size), math.ceil(source.height / s.size)
     local rows = g:pass { shader = "pixelate/mean", source = source, size = { across, source.height }, block = s.size, down = false, name = "rows" }
     local blocks = g:pass { shader = "pixelate/mean", source = rows, size = { across, down }, block = s.size, down = true, name = "blocks" }
     return g:pass { shader = "pixelate/enlarge", source = blocks, picture = source, size = source, block = s.size }

@@ -36,7 +36,7 @@ end
 return fx.effect {
   name = "shadows_midtones_highlights",
   doc = "Colours and brightens shadows, midtones and highlights, each by itself.",
-  at = "post_process", order = 170, alpha = "straight",
+  at = "post_process", order = 170, space = "scene", alpha = "straight",
   settings = {
     shadows = tint("shadows"), shadows_offset = offset("shadows"),
     midtones = tint("midtones"), midtones_offset = offset("midtones"),

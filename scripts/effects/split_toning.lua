@@ -28,7 +28,7 @@ local function is_grey(c) return c[1] == 0.5 and c[2] == 0.5 and c[3] == 0.5 end
 return fx.effect {
   name = "split_toning",
   doc = "Tints shadows and highlights in colours of their own.",
-  at = "post_process", order = 155, alpha = "straight",
+  at = "post_process", order = 155, space = "scene", alpha = "straight",
   settings = {
     shadows = fx.color { default = { kGrey, kGrey, kGrey }, doc = "Tint of the shadows; #808080 leaves them alone." },
     highlights = fx.color { default = { kGrey, kGrey, kGrey }, doc = "Tint of the highlights; #808080 leaves them alone." },

@@ -19,7 +19,7 @@ end
 return fx.effect {
   name = "white_balance",
   doc = "Takes a colour cast away or adds one: temperature and tint.",
-  at = "post_process", order = 150,
+  at = "post_process", order = 150, space = "scene",
   settings = {
     temperature = fx.float { min = -100, max = 100, default = 0, doc = "Above 0 warmer (yellow), below 0 colder (blue)." },
     tint = fx.float { min = -100, max = 100, default = 0, doc = "Above 0 towards magenta, below 0 towards green." },

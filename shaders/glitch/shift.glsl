@@ -2,7 +2,7 @@
 #include "lib/noise.glsl"
 
 uniform sampler2D source;
-uniform int line_height;
+uniform float line_height;
 uniform int frame, seed;
 uniform float quiet;  // lines whose number in 0…1 is below it stay
 uniform float jump;   // the rest in widths of the picture: how far a line jumps,
@@ -19,7 +19,7 @@ float channel(ivec2 pixel, int shift, int which) {
 
 vec4 sample_at(ivec2 pixel) {
   vec3 of_frame = unit_of(pcg3d(uvec3(0xffffffffu, uint(seed), uint(frame))));
-  float of_line = 2.0 * unit_of(pcg3d(uvec3(uint(pixel.y / line_height), uint(seed), uint(frame)))).x - 1.0;
+  float of_line = 2.0 * unit_of(pcg3d(uvec3(uint((float(pixel.y) + 0.5) / line_height), uint(seed), uint(frame)))).x - 1.0;
   int shift = pixels((of_frame.x - 0.5) * shake) + (abs(of_line) >= quiet ? pixels(of_line * jump) : 0);
   int apart = pixels((0.5 + 0.5 * of_frame.y) * split);
   ivec2 from = ivec2(pixel.x, (pixel.y + roll) % target_size().y);

@@ -8,16 +8,8 @@ vec3 srgb_encode(vec3 x) {
   return mix(curve, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
 }
 
-/// 8×8 ordered noise (Bayer), centred: multiples of 1/64 in (−½, ½).
-float ordered_noise(ivec2 pixel) {
-  ivec2 p = pixel & 7;
-  int q = p.x ^ p.y;
-  int rank = (q & 1) << 5 | (p.y & 1) << 4 | (q & 2) << 2 | (p.y & 2) << 1 | (q & 4) >> 1 | (p.y & 4) >> 2;
-  return (float(rank) + 0.5) / 64.0 - 0.5;
-}
+/// What the nearest 8-bit codes are made of, 0…1.
+vec3 display_color(vec3 light) { return srgb_encode(clamp(light, 0.0, 1.0)); }
 
-/// What the nearest 8-bit codes are made of, 0…1. Black and white stay what they are: the noise is below half a step.
-vec3 display_color(vec3 light, bool dither, ivec2 pixel) {
-  vec3 encoded = srgb_encode(clamp(light, 0.0, 1.0));
-  return dither ? clamp(encoded + ordered_noise(pixel) / 255.0, 0.0, 1.0) : encoded;
-}
+/// Light without its alpha; where that is 0 as it is.
+vec3 straight(vec3 light, float alpha) { return alpha > 0.0 ? light / alpha : light; }

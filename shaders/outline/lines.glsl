@@ -15,7 +15,8 @@ layout(constant_id = 7) const bool combine_max = false;  // the stronger of the 
 uniform sampler2D depth;   // what is not used may be any image: it is never read
 uniform sampler2D normal;
 uniform vec2 inverse_clip;    // 1/near, 1/far
-uniform float width;          // pixels
+uniform float width;          // pixels of the delivered picture
+uniform float scale;          // pixels for each of those; 1 but in previews
 uniform float fade_distance;
 uniform float depth_scale, normal_scale;  // ≥ 0
 uniform float normal_factor;
@@ -39,6 +40,10 @@ float depth_change(float a, float b) {
 // The bound keeps the squares finite; unit normals differ by at most 2.
 float normal_change(vec3 a, vec3 b) { return min(length(clamp(a - b, -1e15, 1e15)) * normal_scale, kMaxEdge); }
 
+// What a difference ahead would be between pixels of the delivered picture. A slope goes on behind, an edge does not: where a preview's
+// pixels lie farther apart, the part that goes on shrinks with them.
+float step_of(float ahead, float behind) { return scale < 1.0 ? ahead - (1.0 - scale) * min(ahead, behind) : ahead; }
+
 int reach(ivec2 pixel) {
   float w = width;
   if (fade) {
@@ -51,22 +56,28 @@ int reach(ivec2 pixel) {
 
 vec4 sample_at(ivec2 pixel) {
   ivec2 centre = derivative ? (pixel / 2) * 2 : pixel;
-  int apart = derivative ? 1 : reach(pixel);
+  // Where lines are thinner than a preview's pixels, these show so much less of them.
+  float thick = derivative ? scale : float(reach(pixel)) * scale;
+  int apart = derivative ? 1 : thick > 0.0 ? max(int(floor(thick + 0.5)), 1) : 0;
+  float covered = min(thick, 1.0);
   ivec2 right = centre + ivec2(apart, 0), below = centre + ivec2(0, apart);
 
   float depth_edge = 0.0, normal_edge = 0.0;
   if (use_depth) {
     float z = depth_at(centre);
-    depth_edge = depth_change(z, depth_at(right)) + depth_change(z, depth_at(below));
+    depth_edge = step_of(depth_change(z, depth_at(right)), depth_change(z, depth_at(2 * centre - right))) +
+                 step_of(depth_change(z, depth_at(below)), depth_change(z, depth_at(2 * centre - below)));
   }
   if (use_normal) {
     vec3 n = fetch(normal, centre).xyz;
-    normal_edge = normal_change(n, fetch(normal, right).xyz) + normal_change(n, fetch(normal, below).xyz);
+    normal_edge = step_of(normal_change(n, fetch(normal, right).xyz), normal_change(n, fetch(normal, 2 * centre - right).xyz)) +
+                  step_of(normal_change(n, fetch(normal, below).xyz), normal_change(n, fetch(normal, 2 * centre - below).xyz));
   }
 
   float edge = use_depth ? depth_edge : normal_edge;
   if (use_depth && use_normal)
     edge = combine_max ? max(depth_edge, normal_edge) : normal_factor * normal_edge + (1.0 - normal_factor) * depth_edge;
   edge = min(edge / divide_factor, kMaxEdge);
-  return vec4(clamp((edge - 0.5) * contrast + 0.5, 0.0, 1.0));
+  float line = clamp((edge - 0.5) * contrast + 0.5, 0.0, 1.0);
+  return vec4(scale < 1.0 ? line * covered : line);
 }

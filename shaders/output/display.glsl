@@ -1,6 +1,4 @@
-// The last step to an 8-bit display file without transparency.
+// The last step to an 8-bit display file without transparency: the nearest codes.
 #include "lib/display.glsl"
 
-layout(constant_id = 0) const bool dither = false;
-
-vec4 apply(vec4 color, ivec2 pixel) { return vec4(display_color(color.rgb, dither, pixel), 1.0); }
+vec4 apply(vec4 color) { return vec4(display_color(color.rgb), 1.0); }

@@ -1,6 +1,17 @@
-// Each pixel shows its block. Alpha of the picture.
+// Each pixel shows its block; one that lies on two or four shows as much of each as it covers. Alpha of the picture.
 uniform sampler2D source;
 uniform sampler2D picture;
-uniform int block;
+uniform float block;
 
-vec4 sample_at(ivec2 pixel) { return vec4(fetch(source, pixel / block).rgb, fetch(picture, pixel).a); }
+vec4 sample_at(ivec2 pixel) {
+  vec2 from = vec2(pixel);
+  ivec2 here = ivec2(floor((from + 0.001) / block));
+  vec2 next = clamp(from + 1.0 - vec2(here + 1) * block, 0.0, 1.0);  // how much lies on the blocks behind
+  vec3 c = fetch(source, here).rgb;
+  if (next.x > 0.0 || next.y > 0.0) {
+    vec3 upper = c * (1.0 - next.x) + fetch(source, here + ivec2(1, 0)).rgb * next.x;
+    vec3 lower = fetch(source, here + ivec2(0, 1)).rgb * (1.0 - next.x) + fetch(source, here + 1).rgb * next.x;
+    c = upper * (1.0 - next.y) + lower * next.y;
+  }
+  return vec4(c, fetch(picture, pixel).a);
+}

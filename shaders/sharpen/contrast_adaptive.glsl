@@ -4,11 +4,12 @@
 
 uniform sampler2D source;
 uniform float amount;
+uniform int apart;    // pixels between those that are compared
 uniform float peak;  // 1/8 … 1/5
 
 vec4 sample_at(ivec2 pixel) {
   vec3 c[9];
-  for (int i = 0; i < 9; ++i) c[i] = fetch(source, pixel + ivec2(i % 3, i / 3) - 1).rgb;
+  for (int i = 0; i < 9; ++i) c[i] = fetch(source, pixel + apart * (ivec2(i % 3, i / 3) - 1)).rgb;
   // The cross counts twice, so that single corners do not decide.
   vec3 low = min(min(min(c[1], c[3]), min(c[5], c[7])), c[4]), high = max(max(max(c[1], c[3]), max(c[5], c[7])), c[4]);
   low = 0.5 * (low + min(low, min(min(c[0], c[2]), min(c[6], c[8]))));

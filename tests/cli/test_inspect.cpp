@@ -31,11 +31,11 @@ class Inspect : public CliTest {
 TEST_F(Inspect, CheckShowsOrderAndSettings) {
   const Outcome outcome = run({"check", "look.lua"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
-  const auto bloom = outcome.out.find("1. bloom"), tone = outcome.out.find("2. tone_mapping"),
-             color = outcome.out.find("3. color_adjustments");
+  const auto bloom = outcome.out.find("1. bloom"), color = outcome.out.find("2. color_adjustments"),
+             tone = outcome.out.find("3. tone_mapping");
   ASSERT_NE(bloom, std::string::npos) << outcome.out;
-  EXPECT_LT(bloom, tone);
-  EXPECT_LT(tone, color);
+  EXPECT_LT(bloom, color);
+  EXPECT_LT(color, tone);
   EXPECT_THAT(outcome.out, ContainsRegex("intensity +0\\.3\n"));
   EXPECT_THAT(outcome.out, ContainsRegex("scatter +0\\.7 +\\(default\\)"));
   EXPECT_THAT(outcome.out, HasSubstr("skipped: "));
@@ -50,7 +50,33 @@ TEST_F(Inspect, CheckAsJson) {
   EXPECT_EQ(bloom.at("settings").at("scatter"), 0.5);
   EXPECT_THAT(bloom.at("changed").get<std::vector<std::string>>(),
               ::testing::UnorderedElementsAre("intensity", "scatter"));
-  EXPECT_TRUE(check.at("entries").at(1).contains("skipped"));
+  EXPECT_TRUE(check.at("entries").at(2).contains("skipped"));
+}
+
+TEST_F(Inspect, CheckTellsTheLightOfEachEntryAndWhatStandsWrong) {
+  write("wrong.lua",
+        "local fx = require \"afterglow\"\n"
+        "return fx.stack { fx.tone_mapping {}, fx.bloom {},\n"
+        "  fx.sharpen { at = \"post_process\", order = 10 },\n"
+        "  fx.exposure { ev = 1, at = \"after_post_process\" } }\n");
+  const Outcome outcome = run({"check", "wrong.lua"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              HasSubstr("1. sharpen  at post_process, order 10; scene-linear light\n   warning: 'sharpen' is "
+                        "made for display-linear light, but 'tone_mapping', which makes it, comes behind "
+                        "it\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("2. bloom  at post_process, order 100; scene-linear light\n"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("3. tone_mapping  at post_process, order 200; scene-linear light to display-linear\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("4. exposure  at after_post_process, order 0; display-linear light\n   warning: "
+                                     "'exposure' is made for scene-linear light, but 'tone_mapping' before it makes "
+                                     "display-linear light\n"));
+  EXPECT_THAT(run({"explain", "wrong.lua"}).out, HasSubstr("warning: 'exposure' is made for scene-linear light"));
+  const json check = parsed({"check", "wrong.lua", "--json"});
+  EXPECT_EQ(check.at("entries").at(2).at("light"),
+            (json{{"before", "scene-linear"}, {"behind", "display-linear"}, {"needs", "scene-linear"}}));
+  // Without a curve nothing is known of the picture; one that is off makes nothing.
+  EXPECT_THAT(run({"check", "wrong.lua", "--set", "tone_mapping.mode=none"}).out, Not(HasSubstr("warning")));
 }
 
 TEST_F(Inspect, CheckLoadsNoImageLibraries) {

@@ -82,7 +82,7 @@ TEST_F(Set, Messages) {
   fails({"set", "look.lua"}, kUsage, "nothing to change; allowed: ENTRY.SETTING=VALUE");
   fails({"set", "look.lua", "bloom"}, kUsage, "'bloom' is no setting with a value; allowed: ENTRY.SETTING=VALUE");
   fails({"set", "look.lua", "blom.knee=1"}, kUsage,
-        "the stack has no entry 'blom'; allowed: bloom, tone_mapping, color_adjustments; did you mean 'bloom'?");
+        "the stack has no entry 'blom'; allowed: bloom, color_adjustments, tone_mapping; did you mean 'bloom'?");
   fails({"set", "look.lua", "bloom.kne=1"}, kUsage, "did you mean 'knee'?");
   fails({"set", "look.lua", "bloom.knee=7"}, kUsage, "bloom.knee = 7 is out of range; allowed: 0…1");
   fails({"set", "nowhere.lua", "bloom.knee=1"}, kScript, "nowhere.lua: error:");

@@ -119,18 +119,20 @@ Size Made::size_of(const std::string& pass) const {
   throw std::runtime_error("no pass " + pass);
 }
 
-Made run_preset(const fs::path& file, const Scene& scene, Way way) {
+Made run_preset(const fs::path& file, const Scene& scene, Way way, double length_scale) {
   Lab& lab = Lab::get();
   ShaderLibrary shaders(search_path_for(file, {}));
   auto preset = need(Preset::load(file, {}, shaders, lab.diagnostics));
-  const Graph graph = need(preset.evaluate(context_of(scene), lab.diagnostics)).graph;
+  BuildContext context = context_of(scene);
+  context.length_scale = length_scale;
+  const Graph graph = need(preset.evaluate(context, lab.diagnostics)).graph;
   const auto valid = validate(graph);
   if (!valid.ok()) throw std::runtime_error(valid.error().text());
   return run(graph, shaders, scene, way);
 }
 
-Made run_stack(const std::string& entries, const Scene& scene, Way way) {
-  return run_preset(write_stack(entries), scene, way);
+Made run_stack(const std::string& entries, const Scene& scene, Way way, double length_scale) {
+  return run_preset(write_stack(entries), scene, way, length_scale);
 }
 
 std::string build_error(const std::string& entries, const Scene& scene) {

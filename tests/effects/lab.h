@@ -37,10 +37,10 @@ struct Made {
 /// `plain`: every pass on its own in full floats, all images kept. `joined`: as users run it.
 enum class Way { plain, joined, joined_half };
 
-/// Runs the stack `{ ENTRIES }`, Lua text. Failures of any step fail the test.
-Made run_stack(const std::string& entries, const Scene& scene, Way way);
+/// Runs the stack `{ ENTRIES }`, Lua text. Failures of any step fail the test. `length_scale`: see BuildContext.
+Made run_stack(const std::string& entries, const Scene& scene, Way way, double length_scale = 1);
 /// The same for a preset's file.
-Made run_preset(const std::filesystem::path& preset, const Scene& scene, Way way);
+Made run_preset(const std::filesystem::path& preset, const Scene& scene, Way way, double length_scale = 1);
 /// Error text of loading or building `{ ENTRIES }`; empty when there is none.
 std::string build_error(const std::string& entries, const Scene& scene);
 

@@ -100,6 +100,21 @@ TEST_F(Effects, LiftGammaGainAgree) {
                  "all settings are neutral");  // a grey is the middle
 }
 
+EffectCase listed(const Cdl& v) {
+  return {fmt::format("fx.cdl {{ slope = {}, offset = {}, power = {}, saturation = {} }}", text(v.slope),
+                      text(v.offset), text(v.power), v.saturation),
+          [=](const Scene& s) { return cdl(s.source, v); }};
+}
+
+TEST_F(Effects, CdlAgrees) {
+  agree_everywhere(
+      {listed({.slope = {1.2, 0.9, 1.05}, .offset = {0.01, 0.02, 0}, .saturation = 0.8}),
+       listed({.offset = {0.05, 0.03, 0.1}, .power = {0.8, 1, 1.3}, .saturation = 1.4}),
+       listed({.slope = {1, 2, 0}, .offset = {-0.02, -0.2, 0}, .power = {1.5, 1, 2}}), listed({.saturation = 0})},
+      kSteep);
+  expect_skipped("fx.cdl {}", "all settings are neutral");
+}
+
 TEST_F(Effects, AWholeGradeIsOneKernel) {
   const char* entries =
       "fx.vignette {}, fx.white_balance { temperature = 20 }, fx.split_toning { shadows = \"#305080\" }, "

@@ -21,14 +21,14 @@ const Look kLooks[] = {
      "fx.color_adjustments { post_exposure = 0.3, contrast = 15, saturation = 10 }",
      [](const Scene& s) {
        const auto bloomed = bloom(s.source, {.mode = BloomMode::scattering, .fade_fireflies = true}).result;
-       return color_adjustments(tone_mapping(bloomed, ToneMode::aces),
-                                {.post_exposure = 0.3, .contrast = 15, .saturation = 10});
+       return tone_mapping(color_adjustments(bloomed, {.post_exposure = 0.3, .contrast = 15, .saturation = 10}),
+                           ToneMode::aces);
      }},
     {"fx.color_adjustments { contrast = -10 }, fx.tone_mapping { mode = \"neutral\" }, fx.bloom { bicubic_upsampling = "
      "false }",
      [](const Scene& s) {  // listed in another order than they run
-       return color_adjustments(tone_mapping(bloom(s.source, {.bicubic_upsampling = false}).result, ToneMode::neutral),
-                                {.contrast = -10});
+       const auto bloomed = bloom(s.source, {.bicubic_upsampling = false}).result;
+       return tone_mapping(color_adjustments(bloomed, {.contrast = -10}), ToneMode::neutral);
      }},
     {"fx.box_bloom {}, fx.tone_mapping { mode = \"reinhard\" }",
      [](const Scene& s) { return tone_mapping(box_bloom(s.source, {}).result, ToneMode::reinhard); }},

@@ -72,7 +72,8 @@ TEST_P(Golden, PictureIsAsExpected) {
   const fs::path expected = kGolden / c.name / ("expected." + c.output);
   const fs::path made =
       fs::temp_directory_path() / ("afterglow_golden_" + c.name + "_" + std::to_string(getpid()) + "." + c.output);
-  std::vector<std::string> words{AFTERGLOW_PROGRAM, "run", kProject / c.preset, kProject / c.input, "-o", made, "-q"};
+  std::vector<std::string> words{AFTERGLOW_PROGRAM, "run", kProject / c.preset, kProject / c.input, "-o", made, "-q",
+                                 "--dither",        "none"};
   // Files among them are the project's.
   for (const auto& word : c.arguments)
     words.push_back(fs::is_regular_file(kProject / word) ? (kProject / word).string() : word);

@@ -110,6 +110,64 @@ TEST(ToneMapping, NeutralReachesWhereTheDocumentSays) {
   EXPECT_NEAR(tone_neutral(Rgb(1e12)).r, 1.2258271, 1e-7);
 }
 
+// What the authors' own pages and listings say of their curves.
+TEST(ToneMapping, NewerCurvesAreWhereTheirSourcesHaveThem) {
+  // Reinhard's equation 4: white becomes 1, greys far below it y/(1 + y).
+  EXPECT_NEAR(tone_reinhard_extended(Rgb(4), 4).r, 1, 1e-6);  // the weights of luminance add up to 1.0000001
+  EXPECT_NEAR(tone_reinhard_extended(Rgb(1), 1e6).g, 0.5, 1e-6);
+  const Rgb red = tone_reinhard_extended(Rgb(2, 0.5, 0.1), 4);  // ratios stay
+  EXPECT_NEAR(red.r / red.g, 4, 1e-12);
+  // PBR Neutral: below 0.8 a colour loses the 4 % of its reflection and nothing else; far above it goes to white.
+  EXPECT_NEAR(tone_khronos_neutral(Rgb(0.5, 0.3, 0.2)).r, 0.46, 1e-12);
+  EXPECT_NEAR(tone_khronos_neutral(Rgb(0.04)).r, 0.01, 1e-12);
+  EXPECT_NEAR(tone_khronos_neutral(Rgb(1000)).b, 1, 1e-3);
+  // Uchimura: light between m = 0.22 and 0.532 stays as it is, with a slope of 1 at both ends.
+  for (const double x : {0.22, 0.3, 0.5, 0.531}) EXPECT_NEAR(tone_gt(Rgb(x)).r, x, 1e-12);
+  EXPECT_NEAR((tone_gt(Rgb(0.5321)).r - tone_gt(Rgb(0.532)).r) / 1e-4, 1, 1e-3);
+  // AgX: middle grey is half of the encoding, 0.5^2.2; 10 stops below it is black, 6.5 above white. Wrensch's
+  // polynomial of the same sigmoid (15.5x⁶ − 40.14x⁵ + …) is within 0.006 of it.
+  EXPECT_NEAR(tone_agx(Rgb(0.18), AgxLook::base).r, std::pow(0.5, 2.2), 1e-6);
+  EXPECT_NEAR(tone_agx(Rgb(0.18 * std::exp2(6.5)), AgxLook::base).g, 1, 1e-6);
+  EXPECT_NEAR(tone_agx(Rgb(0.18 / 1024), AgxLook::base).g, 0, 1e-6);
+  for (double x = 0; x <= 1; x += 0.01) {
+    const double light = 0.18 * std::exp2(16.5 * x - 10);
+    const double polynomial = 15.5 * std::pow(x, 6) - 40.14 * std::pow(x, 5) + 31.96 * std::pow(x, 4) -
+                              6.868 * std::pow(x, 3) + 0.4298 * x * x + 0.1191 * x - 0.00232;
+    EXPECT_NEAR(std::pow(tone_agx(Rgb(light), AgxLook::base).r, 1 / 2.2), std::max(polynomial, 0.0), 0.006) << x;
+  }
+  // Saturated light bleaches: far above white nothing of its colour is left but a little.
+  const Rgb neon = tone_agx(Rgb(0.1, 0.2, 60), AgxLook::base);
+  EXPECT_GT(std::min({neon.r, neon.g, neon.b}), 0.4);
+  // Hable: no toe and no shoulder is light over white; the toe ends on the line y = x − (x₀ − y₀), the line has
+  // slope 1.
+  const ToneMapping straight{.white = 1, .toe = 0, .toe_length = 0, .shoulder_length = 0, .shoulder_angle = 0};
+  for (const double x : {0.1, 0.5, 0.9}) EXPECT_NEAR(tone_hable(Rgb(x), straight).r, x, 1e-4);
+  const ToneMapping filmic{.white = 6, .toe = 0.5, .toe_length = 0.5, .shoulder_length = 0.5, .shoulder_angle = 0};
+  const double x0 = std::pow(0.5, 2.2) / 2;
+  EXPECT_NEAR(tone_hable(Rgb(x0), filmic).r, x0 / 2, 1e-9);
+  EXPECT_NEAR(tone_hable(Rgb(x0 + 0.1), filmic).r, x0 / 2 + 0.1, 1e-9);
+  EXPECT_NEAR(tone_hable(Rgb(6), filmic).r, 1, 1e-9);
+}
+
+TEST(ToneMapping, NewerCurvesRiseAndStayInTheirRange) {
+  const ToneMapping all[] = {{.mode = ToneMode::agx},
+                             {.mode = ToneMode::agx, .look = AgxLook::punchy},
+                             {.mode = ToneMode::khronos_neutral},
+                             {.mode = ToneMode::hable},
+                             {.mode = ToneMode::hable, .white = 3, .toe = 0.9, .shoulder_angle = 1},
+                             {.mode = ToneMode::gt}};
+  for (const auto& s : all) {
+    double before = -1;
+    for (double x = 0; x < 100; x = x * 1.01 + 1e-4) {
+      const double y = tone_map(Rgb(x), s).r;
+      EXPECT_GE(y, before - 1e-9) << x;
+      EXPECT_GE(y, 0);
+      EXPECT_TRUE(y <= 1 || s.mode == ToneMode::hable) << y;
+      before = y;
+    }
+  }
+}
+
 TEST(ToneMapping, KeepsAlpha) {
   const auto image = random_light({5, 4}, 8);
   const auto out = tone_mapping(image, ToneMode::aces);

@@ -125,7 +125,8 @@ TEST_F(Extend, Messages) {
             "VALUE } })");
   EXPECT_EQ(
       error("\"base\", {\n glwo = {} }"),
-      "preset.lua:3: error: fx.extend: the stack has no entry 'glwo'; allowed: glow, rim, max_error, name, position; "
+      "preset.lua:3: error: fx.extend: the stack has no entry 'glwo'; allowed: glow, rim, input_space, max_error, name, "
+            "position, reference_height; "
       "did you mean 'glow'?");
   EXPECT_EQ(error("\"base\", {\n glow = {\n gian = 1 } }"),
             "preset.lua:4: error: effect 'glow' has no setting 'gian'; allowed: gain, levels; did you mean 'gain'?");

@@ -135,7 +135,7 @@ TEST(ListEffects, AllOfThePathByName) {
   EXPECT_THAT(scene.warnings,
               ElementsAre("effect 'broken' is left out: effects/broken.lua:3: error: fx.effect has no "
                           "'odrer'; allowed: active, alpha, at, build, "
-                          "doc, holds, idle, name, needs, optional, order, settings; did you mean 'order'?"));
+                          "doc, holds, idle, name, needs, optional, order, settings, space; did you mean 'order'?"));
 }
 
 // The names that no effect may have are those that the library has.

@@ -44,6 +44,49 @@ TEST_F(Order, InjectionPointsComeFirst) {
       ElementsAre("z", "y", "x", "w"));
 }
 
+TEST_F(Order, LightIsFollowedThroughTheStack) {
+  const auto effect = [&](const std::string& name, const std::string& space) {
+    scene.effect(name,
+                 space +
+                     " active = function(s) return s.on, \"off\" end, settings = { on = fx.bool { default = true } },"
+                     " build = function(g, s, source) return source end,");
+  };
+  effect("toner", "order = 10, space = { needs = \"scene\", makes = \"display\" },");
+  effect("grade", "space = \"scene\",");
+  effect("shine", "order = 20, space = function(s) return s.on and \"display\" or nil end,");
+  const auto spaces = [&](const std::string& entries) {
+    scene.stack(entries);
+    auto preset = scene.load();
+    EXPECT_TRUE(preset.ok());
+    auto found = preset->spaces();
+    EXPECT_TRUE(found.ok());
+    return found.ok() ? *found : std::vector<EntrySpace>{};
+  };
+  auto found = spaces("fx.shine {}, fx.grade {}, fx.toner {}");
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].behind, LightSpace::scene);
+  EXPECT_EQ(found[1].behind, LightSpace::display);
+  EXPECT_EQ(found[2].before, LightSpace::display);
+  EXPECT_EQ(found[2].use.needs, LightSpace::display);
+  for (const auto& entry : found) EXPECT_EQ(entry.warning, "");
+  found = spaces("fx.grade { order = 15 }, fx.shine { order = 1 }, fx.toner {}");
+  EXPECT_NE(found[0].warning, "");
+  EXPECT_EQ(found[1].warning, "");
+  EXPECT_NE(found[2].warning, "");
+  // Neither an entry that is off nor one that is left out makes light.
+  for (const char* curve : {"fx.toner { on = false }", "fx.toner { enabled = false }"})
+    for (const auto& entry : spaces("fx.grade { order = 15 }, fx.shine { order = 1 }, " + std::string(curve)))
+      EXPECT_EQ(entry.warning, "");
+  effect("shine", "space = function(s) return 7 end,");
+  scene.stack("fx.shine {}");
+  auto preset = scene.load();
+  const auto wrong = preset->spaces();
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_NE(wrong.error().text().find("space of effect 'shine' = 7 is no space; allowed: scene, display"),
+            std::string::npos)
+      << wrong.error().text();
+}
+
 TEST_F(Order, ManyEqualsKeepTheirPlaces) {
   std::string entries;
   std::vector<std::string> expected;
@@ -79,7 +122,7 @@ TEST_F(Order, SettingsKeepTheOrderOfDeclaration) {
     build = function(g, s, source) return source end,)");
   scene.stack("fx.many { mid = false, alpha = true }");
   auto preset = scene.load();
-  ASSERT_TRUE(preset) << preset.error().text();
+  ASSERT_TRUE(preset);
   std::vector<std::string> declared;
   for (const auto& setting : preset->schema("many").settings) declared.push_back(setting.name);
   EXPECT_THAT(declared, ElementsAre("zeta", "alpha", "mid", "beta", "last"));

@@ -1,0 +1,6 @@
+local fx = require "afterglow"
+
+return fx.stack {
+  fx.exposure { ev = 2.5 },
+  fx.tone_mapping { mode = "neutral" },
+}

@@ -1,0 +1,67 @@
+// `afterglow bake`: a look of pixel effects as a look-up table for other programs, with how far it is from the look.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/bake.h"
+#include "apps/command.h"
+#include "core/text.h"
+
+namespace afterglow {
+namespace {
+
+struct BakeArguments {
+  PresetArguments preset;
+  DeviceArguments device;
+  std::string output, shaper = "none";
+  int size = 33;
+};
+
+Result<void> run_bake(const BakeArguments& a, Console& console) {
+  const Shaper shaper = a.shaper == "log" ? Shaper::log : Shaper::none;
+  AFTERGLOW_TRY(const Look look, load_look(a.preset, {}, console));
+  if (const auto refused = unbakeable(look); !refused.empty())
+    return Error{ErrorKind::script,
+                 fmt::format("a table knows a pixel's colour alone; these effects need more: {}", join(refused)),
+                 a.preset.file, 0, "effects of colour, like those that `afterglow graph` shows as pixel passes"};
+  SessionOptions options;
+  options.device = a.device.options();
+  AFTERGLOW_TRY(options.stack, ExecutionArguments{}.options());
+  AFTERGLOW_TRY(options.stack.preset, a.preset.options());
+  options.stack.reference = true;
+  AFTERGLOW_TRY(const std::filesystem::path file, a.preset.preset_file());
+  AFTERGLOW_TRY(const auto session, Session::open(file, options, console.diagnostics()));
+  const Through through = [&](Picture& colours) { return session->process(colours); };
+  AFTERGLOW_TRY(const Cube cube, bake_cube(a.size, shaper, through));
+  AFTERGLOW_TRY(const BakeError error, bake_error(cube, 20000, through));
+  AFTERGLOW_CHECK(write_cube(cube, look.preset->name(), a.output));
+  fmt::print("{}: {}³, {}; against the look itself at most {:.2f}, on average {:.3f} of 255 codes\n", a.output, a.size,
+             shaper == Shaper::log ? "ACEScct to sRGB codes" : "sRGB codes to sRGB codes", error.most, error.mean);
+  return {};
+}
+
+}  // namespace
+
+Command add_bake_command(CLI::App& program) {
+  auto* app = program.add_subcommand("bake", "Write a look of pixel effects as a look-up table (.cube, .clf, .png)");
+  auto arguments = std::make_shared<BakeArguments>();
+  arguments->preset.add(*app);
+  arguments->device.add(*app);
+  app->add_option("-o,--output", arguments->output, "FILE.cube, FILE.clf or FILE.png (blue by blue beside each other)")
+      ->type_name("FILE")
+      ->required();
+  app->add_option("--size", arguments->size, "Entries on a side, 2 to 129 (default 33)")
+      ->check(CLI::Range(2, 129))
+      ->type_name("N");
+  app->add_option("--shaper", arguments->shaper,
+                  "none: the table takes sRGB codes. log: it takes ACEScct, and so light above 1 (a .clf scene-linear "
+                  "Rec.709)")
+      ->check(CLI::IsMember({"none", "log"}))
+      ->type_name("SHAPER");
+  app->footer(
+      "The table gives sRGB codes of a display. Effects that look around, at places or at other frames are refused.\n"
+      "Example: afterglow bake look.lua -o look.cube --size 33 --shaper log");
+  return {app, [arguments](Console& console) { return run_bake(*arguments, console); }};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,92 @@
+#include "image/input_space.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/text.h"
+#include "image/srgb.h"
+
+namespace afterglow {
+namespace {
+
+constexpr std::array<double, 2> kD65{0.3127, 0.3290};
+constexpr Chromaticities kAp1{{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
+constexpr Chromaticities kWideGamut3{{0.6840, 0.3130}, {0.2210, 0.8480}, {0.0861, -0.1020}, kD65};
+constexpr Chromaticities kSGamut3Cine{{0.766, 0.275}, {0.225, 0.800}, {0.089, -0.087}, kD65};
+constexpr Chromaticities kRec2020{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, kD65};
+
+// AMPAS S-2016-001.
+double from_acescct(double v) {
+  constexpr double kBreak = 0.155251141552511;
+  return v <= kBreak ? (v - 0.0729055341958355) / 10.5402377416545 : std::exp2(17.52 * std::min(v, 3.0) - 9.72);
+}
+
+// ARRI, "ALEXA Log C Curve, Usage in VFX" (2017), exposure index 800.
+double from_logc3(double v) {
+  constexpr double cut = 0.010591, a = 5.555556, b = 0.052272, c = 0.247190, d = 0.385537, e = 5.367655, f = 0.092809;
+  return v > e * cut + f ? (std::pow(10.0, (std::min(v, 8.0) - d) / c) - b) / a : (v - f) / e;
+}
+
+// Sony, "Technical Summary for S-Gamut3.Cine/S-Log3" (2014).
+double from_slog3(double v) {
+  return v >= 171.2102946929 / 1023 ? std::pow(10.0, (std::min(v, 8.0) * 1023 - 420) / 261.5) * (0.18 + 0.01) - 0.01
+                                    : (v * 1023 - 95) * 0.01125 / (171.2102946929 - 95);
+}
+
+// SMPTE ST 2084; 203 cd/m², the white of ITU-R BT.2408, is 1.
+double from_pq(double v) {
+  constexpr double m1 = 2610.0 / 16384, m2 = 2523.0 / 4096 * 128, c1 = 3424.0 / 4096, c2 = 2413.0 / 4096 * 32,
+                   c3 = 2392.0 / 4096 * 32;
+  const double p = std::pow(std::clamp(v, 0.0, 1.0), 1 / m2);
+  return 10000.0 / 203 * std::pow(std::max(p - c1, 0.0) / (c2 - c3 * p), 1 / m1);
+}
+
+// ITU-R BT.2100 HLG, light of the scene; the signal 0.75, the white of BT.2408, is 1.
+double hlg_scene(double v) {
+  constexpr double a = 0.17883277, b = 0.28466892, c = 0.55991073;
+  return v <= 0.5 ? v * v / 3 : (std::exp((std::min(v, 4.0) - c) / a) + b) / 12;
+}
+double from_hlg(double v) { return hlg_scene(std::max(v, 0.0)) / hlg_scene(0.75); }
+
+double mirrored_power(double v, double exponent) { return std::copysign(std::pow(std::abs(v), exponent), v); }
+double from_gamma22(double v) { return mirrored_power(v, 2.2); }
+double from_gamma24(double v) { return mirrored_power(v, 2.4); }
+double as_it_is(double v) { return v; }
+
+constexpr std::array kSpaces{
+    InputSpace{"acescct", "ACEScct (AMPAS S-2016-001), primaries AP1", from_acescct, kAp1},
+    InputSpace{"gamma22", "power 2.2, Rec.709", from_gamma22, kRec709},
+    InputSpace{"gamma24", "power 2.4, Rec.709", from_gamma24, kRec709},
+    InputSpace{"hlg", "HLG (ITU-R BT.2100), Rec.2020; the signal 0.75 is 1", from_hlg, kRec2020},
+    InputSpace{"linear", "linear Rec.709", as_it_is, kRec709},
+    InputSpace{"logc3", "ARRI LogC3 at EI 800, ALEXA Wide Gamut 3", from_logc3, kWideGamut3},
+    InputSpace{"pq", "PQ (SMPTE ST 2084), Rec.2020; 203 cd/m² is 1", from_pq, kRec2020},
+    InputSpace{"slog3", "Sony S-Log3, S-Gamut3.Cine", from_slog3, kSGamut3Cine},
+    InputSpace{"srgb", "sRGB (IEC 61966-2-1)", srgb_to_linear, kRec709},
+};
+
+}  // namespace
+
+std::span<const InputSpace> input_spaces() { return kSpaces; }
+
+Result<const InputSpace*> find_input_space(const std::string& name) {
+  std::vector<std::string> names;
+  for (const InputSpace& space : kSpaces) {
+    if (name == space.name) return &space;
+    names.emplace_back(space.name);
+  }
+  return Error{ErrorKind::usage, "'" + name + "' is no input space", "", 0, join(names), nearest_name(name, names)};
+}
+
+void use_input_space(const InputSpace& space, ColorEncoding& encoding) {
+  encoding.curve = space.to_linear == as_it_is ? TransferCurve::linear : TransferCurve::formula;
+  encoding.formula = space.to_linear;
+  encoding.transform.reset();
+  encoding.matrix.reset();
+  if (encoding.grey) return;
+  const Matrix3 matrix = to_rec709(space.primaries);
+  if (!nearly_equal(matrix, kIdentity, 1e-6)) encoding.matrix = matrix;
+}
+
+}  // namespace afterglow

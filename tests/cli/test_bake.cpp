@@ -1,0 +1,74 @@
+// bake: a look as a table, its error, and what cannot be one.
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <regex>
+
+#include "cli_test.h"
+
+namespace afterglow::test {
+namespace {
+
+class Bake : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    write("look.lua",
+          "local fx = require \"afterglow\"\nreturn fx.stack { name = \"Warm & soft\",\n"
+          "  fx.color_adjustments { post_exposure = 0.4, contrast = 10, saturation = 12 },\n"
+          "  fx.white_balance { temperature = 15 }, fx.tone_mapping { mode = \"agx\" } }\n");
+  }
+  double largest_difference(const std::string& a, const std::string& b) const {
+    const OIIO::ImageBuf one(text(a)), other(text(b));
+    return OIIO::ImageBufAlgo::compare(one, other, 0, 0).maxerror;
+  }
+};
+
+TEST_F(Bake, TheTableDoesWhatTheLookDoes) {
+  make_exr("a.exr");
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "direct.png", "--dither", "none"}).exit_code, kDone);
+  for (const std::string file : {"log.cube", "log.clf"}) {
+    const Outcome outcome = run({"bake", "look.lua", "-o", file, "--size", "33", "--shaper", "log"});
+    ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(outcome.out, found, std::regex("at most ([0-9.]+), on average ([0-9.]+) of 255")))
+        << outcome.out;
+    EXPECT_LT(std::stod(found[2]), 0.3);
+    // A .clf takes scene-linear light itself, a .cube ACEScct.
+    write("table.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.lut { file = \"" + file +
+                           "\", input = \"" + (file == "log.clf" ? "linear" : "acescct") +
+                           "\", output = \"srgb\" } }\n");
+    const Outcome applied = run({"run", "table.lua", "a.exr", "-o", "table.png", "--dither", "none"});
+    ASSERT_EQ(applied.exit_code, kDone) << applied.err;
+    EXPECT_LE(largest_difference("direct.png", "table.png"), (std::stod(found[1]) + 1) / 255) << file;
+  }
+}
+
+TEST_F(Bake, PicturesAndCodes) {
+  const Outcome outcome = run({"bake", "look.lua", "-o", "strip.png", "--size", "16"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  const OIIO::ImageBuf strip(text("strip.png"));
+  EXPECT_EQ(strip.spec().width, 256);
+  EXPECT_EQ(strip.spec().height, 16);
+  ASSERT_EQ(run({"bake", "look.lua", "-o", "codes.cube"}).exit_code, kDone);
+  EXPECT_THAT(read("codes.cube"),
+              HasSubstr("# sRGB codes to sRGB codes of a display\nTITLE \"Warm & soft\"\nLUT_3D_SIZE 33\n"));
+}
+
+TEST_F(Bake, EffectsThatLookAroundAreRefusedByName) {
+  write("wide.lua",
+        "local fx = require \"afterglow\"\nreturn fx.stack { fx.bloom {}, fx.vignette {}, fx.tone_mapping {}, "
+        "fx.film_grain {},\n"
+        "  fx.auto_exposure {} }\n");
+  const Outcome outcome = run({"bake", "wide.lua", "-o", "wide.cube"});
+  EXPECT_EQ(outcome.exit_code, kScript);
+  EXPECT_THAT(outcome.err, HasSubstr("a table knows a pixel's colour alone; these effects need more: "));
+  for (const char* name : {"bloom (reads around)", "vignette (", "film_grain (", "auto_exposure ("})
+    EXPECT_THAT(outcome.err, HasSubstr(name));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("tone_mapping (")));
+  EXPECT_FALSE(fs::exists(path("wide.cube")));
+  EXPECT_THAT(run({"bake", "look.lua", "-o", "look.jpg"}).err, HasSubstr("allowed: .cube, .clf, .png"));
+}
+
+}  // namespace
+}  // namespace afterglow::test

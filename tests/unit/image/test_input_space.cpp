@@ -1,0 +1,97 @@
+// Colour spaces of cameras and broadcast, against the values that their makers publish.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "image/input_space.h"
+
+namespace afterglow {
+namespace {
+
+double light(const char* space, double stored) { return (*find_input_space(space))->to_linear(stored); }
+
+struct Published {
+  const char* space;
+  double stored, light, tolerance;
+};
+
+// Middle grey, black and white as the specifications state them; digits beyond are colour-science 0.4's.
+TEST(InputSpace, PublishedValues) {
+  const Published values[] = {
+      {"acescct", 0.4135884024924423, 0.18, 1e-9},   // S-2016-001: ACEScct of 0.18
+      {"acescct", 0.0729055341958355, 0, 1e-12},     // of 0
+      {"acescct", 0.554794520547945, 1, 1e-9},       // (log2(1) + 9.72)/17.52
+      {"logc3", 0.391006832034084, 0.18, 1e-8},      // ARRI: 18 % grey is the 10-bit code 400
+      {"logc3", 0.092809, 0, 1e-12},                 // f
+      {"logc3", 1, 55.0796, 1e-3},                   // ARRI's table for EI 800: the maximum is 55.08
+      {"slog3", 0.410557184750733, 0.18, 1e-9},      // Sony: 18 % is the 10-bit code 420
+      {"slog3", 0.0928641251221896, 0, 1e-12},       // 0 % is 95
+      {"slog3", 598.0 / 1023, 0.9, 0.003},           // 90 % is 598
+      {"pq", 0.508078421517399, 100.0 / 203, 1e-9},  // ST 2084: 100 cd/m²
+      {"pq", 0.149945886547, 1.0 / 203, 1e-6},       // 1 cd/m²
+      {"pq", 1, 10000.0 / 203, 1e-9},                // the maximum
+      {"pq", 0, 0, 1e-12},
+      {"hlg", 0.75, 1, 1e-12},
+      {"hlg", 0.5, (1.0 / 12) / 0.264962560, 1e-6},  // BT.2100: E = 1/12 at half of the signal
+      {"hlg", 1, 1 / 0.264962560, 1e-5},             // and 1 at its end
+      {"gamma22", 0.5, 0.217637640824031, 1e-12},
+      {"gamma24", 0.5, 0.189464570814019, 1e-12},
+      {"srgb", 0.5, 0.214041140482232, 1e-9},
+  };
+  for (const auto& v : values)
+    EXPECT_NEAR(light(v.space, v.stored), v.light, v.tolerance) << v.space << " " << v.stored;
+}
+
+TEST(InputSpace, CurvesRiseAndAreWholeAtTheirBreaks) {
+  for (const InputSpace& space : input_spaces()) {
+    double before = space.to_linear(0);
+    for (double v = 1e-4; v <= 1; v += 1e-4) {
+      const double here = space.to_linear(v);
+      EXPECT_GE(here, before) << space.name << " " << v;
+      EXPECT_LT(here - before, 5e-3 * std::max(here, 0.05)) << space.name << " " << v;
+      before = here;
+    }
+  }
+}
+
+TEST(InputSpace, WhiteStaysGreyAndPrimariesAreTheMakers) {
+  for (const InputSpace& space : input_spaces()) {
+    ColorEncoding encoding;
+    use_input_space(space, encoding);
+    if (!encoding.matrix) continue;
+    for (const auto& row : *encoding.matrix) EXPECT_NEAR(row[0] + row[1] + row[2], 1, 1e-6) << space.name;
+  }
+  // Rec.2020 to Rec.709 as ITU-R BT.2407 prints it.
+  ColorEncoding encoding;
+  use_input_space(**find_input_space("pq"), encoding);
+  EXPECT_NEAR((*encoding.matrix)[0][0], 1.6605, 5e-5);
+  EXPECT_NEAR((*encoding.matrix)[1][0], -0.1246, 5e-5);
+  EXPECT_NEAR((*encoding.matrix)[2][2], 1.1187, 5e-5);
+  // ALEXA Wide Gamut 3 to Rec.709 as ARRI prints it.
+  use_input_space(**find_input_space("logc3"), encoding);
+  EXPECT_NEAR((*encoding.matrix)[0][0], 1.617523, 2e-5);
+  EXPECT_NEAR((*encoding.matrix)[0][1], -0.537287, 2e-5);
+  EXPECT_NEAR((*encoding.matrix)[2][1], -0.226954, 2e-5);
+}
+
+TEST(InputSpace, UnknownNamesAreTold) {
+  const auto found = find_input_space("logc");
+  ASSERT_FALSE(found);
+  EXPECT_EQ(
+      found.error().text(),
+      "error: 'logc' is no input space; allowed: acescct, gamma22, gamma24, hlg, linear, logc3, pq, slog3, srgb; did "
+      "you mean 'logc3'?");
+}
+
+TEST(InputSpace, XyzIsReadWithoutInventingAdaptation) {
+  // The white of a scene under D65, stored as XYZ: it is white, not 12 % too blue.
+  const Matrix3 matrix = to_rec709({{1, 0}, {0, 1}, {0, 0}, {1.0 / 3, 1.0 / 3}});
+  const std::array<double, 3> white{0.3127 / 0.3290, 1, (1 - 0.3127 - 0.3290) / 0.3290};
+  for (const auto& row : matrix) EXPECT_NEAR(row[0] * white[0] + row[1] * white[1] + row[2] * white[2], 1, 1e-12);
+  // Other primaries under other whites are adapted.
+  const Matrix3 ap0 = to_rec709({{0.7347, 0.2653}, {0, 1}, {0.0001, -0.077}, {0.32168, 0.33767}});
+  for (const auto& row : ap0) EXPECT_NEAR(row[0] + row[1] + row[2], 1, 1e-9);
+}
+
+}  // namespace
+}  // namespace afterglow
