@@ -16,7 +16,8 @@ inline constexpr std::uint64_t kMaxHeldBytes = 4096;      ///< all arrays of a k
 inline constexpr std::uint64_t kMaxCopiedBytes = 1024;    ///< arrays that are copied whole, once for each call
 inline constexpr std::uint64_t kMaxInstructions = 65536;  ///< of a kernel, once for each call
 
-/// `spirv` was made of `kernel`. Errors (script): a limit, with file and line of the variable or the function.
+/// `spirv` was made of `kernel`, and is counted by row: how many an invocation makes is the engine's affair. Errors
+/// (script): a limit, with file and line of the variable or the function.
 Result<void> check_weight(const std::vector<std::uint32_t>& spirv, const KernelDesc& kernel);
 
 }  // namespace afterglow
