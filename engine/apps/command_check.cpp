@@ -9,9 +9,9 @@
 #include "apps/look.h"
 #include "apps/output.h"
 #include "apps/setting_text.h"
+#include "apps/space_text.h"
 #include "batch/json_text.h"
 #include "batch/table.h"
-#include "apps/space_text.h"
 #include "core/printable.h"
 #include "script/explanation.h"
 

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/command.h"
+#include "apps/output.h"
 #include "batch/json_text.h"
 #include "batch/table.h"
 #include "exec/calibration.h"
-#include "apps/output.h"
 #include "gpu/device.h"
 
 namespace afterglow {

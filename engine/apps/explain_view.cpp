@@ -7,9 +7,9 @@
 
 #include "apps/graph_view.h"
 #include "apps/setting_text.h"
+#include "apps/space_text.h"
 #include "batch/json_text.h"
 #include "batch/table.h"
-#include "apps/space_text.h"
 #include "core/text.h"
 
 namespace afterglow {

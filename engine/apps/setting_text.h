@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "script/preset.h"
 #include "script/explanation.h"
+#include "script/preset.h"
 
 namespace afterglow {
 

@@ -43,7 +43,7 @@ struct FrameRunner::State {
   bool ahead;  ///< staging is whole
   FrameInputs inputs;
   FrameResult result;
-  bool flags = false;  ///< the last run's result tells of what is not finite
+  bool flags = false;         ///< the last run's result tells of what is not finite
   std::optional<Rect> shown;  ///< the part of the result that the last run made; none: the result is the source
   Staging staging;
   KernelTimer timer;
@@ -99,8 +99,8 @@ FrameRunner::FrameRunner(std::unique_ptr<State> state) : state_(std::move(state)
 FrameRunner::~FrameRunner() = default;
 
 Result<std::unique_ptr<FrameRunner>> FrameRunner::create(Device& device, const Options& options) {
-  auto state = std::make_unique<State>(device, options.max_memory, options.direct && device.is_cpu(),
-                                       options.whole_staging);
+  auto state =
+      std::make_unique<State>(device, options.max_memory, options.direct && device.is_cpu(), options.whole_staging);
   AFTERGLOW_TRY(state->submitter, Submitter::create(device));
   return std::unique_ptr<FrameRunner>(new FrameRunner(std::move(state)));
 }

@@ -11,8 +11,8 @@
 
 namespace afterglow {
 
-/// Which program runs a frame, asked once its inputs have been packed: from then on the program is touched. It must take
-/// the same inputs; null: nothing has to run, the result is the source. `content`: of the source
+/// Which program runs a frame, asked once its inputs have been packed: from then on the program is touched. It must
+/// take the same inputs; null: nothing has to run, the result is the source. `content`: of the source
 /// (graph/condition.h), when it was asked for.
 struct ChooseProgram {
   std::function<Result<Program*>(const SourceContent& content)> program{};

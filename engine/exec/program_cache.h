@@ -45,7 +45,7 @@ struct ShaderFindings {
 /// Compiles every kernel that the frame's program has on a CPU device for `run`, touching none. What is wrong with
 /// each.
 ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
-                                 const ExecutionConfig& config);
+                             const ExecutionConfig& config);
 
 struct ProgramCacheOptions {
   ExecutionConfig config{};
@@ -99,7 +99,8 @@ class ProgramCache {
   };
   /// Whether the content of a frame may make effects idle: then ask `for_content`.
   bool depends_on_content() const;
-  /// The program for a frame with such a source, without the effects and the work on alpha that it makes idle. Made when it is first wanted, and kept. Errors: those of `find`.
+  /// The program for a frame with such a source, without the effects and the work on alpha that it makes idle. Made
+  /// when it is first wanted, and kept. Errors: those of `find`.
   Result<Choice> for_content(const SourceContent& content, ShaderLibrary& shaders);
 
   /// The frame that began was recorded or has run.

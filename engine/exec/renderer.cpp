@@ -84,7 +84,8 @@ ChooseProgram Renderer::State::choose(const RenderRequest& request, Program& pro
   ProgramCache& programs = *request.programs;
   ShaderLibrary& shaders = *request.shaders;
   const bool look = programs.depends_on_content();
-  const auto ask = [this, &programs, &shaders, &program, &slot, look](const SourceContent& content) -> Result<Program*> {
+  const auto ask = [this, &programs, &shaders, &program, &slot,
+                    look](const SourceContent& content) -> Result<Program*> {
     AFTERGLOW_CHECK(wait());
     AFTERGLOW_CHECK(programs.begin());
     Program* chosen = &program;

@@ -29,8 +29,8 @@ struct RenderRequest {
   ProgramCache* programs = nullptr;  ///< null: nothing runs, the result is the source
   ShaderLibrary* shaders = nullptr;
   FrameWork work{};
-  /// "source" and the auxiliary images that the graph asks for. The source's pixels must stay until `collect`, the others
-  /// until `submit` returns.
+  /// "source" and the auxiliary images that the graph asks for. The source's pixels must stay until `collect`, the
+  /// others until `submit` returns.
   std::map<std::string, HostImage> inputs{};
   KernelTiming timing = KernelTiming::none;  ///< others than none: no other frame is in flight meanwhile
 };
@@ -87,7 +87,8 @@ class Renderer {
   struct Counters {
     int images = 0, buffers = 0, recordings = 0;
   };
-  Counters counters() const;  ///< objects made and commands recorded so far; steady frames leave images and buffers alone
+  Counters counters()
+      const;  ///< objects made and commands recorded so far; steady frames leave images and buffers alone
 
  private:
   struct State;

@@ -125,8 +125,8 @@ Result<void> Staging::submit_download(Band& band, const StagedImage& image, VkIm
       record_barriers(*device_, commands, &begin, 1);
     }
     const VkBufferImageCopy region = copy_of(image, first, rows);
-    device_->vk().vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, band.buffer.get(), 1,
-                           &region);
+    device_->vk().vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, band.buffer.get(),
+                                         1, &region);
     const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                                    .srcStageMask = kTransfer,
                                    .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,

@@ -251,9 +251,9 @@ int declare_effect(lua_State* lua) {
   if (!runtime.declaring) throw failure("fx.effect can only be used while a script loads");
   if (runtime.effects.size() >= kMaxDeclared) throw failure(fmt::format("more than {} effects", kMaxDeclared));
   TableReader table(lua, 1, "fx.effect");
-  table.allow(
-      {"active", "alpha", "at", "build", "doc", "holds", "idle", "name", "needs", "optional", "order", "settings", "space"},
-      false);
+  table.allow({"active", "alpha", "at", "build", "doc", "holds", "idle", "name", "needs", "optional", "order",
+               "settings", "space"},
+              false);
   Effect effect;
   EffectSchema& schema = effect.schema;
   schema.name = table.text("name", 65).value_or("");

@@ -29,7 +29,7 @@ struct EntryRun {
   int settings_ref = LUA_NOREF;        ///< read-only table in the registry
   std::optional<Animated> opacity;
   std::shared_ptr<MaskRun> mask;  ///< null: none
-  double length_scale = 1;             ///< of the lengths in that table
+  double length_scale = 1;        ///< of the lengths in that table
 };
 
 /// All throw ScriptError.

@@ -286,8 +286,9 @@ int graph_index(lua_State* lua) {
   else if (name == "length_scale")
     lua_pushnumber(lua, graph.length_scale());
   else {
-    const std::vector<std::string> names{"cryptomatte", "filter", "fps",          "frame",  "frame_time", "history", "image",
-                                         "input",       "keep",   "length_scale", "lookup", "pass",       "skip",    "time"};
+    const std::vector<std::string> names{"cryptomatte", "filter", "fps",   "frame", "frame_time",
+                                         "history",     "image",  "input", "keep",  "length_scale",
+                                         "lookup",      "pass",   "skip",  "time"};
     throw failure(fmt::format("the graph has no {}", key.shown()), {}, join(names), nearest_name(name, names));
   }
   return 1;

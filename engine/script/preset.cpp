@@ -7,8 +7,8 @@
 #include "core/file_record.h"
 #include "core/text.h"
 #include "script/arguments.h"
-#include "script/composite.h"
 #include "script/build.h"
+#include "script/composite.h"
 #include "script/entry_run.h"
 #include "script/graph_binding.h"
 #include "script/hold_reader.h"
@@ -30,7 +30,7 @@ struct Preset::State {
   std::string file, name, input_space;
   std::optional<double> max_error;
   std::optional<int> reference_height;
-  double length_scale = 1;  // of the settings in `runs`
+  double length_scale = 1;                                 // of the settings in `runs`
   std::vector<EntryRun> runs;                              // in the order of execution
   std::shared_ptr<const std::vector<StackEntry>> entries;  // the same, as they were resolved last
   std::shared_ptr<const std::vector<StackEntry>> loaded;   // as they were first
@@ -177,7 +177,8 @@ Result<Preset> Preset::load(const std::filesystem::path& file, const PresetOptio
   state->shaders = &shaders;
   auto record = options.record ? options.record : std::make_shared<FileRecord>();
   AFTERGLOW_TRY(state->runtime,
-                Runtime::create(search_path_for(file, options.paths, std::move(record), options.installation), options.limits, diagnostics));
+                Runtime::create(search_path_for(file, options.paths, std::move(record), options.installation),
+                                options.limits, diagnostics));
   Sandbox& box = *state->runtime->box;
   const StackEntry* current = nullptr;
   auto error = box.run(state->file, [&](lua_State* lua) {

@@ -175,7 +175,7 @@ struct BuildContext {
   double frame = 1, time = 0, fps = 24;   ///< number in its sequence, seconds, pictures a second
   double step = 1;       ///< frames since the one before it, whose images its histories hold (graph/history.h)
   bool restart = false;  ///< no frame is before it: histories begin anew
-  std::optional<Position> position = {};          ///< of its camera, when the picture says it
+  std::optional<Position> position = {};  ///< of its camera, when the picture says it
   /// Pixels of `size` for each pixel of the picture that is delivered: below 1 in previews that run smaller. Settings
   /// in px are lengths of that picture. A stack's `reference_height` goes before it.
   double length_scale = 1;

@@ -8,7 +8,7 @@ namespace afterglow {
 
 struct LiveSession::State {
   std::unique_ptr<LiveStack> live;
-  std::unique_ptr<Renderer> renderer;  // first to go: it waits for what is in flight
+  std::unique_ptr<Renderer> renderer;   // first to go: it waits for what is in flight
   std::optional<BuildContext> context;  ///< of the last frame
   FrameReport last;                     ///< of it
   bool aside = false, waits = false;

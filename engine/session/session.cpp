@@ -118,11 +118,7 @@ Result<void> Session::submit(Picture picture, FrameRequest request) {
 
 /// Takes the picture; on errors it stays.
 Result<void> Session::State::submit(Picture& picture, FrameRequest request) {
-  Frame frame{.picture = {},
-              .encoding = request.encoding,
-              .region = request.region,
-              .skipped = {},
-              .runs = false};
+  Frame frame{.picture = {}, .encoding = request.encoding, .region = request.region, .skipped = {}, .runs = false};
   AFTERGLOW_TRY(RenderRequest render, stack->request(std::move(request)));
   frame.runs = render.work.runs();
   if (frame.runs) {

@@ -60,15 +60,15 @@ Result<std::unique_ptr<Stack>> Stack::load(const std::filesystem::path& preset, 
   auto state = std::make_unique<State>();
   state->options = options;
   state->diagnostics = &diagnostics;
-  state->shaders =
-      std::make_unique<ShaderLibrary>(search_path_for(preset, options.preset.paths, options.preset.record, options.preset.installation));
+  state->shaders = std::make_unique<ShaderLibrary>(
+      search_path_for(preset, options.preset.paths, options.preset.record, options.preset.installation));
   const auto& cache = options.cache_folder;
   state->shared = options.shared;
   if (!state->shared) state->shared = std::make_shared<SharedKernels>(cache.empty() ? cache : cache / "shaders");
   AFTERGLOW_TRY(Preset loaded, Preset::load(preset, options.preset, *state->shaders, diagnostics));
   state->preset.emplace(std::move(loaded));
-  AFTERGLOW_TRY(state->calibration,
-                options.calibration.empty() ? Calibration::shipped(options.preset.installation) : Calibration::load(options.calibration));
+  AFTERGLOW_TRY(state->calibration, options.calibration.empty() ? Calibration::shipped(options.preset.installation)
+                                                                : Calibration::load(options.calibration));
   state->choice.max_error = options.max_error.value_or(state->preset->max_error().value_or(state->choice.max_error));
   state->script_ms = milliseconds_since(start);
   return std::unique_ptr<Stack>(new Stack(std::move(state)));

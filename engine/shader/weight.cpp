@@ -66,34 +66,17 @@ class Scales {
 
   Result<void> check() {
     if (largest_.first > kMaxVariableBytes) return too_large();
-    Function all{.held = file_scope_, .copied = 0, .instructions = 0, .calls = {}};
-    std::uint32_t heaviest = 0;
-    std::uint64_t most = 0;
-    for (const auto& [id, function] : functions_) {
-      const Function whole = with_calls(id);
-      if (id == main_) {
-        all.held = saturated_sum({all.held, whole.held});
-        all.copied = whole.copied;
-        all.instructions = whole.instructions;
-      } else if (whole.instructions >= most) {
-        most = whole.instructions;
-        heaviest = id;
-      }
-    }
-    if (all.held > kMaxHeldBytes)
+    Function all = with_calls(main_);
+    for (auto* count : {&all.held, &all.copied, &all.instructions}) *count /= static_cast<unsigned>(kernel_.rows);
+    if (const std::uint64_t held = saturated_sum({file_scope_, all.held}); held > kMaxHeldBytes)
       return fail(largest_.second,
-                  fmt::format("the shader holds {} in variables, the largest of them '{{}}'", bytes_of(all.held)),
+                  fmt::format("the shader holds {} in arrays, the largest of them '{{}}'", bytes_of(held)),
                   fmt::format("at most {} bytes; a function's count once for each call", kMaxHeldBytes));
     if (all.copied > kMaxCopiedBytes)
       return fail(copied_,
                   fmt::format("the shader copies arrays of {} as a whole, among them '{{}}'", bytes_of(all.copied)),
                   fmt::format("at most {} bytes; give each element by itself", kMaxCopiedBytes));
-    if (all.instructions > kMaxInstructions)
-      return fail(heaviest,
-                  all.instructions >= 1ull << 40
-                      ? "the shader has more instructions than can be counted, with the calls of '{}'"
-                      : fmt::format("the shader has {} instructions with the calls of '{{}}'", all.instructions),
-                  fmt::format("at most {}; a function's count once for each call", kMaxInstructions));
+    if (all.instructions > kMaxInstructions) return too_long();
     return {};
   }
 
@@ -154,6 +137,7 @@ class Scales {
     const std::uint64_t bytes = bytes_[pointees_[i.type]];
     if (i.words[3] != spv::StorageClassFunction && i.words[3] != spv::StorageClassPrivate) return;
     keep_largest(bytes, i.result);
+    if (!arrays_.contains(pointees_[i.type])) return;
     std::uint64_t& held = function_ ? function_->held : file_scope_;
     held = saturated_sum({held, bytes});
   }
@@ -190,6 +174,21 @@ class Scales {
   Error too_large() const {
     return fail(largest_.second, fmt::format("'{{}}' takes {}", bytes_of(largest_.first)),
                 fmt::format("at most {} bytes each", kMaxVariableBytes));
+  }
+
+  /// Names the smallest function that is too long by itself, else the longest.
+  Error too_long() {
+    std::uint32_t named = main_;
+    std::uint64_t least = kSaturated, most = 0;
+    for (const auto& [id, function] : functions_) {
+      const std::uint64_t count = with_calls(id).instructions;
+      if (id == main_ || (count <= kMaxInstructions ? least < kSaturated || count < most : count > least)) continue;
+      (count <= kMaxInstructions ? most : least) = count;
+      named = id;
+    }
+    const std::string count = least == kSaturated ? "too many" : fmt::format("{}", least);
+    return fail(named, fmt::format("'{{}}' comes to {} instructions with all that it calls", count),
+                fmt::format("at most {}; a function's count once for each call", kMaxInstructions));
   }
 
   /// `message` has a place for the name.

@@ -181,8 +181,9 @@ TEST_F(Inspect, EffectsOfAPathAreListedToo) {
 TEST_F(Inspect, NamesOfInputsAndFoldersAreChecked) {
   const Outcome input = run({"check", "look.lua", "--without", "deepth"});
   EXPECT_EQ(input.exit_code, kUsage);
-  EXPECT_THAT(input.err, HasSubstr("--without 'deepth': there is no such input; allowed: depth, normal, motion; did you "
-                                   "mean 'depth'?"));
+  EXPECT_THAT(input.err,
+              HasSubstr("--without 'deepth': there is no such input; allowed: depth, normal, motion; did you "
+                        "mean 'depth'?"));
   const Outcome path = run({"check", "look.lua", "--path", "nope"});
   EXPECT_EQ(path.exit_code, kUsage);
   EXPECT_THAT(path.err, HasSubstr("--path 'nope': there is no such folder or zip"));

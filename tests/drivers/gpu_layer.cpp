@@ -7,7 +7,8 @@
 // - Limits are the least that the specification allows (4 attachments, 16 samplers, 128 bytes of push constants, …).
 // - Timestamps have 36 bits, tick every 38.4 ns, and run over soon after the first one.
 //
-//   AFTERGLOW_GPU_SIDE=N   images and framebuffers have sides of at most N
+//   AFTERGLOW_GPU_COHERENT=1   the host's memory is coherent, as a driver must have some; without, a forgotten flush
+//   shows AFTERGLOW_GPU_SIDE=N       images and framebuffers have sides of at most N
 //
 // A call that no GPU would stand ends the program with a line that names it. Put the validation layer before this one
 // (VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation:VK_LAYER_AFTERGLOW_gpu): it then checks against these limits. One
@@ -102,6 +103,11 @@ constexpr VkFormatFeatureFlags kNotLinear = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_B
 
 // Memory.
 
+bool is_coherent() {
+  static const char* text = std::getenv("AFTERGLOW_GPU_COHERENT");
+  return text && *text == '1';
+}
+
 enum Type : std::uint32_t { kLocal, kWritten, kReadBack, kTypes };
 constexpr std::uint32_t kImageTypes = 1u << kLocal;
 constexpr std::uint32_t kBufferTypes = 1u << kLocal | 1u << kWritten | 1u << kReadBack;
@@ -115,6 +121,9 @@ void imitate(VkPhysicalDeviceMemoryProperties& memory) {
   memory.memoryTypes[kLocal] = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
   memory.memoryTypes[kWritten] = {VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT, 1};
   memory.memoryTypes[kReadBack] = {VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, 1};
+  if (!is_coherent()) return;
+  for (const Type type : {kWritten, kReadBack})
+    memory.memoryTypes[type].propertyFlags |= VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
 }
 
 void imitate_image(VkMemoryRequirements& needs) {
@@ -166,6 +175,10 @@ VKAPI_ATTR VkResult VKAPI_CALL MapMemory(VkDevice, VkDeviceMemory memory, VkDevi
   const std::lock_guard lock(pieces_mutex);
   Piece& piece = pieces.at(memory);
   if (piece.type == kLocal) refuse("memory of the device is mapped");
+  if (is_coherent()) {
+    *out = piece.real + offset;
+    return VK_SUCCESS;
+  }
   const std::size_t size = (piece.size + 63) / 64 * 64;
   if (!piece.seen) piece.seen.reset(static_cast<std::byte*>(std::aligned_alloc(64, size)));
   std::memset(piece.seen.get(), 0xff, size);
@@ -180,6 +193,7 @@ VKAPI_ATTR void VKAPI_CALL UnmapMemory(VkDevice, VkDeviceMemory memory) {
 
 template <typename Copy>
 VkResult carry(std::uint32_t count, const VkMappedMemoryRange* ranges, Copy copy) {
+  if (is_coherent()) return VK_SUCCESS;
   const std::lock_guard lock(pieces_mutex);
   for (std::uint32_t i = 0; i < count; ++i) {
     const Piece& piece = pieces.at(ranges[i].memory);

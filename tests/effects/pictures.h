@@ -15,8 +15,8 @@ struct Scene {
   std::string name;
   reference::DoubleImage source;
   std::optional<reference::DoubleImage> depth, normal;
-  double frame = 1;                                   ///< number in a sequence
-  std::optional<reference::DoubleImage> motion = {};  ///< .xy: pixels a frame, y down
+  double frame = 1;                                           ///< number in a sequence
+  std::optional<reference::DoubleImage> motion = {};          ///< .xy: pixels a frame, y down
   std::map<std::string, reference::DoubleImage> layers = {};  ///< by name, without "layer:"
 };
 

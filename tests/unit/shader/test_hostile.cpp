@@ -106,20 +106,20 @@ TEST(Hostile, WhatAShaderHoldsIsLimited) {
     all += "vec4 a" + std::to_string(i) + "[64]; a" + std::to_string(i) + "[int(c.r)] = c;\n";
     sum += "c += a" + std::to_string(i) + "[int(c.g)];\n";
   }
-  EXPECT_THAT(outcome(in_apply(all + sum)), HasSubstr("holds 20480 bytes in variables"));
+  EXPECT_THAT(outcome(in_apply(all + sum)), HasSubstr("holds 20480 bytes in arrays"));
   // As many times as they are called.
   std::string calls = "float f0(float x) { float a[64]; a[int(x)] = x; return a[int(x) + 1]; }\n";
   for (int i = 1; i < 40; ++i)
     calls += "float f" + std::to_string(i) + "(float x) { return f" + std::to_string(i - 1) + "(x) + f" +
              std::to_string(i - 1) + "(x + 1.0); }\n";
-  EXPECT_THAT(outcome(calls + in_apply("c.r = f39(c.r);")), HasSubstr("in variables"));
+  EXPECT_THAT(outcome(calls + in_apply("c.r = f39(c.r);")), HasSubstr("in arrays"));
 }
 
 TEST(Hostile, WhatAShaderCopiesIsLimited) {
-  EXPECT_THAT(outcome("struct S { float a[256]; };\n" +
+  EXPECT_THAT(outcome("struct S { float a[64]; };\n" +
                       in_apply("S s, t; s.a[int(c.r)] = 1.0;\nt = s; S u = t; S v = u; S w = v; S x = w;\nc.r = "
                                "x.a[int(c.g)];")),
-              HasSubstr("copies arrays of 5120 bytes as a whole"));
+              HasSubstr("copies arrays of 1280 bytes as a whole"));
   EXPECT_EQ(outcome("struct S { float a[8]; };\nS twice(S s) { s.a[1] *= 2.0; return s; }\n" +
                     in_apply("S s; s.a[int(c.r)] = 1.0; c.r = twice(s).a[int(c.g)];")),
             "ok");
@@ -131,9 +131,9 @@ TEST(Hostile, CallsThatMultiplyAreLimited) {
     calls += "float f" + std::to_string(i) + "(float x) { return f" + std::to_string(i - 1) + "(x) + f" +
              std::to_string(i - 1) + "(x + 1.0); }\n";
   const std::string said = outcome(calls + in_apply("c.r = f69(c.r);"));
-  EXPECT_THAT(said,
-              HasSubstr("x.glsl:70: error: the shader has more instructions than can be counted, with the calls of "
-                        "'f69'"));
+  EXPECT_THAT(said, testing::ContainsRegex(
+                        "x.glsl:1[0-9]: error: 'f1[0-9]' comes to [0-9]+ instructions with all that it calls; "
+                        "allowed: at most 65536"));
 }
 
 TEST(Hostile, MacrosThatExplodeAreRefused) {
