@@ -144,8 +144,8 @@ TEST_F(Png, GammaChunk) {
     png.chunk("gAMA", RawPng::big_endian(gamma)).pixels({row});
     return read(png).color.pixels[0];
   };
-  EXPECT_NEAR(value(100000, false), 128 / 255.0, 1e-6);                 // linear
-  EXPECT_NEAR(value(55556, false), std::pow(128 / 255.0, 1.8), 1e-5);   // an old Macintosh
+  EXPECT_NEAR(value(100000, false), 128 / 255.0, 1e-6);                // linear
+  EXPECT_NEAR(value(55556, false), std::pow(128 / 255.0, 1.8), 1e-5);  // an old Macintosh
   EXPECT_NEAR(value(45000, false), std::pow(128 / 255.0, 1 / 0.45), 1e-5);
   EXPECT_NEAR(value(46000, false), std::pow(128 / 255.0, 1 / 0.46), 1e-5);
   EXPECT_NEAR(value(45455, false), srgb_to_linear(128 / 255.0), 1e-6);  // means sRGB
