@@ -1,7 +1,7 @@
 local fx = require "afterglow"
 
 return fx.stack {
-  fx.dual_kawase { iterations = 2 },
+  fx.dual_kawase { iterations = 5 },
   fx.color_adjustments { post_exposure = 1.5 },
   fx.tone_mapping { mode = "neutral" },
 }
