@@ -57,7 +57,7 @@ void settle(lua_State* lua, MaskRun& mask, const BuildContext& context) {
   }
   if (run.settings_ref != LUA_NOREF && run.entry.settings == settings) return;
   run.entry.settings = std::move(settings);
-  make_settings(lua, run);
+  make_settings(lua, run, run.length_scale);
 }
 
 bool moves(const MaskRun& mask) {
@@ -200,6 +200,11 @@ std::shared_ptr<MaskRun> make_mask_run(const Runtime& runtime, int mask, const S
     out->named->sources = declared.named.sources;
   }
   return out;
+}
+
+void scale_lengths(lua_State* lua, MaskRun& mask, double length_scale) {
+  if (mask.a) scale_lengths(lua, *mask.a, length_scale), scale_lengths(lua, *mask.b, length_scale);
+  if (mask.named) make_settings(lua, *mask.named, length_scale);
 }
 
 void settle_composition(lua_State* lua, EntryRun& run, const BuildContext& context) {

@@ -18,6 +18,8 @@ std::shared_ptr<MaskRun> make_mask_run(const Runtime& runtime, int mask, const S
 
 /// Opacity and the settings of masks for a frame, noted in the entry.
 void settle_composition(lua_State* lua, EntryRun& run, const BuildContext& context);
+/// Lengths that a mask and those that it is made of read follow.
+void scale_lengths(lua_State* lua, MaskRun& mask, double length_scale);
 bool composition_moves(const EntryRun& run);
 
 /// Why nothing of the entry's result would be seen; empty when something may be.

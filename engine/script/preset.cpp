@@ -142,7 +142,10 @@ void Preset::State::scale_lengths(lua_State* lua, const BuildContext& context) {
   const double scale = reference_height ? double(context.size.height) / *reference_height : context.length_scale;
   if (scale == length_scale) return;
   length_scale = scale;
-  for (auto& run : runs) make_settings(lua, run, length_scale);
+  for (auto& run : runs) {
+    make_settings(lua, run, length_scale);
+    if (run.mask) script::scale_lengths(lua, *run.mask, length_scale);
+  }
 }
 
 void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {

@@ -67,7 +67,8 @@ class Scales {
   Result<void> check() {
     if (largest_.first > kMaxVariableBytes) return too_large();
     Function all = with_calls(main_);
-    for (auto* count : {&all.held, &all.copied, &all.instructions}) *count /= static_cast<unsigned>(kernel_.rows);
+    for (auto* count : {&all.held, &all.copied, &all.instructions})
+      *count /= static_cast<unsigned>(kernel_.config.rows);
     if (const std::uint64_t held = saturated_sum({file_scope_, all.held}); held > kMaxHeldBytes)
       return fail(largest_.second,
                   fmt::format("the shader holds {} in arrays, the largest of them '{{}}'", bytes_of(held)),
