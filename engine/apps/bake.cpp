@@ -23,8 +23,8 @@ std::string reason_against(const Look& look, const Pass& pass) {
   const auto shader = look.shaders->find(pass.shader);
   if (shader && (*shader)->interface.at_pixel) return "looks at the place of a pixel";
   for (const auto& input : pass.inputs) {
-    const auto& image = look.graph.images[static_cast<std::size_t>(input.image)];
-    const bool picture = input.image == look.graph.source || image.producer >= 0;
+    const auto& image = look.build.graph.images[static_cast<std::size_t>(input.image)];
+    const bool picture = input.image == look.build.graph.source || image.producer >= 0;
     if (!input.pixelwise && input.name != "source" && !image.data) return "reads around";
     if (!picture && !image.data) return "reads another layer or frame";
   }
@@ -153,8 +153,8 @@ Result<void> write_strip(const Cube& cube, const std::filesystem::path& file) {
 
 std::vector<std::string> unbakeable(const Look& look) {
   std::map<std::string, std::string> reasons;
-  for (const auto& history : look.graph.histories) reasons.emplace(history.effect, "looks back");
-  for (const auto& pass : look.graph.passes)
+  for (const auto& history : look.build.graph.histories) reasons.emplace(history.effect, "looks back");
+  for (const auto& pass : look.build.graph.passes)
     if (const auto reason = reason_against(look, pass); !reason.empty()) reasons.emplace(pass.effect, reason);
   std::vector<std::string> out;
   for (const auto& entry : look.preset->entries())

@@ -104,7 +104,7 @@ DoubleImage exposure(const DoubleImage& source, double ev) {
 }
 
 DoubleImage cdl(const DoubleImage& source, const Cdl& s) {
-  return map_color(source, [&](const Rgb& c) {
+  return map_straight(source, [&](const Rgb& c) {
     const Rgb graded = glm::pow(glm::max(c * s.slope + s.offset, Rgb(0)), s.power);
     const double luma = glm::dot(graded, Rgb(0.2126, 0.7152, 0.0722));
     return glm::max(luma + s.saturation * (graded - luma), Rgb(0));

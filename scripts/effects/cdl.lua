@@ -10,7 +10,7 @@ local function most(v) return math.max(v[1], v[2], v[3]) end
 return fx.effect {
   name = "cdl",
   doc = "Slope, offset, power and saturation of an ASC CDL.",
-  at = "post_process", order = 185, space = "scene",
+  at = "post_process", order = 185, space = "scene", alpha = "straight",
   settings = {
     slope = fx.vec3 { min = 0, max = 16, default = { 1, 1, 1 }, doc = "Light times this; shows most in the brights." },
     offset = fx.vec3 { min = -4, max = 4, default = { 0, 0, 0 }, doc = "Added behind it; shows most in the darks." },
