@@ -16,7 +16,7 @@ namespace afterglow {
 enum class Shaper { none, log };  ///< inputs are sRGB codes, or ACEScct (AP1) of scene-linear light
 
 /// Names of the entries that a table cannot stand for, since they look around, at the pixel's place or at other frames
-/// or layers, each with why: "bloom (reads around)".
+/// or layers, each with why: "glow (reads around)".
 std::vector<std::string> unbakeable(const Look& look);
 
 struct Cube {

@@ -6,6 +6,7 @@
 #include "core/paths.h"
 #include "exec/calibration.h"
 #include "exec/program_cache.h"
+#include "graph/condition.h"
 #include "graph/region.h"
 #include "session/stack.h"
 #include "shader/kernel.h"
@@ -49,16 +50,24 @@ ExecutionConfig execution_on_cpu() {
 ShaderFindings check_shaders(const Look& look) {
   const ExecutionConfig config = execution_on_cpu();
   KernelCompiler compiler{cache_folder() / "shaders"};  // the folder that Stack uses, so that `run` starts warm
-  ShaderFindings found = check_kernels(*look.shaders, compiler, {.graph = look.build.graph}, config);
+  ShaderFindings found;
+  const auto check = [&](const FrameWork& work) {
+    ShaderFindings more = check_kernels(*look.shaders, compiler, work, config);
+    std::ranges::move(more.errors, std::back_inserter(found.errors));
+    std::ranges::move(more.warnings, std::back_inserter(found.warnings));
+  };
+  // As frames with alpha have it, and as opaque ones do.
+  std::vector<Graph> graphs{look.build.graph};
+  if (straight_passes(look.build.graph) > 0) graphs.push_back(without_division(look.build.graph));
+  for (const Graph& graph : graphs) check({.graph = graph});
   if (found.errors.empty() && look.build.graph.result != look.build.graph.source) {
     // The last kernel once more, as it is for display files without and with transparency.
-    for (const bool straight : {false, true}) {
-      FrameWork work{.graph = look.build.graph, .codes = true};
-      encode_for_display(work.graph, {.straight_alpha = straight, .dither = true});
-      ShaderFindings more = check_kernels(*look.shaders, compiler, work, config);
-      std::ranges::move(more.errors, std::back_inserter(found.errors));
-      std::ranges::move(more.warnings, std::back_inserter(found.warnings));
-    }
+    for (const Graph& graph : graphs)
+      for (const bool straight : {false, true}) {
+        FrameWork work{.graph = graph, .codes = true};
+        encode_for_display(work.graph, {.straight_alpha = straight, .dither = true});
+        check(work);
+      }
   }
   std::set<std::string> seen;
   std::erase_if(found.errors, [&](const Error& error) { return !seen.insert(error.text()).second; });

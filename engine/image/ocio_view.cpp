@@ -165,7 +165,7 @@ Lut baked(const OCIO::ConstConfigRcPtr& config, const OCIO::CPUProcessor& proces
         processor.applyRGB(c.data());
         taker.put(r + kCube * (b & 1), g + kCube * (b >> 1), {c[0], c[1], c[2], 1});
       }
-  Lut lut = taker.finish();
+  Lut table = taker.finish();
   std::uint32_t state = 1;
   const auto next = [&] { return (state = state * 1664525 + 1013904223) / 4294967296.0; };
   for (int i = 0; i < 20000; ++i) {
@@ -176,9 +176,9 @@ Lut baked(const OCIO::ConstConfigRcPtr& config, const OCIO::CPUProcessor& proces
     const auto found = tetrahedral(cube, c);
     processor.applyRGB(exact.data());
     for (std::size_t k = 0; k < 3; ++k)
-      lut.baked_error = std::max(lut.baked_error, std::abs(double(found[k]) - double(exact[k])));
+      table.baked_error = std::max(table.baked_error, std::abs(double(found[k]) - double(exact[k])));
   }
-  return lut;
+  return table;
 }
 
 }  // namespace

@@ -45,7 +45,10 @@ Result<Outcome> black(Lab& lab, const Situation& s, const Hold& hold) {
 Result<Outcome> constant(Lab& lab, const Situation& s, const Hold& hold) {
   const auto chosen = Random(s.seed).below(static_cast<std::size_t>(s.picture.color.size().area()));
   const float* color = &s.picture.color.pixels[4 * chosen];
-  const Picture source = with_color(s, [&](int, int, float* p) { std::copy_n(color, 3, p); });
+  const Picture source = with_color(s, [&](int, int, float* p) {
+    std::copy_n(color, 3, p);
+    p[3] = 1;  // effects that see straight colour make of one light as many as there are alphas
+  });
   AFTERGLOW_TRY(const Made made, lab.run(s.look, source, s.frame, usual_way(lab)));
   Image wanted = made.image;
   for (std::size_t i = 0; i < wanted.pixels.size(); i += 4)

@@ -12,10 +12,11 @@ uniform float inverse_scale;
 
 vec4 sample_at(ivec2 pixel) {
   vec2 size = vec2(target_size());
-  vec2 p = center + ((vec2(2 * pixel + 1) - size) / (2.0 * size) - center) * inverse_scale;  // −½…½
-  vec2 ray = axes * (p - center);
+  vec2 own = (vec2(2 * pixel + 1) - size) / (2.0 * size) - center;  // from the centre; sides are 1 long
+  vec2 ray = axes * (own * inverse_scale);
   float r = max(length(ray), 1e-4);  // the factor is flat around the centre
   float factor = barrel ? tangent(r * theta) / (r * sigma) : arc_tangent(r * sigma) / (r * theta);
-  vec2 moved = p - 0.5 * vec2(2 * pixel + 1 - target_size()) / size + ray * (clamp(factor, -1e4, 1e4) - 1.0) * bend;
+  // How far, not where: places far from the corner would lose digits.
+  vec2 moved = own * (inverse_scale - 1.0) + ray * (clamp(factor, -1e4, 1e4) - 1.0) * bend;
   return vec4(fetch_linear(source, vec2(pixel) + 0.5 + moved * size).rgb, fetch(source, pixel).a);
 }

@@ -41,8 +41,8 @@ vec3 table_1d(vec3 c, int row, int size) {
 }
 
 vec3 table_half(vec3 c, int row) {
-  ivec3 low, high;
-  vec3 t;
+  ivec3 low = ivec3(0), high = ivec3(0);
+  vec3 t = vec3(0.0);
   lut_half(c.r, low.r, high.r, t.r);
   lut_half(c.g, low.g, high.g, t.g);
   lut_half(c.b, low.b, high.b, t.b);

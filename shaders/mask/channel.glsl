@@ -3,4 +3,7 @@
 
 layout(constant_id = 0) const int channel = 0;  // 0…3, 4: luminance
 
-vec4 apply(vec4 color, vec4 layer) { return vec4(channel == 4 ? luminance(layer.rgb) : layer[channel]); }
+vec4 apply(vec4 color, vec4 layer) {
+  float value = channel == 0 ? layer.r : channel == 1 ? layer.g : channel == 2 ? layer.b : layer.a;
+  return vec4(channel == 4 ? luminance(layer.rgb) : value);
+}

@@ -167,7 +167,7 @@ TEST_F(Effects, WhatCannotBeSeenDoesNotRun) {
   expect_skipped(
       "fx.color_adjustments { contrast = 20, mask = fx.mask.luma { from = 2, to = 1 } * fx.mask.radial { } }",
       "its mask selects nothing: luma: from is above to");
-  expect_skipped("fx.color_adjustments { contrast = 20, mask = fx.mask.radial { } - 1 }", "its mask selects nothing");
+  expect_skipped("fx.color_adjustments { contrast = 20, mask = 0 - fx.mask.radial { } }", "its mask selects nothing");
   expect_skipped("fx.group { opacity = 0, fx.bloom { } }", "opacity is 0");
 }
 

@@ -36,6 +36,14 @@ std::set<std::string> words_of(const std::string& text) {
   return words;
 }
 
+/// Words of the field that some rooms have for other things than the effect of that name: the exposure of the player's
+/// view and of cameras in transfer curves, CDL files.
+bool means_something_else(const std::string& room, const std::string& word) {
+  static const std::set<std::pair<std::string, std::string>> kWords{
+      {"image", "exposure"}, {"play", "exposure"}, {"window", "exposure"}, {"image", "cdl"}};
+  return kWords.contains({room, word});
+}
+
 TEST(House, TheEngineKnowsNoEffectByName) {
   std::vector<std::string> effects;
   for (const auto& file : files_below(kProject / "scripts" / "effects", {".lua"}))
@@ -47,7 +55,10 @@ TEST(House, TheEngineKnowsNoEffectByName) {
       continue;  // the oracles of tests and bench
     ++files;
     const auto words = words_of(read_file(file).value());
-    for (const auto& effect : effects) EXPECT_FALSE(words.contains(effect)) << file << " names '" << effect << "'";
+    const std::string room = fs::relative(file, kProject / "engine").begin()->string();
+    for (const auto& effect : effects)
+      if (words.contains(effect) && !means_something_else(room, effect))
+        ADD_FAILURE() << file << " names '" << effect << "'";
   }
   EXPECT_GT(files, 100);
 }

@@ -29,8 +29,8 @@ Made made(const std::string& shader, int rows = 1, bool hide = true) {
   KernelCompiler compiler({});
   KernelDesc desc;
   desc.stages = {files.stage("test/unset", shader)};
-  desc.rows = rows;
-  desc.hide_uniforms = hide;
+  desc.config.rows = rows;
+  desc.config.hide_uniforms = hide;
   const auto kernel = compiler.compile(desc);
   Made out;
   EXPECT_TRUE(kernel) << kernel.error().text();
