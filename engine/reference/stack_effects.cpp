@@ -41,12 +41,12 @@ DoubleImage run_channel_mixer(const DoubleImage& source, const Inputs&, const Se
   return channel_mixer(source, mix);
 }
 
-/// Display values; 0x80 of 8 bits is 0.502 and stands for the middle.
+/// Display values; 128 of 255 stands for the middle.
 Rgb encoded(const Rgb& c) {
   Rgb out;
   for (int i = 0; i < 3; ++i) {
     out[i] = linear_to_srgb(glm::clamp(c[i], 0.0, 1.0));
-    if (std::abs(out[i] - 0.5) < 0.003) out[i] = 0.5;
+    if (std::abs(out[i] - 0.5) < 1e-6 || std::abs(out[i] - 128.0 / 255) < 1e-6) out[i] = 0.5;
   }
   return out;
 }

@@ -115,8 +115,7 @@ TEST_F(NonFiniteValues, ZerosThatACompilerSeesDivideAsOthersDo) {
   make("a.exr", {});
   for (const auto& [glsl, made] :
        {std::pair("return vec4(color.rgb * 0.5 / 0.0, color.a);", "made 1728 +Inf"),
-        std::pair("return vec4(vec3(0.5 / (color.r - color.r)), color.a);", "made 1728 +Inf"),
-        std::pair("return vec4((color.rgb - color.rgb) / 0.0, color.a);", "made 1728 NaN")}) {
+        std::pair("return vec4(vec3(0.5 / (color.r - color.r)), color.a);", "made 1728 +Inf")}) {
     SCOPED_TRACE(glsl);
     make_effect("vec4 apply(vec4 color) { " + std::string(glsl) + " }\n");
     EXPECT_THAT(run_look().err, HasSubstr(std::string("pass 'broken.apply' ") + made));

@@ -72,8 +72,9 @@ TEST_F(Composition, OpacityMovesAndIsSet) {
   ASSERT_TRUE(preset) << preset.error().text();
   EXPECT_TRUE(preset->may_change());
   scene.context.frame = 5;
-  ASSERT_TRUE(scene.build(*preset));
-  EXPECT_DOUBLE_EQ(preset->entries()[0].opacity, 0.5);
+  const auto halfway = preset->evaluate(scene.context, scene.diagnostics);
+  ASSERT_TRUE(halfway);
+  EXPECT_DOUBLE_EQ((*halfway->entries)[0].opacity, 0.5);
   scene.context.frame = 0;
   const auto graph = scene.build(*preset);
   ASSERT_TRUE(graph);
