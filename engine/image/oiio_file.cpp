@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/exception.h"
 #include "core/saturated.h"
@@ -39,12 +40,8 @@ class OiioFile : public PictureFile {
   OiioFile(const std::filesystem::path& file, const ContainerFacts& container) : container_(container) { path_ = file; }
 
   Result<void> open(const std::string& format, const SizeLimits& limits) {
-    OIIO::ImageSpec wanted, found;
-    wanted.attribute("oiio:UnassociatedAlpha", 1);  // straight alpha stays straight: it is multiplied after decoding
     try {
-      input_ = OIIO::ImageInput::create(format);
-      if (!input_) return failed(message_of(OIIO::geterror()));
-      if (!input_->open(path_.string(), found, wanted)) return failed(message_of(input_->geterror()));
+      AFTERGLOW_CHECK(open_input(format));
       format_ = input_->format_name();
       AFTERGLOW_CHECK(add_parts(limits));
       if (specs_.front().get_int_attribute("oiio:Movie", 0) != 0) note_movie(specs_.front());
@@ -126,6 +123,15 @@ class OiioFile : public PictureFile {
   }
 
  private:
+  Result<void> open_input(const std::string& format) {
+    OIIO::ImageSpec wanted, found;
+    wanted.attribute("oiio:UnassociatedAlpha", 1);  // straight alpha stays straight: it is multiplied after decoding
+    input_ = OIIO::ImageInput::create(format);
+    if (!input_) return failed(message_of(OIIO::geterror()));
+    if (!input_->open(path_.string(), found, wanted)) return failed(message_of(input_->geterror()));
+    return {};
+  }
+
   Result<void> add_parts(const SizeLimits& limits) {
     const bool pages = format_ == "tiff";
     for (std::size_t i = 0; i < (pages ? kMaxParts : 1) && input_->seek_subimage(static_cast<int>(i), 0); ++i) {
@@ -168,6 +174,8 @@ class OiioFile : public PictureFile {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
     const auto x_stride = static_cast<OIIO::stride_t>(first.pixel_stride * sizeof(float));
     const auto y_stride = static_cast<OIIO::stride_t>(first.row_stride * sizeof(float));
+    // Looking for further pages of a TIFF leaves its reader in a state in which it keeps silent when a disk fails.
+    if (format_ == "tiff" && !std::exchange(opened_for_pixels_, true)) AFTERGLOW_CHECK(open_input(format_));
     static_cast<void>(input_->geterror());  // of earlier calls that succeeded another way
     const bool read = input_->read_image(part + frame_, 0, first.channel, first.channel + channels, OIIO::TypeFloat,
                                          first.base, x_stride, y_stride, y_stride * spec.height);
@@ -230,6 +238,7 @@ class OiioFile : public PictureFile {
 
   ContainerFacts container_;
   OIIO::ImageInput::unique_ptr input_;
+  bool opened_for_pixels_ = false;
   std::vector<OIIO::ImageSpec> specs_;
   int frames_ = 0, frame_ = 0;  ///< of a video; its frames are sub-images of one part
   double frames_per_second_ = 0;
