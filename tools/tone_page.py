@@ -156,7 +156,7 @@ def main():
     with open(f"{ROOT}/docs/tone_mapping.md", "w") as page:
         page.write("""# Tone curves
 
-Made by `tools/tone_page.py` from what the program makes of ramps of light. Formulas and sources: [math.md](math.md) §6 and §19. `fx.tone_mapping { mode = "agx" }` chooses one;
+Made by `tools/tone_page.py` from what the program makes of ramps of light. Formulas and sources: [math.md](math.md) §6 and §21. `fx.tone_mapping { mode = "agx" }` chooses one;
 `exposure` comes before it.
 
 ## Greys

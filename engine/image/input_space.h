@@ -17,7 +17,7 @@ struct InputSpace {
   Chromaticities primaries;
 };
 
-/// All of them, by name. docs/math.md §22 has curves and sources.
+/// All of them, by name. docs/math.md §24 has curves and sources.
 std::span<const InputSpace> input_spaces();
 /// Errors (usage): unknown, with those that there are.
 Result<const InputSpace*> find_input_space(const std::string& name);

@@ -1,4 +1,4 @@
-// The newer tone curves (docs/math.md §19), each in the steps in which its author published it.
+// The newer tone curves (docs/math.md §21), each in the steps in which its author published it.
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
