@@ -13,20 +13,6 @@ using Json = nlohmann::ordered_json;
 /// Names of files and texts of scripts are any bytes: what is no UTF-8 becomes U+FFFD.
 std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-Json history_json(const SettingHistory& setting) {
-  Json out{{"name", setting.name}, {"default", value_json(setting.default_value)}};
-  if (setting.preset) out["preset"] = {{"value", value_json(*setting.preset)}, {"kind", setting.kind}};
-  out["volumes"] = Json::array();
-  for (const auto& step : setting.volumes)
-    out["volumes"].push_back({{"volume", step.volume},
-                              {"factor", step.factor},
-                              {"value", value_json(step.value)},
-                              {"result", value_json(step.result)}});
-  if (setting.overridden) out["override"] = value_json(*setting.overridden);
-  out["final"] = value_json(setting.value);
-  return out;
-}
-
 Json volume_json(const VolumeState& volume) {
   Json out{{"name", volume.name}, {"priority", volume.priority}, {"weight", volume.weight}, {"factor", volume.factor}};
   if (volume.distance) out["distance"] = *volume.distance;

@@ -109,20 +109,6 @@ std::string entry_text(const ExplainView& view, const StackEntry& entry, const E
   return fates.empty() || !view.setting.empty() ? out : out + passes.text("   ");
 }
 
-Json setting_json(const SettingHistory& setting) {
-  Json out{{"name", setting.name}, {"default", value_json(setting.default_value)}};
-  if (setting.preset) out["preset"] = {{"value", value_json(*setting.preset)}, {"kind", setting.kind}};
-  out["volumes"] = Json::array();
-  for (const auto& step : setting.volumes)
-    out["volumes"].push_back({{"volume", step.volume},
-                              {"factor", step.factor},
-                              {"value", value_json(step.value)},
-                              {"result", value_json(step.result)}});
-  if (setting.overridden) out["override"] = value_json(*setting.overridden);
-  out["final"] = value_json(setting.value);
-  return out;
-}
-
 Json volume_json(const VolumeState& volume) {
   Json out{{"name", volume.name},         {"file", volume.file},     {"line", volume.line},
            {"priority", volume.priority}, {"weight", volume.weight}, {"factor", volume.factor}};
@@ -174,7 +160,7 @@ std::string explain_json(const ExplainView& view) {
     item["light"] = space_json(view.look.spaces[i]);
     item["settings"] = Json::array();
     for (const auto& setting : explanation.entries[i].settings)
-      if (shown(view.setting, setting.name)) item["settings"].push_back(setting_json(setting));
+      if (shown(view.setting, setting.name)) item["settings"].push_back(history_json(setting));
     item["passes"] = Json::array();
     for (const auto& fate : fates_of(view.look, entries[i].name)) {
       Json pass{{"name", fate.pass->name}, {"state", fate.state}};

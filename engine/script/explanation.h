@@ -55,5 +55,7 @@ struct Explanation {
 const char* type_text(SettingType type);  ///< "int", "float", "bool", "enum", "color", "vec2", "vec3", "file"
 nlohmann::json value_json(const SettingValue& value);
 nlohmann::json setting_json(const SettingSchema& setting);
+/// How the value of a setting came about, step by step.
+nlohmann::ordered_json history_json(const SettingHistory& setting);
 
 }  // namespace afterglow

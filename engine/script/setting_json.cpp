@@ -61,4 +61,18 @@ nlohmann::json setting_json(const SettingSchema& setting) {
   return out;
 }
 
+nlohmann::ordered_json history_json(const SettingHistory& setting) {
+  nlohmann::ordered_json out{{"name", setting.name}, {"default", value_json(setting.default_value)}};
+  if (setting.preset) out["preset"] = {{"value", value_json(*setting.preset)}, {"kind", setting.kind}};
+  out["volumes"] = nlohmann::ordered_json::array();
+  for (const auto& step : setting.volumes)
+    out["volumes"].push_back({{"volume", step.volume},
+                              {"factor", step.factor},
+                              {"value", value_json(step.value)},
+                              {"result", value_json(step.result)}});
+  if (setting.overridden) out["override"] = value_json(*setting.overridden);
+  out["final"] = value_json(setting.value);
+  return out;
+}
+
 }  // namespace afterglow

@@ -6,10 +6,9 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <spirv-tools/optimizer.hpp>
 #include <string_view>
 
-#include "shader/spirv_module.h"
+#include "shader/spirv_passes.h"
 
 namespace afterglow {
 namespace {
@@ -232,24 +231,12 @@ std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
   declare(module, declarations);
 
   spvtools::Optimizer optimizer(kSpirvEnvironment);
-  optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
-  optimizer.RegisterPass(spvtools::CreateInlineExhaustivePass())
-      .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
-      .RegisterPass(spvtools::CreatePrivateToLocalPass())
-      .RegisterPass(spvtools::CreateScalarReplacementPass())
-      .RegisterPass(spvtools::CreateLocalAccessChainConvertPass())
-      .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
-      .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
-      .RegisterPass(spvtools::CreateSSARewritePass())
+  add_inlining_passes(optimizer);
+  optimizer.RegisterPass(spvtools::CreateSSARewritePass())
       .RegisterPass(spvtools::CreateDeadBranchElimPass())
       .RegisterPass(spvtools::CreateAggressiveDCEPass());
-  spvtools::OptimizerOptions options;
-  options.set_run_validator(false);
-  const Words before = module.join();
-  Words after;
   std::vector<std::uint32_t> read;
-  if (!optimizer.Run(before.data(), before.size(), &after, options)) return read;
-  const auto left = parse(after);
+  const auto left = run_passes(optimizer, module);
   if (!left) return read;
   const VectorUses uses(*left);
   for (const auto& i : left->code) {

@@ -9,14 +9,14 @@
 #include "session/picture_inputs.h"
 
 namespace afterglow::stress {
-namespace {
-
 constexpr long long kMostPixels = 1ll << 24;  ///< of all images of a look together: 256 MiB of full floats
 
 struct Prepared {
   std::unique_ptr<Stack> stack;
   std::unique_ptr<Renderer> renderer;
 };
+
+namespace {
 
 BuildContext context_for(Size size, double frame) {
   BuildContext context{.size = size, .auxiliary = {{"depth", size}, {"normal", size}, {"motion", size}}};

@@ -3,10 +3,9 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <spirv-tools/optimizer.hpp>
 #include <utility>
 
-#include "shader/spirv_module.h"
+#include "shader/spirv_passes.h"
 
 namespace afterglow {
 namespace {
@@ -51,25 +50,13 @@ void forbid_inlining(Module& module, std::uint32_t function) {
 std::optional<Module> flatten(Module module, std::uint32_t function) {
   forbid_inlining(module, function);
   spvtools::Optimizer optimizer(kSpirvEnvironment);
-  optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
-  optimizer.RegisterPass(spvtools::CreateInlineExhaustivePass())
-      .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
-      .RegisterPass(spvtools::CreatePrivateToLocalPass())
-      .RegisterPass(spvtools::CreateScalarReplacementPass())
-      .RegisterPass(spvtools::CreateLocalAccessChainConvertPass())
-      .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
-      .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
-      .RegisterPass(spvtools::CreateAggressiveDCEPass())
+  add_inlining_passes(optimizer);
+  optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
       .RegisterPass(spvtools::CreateSSARewritePass())
       .RegisterPass(spvtools::CreateDeadBranchElimPass())
       .RegisterPass(spvtools::CreateBlockMergePass())
       .RegisterPass(spvtools::CreateAggressiveDCEPass());
-  spvtools::OptimizerOptions options;
-  options.set_run_validator(false);
-  const Words before = module.join();
-  Words after;
-  if (!optimizer.Run(before.data(), before.size(), &after, options)) return std::nullopt;
-  return parse(after);
+  return run_passes(optimizer, module);
 }
 
 /// The parts of a function of one block.
