@@ -9,6 +9,7 @@
 #include "session/picture_inputs.h"
 
 namespace afterglow::stress {
+
 constexpr long long kMostPixels = 1ll << 24;  ///< of all images of a look together: 256 MiB of full floats
 
 struct Prepared {
