@@ -1,4 +1,4 @@
-// Views and colour spaces of OpenColorIO's configurations, as shaders.
+// What OpenColorIO reads: look-up tables as steps (lut_file.h), views and colour spaces of configurations as shaders.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +8,7 @@
 
 #include "core/geometry.h"
 #include "core/result.h"
+#include "image/lut_file.h"  // IWYU pragma: export
 
 namespace afterglow {
 

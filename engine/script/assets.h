@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/image_data.h"
-#include "image/lut_file.h"
+#include "image/ocio.h"
 
 struct lua_State;
 
