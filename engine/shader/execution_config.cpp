@@ -26,6 +26,7 @@ constexpr Word kWords[] = {
     {"fp16", [](ExecutionConfig& c) { c.storage = Storage::fp16; }},
     {"hardware-filter", [](ExecutionConfig& c) { c.hardware_filter = true; }},
     {"storage-reads", [](ExecutionConfig& c) { c.storage_reads = true; }},
+    {"compute", [](ExecutionConfig& c) { c.compute = true; }},
     {"unshared", [](ExecutionConfig& c) { c.share_memory = false; }},
     {"plain16f", [](ExecutionConfig& c) { c = kPlain16f; }},
     {"plain32f", [](ExecutionConfig& c) { c = kPlain32f; }},
@@ -55,6 +56,7 @@ std::string execution_name(const ExecutionConfig& config) {
   name += config.storage == Storage::fp16 ? " fp16" : " fp32";
   if (config.hardware_filter) name += " hardware-filter";
   if (config.storage_reads) name += " storage-reads";
+  if (config.compute) name += " compute";
   if (!config.share_memory) name += " unshared";
   if (config.rows > 1) name += fmt::format(" {}{}", kRows, config.rows);
   return name;

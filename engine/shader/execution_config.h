@@ -29,6 +29,8 @@ struct ExecutionConfig {
   bool hardware_filter = false;
   /// Images are read as storage images where shaders and device allow it: faster on CPU devices.
   bool storage_reads = false;
+  /// Passes that have a second way, by a compute shader, take it: faster where many invocations run at once.
+  bool compute = false;
   bool share_memory = true;  ///< images whose lifetimes do not overlap share bytes
   /// Rows of its target that one invocation of a kernel may make where neighbouring rows read the same texels
   /// (1 … kMaxRows): faster on CPU devices. More than 1 makes the images between kernels linear.
