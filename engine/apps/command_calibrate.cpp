@@ -46,7 +46,8 @@ Result<void> run_calibrate(const CalibrateArguments& a, Console& console) {
   if (a.look.empty()) request.look = looks / "look.lua";
   AFTERGLOW_TRY(request.size, parse_size(a.size));
   request.base.cache_folder = cache_folder();
-  AFTERGLOW_TRY(const auto device, Device::create(a.device.options(), console.diagnostics()));
+  AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
+  AFTERGLOW_TRY(const auto device, Device::create(asked, console.diagnostics()));
   const auto start = std::chrono::steady_clock::now();
   const auto step = [&](const std::string& what) -> Result<void> {
     if (interrupted()) return interrupt_error();

@@ -36,12 +36,13 @@ struct PresetArguments {
   Result<std::filesystem::path> preset_file() const;
 };
 
-/// --device, --validate (or AFTERGLOW_VALIDATE=1).
+/// --device, --validate (or AFTERGLOW_VALIDATE=1), and AFTERGLOW_FORCE.
 struct DeviceArguments {
   std::string device = "auto";
   bool validate = false;
   void add(CLI::App& command);
-  DeviceOptions options() const;
+  /// Errors: usage (words of AFTERGLOW_FORCE).
+  Result<DeviceOptions> options() const;
 };
 
 /// --precision, --max-error, --calibration, --reference, --max-memory.

@@ -42,9 +42,7 @@ int rows_of(const std::string& word) {
 }
 
 Error unknown_word(const std::string& word) {
-  std::vector<std::string> names;
-  for (const auto& known : kWords) names.emplace_back(known.text);
-  names.push_back(fmt::format("{}1 to {}{}", kRows, kRows, kMaxRows));
+  const std::vector<std::string> names = execution_words();
   return {ErrorKind::usage,         fmt::format("'{}' says nothing about execution", word), {}, 0, join(names),
           nearest_name(word, names)};
 }
@@ -62,10 +60,17 @@ std::string execution_name(const ExecutionConfig& config) {
   return name;
 }
 
-Result<ExecutionConfig> parse_execution(const std::string& text) {
+std::vector<std::string> execution_words() {
+  std::vector<std::string> names;
+  for (const auto& known : kWords) names.emplace_back(known.text);
+  names.push_back(fmt::format("{}1 to {}{}", kRows, kRows, kMaxRows));
+  return names;
+}
+
+Result<ExecutionConfig> parse_execution(const std::string& text, const ExecutionConfig& from) {
   std::string spaced = text;
   std::replace(spaced.begin(), spaced.end(), '+', ' ');
-  ExecutionConfig config;
+  ExecutionConfig config = from;
   for (const auto& word : split(spaced, ' ')) {
     if (word.empty()) continue;
     if (const int rows = rows_of(word)) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 
@@ -53,7 +54,11 @@ inline constexpr ExecutionConfig kPlain32f{
 std::string execution_name(const ExecutionConfig& config);
 
 /// Reads what `execution_name` writes, or "plain16f", "plain32f". Words may be separated by spaces or '+', in any
-/// order; what is not said is as in ExecutionConfig{}. Errors: usage.
-Result<ExecutionConfig> parse_execution(const std::string& text);
+/// order. Errors: usage.
+/// `from`: what is not said is as there.
+Result<ExecutionConfig> parse_execution(const std::string& text, const ExecutionConfig& from = {});
+
+/// All words, for messages.
+std::vector<std::string> execution_words();
 
 }  // namespace afterglow
