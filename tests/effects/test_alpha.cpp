@@ -68,6 +68,8 @@ const std::map<std::string, std::vector<std::string>>& bending() {
       {"lift_gamma_gain",
        {"gamma_offset = 0.3", "lift_offset = 0.1, gain_offset = 0.2, gamma = { 1, 0.9, 0.8 }", "lift_offset = -0.02"}},
       {"lut", {"file = \"bent.cube\"", "file = \"bent.cube\", input = \"linear\", intensity = 0.5"}},
+      {"ocio_display", {"config = \"ocio/aces.ocio\""}},
+      {"ocio_transform", {"config = \"ocio/aces.ocio\", to = \"ACEScct\""}},
       {"shadows_midtones_highlights", {"shadows_offset = -0.4, highlights_offset = 0.2"}},
       {"split_toning", {"shadows = \"#204080\", highlights = \"#c09040\", balance = 20"}},
       {"tone_mapping",
