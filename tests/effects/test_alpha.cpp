@@ -61,15 +61,20 @@ const std::map<std::string, std::vector<std::string>>& bending() {
       {"color_adjustments",
        {"contrast = 35", "post_exposure = 0.5, contrast = -20, hue_shift = 40, saturation = 30", "saturation = -60"}},
       {"cdl", {"slope = { 1.3, 1, 0.8 }, power = { 1.2, 1, 0.9 }, saturation = 1.2"}},
+      {"curves",
+       {"blacks = -1, highlights = 0.7",
+        "by = \"luminance\", whites = -1, reds = { 20, 30, 40 }, blues = { -30, 50, 0 }"}},
       {"film_grain", {"intensity = 0.6", "intensity = 0.6, size = 2.5"}},
       {"lift_gamma_gain",
        {"gamma_offset = 0.3", "lift_offset = 0.1, gain_offset = 0.2, gamma = { 1, 0.9, 0.8 }", "lift_offset = -0.02"}},
       {"lut", {"file = \"bent.cube\"", "file = \"bent.cube\", input = \"linear\", intensity = 0.5"}},
+      {"ocio_display", {"config = \"ocio/aces.ocio\""}},
+      {"ocio_transform", {"config = \"ocio/aces.ocio\", to = \"ACEScct\""}},
       {"shadows_midtones_highlights", {"shadows_offset = -0.4, highlights_offset = 0.2"}},
       {"split_toning", {"shadows = \"#204080\", highlights = \"#c09040\", balance = 20"}},
       {"tone_mapping",
-       {"mode = \"aces\"", "mode = \"neutral\"", "mode = \"reinhard\"", "mode = \"reinhard_extended\"", "mode = \"agx\"",
-        "mode = \"khronos_neutral\"", "mode = \"hable\"", "mode = \"gt\""}},
+       {"mode = \"aces\"", "mode = \"neutral\"", "mode = \"reinhard\"", "mode = \"reinhard_extended\"",
+        "mode = \"agx\"", "mode = \"khronos_neutral\"", "mode = \"hable\"", "mode = \"gt\""}},
   };
   return all;
 }
