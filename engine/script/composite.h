@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "script/entry_run.h"
+#include "script/explanation.h"
 
 namespace afterglow::script {
 
@@ -15,9 +16,11 @@ namespace afterglow::script {
 
 /// A mask of Runtime::masks, for the entry that it masks.
 std::shared_ptr<MaskRun> make_mask_run(const Runtime& runtime, int mask, const StackEntry& owner);
+/// EntryMask::text of a mask of Runtime::masks; empty for -1.
+std::string mask_text(const Runtime& runtime, int mask);
 
-/// Opacity and the settings of masks for a frame, noted in the entry.
-void settle_composition(lua_State* lua, EntryRun& run, const BuildContext& context);
+/// Opacity, blend mode and the settings of masks for a frame, noted in the entry; how they came about, in `history`.
+void settle_composition(lua_State* lua, EntryRun& run, const BuildContext& context, EntryHistory& history);
 /// Lengths that a mask and those that it is made of read follow.
 void scale_lengths(lua_State* lua, MaskRun& mask, double length_scale);
 bool composition_moves(const EntryRun& run);
