@@ -287,7 +287,7 @@
 
 ---Objects, materials or assets by name, with their soft edges, from the picture's cryptomatte.
 ---@class afterglow.masks.cryptomatte : afterglow.MaskKeys
----@field names? string|afterglow.OfTime  Up to 8 names, with commas between them. default ""
+---@field names? string|afterglow.OfTime  Up to 8 names, with commas between them; a name that has commas itself stands in quotation marks. default ""
 ---@field layer? string|afterglow.OfTime  Of which cryptomatte: CryptoObject, CryptoMaterial, CryptoAsset of Blender. default "CryptoObject"
 
 ---What lies between two distances, by the picture's depth.
@@ -295,6 +295,11 @@
 ---@field from? number|afterglow.Moving  The near end. 0…10000000000 scene units, default 0
 ---@field to? number|afterglow.Moving  The far end. 0…10000000000 scene units, default 10
 ---@field softness? number|afterglow.Moving  Over which things come and go, outside of the range. 0…1000000 scene units, default 1
+
+---A picture from a file, stretched over the whole picture.
+---@class afterglow.masks.file : afterglow.MaskKeys
+---@field file? string|afterglow.OfTime  The picture. default ""
+---@field channel? "r"|"g"|"b"|"a"|"luma"|afterglow.OfTime  What of it is the mask; linear. default "luma"
 
 ---Colours of a hue: 0 red, 60 yellow, 120 green, 180 cyan, 240 blue, 300 magenta.
 ---@class afterglow.masks.hue : afterglow.MaskKeys
@@ -365,6 +370,7 @@
 ---@class afterglow.Masks
 ---@field cryptomatte fun(settings: afterglow.masks.cryptomatte): afterglow.Mask  Objects, materials or assets by name, with their soft edges, from the picture's cryptomatte.
 ---@field depth fun(settings: afterglow.masks.depth): afterglow.Mask  What lies between two distances, by the picture's depth.
+---@field file fun(settings: afterglow.masks.file): afterglow.Mask  A picture from a file, stretched over the whole picture.
 ---@field hue fun(settings: afterglow.masks.hue): afterglow.Mask  Colours of a hue: 0 red, 60 yellow, 120 green, 180 cyan, 240 blue, 300 magenta.
 ---@field layer fun(settings: afterglow.masks.layer): afterglow.Mask  A channel of a layer of the picture: a matte, an object's alpha, an albedo.
 ---@field linear fun(settings: afterglow.masks.linear): afterglow.Mask  A gradient: nothing on one side of the picture, everything on the other.
