@@ -72,7 +72,7 @@ Result<Picture> picture_of(const Bench& bench, Size size) {
   ReadOptions options;
   options.auxiliary = {"depth", "normal"};
   AFTERGLOW_TRY(Picture picture, read_picture(bench.arguments.picture, options, bench.console.diagnostics()));
-  scale_picture(picture, size);
+  scale_picture(picture, {size});
   return picture;
 }
 

@@ -33,8 +33,8 @@ struct FrameLoop::Reading {
   FrameRecord* frame = nullptr;
   bool pre_roll = false, restart = false;
   std::optional<Error> refused;  ///< by the header; nothing was read
-  std::optional<Size> size;      ///< that the display window is scaled to
-  FrameRequest request{};        ///< its region: of the picture, when a part of the display window is wanted
+  std::optional<Scaling> scaling;
+  FrameRequest request{};  ///< its region: of the picture, when a part of the display window is wanted
   ReadOptions options;
   std::future<Result<Picture>> picture;
 };
@@ -135,29 +135,33 @@ ReadOptions FrameLoop::read_options(const FrameJob& job) const {
   return options;
 }
 
-/// What is wanted of the picture with this header.
-/// What the display window is scaled to.
-std::optional<Size> FrameLoop::size_of(const PictureHeader& header) const {
+/// A preview of half the size or less is made at twice its size when a look depends on single pixels.
+std::optional<Scaling> FrameLoop::scaling_of(const PictureHeader& header) const {
   if (!options_.size) return std::nullopt;
-  return options_.size->of(header.display_window.size());
+  const Size whole = header.display_window.size(), size = options_.size->of(whole);
+  const bool half = 2 * size.width <= whole.width && 2 * size.height <= whole.height;
+  return Scaling{size, half && session_.preset().detailed() ? 2 : 1};
 }
+
+/// What is wanted of the picture with this header.
 
 Result<FrameRequest> FrameLoop::request_of(const FrameJob& job, const PictureHeader& header, double step,
                                            bool restart) {
   FrameRequest request;
-  const Size display = header.display_window.size();
   BuildContext context;
-  const std::optional<Size> size = size_of(header);
-  context.size = size ? scaled_size(header.data_window.size(), display, *size) : header.data_window.size();
-  if (size)
-    context.length_scale = std::sqrt(static_cast<double>(size->width) * size->height /
-                                     (static_cast<double>(display.width) * display.height));
+  Rect data = header.data_window, display = header.display_window;
+  int finer = 1;
+  if (const auto scaling = scaling_of(header)) {
+    finer = scaling->finer;
+    const Size whole = display.size(), size = scaling->display;
+    context.length_scale = finer * std::sqrt(static_cast<double>(size.area()) / static_cast<double>(whole.area()));
+    data = scaled_window(data, display, size);
+    display = {display.x, display.y, size.width, size.height};
+  }
+  context.size = {data.width * finer, data.height * finer};
   if (options_.region) {
-    const Rect& data = header.data_window;
-    const Rect window = size ? scaled_window(data, header.display_window, *size) : data;
-    const Rect shown = size ? Rect{header.display_window.x, header.display_window.y, size->width, size->height}
-                            : header.display_window;
-    AFTERGLOW_TRY(request.region, part_of_region(*options_.region, window, shown));
+    AFTERGLOW_TRY(const Rect part, part_of_region(*options_.region, data, display));
+    request.region = Rect{part.x * finer, part.y * finer, part.width * finer, part.height * finer};
   }
   const auto& wanted = options_.read.auxiliary;
   for (const auto& name : header.auxiliary)
@@ -170,7 +174,8 @@ Result<FrameRequest> FrameLoop::request_of(const FrameJob& job, const PictureHea
   context.position = camera_position(header.facts->metadata);
   context.step = request.step = step;
   context.restart = request.restart = restart;
-  if (const auto codes = display_codes(job.output, options_.write, header.has_alpha, header.facts.get()))
+  const auto codes = display_codes(job.output, options_.write, header.has_alpha, header.facts.get());
+  if (codes && finer == 1)  // codes of pixels that are still to be put together would be no colours
     request.encoding = DisplayEncoding{codes->straight_alpha, codes->dither};
   auto build = session_.evaluate(context);
   if (!build) return std::move(build).error();
@@ -214,7 +219,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
     return reading;
   }
   begun_ = frame.job.frame;
-  reading->size = size_of(planned->header);
+  reading->scaling = scaling_of(planned->header);
   reading->request = std::move(planned->request);
   const auto need = need_of(planned->header, *reading->request.build, frame.job);
   if (!need) {
@@ -223,11 +228,11 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   }
   overlap_ = total_ + pre_roll_ > 1 && need->three_frames() <= options_.max_memory;
   reading->picture = std::async(std::launch::async,
-                                [this, &frame, options = reading->options, size = reading->size,
+                                [this, &frame, options = reading->options, scaling = reading->scaling,
                                  header = std::move(planned->header)]() -> Result<Picture> {
                                   const auto start = Clock::now();
                                   auto picture = read_picture(header, options, events_.diagnostics);
-                                  if (picture && size) scale_picture(*picture, *size);
+                                  if (picture && scaling) scale_picture(*picture, *scaling);
                                   if (picture && options_.reuse && total_ + pre_roll_ > 1) note_content(*picture);
                                   frame.read = milliseconds_since(start);
                                   return picture;
@@ -297,7 +302,11 @@ Result<void> FrameLoop::finish_running() {
   if (report.clamped > 0)
     events_.diagnostics.warn_once("clamped", fmt::format("{}: {} samples were held at ±65504, the largest half float",
                                                          frame.job.input.string(), report.clamped));
-  if (reading->request.region) crop_picture(picture, *options_.region, *reading->request.region);
+  const int finer = reading->scaling ? reading->scaling->finer : 1;
+  shrink_picture(picture, finer);
+  if (const auto& part = reading->request.region)
+    crop_picture(picture, *options_.region,
+                 {part->x / finer, part->y / finer, part->width / finer, part->height / finer});
   if (events_.interrupted()) return interruption();
   AFTERGLOW_CHECK(finish_writing());
   begin_writing(frame, std::move(picture));
@@ -317,7 +326,7 @@ Result<void> FrameLoop::make(Reading& reading, Picture& picture) {
 Result<Trace> FrameLoop::trace_again(const Reading& reading) {
   Diagnostics quiet;  // reading has said all there is to say
   AFTERGLOW_TRY(Picture source, read_picture(reading.frame->job.input, reading.options, quiet));
-  if (reading.size) scale_picture(source, *reading.size);
+  if (reading.scaling) scale_picture(source, *reading.scaling);
   return session_.trace(source, reading.request, options_.nan_policy);
 }
 

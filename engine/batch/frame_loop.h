@@ -72,7 +72,7 @@ class FrameLoop {
     FrameRequest request;
   };
   ReadOptions read_options(const FrameJob& job) const;
-  std::optional<Size> size_of(const PictureHeader& header) const;
+  std::optional<Scaling> scaling_of(const PictureHeader& header) const;
   Result<FrameRequest> request_of(const FrameJob& job, const PictureHeader& header, double step, bool restart);
   Result<Planned> plan(const FrameJob& job, double step, bool restart);
   Result<Need> need_of(const PictureHeader& header, const Build& build, const FrameJob& job);

@@ -19,29 +19,25 @@ struct Taps {
   std::vector<float> weights;
 };
 
-std::vector<Taps> triangle_taps(int source, int target) {
+/// Below the source's size the share that each texel has in the target pixel's area; above it, interpolation between
+/// two.
+std::vector<Taps> area_taps(int source, int target) {
   std::vector<Taps> all(static_cast<std::size_t>(target));
-  const double ratio = static_cast<double>(source) / target;
-  const double radius = std::max(1.0, ratio);
+  const double ratio = static_cast<double>(source) / target, radius = std::max(1.0, ratio) / 2;
   for (int i = 0; i < target; ++i) {
-    const double center = (i + 0.5) * ratio - 0.5;
-    const int first = std::max(0, static_cast<int>(std::ceil(center - radius)));
-    const int last = std::min(source - 1, static_cast<int>(std::floor(center + radius)));
+    const double center = (i + 0.5) * ratio;
+    const double from = std::max(0.0, center - radius), to = std::min<double>(source, center + radius);
     Taps& taps = all[static_cast<std::size_t>(i)];
-    taps.first = first;
-    double sum = 0;
-    for (int texel = first; texel <= last; ++texel) {
-      const double weight = std::max(0.0, 1 - std::abs(texel - center) / radius);
-      taps.weights.push_back(static_cast<float>(weight));
-      sum += weight;
-    }
-    for (auto& weight : taps.weights) weight = static_cast<float>(weight / sum);
+    taps.first = static_cast<int>(from);
+    for (int texel = taps.first; texel < to; ++texel)
+      taps.weights.push_back(
+          static_cast<float>((std::min(to, texel + 1.0) - std::max<double>(from, texel)) / (to - from)));
   }
   return all;
 }
 
 Image resample_rows(const Image& source, int width) {
-  const auto taps = triangle_taps(source.width, width);
+  const auto taps = area_taps(source.width, width);
   Image out(width, source.height, source.channels);
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < width; ++x) {
@@ -57,7 +53,7 @@ Image resample_rows(const Image& source, int width) {
 }
 
 Image resample_columns(const Image& source, int height) {
-  const auto taps = triangle_taps(source.height, height);
+  const auto taps = area_taps(source.height, height);
   Image out(source.width, height, source.channels);
   const int values = source.width * source.channels;
   for (int y = 0; y < height; ++y) {
@@ -81,6 +77,10 @@ Image nearest(const Image& source, Size size) {
                   out.at(x, y));
     }
   return out;
+}
+
+Rect times(const Rect& rect, int factor) {
+  return {rect.x * factor, rect.y * factor, rect.width * factor, rect.height * factor};
 }
 
 }  // namespace
@@ -129,9 +129,9 @@ Rect scaled_window(const Rect& data, const Rect& display, Size target) {
           display.y + scaled(data.y - display.y, display.height, target.height), size.width, size.height};
 }
 
-void scale_picture(Picture& picture, Size target) {
-  const Size display = picture.display_window.size();
-  const Size size = scaled_size(picture.data_window.size(), display, target);
+void scale_picture(Picture& picture, const Scaling& scaling) {
+  const Rect data = times(scaled_window(picture.data_window, picture.display_window, scaling.display), scaling.finer);
+  const Size size = data.size();
   picture.color = resample_columns(resample_rows(picture.color, size.width), size.height);
   const float across = static_cast<float>(size.width) / static_cast<float>(picture.data_window.width),
               down = static_cast<float>(size.height) / static_cast<float>(picture.data_window.height);
@@ -141,8 +141,16 @@ void scale_picture(Picture& picture, Size target) {
     for (std::size_t i = 0; i < image.pixels.size(); i += 2) image.pixels[i] *= across, image.pixels[i + 1] *= down;
   }
   const Rect old = picture.display_window;
-  picture.data_window = scaled_window(picture.data_window, old, target);
-  picture.display_window = {old.x, old.y, target.width, target.height};
+  picture.data_window = data;
+  picture.display_window = times({old.x, old.y, scaling.display.width, scaling.display.height}, scaling.finer);
+}
+
+void shrink_picture(Picture& picture, int finer) {
+  if (finer == 1) return;
+  const Image& color = picture.color;
+  picture.color = resample_columns(resample_rows(color, color.width / finer), color.height / finer);
+  for (Rect* window : {&picture.data_window, &picture.display_window})
+    *window = {window->x / finer, window->y / finer, window->width / finer, window->height / finer};
 }
 
 }  // namespace afterglow

@@ -27,8 +27,18 @@ Size scaled_size(Size data, Size display, Size target);
 /// its place in it.
 Rect scaled_window(const Rect& data, const Rect& display, Size target);
 
-/// Scales so that the display window becomes `target`. Colour with a triangle filter as wide as a target pixel
-/// (bilinear when enlarging); depth and normals take the nearest texel, since values between two surfaces mean nothing.
-void scale_picture(Picture& picture, Size target);
+/// What a picture is scaled to before the stack: its display window to `display`, and everything `finer` times as large
+/// as that. A result is scaled back by `shrink_picture`.
+struct Scaling {
+  Size display;
+  int finer = 1;
+};
+
+/// Colour becomes the mean over each target pixel's area (bilinear when enlarging); depth and normals take the nearest
+/// texel, since values between two surfaces mean nothing.
+void scale_picture(Picture& picture, const Scaling& scaling);
+
+/// The colour of a result whose sides are multiples of `finer`, as the mean of finer×finer pixels; its windows alike.
+void shrink_picture(Picture& picture, int finer);
 
 }  // namespace afterglow

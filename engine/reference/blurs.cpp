@@ -87,7 +87,7 @@ DoubleImage radial_blur(const DoubleImage& source, double intensity, int samples
 DoubleImage directional_blur(const DoubleImage& source, double distance, double angle) {
   const double radians = angle * kPi / 180;
   const int n = glm::max(2, static_cast<int>(std::ceil(std::sqrt(distance + 1))));
-  const double spacing = distance / (n * n - 1);
+  const double spacing = distance / std::sqrt(std::pow(n, 4) - 1);
   const DoubleImage far = resample(source, source.size(), line(n, n * spacing, radians));
   return with_alpha_of(source, resample(far, source.size(), line(n, spacing, radians)));
 }

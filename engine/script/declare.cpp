@@ -251,7 +251,7 @@ int declare_effect(lua_State* lua) {
   if (!runtime.declaring) throw failure("fx.effect can only be used while a script loads");
   if (runtime.effects.size() >= kMaxDeclared) throw failure(fmt::format("more than {} effects", kMaxDeclared));
   TableReader table(lua, 1, "fx.effect");
-  table.allow({"active", "alpha", "at", "build", "doc", "holds", "idle", "name", "needs", "optional", "order",
+  table.allow({"active", "alpha", "at", "build", "detail", "doc", "holds", "idle", "name", "needs", "optional", "order",
                "settings", "space"},
               false);
   Effect effect;
@@ -269,6 +269,7 @@ int declare_effect(lua_State* lua) {
                        join(injection_points()), nearest_name(schema.at, injection_points())));
   schema.order = table.integer("order").value_or(0);
   schema.straight = read_alpha(table) == "straight";
+  schema.detail = table.boolean("detail").value_or(false);
   read_space(lua, table, effect);
   read_settings(lua, table, schema);
   read_holds(lua, table, effect);

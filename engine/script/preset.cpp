@@ -206,6 +206,10 @@ const std::vector<PresetArgument>& Preset::arguments() const { return state_->ru
 bool Preset::may_change() const { return state_->may_change; }
 const std::vector<StackEntry>& Preset::entries() const { return *state_->loaded; }
 const Explanation& Preset::explanation() const { return *state_->loaded_so; }
+bool Preset::detailed() const {
+  return std::any_of(entries().begin(), entries().end(),
+                     [&](const StackEntry& entry) { return entry.enabled && schema(entry.effect).detail; });
+}
 std::uint64_t Preset::evaluations() const { return state_->evaluations; }
 std::vector<std::string> Preset::needs() const { return state_->needs; }
 std::shared_ptr<const FileLooks> Preset::looked_at() const { return state_->runtime->path.record->looks(); }

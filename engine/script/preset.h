@@ -85,6 +85,7 @@ struct EffectSchema {
   std::string name, doc, at;
   int order = 0;
   bool straight = false;                ///< its pixel shaders see straight colour: `alpha = "straight"`
+  bool detail = false;                  ///< what it draws depends on single pixels: `detail = true`
   SpaceUse space;                       ///< where it is the same for all settings
   bool space_by_settings = false;       ///< it depends on settings
   std::vector<SettingSchema> settings;  ///< in order of declaration
@@ -216,6 +217,8 @@ class Preset {
   const std::vector<PresetArgument>& arguments() const;  ///< that scripts of the preset declare, in their order
   /// May settings differ from frame to frame or from place to place (curves, functions, volumes)?
   bool may_change() const;
+  /// Has an enabled entry an effect that declares `detail = true`? Previews are then made at twice their size.
+  bool detailed() const;
   /// The light in which each entry runs, in the order of execution, with the settings of the last evaluation.
   Result<std::vector<EntrySpace>> spaces();
   /// Names of auxiliary inputs that enabled, active effects ask for; where settings may change, those that they could

@@ -26,7 +26,7 @@ return fx.effect {
     local radians = s.angle * math.pi / 180
     local x, y = math.cos(radians), -math.sin(radians)
     local n = math.max(2, math.ceil(math.sqrt(s.distance + 1)))
-    local spacing = s.distance / (n * n - 1)
+    local spacing = s.distance / math.sqrt(n ^ 4 - 1)  -- n² reads spread as far as a line of that length does
     local image = g:filter { source = source, filter = line(n, n * spacing, x, y), name = "far" }
     image = g:filter { source = image, filter = line(n, spacing, x, y), name = "near" }
     return g:pass { shader = "bloom/scatter", source = image, high = source, amount = 1, name = "final" }  -- alpha of the picture

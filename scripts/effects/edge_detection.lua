@@ -10,7 +10,7 @@ end
 return fx.effect {
   name = "edge_detection",
   doc = "Draws lines where brightness changes: Sobel, Scharr or Roberts.",
-  at = "after_post_process", order = 105, space = "display",
+  at = "after_post_process", order = 105, detail = true, space = "display",
   settings = {
     operator = fx.enum { "sobel", "scharr", "roberts", default = "sobel",
       doc = "sobel: 3x3, the usual one. scharr: 3x3, treats all directions alike. roberts: 2x2, thin lines." },

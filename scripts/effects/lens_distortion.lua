@@ -5,7 +5,7 @@ local fx = require "afterglow"
 return fx.effect {
   name = "lens_distortion",
   doc = "Bends the picture as a wide lens (barrel) or a long one (pincushion) does.",
-  at = "post_process", order = 130,
+  at = "post_process", order = 130, detail = true,
   settings = {
     intensity = fx.float { min = -1, max = 1, default = 0.2, doc = "Above 0 a barrel, below 0 a pincushion. 0: none, but for the scale." },
     x_multiplier = fx.float { min = 0, max = 1, default = 1, doc = "How much of it happens across." },

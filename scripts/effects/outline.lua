@@ -18,7 +18,7 @@ local function bounded(x) return math.min(math.abs(x), 1e30) end
 return fx.effect {
   name = "outline",
   doc = "Ink lines along edges of depth, of normals, or of both.",
-  at = "before_post_process", order = 0,
+  at = "before_post_process", order = 0, detail = true,
   settings = {
     source = fx.enum { "depth", "device_depth", "normals", "mixed", default = "mixed",
       doc = "What is compared: distance, stored device depth as it is, normals, or distance and normals." },

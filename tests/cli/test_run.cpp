@@ -1,4 +1,5 @@
 // `afterglow run` on single pictures: what it writes and reports.
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
 #include <nlohmann/json.hpp>
@@ -49,6 +50,31 @@ TEST_F(Run, SizeScalesThePictureFirst) {
   ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "small.exr", "--size", "32x18"}).exit_code, kDone);
   EXPECT_EQ(spec_of("small.exr").width, 32);
   EXPECT_EQ(spec_of("small.exr").height, 18);
+}
+
+TEST_F(Run, PreviewsOfDetailAreMadeAtTwiceTheirSize) {
+  write("detail.lua", R"(local fx = require "afterglow"
+return fx.stack { fx.edge_detection { intensity = 20, threshold = 0 }, fx.tone_mapping { mode = "neutral" } })");
+  const std::vector<std::string> exact{"--type", "float", "--compression", "none"};
+  const auto made = [&](const std::string& file, std::vector<std::string> more) {
+    std::vector<std::string> words{"run", "detail.lua", "a.exr", "-o", file};
+    words.insert(words.end(), exact.begin(), exact.end());
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+    return OIIO::ImageBuf(text(file));
+  };
+  const OIIO::ImageBuf whole = made("whole.exr", {}), half = made("half.exr", {"--size", "50%"}),
+                       part = made("part.exr", {"--size", "50%", "--region", "5,3,12,9"}),
+                       most = made("most.exr", {"--size", "60%"});
+  ASSERT_EQ(half.spec().width, 32);
+  ASSERT_EQ(half.spec().height, 18);
+  const OIIO::ImageBuf wanted = OIIO::ImageBufAlgo::resize(whole, "box", 0, half.roi());
+  const auto difference = OIIO::ImageBufAlgo::compare(wanted, half, 0, 0);
+  EXPECT_LT(difference.maxerror, 1e-5);
+  const auto cut = OIIO::ImageBufAlgo::cut(half, OIIO::ROI(5, 17, 3, 12));
+  EXPECT_EQ(OIIO::ImageBufAlgo::compare(cut, part, 0, 0).maxerror, 0);
+  EXPECT_EQ(most.spec().width, 38);  // more than half: made at its own size
 }
 
 TEST_F(Run, OverridesChangePixelsAndPrecisionHardly) {
