@@ -82,10 +82,13 @@ std::optional<double> constant(lua_State* lua, const MaskRun& mask, std::string&
   return {};
 }
 
-void add_inputs(lua_State* lua, const MaskRun& mask, std::vector<std::string>& names) {
-  if (mask.a) add_inputs(lua, *mask.a, names), add_inputs(lua, *mask.b, names);
+void add_inputs(lua_State* lua, const MaskRun& mask, bool optional_too, std::vector<std::string>& names) {
+  if (mask.a) add_inputs(lua, *mask.a, optional_too, names), add_inputs(lua, *mask.b, optional_too, names);
   if (!mask.named || inactive_reason(lua, *mask.named)) return;
-  for (auto& name : needed_inputs(lua, *mask.named))
+  std::vector<std::string> inputs = needed_inputs(lua, *mask.named);
+  if (optional_too)
+    for (auto& name : optional_inputs(lua, *mask.named)) inputs.push_back(std::move(name));
+  for (auto& name : inputs)
     if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
 }
 
@@ -237,8 +240,8 @@ std::optional<std::string> unseen_reason(lua_State* lua, const EntryRun& run) {
   return reason.empty() ? "its mask selects nothing" : "its mask selects nothing: " + reason;
 }
 
-void add_mask_inputs(lua_State* lua, const EntryRun& run, std::vector<std::string>& names) {
-  if (run.mask) add_inputs(lua, *run.mask, names);
+void add_mask_inputs(lua_State* lua, const EntryRun& run, bool optional_too, std::vector<std::string>& names) {
+  if (run.mask) add_inputs(lua, *run.mask, optional_too, names);
 }
 
 ImageRef composite(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,

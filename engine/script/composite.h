@@ -28,8 +28,8 @@ bool composition_moves(const EntryRun& run);
 /// Why nothing of the entry's result would be seen; empty when something may be.
 std::optional<std::string> unseen_reason(lua_State* lua, const EntryRun& run);
 
-/// Auxiliary inputs that its masks need, behind `names`.
-void add_mask_inputs(lua_State* lua, const EntryRun& run, std::vector<std::string>& names);
+/// Auxiliary inputs that its masks need, behind `names`; `optional_too`: and those that they can use.
+void add_mask_inputs(lua_State* lua, const EntryRun& run, bool optional_too, std::vector<std::string>& names);
 
 /// `image`, which the entry made of `source`, put over it.
 ImageRef composite(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,

@@ -166,7 +166,7 @@ void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
     note(needed_inputs(lua, run));
     note(optional_inputs(lua, run));
     std::vector<std::string> of_masks;
-    add_mask_inputs(lua, run, of_masks);
+    add_mask_inputs(lua, run, true, of_masks);
     note(of_masks);
     // Other settings may ask for other inputs: what an effect asks for by a function cannot be known before.
     const Effect& effect = runtime->effects[static_cast<std::size_t>(run.effect)];
@@ -267,7 +267,7 @@ bool Preset::State::is_left_out(lua_State* lua, const EntryRun& run, GraphBuilde
   }
   std::vector<std::string> inputs, missing;
   if (!inactive_reason(lua, run)) inputs = needed_inputs(lua, run);
-  add_mask_inputs(lua, run, inputs);
+  add_mask_inputs(lua, run, false, inputs);
   for (const auto& input : inputs)
     if (!graph.context().auxiliary.contains(input)) missing.push_back(input);
   if (missing.empty()) return false;

@@ -54,7 +54,7 @@ std::vector<LookEntry> random_composition(const std::vector<EffectSchema>& effec
                                           const std::vector<EffectSchema>& masks, const SearchPath& path,
                                           Random& random) {
   std::vector<LookEntry> out;
-  const int count = random.between(1, 4);
+  const int count = random.chance(0.5) ? 1 : random.between(2, 4);  // one: most often its error is promised
   int depth = 0;
   for (int i = 0; i < count; ++i) {
     if (depth < 2 && random.chance(0.3)) {

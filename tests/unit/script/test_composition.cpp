@@ -218,6 +218,13 @@ TEST_F(Composition, AnEffectMayAskForLayers) {
   EXPECT_THAT(preset->needs(), ElementsAre("layer:albedo"));
 }
 
+TEST_F(Composition, WhatAMaskCanUseIsAskedFor) {
+  scene.stack("fx.a { mask = fx.mask.cryptomatte { names = \"Lamp\" } }");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  EXPECT_THAT(preset->needs(), ElementsAre("layer:CryptoObject00", "layer:CryptoObject01", "layer:CryptoObject02"));
+}
+
 TEST_F(Composition, ArgumentsComeFromTheCommandLine) {
   const std::string text = R"(local fx = require "afterglow"
 local args = fx.args { strength = fx.float { min = 0, max = 2, default = 0.5, doc = "How much." },
