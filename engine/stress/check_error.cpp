@@ -60,7 +60,7 @@ constexpr long long kLargeForOracle = 1 << 17;
 constexpr Check kExactChecks[] = {
     {"error_fp32", "error", "the error against double precision, in full floats", error_fp32, kLargeForOracle},
     {"error_fp16", "error", "the same with images in half floats", error_fp16, kLargeForOracle},
-    {"composed", nullptr, "opacity, blend, masks and groups: the error against double precision", composed,
+    {"error_composed", nullptr, "opacity, blend, masks and groups: the error against double precision", composed,
      kLargeForOracle},
 };
 
