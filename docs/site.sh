@@ -17,6 +17,7 @@ pages=(
   "docs/writing_effects.md|Writing an effect"
   "docs/tone_mapping.md|Tone curves"
   "docs/alpha.md|Soft edges"
+  "docs/ocio.md|OpenColorIO"
   "docs/embedding.md|Embedding"
   "docs/determinism.md|The same pixels"
   "docs/reliability.md|What one can rely on"

@@ -43,6 +43,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field history fun(self: afterglow.Graph, history: afterglow.History): afterglow.Image     what the frame before kept; must be given its next image by `keep`
 ---@field keep fun(self: afterglow.Graph, history: afterglow.Image, next: afterglow.Image)    the next frame gets this image as that history; of its size
 ---@field lookup fun(self: afterglow.Graph, lookup: { file: string }): afterglow.Lut            reads a look-up table (.cube, …), for the shader lut/apply
+---@field ocio fun(self: afterglow.Graph, ocio: afterglow.OcioRequest): afterglow.OcioShader  a view or a colour space of an OpenColorIO configuration as a shader for `pass`
 ---@field image fun(self: afterglow.Graph, image: { file: string }): afterglow.Image       reads a picture: scene-linear, associated alpha
 ---@field cryptomatte fun(self: afterglow.Graph, objects: { layer: string, names: string }): number[]  ids of the objects of these names, with commas between them; those that the picture lacks are warned about
 ---@field skip fun(self: afterglow.Graph, reason: string)                                 records why the effect does nothing; then `return source`
@@ -51,6 +52,20 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@class afterglow.Lut
 ---@field table afterglow.Image  the numbers of all steps
 ---@field steps { kind: integer, row: integer, size: integer }[]
+
+---What of an OpenColorIO configuration is wanted. With `to` a change of colour space, else what a display's view shows.
+---@class afterglow.OcioRequest
+---@field config? string   a file as for `lookup`; "": the one that the variable OCIO of the environment names
+---@field from? string     colour space of the colours; "": linear Rec.709, in which looks work
+---@field to? string       colour space that is wanted; "": linear Rec.709
+---@field display? string  "": the configuration's default
+---@field view? string     "": the display's default
+---@field looks? string    "+name, -name", in place of those of the view; "": those
+---@field inverse? boolean the other way round
+
+---@class afterglow.OcioShader
+---@field shader string            for `pass`; a pixel shader
+---@field table? afterglow.Image   the input `table` of that shader; nil when it has none
 
 ---A pass with a shader. Further keys are the inputs and parameters that the shader declares, by name: images, numbers,
 ---booleans, arrays of numbers. Every input and every `uniform` must be given; a `layout(constant_id = …)` constant may be.

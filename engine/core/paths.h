@@ -11,7 +11,8 @@
 
 namespace afterglow {
 
-class FileRecord;  // core/file_record.h
+class FileRecord;   // core/file_record.h
+class MadeShaders;  // core/made_shaders.h
 
 /// The folders in which a name is looked up, in order: beside the preset, each --path, each entry of AFTERGLOW_PATH,
 /// the installation. The first three hold `effects/NAME.lua` and `shaders/…`; the installation holds
@@ -22,6 +23,8 @@ struct SearchPath {
   std::optional<Error> error = {};          ///< of a pack that cannot be used: loading a preset fails with it
   /// Takes down what is looked at along the path, here and by those who read what was found. Null: nothing is.
   std::shared_ptr<FileRecord> record = {};
+  /// Shaders that were made for the preset that this path is of; they go before those of files. Null: none.
+  std::shared_ptr<MadeShaders> made = {};
 
   /// `effects/NAME.lua` or the installation's `scripts/effects/NAME.lua`; all hits, the winner first.
   std::vector<std::filesystem::path> find_effect(const std::string& name) const { return find_script(name, "effects"); }

@@ -5,20 +5,13 @@
 #include <algorithm>
 
 #include "core/file.h"
-#include "core/module.h"
 #include "core/text.h"
+#include "image/ocio_module.h"
 
 namespace afterglow {
 namespace {
 
 constexpr std::size_t kMaxFile = 128u << 20;  // 129³ lines of 50 letters
-
-/// OpenColorIO lives in a module: it takes longer to load than a frame takes to run.
-Result<const LutModule*> lut_module() {
-  static const Result<void*> entry = load_module("afterglow_ocio.so", "afterglow_lut_module");
-  if (!entry) return Error{ErrorKind::io, "look-up tables cannot be read: " + entry.error().message};
-  return reinterpret_cast<const LutModule* (*)()>(*entry)();
-}
 
 }  // namespace
 
@@ -26,7 +19,7 @@ Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record) {
   const auto fail = [&](std::string what) { return Error{ErrorKind::script, std::move(what), file.string()}; };
   std::string extension = lower(file.extension().string());
   if (!extension.empty()) extension.erase(0, 1);
-  AFTERGLOW_TRY(const LutModule* module, lut_module());
+  AFTERGLOW_TRY(const OcioModule* module, ocio_module());
   const std::vector<std::string> known = module->extensions();
   if (std::find(known.begin(), known.end(), extension) == known.end())
     return Error{ErrorKind::script, fmt::format("'{}' is no format of look-up tables", extension),
@@ -42,14 +35,6 @@ Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record) {
   if (file.string().find_first_of("$%") != std::string::npos)
     return fail("a path with '$' or '%' cannot be handed to OpenColorIO; rename the file or its folder");
   return module->read(file);
-}
-
-Result<Lut> read_ocio(const OcioRequest& request) {
-  AFTERGLOW_TRY(const LutModule* module, lut_module());
-  std::error_code ec;
-  if (!std::filesystem::is_regular_file(request.config, ec))
-    return Error{ErrorKind::script, "there is no such OpenColorIO configuration", request.config.string()};
-  return module->view(request);
 }
 
 }  // namespace afterglow

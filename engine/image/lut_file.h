@@ -36,7 +36,6 @@ struct Lut {
   std::vector<LutStep> steps;  ///< in order; at most kMaxLutSteps
   Size size;                   ///< of the table
   std::vector<float> table;    ///< RGBA
-  double baked_error = 0;      ///< largest difference to the steps that it stands for, when it is baked
 };
 
 inline constexpr int kMaxLutSteps = 6;
@@ -46,32 +45,6 @@ inline constexpr int kLutRow = 256;  ///< colours a row of one-dimensional table
 /// is wrong or has no place in steps; io: the module with OpenColorIO is not installed.
 /// `record`: see read_file (core/file.h).
 Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record = nullptr);
-
-/// What of a configuration of OpenColorIO is wanted: the picture's light as a display shows it, or in another colour
-/// space.
-struct OcioRequest {
-  std::filesystem::path config;  ///< its file
-  /// Colour space of the picture. Empty: linear Rec.709, by one of its usual names, or else through the role
-  /// aces_interchange.
-  std::string from;
-  std::string display, view;  ///< empty: the configuration's first
-  std::string to;             ///< a colour space, in place of display and view
-  std::string looks;          ///< "+name, -name"; empty: those of the view
-};
-
-/// The same for a configuration. Where its steps cannot be done one by one, the whole is baked: a curve over half
-/// floats, then a cube of 65³ over 2^-12…2^12; `Lut::baked_error` tells how far that is from OpenColorIO's own
-/// processor. Thread-safe. Errors (script, with the configuration's file): missing, unknown names with those that there
-/// are.
-Result<Lut> read_ocio(const OcioRequest& request);
-
-/// What the module with OpenColorIO gives.
-struct LutModule {
-  Result<Lut> (*read)(const std::filesystem::path& file);
-  /// Of the formats that it knows, without the point, sorted.
-  std::vector<std::string> (*extensions)();
-  Result<Lut> (*view)(const OcioRequest& request);
-};
 
 /// Looks a .cube through before OpenColorIO reads it, which says less about what is wrong and takes memory for whatever
 /// size a file claims. Errors: script, at the line.

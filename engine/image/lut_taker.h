@@ -9,15 +9,11 @@
 #include <vector>
 
 #include "image/lut_file.h"
+#include "image/ocio_module.h"
 
 namespace afterglow {
 
 namespace OCIO = OCIO_NAMESPACE;
-
-/// A chain that cannot be taken apart, and why.
-struct Unsupported {
-  std::string what;
-};
 
 /// Turns transforms into steps, in order. Matrices, ranges, tables, CDLs and exponents are steps of their own; whatever
 /// else treats each channel by itself becomes a table over half floats, made by OpenColorIO's own processor. Throws
@@ -27,11 +23,6 @@ class LutTaker {
   explicit LutTaker(OCIO::ConstConfigRcPtr config) : config_(std::move(config)) {}
   Lut take(const OCIO::GroupTransform& group);
 
-  /// Steps of one's own making.
-  void begin(LutKind kind, int size, int rows);
-  void put(int x, int y, const std::array<float, 4>& v) { placed_.push_back({x, first_ + y, v}); }
-  Lut finish();
-
  private:
   using Row = std::vector<std::array<float, 4>>;
   struct Placed {
@@ -39,6 +30,9 @@ class LutTaker {
     std::array<float, 4> value;
   };
 
+  void begin(LutKind kind, int size, int rows);
+  void put(int x, int y, const std::array<float, 4>& v) { placed_.push_back({x, first_ + y, v}); }
+  Lut finish();
   void add_group(const OCIO::GroupTransform& group);
   void add(const OCIO::Transform& transform);
   bool add_known(const OCIO::Transform& transform);

@@ -22,26 +22,18 @@ constexpr std::uint64_t kFileCost = 100'000;   // instructions that a look at th
 constexpr std::size_t kMaxBytes = 512u << 20;  // of all that one preset reads: it lives outside of Lua's memory
 constexpr int kMaxSide = 8192;                 // of pictures
 
-/// The setting of the entry being built that has this value; null: none.
-const std::pair<std::string, SettingValue>* setting_of(const Runtime& runtime, const std::string& name) {
-  const auto& settings = runtime.graph->entry().settings;
-  const auto found = std::ranges::find_if(settings, [&](const auto& setting) {
-    return setting.second.type == SettingType::file && setting.second.choice == name;
-  });
-  return found == settings.end() ? nullptr : &*found;
-}
-
-/// At the setting of the preset where the name comes from, else at the call.
-[[noreturn]] void fail_at(lua_State* lua, const std::string& what, const std::string& name, const std::string& why,
-                          const std::string& allowed, const std::string& nearest = {}) {
-  const Runtime& runtime = Runtime::of(lua);
-  const auto* setting = setting_of(runtime, name);
-  const std::string shown = tidy_message(name, 100);
-  ScriptError error = failure(setting ? fmt::format("{} = \"{}\": {}", setting->first, shown, why)
-                                      : fmt::format("{}: '{}': {}", what, shown, why),
-                              {}, allowed, nearest);
-  if (setting && runtime.box->blame) locate_blame(*runtime.box, *runtime.box->blame, error.error);
-  throw error;
+/// The setting of the entry being built that has this value, a file's name or a text; one called `name` before others.
+/// Null: none.
+const std::pair<std::string, SettingValue>* setting_of(const Runtime& runtime, const std::string& value,
+                                                       const std::string& name = {}) {
+  const std::pair<std::string, SettingValue>* found = nullptr;
+  for (const auto& setting : runtime.graph->entry().settings) {
+    const SettingType type = setting.second.type;
+    if ((type != SettingType::file && type != SettingType::text) || setting.second.choice != value) continue;
+    if (setting.first == name) return &setting;
+    if (!found && !value.empty()) found = &setting;
+  }
+  return found;
 }
 
 std::vector<fs::path> roots_of(const Runtime& runtime) {
@@ -63,8 +55,44 @@ std::string nearest_file(const std::vector<fs::path>& roots, const std::string& 
   return nearest_name(name, names);
 }
 
+/// RGBA from whatever channels a picture has.
+std::vector<float> rgba(const Image& image) {
+  if (image.channels == 4) return image.pixels;
+  std::vector<float> out(static_cast<std::size_t>(image.size().area()) * 4, 1.0F);
+  const auto channels = static_cast<std::size_t>(image.channels);
+  for (std::size_t i = 0; i < out.size() / 4; ++i)
+    for (std::size_t c = 0; c < 3; ++c) out[4 * i + c] = image.pixels[i * channels + (channels >= 3 ? c : 0)];
+  return out;
+}
+
+}  // namespace
+
+void fail_at(lua_State* lua, const std::string& what, const AssetFault& fault) {
+  const Runtime& runtime = Runtime::of(lua);
+  const auto* setting = setting_of(runtime, fault.value, fault.key);
+  const std::string shown = tidy_message(fault.value, 100);
+  std::string message = fmt::format("{}: '{}': {}", what, shown, fault.why);
+  if (setting)
+    message = fault.value.empty() ? fmt::format("{}: {}", setting->first, fault.why)
+                                  : fmt::format("{} = \"{}\": {}", setting->first, shown, fault.why);
+  else if (fault.value.empty())
+    message = fmt::format("{}: {}", what, fault.why);
+  ScriptError error = failure(std::move(message), {}, fault.allowed, fault.nearest);
+  if (setting && runtime.box->blame) locate_blame(*runtime.box, *runtime.box->blame, error.error);
+  throw error;
+}
+
 void note_file(Runtime& runtime, const fs::path& file) {
   if (std::ranges::find(runtime.files, file) == runtime.files.end()) runtime.files.push_back(file);
+}
+
+bool may_read(const Runtime& runtime, const fs::path& file) {
+  return std::ranges::any_of(roots_of(runtime), [&](const auto& root) { return lies_in(file, root); });
+}
+
+bool is_given_by_command(const Runtime& runtime, const std::string& name) {
+  const auto* setting = setting_of(runtime, name);
+  return setting && setting->second.type == SettingType::file && setting->second.number[0] == 1;
 }
 
 std::shared_ptr<const ImageData> make_data(Runtime& runtime, Size size, std::vector<float> pixels,
@@ -83,42 +111,30 @@ std::shared_ptr<const ImageData> make_data(Runtime& runtime, Size size, std::vec
   return std::make_shared<const ImageData>(std::move(data));
 }
 
-/// RGBA from whatever channels a picture has.
-std::vector<float> rgba(const Image& image) {
-  if (image.channels == 4) return image.pixels;
-  std::vector<float> out(static_cast<std::size_t>(image.size().area()) * 4, 1.0F);
-  const auto channels = static_cast<std::size_t>(image.channels);
-  for (std::size_t i = 0; i < out.size() / 4; ++i)
-    for (std::size_t c = 0; c < 3; ++c) out[4 * i + c] = image.pixels[i * channels + (channels >= 3 ? c : 0)];
-  return out;
-}
-
-}  // namespace
-
 fs::path find_asset(lua_State* lua, const std::string& what, const std::string& name) {
   Runtime& runtime = Runtime::of(lua);
   runtime.box->charge(kFileCost);
   const Sandbox::Pause pause(*runtime.box);
-  const auto* setting = setting_of(runtime, name);
-  if (setting && setting->second.number[0] == 1) {  // the command line's
+  if (is_given_by_command(runtime, name)) {
     note_file(runtime, name);
     return name;
   }
   constexpr const char* kAllowed =
       "the name of a file beside the preset or on the search path, like \"luts/film.cube\"";
-  if (!is_safe_entry(name, 8)) fail_at(lua, what, name, "leads out of the folders that scripts may read", kAllowed);
+  if (!is_safe_entry(name, 8))
+    fail_at(lua, what, {"file", name, "leads out of the folders that scripts may read", kAllowed, {}});
   const auto roots = roots_of(runtime);
   for (const auto& root : roots) {
     const fs::path file = root / name;
     if (!is_file(file, runtime.path.record.get())) continue;
     const bool own = std::ranges::find(runtime.path.user, root) != runtime.path.user.end();
     if (own && !lies_in(file, root))
-      fail_at(lua, what, name, fmt::format("is a link that leads out of {}", root.string()), kAllowed);
+      fail_at(lua, what, {"file", name, fmt::format("is a link that leads out of {}", root.string()), kAllowed, {}});
     note_file(runtime, file);
     return file;
   }
   if (!roots.empty()) note_file(runtime, roots.front() / name);  // where it may appear
-  fail_at(lua, what, name, "there is no such file", kAllowed, nearest_file(roots, name));
+  fail_at(lua, what, {"file", name, "there is no such file", kAllowed, nearest_file(roots, name)});
 }
 
 const LoadedLut& load_lut(lua_State* lua, const fs::path& file) {

@@ -9,11 +9,13 @@
 #include <string>
 
 #include "core/image_data.h"
-#include "image/lut_file.h"
+#include "image/ocio.h"
 
 struct lua_State;
 
 namespace afterglow::script {
+
+struct Runtime;
 
 /// A table that was read, and its numbers as an image.
 struct LoadedLut {
@@ -21,9 +23,17 @@ struct LoadedLut {
   std::shared_ptr<const ImageData> table;
 };
 
+/// A part of a configuration of OpenColorIO, as a shader.
+struct LoadedOcio {
+  std::string shader;                      ///< its name for g:pass
+  std::shared_ptr<const ImageData> table;  ///< that it reads; null: none
+  std::filesystem::path config;
+};
+
 /// What one state has read: a file is read once, so that every build of a preset sees the same.
 struct Assets {
   std::map<std::filesystem::path, LoadedLut> luts;
+  std::map<std::string, LoadedOcio> ocio;  ///< by request
   std::map<std::filesystem::path, std::shared_ptr<const ImageData>> pictures;
   std::size_t bytes = 0;
 };
@@ -36,5 +46,25 @@ std::filesystem::path find_asset(lua_State* lua, const std::string& what, const 
 /// Errors: throw ScriptError (see read_lut, read_picture; too much in all).
 const LoadedLut& load_lut(lua_State* lua, const std::filesystem::path& file);
 std::shared_ptr<const ImageData> load_picture(lua_State* lua, const std::filesystem::path& file);
+
+// ---- what those need who read files of other kinds
+
+/// Something is wrong with a value that a script passed on.
+struct AssetFault {
+  std::string key, value;  ///< of the call: "file", "film.cube"
+  std::string why, allowed, nearest;
+};
+/// Throws, at the setting of the entry being built where the value comes from, else at the call. `what` names the call.
+[[noreturn]] void fail_at(lua_State* lua, const std::string& what, const AssetFault& fault);
+
+/// The file is part of the look.
+void note_file(Runtime& runtime, const std::filesystem::path& file);
+/// Does it lie in a folder that scripts may read?
+bool may_read(const Runtime& runtime, const std::filesystem::path& file);
+/// Did the command line give this as a file for a setting of the entry being built? Then it may be any file.
+bool is_given_by_command(const Runtime& runtime, const std::string& name);
+/// Errors: throws ScriptError, when all data of the state takes too much memory.
+std::shared_ptr<const ImageData> make_data(Runtime& runtime, Size size, std::vector<float> pixels,
+                                           const std::filesystem::path& file);
 
 }  // namespace afterglow::script

@@ -10,6 +10,7 @@
 #include "image/cryptomatte.h"
 #include "script/filter_reader.h"
 #include "script/object.h"
+#include "script/ocio.h"
 #include "script/runtime.h"
 #include "script/table_reader.h"
 
@@ -209,6 +210,34 @@ int graph_lookup(lua_State* lua) {
   return 1;
 }
 
+// { shader = name, table = image or nil }: the pass is the effect's.
+int graph_ocio(lua_State* lua) {
+  GraphBuilder& graph = graph_of(lua, "g:ocio { config = … }");
+  TableReader table(lua, 2, fmt::format("effect '{}': g:ocio", graph.entry().effect));
+  table.allow({"config", "display", "from", "inverse", "looks", "to", "view"}, false);
+  const auto text = [&](const char* key) { return table.text(key).value_or(""); };
+  const auto to = table.text("to");
+  OcioRequest request{.config = {},
+                      .from = text("from"),
+                      .display = text("display"),
+                      .view = text("view"),
+                      .to = to.value_or(""),
+                      .to_space = to.has_value(),
+                      .looks = text("looks"),
+                      .inverse = table.boolean("inverse").value_or(false)};
+  const std::string config = text("config");
+  table.finish("ocio");
+  const LoadedOcio& loaded = load_ocio(lua, table.what(), config, std::move(request));
+  lua_createtable(lua, 0, 2);
+  lua_pushlstring(lua, loaded.shader.data(), loaded.shader.size());
+  lua_setfield(lua, -2, "shader");
+  if (loaded.table) {
+    push_image(lua, graph.data(loaded.config.filename().string(), loaded.table));
+    lua_setfield(lua, -2, "table");
+  }
+  return 1;
+}
+
 int graph_image(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:image { file = … }");
   TableReader table(lua, 2, fmt::format("effect '{}': g:image", graph.entry().effect));
@@ -286,7 +315,7 @@ int graph_index(lua_State* lua) {
   else {
     const std::vector<std::string> names{"cryptomatte", "filter", "fps",   "frame", "frame_time",
                                          "history",     "image",  "input", "keep",  "length_scale",
-                                         "lookup",      "pass",   "skip",  "time"};
+                                         "lookup",      "ocio",   "pass",  "skip",  "time"};
     throw failure(fmt::format("the graph has no {}", key.shown()), {}, join(names), nearest_name(name, names));
   }
   return 1;
@@ -316,15 +345,12 @@ int image_equal(lua_State* lua) {
 
 void open_graph_binding(lua_State* lua) {
   push_kind(lua, kGraphKind);
-  const luaL_Reg methods[] = {{"pass", &native<graph_pass, "pass">},
-                              {"filter", &native<graph_filter, "filter">},
-                              {"history", &native<graph_history, "history">},
-                              {"keep", &native<graph_keep, "keep">},
-                              {"image", &native<graph_image, "image">},
-                              {"lookup", &native<graph_lookup, "lookup">},
-                              {"input", &native<graph_input, "input">},
-                              {"skip", &native<graph_skip, "skip">},
-                              {"cryptomatte", &native<graph_cryptomatte, "cryptomatte">}};
+  const luaL_Reg methods[] = {
+      {"pass", &native<graph_pass, "pass">},          {"filter", &native<graph_filter, "filter">},
+      {"history", &native<graph_history, "history">}, {"keep", &native<graph_keep, "keep">},
+      {"image", &native<graph_image, "image">},       {"lookup", &native<graph_lookup, "lookup">},
+      {"ocio", &native<graph_ocio, "ocio">},          {"input", &native<graph_input, "input">},
+      {"skip", &native<graph_skip, "skip">},          {"cryptomatte", &native<graph_cryptomatte, "cryptomatte">}};
   lua_createtable(lua, 0, static_cast<int>(std::size(methods)));
   for (const auto& [name, function] : methods) {
     lua_pushcfunction(lua, function);

@@ -1,6 +1,7 @@
 // The library table `fx`: scripts/afterglow.lua over the native functions given to it as `core`.
 #include <fmt/format.h>
 
+#include "core/made_shaders.h"
 #include "core/text.h"
 #include "script/arguments.h"
 #include "script/declare.h"
@@ -114,6 +115,7 @@ Result<std::unique_ptr<Runtime>> Runtime::create(SearchPath path, const ScriptLi
   AFTERGLOW_TRY(std::unique_ptr<Sandbox> box, Sandbox::create(limits));
   auto runtime = std::make_unique<Runtime>();
   runtime->path = std::move(path);
+  runtime->path.made = std::make_shared<MadeShaders>();
   runtime->box = std::move(box);
   runtime->box->owner = runtime.get();
   runtime->box->diagnostics = &diagnostics;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/made_shaders.h"
 #include "core/text.h"
 #include "shader/include.h"
 #include "shader/macros.h"
@@ -41,11 +42,11 @@ bool has_loop(const std::vector<Token>& tokens) {
 }
 
 Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const std::string& name,
-                                                 const fs::path& path) {
+                                                 const fs::path& path, std::string text) {
   auto source = std::make_shared<ShaderSource>();
   source->name = name;
   source->path = path;
-  AFTERGLOW_TRY(source->text, read_shader(path, search.record.get()));
+  source->text = std::move(text);
   AFTERGLOW_TRY(ShaderScan scanned, scan(source->text, path.string(), ScanAs::stage));
   AFTERGLOW_TRY(source->includes, resolve_includes(search, path, scanned));
   AFTERGLOW_CHECK(check_expansion(*source, scanned));
@@ -70,6 +71,10 @@ Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const
 Result<std::shared_ptr<const ShaderSource>> ShaderLibrary::find(const std::string& name) {
   const std::lock_guard lock(mutex_);
   if (const auto known = sources_.find(name); known != sources_.end()) return known->second;
+  if (const auto made = path_.made ? path_.made->find(name) : std::nullopt) {
+    AFTERGLOW_TRY(auto source, load(path_, name, made->origin, made->text));
+    return sources_[name] = source;
+  }
   const auto hits = is_safe_name(name) ? path_.find_shader(name + ".glsl") : std::vector<fs::path>{};
   if (hits.empty()) {
     Error error = shader_error("", 0, fmt::format("unknown shader '{}'", name));
@@ -77,9 +82,9 @@ Result<std::shared_ptr<const ShaderSource>> ShaderLibrary::find(const std::strin
     return error;
   }
   AFTERGLOW_CHECK(check_inside(path_, hits.front()));
-  AFTERGLOW_TRY(auto source, load(path_, name, hits.front()));
-  sources_[name] = source;
-  return source;
+  AFTERGLOW_TRY(std::string text, read_shader(hits.front(), path_.record.get()));
+  AFTERGLOW_TRY(auto source, load(path_, name, hits.front(), std::move(text)));
+  return sources_[name] = source;
 }
 
 void ShaderLibrary::reload() {

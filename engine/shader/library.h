@@ -45,7 +45,7 @@ class ShaderLibrary {
  public:
   explicit ShaderLibrary(SearchPath path) : path_(std::move(path)) {}
 
-  /// Finds "NAME.glsl". Errors (script): unknown name (with the nearest), syntax of declarations, missing include,
+  /// Finds "NAME.glsl", or what was made under that name (SearchPath::made). Errors (script): unknown name (with the nearest), syntax of declarations, missing include,
   /// include cycle, neither or both of apply/sample_at; file and line are those of the offending text.
   Result<std::shared_ptr<const ShaderSource>> find(const std::string& name);
 

@@ -207,6 +207,22 @@
 ---@field motion_scale? number[]|afterglow.Moving  Factor of the motion vectors: {1, -1} for files with y downwards, {width, height} for motion in pictures. {x, y}, each -16384…16384, default {1, 1}
 ---@field depth_softness? number|afterglow.Moving  Difference of depth over which one thing is in front of another. 0.0001…1000000 m, default 0.1
 
+---The view of an OpenColorIO configuration, in place of a tone curve.
+---@class afterglow.settings.ocio_display : afterglow.EntryKeys
+---@field config? string|afterglow.OfTime  The configuration: beside the preset or on the search path. None: the one that $OCIO names. default ""
+---@field display? string|afterglow.OfTime  Display. None: the configuration's default. default ""
+---@field view? string|afterglow.OfTime  View of the display. None: the display's default. default ""
+---@field looks? string|afterglow.OfTime  Looks in place of the view's own, like "+warm, -night". None: those of the view. default ""
+---@field from? string|afterglow.OfTime  Colour space of the picture. None: linear Rec.709. default ""
+
+---Colours from one space of an OpenColorIO configuration to another, with looks.
+---@class afterglow.settings.ocio_transform : afterglow.EntryKeys
+---@field config? string|afterglow.OfTime  The configuration: beside the preset or on the search path. None: the one that $OCIO names. default ""
+---@field from? string|afterglow.OfTime  Colour space that the colours are in. None: linear Rec.709. default ""
+---@field to? string|afterglow.OfTime  Colour space that they are brought to. None: linear Rec.709. default ""
+---@field looks? string|afterglow.OfTime  Looks on the way, like "+warm, -night". default ""
+---@field inverse? boolean|afterglow.OfTime  The other way round. default false
+
 ---Ink lines along edges of depth, of normals, or of both.
 ---@class afterglow.settings.outline : afterglow.EntryKeys
 ---@field source? "depth"|"device_depth"|"normals"|"mixed"|afterglow.OfTime  What is compared: distance, stored device depth as it is, normals, or distance and normals. default "mixed"
@@ -356,6 +372,8 @@
 ---@field lift_gamma_gain fun(settings: afterglow.settings.lift_gamma_gain): afterglow.Entry  The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.
 ---@field lut fun(settings: afterglow.settings.lut): afterglow.Entry  Colours by a look-up table from a file (.cube and others).
 ---@field motion_blur fun(settings: afterglow.settings.motion_blur): afterglow.Entry  Blurs what moves, by motion vectors.
+---@field ocio_display fun(settings: afterglow.settings.ocio_display): afterglow.Entry  The view of an OpenColorIO configuration, in place of a tone curve.
+---@field ocio_transform fun(settings: afterglow.settings.ocio_transform): afterglow.Entry  Colours from one space of an OpenColorIO configuration to another, with looks.
 ---@field outline fun(settings: afterglow.settings.outline): afterglow.Entry  Ink lines along edges of depth, of normals, or of both.
 ---@field pixelate fun(settings: afterglow.settings.pixelate): afterglow.Entry  Large square pixels, each the mean of what it covers.
 ---@field radial_blur fun(settings: afterglow.settings.radial_blur): afterglow.Entry  Streaks towards a centre, as of a zoom or of speed.

@@ -27,6 +27,7 @@ std::string sample_file(const SettingSchema& setting) {
   const auto allows = [&](const char* extension) {
     return std::ranges::find(setting.choices, extension) != setting.choices.end();
   };
+  if (allows("ocio")) return "ocio/aces.ocio";  // of the installation
   if (!allows("cube")) return {};
   std::string text = "LUT_3D_SIZE 3\n";
   for (int i = 0; i < 27; ++i)
@@ -191,6 +192,28 @@ std::vector<std::string> neutral_entries(const EffectSchema& effect) {
   return entries;
 }
 
+/// fx.NAME { … } with files that change nothing, for effects that cannot do without one: a view that gives every colour
+/// the code of an sRGB display.
+std::string with_neutral_files(const EffectSchema& effect) {
+  std::string settings;
+  for (const auto& setting : effect.settings) {
+    if (setting.type != SettingType::file || std::ranges::find(setting.choices, "ocio") == setting.choices.end())
+      continue;
+    write_test_file("neutral.ocio", R"(ocio_profile_version: 2
+roles: {default: lin_rec709, scene_linear: lin_rec709}
+file_rules: [!<Rule> {name: Default, colorspace: lin_rec709}]
+displays: {Monitor: [!<View> {name: Plain, colorspace: sRGB}]}
+colorspaces:
+  - !<ColorSpace> {name: lin_rec709}
+  - !<ColorSpace>
+    name: sRGB
+    from_scene_reference: !<ExponentWithLinearTransform> {gamma: 2.4, offset: 0.055, direction: inverse}
+)");
+    settings += setting.name + " = \"neutral.ocio\"";
+  }
+  return "fx." + effect.name + " { " + settings + " }";
+}
+
 TEST_F(Effects, EveryEffectHasSettingsThatChangeNothing) {
   const auto scene = moving(random_scene({24, 18}, 82));
   // What has no such settings, like anti-aliasing, has nothing to do where there is nothing to see.
@@ -200,7 +223,7 @@ TEST_F(Effects, EveryEffectHasSettingsThatChangeNothing) {
     const auto entries = neutral_entries(effect);
     const bool found = std::ranges::any_of(entries, [&](const auto& entry) { return is_identity(entry, scene); });
     if (found) continue;
-    EXPECT_TRUE(agrees(run_stack("fx." + effect.name + " {}", flat, Way::joined).result, flat.source, 1e-6, kRgba))
+    EXPECT_TRUE(agrees(run_stack(with_neutral_files(effect), flat, Way::joined).result, flat.source, 1e-6, kRgba))
         << effect.name << " changes every picture, whatever it is set to";
   }
 }

@@ -164,7 +164,7 @@ return fx.effect { name = "color_blit", settings = { intensity = fx.float { min 
       look.entries.front().composition = {
           {"opacity", "0.75"}, {"blend", "\"lighten\""}, {"mask", "fx.mask.layer { layer = \"matte\", channel = \"r\" }"}};
     lab().forget();
-    return outcome_of(situation(look, "error_composed", {"noise", {16, 16}, 1}));
+    return outcome_of(situation(look, "error_composed", {"display", {16, 16}, 1}));
   };
   EXPECT_FALSE(outcome("1.0", false).applies) << "nothing is composed";
   const Outcome right = outcome("1.0", true), wrong = outcome("1.1", true);

@@ -1,4 +1,5 @@
-// OpenColorIO's side of read_lut: a file becomes a chain of its transforms, each taken apart into a step.
+// OpenColorIO's side of read_lut (a file becomes a chain of its transforms, each taken apart into a step) and of
+// configurations.
 #include <OpenColorIO/OpenColorIO.h>
 #include <fmt/format.h>
 
@@ -9,7 +10,9 @@
 #include "core/exception.h"
 #include "image/lut_file.h"
 #include "image/lut_taker.h"
-#include "image/ocio_view.h"
+#include "image/ocio_chain.h"
+#include "image/ocio_glsl.h"
+#include "image/ocio_module.h"
 
 namespace afterglow {
 namespace {
@@ -20,6 +23,8 @@ Error error_of(const std::string& file, std::string message) {
   if (const auto at = message.find("line"); at != std::string::npos)
     if (const auto digit = message.find_first_of("0123456789", at); digit != std::string::npos && digit < at + 8)
       line = std::atoi(message.c_str() + digit);
+  if (const auto opening = message.find("Loading the OCIO profile '"); opening != std::string::npos)
+    if (const auto end = message.find("' failed. ", opening); end != std::string::npos) message.erase(0, end + 10);
   for (char& c : message)
     if (static_cast<unsigned char>(c) < 0x20) c = ' ';
   if (message.size() > 300) message.resize(300);
@@ -46,12 +51,48 @@ Result<Lut> read(const std::filesystem::path& file) {
   }
 }
 
-Result<Lut> view(const OcioRequest& request) {
+Result<OcioSurvey> survey(const OcioRequest& request) {
+  const std::lock_guard lock(mutex);
+  OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);
+  try {
+    const auto config = open_ocio(request);
+    OcioSurvey out;
+    out.files = ocio_files(*config, *ocio_chain(*config, request));
+    return out;
+  } catch (const OcioFault& wrong) {
+    return OcioSurvey{wrong.fault, {}};
+  } catch (const Unsupported& why) {
+    return Error{ErrorKind::script, why.what, request.config.string()};
+  } catch (const std::exception& error) {
+    return error_of(request.config.string(), exception_text(error));
+  }
+}
+
+/// OpenColorIO reads those files that the survey told, and no others.
+void check_files(const OCIO::Processor& processor, const std::vector<OcioSurvey::File>& told) {
+  const auto metadata = processor.getProcessorMetadata();
+  for (int i = 0; i < metadata->getNumFiles(); ++i) {
+    const std::filesystem::path file = metadata->getFile(i);
+    if (std::ranges::none_of(told, [&](const auto& known) { return known.path == file; }))
+      throw Unsupported{fmt::format("reads {}, which nothing in it was seen to name", file.string())};
+  }
+}
+
+Result<OcioShader> shader(const OcioRequest& request) {
   const std::lock_guard lock(mutex);
   OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);
   try {
     OCIO::ClearAllCaches();
-    return lut_of_view(request);
+    const auto config = open_ocio(request);
+    const auto chain = ocio_chain(*config, request);
+    const auto files = ocio_files(*config, *chain);
+    const auto processor = config->getProcessor(chain);
+    check_files(*processor, files);
+    return ocio_glsl(*processor);
+  } catch (const OcioFault& wrong) {
+    return Error{ErrorKind::script,       wrong.fault.key + ": " + wrong.fault.what,
+                 request.config.string(), 0,
+                 wrong.fault.allowed,     wrong.fault.nearest};
   } catch (const Unsupported& why) {
     return Error{ErrorKind::script, why.what, request.config.string()};
   } catch (const std::exception& error) {
@@ -75,7 +116,8 @@ std::vector<std::string> extensions() {
 }  // namespace
 }  // namespace afterglow
 
-extern "C" __attribute__((visibility("default"))) const afterglow::LutModule* afterglow_lut_module() {
-  static constexpr afterglow::LutModule module{&afterglow::read, &afterglow::extensions, &afterglow::view};
+extern "C" __attribute__((visibility("default"))) const afterglow::OcioModule* afterglow_ocio_module() {
+  static constexpr afterglow::OcioModule module{&afterglow::read, &afterglow::extensions, &afterglow::survey,
+                                                &afterglow::shader};
   return &module;
 }

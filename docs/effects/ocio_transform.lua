@@ -1,0 +1,7 @@
+local fx = require "afterglow"
+
+return fx.stack {
+  fx.color_adjustments { post_exposure = 1.5 },
+  fx.ocio_transform { config = "ocio/aces.ocio", looks = "Blue light fix" },
+  fx.tone_mapping { mode = "neutral" },
+}

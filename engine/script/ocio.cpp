@@ -1,0 +1,137 @@
+#include "script/ocio.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "core/file.h"
+#include "core/file_record.h"
+#include "core/made_shaders.h"
+#include "core/text.h"
+#include "script/graph_builder.h"
+#include "script/native.h"
+#include "script/runtime.h"
+
+namespace afterglow::script {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::uint64_t kConfigCost = 1'000'000;                      // instructions that a configuration counts as
+constexpr std::size_t kMaxConfig = 16u << 20, kMaxTable = 64u << 20;  // bytes
+
+/// The file that is meant, and whether scripts chose it.
+struct ChosenConfig {
+  fs::path file;
+  bool by_script = false;
+};
+
+ChosenConfig choose_config(lua_State* lua, const std::string& what, const std::string& name) {
+  if (!name.empty()) {
+    const bool by_command = is_given_by_command(Runtime::of(lua), name);
+    return {find_asset(lua, what, name), !by_command};
+  }
+  const char* named = std::getenv("OCIO");
+  constexpr const char* kAllowed = "config = \"NAME.ocio\", a file beside the preset or on the search path";
+  if (!named || !*named)
+    fail_at(lua, what,
+            {"config",
+             "",
+             "there is no configuration of OpenColorIO: none is given, and the variable OCIO of the "
+             "environment is not set",
+             kAllowed,
+             {}});
+  std::error_code ec;
+  const fs::path file = fs::absolute(named, ec);
+  if (!is_file(file, Runtime::of(lua).path.record.get())) {
+    note_file(Runtime::of(lua), file);
+    fail_at(lua, what,
+            {"config",
+             "",
+             fmt::format("the variable OCIO of the environment names {}, and there is no such file",
+                         tidy_message(named, 200)),
+             kAllowed,
+             {}});
+  }
+  return {file, false};
+}
+
+/// Where the configuration's text names it; 0: nowhere in so many words.
+int line_of(const std::string& text, const std::string& name) {
+  const auto at = text.find(name);
+  return at == std::string::npos
+             ? 0
+             : 1 + static_cast<int>(std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n'));
+}
+
+std::string near_file(const fs::path& file) {
+  std::vector<std::string> names;
+  std::error_code ec;
+  for (fs::directory_iterator it(file.parent_path(), ec), end; !ec && it != end && names.size() < 1000;
+       it.increment(ec))
+    names.push_back(it->path().filename().string());
+  return nearest_name(file.filename().string(), names);
+}
+
+/// A table may be read, and is what it seems to be.
+void check_table(Runtime& runtime, const ChosenConfig& config, const std::string& text, const OcioSurvey::File& table) {
+  const auto fail = [&](std::string why, std::string nearest = {}) {
+    throw ScriptError{{ErrorKind::script,
+                       fmt::format("'{}': {}", tidy_message(table.name, 100), why),
+                       config.file.string(),
+                       line_of(text, table.name),
+                       {},
+                       std::move(nearest)}};
+  };
+  note_file(runtime, table.path);
+  if (!is_file(table.path, runtime.path.record.get()))
+    fail(fmt::format("there is no such file along the search path of the configuration, like {}", table.path.string()),
+         near_file(table.path));
+  if (config.by_script && !may_read(runtime, table.path))
+    fail(fmt::format("{} lies outside of the folders that scripts may read", table.path.string()));
+  auto content = read_file(table.path, kMaxTable, runtime.path.record.get());
+  if (!content) fail(content.error().message);
+  if (lower(table.path.extension().string()) == ".cube")
+    if (auto sound = check_cube(*content, table.path.string()); !sound) throw ScriptError{sound.error()};
+  if (content->find("<Reference") != std::string::npos) fail("refers to another file, which is not supported");
+}
+
+}  // namespace
+
+const LoadedOcio& load_ocio(lua_State* lua, const std::string& what, const std::string& name, OcioRequest request) {
+  Runtime& runtime = Runtime::of(lua);
+  const ChosenConfig config = choose_config(lua, what, name);
+  request.config = config.file;
+  const std::string key =
+      fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", config.file.string(), request.from, request.display, request.view,
+                  request.to_space, request.to, request.looks, request.inverse);
+  const auto known = runtime.assets.ocio.find(key);
+  if (known != runtime.assets.ocio.end()) return known->second;
+  runtime.box->charge(kConfigCost);
+  const Sandbox::Pause pause(*runtime.box);
+  note_file(runtime, config.file);
+  const auto text = read_file(config.file, kMaxConfig, runtime.path.record.get());
+  if (!text) throw ScriptError{{ErrorKind::script, text.error().message, config.file.string()}};
+  const auto survey = survey_ocio(request);
+  if (!survey) throw ScriptError{survey.error()};
+  if (const auto& fault = survey->fault) {
+    const std::map<std::string, std::string> given{{"from", request.from},
+                                                   {"to", request.to},
+                                                   {"display", request.display},
+                                                   {"view", request.view},
+                                                   {"looks", request.looks}};
+    const auto value = given.find(fault->key);
+    fail_at(lua, what,
+            {fault->key, value == given.end() ? "" : value->second,
+             fmt::format("{} ({})", fault->what, config.file.filename().string()), fault->allowed, fault->nearest});
+  }
+  for (const auto& table : survey->files) check_table(runtime, config, *text, table);
+  auto made = ocio_shader(request);
+  if (!made) throw ScriptError{std::move(made).error()};
+  LoadedOcio loaded{"ocio/" + hash_text(made->text).hex(), nullptr, config.file};
+  if (!made->table.empty()) loaded.table = make_data(runtime, made->size, std::move(made->table), config.file);
+  runtime.path.made->add(loaded.shader, {std::move(made->text), config.file});
+  return runtime.assets.ocio.emplace(key, std::move(loaded)).first->second;
+}
+
+}  // namespace afterglow::script
