@@ -156,13 +156,15 @@ return fx.effect { name = "color_blit", settings = { intensity = fx.float { min 
   build = function(g, s, source) return g:pass { shader = "wrong", source = source, intensity = s.intensity } end }
 )");
   const auto outcome = [&](const char* factor, bool composed) {
-    folder.write("shaders/wrong.glsl",
-                 std::string("uniform float intensity;\nvec4 apply(vec4 color) { return vec4(0.0, color.g * intensity * ") +
-                     factor + ", 0.0, color.a); }\n");
+    folder.write(
+        "shaders/wrong.glsl",
+        std::string("uniform float intensity;\nvec4 apply(vec4 color) { return vec4(0.0, color.g * intensity * ") +
+            factor + ", 0.0, color.a); }\n");
     Look look = folder.look("color_blit");
     if (composed)
-      look.entries.front().composition = {
-          {"opacity", "0.75"}, {"blend", "\"lighten\""}, {"mask", "fx.mask.layer { layer = \"matte\", channel = \"r\" }"}};
+      look.entries.front().composition = {{"opacity", "0.75"},
+                                          {"blend", "\"lighten\""},
+                                          {"mask", "fx.mask.layer { layer = \"matte\", channel = \"r\" }"}};
     lab().forget();
     return outcome_of(situation(look, "error_composed", {"display", {16, 16}, 1}));
   };
