@@ -26,7 +26,8 @@ struct PlayArguments {
   DeviceArguments device;
   ExecutionArguments execution;
   std::vector<std::string> inputs;
-  std::string frames, layer, depth, normal, motion;
+  LayerArguments layers;
+  std::string frames;
   std::string other, show, loop, cache = "2G", screenshot, report;
   std::optional<double> fps;
   double speed = 1;
@@ -46,16 +47,7 @@ void add_input(CLI::App& app, PlayArguments& a) {
                  "Frames to play: 1-24, 1-24x2, 1,5,10-12 (default: all; missing ones hold the one before)")
       ->type_name("LIST")
       ->group(group);
-  app.add_option("--layer", a.layer, "Colour layer or part")->type_name("NAME")->group(group);
-  app.add_option("--depth", a.depth, "Depth from another file or channel; FILE may be a pattern")
-      ->type_name("FILE[:CHANNEL]")
-      ->group(group);
-  app.add_option("--normal", a.normal, "Normals from another file or layer; FILE may be a pattern")
-      ->type_name("FILE[:LAYER]")
-      ->group(group);
-  app.add_option("--motion", a.motion, "Motion vectors from another file or layer; FILE may be a pattern")
-      ->type_name("FILE[:LAYER]")
-      ->group(group);
+  a.layers.add(app);
   app.add_option("--cache", a.cache, "Memory for pictures read ahead (default 2G)")->type_name("SIZE")->group(group);
   app.add_option("--readers", a.readers, "Threads that read ahead (default 2)")
       ->check(CLI::Range(1, 64))
@@ -111,11 +103,9 @@ Result<PlayerOptions> player_options(const PlayArguments& a) {
   options.live.watch.poll = a.poll;
   options.footage.inputs = a.inputs;
   options.footage.frames = a.frames;
-  options.footage.read.layer = a.layer;
+  options.footage.read.layer = a.layers.layer;
   options.footage.read.max_bytes = options.live.stack.max_memory;
-  if (!a.depth.empty()) options.footage.read.depth = parse_layer_choice(a.depth);
-  if (!a.normal.empty()) options.footage.read.normal = parse_layer_choice(a.normal);
-  if (!a.motion.empty()) options.footage.read.motion = parse_layer_choice(a.motion);
+  a.layers.choose(options.footage.read);
   auto cache = parse_memory(a.cache);
   if (!cache) {
     Error error = std::move(cache).error();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "graph/graph.h"
@@ -12,9 +13,12 @@ namespace afterglow {
 /// Why the passes of a kernel behind its first were joined to it.
 inline constexpr const char* kJoinReason = "read only their own pixel of an image that nobody else reads";
 
-std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& title);
-std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& title);
-std::string graph_json(const Graph& graph, const Plan& plan, const std::string& title);
+/// What there is to say about entries: by name, "opacity 0.5, mask luma".
+using Notes = std::vector<std::pair<std::string, std::string>>;
+
+std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& title, const Notes& notes);
+std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& title, const Notes& notes);
+std::string graph_json(const Graph& graph, const Plan& plan, const std::string& title, const Notes& notes);
 
 /// What was skipped, by the script and by the plan.
 std::vector<Skipped> all_skipped(const Graph& graph, const Plan& plan);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <list>
-#include <set>
 #include <utility>
 
 #include "core/stopwatch.h"
@@ -60,11 +59,10 @@ bool same_program(const FrameWork& a, const FrameWork& b) {
 }
 
 ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
-                             const ExecutionConfig& config) {
+                             const ExecutionConfig& config, std::set<Hash>& checked) {
   ProgramOptions options{.config = config, .source_is_storage = true, .codes = work.codes, .flag_non_finite = true};
   fit_to_cpu_driver(options.config);
   ShaderFindings found;
-  std::set<Hash> checked;
   for (const bool compute : {false, true}) {  // both ways of passes that have two
     options.config.compute = compute;
     for (const auto& kernel : make_plan(work.graph, options.config).kernels) {

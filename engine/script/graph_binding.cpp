@@ -269,9 +269,7 @@ int graph_cryptomatte(lua_State* lua) {
   for (const auto& [name, id] : manifest) known.push_back(name);
   lua_createtable(lua, kMost, 0);
   int count = 0;
-  for (const auto& part : split(names, ',')) {
-    const std::string name = trim(part);
-    if (name.empty()) continue;
+  for (const auto& name : cryptomatte_names(names)) {
     if (count == static_cast<int>(kMost))
       throw failure(fmt::format("effect '{}': more than {} names of a cryptomatte", graph.entry().effect, kMost), {},
                     "further ones in a second mask, added by +");
