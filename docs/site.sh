@@ -16,6 +16,7 @@ pages=(
   "docs/composition.md|Composing looks"
   "docs/writing_effects.md|Writing an effect"
   "docs/tone_mapping.md|Tone curves"
+  "docs/alpha.md|Soft edges"
   "docs/ocio.md|OpenColorIO"
   "docs/embedding.md|Embedding"
   "docs/determinism.md|The same pixels"

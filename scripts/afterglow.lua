@@ -71,9 +71,10 @@ local core = ... -- native functions: engine/script/library.cpp
 ---booleans, arrays of numbers. Every input and every `uniform` must be given; a `layout(constant_id = …)` constant may be.
 ---@class afterglow.Pass
 ---@field shader string               shaders/NAME.glsl
----@field source? afterglow.Image     the colour of a pixel shader (`apply`); the sampler of that name of a `sample_at` shader
----@field size? afterglow.Image|integer[]  of the new image, for `sample_at` shaders; default: that of `source`
----@field reach? number               of `sample_at` shaders: how many texels from the pixel's own place it reads at most; default: anywhere
+---@field compute? string              of a `sample_at` shader: a `compute_at` shader with the same inputs and parameters that makes the same image
+---@field source? afterglow.Image     the colour of a pixel shader (`apply`); the sampler of that name of the others
+---@field size? afterglow.Image|integer[]  of the new image, for `sample_at` and `compute_at` shaders; default: that of `source`
+---@field reach? number               of `sample_at` and `compute_at` shaders: how many texels from the pixel's own place it reads at most; default: anywhere
 ---@field name? string                default: the last part of the shader's name
 ---@field [string] any
 
@@ -123,12 +124,12 @@ fx.extend = core.extend
 ---Effects that run together, in their own order: the group's result is put over what it was given, by its `opacity`, `blend` and
 ---`mask`, as that of one effect. It stands where the first of its effects would, or where `at` and `order` say.
 ---Errors: other keys, items that are no effects, lists of such, or stacks without volumes.
----@type fun(group: { opacity?: number|afterglow.Moving, blend?: string, mask?: afterglow.Mask|number, at?: string, order?: integer, enabled?: boolean, name?: string, [integer]: any }): afterglow.Entry
+---@type fun(group: { opacity?: number|afterglow.Moving, blend?: afterglow.Blend|afterglow.OfTime, mask?: afterglow.Mask|number, at?: string, order?: integer, enabled?: boolean, name?: string, [integer]: any }): afterglow.Entry
 fx.group = core.group
 
 ---From one look to another: `amount` 0 is the first, 1 the second. Each is a stack, a group, an effect or a list of effects. The
 ---other keys are those of a group.
----@type fun(mix: { [1]: any, [2]: any, amount?: number|afterglow.Moving, opacity?: number|afterglow.Moving, blend?: string, mask?: afterglow.Mask|number, at?: string, order?: integer, enabled?: boolean, name?: string }): afterglow.Entry
+---@type fun(mix: { [1]: any, [2]: any, amount?: number|afterglow.Moving, opacity?: number|afterglow.Moving, blend?: afterglow.Blend|afterglow.OfTime, mask?: afterglow.Mask|number, at?: string, order?: integer, enabled?: boolean, name?: string }): afterglow.Entry
 fx.mix = core.mix
 
 ---Arguments of the preset: names and setting types. Returns a table of their values, the default ones or those of `--arg NAME=VALUE`.
@@ -143,7 +144,7 @@ function fx.args(arguments) return core.read_only(core.args(arguments), "argumen
 ---@operator sub(afterglow.Mask|number): afterglow.Mask
 ---@operator mul(afterglow.Mask|number): afterglow.Mask
 
----@type table<string, fun(settings: table): afterglow.Mask>
+---@type afterglow.Masks
 fx.mask = core.mask
 
 ---Settings that hold in a part of the scene, or everywhere. Volumes are blended in by ascending `priority` (default 0), equal ones

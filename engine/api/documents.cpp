@@ -13,13 +13,6 @@ using Json = nlohmann::ordered_json;
 /// Names of files and texts of scripts are any bytes: what is no UTF-8 becomes U+FFFD.
 std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-Json volume_json(const VolumeState& volume) {
-  Json out{{"name", volume.name}, {"priority", volume.priority}, {"weight", volume.weight}, {"factor", volume.factor}};
-  if (volume.distance) out["distance"] = *volume.distance;
-  if (!volume.reason.empty()) out["reason"] = volume.reason;
-  return out;
-}
-
 }  // namespace
 
 std::string device_document(const Device& device) {
@@ -64,6 +57,7 @@ std::string explain_document(const Backend& backend) {
     const auto reason = std::ranges::find(skipped, entries[i].name, &Skipped::name);
     item["state"] = reason == skipped.end() ? "runs" : "skipped";
     if (reason != skipped.end()) item["reason"] = reason->reason;
+    if (i < explanation.entries.size()) add_composition(item, entries[i], explanation.entries[i]);
     item["settings"] = Json::array();
     if (i < explanation.entries.size())
       for (const auto& setting : explanation.entries[i].settings) item["settings"].push_back(history_json(setting));

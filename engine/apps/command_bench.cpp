@@ -30,10 +30,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BenchArguments {
-  std::vector<std::string> presets, overrides, paths, vary;
+  std::vector<std::string> presets, vary;
+  PresetArguments preset;  // --set and --path alone
   DeviceArguments device;
-  std::optional<double> max_error;
-  std::string calibration, sizes, variants, picture, out = "bench", goals, compare;
+  ExecutionArguments execution;  // --max-error and --calibration alone
+  std::string sizes, variants, picture, out = "bench", goals, compare;
   int repeat = 9, scaling = 0;
   double threshold = 1.15;
   bool quick = false, reload = false, temporal = false;
@@ -183,7 +184,7 @@ Result<void> measure_all_reloads(Bench& bench) {
   const int edits = a.quick ? kQuickEdits : kEdits;
   bench.total = a.presets.size() * sizes.size() * static_cast<std::size_t>(2 * edits);
   for (const auto& name : a.presets) {
-    AFTERGLOW_TRY(const fs::path preset, find_preset_file(name, {a.paths.begin(), a.paths.end()}));
+    AFTERGLOW_TRY(const fs::path preset, find_preset_file(name, {a.preset.paths.begin(), a.preset.paths.end()}));
     for (const Size size : sizes) {
       std::size_t done = 0;
       const ReloadBenchOptions options{
@@ -214,10 +215,10 @@ Result<void> measure_steadiness(Bench& bench) {
   StabilityRequest request{
       .presets = {}, .options = {}, .variants = {}, .sizes = {}, .shot = a.picture, .quick = a.quick};
   for (const auto& name : a.presets) {
-    AFTERGLOW_TRY(const fs::path preset, find_preset_file(name, {a.paths.begin(), a.paths.end()}));
+    AFTERGLOW_TRY(const fs::path preset, find_preset_file(name, {a.preset.paths.begin(), a.preset.paths.end()}));
     request.presets.push_back(preset);
   }
-  request.options.device = a.device.options();
+  AFTERGLOW_TRY(request.options.device, a.device.options());
   request.options.stack = bench.base;
   AFTERGLOW_TRY(const auto chosen, parse_variants("chosen"));
   AFTERGLOW_TRY(request.variants, vary_settings(chosen, a.vary));
@@ -246,15 +247,13 @@ Result<void> run_bench(const BenchArguments& a, Console& console) {
   if (a.presets.empty() && a.goals.empty())
     return Error{ErrorKind::usage, "nothing to measure", "afterglow bench", 0, "one or more PRESETs, --goals FILE"};
   Bench bench{.arguments = a, .console = console, .device = nullptr, .base = {}, .report = {}};
-  PresetArguments preset;
-  preset.overrides = a.overrides;
-  preset.paths = a.paths;
-  AFTERGLOW_TRY(bench.base.preset, preset.options());
-  bench.base.max_error = a.max_error;
-  bench.base.calibration = a.calibration;
+  AFTERGLOW_TRY(bench.base.preset, a.preset.options());
+  bench.base.max_error = a.execution.max_error;
+  bench.base.calibration = a.execution.calibration;
   bench.base.cache_folder = cache_folder();
   bench.base.max_memory = 64ull << 30;  // what does not fit is the device's to say
-  AFTERGLOW_TRY(bench.device, Device::create(a.device.options(), console.diagnostics()));
+  AFTERGLOW_TRY(const DeviceOptions device, a.device.options());
+  AFTERGLOW_TRY(bench.device, Device::create(device, console.diagnostics()));
   const DeviceInfo& info = bench.device->info();
   bench.report = {.version = version(),
                   .device = info.name,
@@ -277,19 +276,17 @@ Result<void> run_bench(const BenchArguments& a, Console& console) {
 }
 
 void add_options(CLI::App& app, BenchArguments& a) {
-  const auto list = [&](const char* name, std::vector<std::string>& into, const char* help, const char* type) {
-    app.add_option(name, into, help)->type_name(type)->expected(1)->allow_extra_args(false)->take_all();
-  };
   app.add_option("PRESET", a.presets, "Looks to measure");
   app.add_option("--sizes", a.sizes, "Sizes of the picture (default 1920x1080,3840x2160)")->type_name("WxH,…");
   app.add_option("--variants", a.variants,
                  "Ways of execution, as `devices` and --report name them, or plain16f, plain32f, chosen (what `run` "
                  "does), watched (the same, looking for values that are not finite, as `run` does)")
       ->type_name("NAME,…");
-  list("--set", a.overrides, "Overrides one setting for all that is measured (repeatable)", "EFFECT.SETTING=VALUE");
-  list("--vary", a.vary, "Measures each value of a setting; errors are against the preset as it is (repeatable)",
-       "EFFECT.SETTING=VALUE,…");
-  list("--path", a.paths, "Folder with effects/ and shaders/ of yours (repeatable)", "FOLDER");
+  add_repeatable(app, "--vary", a.vary,
+                 "Measures each value of a setting; errors are against the preset as it is (repeatable)",
+                 "EFFECT.SETTING=VALUE,…");
+  a.preset.add_overrides(app);
+  a.preset.add_paths(app);
   app.add_option("--scaling", a.scaling, "Also squares of 256, 512, … up to this side, as `run` executes them")
       ->check(CLI::Range(0, 16384))
       ->type_name("SIDE");
@@ -311,8 +308,8 @@ void add_options(CLI::App& app, BenchArguments& a) {
   app.add_option("--threshold", a.threshold, "How many times as slow is too slow (default 1.15)")
       ->check(CLI::PositiveNumber)
       ->type_name("R");
-  app.add_option("--max-error", a.max_error, "Allowed error, for `chosen`")->check(CLI::PositiveNumber)->type_name("E");
-  app.add_option("--calibration", a.calibration, "Table that `chosen` is taken from")->type_name("FILE");
+  a.execution.add_max_error(app);
+  a.execution.add_calibration(app);
   a.device.add(app);
 }
 

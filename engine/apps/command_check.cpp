@@ -40,15 +40,6 @@ std::string origin_text(const SettingHistory& setting) {
   return setting.kind == "fixed" ? "" : "(" + setting.kind + ")";
 }
 
-// "opacity 0.5, blend screen, mask luma * radial", or what of it is said.
-std::string composition_text(const StackEntry& entry) {
-  std::string out;
-  if (entry.opacity != 1) out += fmt::format(", opacity {:.6g}", entry.opacity);
-  if (entry.blend != "normal") out += ", blend " + entry.blend;
-  if (entry.mask) out += ", mask " + entry.mask->text();
-  return out;
-}
-
 std::string entry_text(const Look& look, const StackEntry& entry, std::size_t place) {
   const EntrySpace& space = look.spaces[place - 1];
   std::string out = fmt::format("{}{}. {}  at {}, order {}; {}{}{}{}\n", std::string(2 * entry.depth, ' '), place,
@@ -57,8 +48,10 @@ std::string entry_text(const Look& look, const StackEntry& entry, std::size_t pl
   if (!space.warning.empty()) out += fmt::format("   warning: {}\n", space.warning);
   if (const auto* reason = skip_reason(look, entry)) out += fmt::format("   skipped: {}\n", *reason);
   Table table;
-  for (const auto& setting : look.build.explanation->entries[place - 1].settings)
-    table.add({setting.name, setting.value.text(), origin_text(setting)});
+  const EntryHistory& history = look.build.explanation->entries[place - 1];
+  for (const auto& setting : history.settings) table.add({setting.name, setting.value.text(), origin_text(setting)});
+  for (const auto& setting : history.composition)
+    if (is_said(setting)) table.add({setting.name, setting.value.text(), origin_text(setting)});
   return out + table.text("   ");
 }
 
@@ -71,12 +64,13 @@ std::vector<std::string> shadow_notes(const Look& look) {
     for (const auto& file : schema.shadowed)
       notes.push_back(fmt::format("{} shadows {}", schema.file.string(), file.string()));
   }
-  for (const auto& pass : look.build.graph.passes) {
-    if (pass.shader.empty() || !seen.insert("shader " + pass.shader).second) continue;
-    const auto files = look.shaders->path().find_shader(pass.shader + ".glsl");
-    for (std::size_t i = 1; i < files.size(); ++i)
-      notes.push_back(fmt::format("{} shadows {}", files[0].string(), files[i].string()));
-  }
+  for (const auto& pass : look.build.graph.passes)
+    for (const auto& name : shaders_of(pass)) {
+      if (!seen.insert("shader " + name).second) continue;
+      const auto files = look.shaders->path().find_shader(name + ".glsl");
+      for (std::size_t i = 1; i < files.size(); ++i)
+        notes.push_back(fmt::format("{} shadows {}", files[0].string(), files[i].string()));
+    }
   return notes;
 }
 
@@ -105,9 +99,7 @@ std::string as_json(const Look& look, const std::string& file, const std::vector
               {"order", entry.order}, {"enabled", entry.enabled}, {"required", entry.required}};
     for (const auto& [name, value] : entry.settings) item["settings"][name] = Json(value_json(value));
     item["changed"] = entry.changed;
-    item["opacity"] = entry.opacity;
-    item["blend"] = entry.blend;
-    if (entry.mask) item["mask"] = entry.mask->text();
+    add_composition(item, entry, look.build.explanation->entries[i]);
     if (entry.members > 0) item["members"] = entry.members;
     item["light"] = space_json(look.spaces[i]);
     if (const auto* reason = skip_reason(look, entry)) item["skipped"] = *reason;

@@ -59,12 +59,11 @@ Command add_devices_command(CLI::App& program) {
       program.add_subcommand("devices", "List the Vulkan devices that --device can choose from, the preferred first");
   auto json = std::make_shared<bool>(false);
   app->add_flag("--json", *json, "Print JSON");
-  auto file = std::make_shared<std::string>();
-  app->add_option("--calibration", *file,
-                  "Table of `afterglow calibrate` (default: the one that comes with the program)")
-      ->type_name("FILE");
-  return {app, [json, file](Console&) -> Result<void> {
-            AFTERGLOW_TRY(const auto calibration, file->empty() ? Calibration::shipped() : Calibration::load(*file));
+  auto execution = std::make_shared<ExecutionArguments>();  // --calibration alone
+  execution->add_calibration(*app);
+  return {app, [json, execution](Console&) -> Result<void> {
+            const std::string& file = execution->calibration;
+            AFTERGLOW_TRY(const auto calibration, file.empty() ? Calibration::shipped() : Calibration::load(file));
             AFTERGLOW_TRY(const auto devices, list_devices());
             output("{}", *json ? as_json(devices, calibration) : as_table(devices, calibration));
             return {};

@@ -20,10 +20,12 @@
 namespace afterglow {
 namespace {
 
+const std::string kMask = "mask.";  // before the names of masks
+
 struct EffectsArguments {
   std::string name;
   PresetArguments preset;  // --path alone
-  bool json = false, markdown = false, completion = false;
+  bool json = false, markdown = false, completion = false, masks = false;
 };
 
 nlohmann::json space_json(const EffectSchema& effect, LightSpace space) {
@@ -46,19 +48,38 @@ nlohmann::json as_json(const EffectSchema& effect) {
   return out;
 }
 
-std::string list_text(const std::vector<EffectSchema>& effects) {
-  Table table({"effect", "at", "order", "what it does"});
-  for (const auto& effect : effects) table.add({effect.name, effect.at, std::to_string(effect.order), effect.doc});
-  return table.text() + "\n`afterglow effects NAME` lists an effect's settings.\n";
+nlohmann::json mask_json(const EffectSchema& mask) {
+  nlohmann::json out = as_json(mask);
+  for (const char* key : {"at", "order", "needs_light", "makes_light"}) out.erase(key);
+  out["kind"] = "mask";
+  return out;
 }
 
-std::string effect_text(const EffectSchema& effect) {
+std::string list_text(const std::vector<EffectSchema>& effects, const std::vector<EffectSchema>& masks) {
+  Table table({"effect", "at", "order", "what it does"});
+  for (const auto& effect : effects) table.add({effect.name, effect.at, std::to_string(effect.order), effect.doc});
+  Table others({"mask", "what it selects"});
+  for (const auto& mask : masks) others.add({kMask + mask.name, mask.doc});
+  return table.text() + "\n" + others.text() +
+         "\nEvery effect takes opacity, blend and mask (`mask = fx.mask.NAME { … }`) besides its settings.\n"
+         "`afterglow effects NAME` lists the settings of an effect, or of a mask (mask.luma).\n";
+}
+
+std::string settings_text(const EffectSchema& effect) {
   Table table({"setting", "type", "allowed", "default", "what it does"});
   for (const auto& setting : effect.settings)
     table.add(
         {setting.name, type_text(setting.type), allowed_text(setting), setting.default_value.text(), setting.doc});
+  return table.text("  ");
+}
+
+std::string mask_text(const EffectSchema& mask) {
+  return fmt::format("{}{}: {}\n{}\n\n{}", kMask, mask.name, mask.doc, mask.file.string(), settings_text(mask));
+}
+
+std::string effect_text(const EffectSchema& effect) {
   std::string out = fmt::format("{}: {}\nat {}, order {}; {}\n{}\n\n{}", effect.name, effect.doc, effect.at,
-                                effect.order, effect.file.string(), space_text(effect), table.text("  "));
+                                effect.order, effect.file.string(), space_text(effect), settings_text(effect));
   if (!effect.holds.empty()) {
     std::vector<std::string> promises;
     for (const auto& hold : effect.holds) promises.push_back(hold_text(hold));
@@ -74,25 +95,34 @@ Result<void> run_effects(const EffectsArguments& arguments, Console& console) {
   if (effects.empty())
     return Error{ErrorKind::script, "no effects were found", "afterglow effects", 0,
                  "an installation with scripts/effects (AFTERGLOW_HOME names its folder), --path, AFTERGLOW_PATH"};
+  AFTERGLOW_TRY(auto masks, list_masks(search_path_for({}, extra), console.diagnostics()));
   if (!arguments.name.empty()) {
     std::vector<std::string> names;
     for (const auto& effect : effects) names.push_back(effect.name);
+    for (const auto& mask : masks) names.push_back(kMask + mask.name);
     std::erase_if(effects, [&](const auto& effect) { return effect.name != arguments.name; });
-    if (effects.empty())
+    std::erase_if(masks, [&](const auto& mask) { return kMask + mask.name != arguments.name; });
+    if (effects.empty() && masks.empty())
       return Error{ErrorKind::usage,    fmt::format("unknown effect '{}'", arguments.name),
                    "afterglow effects", 0,
                    join(names),         nearest_name(arguments.name, names)};
   }
   if (arguments.completion) {
-    output("{}", completion_text(effects));
+    output("{}", completion_text(effects, masks));
   } else if (arguments.markdown) {
     for (const auto& effect : effects) output("{}", effect_page(effect));
   } else if (arguments.json) {
     auto list = nlohmann::json::array();
-    for (const auto& effect : effects) list.push_back(as_json(effect));
+    if (!arguments.masks)
+      for (const auto& effect : effects) list.push_back(as_json(effect));
+    if (arguments.masks || effects.empty())
+      for (const auto& mask : masks) list.push_back(mask_json(mask));
     output("{}", json_text(list));
   } else {
-    output("{}", printable(arguments.name.empty() ? list_text(effects) : effect_text(effects.front()), true));
+    output("{}", printable(arguments.name.empty() ? list_text(effects, masks)
+                           : effects.empty()      ? mask_text(masks.front())
+                                                  : effect_text(effects.front()),
+                           true));
   }
   return {};
 }
@@ -102,7 +132,8 @@ Result<void> run_effects(const EffectsArguments& arguments, Console& console) {
 Command add_effects_command(CLI::App& program) {
   auto* app = program.add_subcommand("effects", "List the effects, or the settings of one");
   auto arguments = std::make_shared<EffectsArguments>();
-  app->add_option("NAME", arguments->name, "Effect whose settings to show");
+  app->add_option("NAME", arguments->name, "Effect whose settings to show, or mask (mask.luma)");
+  app->add_flag("--masks", arguments->masks, "With --json: the masks instead of the effects");
   app->add_flag("--json", arguments->json, "Print JSON");
   app->add_flag("--markdown", arguments->markdown, "Print documents in Markdown");
   app->add_flag("--completion", arguments->completion, "Print completion data for lua-language-server (scripts/_meta)");

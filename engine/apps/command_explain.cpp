@@ -36,8 +36,7 @@ Result<void> choose(const std::string& text, ExplainView& view) {
   if (!entry) return wrong(fmt::format("the stack has no entry '{}'", view.entry), view.entry, names);
   if (dot == std::string::npos) return {};
   view.setting = text.substr(dot + 1);
-  names.clear();
-  for (const auto& [name, value] : entry->settings) names.push_back(name);
+  names = view.look.preset->setting_names(*entry);
   if (std::ranges::find(names, view.setting) == names.end())
     return wrong(fmt::format("'{}' has no setting '{}'", view.entry, view.setting), view.setting, names);
   return {};

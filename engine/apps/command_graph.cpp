@@ -7,6 +7,7 @@
 #include "apps/graph_view.h"
 #include "apps/look.h"
 #include "apps/output.h"
+#include "apps/setting_text.h"
 #include "core/file.h"
 
 namespace afterglow {
@@ -33,9 +34,12 @@ Result<void> run_graph(const GraphArguments& arguments, Console& console) {
   AFTERGLOW_TRY(const std::string format, format_of(arguments));
   AFTERGLOW_TRY(const Look look, load_look(arguments.preset, arguments.picture, console));
   const std::string& title = look.preset->name();
-  const std::string text = format == "svg"    ? graph_svg(look.build.graph, look.plan, title)
-                           : format == "json" ? graph_json(look.build.graph, look.plan, title)
-                                              : graph_dot(look.build.graph, look.plan, title);
+  Notes notes;
+  for (const auto& entry : *look.build.entries)
+    if (const std::string text = composition_text(entry); !text.empty()) notes.emplace_back(entry.name, text.substr(2));
+  const std::string text = format == "svg"    ? graph_svg(look.build.graph, look.plan, title, notes)
+                           : format == "json" ? graph_json(look.build.graph, look.plan, title, notes)
+                                              : graph_dot(look.build.graph, look.plan, title, notes);
   if (!arguments.output.empty()) return write_file_atomically(arguments.output, text);
   output("{}", text);
   return {};

@@ -26,7 +26,8 @@ struct PlayArguments {
   DeviceArguments device;
   ExecutionArguments execution;
   std::vector<std::string> inputs;
-  std::string frames, layer, depth, normal, motion;
+  LayerArguments layers;
+  std::string frames;
   std::string other, show, loop, cache = "2G", screenshot, report;
   std::optional<double> fps;
   double speed = 1;
@@ -46,16 +47,7 @@ void add_input(CLI::App& app, PlayArguments& a) {
                  "Frames to play: 1-24, 1-24x2, 1,5,10-12 (default: all; missing ones hold the one before)")
       ->type_name("LIST")
       ->group(group);
-  app.add_option("--layer", a.layer, "Colour layer or part")->type_name("NAME")->group(group);
-  app.add_option("--depth", a.depth, "Depth from another file or channel; FILE may be a pattern")
-      ->type_name("FILE[:CHANNEL]")
-      ->group(group);
-  app.add_option("--normal", a.normal, "Normals from another file or layer; FILE may be a pattern")
-      ->type_name("FILE[:LAYER]")
-      ->group(group);
-  app.add_option("--motion", a.motion, "Motion vectors from another file or layer; FILE may be a pattern")
-      ->type_name("FILE[:LAYER]")
-      ->group(group);
+  a.layers.add(app);
   app.add_option("--cache", a.cache, "Memory for pictures read ahead (default 2G)")->type_name("SIZE")->group(group);
   app.add_option("--readers", a.readers, "Threads that read ahead (default 2)")
       ->check(CLI::Range(1, 64))
@@ -111,11 +103,9 @@ Result<PlayerOptions> player_options(const PlayArguments& a) {
   options.live.watch.poll = a.poll;
   options.footage.inputs = a.inputs;
   options.footage.frames = a.frames;
-  options.footage.read.layer = a.layer;
+  options.footage.read.layer = a.layers.layer;
   options.footage.read.max_bytes = options.live.stack.max_memory;
-  if (!a.depth.empty()) options.footage.read.depth = parse_layer_choice(a.depth);
-  if (!a.normal.empty()) options.footage.read.normal = parse_layer_choice(a.normal);
-  if (!a.motion.empty()) options.footage.read.motion = parse_layer_choice(a.motion);
+  a.layers.choose(options.footage.read);
   auto cache = parse_memory(a.cache);
   if (!cache) {
     Error error = std::move(cache).error();
@@ -156,7 +146,8 @@ Result<void> check_shown(const PlayArguments& a, Player& player) {
 
 Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& options, Console& console) {
   const auto start = Clock::now();
-  AFTERGLOW_TRY(const auto device, Device::create(a.device.options(), console.diagnostics()));
+  AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
+  AFTERGLOW_TRY(const auto device, Device::create(asked, console.diagnostics()));
   AFTERGLOW_TRY(const auto player, Player::open(*device, options, console.diagnostics()));
   player->transport().set_speed(a.speed, player->now());
   HeadlessOptions headless;
@@ -203,7 +194,8 @@ Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& optio
     if (a.stats) output("{}", play_report_text(figures, player));
     if (!a.report.empty()) reported = write_file_atomically(a.report, play_report_json(figures, player));
   };
-  AFTERGLOW_CHECK(play_in_window(options, a.device.options(), window, console, report));
+  AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
+  AFTERGLOW_CHECK(play_in_window(options, asked, window, console, report));
   return reported;
 }
 

@@ -31,7 +31,8 @@ struct RunArguments {
   DeviceArguments device;
   ExecutionArguments execution;
   FrameListRequest files;
-  std::string layer, input_space, depth, normal, motion, size, region;
+  LayerArguments layers;
+  std::string input_space, size, region;
   std::string type = "auto", dither = "auto", compression, nan_policy = "zero";
   int png_level = 1, jpeg_quality = 95;
   bool keep_layers = false, resume = false, fail_fast = false;
@@ -53,21 +54,10 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->type_name("OUTPUT")
       ->required();
   const std::string input = "Input", sequence = "Sequences", output = "Output";
-  app.add_option("--layer", a.layer, "Colour layer or part (default: the usual names, Combined and plain R,G,B first)")
-      ->type_name("NAME")
-      ->group(input);
+  a.layers.add(app);
   app.add_option("--input-space", a.input_space,
                  "Colour space that pictures are stored in, whatever they say: " + space_list())
       ->type_name("NAME")
-      ->group(input);
-  app.add_option("--depth", a.depth, "Depth from another file or channel; FILE may be a pattern")
-      ->type_name("FILE[:CHANNEL]")
-      ->group(input);
-  app.add_option("--normal", a.normal, "Normals from another file or layer; FILE may be a pattern")
-      ->type_name("FILE[:LAYER]")
-      ->group(input);
-  app.add_option("--motion", a.motion, "Motion vectors from another file or layer; FILE may be a pattern")
-      ->type_name("FILE[:LAYER]")
       ->group(input);
   app.add_option(
          "--size", a.size,
@@ -174,14 +164,15 @@ PixelOptions pixel_options(const RunArguments& a) {
   const auto number = [](std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; };
   return {{"--set", join(a.preset.overrides, " ")},
           {"--at", a.preset.at},
+          {"--arg", join(a.preset.values, " ")},
           {"--precision", a.execution.precision},
           {"--max-error", number(a.execution.max_error)},
           {"--reference", flag(a.execution.reference)},
-          {"--layer", a.layer},
+          {"--layer", a.layers.layer},
           {"--input-space", a.input_space},
-          {"--depth", a.depth},
-          {"--normal", a.normal},
-          {"--motion", a.motion},
+          {"--depth", a.layers.depth},
+          {"--normal", a.layers.normal},
+          {"--motion", a.layers.motion},
           {"--size", a.size},
           {"--region", a.region},
           {"--nan-policy", a.nan_policy == "neighbour" ? a.nan_policy : ""},
@@ -216,7 +207,7 @@ struct Run {
 
 Result<SessionOptions> session_options(const RunArguments& a) {
   SessionOptions options;
-  options.device = a.device.options();
+  AFTERGLOW_TRY(options.device, a.device.options());
   AFTERGLOW_TRY(options.stack, a.execution.options());
   AFTERGLOW_TRY(options.stack.preset, a.preset.options());
   options.stack.flag_non_finite = true;
@@ -237,9 +228,7 @@ WriteOptions write_options(const RunArguments& a) {
 
 FrameListRequest files_of(const RunArguments& a) {
   FrameListRequest request = a.files;
-  if (!a.depth.empty()) request.depth = parse_layer_choice(a.depth);
-  if (!a.normal.empty()) request.normal = parse_layer_choice(a.normal);
-  if (!a.motion.empty()) request.motion = parse_layer_choice(a.motion);
+  a.layers.choose(request);
   return request;
 }
 
@@ -331,7 +320,7 @@ Result<void> run_frames(Run& run, const SessionOptions& options) {
   run.loop.fail_fast = a.fail_fast || run.loop.nan_policy == NanPolicy::fail;
   run.loop.fps = a.fps;
   run.loop.max_memory = options.stack.max_memory;
-  run.loop.read.layer = a.layer;
+  run.loop.read.layer = a.layers.layer;
   run.loop.read.max_bytes = options.stack.max_memory;
   if (!a.size.empty()) {
     AFTERGLOW_TRY(run.loop.size, parse_size_wish(a.size));

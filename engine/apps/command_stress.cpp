@@ -27,11 +27,13 @@ constexpr std::uint64_t kShortCases = 1500;
 constexpr Size kGrowthSize{256, 256}, kShortGrowthSize{64, 64};
 
 struct StressArguments {
-  std::vector<std::string> presets, effects, paths, devices;
+  std::vector<std::string> presets, effects, devices;
+  PresetArguments preset;  // --path alone
+  DeviceArguments device;  // --validate alone
   std::uint64_t seed = 1, cases = 0;
   std::string duration, report, out = "stress", repeat;
   std::vector<std::string> digests_of;
-  bool quick = false, list = false, validate = false;
+  bool quick = false, list = false;
 };
 
 /// "90", "90s", "10m", "2h" in seconds. Errors: usage.
@@ -63,7 +65,7 @@ void print_list() {
   output("{}\n{}", checks.text(), pictures.text());
 }
 
-std::vector<fs::path> extra_paths(const StressArguments& a) { return {a.paths.begin(), a.paths.end()}; }
+std::vector<fs::path> extra_paths(const StressArguments& a) { return {a.preset.paths.begin(), a.preset.paths.end()}; }
 
 /// Effects by name, presets whole; without any, every effect there is.
 Result<std::vector<stress::Subject>> subjects_of(const StressArguments& a, Console& console) {
@@ -90,11 +92,11 @@ struct Opened {
 };
 
 Result<Opened> open(const StressArguments& a, const std::string& name, Diagnostics& diagnostics) {
-  DeviceArguments device;
+  DeviceArguments device = a.device;
   device.device = name;
-  device.validate = a.validate;
   Opened out;
-  AFTERGLOW_TRY(out.device, Device::create(device.options(), diagnostics));
+  AFTERGLOW_TRY(const DeviceOptions asked, device.options());
+  AFTERGLOW_TRY(out.device, Device::create(asked, diagnostics));
   out.device->use_pipeline_cache((cache_folder() / "pipelines").string());
   AFTERGLOW_TRY(out.lab, stress::Lab::create(*out.device, cache_folder(), diagnostics));
   return out;
@@ -128,7 +130,7 @@ std::vector<std::string> same_arguments(const StressArguments& a, const std::str
   std::vector<std::string> out{"stress"};
   for (const auto& preset : a.presets) out.push_back(preset);
   for (const auto& effect : a.effects) out.insert(out.end(), {"--effect", effect});
-  for (const auto& path : a.paths) out.insert(out.end(), {"--path", path});
+  for (const auto& path : a.preset.paths) out.insert(out.end(), {"--path", path});
   out.insert(out.end(), {"--seed", std::to_string(a.seed), "--device", device, "-q"});
   return out;
 }
@@ -248,12 +250,9 @@ Result<void> run_stress(const StressArguments& a, Console& console) {
 }
 
 void add_options(CLI::App& app, StressArguments& a) {
-  const auto list = [&](const char* name, std::vector<std::string>& into, const char* help, const char* type) {
-    return app.add_option(name, into, help)->type_name(type)->expected(1)->allow_extra_args(false)->take_all();
-  };
   app.add_option("PRESET", a.presets, "Whole looks to try; without any, and without --effect: every effect");
-  list("--effect", a.effects, "Only this effect (repeatable)", "NAME");
-  list("--path", a.paths, "Folder with effects/ and shaders/ of yours (repeatable)", "FOLDER");
+  add_repeatable(app, "--effect", a.effects, "Only this effect (repeatable)", "NAME");
+  a.preset.add_paths(app);
   app.add_option("--seed", a.seed, "What is tried is made from this number alone (default 1)")->type_name("N");
   app.add_option("--cases", a.cases, "End after so many cases")->check(CLI::PositiveNumber)->type_name("N");
   app.add_option("--for", a.duration,
@@ -266,9 +265,10 @@ void add_options(CLI::App& app, StressArguments& a) {
   app.add_option("--repeat", a.repeat, "Run a case again that was kept; exit code 1 when it still fails")
       ->type_name("FOLDER");
   app.add_flag("--list", a.list, "List checks and pictures");
-  list("--device", a.devices, "Device to try, see `devices` (repeatable; default auto)", "NAME");
-  app.add_flag("--validate", a.validate, "Vulkan validation with synchronization checks (also AFTERGLOW_VALIDATE=1)");
-  list("--digests-of", a.digests_of, "", "N")->group("");  // how the program asks another process of itself
+  add_repeatable(app, "--device", a.devices, "Device to try, see `devices` (repeatable; default auto)", "NAME");
+  a.device.add_validate(app);
+  add_repeatable(app, "--digests-of", a.digests_of, "", "N")
+      ->group("");  // how the program asks another process of itself
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
 
 std::string fate_text(const Look& look, const PassFate& fate) {
   if (fate.kernel.empty()) return "skipped: " + fate.reason;
-  const std::string what = fmt::format("{} {}", kind_text(fate.pass->kind), size_text(look.build.graph, *fate.pass));
+  const std::string what = fmt::format("{} {}", info_of(fate.pass->kind).name, size_text(look.build.graph, *fate.pass));
   if (*fate.state == 'j') return fmt::format("{}, joined into {}", what, fate.kernel);
   return fate.kernel == fate.pass->name ? what + ", runs" : fmt::format("{}, runs as {}", what, fate.kernel);
 }
@@ -87,18 +87,29 @@ std::string history_text(const Graph& graph, const History& history) {
 std::string entry_text(const ExplainView& view, const StackEntry& entry, const EntryHistory& history,
                        std::size_t place) {
   const auto* reason = skip_reason(view.look, entry.name);
-  std::string out = fmt::format("\n{}. {}  at {}, order {}; {}: {}\n", place, entry.name, entry.at, entry.order,
-                                space_text(view.look.spaces[place - 1]), reason ? "skipped, " + *reason : "runs");
+  std::string out = fmt::format("\n{}. {}  at {}, order {}; {}{}: {}\n", place, entry.name, entry.at, entry.order,
+                                space_text(view.look.spaces[place - 1]), composition_text(entry),
+                                reason ? "skipped, " + *reason : "runs");
   if (const auto& warning = view.look.spaces[place - 1].warning; !warning.empty())
     out += fmt::format("   warning: {}\n", warning);
   Table settings({"setting", "default", "preset", "volumes", "--set", "final"});
   bool any = false;
-  for (const auto& setting : history.settings) {
-    if (!shown(view.setting, setting.name)) continue;
+  const auto add = [&](const std::vector<SettingHistory>& list, bool all) {
+    for (const auto& setting : list) {
+      if (!(view.setting.empty() ? all || is_said(setting) : shown(view.setting, setting.name))) continue;
+      any = true;
+      settings.add({setting.name, setting.default_value.text(), preset_text(setting), volume_steps(setting),
+                    setting.overridden ? setting.overridden->text() : "", setting.value.text()});
+    }
+  };
+  add(history.settings, true);
+  if (entry.mask && shown(view.setting, "mask")) {
     any = true;
-    settings.add({setting.name, setting.default_value.text(), preset_text(setting), volume_steps(setting),
-                  setting.overridden ? setting.overridden->text() : "", setting.value.text()});
+    const bool replaced = history.preset_mask != entry.mask->text();
+    settings.add(
+        {"mask", "everywhere", history.preset_mask, "", replaced ? entry.mask->text() : "", entry.mask->text()});
   }
+  add(history.composition, false);
   if (any) out += settings.text("   ");
   if (view.setting.empty())
     for (const auto& kept : view.look.build.graph.histories)
@@ -107,14 +118,6 @@ std::string entry_text(const ExplainView& view, const StackEntry& entry, const E
   const auto fates = fates_of(view.look, entry.name);
   for (const auto& fate : fates) passes.add({fate.pass->name, fate_text(view.look, fate)});
   return fates.empty() || !view.setting.empty() ? out : out + passes.text("   ");
-}
-
-Json volume_json(const VolumeState& volume) {
-  Json out{{"name", volume.name},         {"file", volume.file},     {"line", volume.line},
-           {"priority", volume.priority}, {"weight", volume.weight}, {"factor", volume.factor}};
-  if (volume.distance) out["distance"] = *volume.distance;
-  if (!volume.reason.empty()) out["reason"] = volume.reason;
-  return out;
 }
 
 }  // namespace
@@ -158,6 +161,7 @@ std::string explain_json(const ExplainView& view) {
     item["state"] = reason ? "skipped" : "runs";
     if (reason) item["reason"] = *reason;
     item["light"] = space_json(view.look.spaces[i]);
+    add_composition(item, entries[i], explanation.entries[i]);
     item["settings"] = Json::array();
     for (const auto& setting : explanation.entries[i].settings)
       if (shown(view.setting, setting.name)) item["settings"].push_back(history_json(setting));

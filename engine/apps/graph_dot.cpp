@@ -28,7 +28,7 @@ std::string node(const Graph& graph, ImageId image) {
 
 std::string pass_line(const Graph& graph, int index) {
   const Pass& pass = graph.passes[static_cast<std::size_t>(index)];
-  std::string label = fmt::format("{}\n{} {}", pass.name, kind_text(pass.kind), size_text(graph, pass));
+  std::string label = fmt::format("{}\n{} {}", pass.name, info_of(pass.kind).name, size_text(graph, pass));
   std::string escaped;
   for (const char c : label)
     escaped += c == '\n' ? std::string("\\n") : c == '"' ? std::string("\\\"") : std::string(1, c);
@@ -62,11 +62,7 @@ std::string size_text(const Graph& graph, const Pass& pass) {
   return fmt::format("{}×{}", size.width, size.height);
 }
 
-const char* kind_text(PassKind kind) {
-  return kind == PassKind::pixel ? "pixel" : kind == PassKind::filter ? "filter" : "sample";
-}
-
-std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& title) {
+std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& title, const Notes& notes) {
   std::string out = fmt::format(
       "digraph {} {{\n  rankdir=TB;\n  node [shape=box, style=rounded, fontname=\"sans-serif\"];\n", quoted(title));
   for (std::size_t i = 0; i < graph.images.size(); ++i)
@@ -97,6 +93,9 @@ std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& t
                          history.previous);
   }
   out += fmt::format("  result [shape=ellipse];\n  {} -> result;\n", node(graph, graph.result));
+  for (std::size_t i = 0; i < notes.size(); ++i)
+    out += fmt::format("  note{} [label={}, shape=note, style=\"\"];\n", i,
+                       quoted(fmt::format("{}: {}", notes[i].first, notes[i].second)));
   const auto skipped = all_skipped(graph, plan);
   for (std::size_t i = 0; i < skipped.size(); ++i)
     out += fmt::format("  skipped{} [label={}, style=\"rounded,dashed\", fontcolor=gray40, color=gray60];\n", i,
@@ -108,7 +107,7 @@ std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& t
   return out + "}\n";
 }
 
-std::string graph_json(const Graph& graph, const Plan& plan, const std::string& title) {
+std::string graph_json(const Graph& graph, const Plan& plan, const std::string& title, const Notes& notes) {
   using Json = nlohmann::ordered_json;
   Json out{{"preset", title},
            {"graph", Json::parse(to_json(graph))},
@@ -120,6 +119,7 @@ std::string graph_json(const Graph& graph, const Plan& plan, const std::string& 
     if (kernel.passes.size() > 1) item["joined_because"] = std::string("the later passes ") + kJoinReason;
     out["kernels"].push_back(std::move(item));
   }
+  for (const auto& [entry, text] : notes) out["composition"][entry] = text;
   for (const auto& skipped : all_skipped(graph, plan))
     out["skipped"].push_back(Json{{"name", skipped.name}, {"reason", skipped.reason}});
   return json_text(out);

@@ -70,7 +70,7 @@ std::vector<Node> nodes_of(const Graph& graph, const Plan& plan) {
     const int kernel = kernel_of(plan, static_cast<int>(p));
     if (kernel < 0) continue;
     Node node{pass.name,
-              fmt::format("{} {}, kernel {}", kind_text(pass.kind), size_text(graph, pass), kernel),
+              fmt::format("{} {}, kernel {}", info_of(pass.kind).name, size_text(graph, pass), kernel),
               tint(plan, kernel),
               {},
               graph.images[static_cast<std::size_t>(pass.output)].size};
@@ -147,13 +147,14 @@ std::string box(const Node& node) {
 
 }  // namespace
 
-std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& title) {
+std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& title, const Notes& notes) {
   auto nodes = nodes_of(graph, plan);
   double width = lay_out(nodes) + 2 * kMargin;
   const auto skipped = all_skipped(graph, plan);
   std::vector<std::string> lines;
   if (std::ranges::any_of(plan.kernels, [](const auto& k) { return k.passes.size() > 1; }))
     lines.push_back(std::string("Passes of one tint are joined into one kernel: the later ones ") + kJoinReason + ".");
+  for (const auto& [entry, text] : notes) lines.push_back(fmt::format("{}: {}", entry, text));
   for (const auto& entry : skipped) lines.push_back(fmt::format("Skipped {}: {}", entry.name, entry.reason));
   for (const auto& line : idle_lines(graph)) lines.push_back("Not run: " + line);
   for (const auto& line : lines) width = std::max(width, 2 * kMargin + 7.5 * static_cast<double>(line.size()));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "graph/graph.h"
@@ -12,9 +13,12 @@ namespace afterglow {
 /// Why the passes of a kernel behind its first were joined to it.
 inline constexpr const char* kJoinReason = "read only their own pixel of an image that nobody else reads";
 
-std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& title);
-std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& title);
-std::string graph_json(const Graph& graph, const Plan& plan, const std::string& title);
+/// What there is to say about entries: by name, "opacity 0.5, mask luma".
+using Notes = std::vector<std::pair<std::string, std::string>>;
+
+std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& title, const Notes& notes);
+std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& title, const Notes& notes);
+std::string graph_json(const Graph& graph, const Plan& plan, const std::string& title, const Notes& notes);
 
 /// What was skipped, by the script and by the plan.
 std::vector<Skipped> all_skipped(const Graph& graph, const Plan& plan);
@@ -24,7 +28,5 @@ std::vector<std::string> idle_lines(const Graph& graph);
 int kernel_of(const Plan& plan, int pass);
 /// "1920×1080" of the image a pass makes.
 std::string size_text(const Graph& graph, const Pass& pass);
-/// "pixel", "filter" or "sample".
-const char* kind_text(PassKind kind);
 
 }  // namespace afterglow

@@ -51,8 +51,9 @@ ShaderFindings check_shaders(const Look& look) {
   const ExecutionConfig config = execution_on_cpu();
   KernelCompiler compiler{cache_folder() / "shaders"};  // the folder that Stack uses, so that `run` starts warm
   ShaderFindings found;
+  std::set<Hash> checked;  // most of these graphs differ in their last kernel alone
   const auto check = [&](const FrameWork& work) {
-    ShaderFindings more = check_kernels(*look.shaders, compiler, work, config);
+    ShaderFindings more = check_kernels(*look.shaders, compiler, work, config, checked);
     std::ranges::move(more.errors, std::back_inserter(found.errors));
     std::ranges::move(more.warnings, std::back_inserter(found.warnings));
   };

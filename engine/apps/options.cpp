@@ -11,6 +11,7 @@
 
 #include "core/paths.h"
 #include "core/text.h"
+#include "exec/calibration.h"
 
 namespace afterglow {
 
@@ -24,42 +25,56 @@ void MessageArguments::apply(Console& console) const {
   console.configure(quiet ? Verbosity::quiet : verbose ? Verbosity::verbose : Verbosity::normal, !no_color);
 }
 
+CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& into,
+                            const std::string& help, const char* type) {
+  return command.add_option(name, into, help)->type_name(type)->expected(1)->allow_extra_args(false)->take_all();
+}
+
 void PresetArguments::add(CLI::App& command) {
   command
       .add_option("PRESET", file, "Look to apply: a Lua file that returns a stack, its name, or a pack that holds it")
       ->required();
-  command
-      .add_option("--set", overrides, "Overrides one setting, as if the preset said so: glow.strength=0.4 (repeatable)")
-      ->type_name("EFFECT.SETTING=VALUE")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all()
-      ->group("Preset");
+  add_overrides(command);
   command
       .add_option("--at", at, "Where the picture is seen from, for volumes (default: the preset's, else the file's)")
       ->type_name("X,Y,Z")
       ->group("Preset");
-  command
-      .add_option("--arg", values,
-                  "Value of an argument that the preset declares by fx.args: strength=0.3 (repeatable)")
-      ->type_name("NAME=VALUE")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all()
+  add_repeatable(command, "--arg", values,
+                 "Value of an argument that the preset declares by fx.args: strength=0.3 (repeatable)", "NAME=VALUE")
       ->group("Preset");
   add_paths(command);
 }
 
-void PresetArguments::add_paths(CLI::App& command) {
-  command
-      .add_option("--path", paths,
-                  "Folder or zip with presets/, effects/ and shaders/ of yours, before AFTERGLOW_PATH and the "
-                  "installation (repeatable)")
-      ->type_name("FOLDER")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all()
+void PresetArguments::add_overrides(CLI::App& command) {
+  add_repeatable(command, "--set", overrides,
+                 "Overrides one setting, as if the preset said so: glow.strength=0.4 (repeatable)",
+                 "EFFECT.SETTING=VALUE")
       ->group("Preset");
+}
+
+void PresetArguments::add_paths(CLI::App& command) {
+  add_repeatable(command, "--path", paths,
+                 "Folder or zip with presets/, effects/ and shaders/ of yours, before AFTERGLOW_PATH and the "
+                 "installation (repeatable)",
+                 "FOLDER")
+      ->group("Preset");
+}
+
+void LayerArguments::add(CLI::App& command) {
+  const std::string group = "Input";
+  command
+      .add_option("--layer", layer, "Colour layer or part (default: the usual names, Combined and plain R,G,B first)")
+      ->type_name("NAME")
+      ->group(group);
+  command.add_option("--depth", depth, "Depth from another file or channel; FILE may be a pattern")
+      ->type_name("FILE[:CHANNEL]")
+      ->group(group);
+  command.add_option("--normal", normal, "Normals from another file or layer; FILE may be a pattern")
+      ->type_name("FILE[:LAYER]")
+      ->group(group);
+  command.add_option("--motion", motion, "Motion vectors from another file or layer; FILE may be a pattern")
+      ->type_name("FILE[:LAYER]")
+      ->group(group);
 }
 
 Result<PresetOptions> PresetArguments::options() const {
@@ -92,16 +107,22 @@ void DeviceArguments::add(CLI::App& command) {
   command.add_option("--device", device, "auto, a number from `afterglow devices`, or part of a device's name")
       ->type_name("DEVICE")
       ->group("Device");
+  add_validate(command);
+}
+
+void DeviceArguments::add_validate(CLI::App& command) {
   command
       .add_flag("--validate", validate,
                 "Vulkan validation with synchronization checks; any error ends with exit code 5")
       ->group("Device");
 }
 
-DeviceOptions DeviceArguments::options() const {
+Result<DeviceOptions> DeviceArguments::options() const {
   const char* environment = std::getenv("AFTERGLOW_VALIDATE");
   const bool asked = environment != nullptr && *environment != '\0' && std::string_view(environment) != "0";
-  return {device, validate || asked};
+  const char* words = std::getenv("AFTERGLOW_FORCE");
+  AFTERGLOW_TRY(ForcedWays forced, parse_forced(words ? words : ""));
+  return DeviceOptions{.device = device, .validate = validate || asked, .forced = std::move(forced)};
 }
 
 void ExecutionArguments::add(CLI::App& command) {
@@ -111,6 +132,16 @@ void ExecutionArguments::add(CLI::App& command) {
       ->check(CLI::IsMember({"auto", "fp32", "fp16"}))
       ->type_name("P")
       ->group("Device");
+  add_max_error(command);
+  add_calibration(command);
+  command.add_flag("--reference", reference, "The slow truth: every pass on its own, full floats, computed weights")
+      ->group("Device");
+  command.add_option("--max-memory", max_memory, "Refuse pictures that need more: 512M, 6G (default 6G)")
+      ->type_name("SIZE")
+      ->group("Device");
+}
+
+void ExecutionArguments::add_max_error(CLI::App& command) {
   command
       .add_option(
           "--max-error", max_error,
@@ -118,16 +149,14 @@ void ExecutionArguments::add(CLI::App& command) {
       ->check(CLI::PositiveNumber)
       ->type_name("E")
       ->group("Device");
+}
+
+void ExecutionArguments::add_calibration(CLI::App& command) {
   command
       .add_option(
           "--calibration", calibration,
           "Table of `afterglow calibrate` that says how to execute (default: the one that comes with the program)")
       ->type_name("FILE")
-      ->group("Device");
-  command.add_flag("--reference", reference, "The slow truth: every pass on its own, full floats, computed weights")
-      ->group("Device");
-  command.add_option("--max-memory", max_memory, "Refuse pictures that need more: 512M, 6G (default 6G)")
-      ->type_name("SIZE")
       ->group("Device");
 }
 
@@ -220,13 +249,8 @@ void AssumedPicture::add(CLI::App& command) {
       ->check(CLI::PositiveNumber)
       ->type_name("N")
       ->group("Picture");
-  command
-      .add_option("--without", without,
-                  "Auxiliary input that the assumed picture lacks: depth, normal, motion (repeatable)")
-      ->type_name("INPUT")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all()
+  add_repeatable(command, "--without", without,
+                 "Auxiliary input that the assumed picture lacks: depth, normal, motion (repeatable)", "INPUT")
       ->group("Picture");
 }
 

@@ -11,6 +11,7 @@
 #include "apps/console.h"
 #include "core/geometry.h"
 #include "core/result.h"
+#include "image/reader.h"
 #include "session/session.h"
 
 namespace afterglow {
@@ -22,7 +23,11 @@ struct MessageArguments {
   void apply(Console& console) const;
 };
 
-/// PRESET, --set, --at, --path.
+/// An option that may be given several times, with one value each.
+CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& into,
+                            const std::string& help, const char* type);
+
+/// PRESET, --set, --at, --arg, --path.
 struct PresetArguments {
   std::string file;
   std::vector<std::string> overrides;
@@ -30,18 +35,34 @@ struct PresetArguments {
   std::string at;
   std::vector<std::string> paths;
   void add(CLI::App& command);
-  void add_paths(CLI::App& command);  ///< --path alone
+  void add_overrides(CLI::App& command);  ///< --set alone
+  void add_paths(CLI::App& command);      ///< --path alone
   Result<PresetOptions> options() const;
   /// The file that PRESET means: see find_preset_file. Errors: script.
   Result<std::filesystem::path> preset_file() const;
 };
 
-/// --device, --validate (or AFTERGLOW_VALIDATE=1).
+/// --layer, --depth, --normal, --motion: where the parts of a picture come from.
+struct LayerArguments {
+  std::string layer, depth, normal, motion;
+  void add(CLI::App& command);
+  /// Into what takes them: ReadOptions, FrameListRequest.
+  template <class Request>
+  void choose(Request& request) const {
+    if (!depth.empty()) request.depth = parse_layer_choice(depth);
+    if (!normal.empty()) request.normal = parse_layer_choice(normal);
+    if (!motion.empty()) request.motion = parse_layer_choice(motion);
+  }
+};
+
+/// --device, --validate (or AFTERGLOW_VALIDATE=1), and AFTERGLOW_FORCE.
 struct DeviceArguments {
   std::string device = "auto";
   bool validate = false;
   void add(CLI::App& command);
-  DeviceOptions options() const;
+  void add_validate(CLI::App& command);  ///< --validate alone
+  /// Errors: usage (words of AFTERGLOW_FORCE).
+  Result<DeviceOptions> options() const;
 };
 
 /// --precision, --max-error, --calibration, --reference, --max-memory.
@@ -52,6 +73,8 @@ struct ExecutionArguments {
   std::string max_memory = "6G";
   std::string calibration;
   void add(CLI::App& command);
+  void add_max_error(CLI::App& command);    ///< --max-error alone
+  void add_calibration(CLI::App& command);  ///< --calibration alone
   /// Everything of StackOptions but the preset. Errors: usage.
   Result<StackOptions> options() const;
 };

@@ -19,4 +19,16 @@ std::string allowed_text(const SettingSchema& setting) {
   return "any" + unit;
 }
 
+std::string composition_text(const StackEntry& entry) {
+  std::string out;
+  if (entry.opacity != 1) out += ", opacity " + number_text(entry.opacity);
+  if (entry.blend != "normal") out += ", blend " + entry.blend;
+  if (entry.mask) out += ", mask " + entry.mask->text();
+  return out;
+}
+
+bool is_said(const SettingHistory& setting) {
+  return setting.preset || setting.overridden || setting.name.starts_with("mask.");
+}
+
 }  // namespace afterglow

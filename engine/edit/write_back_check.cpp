@@ -17,12 +17,10 @@ Error unknown(const std::string& what, const std::string& name, const List& list
   return {ErrorKind::usage, fmt::format("{} '{}'", what, name), "", 0, join(names), nearest_name(name, names)};
 }
 
-const SettingHistory* history_of(const Preset& preset, const std::string& entry, const std::string& setting) {
-  for (const auto& history : preset.explanation().entries)
-    if (history.name == entry)
-      for (const auto& candidate : history.settings)
-        if (candidate.name == setting) return &candidate;
-  return nullptr;
+const EntryHistory* history_of(const Preset& preset, const std::string& entry) {
+  const auto& entries = preset.explanation().entries;
+  const auto found = std::ranges::find(entries, entry, &EntryHistory::name);
+  return found == entries.end() ? nullptr : &*found;
 }
 
 std::optional<SettingValue> of_volume(const SettingHistory& history, const std::string& volume) {
@@ -94,6 +92,8 @@ Result<void> check_setting_of(const StackEntry& entry, const SettingHistory& bef
 Result<void> check_entry(const StackEntry& before, const StackEntry& after, const std::vector<PresetEdit>& edits) {
   if (before.effect != after.effect) return differs(before.name, before.effect, after.effect);
   if (before.required != after.required) return differs(before.name + ".required", "as it is", "another");
+  const auto mask = [](const StackEntry& entry) { return entry.mask ? entry.mask->text() : "none"; };
+  if (mask(before) != mask(after)) return differs(before.name + ".mask", mask(before), mask(after));
   for (const char* key : {"enabled", "order", "at"}) {
     const SettingSchema schema = entry_key_schema(key);
     const auto* edit = edit_of(edits, before.name, key, "");
@@ -142,10 +142,10 @@ Result<Said> said_of(const Preset& preset, const PresetEdit& edit) {
   if (!edit.volume.empty() && std::ranges::find(volumes, edit.volume, &VolumeState::name) == volumes.end())
     return unknown("the stack has no volume", edit.volume, volumes);
   Said said;
-  const SettingHistory* history = history_of(preset, edit.entry, edit.setting);
+  const EntryHistory* of_entry = history_of(preset, edit.entry);
+  const SettingHistory* history = of_entry ? of_entry->find(edit.setting) : nullptr;
   if (history) {
-    const auto& settings = preset.schema(entry->effect).settings;
-    said.schema = *std::ranges::find(settings, edit.setting, &SettingSchema::name);
+    said.schema = *preset.setting_schema(*entry, edit.setting);
     said.moving = history->preset && history->kind != "fixed" && edit.volume.empty();
     said.value =
         edit.volume.empty() ? history->preset.value_or(history->default_value) : of_volume(*history, edit.volume);
@@ -162,8 +162,16 @@ Result<Said> said_of(const Preset& preset, const PresetEdit& edit) {
     if (edit.setting == "at") said.schema.default_value.choice = preset.schema(entry->effect).at;
     return said;
   }
-  return unknown(fmt::format("effect '{}' has no setting", entry->effect), edit.setting,
-                 preset.schema(entry->effect).settings);
+  const auto names = preset.setting_names(*entry);
+  if (edit.setting == "mask")
+    return Error{ErrorKind::usage, fmt::format("{} is made by the script and is changed there", edit.name()), "", 0,
+                 "the settings of its parts: ENTRY.mask.PART.SETTING"};
+  return Error{ErrorKind::usage,
+               fmt::format("effect '{}' has no setting '{}'", entry->effect, edit.setting),
+               "",
+               0,
+               join(names),
+               nearest_name(edit.setting, names)};
 }
 
 Result<void> check_edits(const Preset& before, const Preset& after, const std::vector<PresetEdit>& edits) {
@@ -172,11 +180,14 @@ Result<void> check_edits(const Preset& before, const Preset& after, const std::v
     const auto other = std::ranges::find(after.entries(), entry.name, &StackEntry::name);
     if (other == after.entries().end()) return differs(entry.name, "an entry", "nothing");
     AFTERGLOW_CHECK(check_entry(entry, *other, edits));
-    for (const auto& [name, value] : entry.settings) {
-      const SettingHistory *was = history_of(before, entry.name, name), *is = history_of(after, entry.name, name);
-      if (!was || !is) return differs(entry.name + "." + name, "a setting", "nothing");
-      AFTERGLOW_CHECK(check_setting_of(entry, *was, *is, edits));
-    }
+    const EntryHistory *was = history_of(before, entry.name), *is = history_of(after, entry.name);
+    if (!was || !is) return differs(entry.name, "an entry", "nothing");
+    for (const auto* list : {&was->settings, &was->composition})
+      for (const auto& setting : *list) {
+        const SettingHistory* now = is->find(setting.name);
+        if (!now) return differs(entry.name + "." + setting.name, "a setting", "nothing");
+        AFTERGLOW_CHECK(check_setting_of(entry, setting, *now, edits));
+      }
   }
   return {};
 }

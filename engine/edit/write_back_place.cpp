@@ -6,6 +6,7 @@
 
 #include "edit/literal.h"
 #include "script/explanation.h"
+#include "script/overrides.h"
 #include "script/script_error.h"
 
 namespace afterglow::script {
@@ -193,6 +194,12 @@ Result<std::vector<Place>> places_of(const LuaText& text, const Preset& preset, 
     }
     return places;
   }
+  if (const auto [part, name] = split_mask_setting(edit.setting); entry->mask && !part.empty())
+    for (const EntryMask* mask : entry->mask->parts())
+      if (mask->part == part) {
+        if (mask->file != file) return elsewhere("the mask", mask->file, mask->line);
+        return calls_at(text, mask->line, mask->name);
+      }
   places = entry->file == file ? calls_at(text, entry->line, entry->effect) : extends_in(text, preset, *entry);
   if (places.empty()) return elsewhere("the entry", entry->file, entry->line);
   return places;
@@ -201,7 +208,7 @@ Result<std::vector<Place>> places_of(const LuaText& text, const Preset& preset, 
 Result<Change> write_at(const LuaText& text, const std::string& file, const Place& place, const PresetEdit& edit,
                         const SettingValue& value) {
   std::vector<std::string> path = place.path;
-  path.push_back(edit.setting);
+  path.push_back(split_mask_setting(edit.setting).second);
   AFTERGLOW_TRY(const Found found, follow(text, file, place, edit, path));
   if (found.item) return replace_value(text, *found.item, value);
   const std::string literal = new_literal(text, value);
@@ -224,7 +231,7 @@ Result<Change> write_at(const LuaText& text, const std::string& file, const Plac
 Result<Change> remove_at(const LuaText& text, const std::string& file, const Place& place, const PresetEdit& edit,
                          const SettingValue& otherwise) {
   std::vector<std::string> path = place.path;
-  path.push_back(edit.setting);
+  path.push_back(split_mask_setting(edit.setting).second);
   AFTERGLOW_TRY(const Found found, follow(text, file, place, edit, path));
   if (!found.item) return Change{};
   auto removed = remove_item(text, found.table, *found.item);

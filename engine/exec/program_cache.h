@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "exec/image_pool.h"
@@ -43,9 +44,9 @@ struct ShaderFindings {
 };
 
 /// Compiles every kernel that the frame's program has on a CPU device for `run`, touching none. What is wrong with
-/// each.
+/// each. Kernels of `checked` are not compiled again; those that were are added to it.
 ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
-                             const ExecutionConfig& config);
+                             const ExecutionConfig& config, std::set<Hash>& checked);
 
 struct ProgramCacheOptions {
   ExecutionConfig config{};

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <nlohmann/json.hpp>
+
+#include "core/text.h"
 
 namespace afterglow {
 namespace {
@@ -45,20 +48,51 @@ std::vector<std::pair<std::string, std::string>> all_of(const Metadata& metadata
   return out;
 }
 
+std::optional<std::uint32_t> read_id(std::string_view digits) {
+  std::uint32_t value = 0;
+  const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+  if (digits.empty() || read.ec != std::errc() || read.ptr != digits.data() + digits.size()) return {};
+  return value;
+}
+
+/// Blender writes names as they are, and one with a quotation mark in it makes the manifest no JSON. What ends a name
+/// is known all the same: a mark, a colon, eight digits in marks, then a comma or the end.
+std::optional<std::map<std::string, std::uint32_t>> read_unescaped(std::string_view text) {
+  constexpr std::string_view kBetween = "\":\"";
+  constexpr std::size_t kDigits = 8;
+  std::map<std::string, std::uint32_t> out;
+  if (!text.starts_with("{\"") || !text.ends_with("\"}")) return {};
+  for (std::size_t name = 2;;) {
+    std::size_t end = text.find(kBetween, name);
+    std::optional<std::uint32_t> id;
+    for (; end != std::string_view::npos; end = text.find(kBetween, end + 1)) {
+      const std::string_view rest = text.substr(end + kBetween.size());
+      if (rest.size() < kDigits + 2 || rest[kDigits] != '"' || (rest[kDigits + 1] != ',' && rest.size() > kDigits + 2))
+        continue;
+      if ((id = read_id(rest.substr(0, kDigits)))) break;
+    }
+    if (!id) return {};
+    out[std::string(text.substr(name, end - name))] = *id;
+    const std::size_t behind = end + kBetween.size() + kDigits + 1;
+    if (text.substr(behind) == "}") return out;
+    if (text.substr(behind, 2) != ",\"") return {};
+    name = behind + 2;
+  }
+}
+
 Result<std::map<std::string, std::uint32_t>> read_manifest(const std::string& text, const std::string& layer) {
   const auto wrong = [&](const std::string& what) {
     return Error{ErrorKind::io, fmt::format("the manifest of the cryptomatte '{}' {}", layer, what)};
   };
   const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (json.is_discarded())
+    if (auto names = read_unescaped(text)) return std::move(*names);
   if (!json.is_object()) return wrong("is no JSON object");
   std::map<std::string, std::uint32_t> out;
   for (const auto& [name, id] : json.items()) {
-    const std::string digits = id.is_string() ? id.get<std::string>() : std::string();
-    std::uint32_t value = 0;
-    const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
-    if (digits.empty() || read.ec != std::errc() || read.ptr != digits.data() + digits.size())
-      return wrong(fmt::format("has no id of eight hexadecimal digits for '{}'", name));
-    out[name] = value;
+    const auto value = id.is_string() ? read_id(id.get_ref<const std::string&>()) : std::nullopt;
+    if (!value) return wrong(fmt::format("has no id of eight hexadecimal digits for '{}'", name));
+    out[name] = *value;
   }
   return out;
 }
@@ -68,6 +102,27 @@ Result<std::map<std::string, std::uint32_t>> read_manifest(const std::string& te
 std::uint32_t cryptomatte_id(std::string_view name) {
   const std::uint32_t hash = murmur3(name), exponent = hash >> 23 & 255;
   return exponent == 0 || exponent == 255 ? hash ^ 1u << 23 : hash;
+}
+
+std::vector<std::string> cryptomatte_names(std::string_view text) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == ' ' || text[i] == '\t' || text[i] == ',') continue;
+    std::string name;
+    if (text[i] == '"') {
+      for (++i; i < text.size() && text[i] != '"'; ++i) {
+        if (text[i] == '\\' && i + 1 < text.size()) ++i;
+        name += text[i];
+      }
+      i = std::min(text.find(',', i), text.size());
+    } else {
+      const std::size_t end = std::min(text.find(',', i), text.size());
+      name = trim(text.substr(i, end - i));
+      i = end;
+    }
+    if (!name.empty()) out.push_back(std::move(name));
+  }
+  return out;
 }
 
 std::vector<std::string> cryptomatte_layers(const Metadata& metadata) {

@@ -28,6 +28,10 @@ struct Cryptomatte {
 /// JSON of names and ids).
 Result<std::optional<Cryptomatte>> find_cryptomatte(const Metadata& metadata, const std::string& layer);
 
+/// The names in a text that has commas between them. A name in quotation marks may have commas, and \" for such a mark;
+/// marks inside of a name without them are its own.
+std::vector<std::string> cryptomatte_names(std::string_view text);
+
 /// The layers of all cryptomattes that the header names.
 std::vector<std::string> cryptomatte_layers(const Metadata& metadata);
 

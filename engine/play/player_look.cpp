@@ -104,7 +104,10 @@ Result<Picture> Player::screenshot() {
   return out;
 }
 
-void Player::State::apply_edits() { first->live().set_overrides(edits.overrides(options.live.stack.preset.overrides)); }
+void Player::State::apply_edits() {
+  const PresetOptions& given = options.live.stack.preset;
+  first->live().set_overrides(edits.overrides(given.overrides), edits.arguments(given.arguments));
+}
 
 void Player::set(const std::string& entry, const std::string& setting, const SettingValue& value) {
   state_->edits.set(entry, setting, value);

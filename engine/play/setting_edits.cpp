@@ -74,7 +74,15 @@ std::optional<SettingValue> SettingEdits::value(const std::string& entry, const 
 
 std::vector<Override> SettingEdits::overrides(const std::vector<Override>& given) const {
   std::vector<Override> all = given;
-  for (const SettingEdit& edit : edits()) all.push_back({edit.entry, edit.setting, edit.value.text()});
+  for (const SettingEdit& edit : edits())
+    if (!edit.entry.empty()) all.push_back({edit.entry, edit.setting, edit.value.text()});
+  return all;
+}
+
+std::vector<ArgumentValue> SettingEdits::arguments(const std::vector<ArgumentValue>& given) const {
+  std::vector<ArgumentValue> all = given;
+  for (const SettingEdit& edit : edits())
+    if (edit.entry.empty()) all.push_back({edit.setting, edit.value.text()});
   return all;
 }
 

@@ -9,7 +9,8 @@
 
 namespace afterglow {
 
-/// One setting of one entry (StackEntry::name) with the value that stands over the preset's.
+/// One setting of one entry (StackEntry::name), or an argument of the preset (no entry), with the value that stands
+/// over the one it had.
 struct SettingEdit {
   std::string entry, setting;
   SettingValue value;
@@ -38,6 +39,8 @@ class SettingEdits {
   std::optional<SettingValue> value(const std::string& entry, const std::string& setting) const;
   /// For LiveStack::set_overrides: those of the command line, then these.
   std::vector<Override> overrides(const std::vector<Override>& given) const;
+  /// The same for arguments of the preset.
+  std::vector<ArgumentValue> arguments(const std::vector<ArgumentValue>& given) const;
 
  private:
   bool take(std::vector<SettingEdit> edits, const std::string& gesture);

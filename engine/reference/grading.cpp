@@ -111,4 +111,53 @@ DoubleImage cdl(const DoubleImage& source, const Cdl& s) {
   });
 }
 
+namespace {
+
+/// The gain, as a factor, of light that is `v` bright.
+double gain(const std::array<double, 5>& y, double v) {
+  const auto slope = [&](int i) {
+    if (i == 0 || i == 4) return 0.0;
+    const double before = y[i] - y[i - 1], behind = y[i + 1] - y[i];
+    return before * behind > 0 ? 2 / (1 / before + 1 / behind) : 0.0;
+  };
+  if (v <= 0) return std::exp2(y.front());
+  const double stops = std::log2(v / 0.18);
+  if (stops <= -6) return std::exp2(y.front());
+  if (stops >= 6) return std::exp2(y.back());
+  const int i = static_cast<int>((stops + 6) / 3);
+  const double t = (stops + 6) / 3 - i, u = 1 - t;
+  // Bernstein's form of the same cubic.
+  const double stop = u * u * u * y[i] + 3 * u * u * t * (y[i] + slope(i) / 3) +
+                      3 * u * t * t * (y[i + 1] - slope(i + 1) / 3) + t * t * t * y[i + 1];
+  return std::exp2(stop);
+}
+
+Rgb by_hue(const Rgb& c, const std::array<Rgb, 6>& hues) {
+  Rgb hsv = rgb_to_hsv(c);
+  const double at = hsv.x * 6, whole = std::floor(at), t = at - whole;
+  const int i = static_cast<int>(whole) % 6;
+  const Rgb change = glm::mix(hues[i], hues[(i + 1) % 6], t * t * (3 - 2 * t));
+  const double saturation = hsv.y;
+  hsv.x = rotate_hue(hsv.x + change.x * 0.3 / 360);
+  const Rgb turned = hsv_to_rgb(hsv);
+  const double y = luminance(turned);
+  return glm::max(y + (turned - y) * (1 + change.y / 100), Rgb(0)) * std::exp2(change.z / 100 * saturation);
+}
+
+}  // namespace
+
+DoubleImage curves(const DoubleImage& source, const Curves& s) {
+  const bool any_hue = std::ranges::any_of(s.hues, [](const Rgb& h) { return h != Rgb(0); });
+  return map_straight(source, [&](const Rgb& c) {
+    Rgb graded = s.by_luminance ? c * gain(s.master, luminance(c)) : c;
+    for (int i = 0; i < 3; ++i) {
+      const auto& [low, middle, high] = s.channels[i];
+      std::array<double, 5> y{low, low, middle, high, high};
+      for (int point = 0; !s.by_luminance && point < 5; ++point) y[point] += s.master[point];
+      graded[i] *= gain(y, graded[i]);
+    }
+    return any_hue ? by_hue(graded, s.hues) : graded;
+  });
+}
+
 }  // namespace afterglow::reference

@@ -44,4 +44,14 @@ struct Cdl {
 };
 DoubleImage cdl(const DoubleImage& source, const Cdl& settings);
 
+/// Gains in stops at −6, −3, 0, 3 and 6 stops from middle grey, between them Fritsch and Butland's cubics; then hue,
+/// saturation and luma by hue, at red, yellow, green, cyan, blue and magenta, between them smoothsteps.
+struct Curves {
+  bool by_luminance = false;
+  std::array<double, 5> master{};                   ///< of all channels, or of the luminance
+  std::array<std::array<double, 3>, 3> channels{};  ///< of red, green, blue: at −3, 0 and 3 stops
+  std::array<Rgb, 6> hues{};                        ///< −100…100 each: 0.3 degrees, percent, percent of a stop
+};
+DoubleImage curves(const DoubleImage& source, const Curves& settings);
+
 }  // namespace afterglow::reference

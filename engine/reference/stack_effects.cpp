@@ -90,6 +90,20 @@ DoubleImage run_cdl(const DoubleImage& source, const Inputs&, const Settings& s)
                       .saturation = s.number("saturation")});
 }
 
+DoubleImage run_curves(const DoubleImage& source, const Inputs&, const Settings& s) {
+  Curves curves{.by_luminance = s.text("by") == "luminance",
+                .master = {s.number("blacks"), s.number("shadows"), s.number("midtones"), s.number("highlights"),
+                           s.number("whites")}};
+  const char* const channels[] = {"red", "green", "blue"};
+  for (int i = 0; i < 3; ++i) {
+    const Rgb points = s.color(channels[i]);
+    curves.channels[i] = {points.x, points.y, points.z};
+  }
+  const char* const hues[] = {"reds", "yellows", "greens", "cyans", "blues", "magentas"};
+  for (int i = 0; i < 6; ++i) curves.hues[i] = s.color(hues[i]);
+  return reference::curves(source, curves);
+}
+
 // ---- lens and film
 
 DoubleImage run_vignette(const DoubleImage& source, const Inputs&, const Settings& s) {
@@ -234,6 +248,7 @@ constexpr Oracle kMoreOracles[] = {
     {"cdl", run_cdl},
     {"channel_mixer", run_channel_mixer},
     {"chromatic_aberration", run_chromatic_aberration},
+    {"curves", run_curves},
     {"depth_of_field", run_depth_of_field},
     {"directional_blur", run_directional_blur},
     {"dual_kawase", run_dual_kawase},

@@ -28,6 +28,11 @@ namespace {
 
 constexpr std::size_t kMaxArguments = 256;
 
+void fail_or_leave_out(const Runtime& runtime, const Error& error) {
+  if (!runtime.leave_out_unfit || !runtime.box->diagnostics) throw ScriptError{error};
+  warn_left_out(*runtime.box->diagnostics, error);
+}
+
 // An argument that several scripts of a preset declare (one that extends another) is one, with one type.
 const PresetArgument& argument_of(Runtime& runtime, SettingSchema schema) {
   const auto known = std::ranges::find(runtime.arguments, schema.name,
@@ -44,7 +49,10 @@ const PresetArgument& argument_of(Runtime& runtime, SettingSchema schema) {
   for (const auto& given : runtime.given_arguments) {
     if (given.name != argument.schema.name) continue;
     auto value = parse_value_of(given.value, argument.schema, "--arg " + given.name);
-    if (!value) throw ScriptError{value.error()};
+    if (!value) {
+      fail_or_leave_out(runtime, value.error());
+      continue;
+    }
     argument.value = *value;
     argument.given = true;
   }
@@ -76,8 +84,8 @@ void check_arguments(const Runtime& runtime) {
     if (std::ranges::find(names, given.name) != names.end()) continue;
     const std::string what =
         names.empty() ? "the preset declares no arguments (fx.args)" : "the preset declares no argument of this name";
-    throw ScriptError{{ErrorKind::usage, fmt::format("--arg {}: {}", given.name, what), "", 0, join(names),
-                       nearest_name(given.name, names)}};
+    fail_or_leave_out(runtime, {ErrorKind::usage, fmt::format("--arg {}: {}", given.name, what), "", 0, join(names),
+                                nearest_name(given.name, names)});
   }
 }
 

@@ -1,13 +1,22 @@
-// The completion file of lua-language-server for effects: one class of settings each, and `fx.NAME` as a function.
+// The completion file of lua-language-server for effects and masks: one class of settings each, and `fx.NAME` or
+// `fx.mask.NAME` as a function.
 #include <fmt/format.h>
 
 #include "core/text.h"
+#include "script/injection.h"
 #include "script/preset.h"
 #include "script/script_error.h"
 #include "script/setting.h"
 
 namespace afterglow {
 namespace {
+
+// "normal"|"add"|…
+std::string one_of(const std::vector<std::string>& choices) {
+  std::string out;
+  for (const auto& choice : choices) out += (out.empty() ? "\"" : "|\"") + choice + '"';
+  return out;
+}
 
 std::string lua_type(const SettingSchema& setting) {
   switch (setting.type) {
@@ -28,9 +37,7 @@ std::string lua_type(const SettingSchema& setting) {
     case SettingType::enumeration:
       break;
   }
-  std::string out;
-  for (const auto& choice : setting.choices) out += (out.empty() ? "\"" : "|\"") + choice + '"';
-  return out + "|afterglow.OfTime";
+  return one_of(setting.choices) + "|afterglow.OfTime";
 }
 
 // Docs are one line each in the file.
@@ -47,10 +54,10 @@ std::string setting_doc(const SettingSchema& setting) {
   return out + "default " + setting.default_value.text();
 }
 
-std::string settings_class(const EffectSchema& effect) {
+std::string settings_class(const EffectSchema& effect, const char* folder, const char* base) {
   std::string out;
   if (!effect.doc.empty()) out += fmt::format("---{}\n", one_line(effect.doc));
-  out += fmt::format("---@class afterglow.settings.{} : afterglow.EntryKeys\n", effect.name);
+  out += fmt::format("---@class afterglow.{}.{} : afterglow.{}\n", folder, effect.name, base);
   for (const auto& setting : effect.settings)
     out += fmt::format("---@field {}? {}  {}\n", setting.name, lua_type(setting), setting_doc(setting));
   return out;
@@ -58,30 +65,41 @@ std::string settings_class(const EffectSchema& effect) {
 
 }  // namespace
 
-std::string completion_text(const std::vector<EffectSchema>& effects) {
-  std::string out =
+std::string completion_text(const std::vector<EffectSchema>& effects, const std::vector<EffectSchema>& masks) {
+  std::string out = fmt::format(
       "---@meta _\n"
-      "-- Generated from the effects, not to be edited: AFTERGLOW_UPDATE=1 ctest -R Completion.FileIsUpToDate\n"
+      "-- Generated from effects and masks, not to be edited: AFTERGLOW_UPDATE=1 ctest -R Completion.FileIsUpToDate\n"
+      "\n"
+      "---@alias afterglow.Blend {}\n"
       "\n"
       "---Keys that every effect of a stack takes besides its settings.\n"
       "---@class afterglow.EntryKeys\n"
-      "---@field at? \"after_opaque_and_sky\"|\"before_post_process\"|\"post_process\"|\"after_post_process\"  "
-      "injection point\n"
+      "---@field at? {}  injection point\n"
       "---@field order? integer     place among the effects of the injection point, smaller first\n"
       "---@field enabled? boolean   false: left out, default true\n"
       "---@field required? boolean  true: a missing input (depth, normal) is an error, default false\n"
       "---@field name? string       how messages and --set call it, default: the effect's name\n"
       "---@field opacity? number|afterglow.Moving  how much of the result counts, 0…1; at 0 the effect does not run, "
       "default 1\n"
-      "---@field blend? \"normal\"|\"add\"|\"screen\"|\"multiply\"|\"overlay\"|\"soft_light\"|\"lighten\"|\"darken\"  "
-      "how it "
-      "is put over what the effect was given\n"
-      "---@field mask? afterglow.Mask|number  where it counts, default everywhere\n";
-  for (const auto& effect : effects) out += "\n" + settings_class(effect);
+      "---@field blend? afterglow.Blend|afterglow.OfTime  how it is put over what the effect was given, default "
+      "\"normal\"\n"
+      "---@field mask? afterglow.Mask|number  where it counts, default everywhere\n"
+      "\n"
+      "---Keys that every mask takes besides its settings.\n"
+      "---@class afterglow.MaskKeys\n"
+      "---@field invert? boolean  true: what it does not select, default false\n",
+      one_of(script::blend_modes()), one_of(script::injection_points()));
+  for (const auto& effect : effects) out += "\n" + settings_class(effect, "settings", "EntryKeys");
+  for (const auto& mask : masks) out += "\n" + settings_class(mask, "masks", "MaskKeys");
+  const auto functions = [&](const std::vector<EffectSchema>& list, const char* folder, const char* made) {
+    for (const auto& effect : list)
+      out += fmt::format("---@field {0} fun(settings: afterglow.{1}.{0}): afterglow.{2}  {3}\n", effect.name, folder,
+                         made, one_line(effect.doc));
+  };
   out += "\n---@class afterglow\n";
-  for (const auto& effect : effects)
-    out += fmt::format("---@field {0} fun(settings: afterglow.settings.{0}): afterglow.Entry  {1}\n", effect.name,
-                       one_line(effect.doc));
+  functions(effects, "settings", "Entry");
+  out += "\n---What `fx.mask` holds; masks of yours are masks/NAME.lua.\n---@class afterglow.Masks\n";
+  functions(masks, "masks", "Mask");
   return out;
 }
 

@@ -6,31 +6,11 @@
 #include <variant>
 
 #include "script/injection.h"
+#include "script/mask.h"
 #include "script/overrides.h"
+#include "script/resolve.h"
 
-namespace afterglow {
-
-std::string EntryMask::text() const {
-  const auto part = [](const EntryMask& mask) {
-    const bool simple = mask.kind == Kind::named || mask.kind == Kind::number;
-    return simple ? mask.text() : "(" + mask.text() + ")";
-  };
-  switch (kind) {
-    case Kind::named:
-      return name;
-    case Kind::number:
-      return fmt::format("{:.6g}", number);
-    case Kind::add:
-      return part(*a) + " + " + part(*b);
-    case Kind::subtract:
-      return part(*a) + " - " + part(*b);
-    case Kind::multiply:
-      return part(*a) + " * " + part(*b);
-  }
-  return {};
-}
-
-namespace script {
+namespace afterglow::script {
 namespace {
 
 using Kind = EntryMask::Kind;
@@ -42,18 +22,19 @@ double combined(Kind kind, double a, double b) {
   return clamped(kind == Kind::add ? a + b : kind == Kind::subtract ? a - b : a * b);
 }
 
-void settle(lua_State* lua, MaskRun& mask, const BuildContext& context) {
-  if (mask.a) settle(lua, *mask.a, context), settle(lua, *mask.b, context);
+void settle(lua_State* lua, MaskRun& mask, const BuildContext& context, EntryHistory& history) {
+  if (mask.a) settle(lua, *mask.a, context, history), settle(lua, *mask.b, context, history);
   if (!mask.named) return;
   EntryRun& run = *mask.named;
   const EffectSchema& schema = Runtime::of(lua).effects[static_cast<std::size_t>(run.effect)].schema;
   std::vector<std::pair<std::string, SettingValue>> settings;
   for (std::size_t i = 0; i < schema.settings.size(); ++i) {
     const SettingSchema& setting = schema.settings[i];
-    const auto& given = run.sources[i].preset;
-    settings.emplace_back(setting.name, given
-                                            ? evaluate(lua, *given, schema.name + "." + setting.name, setting, context)
-                                            : setting.default_value);
+    SettingHistory of = history_of(lua, setting, run.sources[i], schema.name + "." + setting.name, context);
+    if (of.overridden) of.value = *of.overridden;
+    settings.emplace_back(setting.name, of.value);
+    of.name = mask.part + "." + setting.name;
+    history.composition.push_back(std::move(of));
   }
   if (run.settings_ref != LUA_NOREF && run.entry.settings == settings) return;
   run.entry.settings = std::move(settings);
@@ -71,7 +52,14 @@ std::shared_ptr<const EntryMask> shown(const MaskRun& mask) {
   auto out = std::make_shared<EntryMask>();
   out->kind = mask.kind;
   out->number = mask.number;
-  if (mask.named) out->name = mask.named->entry.effect, out->settings = mask.named->entry.settings;
+  if (mask.named) {
+    const StackEntry& entry = mask.named->entry;
+    out->name = entry.effect;
+    out->part = mask.part;
+    out->settings = entry.settings;
+    out->file = entry.file;
+    out->line = entry.line;
+  }
   if (mask.a) out->a = shown(*mask.a), out->b = shown(*mask.b);
   return out;
 }
@@ -94,10 +82,13 @@ std::optional<double> constant(lua_State* lua, const MaskRun& mask, std::string&
   return {};
 }
 
-void add_inputs(lua_State* lua, const MaskRun& mask, std::vector<std::string>& names) {
-  if (mask.a) add_inputs(lua, *mask.a, names), add_inputs(lua, *mask.b, names);
+void add_inputs(lua_State* lua, const MaskRun& mask, bool optional_too, std::vector<std::string>& names) {
+  if (mask.a) add_inputs(lua, *mask.a, optional_too, names), add_inputs(lua, *mask.b, optional_too, names);
   if (!mask.named || inactive_reason(lua, *mask.named)) return;
-  for (auto& name : needed_inputs(lua, *mask.named))
+  std::vector<std::string> inputs = needed_inputs(lua, *mask.named);
+  if (optional_too)
+    for (auto& name : optional_inputs(lua, *mask.named)) inputs.push_back(std::move(name));
+  for (auto& name : inputs)
     if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
 }
 
@@ -182,17 +173,16 @@ ImageRef blended(const EntryRun& run, GraphBuilder& graph, const ImageRef& below
   return graph.pass(request, {run.entry.file, run.entry.line});
 }
 
-}  // namespace
-
-std::shared_ptr<MaskRun> make_mask_run(const Runtime& runtime, int mask, const StackEntry& owner) {
+std::shared_ptr<MaskRun> make_part_run(const Runtime& runtime, int mask, const StackEntry& owner, MaskNames& names) {
   if (mask < 0) return nullptr;
   const DeclaredMask& declared = runtime.masks[static_cast<std::size_t>(mask)];
   auto out = std::make_shared<MaskRun>();
   out->kind = declared.kind;
   out->number = declared.number;
-  out->a = make_mask_run(runtime, declared.a, owner);
-  out->b = make_mask_run(runtime, declared.b, owner);
+  out->a = make_part_run(runtime, declared.a, owner, names);
+  out->b = make_part_run(runtime, declared.b, owner, names);
   if (declared.kind == Kind::named) {
+    out->part = names.next(declared.named.entry.effect);
     out->named = std::make_shared<EntryRun>();
     out->named->entry = declared.named.entry;
     out->named->entry.name = owner.name;
@@ -202,22 +192,44 @@ std::shared_ptr<MaskRun> make_mask_run(const Runtime& runtime, int mask, const S
   return out;
 }
 
+}  // namespace
+
+std::shared_ptr<MaskRun> make_mask_run(const Runtime& runtime, int mask, const StackEntry& owner) {
+  MaskNames names;
+  return make_part_run(runtime, mask, owner, names);
+}
+
+std::string mask_text(const Runtime& runtime, int mask) {
+  const auto run = make_mask_run(runtime, mask, {});
+  return run ? shown(*run)->text() : std::string();
+}
+
 void scale_lengths(lua_State* lua, MaskRun& mask, double length_scale) {
   if (mask.a) scale_lengths(lua, *mask.a, length_scale), scale_lengths(lua, *mask.b, length_scale);
   if (mask.named) make_settings(lua, *mask.named, length_scale);
 }
 
-void settle_composition(lua_State* lua, EntryRun& run, const BuildContext& context) {
-  if (run.opacity)
-    run.entry.opacity =
-        evaluate(lua, *run.opacity, run.entry.name + ".opacity", entry_key_schema("opacity"), context).number[0];
+void settle_composition(lua_State* lua, EntryRun& run, const BuildContext& context, EntryHistory& history) {
+  history.preset_mask = run.preset_mask;
+  const EffectSchema& schema = Runtime::of(lua).effects[static_cast<std::size_t>(run.effect)].schema;
+  const auto key = [&](const std::string& name, const SettingSource& source) -> const SettingValue* {
+    if (std::ranges::find(schema.settings, name, &SettingSchema::name) != schema.settings.end()) return nullptr;
+    history.composition.push_back(
+        history_of(lua, entry_key_schema(name), source, run.entry.name + "." + name, context));
+    SettingHistory& of = history.composition.back();
+    if (of.overridden) of.value = *of.overridden;
+    return &of.value;
+  };
+  if (const auto* value = key("opacity", run.opacity)) run.entry.opacity = value->number[0];
+  if (const auto* value = key("blend", run.blend)) run.entry.blend = value->choice;
   if (!run.mask) return;
-  settle(lua, *run.mask, context);
+  settle(lua, *run.mask, context, history);
   run.entry.mask = shown(*run.mask);
 }
 
 bool composition_moves(const EntryRun& run) {
-  return (run.opacity && run.opacity->moves()) || (run.mask && moves(*run.mask));
+  const auto moving = [](const SettingSource& source) { return source.preset && source.preset->moves(); };
+  return moving(run.opacity) || moving(run.blend) || (run.mask && moves(*run.mask));
 }
 
 std::optional<std::string> unseen_reason(lua_State* lua, const EntryRun& run) {
@@ -228,8 +240,8 @@ std::optional<std::string> unseen_reason(lua_State* lua, const EntryRun& run) {
   return reason.empty() ? "its mask selects nothing" : "its mask selects nothing: " + reason;
 }
 
-void add_mask_inputs(lua_State* lua, const EntryRun& run, std::vector<std::string>& names) {
-  if (run.mask) add_inputs(lua, *run.mask, names);
+void add_mask_inputs(lua_State* lua, const EntryRun& run, bool optional_too, std::vector<std::string>& names) {
+  if (run.mask) add_inputs(lua, *run.mask, optional_too, names);
 }
 
 ImageRef composite(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
@@ -254,5 +266,4 @@ ImageRef mixed(const EntryRun& run, GraphBuilder& graph, const ImageRef& first, 
   return blended(run, graph, first, second, amount, "normal", {}, "mix");
 }
 
-}  // namespace script
-}  // namespace afterglow
+}  // namespace afterglow::script

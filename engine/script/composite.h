@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "script/entry_run.h"
+#include "script/explanation.h"
 
 namespace afterglow::script {
 
@@ -15,9 +16,11 @@ namespace afterglow::script {
 
 /// A mask of Runtime::masks, for the entry that it masks.
 std::shared_ptr<MaskRun> make_mask_run(const Runtime& runtime, int mask, const StackEntry& owner);
+/// EntryMask::text of a mask of Runtime::masks; empty for -1.
+std::string mask_text(const Runtime& runtime, int mask);
 
-/// Opacity and the settings of masks for a frame, noted in the entry.
-void settle_composition(lua_State* lua, EntryRun& run, const BuildContext& context);
+/// Opacity, blend mode and the settings of masks for a frame, noted in the entry; how they came about, in `history`.
+void settle_composition(lua_State* lua, EntryRun& run, const BuildContext& context, EntryHistory& history);
 /// Lengths that a mask and those that it is made of read follow.
 void scale_lengths(lua_State* lua, MaskRun& mask, double length_scale);
 bool composition_moves(const EntryRun& run);
@@ -25,8 +28,8 @@ bool composition_moves(const EntryRun& run);
 /// Why nothing of the entry's result would be seen; empty when something may be.
 std::optional<std::string> unseen_reason(lua_State* lua, const EntryRun& run);
 
-/// Auxiliary inputs that its masks need, behind `names`.
-void add_mask_inputs(lua_State* lua, const EntryRun& run, std::vector<std::string>& names);
+/// Auxiliary inputs that its masks need, behind `names`; `optional_too`: and those that they can use.
+void add_mask_inputs(lua_State* lua, const EntryRun& run, bool optional_too, std::vector<std::string>& names);
 
 /// `image`, which the entry made of `source`, put over it.
 ImageRef composite(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,

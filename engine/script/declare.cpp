@@ -259,7 +259,8 @@ int declare_effect(lua_State* lua) {
   schema.name = table.text("name", 65).value_or("");
   if (!is_identifier(schema.name) && !table.failed())
     table.fail(failure("fx.effect needs a name", {"name"}, "letters, digits and '_'"));
-  if (std::find(library_names().begin(), library_names().end(), schema.name) != library_names().end())
+  const bool is_mask = Runtime::of(lua).loading.contains("masks." + schema.name);  // which is fx.mask.NAME
+  if (!is_mask && std::ranges::find(library_names(), schema.name) != library_names().end())
     table.fail(failure(fmt::format("fx.effect: the name '{}' is taken by the library", schema.name), {"name"}));
   schema.doc = table.text("doc").value_or("");
   schema.at = table.text("at").value_or("post_process");

@@ -25,23 +25,20 @@ bool has_setting(const EffectSchema& schema, const std::string& name) {
 // How the entry's result is put over what it was given.
 void read_composition(lua_State* lua, TableReader& table, const EffectSchema& schema, DeclaredEntry& declared) {
   read_mask(lua, table, declared);
-  if (!has_setting(schema, "opacity")) {
-    table.push("opacity");
+  const auto read = [&](const char* key, SettingSource& source) {
+    if (has_setting(schema, key)) return;
+    table.push(key);
     const Given given = read_given(lua, -1);
     lua_pop(lua, 1);
-    if (given.value.kind != Value::Kind::nothing) {
-      auto checked = check_animated(lua, schema.name + ".opacity", entry_key_schema("opacity"), given);
-      if (checked)
-        declared.opacity = std::move(*checked);
-      else
-        table.fail({checked.error(), {"opacity"}, {}});
-    }
-  }
-  if (has_setting(schema, "blend")) return;
-  declared.entry.blend = table.text("blend").value_or(declared.entry.blend);
-  if (std::ranges::find(blend_modes(), declared.entry.blend) == blend_modes().end())
-    table.fail(failure(fmt::format("unknown blend mode '{}'", tidy_message(declared.entry.blend, 60)), {"blend"},
-                       join(blend_modes()), nearest_name(declared.entry.blend, blend_modes())));
+    if (given.value.kind == Value::Kind::nothing) return;
+    auto checked = check_animated(lua, schema.name + "." + key, entry_key_schema(key), given);
+    if (checked)
+      source.preset = std::move(*checked);
+    else
+      table.fail({checked.error(), {key}, {}});
+  };
+  read("opacity", declared.opacity);
+  read("blend", declared.blend);
 }
 
 // Where and whether the entry runs.

@@ -17,6 +17,7 @@ struct EntryRun;
 struct MaskRun {
   EntryMask::Kind kind = EntryMask::Kind::number;
   double number = 0;
+  std::string part;                 ///< see EntryMask::part
   std::shared_ptr<EntryRun> named;  ///< of a mask's script; its entry has the name of the one that is masked
   std::shared_ptr<MaskRun> a, b;    ///< of operators
 };
@@ -27,8 +28,9 @@ struct EntryRun {
   int effect = 0;
   std::vector<SettingSource> sources;  ///< as DeclaredEntry::sources
   int settings_ref = LUA_NOREF;        ///< read-only table in the registry
-  std::optional<Animated> opacity;
+  SettingSource opacity, blend;
   std::shared_ptr<MaskRun> mask;  ///< null: none
+  std::string preset_mask;        ///< see EntryHistory::preset_mask
   double length_scale = 1;        ///< of the lengths in that table
 };
 

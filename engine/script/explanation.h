@@ -43,6 +43,12 @@ struct SettingHistory {
 struct EntryHistory {
   std::string name;
   std::vector<SettingHistory> settings;  ///< in the schema's order
+  /// How it is put over what it was given: "opacity" and "blend", where the effect has no such settings, then those of
+  /// the parts of its mask ("mask.luma.from").
+  std::vector<SettingHistory> composition = {};
+  std::string preset_mask = {};  ///< EntryMask::text of the preset's; empty: it has none
+
+  const SettingHistory* find(const std::string& setting) const;  ///< of both lists; null: none
 };
 
 struct Explanation {
@@ -57,5 +63,9 @@ nlohmann::json value_json(const SettingValue& value);
 nlohmann::json setting_json(const SettingSchema& setting);
 /// How the value of a setting came about, step by step.
 nlohmann::ordered_json history_json(const SettingHistory& setting);
+/// How an entry is put over what it was given: "opacity", "blend", "mask" (its text, where it has one) and
+/// "composition", how these came about.
+void add_composition(nlohmann::ordered_json& entry, const StackEntry& of, const EntryHistory& history);
+nlohmann::ordered_json volume_json(const VolumeState& volume);
 
 }  // namespace afterglow

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 
 #include "core/text.h"
 #include "script/entry_reader.h"
@@ -18,6 +19,7 @@ namespace {
 using Kind = EntryMask::Kind;
 
 constexpr std::size_t kMaxMasks = 4096;  // of one state
+constexpr int kMaxParts = 256;           // of one mask
 
 int add_mask(lua_State* lua, DeclaredMask mask) {
   Runtime& runtime = Runtime::of(lua);
@@ -27,8 +29,32 @@ int add_mask(lua_State* lua, DeclaredMask mask) {
   return static_cast<int>(runtime.masks.size()) - 1;
 }
 
-DeclaredMask number_mask(double number) {
-  return {.kind = Kind::number, .number = number, .a = -1, .b = -1, .named = {}};
+DeclaredMask number_mask(double number) { return {.kind = Kind::number, .number = number}; }
+
+DeclaredMask combined_mask(const Runtime& runtime, Kind kind, int a, int b) {
+  const auto parts = [&](int mask) { return runtime.masks[static_cast<std::size_t>(mask)].parts; };
+  if (parts(a) + parts(b) > kMaxParts)
+    throw failure(fmt::format("a mask is made of more than {} masks and numbers", kMaxParts));
+  return {.kind = kind, .a = a, .b = b, .parts = parts(a) + parts(b)};
+}
+
+int copy_mask(Runtime& runtime, int mask) {
+  if (mask < 0) return mask;
+  DeclaredMask copy = runtime.masks[static_cast<std::size_t>(mask)];
+  copy.a = copy_mask(runtime, copy.a);
+  copy.b = copy_mask(runtime, copy.b);
+  runtime.masks.push_back(std::move(copy));
+  return static_cast<int>(runtime.masks.size()) - 1;
+}
+
+using PartVisitor = std::function<void(const std::string& name, int mask)>;
+
+void visit_parts(const Runtime& runtime, int mask, MaskNames& names, const PartVisitor& visit) {
+  if (mask < 0) return;
+  const DeclaredMask& declared = runtime.masks[static_cast<std::size_t>(mask)];
+  visit_parts(runtime, declared.a, names, visit);
+  visit_parts(runtime, declared.b, names, visit);
+  if (declared.kind == Kind::named) visit(names.next(declared.named.entry.effect), mask);
 }
 
 // A mask or a number; -1: something else.
@@ -41,11 +67,11 @@ int to_mask(lua_State* lua, int index) {
 
 template <Kind kind>
 int combine(lua_State* lua) {
-  DeclaredMask mask{.kind = kind, .number = 0, .a = to_mask(lua, 1), .b = to_mask(lua, 2), .named = {}};
-  if (mask.a < 0 || mask.b < 0)
-    throw failure(fmt::format("a mask cannot be combined with {}", read_value(lua, mask.a < 0 ? 1 : 2).shown()), {},
+  const int a = to_mask(lua, 1), b = to_mask(lua, 2);
+  if (a < 0 || b < 0)
+    throw failure(fmt::format("a mask cannot be combined with {}", read_value(lua, a < 0 ? 1 : 2).shown()), {},
                   "masks and numbers, by + - *");
-  push_object(lua, kMaskKind, Handle{add_mask(lua, std::move(mask))});
+  push_object(lua, kMaskKind, Handle{add_mask(lua, combined_mask(Runtime::of(lua), kind, a, b))});
   return 1;
 }
 
@@ -56,7 +82,7 @@ int make_mask(lua_State* lua) {
   const EffectSchema& schema = runtime.effects[static_cast<std::size_t>(index)].schema;
   try {
     TableReader table(lua, 1, "fx.mask." + schema.name);
-    DeclaredMask mask{.kind = Kind::named, .number = 0, .a = -1, .b = -1, .named = new_entry(runtime, index)};
+    DeclaredMask mask{.kind = Kind::named, .named = new_entry(runtime, index)};
     const bool invert = table.boolean("invert").value_or(false);
     read_settings_of(lua, table, schema, mask.named, {"invert"});
     table.finish(schema.name.c_str());
@@ -67,7 +93,7 @@ int make_mask(lua_State* lua) {
     int made = add_mask(lua, std::move(mask));
     if (invert) {
       const int one = add_mask(lua, number_mask(1));
-      made = add_mask(lua, {.kind = Kind::subtract, .number = 0, .a = one, .b = made, .named = {}});
+      made = add_mask(lua, combined_mask(runtime, Kind::subtract, one, made));
     }
     push_object(lua, kMaskKind, Handle{made});
   } catch (ScriptError& error) {
@@ -88,6 +114,37 @@ int mask_of_name(lua_State* lua) {
 }
 
 }  // namespace
+
+std::string MaskNames::next(const std::string& mask) {
+  const int number = ++met_[mask];
+  return number == 1 ? "mask." + mask : fmt::format("mask.{}#{}", mask, number);
+}
+
+int make_number_mask(Runtime& runtime, double number) {
+  runtime.masks.push_back(number_mask(number));
+  return static_cast<int>(runtime.masks.size()) - 1;
+}
+
+std::vector<std::string> mask_setting_names(const Runtime& runtime, int mask) {
+  std::vector<std::string> out;
+  MaskNames names;
+  visit_parts(runtime, mask, names, [&](const std::string& name, int part) {
+    const auto effect = static_cast<std::size_t>(runtime.masks[static_cast<std::size_t>(part)].named.effect);
+    for (const auto& setting : runtime.effects[effect].schema.settings) out.push_back(name + "." + setting.name);
+  });
+  return out;
+}
+
+DeclaredEntry* own_mask_part(Runtime& runtime, int& mask, const std::string& part) {
+  int copy = copy_mask(runtime, mask), found = -1;
+  MaskNames names;
+  visit_parts(runtime, copy, names, [&](const std::string& name, int at) {
+    if (name == part) found = at;
+  });
+  if (found < 0) return nullptr;
+  mask = copy;
+  return &runtime.masks[static_cast<std::size_t>(found)].named;
+}
 
 void push_masks(lua_State* lua) {
   push_kind(lua, kMaskKind);

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "core/text.h"
 #include "script/injection.h"
+#include "script/mask.h"
 #include "script/setting.h"
 
 namespace afterglow {
@@ -21,6 +21,16 @@ Result<Override> parse_override(const std::string& text) {
 }
 
 namespace script {
+namespace {
+
+std::string doc_of_key(const std::string& name) {
+  if (name == "opacity") return "How much of the result counts; at 0 the effect does not run.";
+  if (name == "blend") return "How the result is put over what the effect was given.";
+  if (name == "mask") return "Where the result counts.";
+  return "";
+}
+
+}  // namespace
 
 SettingSchema entry_key_schema(const std::string& name) {
   SettingSchema schema;
@@ -31,7 +41,7 @@ SettingSchema entry_key_schema(const std::string& name) {
     schema.min = -1e6;
     schema.max = 1e6;
   }
-  if (name == "opacity") {
+  if (name == "opacity" || name == "mask") {
     schema.min = 0;
     schema.max = 1;
     schema.default_value.number[0] = 1;
@@ -39,18 +49,31 @@ SettingSchema entry_key_schema(const std::string& name) {
   if (name == "blend") {
     schema.type = SettingType::enumeration;
     schema.choices = blend_modes();
+    schema.default_value.choice = schema.choices.front();
   }
   if (name == "at") {
     schema.type = SettingType::enumeration;
     schema.choices = injection_points();
   }
+  schema.doc = doc_of_key(name);
+  schema.default_value.type = schema.type;
   return schema;
+}
+
+const std::vector<std::string>& settable_keys() {
+  static const std::vector<std::string> keys{"at", "blend", "enabled", "mask", "opacity", "order"};
+  return keys;
+}
+
+std::pair<std::string, std::string> split_mask_setting(const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  if (!name.starts_with("mask.") || dot < 5) return {"", name};
+  return {name.substr(0, dot), name.substr(dot + 1)};
 }
 
 namespace {
 
 constexpr std::string_view kCommandLine = "--set ";
-constexpr std::array kKeys{"at", "blend", "enabled", "opacity", "order"};  // that --set knows besides settings
 
 // Whoever gives commands may name any file; names of scripts go along the search path.
 std::optional<SettingValue> named_file(const std::string& text, const SettingSchema& schema) {
@@ -77,8 +100,8 @@ Result<SettingValue> parse_value_of(const std::string& text, const SettingSchema
   if (schema.type == SettingType::file) {
     if (any_file)
       if (auto file = named_file(text, schema)) return *file;
+    value.text = value.kind == Value::Kind::text ? value.text : trim(text);
     value.kind = Value::Kind::text;
-    value.text = trim(text);
   }
   auto result = check_setting(full_name, schema, value);
   if (result) return result;
@@ -94,28 +117,48 @@ Result<SettingValue> parse_setting(const Override& given, const SettingSchema& s
 
 namespace {
 
-Result<void> apply(DeclaredEntry& declared, const Override& given, const EffectSchema& schema) {
+// A setting of the entry's effect, or of the mask's script that stands for it. False: there is none of this name.
+Result<bool> apply_setting(DeclaredEntry& declared, const Override& given, const std::string& name,
+                           const EffectSchema& schema) {
+  const auto found = std::ranges::find(schema.settings, name, &SettingSchema::name);
+  if (found == schema.settings.end()) return false;
+  AFTERGLOW_TRY(SettingValue value, parse_setting(given, *found, kCommandLine));
+  declared.sources[static_cast<std::size_t>(found - schema.settings.begin())].overridden = std::move(value);
+  return true;
+}
+
+Result<void> apply(DeclaredEntry& declared, const Override& given, Runtime& runtime) {
+  const auto schema_of = [&](const DeclaredEntry& of) -> const EffectSchema& {
+    return runtime.effects[static_cast<std::size_t>(of.effect)].schema;
+  };
+  const EffectSchema& schema = schema_of(declared);
   StackEntry& entry = declared.entry;
-  const auto found = std::find_if(schema.settings.begin(), schema.settings.end(),
-                                  [&](const auto& s) { return s.name == given.setting; });
-  if (found != schema.settings.end()) {
-    AFTERGLOW_TRY(SettingValue value, parse_setting(given, *found, kCommandLine));
-    declared.sources[static_cast<std::size_t>(found - schema.settings.begin())].overridden = std::move(value);
-    return {};
-  }
-  if (std::ranges::find(kKeys, given.setting) != kKeys.end()) {
+  AFTERGLOW_TRY(const bool done, apply_setting(declared, given, given.setting, schema));
+  if (done) return {};
+  const int of_preset = declared.preset_mask.value_or(declared.mask);
+  if (const auto [part, name] = split_mask_setting(given.setting); !part.empty())
+    if (DeclaredEntry* own = own_mask_part(runtime, declared.mask, part)) {
+      AFTERGLOW_TRY(const bool of_part, apply_setting(*own, given, name, schema_of(*own)));
+      if (of_part) return {};
+    }
+  if (std::ranges::find(settable_keys(), given.setting) != settable_keys().end()) {
     AFTERGLOW_TRY(const SettingValue value, parse_setting(given, entry_key_schema(given.setting), kCommandLine));
     if (given.setting == "enabled") entry.enabled = value.number[0] != 0;
     if (given.setting == "order") entry.order = static_cast<int>(value.number[0]);
     if (given.setting == "at") entry.at = value.choice;
     if (given.setting == "order" || given.setting == "at") declared.placed = true;
-    if (given.setting == "blend") entry.blend = value.choice;
-    if (given.setting == "opacity") declared.opacity = Animated{.fixed = value, .curve = {}, .function = {}};
+    if (given.setting == "blend") declared.blend.overridden = value;
+    if (given.setting == "opacity") declared.opacity.overridden = value;
+    if (given.setting == "mask") {
+      declared.preset_mask = of_preset;
+      declared.mask = make_number_mask(runtime, value.number[0]);
+    }
     return {};
   }
   std::vector<std::string> names;
   for (const auto& setting : schema.settings) names.push_back(setting.name);
-  for (const char* key : kKeys) names.emplace_back(key);
+  names.insert(names.end(), settable_keys().begin(), settable_keys().end());
+  for (auto& name : mask_setting_names(runtime, declared.mask)) names.push_back(std::move(name));
   return Error{ErrorKind::usage,
                fmt::format("--set {}.{}: effect '{}' has no such setting", given.entry, given.setting, schema.name),
                "",
@@ -124,8 +167,7 @@ Result<void> apply(DeclaredEntry& declared, const Override& given, const EffectS
                nearest_name(given.setting, names)};
 }
 
-Result<void> apply_everywhere(std::vector<DeclaredEntry>& entries, const Override& given,
-                              const std::deque<Effect>& effects) {
+Result<void> apply_everywhere(std::vector<DeclaredEntry>& entries, const Override& given, Runtime& runtime) {
   const auto named = [&](const DeclaredEntry& e) { return e.entry.name == given.entry; };
   const bool by_name = std::any_of(entries.begin(), entries.end(), named);
   bool found = false;
@@ -134,7 +176,7 @@ Result<void> apply_everywhere(std::vector<DeclaredEntry>& entries, const Overrid
     names.push_back(declared.entry.name);
     if (by_name ? !named(declared) : declared.entry.effect != given.entry) continue;
     found = true;
-    AFTERGLOW_CHECK(apply(declared, given, effects[static_cast<std::size_t>(declared.effect)].schema));
+    AFTERGLOW_CHECK(apply(declared, given, runtime));
   }
   if (found) return {};
   return Error{ErrorKind::usage,
@@ -147,17 +189,20 @@ Result<void> apply_everywhere(std::vector<DeclaredEntry>& entries, const Overrid
 
 }  // namespace
 
+void warn_left_out(Diagnostics& diagnostics, Error error) {
+  error.message += "; it is left out";
+  std::string text = error.text();
+  if (text.starts_with("error: ")) text.erase(0, 7);
+  diagnostics.warn(text);
+}
+
 Result<void> apply_overrides(std::vector<DeclaredEntry>& entries, const std::vector<Override>& overrides,
-                             const std::deque<Effect>& effects, Diagnostics* left_out) {
+                             Runtime& runtime, Diagnostics* left_out) {
   for (const auto& given : overrides) {
-    auto applied = apply_everywhere(entries, given, effects);
+    auto applied = apply_everywhere(entries, given, runtime);
     if (applied) continue;
     if (!left_out) return applied;
-    Error error = std::move(applied).error();
-    error.message += "; it is left out";
-    std::string text = error.text();
-    if (text.starts_with("error: ")) text.erase(0, 7);
-    left_out->warn(text);
+    warn_left_out(*left_out, std::move(applied).error());
   }
   return {};
 }

@@ -92,12 +92,13 @@ Error with_entry(Error error, const StackEntry* entry) {
 void Preset::State::load(lua_State* lua, const PresetOptions& options) {
   open_graph_binding(lua);
   runtime->given_arguments = options.arguments;
+  runtime->leave_out_unfit = options.leave_out_unfit;
   DeclaredStack stack = load_stack(lua, file, options.text);
   runtime->declaring = false;
   check_arguments(*runtime);
   shaders->search(runtime->path);
   Diagnostics* left_out = options.leave_out_unfit ? runtime->box->diagnostics : nullptr;
-  if (auto applied = apply_overrides(stack.entries, options.overrides, runtime->effects, left_out); !applied)
+  if (auto applied = apply_overrides(stack.entries, options.overrides, *runtime, left_out); !applied)
     throw ScriptError{applied.error()};
   sort_entries(stack.entries);
   name = stack.name.empty() ? std::filesystem::path(file).stem().string() : stack.name;
@@ -109,12 +110,17 @@ void Preset::State::load(lua_State* lua, const PresetOptions& options) {
     for (std::size_t i = 0; i < schema.settings.size(); ++i)
       if (declared.sources[i].preset || declared.sources[i].overridden)
         declared.entry.changed.push_back(schema.settings[i].name);
+    for (const auto& [key, source] : {std::pair("opacity", &declared.opacity), std::pair("blend", &declared.blend)})
+      if (source->preset || source->overridden) declared.entry.changed.emplace_back(key);
+    if (declared.mask >= 0) declared.entry.changed.emplace_back("mask");
     EntryRun run;
     run.entry = std::move(declared.entry);
     run.effect = declared.effect;
     run.sources = std::move(declared.sources);
     run.opacity = std::move(declared.opacity);
+    run.blend = std::move(declared.blend);
     run.mask = make_mask_run(*runtime, declared.mask, run.entry);
+    run.preset_mask = mask_text(*runtime, declared.preset_mask.value_or(declared.mask));
     runs.push_back(std::move(run));
   }
   surroundings = {std::move(stack.volumes), std::move(stack.position), options.at};
@@ -160,7 +166,7 @@ void Preset::State::note_needs(lua_State* lua, const StackEntry*& current) {
     note(needed_inputs(lua, run));
     note(optional_inputs(lua, run));
     std::vector<std::string> of_masks;
-    add_mask_inputs(lua, run, of_masks);
+    add_mask_inputs(lua, run, true, of_masks);
     note(of_masks);
     // Other settings may ask for other inputs: what an effect asks for by a function cannot be known before.
     const Effect& effect = runtime->effects[static_cast<std::size_t>(run.effect)];
@@ -261,7 +267,7 @@ bool Preset::State::is_left_out(lua_State* lua, const EntryRun& run, GraphBuilde
   }
   std::vector<std::string> inputs, missing;
   if (!inactive_reason(lua, run)) inputs = needed_inputs(lua, run);
-  add_mask_inputs(lua, run, inputs);
+  add_mask_inputs(lua, run, false, inputs);
   for (const auto& input : inputs)
     if (!graph.context().auxiliary.contains(input)) missing.push_back(input);
   if (missing.empty()) return false;
@@ -346,21 +352,6 @@ Result<std::vector<EntrySpace>> Preset::spaces() {
   auto error = state.runtime->box->run(state.file, [&](lua_State* lua) { out = trace_spaces(lua, state.runs); });
   if (error) return std::move(*error);
   return out;
-}
-
-Result<std::vector<EffectSchema>> list_effects(const SearchPath& path, Diagnostics& diagnostics) {
-  std::vector<EffectSchema> schemas;
-  for (const auto& name : effect_names(path)) {
-    // A state each: an effect that spends its budget or memory takes nothing from the others.
-    AFTERGLOW_TRY(const std::unique_ptr<Runtime> runtime, Runtime::create(path, ScriptLimits{}, diagnostics));
-    int index = -1;
-    const auto error = runtime->box->run(name + ".lua", [&](lua_State* lua) { index = find_effect(lua, name); });
-    if (error)
-      diagnostics.warn(fmt::format("effect '{}' is left out: {}", name, error->text()));
-    else
-      schemas.push_back(runtime->effects[static_cast<std::size_t>(index)].schema);
-  }
-  return schemas;
 }
 
 }  // namespace afterglow

@@ -100,9 +100,14 @@ struct EntryMask {
   Kind kind = Kind::number;
   double number = 0;
   std::string name;  ///< of the mask's script: "luma"
+  std::string part;  ///< how settings call it: "mask.luma", a second one "mask.luma#2"
   std::vector<std::pair<std::string, SettingValue>> settings;
+  std::string file;  ///< where the preset makes it
+  int line = 0;
   std::shared_ptr<const EntryMask> a, b;  ///< of operators
   std::string text() const;               ///< "luma * (1 - radial)"
+  /// Those that scripts make, from left to right.
+  std::vector<const EntryMask*> parts() const;
 };
 
 /// One effect of a stack, in its resolved place, or a group or mix of such.
@@ -121,7 +126,7 @@ struct StackEntry {
   int depth = 0;    ///< in how many groups it stands
   /// All of them, in the schema's order.
   std::vector<std::pair<std::string, SettingValue>> settings;
-  std::vector<std::string> changed;  ///< names of those that the preset or an override set
+  std::vector<std::string> changed;  ///< names of those that the preset or an override set; "opacity", "blend", "mask"
   std::string file;                  ///< where the preset names the effect
   int line = 0;
 };
@@ -161,7 +166,7 @@ struct PresetOptions {
   std::filesystem::path installation;        ///< empty: find_installation()
   std::vector<Override> overrides;
   std::vector<ArgumentValue> arguments;  ///< --arg
-  bool leave_out_unfit = false;          ///< overrides that do not fit the stack are warned about, and are no errors
+  bool leave_out_unfit = false;          ///< overrides and arguments that do not fit are warned about, and no errors
   std::optional<Position> at;            ///< --at: where the picture is seen from, for volumes
   std::optional<std::string> text = {};  ///< of the preset, instead of what its file holds; the file need not exist
   /// Takes down what is looked at, also by a preset that fails to load. Null: the preset's own (Build::files).
@@ -204,7 +209,12 @@ class Preset {
   const std::vector<StackEntry>& entries() const;
   const Explanation& explanation() const;                       ///< the same for Build::explanation
   const EffectSchema& schema(const std::string& effect) const;  ///< of an effect that the stack uses
-  const std::vector<PresetArgument>& arguments() const;         ///< that scripts of the preset declare, in their order
+  /// What a setting of an entry may be: of its effect, "opacity", "blend", "mask" (by --set a number), "enabled",
+  /// "order", "at", or of a part of its mask ("mask.luma.from"). None: it has no such setting.
+  std::optional<SettingSchema> setting_schema(const StackEntry& entry, const std::string& setting) const;
+  /// The names of all that `setting_schema` knows.
+  std::vector<std::string> setting_names(const StackEntry& entry) const;
+  const std::vector<PresetArgument>& arguments() const;  ///< that scripts of the preset declare, in their order
   /// May settings differ from frame to frame or from place to place (curves, functions, volumes)?
   bool may_change() const;
   /// Has an enabled entry an effect that declares `detail = true`? Previews are then made at twice their size.
@@ -242,7 +252,9 @@ Result<void> check_new_effect_name(const std::string& name, const SearchPath& pa
 
 /// Every effect on the search path, by name. Scripts that fail to load are warned about and left out.
 Result<std::vector<EffectSchema>> list_effects(const SearchPath& path, Diagnostics& diagnostics);
-/// The text of a lua-language-server completion file (`_meta`) for these effects.
-std::string completion_text(const std::vector<EffectSchema>& effects);
+/// The same for masks.
+Result<std::vector<EffectSchema>> list_masks(const SearchPath& path, Diagnostics& diagnostics);
+/// The text of a lua-language-server completion file (`_meta`) for these effects and masks.
+std::string completion_text(const std::vector<EffectSchema>& effects, const std::vector<EffectSchema>& masks);
 
 }  // namespace afterglow

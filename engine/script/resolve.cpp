@@ -50,18 +50,9 @@ VolumeState state_of(lua_State* lua, const DeclaredVolume& volume, const std::op
 EntryHistory start_of(lua_State* lua, const EntryRun& run, const BuildContext& context) {
   const EffectSchema& schema = schema_of(lua, run);
   EntryHistory entry{run.entry.name, {}};
-  for (std::size_t i = 0; i < schema.settings.size(); ++i) {
-    const SettingSchema& setting = schema.settings[i];
-    SettingHistory history{.name = setting.name, .default_value = setting.default_value};
-    history.value = setting.default_value;
-    if (const auto& given = run.sources[i].preset) {
-      history.value = evaluate(lua, *given, run.entry.name + "." + setting.name, setting, context);
-      history.preset = history.value;
-      history.kind = kind_of(*given);
-    }
-    history.overridden = run.sources[i].overridden;
-    entry.settings.push_back(std::move(history));
-  }
+  for (std::size_t i = 0; i < schema.settings.size(); ++i)
+    entry.settings.push_back(
+        history_of(lua, schema.settings[i], run.sources[i], run.entry.name + "." + schema.settings[i].name, context));
   return entry;
 }
 
@@ -82,6 +73,19 @@ void blend_in(lua_State* lua, const DeclaredVolume& volume, const VolumeState& s
 }
 
 }  // namespace
+
+SettingHistory history_of(lua_State* lua, const SettingSchema& schema, const SettingSource& source,
+                          const std::string& full_name, const BuildContext& context) {
+  SettingHistory history{.name = schema.name, .default_value = schema.default_value};
+  history.value = schema.default_value;
+  if (source.preset) {
+    history.value = evaluate(lua, *source.preset, full_name, schema, context);
+    history.preset = history.value;
+    history.kind = kind_of(*source.preset);
+  }
+  history.overridden = source.overridden;
+  return history;
+}
 
 bool may_change(const EntryRun& run, const Surroundings& surroundings) {
   const auto moves = [](const SettingSource& source) { return source.preset && source.preset->moves(); };
@@ -107,7 +111,7 @@ Explanation resolve_settings(lua_State* lua, std::vector<EntryRun>& runs, const 
     blend_in(lua, volume, out.volumes.back(), runs, context, out.entries);
   }
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    settle_composition(lua, runs[i], context);
+    settle_composition(lua, runs[i], context, out.entries[i]);
     auto& settings = runs[i].entry.settings;
     settings.clear();
     for (auto& history : out.entries[i].settings) {

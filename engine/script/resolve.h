@@ -21,6 +21,10 @@ struct Surroundings {
 bool may_change(const EntryRun& run, const Surroundings& surroundings);
 bool may_change(const std::vector<EntryRun>& runs, const Surroundings& surroundings);
 
+/// What the preset says about a setting in this frame; volumes and overrides are still to come.
+SettingHistory history_of(lua_State* lua, const SettingSchema& schema, const SettingSource& source,
+                          const std::string& full_name, const BuildContext& context);
+
 /// Sets `entry.settings` of every run. Throws ScriptError: functions that fail or give what a setting does not allow.
 Explanation resolve_settings(lua_State* lua, std::vector<EntryRun>& runs, const Surroundings& surroundings,
                              const BuildContext& context);

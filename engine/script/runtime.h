@@ -54,8 +54,9 @@ struct SettingSource {
 struct DeclaredEntry {
   int effect = 0;  ///< index in Runtime::effects
   std::optional<std::string> name;
-  std::optional<Animated> opacity;
-  int mask = -1;        ///< index in Runtime::masks, or -1
+  SettingSource opacity, blend;
+  int mask = -1;                   ///< index in Runtime::masks, or -1
+  std::optional<int> preset_mask;  ///< the one before --set
   bool placed = false;  ///< says itself where it stands; a group that does not stands where its first entry would
   StackEntry entry;     ///< its settings are filled in when they are resolved
   std::vector<SettingSource> sources;  ///< parallel to the schema's settings
@@ -66,7 +67,8 @@ struct DeclaredMask {
   EntryMask::Kind kind = EntryMask::Kind::number;
   double number = 0;
   int a = -1, b = -1;  ///< of operators: indices in Runtime::masks
-  DeclaredEntry named;
+  DeclaredEntry named = {};
+  int parts = 1;  ///< masks and numbers that it is made of
 };
 
 /// What fx.group{…} and fx.mix{…} made: an entry, and those that belong to it, in the preset's order.
@@ -108,6 +110,7 @@ struct Runtime {
   std::vector<DeclaredStack> stacks;
   std::vector<PresetArgument> arguments;       ///< declared so far
   std::vector<ArgumentValue> given_arguments;  ///< --arg
+  bool leave_out_unfit = false;                ///< PresetOptions: of arguments too
   std::vector<DeclaredCurve> curves;
   std::vector<DeclaredVolume> volumes;
   Assets assets;

@@ -75,4 +75,20 @@ nlohmann::ordered_json history_json(const SettingHistory& setting) {
   return out;
 }
 
+void add_composition(nlohmann::ordered_json& entry, const StackEntry& of, const EntryHistory& history) {
+  entry["opacity"] = of.opacity;
+  entry["blend"] = of.blend;
+  if (of.mask) entry["mask"] = of.mask->text();
+  entry["composition"] = nlohmann::ordered_json::array();
+  for (const auto& setting : history.composition) entry["composition"].push_back(history_json(setting));
+}
+
+nlohmann::ordered_json volume_json(const VolumeState& volume) {
+  nlohmann::ordered_json out{{"name", volume.name},         {"file", volume.file},     {"line", volume.line},
+                             {"priority", volume.priority}, {"weight", volume.weight}, {"factor", volume.factor}};
+  if (volume.distance) out["distance"] = *volume.distance;
+  if (!volume.reason.empty()) out["reason"] = volume.reason;
+  return out;
+}
+
 }  // namespace afterglow

@@ -118,6 +118,16 @@ void LiveStack::set_overrides(std::vector<Override> overrides) {
   state_->builder.change([&](LiveRequest& request) { request.overrides = std::move(overrides); }, true);
 }
 
+void LiveStack::set_overrides(std::vector<Override> overrides, std::vector<ArgumentValue> arguments) {
+  state_->overrides = overrides;
+  state_->builder.change(
+      [&](LiveRequest& request) {
+        request.overrides = std::move(overrides);
+        request.arguments = std::move(arguments);
+      },
+      true);
+}
+
 const std::vector<Override>& LiveStack::overrides() const { return state_->overrides; }
 
 void LiveStack::show(const std::string& image) {

@@ -34,6 +34,7 @@ LiveBuilder::LiveBuilder(Device& device, std::filesystem::path preset, const Liv
       diagnostics_(diagnostics),
       may_warm_up_(options.warm_up && WarmUp::helps(device)) {
   request_.overrides = options.stack.preset.overrides;
+  request_.arguments = options.stack.preset.arguments;
   wanted_.request = true;
   wanted_.note(Clock::now());
   status_.building = true;
@@ -171,6 +172,7 @@ Result<BuiltStack> LiveBuilder::load(const LiveRequest& request, const std::shar
   BuiltStack built = new_stack();
   StackOptions options = options_.stack;
   options.preset.overrides = request.overrides;
+  options.preset.arguments = request.arguments;
   options.preset.leave_out_unfit = true;
   options.preset.record = record;
   {

@@ -23,6 +23,7 @@ struct LiveRequest {
   std::optional<BuildContext> context;  ///< none: scripts alone
   std::optional<DisplayEncoding> encoding;
   std::vector<Override> overrides;
+  std::vector<ArgumentValue> arguments;
   std::string shown;
   bool for_frame = false;  ///< asked for because of `context` alone; the next build takes it
 };

@@ -56,9 +56,13 @@ Surface hard_surface(Random& random) {
 
 }  // namespace
 
+std::map<std::string, Size> auxiliary_sizes(Size size) {
+  return {{"depth", size}, {"normal", size}, {"motion", size}, {kMatte, size}};
+}
+
 void add_auxiliary(Picture& picture, Random& random, bool gentle) {
   const int width = picture.color.width, height = picture.color.height;
-  Image depth(width, height, 1), normal(width, height, 3), motion(width, height, 2);
+  Image depth(width, height, 1), normal(width, height, 3), motion(width, height, 2), matte(width, height, 4);
   std::vector<Surface> surfaces;
   for (int i = 0; i < 64; ++i) surfaces.push_back(gentle ? random_surface(random) : hard_surface(random));
   for (int y = 0; y < height; ++y)
@@ -68,7 +72,12 @@ void add_auxiliary(Picture& picture, Random& random, bool gentle) {
       for (int c = 0; c < 3; ++c) normal.at(x, y)[c] = s.normal[static_cast<std::size_t>(c)];
       for (int c = 0; c < 2; ++c) motion.at(x, y)[c] = s.motion[static_cast<std::size_t>(c)];
     }
-  picture.auxiliary = {{"depth", std::move(depth)}, {"normal", std::move(normal)}, {"motion", std::move(motion)}};
+  for (std::size_t i = 0; i < matte.pixels.size(); ++i)
+    matte.pixels[i] = random.chance(0.2) ? 0.0f : random.chance(0.2) ? 1.0f : static_cast<float>(random.unit());
+  picture.auxiliary = {{"depth", std::move(depth)},
+                       {"normal", std::move(normal)},
+                       {"motion", std::move(motion)},
+                       {kMatte, std::move(matte)}};
 }
 
 }  // namespace afterglow::stress

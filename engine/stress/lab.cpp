@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "bench/oracle.h"
 #include "exec/calibration.h"
 #include "session/picture_inputs.h"
+#include "stress/auxiliary.h"
 
 namespace afterglow::stress {
 
@@ -20,11 +22,34 @@ struct Prepared {
 namespace {
 
 BuildContext context_for(Size size, double frame) {
-  BuildContext context{.size = size, .auxiliary = {{"depth", size}, {"normal", size}, {"motion", size}}};
+  BuildContext context{.size = size, .auxiliary = auxiliary_sizes(size)};
   context.frame = frame;
   context.time = (frame - 1) / context.fps;
   context.restart = true;
   return context;
+}
+
+/// What an effect makes of an error of what it gets, and its own, one behind the other: as far as all of them promise
+/// it.
+std::optional<double> promised_error(const Build& build) {
+  constexpr double kBlend = 4;  // screens and overlays of what differs by a little, and masks that look at it
+  const auto number = [](const Promises& of, const char* hold, const char* name) -> std::optional<double> {
+    const auto found = std::ranges::find(of.holds, hold, &Hold::name);
+    if (found == of.holds.end() || !std::isfinite(found->numbers.at(name))) return {};
+    return found->numbers.at(name);
+  };
+  if (build.promise_error || build.promises.size() != build.entries->size()) return {};
+  double error = 0;
+  for (std::size_t i = 0; i < build.entries->size(); ++i) {
+    const StackEntry& entry = (*build.entries)[i];
+    if (entry.effect == kGroup) continue;
+    if (std::ranges::find(build.graph.skipped, entry.name, &Skipped::name) != build.graph.skipped.end()) continue;
+    const auto own = number(build.promises[i], "error", "fp32");
+    const auto slope = number(build.promises[i], "continuous", "slope");
+    if (!own || (error > 0 && !slope)) return {};
+    error = kBlend * (error * std::max(1.0, slope.value_or(1)) + *own);
+  }
+  return error;
 }
 
 /// The source itself, where nothing runs.
@@ -180,7 +205,8 @@ Result<LookFacts> Lab::State::find_facts(const Look& look, Size size, double fra
     const GraphImage& image = graph.images[static_cast<std::size_t>(pass.output)];
     if (pass.output != graph.result && image.size == size) facts.images.push_back(image.name);
   }
-  if (build->entries->size() == 1) {
+  facts.error = promised_error(*build);
+  if (build->entries->size() == 1 && !look.is_composed()) {
     if (build->promise_error) return *build->promise_error;
     facts.holds = build->promises.front().holds;
   }

@@ -35,7 +35,8 @@ struct Made {
 /// What scripts say about a look for pictures of a size.
 struct LookFacts {
   std::vector<reference::Entry> entries;  ///< those that run, as the oracle wants them
-  std::vector<Hold> holds;                ///< promises of a stack of one effect
+  std::vector<Hold> holds;                ///< promises of a stack of one effect that is not faded, blended or masked
+  std::optional<double> error;  ///< against double precision, in full floats, as far as its effects promise it
   bool runs = false;
   std::size_t passes = 0;
   std::vector<std::string> images;  ///< names of those that passes make as large as the picture: Way::show takes them

@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "script/build.h"
+#include "stress/auxiliary.h"
 
 namespace afterglow::stress {
 namespace {
@@ -14,8 +15,30 @@ std::string entry_text(const LookEntry& entry) {
   std::vector<std::string> keys;
   if (!entry.at.empty()) keys.push_back(fmt::format("at = \"{}\", order = {}", entry.at, entry.order));
   for (const auto& [name, value] : entry.settings) keys.push_back(fmt::format("{} = {}", name, value.text()));
-  return keys.empty() ? fmt::format("fx.{} {{}}", entry.effect)
-                      : fmt::format("fx.{} {{ {} }}", entry.effect, join(keys));
+  for (const auto& [name, value] : entry.composition) keys.push_back(fmt::format("{} = {}", name, value));
+  return join(keys);
+}
+
+/// How many entries behind this one stand in it.
+std::size_t members_of(const std::vector<LookEntry>& entries, std::size_t group) {
+  std::size_t end = group + 1;
+  while (end < entries.size() && entries[end].depth > entries[group].depth) ++end;
+  return end - group - 1;
+}
+
+/// Entries from `begin` to `end` as items of a list.
+std::vector<std::string> items(const std::vector<LookEntry>& entries, std::size_t begin, std::size_t end) {
+  std::vector<std::string> out;
+  for (std::size_t i = begin; i < end;) {
+    const std::size_t behind = std::min(end, i + 1 + members_of(entries, i));
+    std::vector<std::string> parts;
+    if (const std::string keys = entry_text(entries[i]); !keys.empty()) parts.push_back(keys);
+    for (auto& member : items(entries, i + 1, behind)) parts.push_back(std::move(member));
+    out.push_back(parts.empty() ? fmt::format("fx.{} {{}}", entries[i].effect)
+                                : fmt::format("fx.{} {{ {} }}", entries[i].effect, join(parts)));
+    i = behind;
+  }
+  return out;
 }
 
 }  // namespace
@@ -32,21 +55,29 @@ void LookEntry::set(const std::string& setting, const SettingValue& value) {
 
 std::string Look::text() const {
   std::string out = "local fx = require \"afterglow\"\n\nreturn fx.stack {\n";
-  for (const auto& entry : entries) out += "  " + entry_text(entry) + ",\n";
+  for (const auto& item : items(entries, 0, entries.size())) out += "  " + item + ",\n";
   return out + "}\n";
 }
 
-std::string Look::line() const {
-  std::vector<std::string> parts;
-  for (const auto& entry : entries) parts.push_back(entry_text(entry));
-  return join(parts);
+std::string Look::line() const { return join(items(entries, 0, entries.size())); }
+
+bool Look::is_composed() const {
+  return std::ranges::any_of(entries, [](const LookEntry& e) { return !e.composition.empty() || e.effect == kGroup; });
+}
+
+Look Look::without(std::size_t entry) const {
+  Look out = *this;
+  const std::size_t members = members_of(entries, entry);
+  for (std::size_t i = 1; i <= members; ++i) --out.entries[entry + i].depth;
+  out.entries.erase(out.entries.begin() + static_cast<std::ptrdiff_t>(entry));
+  return out;
 }
 
 Result<Look> look_of_preset(const std::filesystem::path& preset, const PresetOptions& options, Size size,
                             Diagnostics& diagnostics) {
   ShaderLibrary shaders(search_path_for(preset, options.paths));
   AFTERGLOW_TRY(Preset loaded, Preset::load(preset, options, shaders, diagnostics));
-  BuildContext context{.size = size, .auxiliary = {{"depth", size}, {"normal", size}, {"motion", size}}};
+  BuildContext context{.size = size, .auxiliary = auxiliary_sizes(size)};
   AFTERGLOW_TRY(const Build build, loaded.evaluate(context, diagnostics));
   Look look;
   look.paths = loaded.path().user;

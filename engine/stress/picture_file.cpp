@@ -8,6 +8,7 @@
 #include <exception>
 
 #include "image/reader.h"
+#include "stress/auxiliary.h"
 
 namespace afterglow::stress {
 namespace {
@@ -17,6 +18,7 @@ std::vector<const char*> channel_names(const std::string& image) {
   if (image == "depth") return {"Z"};
   if (image == "normal") return {"N.X", "N.Y", "N.Z"};
   if (image == "motion") return {"motion.x", "motion.y"};
+  if (image == kMatte) return {"matte.R", "matte.G", "matte.B", "matte.A"};
   return {"R", "G", "B", "A"};
 }
 
@@ -60,7 +62,7 @@ Result<void> write_picture_file(const Picture& picture, const std::filesystem::p
 
 Result<Picture> read_picture_file(const std::filesystem::path& file, Diagnostics& diagnostics) {
   ReadOptions options;
-  options.auxiliary = {"depth", "normal", "motion"};
+  options.auxiliary = {"depth", "normal", "motion", kMatte};
   return read_picture(file, options, diagnostics);
 }
 

@@ -60,7 +60,8 @@ std::string report_text(const StressReport& report) {
     out += fmt::format("{:<16}{:>9}{:>10}  {}\n", "processes", p.compared, p.different.size(),
                        "the same bytes with " + p.how);
   out += fmt::format(
-      "\n{} cases in {} trials, {} failures; {} looks were refused by their effects or too large; {:.1f} s, {:.0f} cases a second\n",
+      "\n{} cases in {} trials, {} failures; {} looks were refused by their effects or too large; {:.1f} s, {:.0f} "
+      "cases a second\n",
       s.cases, s.trials, s.failures, s.refused, s.seconds, static_cast<double>(s.cases) / std::max(s.seconds, 1e-3));
   if (!report.growth.empty())
     out += "\nError against double precision by levels (99.99 % of samples, and the worst):\n" +

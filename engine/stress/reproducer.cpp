@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "stress/auxiliary.h"
 #include "stress/picture_file.h"
 
 namespace afterglow::stress {
@@ -24,6 +25,8 @@ json as_json(const Look& look) {
   for (const auto& entry : look.entries) {
     json one{{"effect", entry.effect}, {"settings", json::array()}};
     if (!entry.at.empty()) one["at"] = entry.at, one["order"] = entry.order;
+    if (!entry.composition.empty()) one["composition"] = entry.composition;
+    if (entry.depth > 0) one["depth"] = entry.depth;
     for (const auto& [name, value] : entry.settings)
       one["settings"].push_back(
           {{"name", name}, {"type", static_cast<int>(value.type)}, {"number", value.number}, {"choice", value.choice}});
@@ -38,6 +41,8 @@ Look look_of(const json& from) {
   for (const auto& one : from.at("entries")) {
     LookEntry entry{
         .effect = one.at("effect"), .settings = {}, .at = one.value("at", ""), .order = one.value("order", 0)};
+    entry.composition = one.value("composition", entry.composition);
+    entry.depth = one.value("depth", 0);
     for (const auto& setting : one.at("settings")) {
       SettingValue value{.type = static_cast<SettingType>(setting.at("type").get<int>())};
       value.number = setting.at("number").get<std::array<double, 3>>();
@@ -123,7 +128,7 @@ Result<Situation> read_reproducer(const fs::path& folder, Diagnostics& diagnosti
                  nearest_name(out.check, names)};
   }
   AFTERGLOW_TRY(out.picture, read_picture_file(folder / kInput, diagnostics));
-  for (const char* name : {"depth", "normal", "motion"})
+  for (const char* name : {"depth", "normal", "motion", kMatte})
     if (!out.picture.auxiliary.contains(name))
       return Error{ErrorKind::io, fmt::format("has no {}", name), (folder / kInput).string()};
   return out;

@@ -23,4 +23,12 @@ std::vector<LookEntry> hard_entries(const EffectSchema& effect, const SearchPath
 /// Some settings anywhere, the others at their defaults.
 LookEntry random_entry(const EffectSchema& effect, const SearchPath& path, Random& random);
 
+/// An opacity, a blend mode and a mask of `masks` now and then, at least one of them.
+void compose(LookEntry& entry, const std::vector<EffectSchema>& masks, Random& random);
+
+/// Up to four of these effects, faded, blended, masked and in groups.
+std::vector<LookEntry> random_composition(const std::vector<EffectSchema>& effects,
+                                          const std::vector<EffectSchema>& masks, const SearchPath& path,
+                                          Random& random);
+
 }  // namespace afterglow::stress

@@ -57,7 +57,7 @@ class Shrinker {
     bool any = false;
     for (std::size_t i = situation_.look.entries.size(); i-- > 0 && situation_.look.entries.size() > 1;) {
       Situation candidate = situation_;
-      candidate.look.entries.erase(candidate.look.entries.begin() + static_cast<std::ptrdiff_t>(i));
+      candidate.look = situation_.look.without(i);
       any |= take(std::move(candidate));
     }
     return any;
@@ -65,6 +65,13 @@ class Shrinker {
 
   bool reset_settings() {
     bool any = false;
+    for (std::size_t e = 0; e < situation_.look.entries.size(); ++e)
+      for (std::size_t i = situation_.look.entries[e].composition.size(); i-- > 0;) {
+        Situation candidate = situation_;
+        auto& composition = candidate.look.entries[e].composition;
+        composition.erase(composition.begin() + static_cast<std::ptrdiff_t>(i));
+        any |= take(std::move(candidate));
+      }
     for (std::size_t e = 0; e < situation_.look.entries.size(); ++e)
       for (std::size_t i = situation_.look.entries[e].settings.size(); i-- > 0;) {
         Situation candidate = situation_;

@@ -11,6 +11,7 @@ namespace afterglow::stress {
 namespace {
 
 constexpr int kPicturesPerTrial = 3;
+constexpr const char* kComposition = "composition";
 
 /// Small ones come often: they are quick, and hold as many edges.
 Size random_size(Random& random) {
@@ -40,6 +41,8 @@ Trial Trials::at(std::uint64_t index) const {
     trial.look = subject.looks[turn];
   else if (subject.effect)
     trial.look.entries = {random_entry(*subject.effect, path_, random)};
+  else if (!subject.composed.empty())
+    trial.look.entries = random_composition(subject.composed, subject.masks, path_, random);
   trial.size = random_size(random);
   trial.frame = random.chance(0.5) ? 1 : random.between(2, 5000);
   const auto kinds = picture_kinds();
@@ -59,18 +62,23 @@ Result<std::vector<Subject>> subjects_of_effects(const std::vector<std::string>&
   AFTERGLOW_TRY(auto effects, list_effects(path, diagnostics));
   std::vector<std::string> known;
   for (const auto& effect : effects) known.push_back(effect.name);
+  known.emplace_back(kComposition);
   for (const auto& name : names)
     if (std::ranges::find(known, name) == known.end())
       return Error{ErrorKind::usage,         fmt::format("unknown effect '{}'", name), {}, 0, join(known),
                    nearest_name(name, known)};
   std::vector<Subject> out;
-  for (auto& effect : effects) {
+  for (const auto& effect : effects) {
     if (!names.empty() && std::ranges::find(names, effect.name) == names.end()) continue;
     Subject subject{.name = effect.name, .looks = {}, .effect = {}};
     for (auto& entry : hard_entries(effect, path)) subject.looks.push_back({{std::move(entry)}, paths});
-    subject.effect = std::move(effect);
+    subject.effect = effect;
     out.push_back(std::move(subject));
   }
+  if (!names.empty() && std::ranges::find(names, kComposition) == names.end()) return out;
+  Subject composition{.name = kComposition, .looks = {{{}, paths}}, .effect = {}, .composed = std::move(effects)};
+  AFTERGLOW_TRY(composition.masks, list_masks(path, diagnostics));
+  out.push_back(std::move(composition));
   return out;
 }
 

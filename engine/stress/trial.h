@@ -12,8 +12,10 @@ namespace afterglow::stress {
 /// What the programme tries: effects one by one, presets whole.
 struct Subject {
   std::string name;
-  std::vector<Look> looks;             ///< settings to try, the defaults first; after them come random ones
-  std::optional<EffectSchema> effect;  ///< of a single effect: what random settings are drawn for
+  std::vector<Look> looks;                  ///< settings to try, the defaults first; after them come random ones
+  std::optional<EffectSchema> effect;       ///< of a single effect: what random settings are drawn for
+  std::vector<EffectSchema> composed = {};  ///< effects that random stacks with groups are made of
+  std::vector<EffectSchema> masks = {};     ///< what these are masked by
 };
 
 /// A look on some pictures of one size.
@@ -43,7 +45,9 @@ class Trials {
   std::uint64_t seed_;
 };
 
-/// Every effect on the path, or those of these names. Errors: usage (unknown name), script.
+/// Every effect on the path, each by itself, and "composition": random stacks of them with groups; or those of these
+/// names. Errors: usage
+/// (unknown name), script.
 Result<std::vector<Subject>> subjects_of_effects(const std::vector<std::string>& names,
                                                  const std::vector<std::filesystem::path>& paths,
                                                  Diagnostics& diagnostics);

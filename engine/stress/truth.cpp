@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "core/half.h"
+#include "stress/auxiliary.h"
 #include "stress/pictures.h"
 
 namespace afterglow::stress {
@@ -19,7 +20,9 @@ std::optional<std::vector<double>> truth_of(const LookFacts& facts, const Pictur
   if (!reference::effect_without_oracle(facts.entries).empty()) return std::nullopt;
   const auto depth = as_double(picture.auxiliary.at("depth")), normal = as_double(picture.auxiliary.at("normal")),
              motion = as_double(picture.auxiliary.at("motion"));
+  const auto matte = as_double(picture.auxiliary.at(kMatte));
   reference::Inputs inputs{.depth = &depth, .normal = &normal, .motion = &motion};
+  inputs.layers[kMatte + std::string_view("layer:").size()] = &matte;
   inputs.frame = frame;
   inputs.time = (frame - 1) / BuildContext{}.fps;
   try {

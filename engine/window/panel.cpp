@@ -6,7 +6,7 @@
 
 #include "core/text.h"
 #include "script/build.h"
-#include "window/setting_widget.h"
+#include "window/panel_row.h"
 #include "window/view_controls.h"
 
 namespace afterglow {
@@ -18,59 +18,13 @@ const std::string* reason_of(const std::vector<Skipped>& list, const std::string
   return nullptr;
 }
 
-const SettingHistory* history_of(const Build& build, std::size_t entry, std::size_t setting) {
-  const auto& entries = build.explanation->entries;
-  if (entry >= entries.size() || setting >= entries[entry].settings.size()) return nullptr;
-  return &entries[entry].settings[setting];
-}
-
-// Why the value is not the one that the file says in plain digits; empty when it is.
-std::string origin_of(const SettingHistory& history) {
-  if (!history.volumes.empty()) return fmt::format("volume {}", history.volumes.back().volume);
-  if (history.preset && history.kind != "fixed") return history.kind;
-  return {};
-}
-
-std::string range_of(const SettingSchema& schema) {
-  if (schema.min && schema.max) return number_text(*schema.min) + "…" + number_text(*schema.max);
-  if (schema.min) return "≥ " + number_text(*schema.min);
-  if (schema.max) return "≤ " + number_text(*schema.max);
-  return {};
-}
-
-void tooltip(const Ui& ui, const std::string& text) {
-  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(ui.px(360));
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
-}
-
-std::string setting_help(const SettingSchema& schema, const SettingHistory* history, bool edited) {
-  std::string out = schema.doc;
-  std::string facts = range_of(schema);
-  if (!schema.unit.empty()) facts += (facts.empty() ? "in " : " ") + schema.unit;
-  if (!facts.empty()) out += "\n" + facts;
-  out += "\ndefault " + schema.default_value.text();
-  if (history && history->preset) out += fmt::format("\nin the preset {} ({})", history->preset->text(), history->kind);
-  if (history)
-    for (const auto& step : history->volumes)
-      out += fmt::format("\nvolume {} × {}: {}", step.volume, number_text(step.factor), step.value.text());
-  if (edited) out += "\nchanged here; right-click to take it back";
-  return out;
-}
-
-bool small_button(const Ui& ui, const char* label, const char* help, bool enabled = true) {
-  ImGui::BeginDisabled(!enabled);
-  const bool pressed = ImGui::SmallButton(label);
-  ImGui::EndDisabled();
-  tooltip(ui, help);
-  return pressed && enabled;
-}
-
 bool is_edited(const SettingEdits& edits, const std::string& entry) {
   return std::any_of(edits.edits().begin(), edits.edits().end(), [&](const auto& edit) { return edit.entry == entry; });
+}
+
+PanelRow row_of(const StackEntry& entry, const SettingHistory& history, const SettingSchema& schema,
+                const SettingValue& value) {
+  return {entry.name, history.name, schema, value, &history, history.preset.has_value()};
 }
 
 SettingValue boolean(bool on) { return {SettingType::boolean, {on ? 1.0 : 0.0}, ""}; }
@@ -110,6 +64,7 @@ void Panel::draw(Ui& ui, PanelPort& port, ImVec2 place, ImVec2 size) {
     draw_head(ui, port);
     draw_outcome(ui);
     if (ImGui::CollapsingHeader("View")) draw_view_controls(ui, port);
+    draw_arguments(ui, port);
     draw_entries(ui, port);
   }
   ImGui::End();
@@ -166,6 +121,27 @@ void Panel::draw_outcome(Ui& ui) {
   ImGui::Separator();
 }
 
+// What the preset asks of whoever runs it. The preset's text stays: arguments are given with the command.
+void Panel::draw_arguments(Ui& ui, PanelPort& port) {
+  const Preset* preset = port.preset();
+  if (!preset || preset->arguments().empty()) return;
+  const auto shows = [&](const PresetArgument& argument) {
+    return found(argument.schema.name) || found(argument.schema.doc) || found("arguments");
+  };
+  const auto& arguments = preset->arguments();
+  if (std::ranges::none_of(arguments, shows)) return;
+  ImGui::PushID("arguments");
+  if (ImGui::CollapsingHeader("Arguments", ImGuiTreeNodeFlags_DefaultOpen)) {
+    for (const auto& argument : arguments)
+      if (shows(argument))
+        draw_row(ui, port, {"", argument.schema.name, argument.schema, argument.value, nullptr, argument.given});
+    const std::string words = argument_words(port.edits());
+    if (small_button(ui, "Copy --arg", ("To the clipboard: " + words).c_str(), !words.empty())) ui.copy(words);
+    ImGui::Spacing();
+  }
+  ImGui::PopID();
+}
+
 void Panel::draw_entries(Ui& ui, PanelPort& port) {
   const Build* build = port.build();
   if (!build) return;
@@ -179,7 +155,10 @@ void Panel::draw_entry(Ui& ui, PanelPort& port, std::size_t index) {
   const EffectSchema& schema = preset.schema(entry.effect);
   const bool whole = found(entry.name) || found(entry.effect);
   const auto shows = [&](const SettingSchema& setting) { return whole || found(setting.name) || found(setting.doc); };
-  if (!whole && std::none_of(schema.settings.begin(), schema.settings.end(), shows)) return;
+  const EntryHistory& history = port.build()->explanation->entries[index];
+  const auto matches = [&](const SettingHistory& setting) { return whole || found(setting.name); };
+  if (!whole && std::ranges::none_of(schema.settings, shows) && std::ranges::none_of(history.composition, matches))
+    return;
 
   ImGui::PushID(entry.name.c_str());
   const std::string* skipped = reason_of(port.skipped(), entry.name);
@@ -188,7 +167,12 @@ void Panel::draw_entry(Ui& ui, PanelPort& port, std::size_t index) {
     if (skipped) ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kDim);
     if (skipped) ImGui::TextWrapped("skipped: %s", skipped->c_str());
     for (std::size_t i = 0; i < schema.settings.size() && i < entry.settings.size(); ++i)
-      if (shows(schema.settings[i])) draw_setting(ui, port, index, i);
+      if (shows(schema.settings[i]))
+        draw_row(ui, port, row_of(entry, history.settings[i], schema.settings[i], entry.settings[i].second));
+    for (const auto& setting : history.composition)
+      if (const auto of = matches(setting) ? preset.setting_schema(entry, setting.name) : std::nullopt)
+        draw_row(ui, port, row_of(entry, setting, *of, setting.value));
+    if (entry.mask && (whole || found("mask"))) ImGui::TextDisabled("mask: %s", entry.mask->text().c_str());
     if (skipped) ImGui::PopStyleColor();
     ImGui::Spacing();
   }
@@ -233,51 +217,6 @@ bool Panel::draw_entry_head(Ui& ui, PanelPort& port, const StackEntry& entry, co
     ImGui::TextDisabled("%s", label.c_str());
   }
   return open;
-}
-
-void Panel::draw_setting(Ui& ui, PanelPort& port, std::size_t entry_index, std::size_t index) {
-  const Preset& preset = *port.preset();
-  const StackEntry& entry = (*port.build()->entries)[entry_index];
-  const SettingSchema& schema = preset.schema(entry.effect).settings[index];
-  const SettingHistory* history = history_of(*port.build(), entry_index, index);
-  const auto edit = port.edits().value(entry.name, schema.name);
-  const SettingValue value = edit ? *edit : entry.settings[index].second;
-
-  ImGui::PushID(schema.name.c_str());
-  const float width = std::max(ui.px(120), ImGui::GetContentRegionAvail().x * 0.52f);
-  if (const auto changed = setting_widget(ui, "##value", schema, value, width))
-    port.set(entry.name, schema.name, *changed);
-  if (ImGui::IsItemDeactivated()) port.end_gesture();
-  const bool in_file = history && history->preset;
-  if (ImGui::BeginPopupContextItem("more")) {
-    if (ImGui::MenuItem("As in the file", nullptr, false, edit.has_value())) port.reset(entry.name, schema.name);
-    if (ImGui::MenuItem("Default", nullptr, false, !(value == schema.default_value)))
-      port.set(entry.name, schema.name, schema.default_value);
-    port.end_gesture();
-    ImGui::EndPopup();
-  }
-  tooltip(ui, setting_help(schema, history, edit.has_value()));
-  ImGui::SameLine(schema.type == SettingType::boolean
-                      ? width + ImGui::GetStyle().WindowPadding.x + ImGui::GetStyle().ItemSpacing.x
-                      : 0);
-  const ImU32 color = edit ? ui_color::kAccent : in_file ? ui_color::kText : ui_color::kDim;
-  ImGui::PushStyleColor(ImGuiCol_Text, color);
-  ImGui::TextUnformatted(schema.name.c_str());
-  ImGui::PopStyleColor();
-  tooltip(ui, setting_help(schema, history, edit.has_value()));
-  if (const std::string origin = history ? origin_of(*history) : ""; !origin.empty()) {
-    ImGui::SameLine();
-    ImGui::TextDisabled("%s%s", edit ? "over " : "", origin.c_str());
-  }
-  if (edit) {
-    ImGui::SameLine();
-    if (small_button(ui, "x", "As in the file")) {
-      port.end_gesture();
-      port.reset(entry.name, schema.name);
-      port.end_gesture();
-    }
-  }
-  ImGui::PopID();
 }
 
 }  // namespace afterglow

@@ -32,10 +32,10 @@ class Panel {
  private:
   void draw_head(Ui& ui, PanelPort& port);
   void draw_outcome(Ui& ui);
+  void draw_arguments(Ui& ui, PanelPort& port);
   void draw_entries(Ui& ui, PanelPort& port);
   void draw_entry(Ui& ui, PanelPort& port, std::size_t index);
   bool draw_entry_head(Ui& ui, PanelPort& port, const StackEntry& entry, const std::string* skipped);
-  void draw_setting(Ui& ui, PanelPort& port, std::size_t entry, std::size_t setting);
   bool found(const std::string& text) const;
 
   PanelSave save_;

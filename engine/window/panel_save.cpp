@@ -10,21 +10,40 @@
 namespace afterglow {
 namespace {
 
+// As a word of a shell.
+std::string in_quotes(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
 // Does the preset itself say this, without the edit over it?
 bool says(const Build& build, const SettingEdit& edit) {
-  for (const auto& entry : build.explanation->entries)
-    if (entry.name == edit.entry)
-      for (const auto& setting : entry.settings)
-        if (setting.name == edit.setting) {
-          const SettingValue& value = setting.preset ? *setting.preset : setting.default_value;
-          for (std::size_t i = 0; i < value.number.size(); ++i)
-            if (static_cast<float>(value.number[i]) != static_cast<float>(edit.value.number[i])) return false;
-          return value.choice == edit.value.choice;
-        }
+  for (const auto& entry : build.explanation->entries) {
+    const SettingHistory* setting = entry.name == edit.entry ? entry.find(edit.setting) : nullptr;
+    if (!setting) continue;
+    const SettingValue& value = setting->preset ? *setting->preset : setting->default_value;
+    for (std::size_t i = 0; i < value.number.size(); ++i)
+      if (static_cast<float>(value.number[i]) != static_cast<float>(edit.value.number[i])) return false;
+    return value.choice == edit.value.choice;
+  }
   return true;  // enabled, at, order: nothing of them is kept of before an override
 }
 
 }  // namespace
+
+std::string argument_words(const SettingEdits& edits) {
+  std::string out;
+  for (const auto& edit : edits.edits()) {
+    if (!edit.entry.empty()) continue;
+    const bool plain = edit.value.choice.empty() && edit.value.type != SettingType::vec2 &&
+                       edit.value.type != SettingType::vec3 && edit.value.type != SettingType::color;
+    const std::string value = edit.value.choice.empty() ? edit.value.text() : edit.value.choice;
+    const std::string word = edit.setting + "=" + value;
+    out += (out.empty() ? "--arg " : " --arg ") + (plain ? word : in_quotes(word));
+  }
+  return out;
+}
 
 void PanelSave::tell(std::string message, bool failed) {
   message_ = std::move(message);
@@ -41,7 +60,9 @@ void PanelSave::save(PanelPort& port) {
   if (busy()) return;
   dismiss();
   saving_ = port.edits().edits();
-  if (saving_.empty()) return tell("Nothing was changed", false);
+  if (std::erase_if(saving_, [](const SettingEdit& edit) { return edit.entry.empty(); }) > 0)
+    notes_.push_back("Arguments are not part of the preset: they are given by " + argument_words(port.edits()));
+  if (saving_.empty()) return tell("No setting was changed", false);
   std::vector<PresetEdit> edits;
   for (const auto& edit : saving_) edits.push_back({edit.entry, edit.setting, edit.value, ""});
   running_ = std::async(std::launch::async, [this, edits] {
@@ -66,7 +87,7 @@ bool PanelSave::poll(PanelPort& port) {
     return true;
   }
   refused_ = std::move(outcome.rewrite.refused);
-  notes_ = std::move(outcome.rewrite.notes);
+  std::ranges::move(outcome.rewrite.notes, std::back_inserter(notes_));
   std::erase_if(saving_, [&](const SettingEdit& edit) {
     return std::any_of(refused_.begin(), refused_.end(), [&](const RefusedSetting& refused) {
       return refused.edit.entry == edit.entry && refused.edit.setting == edit.setting;

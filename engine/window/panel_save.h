@@ -11,6 +11,9 @@
 
 namespace afterglow {
 
+/// The changed arguments as a command takes them: "--arg strength=0.8 --arg hero=Lamp".
+std::string argument_words(const SettingEdits& edits);
+
 /// Drawing thread alone; scripts run and files are written on a thread of its own, so that playing goes on.
 class PanelSave {
  public:

@@ -1,5 +1,7 @@
 ---@meta _
--- Generated from the effects, not to be edited: AFTERGLOW_UPDATE=1 ctest -R Completion.FileIsUpToDate
+-- Generated from effects and masks, not to be edited: AFTERGLOW_UPDATE=1 ctest -R Completion.FileIsUpToDate
+
+---@alias afterglow.Blend "normal"|"add"|"screen"|"multiply"|"overlay"|"soft_light"|"lighten"|"darken"
 
 ---Keys that every effect of a stack takes besides its settings.
 ---@class afterglow.EntryKeys
@@ -9,8 +11,12 @@
 ---@field required? boolean  true: a missing input (depth, normal) is an error, default false
 ---@field name? string       how messages and --set call it, default: the effect's name
 ---@field opacity? number|afterglow.Moving  how much of the result counts, 0…1; at 0 the effect does not run, default 1
----@field blend? "normal"|"add"|"screen"|"multiply"|"overlay"|"soft_light"|"lighten"|"darken"  how it is put over what the effect was given
+---@field blend? afterglow.Blend|afterglow.OfTime  how it is put over what the effect was given, default "normal"
 ---@field mask? afterglow.Mask|number  where it counts, default everywhere
+
+---Keys that every mask takes besides its settings.
+---@class afterglow.MaskKeys
+---@field invert? boolean  true: what it does not select, default false
 
 ---Long horizontal flares from bright lights, as of an anamorphic lens.
 ---@class afterglow.settings.anamorphic_streaks : afterglow.EntryKeys
@@ -295,6 +301,52 @@
 ---@field temperature? number|afterglow.Moving  Above 0 warmer (yellow), below 0 colder (blue). -100…100, default 0
 ---@field tint? number|afterglow.Moving  Above 0 towards magenta, below 0 towards green. -100…100, default 0
 
+---Objects, materials or assets by name, with their soft edges, from the picture's cryptomatte.
+---@class afterglow.masks.cryptomatte : afterglow.MaskKeys
+---@field names? string|afterglow.OfTime  Up to 8 names, with commas between them; a name that has commas itself stands in quotation marks. default ""
+---@field layer? string|afterglow.OfTime  Of which cryptomatte: CryptoObject, CryptoMaterial, CryptoAsset of Blender. default "CryptoObject"
+
+---What lies between two distances, by the picture's depth.
+---@class afterglow.masks.depth : afterglow.MaskKeys
+---@field from? number|afterglow.Moving  The near end. 0…10000000000 scene units, default 0
+---@field to? number|afterglow.Moving  The far end. 0…10000000000 scene units, default 10
+---@field softness? number|afterglow.Moving  Over which things come and go, outside of the range. 0…1000000 scene units, default 1
+
+---A picture from a file, stretched over the whole picture.
+---@class afterglow.masks.file : afterglow.MaskKeys
+---@field file? string|afterglow.OfTime  The picture. default ""
+---@field channel? "r"|"g"|"b"|"a"|"luma"|afterglow.OfTime  What of it is the mask; linear. default "luma"
+
+---Colours of a hue: 0 red, 60 yellow, 120 green, 180 cyan, 240 blue, 300 magenta.
+---@class afterglow.masks.hue : afterglow.MaskKeys
+---@field center? number|afterglow.Moving  The hue. -360…360 degrees, default 0
+---@field width? number|afterglow.Moving  How much of the circle counts. 0…360 degrees, default 60
+---@field softness? number|afterglow.Moving  Over which hues come and go, outside of the width. 0…180 degrees, default 20
+---@field saturation? number|afterglow.Moving  From which on colours count fully; greys do not. 0…1, default 0.2
+
+---A channel of a layer of the picture: a matte, an object's alpha, an albedo.
+---@class afterglow.masks.layer : afterglow.MaskKeys
+---@field layer? string|afterglow.OfTime  The layer; the end of its name is enough where no other ends so. default ""
+---@field channel? "r"|"g"|"b"|"a"|"luma"|afterglow.OfTime  Which of its channels. Of a layer of one channel: r. default "r"
+
+---A gradient: nothing on one side of the picture, everything on the other.
+---@class afterglow.masks.linear : afterglow.MaskKeys
+---@field from? number[]|afterglow.Moving  Where nothing counts, in pictures: {0, 0} is the upper left corner. {x, y}, each -10…10, default {0.5, 0}
+---@field to? number[]|afterglow.Moving  Where everything does. {x, y}, each -10…10, default {0.5, 1}
+
+---Pixels whose luminance lies between two values.
+---@class afterglow.masks.luma : afterglow.MaskKeys
+---@field from? number|afterglow.Moving  Linear luminance from which pixels count. 0…1000000, default 0.5
+---@field to? number|afterglow.Moving  Up to which they count. 0…1000000, default 1000000
+---@field softness? number|afterglow.Moving  Over which they come and go, outside of the range. 0…1000000, default 0.1
+
+---An ellipse with a soft edge.
+---@class afterglow.masks.radial : afterglow.MaskKeys
+---@field center? number[]|afterglow.Moving  In pictures: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each -10…10, default {0.5, 0.5}
+---@field radius? number[]|afterglow.Moving  Across and down, in heights of the picture. {x, y}, each 0…100, default {0.35, 0.35}
+---@field softness? number|afterglow.Moving  How far the edge goes outside, in heights of the picture. 0…100, default 0.25
+---@field rotation? number|afterglow.Moving  Turns the ellipse clockwise. -360…360 degrees, default 0
+
 ---@class afterglow
 ---@field anamorphic_streaks fun(settings: afterglow.settings.anamorphic_streaks): afterglow.Entry  Long horizontal flares from bright lights, as of an anamorphic lens.
 ---@field auto_exposure fun(settings: afterglow.settings.auto_exposure): afterglow.Entry  Exposes for middle grey by a histogram of the picture, and adapts to changes over time.
@@ -331,3 +383,14 @@
 ---@field tone_mapping fun(settings: afterglow.settings.tone_mapping): afterglow.Entry  Brings scene-linear light into display range.
 ---@field vignette fun(settings: afterglow.settings.vignette): afterglow.Entry  Darkens or colours the picture towards its corners.
 ---@field white_balance fun(settings: afterglow.settings.white_balance): afterglow.Entry  Takes a colour cast away or adds one: temperature and tint.
+
+---What `fx.mask` holds; masks of yours are masks/NAME.lua.
+---@class afterglow.Masks
+---@field cryptomatte fun(settings: afterglow.masks.cryptomatte): afterglow.Mask  Objects, materials or assets by name, with their soft edges, from the picture's cryptomatte.
+---@field depth fun(settings: afterglow.masks.depth): afterglow.Mask  What lies between two distances, by the picture's depth.
+---@field file fun(settings: afterglow.masks.file): afterglow.Mask  A picture from a file, stretched over the whole picture.
+---@field hue fun(settings: afterglow.masks.hue): afterglow.Mask  Colours of a hue: 0 red, 60 yellow, 120 green, 180 cyan, 240 blue, 300 magenta.
+---@field layer fun(settings: afterglow.masks.layer): afterglow.Mask  A channel of a layer of the picture: a matte, an object's alpha, an albedo.
+---@field linear fun(settings: afterglow.masks.linear): afterglow.Mask  A gradient: nothing on one side of the picture, everything on the other.
+---@field luma fun(settings: afterglow.masks.luma): afterglow.Mask  Pixels whose luminance lies between two values.
+---@field radial fun(settings: afterglow.masks.radial): afterglow.Mask  An ellipse with a soft edge.

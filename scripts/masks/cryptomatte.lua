@@ -5,7 +5,7 @@ return fx.effect {
   name = "cryptomatte",
   doc = "Objects, materials or assets by name, with their soft edges, from the picture's cryptomatte.",
   settings = {
-    names = fx.text { doc = "Up to 8 names, with commas between them." },
+    names = fx.text { doc = "Up to 8 names, with commas between them; a name that has commas itself stands in quotation marks." },
     layer = fx.text { default = "CryptoObject", doc = "Of which cryptomatte: CryptoObject, CryptoMaterial, CryptoAsset of Blender." },
   },
   needs = function(s) return { "layer:" .. s.layer .. "00" } end,

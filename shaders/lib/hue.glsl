@@ -29,3 +29,16 @@ vec3 turn_hue(vec3 c, float sextants, float part) {
   float scale = value / (value + kEpsilon);
   return scale * (least + kEpsilon) + (scale * d) * fullness;
 }
+
+/// HSV's hue and saturation with the same ε: x its largest channel in sextants (0 red, 2 green, 4 blue), y how far it is from there,
+/// −1…1, z the saturation, 0…1. Apart, so that a dark channel of a bright colour keeps its digits. c ≥ 0.
+vec3 hue_and_saturation(vec3 c) {
+  const float kEpsilon = 1e-4;
+  bool green_first = c.g >= c.b;
+  float a = green_first ? c.g : c.b, b = green_first ? c.b : c.g;
+  bool red_first = c.r >= a;
+  float value = red_first ? c.r : a, other = red_first ? a : c.r;
+  float d = value - min(other, b);
+  float f = 6.0 * (other - b) / (6.0 * d + kEpsilon);
+  return vec3(red_first ? 0.0 : green_first ? 2.0 : 4.0, red_first == green_first ? f : -f, d / (value + kEpsilon));
+}

@@ -87,6 +87,47 @@ TEST_F(Explain, AsJson) {
   EXPECT_EQ(out.at("entries").at(0).at("state"), "skipped");
 }
 
+TEST_F(Explain, HowEntriesArePutOverWhatTheyWereGiven) {
+  write("faded.lua",
+        "local fx = require \"afterglow\"\n"
+        "return fx.stack {\n"
+        "  fx.color_adjustments { contrast = 10, opacity = fx.curve { { 1, 0 }, { 5, 1 } }, blend = \"screen\",\n"
+        "    mask = fx.mask.luma { from = 0.3 } * (1 - fx.mask.radial {}) },\n"
+        "  fx.white_balance { temperature = 10, mask = fx.mask.radial { radius = { 0, 1 } } },\n"
+        "  fx.channel_mixer { red_out_red_in = 90 } }\n");
+  const std::vector<std::string> command{"explain", "faded.lua",
+                                         "--frame", "3",
+                                         "--set",   "color_adjustments.mask.luma.to=2",
+                                         "--set",   "channel_mixer.opacity=0"};
+  const Outcome outcome = run(command);
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.out, ContainsRegex("color_adjustments .*, opacity 0\\.5, blend screen, mask luma \\* "
+                                         "\\(1 - radial\\): runs"));
+  EXPECT_THAT(outcome.out, ContainsRegex("opacity +1 +0\\.5 \\(curve\\) +0\\.5"));
+  EXPECT_THAT(outcome.out, ContainsRegex("blend +\"normal\" +\"screen\" +\"screen\""));
+  EXPECT_THAT(outcome.out, ContainsRegex("mask +everywhere +luma \\* \\(1 - radial\\)"));
+  EXPECT_THAT(outcome.out, ContainsRegex("mask\\.luma\\.from +0\\.5 +0\\.3 +0\\.3"));
+  EXPECT_THAT(outcome.out, ContainsRegex("mask\\.luma\\.to +1000000 +2 +2"));
+  EXPECT_THAT(outcome.out, ContainsRegex("white_balance .*: skipped, its mask selects nothing: radial: radius is 0"));
+  EXPECT_THAT(outcome.out, ContainsRegex("channel_mixer .*: skipped, opacity is 0"));
+  auto as_json = command;
+  as_json.insert(as_json.end(), {"--format", "json"});
+  const json out = parsed(as_json);
+  for (const json& entry : out.at("entries"))
+    if (entry.at("name") == "color_adjustments") {
+      EXPECT_EQ(entry.at("opacity"), 0.5);
+      EXPECT_EQ(entry.at("blend"), "screen");
+      EXPECT_EQ(entry.at("mask"), "luma * (1 - radial)");
+      EXPECT_EQ(entry.at("composition").at(0).at("preset"), (json{{"value", 0.5}, {"kind", "curve"}}));
+    } else if (entry.at("name") == "channel_mixer") {
+      EXPECT_EQ(entry.at("composition").at(0).at("override"), 0);
+    }
+  const Outcome one = run({"explain", "faded.lua", "color_adjustments.mask.luma.from"});
+  EXPECT_THAT(one.out, ContainsRegex("mask\\.luma\\.from +0\\.5 +0\\.3"));
+  EXPECT_THAT(one.out, Not(HasSubstr("softness")));
+  EXPECT_THAT(run({"explain", "faded.lua", "white_balance.opacty"}).err, HasSubstr("did you mean 'opacity'?"));
+}
+
 TEST_F(Explain, Messages) {
   const Outcome entry = run({"explain", "cave.lua", "tone_maping.mode"});
   EXPECT_EQ(entry.exit_code, kUsage);
@@ -94,9 +135,11 @@ TEST_F(Explain, Messages) {
                                    "color_adjustments, tone_mapping; did you mean 'tone_mapping'?"));
   const Outcome setting = run({"explain", "cave.lua", "tone_mapping.mod"});
   EXPECT_EQ(setting.exit_code, kUsage);
-  EXPECT_THAT(setting.err,
-              HasSubstr("'tone_mapping' has no setting 'mod'; allowed: mode, exposure, white, full_white, look, toe, "
-                        "toe_length, shoulder_length, shoulder_angle; did you mean 'mode'?"));
+  EXPECT_THAT(
+      setting.err,
+      HasSubstr("'tone_mapping' has no setting 'mod'; allowed: mode, exposure, white, full_white, look, toe, "
+                "toe_length, shoulder_length, shoulder_angle, at, blend, enabled, mask, opacity, order; did you "
+                "mean 'mode'?"));
   const Outcome at = run({"explain", "cave.lua", "--at", "1,2"});
   EXPECT_EQ(at.exit_code, kUsage);
   EXPECT_THAT(at.err, HasSubstr("--at: error: '1,2' is no position; allowed: X,Y,Z, three numbers"));

@@ -149,6 +149,23 @@ TEST_F(Inspect, EffectsAreListedWithTheirSettings) {
                          {"bloom", "box_bloom", "tone_mapping", "color_adjustments", "color_blit", "outline"}));
 }
 
+TEST_F(Inspect, MasksAreListedWithTheirSettings) {
+  const Outcome all = run({"effects"});
+  EXPECT_THAT(all.out, ContainsRegex("mask\\.radial +"));
+  const Outcome one = run({"effects", "mask.luma"});
+  EXPECT_EQ(one.exit_code, kDone) << one.err;
+  EXPECT_THAT(one.out, HasSubstr("mask.luma: Pixels whose luminance lies between two values."));
+  EXPECT_THAT(one.out, ContainsRegex("softness +float +0 to 1000000 +0\\.1"));
+  const json mask = parsed({"effects", "mask.luma", "--json"}).at(0);
+  EXPECT_EQ(mask.at("kind"), "mask");
+  EXPECT_FALSE(mask.contains("at"));
+  std::vector<std::string> names;
+  for (const auto& listed : parsed({"effects", "--masks", "--json"})) names.push_back(listed.at("name"));
+  EXPECT_THAT(names,
+              ::testing::ElementsAre("cryptomatte", "depth", "file", "hue", "layer", "linear", "luma", "radial"));
+  EXPECT_THAT(run({"effects", "mask.lumma"}).err, HasSubstr("did you mean 'mask.luma'?"));
+}
+
 TEST_F(Inspect, EffectsAsMarkdown) {
   const Outcome page = run({"effects", "bloom", "--markdown"});
   EXPECT_EQ(page.exit_code, kDone) << page.err;
@@ -202,6 +219,14 @@ TEST_F(Inspect, ArgumentsAndCompositionAreShown) {
   EXPECT_THAT(plain.out, HasSubstr("opacity 0.3"));
   EXPECT_THAT(plain.out, HasSubstr("mask radial * 0.5"));
   EXPECT_THAT(plain.out, ContainsRegex("strength +0.3 +\\(default\\) +0 to 1 +How much"));
+  EXPECT_THAT(plain.out, ContainsRegex("mask\\.radial\\.softness +0\\.[0-9]+ +\\(default\\)"));
+  const json set = parsed({"check", "args.lua", "--set", "bloom.mask.radial.radius=2,1", "--json"});
+  EXPECT_EQ(set["entries"][1]["mask"], "radial * 0.5");
+  EXPECT_THAT(set["entries"][1]["composition"].dump(), HasSubstr("\"override\":[2.0,1.0]"));
+  const json graph = parsed({"graph", "args.lua", "--format", "json"});
+  EXPECT_EQ(graph["composition"], (json{{"bloom", "mask radial * 0.5"}, {"group", "opacity 0.3"}}));
+  for (const char* format : {"svg", "dot"})
+    EXPECT_THAT(run({"graph", "args.lua", "--format", format}).out, HasSubstr("bloom: mask radial * 0.5"));
   const json given = parsed({"check", "args.lua", "--arg", "strength=0.5", "--json"});
   EXPECT_EQ(given["entries"][0]["opacity"], 0.5);
   EXPECT_EQ(given["entries"][0]["members"], 1);

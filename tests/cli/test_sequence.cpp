@@ -113,6 +113,18 @@ TEST_F(Sequence, ResumeSkipsWhatIsDone) {
   EXPECT_THAT(states("report.json"), ElementsAre("up to date", "up to date", "done", "done"));
 }
 
+TEST_F(Sequence, ResumeSeesOtherArguments) {
+  write("look.lua",
+        "local fx = require \"afterglow\"\n"
+        "local args = fx.args { stops = fx.float { default = 0 } }\n"
+        "return fx.stack { fx.color_adjustments { post_exposure = args.stops } }\n");
+  ASSERT_EQ(run_all({"--arg", "stops=1", "--frames", "1-2"}).exit_code, kDone);
+  ASSERT_EQ(run_all({"--arg", "stops=1", "--frames", "1-2", "--resume", "--report", "report.json"}).exit_code, kDone);
+  EXPECT_THAT(states("report.json"), ElementsAre("up to date", "up to date"));
+  ASSERT_EQ(run_all({"--arg", "stops=2", "--frames", "1-2", "--resume", "--report", "report.json"}).exit_code, kDone);
+  EXPECT_THAT(states("report.json"), ElementsAre("done", "done"));
+}
+
 TEST_F(Sequence, ResumeSeesNewInputsLooksAndOptions) {
   ASSERT_EQ(run_all().exit_code, kDone);
   // A touched input.

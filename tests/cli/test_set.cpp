@@ -48,6 +48,36 @@ TEST_F(Set, ChangesTheFileAndShowsTheLines) {
   EXPECT_THAT(again.err, HasSubstr("says so already"));
 }
 
+TEST_F(Set, OpacityBlendAndPartsOfMasks) {
+  write("masked.lua",
+        "local fx = require \"afterglow\"\n"
+        "return fx.stack {\n"
+        "  fx.bloom { intensity = 0.2, opacity = 0.5, mask = fx.mask.luma { from = 1 } + fx.mask.luma { from = 2 } },\n"
+        "  fx.tone_mapping {},\n"
+        "  fx.vignette { opacity = fx.curve { { 1, 0 }, { 9, 1 } } },\n"
+        "}\n");
+  const Outcome computed = run({"set", "masked.lua", "vignette.opacity=0.5"});
+  EXPECT_EQ(computed.exit_code, kScript);
+  EXPECT_THAT(computed.err,
+              HasSubstr("masked.lua:5: error: vignette.opacity is computed and stays as it is: fx.curve"));
+  const Outcome outcome = run({"set", "masked.lua", "bloom.opacity=0.75", "bloom.mask.luma#2.from=4",
+                               "bloom.mask.luma.softness=0.5", "tone_mapping.blend=lighten"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_EQ(read("masked.lua"),
+            "local fx = require \"afterglow\"\n"
+            "return fx.stack {\n"
+            "  fx.bloom { intensity = 0.2, opacity = 0.75, mask = fx.mask.luma { from = 1, softness = 0.5 } + "
+            "fx.mask.luma { from = 4 } },\n"
+            "  fx.tone_mapping { blend = \"lighten\" },\n"
+            "  fx.vignette { opacity = fx.curve { { 1, 0 }, { 9, 1 } } },\n"
+            "}\n");
+  EXPECT_EQ(run({"set", "masked.lua", "--reset", "bloom.opacity"}).exit_code, kDone);
+  EXPECT_THAT(read("masked.lua"), HasSubstr("fx.bloom { intensity = 0.2, mask = "));
+  EXPECT_THAT(run({"set", "masked.lua", "bloom.mask=1"}).err,
+              HasSubstr("bloom.mask is made by the script and is changed there; allowed: the settings of its parts"));
+  EXPECT_THAT(run({"set", "masked.lua", "bloom.mask.lumma.from=1"}).err, HasSubstr("did you mean 'mask.luma.from'?"));
+}
+
 TEST_F(Set, DryRunsWriteNothing) {
   const Outcome outcome = run({"set", "look.lua", "tone_mapping.mode=neutral", "--dry-run"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "cases.h"
+#include "core/file.h"
 #include "core/paths.h"
 #include "files.h"
 #include "reference/tone_mapping.h"
@@ -45,14 +47,19 @@ double difference(const std::vector<float>& soft, const std::vector<float>& opaq
   return worst;
 }
 
-void expect_straight(const std::string& entries, double tolerance = 1e-5) {
+/// The largest difference that was seen.
+double expect_straight(const std::string& entries, double tolerance = 1e-5) {
   const Ramp ramp;
+  double worst = 0;
   for (const Way way : {Way::plain, Way::joined}) {
     const Made soft = run_stack(entries, ramp.soft, way), opaque = run_stack(entries, ramp.opaque, way);
-    ASSERT_TRUE(soft.ran()) << entries;
-    EXPECT_LE(difference(soft.result, opaque.result, ramp.soft), tolerance) << entries;
+    EXPECT_TRUE(soft.ran()) << entries;
+    if (!soft.ran()) return worst;
+    worst = std::max(worst, difference(soft.result, opaque.result, ramp.soft));
     EXPECT_TRUE(alpha_is_kept(soft, ramp.soft)) << entries;
   }
+  EXPECT_LE(worst, tolerance) << entries;
+  return worst;
 }
 
 /// Settings with which each effect that asks for straight colour has something to do.
@@ -61,6 +68,9 @@ const std::map<std::string, std::vector<std::string>>& bending() {
       {"color_adjustments",
        {"contrast = 35", "post_exposure = 0.5, contrast = -20, hue_shift = 40, saturation = 30", "saturation = -60"}},
       {"cdl", {"slope = { 1.3, 1, 0.8 }, power = { 1.2, 1, 0.9 }, saturation = 1.2"}},
+      {"curves",
+       {"blacks = -1, highlights = 0.7",
+        "by = \"luminance\", whites = -1, reds = { 20, 30, 40 }, blues = { -30, 50, 0 }"}},
       {"film_grain", {"intensity = 0.6", "intensity = 0.6, size = 2.5"}},
       {"lift_gamma_gain",
        {"gamma_offset = 0.3", "lift_offset = 0.1, gain_offset = 0.2, gamma = { 1, 0.9, 0.8 }", "lift_offset = -0.02"}},
@@ -83,20 +93,40 @@ void write_bent_cube() {
   write_test_file("bent.cube", text);
 }
 
+/// docs/alpha.md has a row for each effect of `rows`; AFTERGLOW_UPDATE=1 writes it anew.
+void keep_table(const std::map<std::string, std::pair<std::size_t, double>>& rows) {
+  const std::filesystem::path file = AFTERGLOW_PROJECT_FOLDER "/docs/alpha.md";
+  const std::string head = "| effect | settings tried | largest difference |\n|---|---|---|\n";
+  auto text = read_file(file);
+  ASSERT_TRUE(text) << text.error().text();
+  if (std::getenv("AFTERGLOW_UPDATE")) {
+    *text = text->substr(0, text->find(head)) + head;
+    for (const auto& [effect, row] : rows)
+      *text += fmt::format("| `{}` | {} | {:.1e} |\n", effect, row.first, row.second);
+    ASSERT_TRUE(write_file_atomically(file, *text));
+  }
+  for (const auto& [effect, row] : rows)
+    EXPECT_NE(text->find(fmt::format("\n| `{}` | {} | ", effect, row.first)), std::string::npos)
+        << "AFTERGLOW_UPDATE=1 ctest -R SoftEdgesKeepTheirColourThroughEveryEffect";
+}
+
 TEST_F(Effects, SoftEdgesKeepTheirColourThroughEveryEffectThatBendsIt) {
   write_bent_cube();
+  std::map<std::string, std::pair<std::size_t, double>> rows;
   Diagnostics diagnostics;
   const auto effects = list_effects(search_path_for({}, {}), diagnostics);
   ASSERT_TRUE(effects);
   for (const auto& effect : *effects) {
     if (!effect.straight) continue;
     const auto known = bending().find(effect.name);
-    if (known == bending().end()) {
-      expect_straight(fmt::format("fx.{} {{ }}", effect.name));  // a new one: at least as it comes
-      continue;
-    }
-    for (const auto& settings : known->second) expect_straight(fmt::format("fx.{} {{ {} }}", effect.name, settings));
+    // A new one: at least as it comes.
+    const std::vector<std::string> tried = known == bending().end() ? std::vector<std::string>{""} : known->second;
+    for (const auto& settings : tried)
+      rows[effect.name].second =
+          std::max(rows[effect.name].second, expect_straight(fmt::format("fx.{} {{ {} }}", effect.name, settings)));
+    rows[effect.name].first = tried.size();
   }
+  keep_table(rows);
 }
 
 TEST_F(Effects, SoftEdgesKeepTheirColourThroughEffectsThatScaleIt) {

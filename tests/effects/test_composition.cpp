@@ -8,6 +8,7 @@
 #include "cases.h"
 #include "files.h"
 #include "image/cryptomatte.h"
+#include "image/writer.h"
 #include "reference/composite.h"
 #include "reference/tone_mapping.h"
 
@@ -178,6 +179,28 @@ TEST_F(Effects, FullOpacityAndAFullMaskAreTheEffectItself) {
   EXPECT_EQ(run_stack(effect + ", opacity = 1, mask = 1 }", scene, Way::joined).result, plain.result);
   EXPECT_TRUE(agrees(run_stack(effect + ", mask = fx.mask.radial { radius = { 9, 9 } } }", scene, Way::joined).result,
                      from_floats(plain.result.data(), plain.size, 4), 1e-6, kRgba));
+}
+
+TEST_F(Effects, AFileIsAMask) {
+  const Scene scene = light({48, 32});
+  Picture picture;
+  picture.color = Image(48, 32, 4);
+  std::vector<double> red(48 * 32);
+  for (std::size_t i = 0; i < red.size(); ++i) {
+    picture.color.pixels[4 * i] = static_cast<float>(red[i] = static_cast<double>(i % 17) / 16);
+    picture.color.pixels[4 * i + 3] = 1;
+  }
+  picture.data_window = picture.display_window = {0, 0, 48, 32};
+  Diagnostics diagnostics;
+  ASSERT_TRUE(write_picture(picture, test_files() / "where.exr", {.type = SampleType::float32}, diagnostics));
+  const std::string effect = "fx.color_adjustments { post_exposure = 2";
+  const auto all = run_stack(effect + " }", scene, Way::joined);
+  const auto expected = composite(scene.source, from_floats(all.result.data(), all.size, 4), 1, "normal", &red);
+  for (const Way way : {Way::plain, Way::joined})
+    EXPECT_TRUE(agrees(
+        run_stack(effect + ", mask = fx.mask.file { file = \"where.exr\", channel = \"r\" } }", scene, way).result,
+        expected, 1e-5, kRgb));
+  expect_skipped(effect + ", mask = fx.mask.file { } }", "its mask selects nothing: file: no file is named");
 }
 
 /// Two ranks an image: an object that covers a disc, one behind it, and none.

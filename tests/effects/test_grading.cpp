@@ -115,6 +115,49 @@ TEST_F(Effects, CdlAgrees) {
   expect_skipped("fx.cdl {}", "all settings are neutral");
 }
 
+EffectCase curved(const Curves& v) {
+  static constexpr const char* kPoints[] = {"blacks", "shadows", "midtones", "highlights", "whites"};
+  static constexpr const char* kChannels[] = {"red", "green", "blue"};
+  static constexpr const char* kHues[] = {"reds", "yellows", "greens", "cyans", "blues", "magentas"};
+  std::string settings = fmt::format("by = \"{}\"", v.by_luminance ? "luminance" : "channels");
+  for (int i = 0; i < 5; ++i) settings += fmt::format(", {} = {}", kPoints[i], v.master[i]);
+  for (int i = 0; i < 3; ++i)
+    settings += fmt::format(", {} = {}", kChannels[i], text({v.channels[i][0], v.channels[i][1], v.channels[i][2]}));
+  for (int i = 0; i < 6; ++i) settings += fmt::format(", {} = {}", kHues[i], text(v.hues[i]));
+  return {"fx.curves { " + settings + " }", [=](const Scene& s) { return curves(s.source, v); }};
+}
+
+TEST_F(Effects, CurvesAgree) {
+  agree_everywhere(
+      {curved({.master = {-1, -0.5, 0, 0.5, 0.25}}), curved({.by_luminance = true, .master = {2, 1, 0.5, -0.5, -3}}),
+       curved({.master = {0, 0, 0, 4, -4}, .channels = {{{0.5, 0, -0.5}, {0, 0.2, 0}, {-1, 1, -1}}}}),
+       curved({.by_luminance = true,
+               .master = {0, -0.3, 0, 0.3, 0},
+               .channels = {{{0.1, 0, 0}, {}, {0, 0, 0.4}}},
+               .hues = {Rgb(-20, 30, 10), Rgb(50, 0, 0), Rgb(0, -100, -50), Rgb(), Rgb(40, 50, -30),
+                        Rgb(-100, 100, 100)}}),
+       curved({.hues = {Rgb(100, 0, 0), Rgb(-100, 0, 0), Rgb(0, 0, 100), Rgb(0, 0, -100), Rgb(0, 100, 0),
+                        Rgb(0, -100, 0)}})},
+      kSteep);
+  expect_skipped("fx.curves {}", "all points are 0");
+}
+
+/// Middle grey and what lies at a point get that point's gain; black stays black.
+TEST_F(Effects, CurvesGoThroughTheirPoints) {
+  Scene greys{"greys", DoubleImage(6, 1, Rgba(0, 0, 0, 1)), {}, {}};
+  const double stops[] = {-6, -3, 0, 3, 6}, gains[] = {-1, 1, 0.5, -2, 3};
+  for (int i = 0; i < 5; ++i) greys.source.at(i, 0) = Rgba(Rgb(0.18 * std::exp2(stops[i])), 1);
+  const char* entry =
+      "fx.curves {{ by = \"{}\", blacks = -1, shadows = 1, midtones = 0.5, highlights = -2, whites = 3 }}";
+  for (const char* by : {"channels", "luminance"}) {
+    const auto made = run_stack(fmt::format(fmt::runtime(entry), by), greys, Way::plain).result;
+    for (int i = 0; i < 5; ++i)
+      EXPECT_NEAR(made[static_cast<std::size_t>(i) * 4] / (0.18 * std::exp2(stops[i])), std::exp2(gains[i]), 1e-4)
+          << by << i;
+    EXPECT_EQ(made[20], 0);
+  }
+}
+
 TEST_F(Effects, AWholeGradeIsOneKernel) {
   const char* entries =
       "fx.vignette {}, fx.white_balance { temperature = 20 }, fx.split_toning { shadows = \"#305080\" }, "

@@ -37,10 +37,11 @@ std::set<std::string> words_of(const std::string& text) {
 }
 
 /// Words of the field that some rooms have for other things than the effect of that name: the exposure of the player's
-/// view and of cameras in transfer curves, CDL files.
+/// view and of cameras in transfer curves, CDL files, curves over time and of encodings.
 bool means_something_else(const std::string& room, const std::string& word) {
   static const std::set<std::pair<std::string, std::string>> kWords{
-      {"image", "exposure"}, {"play", "exposure"}, {"window", "exposure"}, {"image", "cdl"}};
+      {"image", "exposure"}, {"play", "exposure"}, {"window", "exposure"}, {"image", "cdl"},
+      {"api", "curves"},     {"bench", "curves"},  {"image", "curves"},    {"script", "curves"}};
   return kWords.contains({room, word});
 }
 

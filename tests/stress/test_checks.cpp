@@ -148,6 +148,33 @@ return fx.effect { name = "color_blit", settings = { intensity = fx.float { min 
   EXPECT_TRUE(right.applies && right.holds) << right.what;
 }
 
+/// The same for an effect that is faded, blended and masked: 1e-3 in its result is seen behind all of that.
+TEST(StressChecks, AFalseResultIsSeenThroughAMask) {
+  const EffectFolder folder;
+  folder.write("effects/color_blit.lua", R"(local fx = require "afterglow"
+return fx.effect { name = "color_blit", settings = { intensity = fx.float { min = 0, max = 2, default = 1 } }, holds = { error = 1e-5 },
+  build = function(g, s, source) return g:pass { shader = "wrong", source = source, intensity = s.intensity } end }
+)");
+  const auto outcome = [&](const char* factor, bool composed) {
+    folder.write(
+        "shaders/wrong.glsl",
+        std::string("uniform float intensity;\nvec4 apply(vec4 color) { return vec4(0.0, color.g * intensity * ") +
+            factor + ", 0.0, color.a); }\n");
+    Look look = folder.look("color_blit");
+    if (composed)
+      look.entries.front().composition = {{"opacity", "0.75"},
+                                          {"blend", "\"lighten\""},
+                                          {"mask", "fx.mask.layer { layer = \"matte\", channel = \"r\" }"}};
+    lab().forget();
+    return outcome_of(situation(look, "error_composed", {"display", {16, 16}, 1}));
+  };
+  EXPECT_FALSE(outcome("1.0", false).applies) << "nothing is composed";
+  const Outcome right = outcome("1.0", true), wrong = outcome("1.1", true);
+  EXPECT_TRUE(right.applies && right.holds) << right.what;
+  EXPECT_TRUE(wrong.applies);
+  EXPECT_FALSE(wrong.holds);
+}
+
 /// Of a pyramid of few levels, where pictures are large enough for light to stay away from the edges: what its promises
 /// with margins and conditions say does apply, and holds.
 TEST(StressChecks, AScatteringPyramidKeepsItsPromises) {

@@ -53,6 +53,47 @@ TEST(StressSettings, RandomOnesAreAllowedAndTheSameForTheSameSeed) {
   EXPECT_GT(at_limit, 5);
 }
 
+TEST(StressSettings, RandomCompositionsLoadAndAreShrunkByOne) {
+  Diagnostics quiet;
+  auto subjects = subjects_of_effects({"composition"}, {}, quiet);
+  ASSERT_TRUE(subjects) << subjects.error().text();
+  ASSERT_EQ(subjects->size(), 1u);
+  std::erase_if(subjects->back().composed, [](const EffectSchema& effect) {
+    return effect.name != "color_adjustments" && effect.name != "exposure" && effect.name != "vignette";
+  });
+  int groups = 0, masks = 0;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    Random random(11, i);
+    Look look{random_composition(subjects->back().composed, subjects->back().masks, search_path_for({}, {}), random),
+              {}};
+    const auto facts = lab().facts(look, {16, 16}, 1);
+    EXPECT_TRUE(facts) << look.line() << "\n" << facts.error().text();
+    groups += look.text().find("fx.group") != std::string::npos;
+    masks += look.text().find("fx.mask") != std::string::npos;
+    while (look.entries.size() > 1) {
+      const std::size_t count = look.entries.size();
+      look = look.without(random.below(count));
+      ASSERT_EQ(look.entries.size(), count - 1);
+      EXPECT_TRUE(lab().facts(look, {16, 16}, 1)) << look.line();
+    }
+  }
+  EXPECT_GT(groups, 20);
+  EXPECT_GT(masks, 50);
+}
+
+TEST(StressSettings, TheTextOfGroups) {
+  const auto entry = [](const char* effect, int depth) {
+    LookEntry out{.effect = effect, .settings = {}, .at = {}};
+    out.depth = depth;
+    return out;
+  };
+  Look look{{entry("a", 0), entry("group", 0), entry("b", 1), entry("group", 1), entry("c", 2), entry("d", 0)}, {}};
+  look.entries[1].composition = {{"opacity", "0.5"}};
+  EXPECT_EQ(look.line(), "fx.a {}, fx.group { opacity = 0.5, fx.b {}, fx.group { fx.c {} } }, fx.d {}");
+  EXPECT_EQ(look.without(1).line(), "fx.a {}, fx.b {}, fx.group { fx.c {} }, fx.d {}");
+  EXPECT_TRUE(look.is_composed());
+}
+
 /// Every effect of the library takes all that is tried on it, but for combinations that it refuses itself.
 TEST(StressSettings, TheLibraryTakesWhatIsTried) {
   lab();

@@ -360,6 +360,30 @@ TEST_F(PlayWindow, WhatIsTypedIntoTheSearchIsNoShortcut) {
   expect_clean_end();
 }
 
+TEST_F(PlayWindow, ArgumentsAreDraggedInThePanel) {
+  std::ofstream(folder_ / "look.lua")
+      << "local fx = require \"afterglow\"\n"
+      << "local args = fx.args { level = fx.float { min = 0, max = 1, default = 0 } }\n"
+      << "return fx.stack { fx.color_adjustments { color_filter = { 1 - args.level, args.level, 0 } } }\n";
+  play({"look.lua", "shot.0001.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  // The slider's handle: the first row of the panel. It is lit while the pointer is over it, and again while it is
+  // held.
+  for (const char* what : {"mousemove 923 171", "mousedown 1"}) {
+    const int before = shot().at(950, 171)[0];
+    ASSERT_TRUE(user(what));
+    EXPECT_TRUE(until([&] { return shot().at(950, 171)[0] != before; })) << what;
+  }
+  EXPECT_TRUE(
+      until([&] { return user("mousemove 1060 171 mousemove 1200 171") && has_color(shot(), kX, kY, kGreen); }));
+  ASSERT_TRUE(user("mouseup 1"));
+  ASSERT_TRUE(user("mousemove 400 300 key ctrl+z"));
+  EXPECT_TRUE(until_color(kX, kY, kRed)) << "one step of undo";
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
 TEST_F(PlayWindow, DrawsNothingWhileNothingChanges) {
   write_preset("{ 1, 0, 0 }");
   play({"look.lua", "shot.0001.exr"});

@@ -339,7 +339,8 @@ TEST_F(WriteBack, Messages) {
   EXPECT_THAT(error({"glo", "knee", number(1)}),
               HasSubstr("the stack has no entry 'glo'; allowed: glow; did you mean 'glow'?"));
   EXPECT_THAT(error({"glow", "kne", number(1)}), HasSubstr("effect 'glow' has no setting 'kne'; allowed: amount, knee, "
-                                                           "steps, soft, mode, tint, offset; did you mean 'knee'?"));
+                                                           "steps, soft, mode, tint, offset, at, blend, enabled, "
+                                                           "mask, opacity, order; did you mean 'knee'?"));
   EXPECT_THAT(error({"glow", "knee", number(2)}), HasSubstr("glow.knee = 2 is out of range; allowed: 0…1"));
   EXPECT_THAT(error({"glow", "knee", whole(1)}), HasSubstr("glow.knee is of another type; allowed: 0…1"));
   EXPECT_THAT(error({"glow", "knee", number(1), "cave"}), HasSubstr("the stack has no volume 'cave'"));

@@ -49,8 +49,30 @@ TEST(CryptomatteTest, ManifestsGiveIdsByName) {
   EXPECT_FALSE(*none);
 }
 
+TEST(CryptomatteTest, NamesThatBlenderDoesNotEscapeAreRead) {
+  const auto names = [](const char* manifest) {
+    const auto found = find_cryptomatte(
+        {{"cryptomatte/1/name", std::string("C")}, {"cryptomatte/1/manifest", std::string(manifest)}}, "C");
+    return found && *found ? (*found)->manifest : std::map<std::string, std::uint32_t>{{found.error().message, 0}};
+  };
+  using Names = std::map<std::string, std::uint32_t>;
+  EXPECT_EQ(names(R"({"a":"00000001","The "floor"":"4c1fd503"})"), (Names{{"a", 1}, {"The \"floor\"", 0x4c1fd503}}));
+  EXPECT_EQ(names(R"({"x":"y":"00000002"})"), (Names{{"x\":\"y", 2}}));
+  EXPECT_EQ(names(R"({"a":"00000001","b\"":"00000002"})"), (Names{{"a", 1}, {"b\"", 2}})) << "JSON";
+}
+
+TEST(CryptomatteTest, NamesHaveCommasBetweenThem) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(cryptomatte_names(" Lamp , Sign.001,, "), (Names{"Lamp", "Sign.001"}));
+  EXPECT_EQ(cryptomatte_names(R"("Glass, red", The "floor", "a \"b\"" , "open)"),
+            (Names{"Glass, red", "The \"floor\"", "a \"b\"", "open"}));
+  EXPECT_EQ(cryptomatte_names(""), Names{});
+}
+
 TEST(CryptomatteTest, BrokenManifestsAreErrors) {
-  for (const char* manifest : {"", "[1]", "{\"a\":3}", "{\"a\":\"xyz\"}", "{\"a\":\"\"}", "{\"a\":\"123456789\"}"}) {
+  for (const char* manifest :
+       {"", "[1]", "{\"a\":3}", "{\"a\":\"xyz\"}", "{\"a\":\"\"}", "{\"a\":\"123456789\"}", "{\"a\"b\":\"0000000g\"}",
+        "{\"a\"b\":\"00000001\",}", "{\"a\"b\":\"00000001\"", "{\"\"}"}) {
     const Metadata metadata{{"cryptomatte/1/name", std::string("C")},
                             {"cryptomatte/1/manifest", std::string(manifest)}};
     EXPECT_FALSE(find_cryptomatte(metadata, "C")) << manifest;

@@ -197,6 +197,36 @@ TEST_F(PlayerTest, AnEditOnDiskKeepsPositionZoomAndOverrides) {
   EXPECT_FLOAT_EQ(result(), 3.0f / 8 * 8);
 }
 
+TEST_F(PlayerTest, ArgumentsAndCompositionAreChangedWhilePlaying) {
+  write_sequence(2);
+  const auto look = [&](const std::string& arguments) {
+    write("look.lua", "local fx = require \"afterglow\"\nlocal args = fx.args { " + arguments +
+                          " }\nreturn fx.stack { fx.color_adjustments { post_exposure = args.stops or 0 } }\n");
+  };
+  look("stops = fx.float { min = 0, max = 4, default = 1 }");
+  PlayerOptions options;
+  options.live.stack.preset.arguments = {{"stops", "2"}};
+  Player& player = open(options);
+  turn();
+  EXPECT_FLOAT_EQ(result(), 4.0f / 8);
+  player.set("", "stops", {SettingType::number, {3}, ""});
+  turn();
+  EXPECT_FLOAT_EQ(result(), 8.0f / 8);
+  player.set("color_adjustments", "opacity", {SettingType::number, {0.5}, ""});
+  turn();
+  EXPECT_FLOAT_EQ(result(), 4.5f / 8);
+  ASSERT_TRUE(player.undo());
+  ASSERT_TRUE(player.undo());
+  turn();
+  EXPECT_FLOAT_EQ(result(), 4.0f / 8) << "the command line's again";
+  // A look that does not declare it any more plays on.
+  ASSERT_TRUE(player.redo());
+  look("stops = fx.float { min = 0, max = 1, default = 0 }");
+  reload();
+  EXPECT_FLOAT_EQ(result(), 1.0f / 8);
+  EXPECT_THAT(player.live().status().warnings, ::testing::Contains(HasSubstr("--arg stops = 3 is out of range")));
+}
+
 TEST_F(PlayerTest, AnErrorKeepsTheLastPictureUntilTheNextGoodSave) {
   write_sequence(2);
   Player& player = open();

@@ -69,5 +69,16 @@ TEST(SettingEdits, StandOverThoseOfTheCommandLine) {
   EXPECT_EQ(all[2].value, "{1, 0.5, 0}");
 }
 
+TEST(SettingEdits, ArgumentsAreNoSettings) {
+  SettingEdits edits;
+  edits.set("", "strength", number(0.25));
+  edits.set("glow", "strength", number(0.5));
+  EXPECT_EQ(edits.overrides({}).size(), 1u);
+  const auto arguments = edits.arguments({{"strength", "0.7"}});
+  ASSERT_EQ(arguments.size(), 2u);
+  EXPECT_EQ(arguments[1].name, "strength");
+  EXPECT_EQ(arguments[1].value, "0.25");
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -16,7 +16,9 @@ TEST(Completion, FileIsUpToDate) {
   path.installation = AFTERGLOW_PROJECT_FOLDER;
   const auto effects = list_effects(path, scene.diagnostics);
   ASSERT_TRUE(effects) << effects.error().text();
-  const std::string text = completion_text(*effects);
+  const auto masks = list_masks(path, scene.diagnostics);
+  ASSERT_TRUE(masks) << masks.error().text();
+  const std::string text = completion_text(*effects, *masks);
   const std::filesystem::path file = AFTERGLOW_PROJECT_FOLDER "/scripts/_meta/afterglow.lua";
   if (std::getenv("AFTERGLOW_UPDATE")) {
     ASSERT_TRUE(write_file_atomically(file, text));
@@ -49,7 +51,11 @@ TEST(Completion, EachTypeHasItsForm) {
   add("fade", SettingType::boolean, 1);
   add("tint", SettingType::color, 1).min = 0;
   add("shift", SettingType::vec2, 0).unit = "px";
-  const std::string text = completion_text({glow});
+  EffectSchema spot;
+  spot.name = "spot";
+  spot.doc = "A round place.";
+  spot.settings.push_back(glow.settings[2]);
+  const std::string text = completion_text({glow}, {spot});
   EXPECT_TRUE(text.starts_with("---@meta _\n"));
   EXPECT_NE(text.find(R"(
 ---Makes light spread.
@@ -61,8 +67,16 @@ TEST(Completion, EachTypeHasItsForm) {
 ---@field tint? number[]|string|afterglow.Moving  About tint. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
 ---@field shift? number[]|afterglow.Moving  About shift. px, default {0, 0}
 
+---A round place.
+---@class afterglow.masks.spot : afterglow.MaskKeys
+---@field gain? number|afterglow.Moving  About gain. 0…2 EV, default 0.5
+
 ---@class afterglow
 ---@field glow fun(settings: afterglow.settings.glow): afterglow.Entry  Makes light spread.
+
+---What `fx.mask` holds; masks of yours are masks/NAME.lua.
+---@class afterglow.Masks
+---@field spot fun(settings: afterglow.masks.spot): afterglow.Mask  A round place.
 )"),
             std::string::npos)
       << text;

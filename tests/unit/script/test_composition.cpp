@@ -84,10 +84,104 @@ TEST_F(Composition, OpacityMovesAndIsSet) {
   EXPECT_THAT(passes("fx.a { }"), ElementsAre("a.pixel", "a.blend"));
 }
 
+TEST_F(Composition, PartsOfMasksAreSet) {
+  const std::string shared = R"(local fx = require "afterglow"
+local m = fx.mask.luma { from = 1 } + fx.mask.luma { from = 2 } * fx.mask.radial { }
+return fx.stack { fx.a { mask = m }, fx.b { mask = m } })";
+  scene.options.overrides = {{"a", "mask.luma#2.from", "3"}, {"a", "mask.radial.radius", "{0.25, 0.5}"}};
+  scene.preset(shared);
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  const auto text = [&](std::size_t entry, const char* setting) {
+    const SettingHistory* history = preset->explanation().entries[entry].find(setting);
+    return history ? history->value.text() : "none";
+  };
+  EXPECT_EQ(text(0, "mask.luma.from"), "1");
+  EXPECT_EQ(text(0, "mask.luma#2.from"), "3");
+  EXPECT_EQ(text(0, "mask.radial.radius"), "{0.25, 0.5}");
+  EXPECT_EQ(text(1, "mask.luma#2.from"), "2") << "the other entry of the same mask";
+  const auto parts = preset->entries()[0].mask->parts();
+  ASSERT_EQ(parts.size(), 3u);
+  EXPECT_EQ(parts[1]->part, "mask.luma#2");
+  EXPECT_EQ(parts[1]->settings[0].second.text(), "3") << "what the oracle sees";
+  EXPECT_EQ(parts[1]->line, 2);
+  EXPECT_EQ(preset->setting_schema(preset->entries()[0], "mask.luma#2.from")->max, 1e6);
+  EXPECT_FALSE(preset->setting_schema(preset->entries()[0], "mask.luma#3.from"));
+
+  scene.options.overrides = {{"a", "mask.lumma.from", "3"}};
+  EXPECT_THAT(scene.load_error(),
+              HasSubstr("--set a.mask.lumma.from: effect 'a' has no such setting; allowed: strength, "
+                        "at, blend, enabled, mask, opacity, order, mask.luma.from, mask.luma.to"));
+  EXPECT_THAT(scene.load_error(), HasSubstr("did you mean 'mask.luma.from'?"));
+  scene.options.overrides = {{"a", "mask.luma.from", "-1"}};
+  EXPECT_THAT(scene.load_error(), HasSubstr("--set a.mask.luma.from = -1 is out of range; allowed: 0…1000000"));
+}
+
+TEST_F(Composition, AMaskIsSetToANumber) {
+  scene.options.overrides = {{"a", "mask", "0.25"}};
+  scene.stack("fx.a { mask = fx.mask.luma { } }");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  EXPECT_EQ(preset->entries()[0].mask->text(), "0.25");
+  EXPECT_EQ(preset->explanation().entries[0].preset_mask, "luma");
+  EXPECT_THAT(passes("fx.a { mask = fx.mask.luma { } }"), ElementsAre("a.pixel", "a.blend"));
+  scene.options.overrides = {{"a", "mask", "luma"}};
+  EXPECT_THAT(scene.load_error(), HasSubstr("--set a.mask = \"luma\" is not a number; allowed: 0…1"));
+  scene.options.overrides = {{"a", "blend", "sceen"}};
+  EXPECT_THAT(scene.load_error(), HasSubstr("did you mean 'screen'?"));
+}
+
+TEST_F(Composition, HowItCameAboutIsKept) {
+  scene.options.overrides = {{"a", "opacity", "0.25"}};
+  scene.stack("fx.a { opacity = fx.curve { { 0, 0 }, { 10, 1 } }, blend = function(t) return \"add\" end }, fx.b { }");
+  scene.context.frame = 5;
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  const auto build = scene.evaluate(*preset);
+  ASSERT_TRUE(build) << build.error().text();
+  const EntryHistory& a = build->explanation->entries[0];
+  const SettingHistory *opacity = a.find("opacity"), *blend = a.find("blend");
+  ASSERT_TRUE(opacity && blend);
+  EXPECT_EQ(opacity->kind, "curve");
+  EXPECT_EQ(opacity->preset->number[0], 0.5);
+  EXPECT_EQ(opacity->overridden->number[0], 0.25);
+  EXPECT_EQ(opacity->value.number[0], 0.25);
+  EXPECT_EQ(blend->kind, "function");
+  EXPECT_EQ((*build->entries)[0].blend, "add");
+  EXPECT_THAT((*build->entries)[0].changed, ElementsAre("opacity", "blend"));
+  EXPECT_FALSE(build->explanation->entries[1].find("opacity")->preset);
+  EXPECT_THAT(error("fx.a { blend = fx.curve { { 0, \"add\" }, { 1, \"screen\" } } }"), HasSubstr("a.blend"));
+}
+
+TEST_F(Composition, MasksOfMasksEnd) {
+  const auto doubled = [&](int times) {
+    scene.preset("local fx = require \"afterglow\"\nlocal m = fx.mask.luma { }\nfor i = 1, " + std::to_string(times) +
+                 " do m = m + m end\nreturn fx.stack { fx.a { mask = m } }");
+    return scene.load_error();
+  };
+  EXPECT_EQ(doubled(8), "");
+  EXPECT_THAT(doubled(60), HasSubstr("preset.lua:3: error: a mask is made of more than 256 masks and numbers"));
+}
+
+TEST_F(Composition, ArgumentsThatDoNotFitAreLeftOutWhereThatIsAllowed) {
+  scene.options.arguments = {{"strength", "3"}, {"gone", "1"}};
+  scene.options.leave_out_unfit = true;
+  scene.preset(R"(local fx = require "afterglow"
+local args = fx.args { strength = fx.float { min = 0, max = 2, default = 0.5 } }
+return fx.stack { fx.a { strength = args.strength } })");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  EXPECT_EQ(preset->entries()[0].settings[0].second.text(), "0.5");
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("--arg strength = 3 is out of range; it is left out"),
+                                          HasSubstr("--arg gone: the preset declares no argument of this name; it is "
+                                                    "left out")));
+}
+
 TEST_F(Composition, WhatIsWrongIsSaid) {
-  EXPECT_THAT(error("fx.a { blend = \"sceen\" }"),
-              HasSubstr("unknown blend mode 'sceen'; allowed: normal, add, screen, multiply, overlay, soft_light, "
-                        "lighten, darken; did you mean 'screen'?"));
+  EXPECT_THAT(
+      error("fx.a { blend = \"sceen\" }"),
+      HasSubstr("a.blend = \"sceen\" is not a choice; allowed: normal, add, screen, multiply, overlay, soft_light, "
+                "lighten, darken; did you mean 'screen'?"));
   EXPECT_THAT(error("fx.a { opacity = 2 }"), HasSubstr("a.opacity = 2 is out of range; allowed: 0…1"));
   EXPECT_THAT(error("fx.a { mask = \"luma\" }"), HasSubstr("mask = \"luma\" is not a mask; allowed: fx.mask.NAME"));
   EXPECT_THAT(error("fx.a { mask = fx.mask.lumma { } }"), HasSubstr("unknown mask 'lumma'"));
@@ -122,6 +216,13 @@ TEST_F(Composition, AnEffectMayAskForLayers) {
   auto preset = scene.load();
   ASSERT_TRUE(preset);
   EXPECT_THAT(preset->needs(), ElementsAre("layer:albedo"));
+}
+
+TEST_F(Composition, WhatAMaskCanUseIsAskedFor) {
+  scene.stack("fx.a { mask = fx.mask.cryptomatte { names = \"Lamp\" } }");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  EXPECT_THAT(preset->needs(), ElementsAre("layer:CryptoObject00", "layer:CryptoObject01", "layer:CryptoObject02"));
 }
 
 TEST_F(Composition, ArgumentsComeFromTheCommandLine) {

@@ -107,7 +107,7 @@ TEST_F(Overrides, Messages) {
             "error: --set glw.gain: the stack has no entry 'glw'; allowed: glow, rim; did you mean 'glow'?");
   EXPECT_EQ(error("glow.gian=1"),
             "error: --set glow.gian: effect 'glow' has no such setting; allowed: mode, levels, gain, fade, tint, "
-            "shift, at, blend, enabled, opacity, "
+            "shift, at, blend, enabled, mask, opacity, "
             "order; did you mean 'gain'?");
   EXPECT_EQ(error("glow.levels=4.5"), "error: --set glow.levels = 4.5 is not an integer; allowed: integer 1…9");
   EXPECT_EQ(error("glow.levels=10"), "error: --set glow.levels = 10 is out of range; allowed: integer 1…9");

@@ -302,6 +302,67 @@ TEST_F(PanelTest, SavesThatFailSayWhy) {
   EXPECT_EQ(port->changes.edits().size(), 1u);
 }
 
+TEST_F(PanelTest, OpacityBlendAndPartsOfMasks) {
+  std::ofstream(file) << "local fx = require \"afterglow\"\n"
+                         "return fx.stack { fx.tone_mapping { opacity = 0.25, mask = fx.mask.luma { from = 0.3 } } }\n";
+  port->reload();
+  EXPECT_THAT(words(), HasSubstr("mask: luma"));
+  ASSERT_TRUE(find({"Settings", "tone_mapping", "opacity", "##value"}));
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  press(true);
+  move(5000, at.y);
+  frame();
+  press(false);
+  EXPECT_EQ(edited("tone_mapping", "opacity").number[0], 1);
+  ASSERT_TRUE(find({"Settings", "tone_mapping", "blend", "##value"}));
+  click();
+  ASSERT_TRUE(find({"##Combo_00", "screen"}));
+  click();
+  EXPECT_EQ(edited("tone_mapping", "blend").choice, "screen");
+  port->changes.set("tone_mapping", "mask.luma.from", {SettingType::number, {0.75}, ""});
+  ASSERT_TRUE(find({"Settings", "Save preset"}));
+  click();
+  panel->saving().wait();
+  frame();
+  EXPECT_EQ(
+      *read_file(file),
+      "local fx = require \"afterglow\"\n"
+      "return fx.stack { fx.tone_mapping { opacity = 1, mask = fx.mask.luma { from = 0.75 }, blend = \"screen\" } }\n");
+}
+
+TEST_F(PanelTest, ArgumentsAreChangedAndAreNotThePresets) {
+  const std::string text =
+      "local fx = require \"afterglow\"\n"
+      "local args = fx.args { strength = fx.float { min = 0, max = 1, default = 0.25, doc = \"How much.\" },\n"
+      "  hero = fx.text {} }\n"
+      "return fx.stack { fx.tone_mapping { opacity = args.strength } }\n";
+  std::ofstream(file) << text;
+  port->reload();
+  EXPECT_THAT(words(), HasSubstr("Arguments"));
+  ASSERT_TRUE(find({"Settings", "arguments", "strength", "##value"}));
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  press(true);
+  move(5000, at.y);
+  frame();
+  press(false);
+  EXPECT_EQ(edited("", "strength").number[0], 1);
+  port->changes.set("", "hero", {SettingType::text, {}, "Ann's \"lamp\""});
+  EXPECT_EQ(argument_words(port->changes), "--arg strength=1 --arg 'hero=Ann'\\''s \"lamp\"'");
+  std::string copied;
+  interface.ui().copy = [&](const std::string& text) { copied = text; };
+  ASSERT_TRUE(find({"Settings", "arguments", "Copy --arg"}));
+  click();
+  EXPECT_EQ(copied, argument_words(port->changes));
+  ASSERT_TRUE(find({"Settings", "Save preset"}));
+  click();
+  EXPECT_THAT(words(), HasSubstr("Arguments are not part of the preset: they are given by --arg strength=1"));
+  EXPECT_EQ(*read_file(file), text);
+  EXPECT_EQ(port->changes.edits().size(), 2u) << "they stay";
+  ASSERT_TRUE(find({"Settings", "arguments", "strength", "x"}));
+  click();
+  EXPECT_FALSE(port->changes.value("", "strength"));
+}
+
 TEST_F(PanelTest, ViewControls) {
   ASSERT_TRUE(find({"Settings", "View"}));
   click();

@@ -1,0 +1,102 @@
+#include "window/panel_row.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/text.h"
+#include "script/explanation.h"
+#include "window/setting_widget.h"
+
+namespace afterglow {
+namespace {
+
+// Why the value is not the one that the file says in plain digits; empty when it is.
+std::string origin_of(const SettingHistory& history) {
+  if (!history.volumes.empty()) return fmt::format("volume {}", history.volumes.back().volume);
+  if (history.preset && history.kind != "fixed") return history.kind;
+  return {};
+}
+
+std::string range_of(const SettingSchema& schema) {
+  if (schema.min && schema.max) return number_text(*schema.min) + "…" + number_text(*schema.max);
+  if (schema.min) return "≥ " + number_text(*schema.min);
+  if (schema.max) return "≤ " + number_text(*schema.max);
+  return {};
+}
+
+std::string setting_help(const SettingSchema& schema, const SettingHistory* history, bool edited) {
+  std::string out = schema.doc;
+  std::string facts = range_of(schema);
+  if (!schema.unit.empty()) facts += (facts.empty() ? "in " : " ") + schema.unit;
+  if (!facts.empty()) out += "\n" + facts;
+  out += "\ndefault " + schema.default_value.text();
+  if (history && history->preset) out += fmt::format("\nin the preset {} ({})", history->preset->text(), history->kind);
+  if (history)
+    for (const auto& step : history->volumes)
+      out += fmt::format("\nvolume {} × {}: {}", step.volume, number_text(step.factor), step.value.text());
+  if (edited) out += "\nchanged here; right-click to take it back";
+  return out;
+}
+
+}  // namespace
+
+void tooltip(const Ui& ui, const std::string& text) {
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(ui.px(360));
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+bool small_button(const Ui& ui, const char* label, const char* help, bool enabled) {
+  ImGui::BeginDisabled(!enabled);
+  const bool pressed = ImGui::SmallButton(label);
+  ImGui::EndDisabled();
+  tooltip(ui, help);
+  return pressed && enabled;
+}
+
+void draw_row(const Ui& ui, PanelPort& port, const PanelRow& row) {
+  const SettingSchema& schema = row.schema;
+  const SettingHistory* history = row.history;
+  const auto edit = port.edits().value(row.entry, row.name);
+  const SettingValue value = edit ? *edit : row.value;
+
+  ImGui::PushID(row.name.c_str());
+  const float width = std::max(ui.px(120), ImGui::GetContentRegionAvail().x * 0.52f);
+  if (const auto changed = setting_widget(ui, "##value", schema, value, width)) port.set(row.entry, row.name, *changed);
+  if (ImGui::IsItemDeactivated()) port.end_gesture();
+  if (ImGui::BeginPopupContextItem("more")) {
+    if (ImGui::MenuItem("As in the file", nullptr, false, edit.has_value())) port.reset(row.entry, row.name);
+    if (ImGui::MenuItem("Default", nullptr, false, !(value == schema.default_value)))
+      port.set(row.entry, row.name, schema.default_value);
+    port.end_gesture();
+    ImGui::EndPopup();
+  }
+  tooltip(ui, setting_help(schema, history, edit.has_value()));
+  ImGui::SameLine(schema.type == SettingType::boolean
+                      ? width + ImGui::GetStyle().WindowPadding.x + ImGui::GetStyle().ItemSpacing.x
+                      : 0);
+  const ImU32 color = edit ? ui_color::kAccent : row.said ? ui_color::kText : ui_color::kDim;
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::TextUnformatted(row.name.c_str());
+  ImGui::PopStyleColor();
+  tooltip(ui, setting_help(schema, history, edit.has_value()));
+  if (const std::string origin = history ? origin_of(*history) : ""; !origin.empty()) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s%s", edit ? "over " : "", origin.c_str());
+  }
+  if (edit) {
+    ImGui::SameLine();
+    if (small_button(ui, "x", "As in the file")) {
+      port.end_gesture();
+      port.reset(row.entry, row.name);
+      port.end_gesture();
+    }
+  }
+  ImGui::PopID();
+}
+
+}  // namespace afterglow

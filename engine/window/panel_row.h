@@ -1,0 +1,27 @@
+// A row of the panel: a value with its name, where it comes from, and what takes a change back.
+#pragma once
+
+#include <string>
+
+#include "window/panel_port.h"
+#include "window/ui.h"
+
+namespace afterglow {
+
+struct PanelRow {
+  std::string entry;  ///< empty: an argument of the preset
+  std::string name;   ///< of the setting: "intensity", "mask.luma.from"
+  const SettingSchema& schema;
+  SettingValue value;             ///< without the panel's change of it
+  const SettingHistory* history;  ///< null: an argument
+  bool said = false;              ///< by the preset, or for an argument by --arg
+};
+
+/// Within the panel's window.
+void draw_row(const Ui& ui, PanelPort& port, const PanelRow& row);
+
+/// What the last item is about, while the pointer is over it.
+void tooltip(const Ui& ui, const std::string& text);
+bool small_button(const Ui& ui, const char* label, const char* help, bool enabled = true);
+
+}  // namespace afterglow
