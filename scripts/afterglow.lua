@@ -71,9 +71,10 @@ local core = ... -- native functions: engine/script/library.cpp
 ---booleans, arrays of numbers. Every input and every `uniform` must be given; a `layout(constant_id = …)` constant may be.
 ---@class afterglow.Pass
 ---@field shader string               shaders/NAME.glsl
----@field source? afterglow.Image     the colour of a pixel shader (`apply`); the sampler of that name of a `sample_at` shader
----@field size? afterglow.Image|integer[]  of the new image, for `sample_at` shaders; default: that of `source`
----@field reach? number               of `sample_at` shaders: how many texels from the pixel's own place it reads at most; default: anywhere
+---@field compute? string              of a `sample_at` shader: a `compute_at` shader with the same inputs and parameters that makes the same image
+---@field source? afterglow.Image     the colour of a pixel shader (`apply`); the sampler of that name of the others
+---@field size? afterglow.Image|integer[]  of the new image, for `sample_at` and `compute_at` shaders; default: that of `source`
+---@field reach? number               of `sample_at` and `compute_at` shaders: how many texels from the pixel's own place it reads at most; default: anywhere
 ---@field name? string                default: the last part of the shader's name
 ---@field [string] any
 

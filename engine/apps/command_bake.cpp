@@ -25,7 +25,7 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
                  fmt::format("a table knows a pixel's colour alone; these effects need more: {}", join(refused)),
                  a.preset.file, 0, "effects of colour, like those that `afterglow graph` shows as pixel passes"};
   SessionOptions options;
-  options.device = a.device.options();
+  AFTERGLOW_TRY(options.device, a.device.options());
   AFTERGLOW_TRY(options.stack, ExecutionArguments{}.options());
   AFTERGLOW_TRY(options.stack.preset, a.preset.options());
   options.stack.reference = true;

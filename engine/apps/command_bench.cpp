@@ -218,7 +218,7 @@ Result<void> measure_steadiness(Bench& bench) {
     AFTERGLOW_TRY(const fs::path preset, find_preset_file(name, {a.preset.paths.begin(), a.preset.paths.end()}));
     request.presets.push_back(preset);
   }
-  request.options.device = a.device.options();
+  AFTERGLOW_TRY(request.options.device, a.device.options());
   request.options.stack = bench.base;
   AFTERGLOW_TRY(const auto chosen, parse_variants("chosen"));
   AFTERGLOW_TRY(request.variants, vary_settings(chosen, a.vary));
@@ -252,7 +252,8 @@ Result<void> run_bench(const BenchArguments& a, Console& console) {
   bench.base.calibration = a.execution.calibration;
   bench.base.cache_folder = cache_folder();
   bench.base.max_memory = 64ull << 30;  // what does not fit is the device's to say
-  AFTERGLOW_TRY(bench.device, Device::create(a.device.options(), console.diagnostics()));
+  AFTERGLOW_TRY(const DeviceOptions device, a.device.options());
+  AFTERGLOW_TRY(bench.device, Device::create(device, console.diagnostics()));
   const DeviceInfo& info = bench.device->info();
   bench.report = {.version = version(),
                   .device = info.name,

@@ -31,6 +31,8 @@ void print(const bench::CalibrationResult& result) {
   for (const auto& p : result.cell.points)
     ways.add({p.choice, fmt::format("{:.2f}", p.execute.median),
               p.quality ? fmt::format("{:.1e}", p.quality->error.percentile) : "–"});
+  for (const auto& p : result.reductions.points)
+    ways.add({p.choice + ", reductions", fmt::format("{:.2f}", p.execute.median), "–"});
   Table chosen({"from --max-error", "chosen"});
   for (const auto& [max_error, choice] : result.choices)
     chosen.add({fmt::format("{:g}", max_error), execution_name(choice)});
@@ -38,11 +40,14 @@ void print(const bench::CalibrationResult& result) {
 }
 
 Result<void> run_calibrate(const CalibrateArguments& a, Console& console) {
-  bench::CalibrationRequest request{.look = a.look, .base = {}, .size = {}, .repeat = a.repeat};
-  if (a.look.empty()) request.look = find_installation() / "calibration" / "look.lua";
+  const auto looks = find_installation() / "calibration";
+  bench::CalibrationRequest request{
+      .look = a.look, .reductions = looks / "reductions.lua", .base = {}, .size = {}, .repeat = a.repeat};
+  if (a.look.empty()) request.look = looks / "look.lua";
   AFTERGLOW_TRY(request.size, parse_size(a.size));
   request.base.cache_folder = cache_folder();
-  AFTERGLOW_TRY(const auto device, Device::create(a.device.options(), console.diagnostics()));
+  AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
+  AFTERGLOW_TRY(const auto device, Device::create(asked, console.diagnostics()));
   const auto start = std::chrono::steady_clock::now();
   const auto step = [&](const std::string& what) -> Result<void> {
     if (interrupted()) return interrupt_error();

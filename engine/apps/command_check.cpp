@@ -64,12 +64,13 @@ std::vector<std::string> shadow_notes(const Look& look) {
     for (const auto& file : schema.shadowed)
       notes.push_back(fmt::format("{} shadows {}", schema.file.string(), file.string()));
   }
-  for (const auto& pass : look.build.graph.passes) {
-    if (pass.shader.empty() || !seen.insert("shader " + pass.shader).second) continue;
-    const auto files = look.shaders->path().find_shader(pass.shader + ".glsl");
-    for (std::size_t i = 1; i < files.size(); ++i)
-      notes.push_back(fmt::format("{} shadows {}", files[0].string(), files[i].string()));
-  }
+  for (const auto& pass : look.build.graph.passes)
+    for (const auto& name : shaders_of(pass)) {
+      if (!seen.insert("shader " + name).second) continue;
+      const auto files = look.shaders->path().find_shader(name + ".glsl");
+      for (std::size_t i = 1; i < files.size(); ++i)
+        notes.push_back(fmt::format("{} shadows {}", files[0].string(), files[i].string()));
+    }
   return notes;
 }
 

@@ -146,7 +146,8 @@ Result<void> check_shown(const PlayArguments& a, Player& player) {
 
 Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& options, Console& console) {
   const auto start = Clock::now();
-  AFTERGLOW_TRY(const auto device, Device::create(a.device.options(), console.diagnostics()));
+  AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
+  AFTERGLOW_TRY(const auto device, Device::create(asked, console.diagnostics()));
   AFTERGLOW_TRY(const auto player, Player::open(*device, options, console.diagnostics()));
   player->transport().set_speed(a.speed, player->now());
   HeadlessOptions headless;
@@ -193,7 +194,8 @@ Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& optio
     if (a.stats) output("{}", play_report_text(figures, player));
     if (!a.report.empty()) reported = write_file_atomically(a.report, play_report_json(figures, player));
   };
-  AFTERGLOW_CHECK(play_in_window(options, a.device.options(), window, console, report));
+  AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
+  AFTERGLOW_CHECK(play_in_window(options, asked, window, console, report));
   return reported;
 }
 

@@ -207,7 +207,7 @@ struct Run {
 
 Result<SessionOptions> session_options(const RunArguments& a) {
   SessionOptions options;
-  options.device = a.device.options();
+  AFTERGLOW_TRY(options.device, a.device.options());
   AFTERGLOW_TRY(options.stack, a.execution.options());
   AFTERGLOW_TRY(options.stack.preset, a.preset.options());
   options.stack.flag_non_finite = true;

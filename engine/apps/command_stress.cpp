@@ -95,7 +95,8 @@ Result<Opened> open(const StressArguments& a, const std::string& name, Diagnosti
   DeviceArguments device = a.device;
   device.device = name;
   Opened out;
-  AFTERGLOW_TRY(out.device, Device::create(device.options(), diagnostics));
+  AFTERGLOW_TRY(const DeviceOptions asked, device.options());
+  AFTERGLOW_TRY(out.device, Device::create(asked, diagnostics));
   out.device->use_pipeline_cache((cache_folder() / "pipelines").string());
   AFTERGLOW_TRY(out.lab, stress::Lab::create(*out.device, cache_folder(), diagnostics));
   return out;

@@ -28,7 +28,7 @@ std::string node(const Graph& graph, ImageId image) {
 
 std::string pass_line(const Graph& graph, int index) {
   const Pass& pass = graph.passes[static_cast<std::size_t>(index)];
-  std::string label = fmt::format("{}\n{} {}", pass.name, kind_text(pass.kind), size_text(graph, pass));
+  std::string label = fmt::format("{}\n{} {}", pass.name, info_of(pass.kind).name, size_text(graph, pass));
   std::string escaped;
   for (const char c : label)
     escaped += c == '\n' ? std::string("\\n") : c == '"' ? std::string("\\\"") : std::string(1, c);
@@ -60,10 +60,6 @@ int kernel_of(const Plan& plan, int pass) {
 std::string size_text(const Graph& graph, const Pass& pass) {
   const Size size = graph.images[static_cast<std::size_t>(pass.output)].size;
   return fmt::format("{}×{}", size.width, size.height);
-}
-
-const char* kind_text(PassKind kind) {
-  return kind == PassKind::pixel ? "pixel" : kind == PassKind::filter ? "filter" : "sample";
 }
 
 std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& title, const Notes& notes) {

@@ -70,7 +70,7 @@ std::vector<Node> nodes_of(const Graph& graph, const Plan& plan) {
     const int kernel = kernel_of(plan, static_cast<int>(p));
     if (kernel < 0) continue;
     Node node{pass.name,
-              fmt::format("{} {}, kernel {}", kind_text(pass.kind), size_text(graph, pass), kernel),
+              fmt::format("{} {}, kernel {}", info_of(pass.kind).name, size_text(graph, pass), kernel),
               tint(plan, kernel),
               {},
               graph.images[static_cast<std::size_t>(pass.output)].size};

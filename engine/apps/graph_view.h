@@ -28,7 +28,5 @@ std::vector<std::string> idle_lines(const Graph& graph);
 int kernel_of(const Plan& plan, int pass);
 /// "1920×1080" of the image a pass makes.
 std::string size_text(const Graph& graph, const Pass& pass);
-/// "pixel", "filter" or "sample".
-const char* kind_text(PassKind kind);
 
 }  // namespace afterglow

@@ -11,6 +11,7 @@
 
 #include "core/paths.h"
 #include "core/text.h"
+#include "exec/calibration.h"
 
 namespace afterglow {
 
@@ -116,10 +117,12 @@ void DeviceArguments::add_validate(CLI::App& command) {
       ->group("Device");
 }
 
-DeviceOptions DeviceArguments::options() const {
+Result<DeviceOptions> DeviceArguments::options() const {
   const char* environment = std::getenv("AFTERGLOW_VALIDATE");
   const bool asked = environment != nullptr && *environment != '\0' && std::string_view(environment) != "0";
-  return {device, validate || asked};
+  const char* words = std::getenv("AFTERGLOW_FORCE");
+  AFTERGLOW_TRY(ForcedWays forced, parse_forced(words ? words : ""));
+  return DeviceOptions{.device = device, .validate = validate || asked, .forced = std::move(forced)};
 }
 
 void ExecutionArguments::add(CLI::App& command) {

@@ -55,13 +55,14 @@ struct LayerArguments {
   }
 };
 
-/// --device, --validate (or AFTERGLOW_VALIDATE=1).
+/// --device, --validate (or AFTERGLOW_VALIDATE=1), and AFTERGLOW_FORCE.
 struct DeviceArguments {
   std::string device = "auto";
   bool validate = false;
   void add(CLI::App& command);
   void add_validate(CLI::App& command);  ///< --validate alone
-  DeviceOptions options() const;
+  /// Errors: usage (words of AFTERGLOW_FORCE).
+  Result<DeviceOptions> options() const;
 };
 
 /// --precision, --max-error, --calibration, --reference, --max-memory.

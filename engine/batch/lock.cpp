@@ -43,7 +43,7 @@ Result<std::set<fs::path>> files_of(const Preset& preset, const Graph& graph) {
   ShaderLibrary shaders(preset.path());
   std::vector<std::string> names;
   for (const auto& pass : graph.passes)
-    if (!pass.shader.empty()) names.push_back(pass.shader);
+    for (auto& name : shaders_of(pass)) names.push_back(std::move(name));
   for (const auto& name : names) {
     AFTERGLOW_TRY(const auto shader, shaders.find(name));
     for (const auto& file : shader->files()) files.insert(file);

@@ -30,11 +30,11 @@ Result<Hash> look_hash(const Preset& preset, const Graph& graph, const std::stri
     hasher.add(text);
   }
   ShaderLibrary shaders(preset.path());
-  for (const auto& pass : graph.passes) {
-    if (pass.shader.empty()) continue;
-    AFTERGLOW_TRY(const auto shader, shaders.find(pass.shader));
-    hasher.add(shader->hash.hex());
-  }
+  for (const auto& pass : graph.passes)
+    for (const auto& name : shaders_of(pass)) {
+      AFTERGLOW_TRY(const auto shader, shaders.find(name));
+      hasher.add(shader->hash.hex());
+    }
   if (preset.may_change())
     for (const auto& name : shaders.names())
       if (const auto shader = shaders.find(name)) hasher.add((*shader)->hash.hex());

@@ -49,6 +49,10 @@ std::vector<CalibratedChoice> fastest_within_errors(const std::vector<Point>& po
   return out;
 }
 
+bool compute_pays(const std::vector<Point>& points) {
+  return points.size() == 2 && points[1].execute.median < kWorthwhile * points[0].execute.median;
+}
+
 Result<CalibrationResult> calibrate(Device& device, const CalibrationRequest& request, Diagnostics& diagnostics,
                                     const Step& step) {
   CalibrationResult out;
@@ -66,6 +70,16 @@ Result<CalibrationResult> calibrate(Device& device, const CalibrationRequest& re
   AFTERGLOW_TRY(out.cell, measure_cell(device, cell, diagnostics, step));
   out.choices = fastest_within_errors(out.cell.points);
   if (out.choices.empty()) return Error{ErrorKind::other, "no way of execution gives the right picture here"};
+  cell.preset = request.reductions;
+  cell.quality = false;
+  cell.variants.clear();
+  ExecutionConfig way = out.choices.front().choice;
+  for (const bool compute : {false, true}) {
+    way.compute = compute;
+    cell.variants.push_back({execution_name(way), way, {}, {}});
+  }
+  AFTERGLOW_TRY(out.reductions, measure_cell(device, cell, diagnostics, step));
+  for (auto& choice : out.choices) choice.choice.compute = compute_pays(out.reductions.points);
   return out;
 }
 
@@ -82,6 +96,8 @@ std::string calibration_json(const CalibrationResult& result) {
         Json{{"choice", point.choice},
              {"milliseconds", point.execute.median},
              {"error", point.quality ? Json(point.quality->error.percentile) : Json(nullptr)}});
+  for (const auto& point : result.reductions.points)
+    measured["reductions"].push_back(Json{{"choice", point.choice}, {"milliseconds", point.execute.median}});
   for (const auto& cost : result.operations) measured["nanoseconds_per_pixel"][cost.name] = cost.nanoseconds_per_pixel;
   return Json{{"devices", Json::array({std::move(entry)})}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -17,13 +17,14 @@ struct OperationCost {
 
 struct CalibrationResult {
   DeviceInfo device;
-  Cell cell;  ///< every candidate on the calibration's look
+  Cell cell;        ///< every candidate on the calibration's look
+  Cell reductions;  ///< the first of `choices` on the look of reductions, without and with compute shaders
   std::vector<OperationCost> operations;
   std::vector<CalibratedChoice> choices;  ///< for Calibration
 };
 
 struct CalibrationRequest {
-  std::filesystem::path look;
+  std::filesystem::path look, reductions;
   StackOptions base;
   Size size{1280, 720};
   int repeat = 9;
@@ -36,6 +37,9 @@ std::vector<ExecutionConfig> candidates();
 /// % over a more exact choice is left out, so that noise does not cost exactness. The first is for every error. Empty
 /// when no point has a quality.
 std::vector<CalibratedChoice> fastest_within_errors(const std::vector<Point>& points);
+
+/// Whether the second point, with compute shaders, is faster than the first by more than 3 %.
+bool compute_pays(const std::vector<Point>& points);
 
 /// Errors: those of `measure_cell`.
 Result<CalibrationResult> calibrate(Device& device, const CalibrationRequest& request, Diagnostics& diagnostics,

@@ -38,8 +38,8 @@ std::vector<ArenaGroup> group_blocks(const std::vector<Block>& blocks, bool shar
 }
 
 ImageDesc Arena::desc_of(const Graph& graph, ImageId id, const ArenaOptions& options) {
-  const VkImageUsageFlags more =
-      (options.readable ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0) | (options.storage ? VK_IMAGE_USAGE_STORAGE_BIT : 0);
+  const VkImageUsageFlags more = (options.readable ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0) |
+                                 (options.storage || options.stored.contains(id) ? VK_IMAGE_USAGE_STORAGE_BIT : 0);
   return {.name = graph.images[id].name,
           .size = graph.images[id].size,
           .format = options.format,

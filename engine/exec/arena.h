@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <vector>
 
 #include "exec/image_pool.h"
@@ -14,8 +15,9 @@ namespace afterglow {
 struct ArenaOptions {
   VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
   bool share = true;
-  bool readable = false;  ///< images may be copied from
-  bool storage = false;   ///< images may be read as storage images
+  bool readable = false;     ///< images may be copied from
+  bool storage = false;      ///< images may be read as storage images
+  std::set<ImageId> stored;  ///< those that compute kernels make
   /// Wanted for the target of each kernel, parallel to the plan's kernels: rows that one invocation makes. Empty: one,
   /// and images are tiled as the device likes. Else images are linear and stay in GENERAL.
   std::vector<int> rows;

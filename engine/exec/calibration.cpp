@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/file.h"
 #include "core/paths.h"
@@ -115,6 +116,32 @@ Calibration::Found Calibration::find(const DeviceInfo& info, double max_error) c
     if (best != entry.choices.rend()) return {best->choice, fmt::format("{}, {}", file, entry.name())};
   }
   return {ExecutionConfig{}, kAnything};
+}
+
+Result<ForcedWays> parse_forced(const std::string& text) {
+  static constexpr std::pair<const char*, bool ForcedWays::*> kWays[] = {
+      {"staging", &ForcedWays::staging}, {"unmapped", &ForcedWays::unmapped}, {"timestamps", &ForcedWays::timestamps}};
+  std::string spaced = text;
+  std::ranges::replace_if(
+      spaced, [](char c) { return c == ',' || c == '+'; }, ' ');
+  ForcedWays out;
+  for (const auto& word : split(spaced, ' ')) {
+    if (word.empty()) continue;
+    const auto way = std::ranges::find(kWays, word, [](const auto& known) { return known.first; });
+    if (way != std::end(kWays)) {
+      out.*(way->second) = true;
+    } else if (parse_execution(word)) {
+      out.execution += (out.execution.empty() ? "" : " ") + word;
+    } else {
+      std::vector<std::string> names;
+      for (const auto& [name, member] : kWays) names.emplace_back(name);
+      for (auto& name : execution_words()) names.push_back(std::move(name));
+      return Error{
+          ErrorKind::usage,         fmt::format("AFTERGLOW_FORCE: '{}' is no way to force", word), {}, 0, join(names),
+          nearest_name(word, names)};
+    }
+  }
+  return out;
 }
 
 }  // namespace afterglow

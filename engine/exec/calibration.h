@@ -51,4 +51,8 @@ struct Calibration {
   Found find(const DeviceInfo& info, double max_error) const;
 };
 
+/// Reads the words of AFTERGLOW_FORCE, separated by commas, spaces or '+': "staging", "unmapped", "timestamps", and
+/// those of an ExecutionConfig ("fp16", "hardware-filter", "compute", "rows1", …). Errors: usage.
+Result<ForcedWays> parse_forced(const std::string& text);
+
 }  // namespace afterglow

@@ -23,8 +23,8 @@ AxisRatio axis_ratio(int source, int target) {
   return AxisRatio::any;
 }
 
-Result<KernelStage> stage_of(ShaderLibrary& shaders, const Pass& pass) {
-  auto shader = shaders.find(pass.shader);
+Result<KernelStage> stage_of(ShaderLibrary& shaders, const Pass& pass, bool compute = false) {
+  auto shader = shaders.find(compute && !pass.by_workgroups.empty() ? pass.by_workgroups : pass.shader);
   if (!shader) {
     Error error = std::move(shader).error();
     if (error.file.empty()) error.file = pass.file, error.line = pass.line;
@@ -76,8 +76,8 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
     } else if (source == target) {
       desc.ratio_x = desc.ratio_y = AxisRatio::same;
     }
-  } else if (head.kind == PassKind::sample) {
-    AFTERGLOW_TRY(desc.sample, stage_of(shaders, head));
+  } else if (info_of(head.kind).begins) {
+    AFTERGLOW_TRY(desc.sample, stage_of(shaders, head, kernel.compute));
   } else {
     first_stage = 0;
   }

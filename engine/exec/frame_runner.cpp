@@ -99,8 +99,8 @@ FrameRunner::FrameRunner(std::unique_ptr<State> state) : state_(std::move(state)
 FrameRunner::~FrameRunner() = default;
 
 Result<std::unique_ptr<FrameRunner>> FrameRunner::create(Device& device, const Options& options) {
-  auto state =
-      std::make_unique<State>(device, options.max_memory, options.direct && device.is_cpu(), options.whole_staging);
+  auto state = std::make_unique<State>(device, options.max_memory, options.direct && device.maps_images(),
+                                       options.whole_staging);
   AFTERGLOW_TRY(state->submitter, Submitter::create(device));
   return std::unique_ptr<FrameRunner>(new FrameRunner(std::move(state)));
 }

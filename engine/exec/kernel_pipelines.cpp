@@ -13,6 +13,7 @@ std::vector<VkDescriptorType> descriptor_types(const CompiledKernel& kernel) {
   for (const auto& image : kernel.images)
     types.push_back(image.read == ImageRead::sampled ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
                                                      : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
+  if (kernel.workgroup) types.push_back(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);  // the target
   return types;
 }
 
@@ -30,7 +31,10 @@ VkFormat format_of(KernelTarget target) {
 }
 
 DrawInterface interface_of(const CompiledKernel& kernel) {
-  return {.block = kernel.block_size > 0, .images = descriptor_types(kernel), .push_bytes = kPushConstantBytes};
+  return {.block = kernel.block_size > 0,
+          .images = descriptor_types(kernel),
+          .push_bytes = kPushConstantBytes,
+          .compute = kernel.workgroup.has_value()};
 }
 
 VkFormat format_of(const CompiledKernel& kernel, VkFormat given) {
@@ -39,8 +43,11 @@ VkFormat format_of(const CompiledKernel& kernel, VkFormat given) {
 
 Result<PipelineHandle> make(const Device& device, const CompiledKernel& kernel, const DrawLayout& layout,
                             VkShaderModule vertex, VkFormat format, const std::string& name) {
-  AFTERGLOW_TRY(const ShaderModuleHandle fragment, create_shader_module(device, kernel.spirv, name));
-  return create_draw_pipeline(device, layout, vertex, fragment.get(), {format, kernel.rows}, name);
+  if (const auto& group = kernel.workgroup)
+    AFTERGLOW_CHECK(check_workgroup(device, group->invocations, kernel.shared_bytes, name));
+  AFTERGLOW_TRY(const ShaderModuleHandle module, create_shader_module(device, kernel.spirv, name));
+  if (kernel.workgroup) return create_compute_pipeline(device, layout, module.get(), name);
+  return create_draw_pipeline(device, layout, vertex, module.get(), {format, kernel.rows}, name);
 }
 
 }  // namespace

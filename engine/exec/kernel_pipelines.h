@@ -12,7 +12,7 @@
 
 namespace afterglow {
 
-/// What the image slots of a kernel are bound as, in order.
+/// What the image slots of a kernel are bound as, in order, with the target that a compute kernel stores to.
 std::vector<VkDescriptorType> descriptor_types(const CompiledKernel& kernel);
 
 class KernelPipelines {

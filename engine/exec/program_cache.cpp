@@ -63,27 +63,31 @@ ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, c
   ProgramOptions options{.config = config, .source_is_storage = true, .codes = work.codes, .flag_non_finite = true};
   fit_to_cpu_driver(options.config);
   ShaderFindings found;
-  for (const auto& kernel : make_plan(work.graph, config).kernels) {
-    const auto check = [&]() -> Result<void> {
-      AFTERGLOW_TRY(const KernelDesc desc, describe_kernel(shaders, work.graph, kernel, options));
-      AFTERGLOW_TRY(const AssembledKernel assembled, assemble(desc));
-      if (!checked.insert(assembled.hash).second) return {};
-      AFTERGLOW_TRY(const CompiledKernel compiled, compiler.compile(desc));
-      found.warnings.insert(found.warnings.end(), compiled.warnings.begin(), compiled.warnings.end());
-      return {};
-    };
-    if (auto good = check(); !good) found.errors.push_back(std::move(good).error());
+  for (const bool compute : {false, true}) {  // both ways of passes that have two
+    options.config.compute = compute;
+    for (const auto& kernel : make_plan(work.graph, options.config).kernels) {
+      if (compute && !kernel.compute) continue;
+      const auto check = [&]() -> Result<void> {
+        AFTERGLOW_TRY(const KernelDesc desc, describe_kernel(shaders, work.graph, kernel, options));
+        AFTERGLOW_TRY(const AssembledKernel assembled, assemble(desc));
+        if (!checked.insert(assembled.hash).second) return {};
+        AFTERGLOW_TRY(const CompiledKernel compiled, compiler.compile(desc));
+        found.warnings.insert(found.warnings.end(), compiled.warnings.begin(), compiled.warnings.end());
+        return {};
+      };
+      if (auto good = check(); !good) found.errors.push_back(std::move(good).error());
+    }
   }
   return found;
 }
 
 Result<Hash> texts_of(const Graph& graph, ShaderLibrary& shaders) {
   Hasher hasher;
-  for (const auto& pass : graph.passes) {
-    if (pass.shader.empty()) continue;
-    AFTERGLOW_TRY(const auto source, shaders.find(pass.shader));
-    hasher.add(source->hash.high).add(source->hash.low);
-  }
+  for (const auto& pass : graph.passes)
+    for (const auto& name : shaders_of(pass)) {
+      AFTERGLOW_TRY(const auto source, shaders.find(name));
+      hasher.add(source->hash.high).add(source->hash.low);
+    }
   return hasher.finish();
 }
 

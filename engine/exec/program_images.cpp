@@ -12,7 +12,8 @@ namespace afterglow {
 void Program::State::write_set(int which, const Look& look) const {
   for (std::size_t i = 0; i < images.size(); ++i)
     for (std::size_t slot = 0; slot < images[i].size(); ++slot) {
-      const Seen seen = look(images[i][slot]);
+      Seen seen = look(images[i][slot]);
+      if (images[i][slot] == plan.kernels[i].output) seen.layout = VK_IMAGE_LAYOUT_GENERAL;  // it is stored to
       if (seen.view != VK_NULL_HANDLE)
         descriptors.write_image(set_index(which, i), slot, seen.view, seen.layout, sampler.get());
     }

@@ -27,7 +27,7 @@ void Program::State::settle_config() {
   ExecutionConfig& config = options.config;
   if (options.reference) {
     config.joining = Joining::none;
-    config.share_memory = config.hardware_filter = false;
+    config.share_memory = config.hardware_filter = config.compute = false;
     config.rows = 1;
   }
   format = config.storage == Storage::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
@@ -67,10 +67,12 @@ Result<void> Program::State::check() {
   }
   for (const auto& kernel : plan.kernels) {
     const GraphImage& image = graph.images[kernel.output];
-    AFTERGLOW_CHECK(check_image(device, {.name = image.name,
-                                         .size = image.size,
-                                         .format = image_format(kernel.output),
-                                         .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}));
+    const VkImageUsageFlags stored = kernel.compute ? VK_IMAGE_USAGE_STORAGE_BIT : 0;
+    AFTERGLOW_CHECK(
+        check_image(device, {.name = image.name,
+                             .size = image.size,
+                             .format = image_format(kernel.output),
+                             .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | stored}));
   }
   return {};
 }
@@ -89,8 +91,11 @@ ArenaOptions Program::State::arena_options(const std::vector<KernelDesc>& descs)
                       .share = options.config.share_memory && !options.keep_images,
                       .readable = options.reference,
                       .storage = options.config.storage_reads,
+                      .stored = {},
                       .rows = {},
                       .max_memory = options.max_memory};
+  for (const auto& kernel : plan.kernels)
+    if (kernel.compute) wanted.stored.insert(kernel.output);
   if (linear)
     for (const auto& desc : descs) wanted.rows.push_back(desc.config.rows);
   return wanted;
@@ -157,6 +162,7 @@ Result<void> Program::State::compile(KernelCompiler& compiler, const std::vector
   for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
     AFTERGLOW_TRY(std::vector<ImageId> bind, images_of_slots(graph, plan.kernels[i], compiled_of(i)));
     reads.push_back(reads_of(bind));
+    if (plan.kernels[i].compute) bind.push_back(plan.kernels[i].output);
     images.push_back(std::move(bind));
     pointers.push_back(&compiled_of(i));
   }

@@ -11,17 +11,17 @@ namespace {
 /// An image that is filled with one value and read from here on. Frames before this one may have drawn and read it.
 VkImageMemoryBarrier2 before_filling(VkImage image) {
   return image_barrier(image,
-                       VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT |
-                           VK_PIPELINE_STAGE_2_TRANSFER_BIT,
+                       VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
+                           VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_TRANSFER_BIT,
                        VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT,
                        VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                        VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
 }
 
 VkImageMemoryBarrier2 after_filling(VkImage image, VkImageLayout layout) {
-  return image_barrier(image, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-                       reading_access(layout), layout);
+  return image_barrier(
+      image, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+      VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, reading_access(layout), layout);
 }
 
 }  // namespace
@@ -57,18 +57,20 @@ void Program::State::make_commands() {
       barriers[i].memory = linear && i > 0;
       KernelBarriers after;
       if (history) after.images = {before_reading(history->get(), history_layout())};
-      commands.push_back({.name = plan.kernels[i].name,
-                          .pipeline = pipelines.pipeline(compiled.index[i]),
-                          .layout = pipelines.layout(compiled_of(i)).pipeline.get(),
-                          .set = descriptors.set(set_index(histories ? parity : kEven, i)),
-                          .targets = std::move(targets),
-                          .rows = compiled_of(i).rows,
-                          .target_size = graph.images[output].size,
-                          .first_image_size = images[i].empty() ? Size{} : graph.images[images[i].front()].size,
-                          .part = parts.kernels[i],
-                          .target_layout = target_layout(output),
-                          .barriers = std::move(barriers[i]),
-                          .after = std::move(after)});
+      commands.push_back(
+          {.name = plan.kernels[i].name,
+           .pipeline = pipelines.pipeline(compiled.index[i]),
+           .layout = pipelines.layout(compiled_of(i)).pipeline.get(),
+           .set = descriptors.set(set_index(histories ? parity : kEven, i)),
+           .targets = std::move(targets),
+           .rows = compiled_of(i).rows,
+           .target_size = graph.images[output].size,
+           .first_image_size = images[i].empty() ? Size{} : graph.images[images[i].front()].size,
+           .part = parts.kernels[i],
+           .group = compiled_of(i).workgroup ? std::optional(compiled_of(i).workgroup->pixels) : std::nullopt,
+           .target_layout = target_layout(output),
+           .barriers = std::move(barriers[i]),
+           .after = std::move(after)});
     }
   }
 }
@@ -155,7 +157,7 @@ void Program::record_again(VkCommandBuffer commands, std::size_t kernel, VkQuery
   const ImageId output = s.plan.kernels[kernel].output;
   if (s.linear || !s.arena.image(output)) return;
   KernelBarriers after;
-  after.images = {before_reading(s.arena.image(output)->get(), s.read_layout())};
+  after.images = {before_reading(s.arena.image(output)->get(), s.read_layout(), writing_of(s.plan.kernels[kernel]))};
   afterglow::record_barriers(s.device, commands, after);
 }
 

@@ -27,6 +27,7 @@ void Program::State::identify() {
     for (const int value : {part.x, part.y, part.width, part.height}) hasher.add(number(value));
     hasher.add(number(linear)).add(number(options.config.storage_reads)).add(number(options.config.hardware_filter));
     for (const ImageId read : images[i]) {
+      if (read == output) continue;  // a compute kernel stores to it
       const GraphImage& from = graph.images[read];
       hasher.add(number(from.size.width)).add(number(from.size.height));
       if (const auto made_before = known.find(read); made_before != known.end())

@@ -37,8 +37,9 @@ struct Program::State {
   std::uint64_t serial = 0;  ///< Program::id
 
   CompiledKernels compiled;
-  std::vector<std::vector<ImageId>> images;  ///< to bind, parallel to the plan's kernels
-  std::vector<std::vector<ImageId>> reads;   ///< what must be ready to be read before each kernel
+  std::vector<std::vector<ImageId>>
+      images;  ///< to bind, parallel to the plan's kernels; of compute kernels also the target
+  std::vector<std::vector<ImageId>> reads;  ///< what must be ready to be read before each kernel
   ParameterBuffer parameters;
   Arena arena;
   DataImages data;

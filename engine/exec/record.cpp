@@ -1,16 +1,43 @@
 #include "exec/record.h"
 
 #include <array>
+#include <utility>
 
 #include "shader/kernel.h"
 
 namespace afterglow {
 
-void record_kernel(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel,
-                   const std::vector<VkImageView>& result) {
-  device.begin_label(commands, kernel.name);
-  record_barriers(device, commands, kernel.barriers);
+namespace {
 
+void bind(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel) {
+  const bool compute = kernel.group.has_value();
+  const VkPipelineBindPoint point = compute ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS;
+  device.vk().vkCmdBindPipeline(commands, point, kernel.pipeline);
+  device.vk().vkCmdBindDescriptorSets(commands, point, kernel.layout, 0, 1, &kernel.set, 0, nullptr);
+  const std::array<std::int32_t, 4> sizes{kernel.target_size.width, kernel.target_size.height,
+                                          kernel.first_image_size.width, kernel.first_image_size.height};
+  static_assert(sizeof sizes == kPushConstantBytes);
+  device.vk().vkCmdPushConstants(commands, kernel.layout,
+                                 compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof sizes,
+                                 sizes.data());
+}
+
+/// Every workgroup that makes a pixel of the part.
+void dispatch(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel) {
+  record_compute_turn(device, commands, true);
+  bind(device, commands, kernel);
+  const auto groups = [](int first, int count, int pixels) {
+    const int begin = first / pixels, end = (first + count + pixels - 1) / pixels;
+    return std::pair(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin));
+  };
+  const auto [x, across] = groups(kernel.part.x, kernel.part.width, kernel.group->width);
+  const auto [y, down] = groups(kernel.part.y, kernel.part.height, kernel.group->height);
+  device.vk().vkCmdDispatchBase(commands, x, y, 0, across, down, 1);
+  record_compute_turn(device, commands, false);
+}
+
+void draw(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel,
+          const std::vector<VkImageView>& result) {
   const auto width = static_cast<std::uint32_t>(kernel.target_size.width);
   const auto height = static_cast<std::uint32_t>((kernel.target_size.height + kernel.rows - 1) / kernel.rows);
   const Rect& part = kernel.part;
@@ -36,15 +63,21 @@ void record_kernel(const Device& device, VkCommandBuffer commands, const KernelC
   const VkViewport viewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1};
   device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
   device.vk().vkCmdSetScissor(commands, 0, 1, &area);
-  device.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, kernel.pipeline);
-  device.vk().vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, kernel.layout, 0, 1, &kernel.set, 0,
-                                      nullptr);
-  const std::array<std::int32_t, 4> sizes{kernel.target_size.width, kernel.target_size.height,
-                                          kernel.first_image_size.width, kernel.first_image_size.height};
-  static_assert(sizeof sizes == kPushConstantBytes);
-  device.vk().vkCmdPushConstants(commands, kernel.layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof sizes, sizes.data());
+  bind(device, commands, kernel);
   device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
   device.vk().vkCmdEndRendering(commands);
+}
+
+}  // namespace
+
+void record_kernel(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel,
+                   const std::vector<VkImageView>& result) {
+  device.begin_label(commands, kernel.name);
+  record_barriers(device, commands, kernel.barriers);
+  if (kernel.group)
+    dispatch(device, commands, kernel);
+  else
+    draw(device, commands, kernel, result);
   record_barriers(device, commands, kernel.after);
   device.end_label(commands);
 }

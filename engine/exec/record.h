@@ -1,6 +1,7 @@
 // The commands of one kernel.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@
 
 namespace afterglow {
 
-/// A full-screen draw that is ready to be recorded.
+/// A full-screen draw, or a dispatch, that is ready to be recorded.
 struct KernelCommands {
   std::string name;
   VkPipeline pipeline = VK_NULL_HANDLE;
@@ -20,7 +21,8 @@ struct KernelCommands {
   std::vector<VkImageView> targets;  ///< one for each row that an invocation makes; empty: the result
   int rows = 1;
   Size target_size, first_image_size;
-  Rect part;  ///< what is drawn of the target; whole groups of rows
+  Rect part;                  ///< what is made of the target; whole groups of rows
+  std::optional<Size> group;  ///< of a dispatch: the pixels that a workgroup makes
   VkImageLayout target_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   KernelBarriers barriers;  ///< that must come before it
   KernelBarriers after;     ///< and behind it

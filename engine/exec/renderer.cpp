@@ -38,7 +38,7 @@ Renderer::~Renderer() = default;
 
 Result<std::unique_ptr<Renderer>> Renderer::create(Device& device, const RendererOptions& options) {
   auto state = std::make_unique<State>(device);
-  const bool direct = options.direct && device.is_cpu();
+  const bool direct = options.direct && device.maps_images();
   state->slots.resize(direct ? 1 : static_cast<std::size_t>(std::max(options.frames, 1)));
   for (auto& slot : state->slots) {
     AFTERGLOW_TRY(slot.runner, FrameRunner::create(device, {.max_memory = options.max_memory,

@@ -82,6 +82,7 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options, Dia
   std::unique_ptr<Device> device(new Device);
   device->owned_ = true;
   device->presentation_ = options.presentation;
+  device->forced_ = options.forced;
   device->log_ = std::move(log);
   device->device_ = opened.handle;
   device->functions_ = instance.functions();

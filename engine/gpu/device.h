@@ -33,12 +33,23 @@ struct Presentation {
   std::function<Result<VkSurfaceKHR>(VkInstance)> make_surface;
 };
 
+/// Ways of other devices that a device is made to take, so that they can be tested without such a device. Pictures stay
+/// what they are, within the error that the way has anywhere.
+struct ForcedWays {
+  bool staging = false;     ///< pixels go over staging buffers
+  bool unmapped = false;    ///< and images are neither mapped nor linear, as with memory that the host does not see
+  bool timestamps = false;  ///< kernels are timed by timestamps, though they mean little around deferred draws
+  std::string
+      execution;  ///< words that go above the calibrated ones (shader/execution_config.h); checked by the caller
+};
+
 struct DeviceOptions {
   std::string device =
       "auto";             ///< "auto", an index into list_devices(), or a part of a name or uuid (case-insensitive)
   bool validate = false;  ///< Khronos validation with synchronization checks; errors when the layer is missing
   /// To show pictures in a window: the device is chosen among those that can present to it. Null: no window.
-  std::shared_ptr<const Presentation> presentation;
+  std::shared_ptr<const Presentation> presentation{};
+  ForcedWays forced{};
 };
 
 /// A caller's objects to work on; they must outlive the Device. The instance and device are of Vulkan 1.3 with
@@ -96,8 +107,11 @@ class Device {
   /// Null for a device without a window.
   const Presentation* presentation() const { return presentation_.get(); }
   bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
-  /// Timestamps around draws mean something (false on CPU devices, where rasterisation is deferred).
-  bool timestamps_mean_draws() const { return !is_cpu() && timestamp_mask_ != 0; }
+  const ForcedWays& forced() const { return forced_; }
+  /// Pixels are best written into images themselves, and read from there.
+  bool maps_images() const { return is_cpu() && !forced_.staging && !forced_.unmapped; }
+  /// Timestamps around draws mean something (false on CPU devices, where rasterisation is deferred), or have to serve.
+  bool timestamps_mean_draws() const { return (!is_cpu() || forced_.timestamps) && timestamp_mask_ != 0; }
   /// The bits of a timestamp that count; 0: the queue has none.
   std::uint64_t timestamp_mask() const { return timestamp_mask_; }
 
@@ -135,6 +149,7 @@ class Device {
   DeviceInfo info_;
   std::uint64_t timestamp_mask_ = 0;
   bool owned_ = false;
+  ForcedWays forced_;
   std::string cache_file_;
   std::size_t cached_bytes_ = 0;
   std::shared_ptr<ValidationLog> log_;

@@ -54,6 +54,7 @@ namespace afterglow {
   F(vkCmdCopyImage)                   \
   F(vkCmdCopyImageToBuffer)           \
   F(vkCmdDispatch)                    \
+  F(vkCmdDispatchBase)                \
   F(vkCmdDraw)                        \
   F(vkCmdDrawIndexed)                 \
   F(vkCmdEndRendering)                \

@@ -26,6 +26,8 @@ Result<void> check_image(const Device& device, const ImageDesc& desc) {
     return Error{ErrorKind::device, fmt::format("image '{}' of {}×{} pixels: {}", desc.name, width, height, why)};
   };
   if (width < 1 || height < 1) return fail("sizes start at 1×1");
+  if (desc.tiling == VK_IMAGE_TILING_LINEAR && device.forced().unmapped)
+    return fail("linear images are not to be used");
   VkImageFormatProperties limits{};
   const VkResult result = device.vk().vkGetPhysicalDeviceImageFormatProperties(
       device.physical(), desc.format, VK_IMAGE_TYPE_2D, desc.tiling, desc.usage, 0, &limits);

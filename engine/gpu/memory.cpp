@@ -79,7 +79,7 @@ Result<Memory> Memory::allocate(const Device& device, const VkMemoryRequirements
     AFTERGLOW_VK(device.vk().vkMapMemory(device.handle(), handle, 0, VK_WHOLE_SIZE, 0, &mapped), what);
     out.mapped_ = static_cast<std::byte*>(mapped);
     if (device.is_cpu()) use_large_pages(out.mapped_, needs.size);
-  } else if (device.is_cpu() && is_visible(device, *type)) {
+  } else if (device.is_cpu() && is_visible(device, *type) && !device.forced().unmapped) {
     void* mapped = nullptr;
     AFTERGLOW_VK(device.vk().vkMapMemory(device.handle(), handle, 0, VK_WHOLE_SIZE, 0, &mapped), what);
     use_large_pages(static_cast<std::byte*>(mapped), needs.size);

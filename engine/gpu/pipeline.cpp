@@ -12,6 +12,7 @@ namespace afterglow {
 
 Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface& interface) {
   const auto& limits = device.properties().limits;
+  const VkShaderStageFlags stage = interface.stage();
   const auto check = [&](VkDescriptorType type, std::uint32_t most) -> Result<void> {
     const auto count = static_cast<std::uint32_t>(std::count(interface.images.begin(), interface.images.end(), type));
     if (count <= most) return {};
@@ -25,14 +26,14 @@ Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface&
     bindings.push_back({.binding = 0,
                         .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                         .descriptorCount = 1,
-                        .stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT,
+                        .stageFlags = stage,
                         .pImmutableSamplers = nullptr});
   }
   for (std::size_t i = 0; i < interface.images.size(); ++i) {
     bindings.push_back({.binding = static_cast<std::uint32_t>(i) + 1,
                         .descriptorType = interface.images[i],
                         .descriptorCount = 1,
-                        .stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT,
+                        .stageFlags = stage,
                         .pImmutableSamplers = nullptr});
   }
   const VkDescriptorSetLayoutCreateInfo set_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
@@ -44,7 +45,7 @@ Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface&
                "cannot create a descriptor layout");
   out.set = SetLayoutHandle(device, set);
 
-  const VkPushConstantRange push{VK_SHADER_STAGE_FRAGMENT_BIT, 0, interface.push_bytes};
+  const VkPushConstantRange push{stage, 0, interface.push_bytes};
   const VkPipelineLayoutCreateInfo layout_info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                                .setLayoutCount = 1,
                                                .pSetLayouts = &set,
@@ -124,6 +125,48 @@ Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayo
   VkPipeline pipeline = VK_NULL_HANDLE;
   AFTERGLOW_VK(
       device.vk().vkCreateGraphicsPipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr, &pipeline),
+      "cannot create the pipeline of '" + name + "'");
+  PipelineHandle out(device, pipeline);
+  device.set_name(VK_OBJECT_TYPE_PIPELINE, out.number(), name);
+  return out;
+}
+
+Result<void> check_workgroup(const Device& device, Size invocations, std::uint64_t shared_bytes,
+                             const std::string& name) {
+  const auto& limits = device.properties().limits;
+  const auto fail = [&](const std::string& has, const std::string& allows) {
+    return Error{ErrorKind::device,
+                 fmt::format("the workgroups of '{}' have {}, the device allows {}", name, has, allows)};
+  };
+  const auto wide = [&](int size, int axis) {
+    return static_cast<std::uint32_t>(size) > limits.maxComputeWorkGroupSize[axis];
+  };
+  if (wide(invocations.width, 0) || wide(invocations.height, 1) ||
+      invocations.area() > limits.maxComputeWorkGroupInvocations)
+    return fail(fmt::format("{}×{} invocations", invocations.width, invocations.height),
+                fmt::format("{}×{}, {} in all", limits.maxComputeWorkGroupSize[0], limits.maxComputeWorkGroupSize[1],
+                            limits.maxComputeWorkGroupInvocations));
+  if (shared_bytes > limits.maxComputeSharedMemorySize)
+    return fail(fmt::format("{} shared bytes", shared_bytes), fmt::format("{}", limits.maxComputeSharedMemorySize));
+  return {};
+}
+
+Result<PipelineHandle> create_compute_pipeline(const Device& device, const DrawLayout& layout, VkShaderModule module,
+                                               const std::string& name) {
+  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                         .flags = VK_PIPELINE_CREATE_DISPATCH_BASE,
+                                         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                                   .pNext = nullptr,
+                                                   .flags = 0,
+                                                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                                                   .module = module,
+                                                   .pName = "main",
+                                                   .pSpecializationInfo = nullptr},
+                                         .layout = layout.pipeline.get(),
+                                         .basePipelineIndex = -1};
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  AFTERGLOW_VK(
+      device.vk().vkCreateComputePipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr, &pipeline),
       "cannot create the pipeline of '" + name + "'");
   PipelineHandle out(device, pipeline);
   device.set_name(VK_OBJECT_TYPE_PIPELINE, out.number(), name);

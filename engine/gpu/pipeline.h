@@ -1,4 +1,4 @@
-// Full-screen draws: descriptor layouts, pipeline layouts and pipelines.
+// Full-screen draws and dispatches: descriptor layouts, pipeline layouts and pipelines.
 #pragma once
 
 #include <cstdint>
@@ -6,17 +6,20 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry.h"
 #include "gpu/device.h"
 #include "gpu/handle.h"
 
 namespace afterglow {
 
-/// What a full-screen fragment shader reads. Set 0: binding 0 a uniform block (when `block`), bindings 1… its images,
-/// as combined image samplers or storage images; `push_bytes` of push constants.
+/// What a full-screen fragment shader, or a compute shader, reads and stores to. Set 0: binding 0 a uniform block (when
+/// `block`), bindings 1… its images, as combined image samplers or storage images; `push_bytes` of push constants.
 struct DrawInterface {
   bool block = false;
   std::vector<VkDescriptorType> images;
   std::uint32_t push_bytes = 0;
+  bool compute = false;
+  VkShaderStageFlagBits stage() const { return compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT; }
   friend auto operator<=>(const DrawInterface&, const DrawInterface&) = default;
 };
 
@@ -25,7 +28,7 @@ struct DrawLayout {
   PipelineLayoutHandle pipeline;
 };
 
-/// Errors: device (more images than a fragment shader may read).
+/// Errors: device (more images than a shader may read).
 Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface& interface);
 
 Result<ShaderModuleHandle> create_shader_module(const Device& device, std::span<const std::uint32_t> spirv,
@@ -41,6 +44,15 @@ struct DrawTargets {
 /// device's pipeline cache. Thread-safe.
 Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayout& layout, VkShaderModule vertex,
                                             VkShaderModule fragment, DrawTargets targets, const std::string& name);
+
+/// Errors (device): workgroups of this size, or with so many bytes to share, are more than the device has.
+Result<void> check_workgroup(const Device& device, Size invocations, std::uint64_t shared_bytes,
+                             const std::string& name);
+
+/// A pipeline for vkCmdDispatchBase; the layout must be that of a compute shader. Goes through the device's pipeline
+/// cache. Thread-safe.
+Result<PipelineHandle> create_compute_pipeline(const Device& device, const DrawLayout& layout, VkShaderModule module,
+                                               const std::string& name);
 
 /// Texels at their centres, or interpolated; clamped to the edge, level 0.
 Result<SamplerHandle> create_sampler(const Device& device, VkFilter filter);

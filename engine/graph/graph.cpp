@@ -33,7 +33,8 @@ Result<void> validate_images(const Graph& graph) {
 }
 
 Result<void> validate_inputs(const Graph& graph, const Pass& pass, const std::vector<bool>& made) {
-  if (pass.kind != PassKind::sample && (pass.inputs.empty() || pass.inputs.front().name != "source"))
+  const bool has_source = pass.kind == PassKind::pixel || pass.kind == PassKind::filter;
+  if (has_source && (pass.inputs.empty() || pass.inputs.front().name != "source"))
     return pass_error(pass, "its first input is not 'source'");
   const Size target = graph.images[pass.output].size;
   for (const auto& input : pass.inputs) {
@@ -78,6 +79,7 @@ Result<void> validate_history(const Graph& graph, const History& history) {
     return wrong(fmt::format("'{}' cannot be what the frame before made", previous.name));
   if (next.producer < 0) return wrong(fmt::format("no pass makes '{}' for the next frame", next.name));
   if (history.next == graph.result) return wrong("the result cannot be kept for the next frame");
+  if (is_computed(graph, history.next)) return wrong("a compute pass cannot make what the next frame gets");
   if (next.size != previous.size)
     return wrong(fmt::format("it is {}×{}, but the next frame gets {}×{}", previous.size.width, previous.size.height,
                              next.size.width, next.size.height));
@@ -131,6 +133,18 @@ bool same_conditions(const Graph& a, const Graph& b) {
 
 }  // namespace
 
+bool is_computed(const Graph& graph, ImageId image) {
+  const int producer = graph.images[image].producer;
+  return producer >= 0 && graph.passes[producer].kind == PassKind::compute;
+}
+
+std::vector<std::string> shaders_of(const Pass& pass) {
+  std::vector<std::string> out;
+  for (const auto& name : {pass.shader, pass.by_workgroups})
+    if (!name.empty()) out.push_back(name);
+  return out;
+}
+
 Result<void> validate(const Graph& graph) {
   AFTERGLOW_CHECK(validate_images(graph));
   std::vector<bool> made(graph.images.size());
@@ -151,6 +165,8 @@ Result<void> validate(const Graph& graph) {
   if (graph.images[graph.result].size != graph.images[graph.source].size)
     return Error{ErrorKind::script,
                  fmt::format("the result '{}' has another size than the source", graph.images[graph.result].name)};
+  if (is_computed(graph, graph.result))
+    return pass_error(graph.passes[graph.images[graph.result].producer], "a compute pass cannot make the result");
   AFTERGLOW_CHECK(validate_conditions(graph));
   return validate_histories(graph);
 }
@@ -165,8 +181,8 @@ bool same_structure(const Graph& a, const Graph& b) {
       return false;
   for (std::size_t i = 0; i < a.passes.size(); ++i) {
     const Pass &p = a.passes[i], &q = b.passes[i];
-    if (p.name != q.name || p.kind != q.kind || p.shader != q.shader || !(p.filter == q.filter) ||
-        p.inputs != q.inputs || p.constants != q.constants || p.output != q.output ||
+    if (p.name != q.name || p.kind != q.kind || p.shader != q.shader || p.by_workgroups != q.by_workgroups ||
+        !(p.filter == q.filter) || p.inputs != q.inputs || p.constants != q.constants || p.output != q.output ||
         p.params.size() != q.params.size() || p.straight != q.straight)
       return false;
     for (auto x = p.params.begin(), y = q.params.begin(); x != p.params.end(); ++x, ++y)

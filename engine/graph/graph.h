@@ -29,9 +29,6 @@ struct GraphImage {
   std::shared_ptr<const ImageData> data = {};
 };
 
-/// `copy`-free kinds of pass. `filter` is data; `pixel` and `sample` name a shader.
-enum class PassKind { pixel, filter, sample };
-
 /// A value for a shader parameter: up to 4 components (bool as 0/1).
 struct ParamValue {
   ParamType type = ParamType::float1;
@@ -50,7 +47,10 @@ struct Pass {
   std::string name;    ///< unique: "glow.down[2]"
   std::string effect;  ///< name of the effect's entry, "glow"
   PassKind kind = PassKind::pixel;
-  std::string shader;                        ///< "glow/threshold"; empty for filters
+  std::string shader;  ///< "glow/threshold"; empty for filters
+  /// Of a sample pass: a compute shader with the same inputs and parameters that makes the same image, for devices on
+  /// which workgroups do it faster. Empty: none.
+  std::string by_workgroups;
   Filter filter;                             ///< for kind filter
   std::vector<PassInput> inputs;             ///< a pixel pass's first input is "source"
   std::map<std::string, ParamValue> params;  ///< dynamic: values may change without a rebuild
@@ -104,6 +104,13 @@ struct Graph {
   std::vector<IdleCondition> idle;  ///< in the order of the stack; limits may change without a rebuild
   std::vector<History> histories;   ///< in the order in which effects ask for them
 };
+
+/// Whether a compute pass makes the image. Such an image is neither the result nor kept by a history: those are drawn
+/// to.
+bool is_computed(const Graph& graph, ImageId image);
+
+/// Names of the shaders that a pass may run.
+std::vector<std::string> shaders_of(const Pass& pass);
 
 /// Checks what the script binding cannot break but a program might: ids in range, producers before readers, no image
 /// written twice, sizes ≥ 1, unique names, pixel-wise inputs as large as the target, conditions between images of one

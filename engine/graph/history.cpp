@@ -115,9 +115,12 @@ void separate_result(Graph& graph) {
     const std::vector<ImageId> images = images_read(graph, pass);
     return std::ranges::find(images, graph.result) != images.end();
   });
-  if (!source && !kept && !read) return;
+  const bool computed = is_computed(graph, graph.result);
+  if (!source && !kept && !read && !computed) return;
   Pass copy;
-  copy.effect = kept ? kept->effect : graph.histories.front().effect;
+  copy.effect = kept       ? kept->effect
+                : computed ? graph.passes[graph.images[graph.result].producer].effect
+                           : graph.histories.front().effect;
   copy.name = unused_name(graph, copy.effect + ".result");
   copy.kind = PassKind::filter;
   copy.filter.interpolation = Interpolation::nearest;
@@ -154,7 +157,10 @@ Hash history_part(const Graph& graph, const History& history) {
   for (std::size_t i = 0; i < part.size(); ++i) {
     if (!part[i]) continue;
     const Pass& pass = graph.passes[i];
-    hasher.add(pass.name).add(pass.shader).add(pass.kind == PassKind::filter ? pass.filter.text() : "");
+    hasher.add(pass.name)
+        .add(pass.shader)
+        .add(pass.by_workgroups)
+        .add(pass.kind == PassKind::filter ? pass.filter.text() : "");
     for (const auto& [name, value] : pass.constants) hasher.add(name).add(fmt::format("{}", value));
     for (const auto& input : pass.inputs) hasher.add(input.name), add_image(input.image);
   }

@@ -28,7 +28,8 @@ std::vector<ImageId> images_read(const Graph& graph, const Pass& pass);
 void drop_unread_histories(Graph& graph);
 
 /// Makes sure that the result is an image of its own: where a history keeps it or is made of it, or where it is the
-/// source although histories have to be made, a pass that copies it is added.
+/// source although histories have to be made, a pass that copies it is added; also where a compute pass makes it, since
+/// callers' images are drawn to.
 void separate_result(Graph& graph);
 
 /// How many earlier frames a frame needs: that of the effect with the longest history, and as many more as the

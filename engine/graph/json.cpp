@@ -8,18 +8,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* kind_name(PassKind kind) {
-  switch (kind) {
-    case PassKind::pixel:
-      return "pixel";
-    case PassKind::filter:
-      return "filter";
-    case PassKind::sample:
-      return "sample";
-  }
-  return "";
-}
-
 Json value_json(const ParamValue& value) {
   const int count = component_count(value.type);
   if (count == 1) return value.type == ParamType::bool1 ? Json(value.v[0] != 0) : Json(value.v[0]);
@@ -29,11 +17,12 @@ Json value_json(const ParamValue& value) {
 }
 
 Json pass_json(const Graph& graph, const Pass& pass) {
-  Json out{{"name", pass.name}, {"effect", pass.effect}, {"kind", kind_name(pass.kind)}};
+  Json out{{"name", pass.name}, {"effect", pass.effect}, {"kind", info_of(pass.kind).name}};
   if (pass.kind == PassKind::filter)
     out["filter"] = pass.filter.text();
   else
     out["shader"] = pass.shader;
+  if (!pass.by_workgroups.empty()) out["compute"] = pass.by_workgroups;
   for (const auto& input : pass.inputs) out["inputs"][input.name] = graph.images[input.image].name;
   for (const auto& [name, value] : pass.params) out["parameters"][name] = value_json(value);
   for (const auto& [name, value] : pass.constants) out["constants"][name] = value;

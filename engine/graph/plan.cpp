@@ -34,7 +34,18 @@ std::vector<int> count_readers(const Graph& graph, const std::vector<bool>& keep
   return readers;
 }
 
-bool is_head(const Pass& pass) { return pass.kind != PassKind::pixel; }
+bool is_head(const Pass& pass) { return info_of(pass.kind).begins; }
+
+// Whoever runs the graph gives the result's image, and the frame before that of a history: both are drawn to.
+bool must_be_drawn(const Graph& graph, ImageId image) {
+  return image == graph.result || history_of_next(graph, image) != nullptr;
+}
+
+bool runs_as_workgroups(const Graph& graph, const PlanKernel& kernel, const ExecutionConfig& config) {
+  const Pass& head = graph.passes[kernel.passes.front()];
+  if (head.kind == PassKind::compute) return true;
+  return config.compute && !head.by_workgroups.empty() && !must_be_drawn(graph, kernel.output);
+}
 
 // Images that a kernel binds: those that its passes do not hand on to each other, each once where it is read at the own
 // pixel.
@@ -88,6 +99,7 @@ class Joiner {
         if (own_readers(kernel, input.image) != readers_[input.image]) continue;
         if (joining == Joining::heads && !is_head_of(kernels_[feeder], kernel)) continue;
         if (is_head(first(kernel)) && is_head(first(kernels_[feeder]))) continue;
+        if (first(kernels_[feeder]).kind == PassKind::compute && must_be_drawn(graph_, kernel.output)) continue;
         PlanKernel both{kernel.passes, "", kernel.output};
         both.passes.insert(both.passes.end(), kernels_[feeder].passes.begin(), kernels_[feeder].passes.end());
         if (bound_images(graph_, both) <= kMaxImagesPerKernel) return feeder;
@@ -168,6 +180,7 @@ Plan make_plan(const Graph& graph, const ExecutionConfig& config) {
       plan.skipped.push_back({graph.passes[i].name, "nobody reads its image"});
   }
   plan.kernels = joiner.finish();
+  for (auto& kernel : plan.kernels) kernel.compute = runs_as_workgroups(graph, kernel, config);
   find_lifetimes(graph, plan);
   return plan;
 }

@@ -13,13 +13,14 @@
 
 namespace afterglow {
 
-/// One draw: a head pass and the pixel passes joined to it. Indices into Graph::passes: a filter or sample pass first,
-/// then pixel passes, each behind those whose colours it takes. The last one makes the kernel's image; what the others
-/// make is read by passes of the kernel alone, at their own pixel.
+/// One draw or dispatch: a head pass and the pixel passes joined to it. Indices into Graph::passes: a pass that begins
+/// kernels first, then pixel passes, each behind those whose colours it takes. The last one makes the kernel's image;
+/// what the others make is read by passes of the kernel alone, at their own pixel.
 struct PlanKernel {
   std::vector<int> passes;
   std::string name;  ///< "glow.up[0]+glow.combine+curve"
   ImageId output = kNoImage;
+  bool compute = false;  ///< its head runs as workgroups, which store into the image; else it is drawn
 };
 
 struct Plan {
@@ -33,7 +34,8 @@ struct Plan {
   std::vector<Lifetime> lifetimes;  ///< parallel to `transient`; the result and what histories keep live to the end
 };
 
-/// Of `config` it reads `joining`.
+/// Of `config` it reads `joining` and `compute`. What compute kernels make is transient: neither the result nor kept by
+/// a history.
 Plan make_plan(const Graph& graph, const ExecutionConfig& config);
 
 /// Is input `input` of a pass read at the target's own pixel alone: the colour of a pixel pass, a pixel-wise input?

@@ -74,12 +74,15 @@ int graph_pass(lua_State* lua) {
   PassRequest request;
   request.name = table.text("name", 80);
   request.shader = table.text("shader", 200).value_or("");
+  request.by_workgroups = table.text("compute", 200).value_or("");
   request.size = read_size(table, lua);
   request.reach = table.number("reach");
   if (request.shader.empty() && !table.failed())
     table.fail(failure(fmt::format("{} needs 'shader', the name of a shader", table.what())));
   for (const auto& key : table.keys()) {
-    if (key.name == "name" || key.name == "reach" || key.name == "shader" || key.name == "size") continue;
+    if (key.name == "compute" || key.name == "name" || key.name == "reach" || key.name == "shader" ||
+        key.name == "size")
+      continue;
     if (key.position > 0) {
       table.fail(
           failure(fmt::format("{} has a value without a name at position {}", table.what(), key.position), {key.name}));

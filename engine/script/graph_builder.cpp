@@ -138,16 +138,12 @@ ImageRef GraphBuilder::data(const std::string& name, std::shared_ptr<const Image
 ImageRef GraphBuilder::pass(const PassRequest& request, const CallPlace& place) {
   const std::string last = request.shader.substr(request.shader.rfind('/') + 1);
   Pass pass = start(last, request.name, place);
-  auto shader = shaders_.find(request.shader);
-  if (!shader) {
-    // An unknown name is the script's fault; errors inside the file have a place of their own.
-    Error error = shader.error();
-    if (error.line > 0) throw ScriptError{std::move(error)};
-    fail(pass, error.message, {"shader"}, error.allowed, error.nearest);
-  }
-  const ShaderInterface& interface = (*shader)->interface;
-  pass.kind = interface.kind == ShaderKind::pixel ? PassKind::pixel : PassKind::sample;
+  const auto shader = find_shader(pass, request.shader, "shader");
+  const ShaderInterface& interface = shader->interface;
+  pass.kind = interface.kind;
   pass.shader = request.shader;
+  if (!request.by_workgroups.empty()) check_workgroups(pass, request, interface);
+  pass.by_workgroups = request.by_workgroups;
   pass.reach = request.reach;
   if (straight_ && pass.kind != PassKind::pixel)
     fail(pass, "alpha = \"straight\" is for effects whose shaders are pixel shaders (apply)", {"shader"});
@@ -169,8 +165,48 @@ ImageRef GraphBuilder::pass(const PassRequest& request, const CallPlace& place) 
   return add(std::move(pass), size);
 }
 
+std::shared_ptr<const ShaderSource> GraphBuilder::find_shader(const Pass& pass, const std::string& name,
+                                                              const char* key) const {
+  auto shader = shaders_.find(name);
+  if (shader) return std::move(shader).value();
+  // An unknown name is the script's fault; errors inside the file have a place of their own.
+  Error error = std::move(shader).error();
+  if (error.line > 0) throw ScriptError{std::move(error)};
+  fail(pass, error.message, {key}, error.allowed, error.nearest);
+}
+
+/// The two ways to make an image must be given the same.
+void GraphBuilder::check_workgroups(const Pass& pass, const PassRequest& request,
+                                    const ShaderInterface& interface) const {
+  const KeyPath key{"compute"};
+  const auto other = find_shader(pass, request.by_workgroups, "compute");
+  if (interface.kind != PassKind::sample)
+    fail(pass,
+         fmt::format("compute is another way of a sample shader; '{}' is a {} shader", request.shader,
+                     info_of(interface.kind).name),
+         key);
+  if (other->interface.kind != PassKind::compute)
+    fail(pass, fmt::format("'{}' is a {} shader", request.by_workgroups, info_of(other->interface.kind).name), key,
+         std::string("a shader that defines ") + info_of(PassKind::compute).signature);
+  const auto declared = [](const ShaderInterface& of) {
+    std::vector<std::string> out;
+    for (const auto& input : of.inputs) out.push_back("sampler2D " + input.name);
+    for (const auto& param : of.params)
+      out.push_back(fmt::format("{}{} {}{}", param.specialised ? "const " : "", glsl_name(param.type), param.name,
+                                param.specialised ? fmt::format(" = {}", param.default_value) : ""));
+    std::ranges::sort(out);
+    return out;
+  };
+  const auto ours = declared(interface), theirs = declared(other->interface);
+  if (ours != theirs)
+    fail(pass,
+         fmt::format("'{}' and '{}' declare different inputs or parameters ({}; {})", request.shader,
+                     request.by_workgroups, join(ours), join(theirs)),
+         key, join(ours));
+}
+
 void GraphBuilder::bind(Pass& pass, const PassRequest& request, const ShaderInterface& interface) const {
-  const bool pixel = interface.kind == ShaderKind::pixel;
+  const bool pixel = interface.kind == PassKind::pixel;
   // Inputs in the shader's order, the colour of a pixel shader first, whatever order the script's table has.
   std::vector<std::string> names;
   if (pixel) names.push_back("source");

@@ -35,6 +35,7 @@ struct Argument {
 struct PassRequest {
   std::optional<std::string> name;
   std::string shader;
+  std::string by_workgroups;  ///< see Pass::by_workgroups
   std::optional<Size> size;
   std::optional<double> reach;      ///< see Pass::reach
   std::vector<Argument> arguments;  ///< "source" among them
@@ -119,6 +120,8 @@ class GraphBuilder {
                                  std::string allowed = {}) const;
   [[noreturn]] void fail(const Pass& pass, const std::string& message, KeyPath key = {}, std::string allowed = {},
                          std::string nearest = {}) const;
+  std::shared_ptr<const ShaderSource> find_shader(const Pass& pass, const std::string& name, const char* key) const;
+  void check_workgroups(const Pass& pass, const PassRequest& request, const ShaderInterface& interface) const;
   void bind(Pass& pass, const PassRequest& request, const ShaderInterface& interface) const;
   void bind_image(Pass& pass, const Argument& argument, bool pixelwise) const;
   void bind_param(Pass& pass, const Argument& argument, const ShaderParam& param) const;

@@ -99,8 +99,8 @@ void GraphBuilder::keep(const ImageRef& image, const ImageRef& next, const CallP
                              next.size.height),
                  {}, fmt::format("{}×{}", image.size.width, image.size.height));
   // What is kept lies in memory of its own: inputs do not, and two histories cannot share one image.
-  const bool needs_copy =
-      graph_.images[static_cast<std::size_t>(next.id)].producer < 0 || history_of_next(graph_, next.id);
+  const bool needs_copy = graph_.images[static_cast<std::size_t>(next.id)].producer < 0 ||
+                          is_computed(graph_, next.id) || history_of_next(graph_, next.id);
   history->next = needs_copy ? copy_of(next.id, place) : next.id;
   if (history->pre_roll < 0) history->pre_roll = depends_on_history(*history) ? kUsualPreRoll : 1;
   std::erase_if(open_histories_, [&](const auto& open) { return open.first == history->name; });

@@ -25,9 +25,14 @@ StackChoice choose(const Device& device, const StackOptions& options, const Cali
   choice.execution = found.choice;
   choice.execution.rows = std::min(choice.execution.rows, options.most_rows);
   choice.from = found.from;
-  if (options.precision == Precision::automatic) return choice;
-  choice.execution.storage = options.precision == Precision::fp16 ? Storage::fp16 : Storage::fp32;
-  choice.from += "; --precision";
+  if (options.precision != Precision::automatic) {
+    choice.execution.storage = options.precision == Precision::fp16 ? Storage::fp16 : Storage::fp32;
+    choice.from += "; --precision";
+  }
+  if (const std::string& words = device.forced().execution; !words.empty()) {
+    if (const auto forced = parse_execution(words, choice.execution)) choice.execution = *forced;
+    choice.from += "; forced";
+  }
   return choice;
 }
 

@@ -47,9 +47,12 @@ class Assembler {
   Result<AssembledKernel> run() {
     if (kernel_.filter && kernel_.sample)
       return Error{ErrorKind::other, "a kernel has one head: a filter or a sample stage"};
-    if (kernel_.config.rows < 1 || kernel_.config.rows > kMaxRows)
-      return Error{ErrorKind::other,
-                   fmt::format("an invocation makes 1 to {} rows, not {}", kMaxRows, kernel_.config.rows)};
+    if (kernel_.sample && kernel_.sample->shader) out_.workgroup = kernel_.sample->shader->interface.workgroup;
+    if (kernel_.config.rows < 1 || kernel_.config.rows > (out_.workgroup ? 1 : kMaxRows))
+      return Error{ErrorKind::other, fmt::format("an invocation makes 1 to {} rows, not {}",
+                                                 out_.workgroup ? 1 : kMaxRows, kernel_.config.rows)};
+    if (out_.workgroup && kernel_.target == KernelTarget::codes8)
+      return Error{ErrorKind::other, "a compute shader makes no codes"};
     out_.file_names = {"", "lib/prelude.glsl"};
     AFTERGLOW_CHECK(head());
     if (watches()) row_ += "  float ag_light = 0.0;\n" + add_light("ag_color");
@@ -63,8 +66,7 @@ class Assembler {
     out_.glsl += kHeader;
     if (!out_.unset.empty()) out_.glsl += give_value_header();
     if (kernel_.config.hide_uniforms) out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
-    for (int row = 0; row < kernel_.config.rows; ++row)
-      out_.glsl += fmt::format("layout(location = {0}) out vec4 ag_result{0};\n", row);
+    out_.glsl += targets();
     if (!block_.empty()) out_.glsl += "layout(set = 0, binding = 0, std140) uniform ag_Block {\n" + block_ + "};\n";
     out_.glsl += images_;
     out_.glsl += "#line 1 1\n";
@@ -80,11 +82,11 @@ class Assembler {
     if (kernel_.watch == Watch::hand_on)
       row_ += "  ag_color = mix(vec4(uintBitsToFloat(0x7fc00000u)), ag_color, bvec4(ag_finite));\n";
     if (row_.empty()) {
-      every_row("ag_result{0} = ag_color{0};");
+      store("ag_color{0}");
     } else {
       out_.glsl += fmt::format("vec4 {}(vec4 ag_color, ivec2 ag_at{}) {{\n{}  return ag_color;\n}}\n", kRowFunction,
                                row_parameters_, row_);
-      every_row("ag_result{0} = " + std::string(kRowFunction) + "(ag_color{0}, ag_pixel{0}" + row_arguments_ + ");");
+      store(std::string(kRowFunction) + "(ag_color{0}, ag_pixel{0}" + row_arguments_ + ")");
     }
     out_.glsl += head_function_ + "void main() {\n" + pixels() + body_ + "}\n";
     out_.hash = hash_text(out_.glsl);
@@ -124,7 +126,7 @@ class Assembler {
       row_ += fmt::format("  ag_color = ag_value{};\n", color_of(i));
     }
     if (straight(i) && !(i > 0 && straight(i - 1) && flows_on(i))) divide();
-    AFTERGLOW_CHECK(add_stage(stage, ShaderKind::pixel));
+    AFTERGLOW_CHECK(add_stage(stage, PassKind::pixel));
     if (straight(i) && !(i + 1 < kernel_.stages.size() && straight(i + 1) && flows_on(i + 1))) multiply();
     keep(i + 1);
     return {};
@@ -158,7 +160,7 @@ class Assembler {
   void multiply() { row_ += fmt::format("  ag_color = vec4(ag_color.rgb * ag_cover{0}, ag_alpha{0});\n", divisions_); }
 
   Result<void> head() {
-    if (kernel_.sample) return add_stage(*kernel_.sample, ShaderKind::sample);
+    if (kernel_.sample) return add_stage(*kernel_.sample, out_.workgroup ? PassKind::compute : PassKind::sample);
     const ImageRead read = add_image(-1, "source", "ag_image0", true);
     images_ += fmt::format("#define ag_texel0(p) {}\n", texel(read, "ag_image0", "p"));
     if (!kernel_.filter) {
@@ -176,8 +178,52 @@ class Assembler {
     return {};
   }
 
+  /// Declares what the kernel writes.
+  std::string targets() const {
+    std::string out;
+    if (out_.workgroup) {
+      const Size& size = out_.workgroup->invocations;
+      return fmt::format(
+          "layout(local_size_x = {}, local_size_y = {}) in;\n"
+          "layout(set = 0, binding = {}, {}) uniform restrict writeonly image2D ag_target;\n",
+          size.width, size.height, out_.images.size() + 1,
+          kernel_.target == KernelTarget::float16 ? "rgba16f" : "rgba32f");
+    }
+    for (int row = 0; row < kernel_.config.rows; ++row)
+      out += fmt::format("layout(location = {0}) out vec4 ag_result{0};\n", row);
+    return out;
+  }
+
+  /// The result of each row; {0} in `value` is its number.
+  void store(const std::string& value) {
+    every_row(out_.workgroup ? "if (ag_makes) imageStore(ag_target, ag_pixel{0}, " + value + ");"
+                             : "ag_result{0} = " + value + ";");
+  }
+
+  /// Of a compute shader: the pixel of the invocation, whether it is one of the target's that the workgroup makes, and
+  /// zeros for what the workgroup shares.
+  std::string invocation() const {
+    const Size& pixels = out_.workgroup->pixels;
+    return fmt::format(
+        "{0}  ivec2 ag_local = ivec2(gl_LocalInvocationID.xy), ag_last = ivec2({1}, {2});\n"
+        "  ivec2 ag_pixel0 = ivec2(gl_WorkGroupID.xy) * (ag_last + 1) + min(ag_local, ag_last);\n"
+        "  bool ag_makes = all(lessThanEqual(ag_local, ag_last)) && all(lessThan(ag_pixel0, ag_target_size));\n",
+        shared_.empty() ? "" : shared_ + "  barrier();\n", pixels.width - 1, pixels.height - 1);
+  }
+
+  void add_shared(const ShaderScan& scanned, const std::string& prefix) {
+    for (const auto& variable : scanned.shared)
+      shared_ += fmt::format(
+          fmt::runtime(variable.array
+                           ? "  for (uint ag_i = gl_LocalInvocationIndex; ag_i < uint({0}{1}.length()); ag_i += {3}u) "
+                             "{0}{1}[ag_i] = {2}(0);\n"
+                           : "  if (gl_LocalInvocationIndex == 0u) {0}{1} = {2}(0);\n"),
+          prefix, variable.name, variable.type, out_.workgroup ? out_.workgroup->invocations.area() : 1);
+  }
+
   /// Declares the pixels of the invocation. Those below the target's last row are made like it and land in padding.
   std::string pixels() const {
+    if (out_.workgroup) return invocation();
     if (kernel_.config.rows == 1) return "  ivec2 ag_pixel0 = ivec2(gl_FragCoord.xy);\n";
     std::string out = fmt::format("  ivec2 ag_pixel = ivec2(gl_FragCoord.xy) * ivec2(1, {});\n", kernel_.config.rows);
     for (int row = 0; row < kernel_.config.rows; ++row)
@@ -220,13 +266,13 @@ class Assembler {
     return static_cast<std::size_t>(known - out_.file_names.begin());
   }
 
-  Result<void> add_stage(const KernelStage& stage, ShaderKind kind) {
+  Result<void> add_stage(const KernelStage& stage, PassKind kind) {
     if (!stage.shader) return Error{ErrorKind::other, fmt::format("stage '{}' of a kernel has no shader", stage.label)};
     const ShaderSource& source = *stage.shader;
     if (source.interface.kind != kind)
-      return shader_error(source.path.string(), 0,
-                          fmt::format("'{}' is a {} shader and cannot stand here", source.name,
-                                      kind == ShaderKind::pixel ? "sample" : "pixel"));
+      return shader_error(
+          source.path.string(), 0,
+          fmt::format("'{}' is a {} shader and cannot stand here", source.name, info_of(source.interface.kind).name));
     AFTERGLOW_TRY(const ShaderScan scanned, scan(source.text, source.path.string(), ScanAs::stage));
     const std::string prefix = fmt::format("ag_s{}_", stage_count_);
     AFTERGLOW_TRY(const auto values, constants(stage, prefix));
@@ -262,12 +308,14 @@ class Assembler {
       block_ += fmt::format("  {} {}{};\n", glsl_name(param.type), prefix, param.name);
       out_.params.push_back({stage_count_, param.name, param.type, 0});
     }
+    add_shared(scanned, prefix);
     stages_ += fmt::format("#line 1 {}\n", file_index(source.path.string())) +
                rewrite(source.text, scanned, names, values, add_unset(scanned, source.path, prefix), readers);
-    if (kind == ShaderKind::sample)
-      every_row("vec4 ag_color{0} = " + prefix + "sample_at(ag_pixel{0});");
+    const std::string function = prefix + info_of(kind).entry;
+    if (info_of(kind).begins)
+      every_row("vec4 ag_color{0} = " + function + "(ag_pixel{0});");
     else
-      row_ += fmt::format("  ag_color = {}apply({});\n", prefix, arguments) + (watches() ? add_light("ag_color") : "");
+      row_ += fmt::format("  ag_color = {}({});\n", function, arguments) + (watches() ? add_light("ag_color") : "");
     ++stage_count_;
     return {};
   }
@@ -330,6 +378,7 @@ class Assembler {
     for (const auto use : added.uses) see(libraries_[use], names);
     added.names = scanned.names;
     see(added, names);
+    add_shared(scanned, added.prefix);
     library_text_ += fmt::format("#line 1 {}\n", file_index(include.path.string())) +
                      rewrite(include.text, scanned, names, {}, add_unset(scanned, include.path, added.prefix));
     libraries_.push_back(std::move(added));
@@ -342,6 +391,7 @@ class Assembler {
   std::string head_function_;                         ///< what finds one row's colour where rows share nothing
   std::string row_, row_parameters_, row_arguments_;  ///< what is done to one row's colour
   std::string body_;                                  ///< of main()
+  std::string shared_;                                ///< statements that make zeros of what a workgroup shares
   std::vector<Library> libraries_;
   std::map<std::pair<int, std::string>, std::string> own_reads_;  ///< names of colours, by stage and input
   int stage_count_ = 0, divisions_ = 0;

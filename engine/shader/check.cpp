@@ -6,7 +6,7 @@ Result<void> check_shader(KernelCompiler& compiler, std::shared_ptr<const Shader
                           const std::map<std::string, double>& constants) {
   KernelDesc kernel;
   KernelStage stage{std::move(shader), constants, {}};
-  if (stage.shader->interface.kind == ShaderKind::sample) {
+  if (info_of(stage.shader->interface.kind).begins) {
     kernel.sample = std::move(stage);
   } else {
     kernel.stages.push_back(std::move(stage));

@@ -93,7 +93,8 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   constexpr int kTogether = 4;  // rows: more of them would not fit into a processor's registers
   KernelFile kernel;
   kernel.text = assembled.hash;
-  AFTERGLOW_TRY(kernel.spirv, compile_glsl(assembled.glsl, assembled.file_names));
+  AFTERGLOW_TRY(kernel.spirv, compile_glsl(assembled.glsl, assembled.file_names,
+                                           assembled.workgroup ? GlslStage::compute : GlslStage::fragment));
   AFTERGLOW_CHECK(check_weight(kernel.spirv, desc));
   ValuesGiven given = give_values(std::move(kernel.spirv), assembled.unset);
   kernel.spirv = std::move(given.spirv);
@@ -117,8 +118,9 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   }
   if (!unread && reflection.members.size() != assembled.params.size())
     return Error{ErrorKind::other, "the compiled shader has other parameters than declared"};
+  const std::size_t bound = assembled.images.size() + (assembled.workgroup ? 1 : 0);  // and the target
   for (const auto binding : reflection.image_bindings)
-    if (binding < 1 || binding > assembled.images.size())
+    if (binding < 1 || binding > bound)
       return Error{ErrorKind::other, "the compiled shader has other images than declared"};
   return kernel;
 }
@@ -156,6 +158,8 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   std::erase_if(out.params, [](const KernelParam& param) { return param.offset == KernelParam::kUnread; });
   out.block_size = made->block_size;
   out.rows = desc.config.rows;
+  out.workgroup = assembled.workgroup;
+  if (out.workgroup) out.shared_bytes = shared_bytes(out.spirv);
   out.target = desc.target;
   for (const auto number : made->unset)
     if (number < assembled.unset.size()) out.warnings.push_back(unset_warning(assembled.unset[number]));

@@ -41,21 +41,19 @@ Result<std::vector<Argument>> split_arguments(std::span<const Token* const> toke
 
 }  // namespace
 
-Result<EntryPoint> parse_entry_point(const Token& result, const Token& name, std::span<const Token* const> arguments,
-                                     const std::string& file) {
-  const bool apply = name.is("apply");
+Result<EntryPoint> parse_entry_point(PassKind kind, const Token& result, const Token& name,
+                                     std::span<const Token* const> arguments, const std::string& file) {
   const auto wrong = [&](const Token& where, std::string what) {
     Error error = shader_error(file, where.line, std::move(what));
-    error.allowed = apply ? "vec4 apply(vec4 color, vec4 NAME, …, ivec2 pixel)" : "vec4 sample_at(ivec2 pixel)";
+    error.allowed = info_of(kind).signature;
     return error;
   };
   if (!result.is("vec4")) return wrong(name, fmt::format("{} must return vec4, not {}", name.text, result.text));
   AFTERGLOW_TRY(const auto list, split_arguments(arguments, name, file));
   EntryPoint out;
-  if (!apply) {
+  if (kind != PassKind::pixel) {
     if (list.size() != 1 || !list[0].type->is("ivec2"))
-      return wrong(name, "sample_at takes one argument, the target's pixel");
-    out.kind = ShaderKind::sample;
+      return wrong(name, fmt::format("{} takes one argument, the target's pixel", name.text));
     return out;
   }
   if (list.empty()) return wrong(name, "apply takes the colour as its first argument");

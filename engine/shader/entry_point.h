@@ -1,4 +1,4 @@
-// The signature of `apply` or `sample_at`. Internal to the room.
+// The signature of the function that an author's shader defines for the engine. Internal to the room.
 #pragma once
 
 #include <span>
@@ -12,13 +12,12 @@
 namespace afterglow {
 
 struct EntryPoint {
-  ShaderKind kind = ShaderKind::pixel;
   std::vector<Token> inputs;  ///< names of the pixel-wise inputs: the arguments of `apply` behind the colour
   bool at_pixel = false;      ///< `apply` ends with the target's pixel
 };
 
-/// `name` is "apply" or "sample_at"; `arguments` are the tokens between its parentheses. Errors (script).
-Result<EntryPoint> parse_entry_point(const Token& result, const Token& name, std::span<const Token* const> arguments,
-                                     const std::string& file);
+/// `name` is that of `kind`; `arguments` are the tokens between its parentheses. Errors (script).
+Result<EntryPoint> parse_entry_point(PassKind kind, const Token& result, const Token& name,
+                                     std::span<const Token* const> arguments, const std::string& file);
 
 }  // namespace afterglow

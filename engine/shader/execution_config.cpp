@@ -26,6 +26,7 @@ constexpr Word kWords[] = {
     {"fp16", [](ExecutionConfig& c) { c.storage = Storage::fp16; }},
     {"hardware-filter", [](ExecutionConfig& c) { c.hardware_filter = true; }},
     {"storage-reads", [](ExecutionConfig& c) { c.storage_reads = true; }},
+    {"compute", [](ExecutionConfig& c) { c.compute = true; }},
     {"unshared", [](ExecutionConfig& c) { c.share_memory = false; }},
     {"plain16f", [](ExecutionConfig& c) { c = kPlain16f; }},
     {"plain32f", [](ExecutionConfig& c) { c = kPlain32f; }},
@@ -41,9 +42,7 @@ int rows_of(const std::string& word) {
 }
 
 Error unknown_word(const std::string& word) {
-  std::vector<std::string> names;
-  for (const auto& known : kWords) names.emplace_back(known.text);
-  names.push_back(fmt::format("{}1 to {}{}", kRows, kRows, kMaxRows));
+  const std::vector<std::string> names = execution_words();
   return {ErrorKind::usage,         fmt::format("'{}' says nothing about execution", word), {}, 0, join(names),
           nearest_name(word, names)};
 }
@@ -55,15 +54,23 @@ std::string execution_name(const ExecutionConfig& config) {
   name += config.storage == Storage::fp16 ? " fp16" : " fp32";
   if (config.hardware_filter) name += " hardware-filter";
   if (config.storage_reads) name += " storage-reads";
+  if (config.compute) name += " compute";
   if (!config.share_memory) name += " unshared";
   if (config.rows > 1) name += fmt::format(" {}{}", kRows, config.rows);
   return name;
 }
 
-Result<ExecutionConfig> parse_execution(const std::string& text) {
+std::vector<std::string> execution_words() {
+  std::vector<std::string> names;
+  for (const auto& known : kWords) names.emplace_back(known.text);
+  names.push_back(fmt::format("{}1 to {}{}", kRows, kRows, kMaxRows));
+  return names;
+}
+
+Result<ExecutionConfig> parse_execution(const std::string& text, const ExecutionConfig& from) {
   std::string spaced = text;
   std::replace(spaced.begin(), spaced.end(), '+', ' ');
-  ExecutionConfig config;
+  ExecutionConfig config = from;
   for (const auto& word : split(spaced, ' ')) {
     if (word.empty()) continue;
     if (const int rows = rows_of(word)) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 
@@ -29,6 +30,8 @@ struct ExecutionConfig {
   bool hardware_filter = false;
   /// Images are read as storage images where shaders and device allow it: faster on CPU devices.
   bool storage_reads = false;
+  /// Passes that have a second way, by a compute shader, take it: faster where many invocations run at once.
+  bool compute = false;
   bool share_memory = true;  ///< images whose lifetimes do not overlap share bytes
   /// Rows of its target that one invocation of a kernel may make where neighbouring rows read the same texels
   /// (1 … kMaxRows): faster on CPU devices. More than 1 makes the images between kernels linear.
@@ -51,7 +54,11 @@ inline constexpr ExecutionConfig kPlain32f{
 std::string execution_name(const ExecutionConfig& config);
 
 /// Reads what `execution_name` writes, or "plain16f", "plain32f". Words may be separated by spaces or '+', in any
-/// order; what is not said is as in ExecutionConfig{}. Errors: usage.
-Result<ExecutionConfig> parse_execution(const std::string& text);
+/// order. Errors: usage.
+/// `from`: what is not said is as there.
+Result<ExecutionConfig> parse_execution(const std::string& text, const ExecutionConfig& from = {});
+
+/// All words, for messages.
+std::vector<std::string> execution_words();
 
 }  // namespace afterglow

@@ -14,7 +14,11 @@
 //   uniform sampler2D depth;                  // an input image that is read freely
 //   vec4 sample_at(ivec2 pixel) { … }         // kind `sample`; `pixel` is the target's
 //
-// Exactly one of `apply` and `sample_at` must be defined.
+//   layout(local_size_x = 8, local_size_y = 8) in;   // invocations that work together, and may share variables
+//   shared vec4 tile[64];                            // of a workgroup; begins as zeros
+//   vec4 compute_at(ivec2 pixel) { … }        // kind `compute`; all invocations of a workgroup call it
+//
+// Exactly one of `apply`, `sample_at` and `compute_at` must be defined.
 //
 // What every shader can call besides GLSL 4.60 is in shaders/lib/prelude.glsl. An include with a folder
 // ("lib/color.glsl") is looked up along the search path, a bare name ("helper.glsl") first beside the file that
@@ -26,12 +30,31 @@
 // macro, a struct or a helper of one shader never reaches another.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "core/geometry.h"
 
 namespace afterglow {
 
-enum class ShaderKind { pixel, sample };
+/// How a pass makes its image. `filter` is data, the others are authors' shaders.
+enum class PassKind { pixel, sample, compute, filter };
+
+/// What is the same for all passes of a kind: one row of a table in interface.cpp.
+struct PassKindInfo {
+  const char* name;       ///< in reports and messages
+  const char* entry;      ///< the function that a shader of this kind defines; null: there is no shader
+  const char* signature;  ///< the same as authors write it
+  bool begins;            ///< it begins a kernel; else it continues what feeds it
+};
+const PassKindInfo& info_of(PassKind kind);
+/// The kind whose shaders define this function, if there is one.
+std::optional<PassKind> kind_of_entry(std::string_view function);
+/// "apply, sample_at, compute_at", or their signatures.
+std::string entry_names();
+std::string entry_signatures();
 
 /// Types of parameters: float, vec2, vec3, vec4, int, ivec2, bool. A bool or int constant may be specialised.
 enum class ParamType { float1, float2, float3, float4, int1, int2, bool1 };
@@ -53,12 +76,20 @@ struct ShaderInput {
   int line = 0;
 };
 
+/// Of a compute shader. Both sizes are at most 1024 each way, `invocations` at most 1024 in all.
+struct Workgroup {
+  Size invocations{1, 1};
+  /// The part of the target that one workgroup makes: its upper left invocations make one pixel each, the others none.
+  Size pixels{1, 1};
+};
+
 struct ShaderInterface {
-  ShaderKind kind = ShaderKind::pixel;
+  PassKind kind = PassKind::pixel;
   bool at_pixel = false;  ///< `apply` takes the target's pixel as its last argument
   std::vector<ShaderInput>
       inputs;  ///< in order of declaration; for `apply` without its first argument (the colour that flows through)
-  std::vector<ShaderParam> params;  ///< in order of declaration
+  std::vector<ShaderParam> params;     ///< in order of declaration
+  std::optional<Workgroup> workgroup;  ///< of a compute shader
 };
 
 }  // namespace afterglow

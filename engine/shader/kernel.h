@@ -1,5 +1,6 @@
-// A kernel: one full-screen fragment shader made of a head (how the first colour of a pixel is found) and pixel stages
-// that follow. Assembled from authors' GLSL and from filters described as data, then compiled to SPIR-V and reflected.
+// A kernel: one full-screen fragment shader, or one compute shader, made of a head (how the first colour of a pixel is
+// found) and pixel stages that follow. Assembled from authors' GLSL and from filters described as data, then compiled
+// to SPIR-V and reflected.
 #pragma once
 
 #include <cstddef>
@@ -65,8 +66,8 @@ struct KernelDesc {
   /// Head: exactly one of `filter` (source is bound at image 0) or `sample` is set; neither: the own pixel of image 0.
   std::optional<Filter> filter;
   AxisRatio ratio_x = AxisRatio::any, ratio_y = AxisRatio::any;
-  std::optional<KernelStage> sample;
-  std::vector<KernelStage> stages;  ///< pixel stages, in order
+  std::optional<KernelStage> sample;  ///< a shader with sample_at, or with compute_at: then this is a compute shader
+  std::vector<KernelStage> stages;    ///< pixel stages, in order
   /// As the program that it is of; but `rows` are those that one invocation of this kernel makes, each its own output
   /// location: invocation (x, Y) makes the pixels (x, rows·Y) … (x, rows·Y + rows − 1). What neighbouring rows both
   /// read is read once.
@@ -94,8 +95,8 @@ struct KernelParam {
 /// Set 0: binding 0 the uniform block (absent when `block_size` is 0), bindings 1… the images in the order of `images`,
 /// combined image samplers or storage images. The block is std140; a bool takes 4 bytes, 0 or 1. Kernels with
 /// `config.hardware_filter` need samplers with linear filtering and clamp-to-edge; the others only use texelFetch. The
-/// result is location 0, or with several rows an invocation, locations 0 … rows−1. Push constants: see
-/// kPushConstantBytes below.
+/// result is location 0, or with several rows an invocation, locations 0 … rows−1. A compute shader stores its result
+/// in a storage image, which is bound behind the others. Push constants: see kPushConstantBytes below.
 struct AssembledKernel {
   std::string glsl;
   /// Image slots: the head's source (filter or own pixel) or the sample stage's sampler2D inputs in order of
@@ -120,18 +121,21 @@ struct AssembledKernel {
     bool argument = false;  ///< an `out` argument that its function may leave as it is
   };
   std::vector<UnsetVariable> unset;
-  Hash hash;  ///< of glsl
+  std::optional<Workgroup> workgroup;  ///< of a compute shader
+  Hash hash;                           ///< of glsl
 };
 
-/// Push constants of every kernel (fragment stage): ivec2 target size, ivec2 size of image 0.
+/// Push constants of every kernel (its one stage): ivec2 target size, ivec2 size of image 0.
 inline constexpr std::uint32_t kPushConstantBytes = 16;
 
 struct CompiledKernel {
   std::vector<std::uint32_t> spirv;
   std::vector<AssembledKernel::ImageSlot> images;
   std::vector<KernelParam> params;
-  std::uint32_t block_size = 0;  ///< bytes of the uniform block; 0: none
-  int rows = 1;                  ///< that one invocation makes
+  std::uint32_t block_size = 0;        ///< bytes of the uniform block; 0: none
+  int rows = 1;                        ///< that one invocation makes
+  std::optional<Workgroup> workgroup;  ///< of a compute shader; the target is then the last of the images to bind
+  std::uint64_t shared_bytes = 0;      ///< that a workgroup shares
   KernelTarget target = KernelTarget::float32;
   /// What authors should know, as FILE:LINE: TEXT: variables that may be read before they have a value (they are 0).
   std::vector<std::string> warnings;

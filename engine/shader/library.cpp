@@ -62,6 +62,9 @@ Result<std::shared_ptr<const ShaderSource>> load(const SearchPath& search, const
     AFTERGLOW_TRY(const ShaderScan library, scan(include.text, include.path.string(), ScanAs::library));
     source->loops = source->loops || has_loop(library.tokens);
     source->keeps_state = source->keeps_state || library.keeps_state;
+    if (!library.shared.empty() && source->interface.kind != PassKind::compute)
+      return shader_error(include.path.string(), library.shared.front().line,
+                          "'shared' is for compute shaders (compute_at); included by " + path.string());
   }
   return std::shared_ptr<const ShaderSource>(std::move(source));
 }

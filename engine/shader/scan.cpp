@@ -14,6 +14,7 @@
 #include "shader/builtins.h"
 #include "shader/directives.h"
 #include "shader/entry_point.h"
+#include "shader/workgroup.h"
 
 namespace afterglow {
 namespace {
@@ -94,7 +95,7 @@ class ShaderScanner {
     }
     begin_ = at_;
     if (token().is("precision")) return skip_to_semicolon();
-    bool is_const = false, is_uniform = false, has_layout = false;
+    bool is_const = false, is_uniform = false, is_shared = false, has_layout = false;
     std::size_t layout = 0;
     for (;; ++at_) {
       const Token& t = token();
@@ -107,8 +108,11 @@ class ShaderScanner {
         is_const = true;
       } else if (t.is("uniform")) {
         is_uniform = true;
-      } else if (t.is("in") || t.is("out") || t.is("inout") || t.is("buffer") || t.is("shared") || t.is("attribute") ||
-                 t.is("varying")) {
+      } else if (t.is("shared")) {
+        is_shared = true;
+      } else if (t.is("in") && has_layout && token(1).is(";")) {
+        return workgroup(layout);
+      } else if (t.is("in") || t.is("out") || t.is("inout") || t.is("buffer") || t.is("attribute") || t.is("varying")) {
         return fail(t,
                     fmt::format("'{}' is not allowed at file scope: images come as sampler2D or as arguments of apply, "
                                 "parameters as uniforms",
@@ -120,6 +124,7 @@ class ShaderScanner {
     if (has_layout && is_const) return constant(layout);
     if (has_layout)
       return fail(*code_[layout], "layout is only known as layout(constant_id = N) const TYPE NAME = VALUE;");
+    if (is_shared) return shared_variables();
     if (is_uniform) return uniform();
     if (token().is("struct")) return structure();
     if (!token().is_identifier() || token(1).is("(")) {
@@ -251,6 +256,41 @@ class ShaderScanner {
     return {};
   }
 
+  /// `layout(local_size_x = N, …) in;`, at `in`.
+  Result<void> workgroup(std::size_t layout) {
+    const Token& head = *code_[layout];
+    if (as_ == ScanAs::library) return fail(head, "the size of workgroups is declared in the shader, not in a library");
+    if (out_.interface.workgroup) return fail(head, "the size of workgroups is declared twice");
+    AFTERGLOW_TRY(out_.interface.workgroup,
+                  parse_workgroup(head, std::span(code_).subspan(layout + 2, at_ - layout - 3), file_));
+    at_ += 2;
+    workgroup_line_ = head.line;
+    out_.edits.push_back({code_[begin_]->offset, code_[at_ - 1]->end()});
+    return {};
+  }
+
+  /// `shared TYPE NAME[N], NAME;`, at the type.
+  Result<void> shared_variables() {
+    const std::string type(token().text);
+    AFTERGLOW_CHECK(check_shared_type(token(), file_));
+    do {
+      ++at_;
+      const Token name = token();
+      if (!name.is_identifier()) return fail(line(), "the shared variable has no name");
+      AFTERGLOW_CHECK(add_name(name, false));
+      ++at_;
+      const bool array = token().is("[");
+      if (array) at_ = after_closing(at_);
+      if (token().is("[")) return fail(name, fmt::format("'{}': shared arrays have one dimension", name.text));
+      if (token().is("="))
+        return fail(name, fmt::format("'{}': a shared variable begins as zeros and takes no other value", name.text));
+      out_.shared.push_back({std::string(name.text), type, array, name.line});
+    } while (token().is(","));
+    if (!token().is(";")) return fail(line(), "';' is missing after the declaration");
+    ++at_;
+    return {};
+  }
+
   Result<void> structure() {
     ++at_;
     if (token().is_identifier()) {
@@ -310,32 +350,30 @@ class ShaderScanner {
     if (body)
       find_unset(std::span(code_).subspan(arguments + 1, arguments_end - arguments - 1),
                  std::span(code_).subspan(begin, at_ - begin), out_.unset);
-    if (name.is("main"))
-      return fail(name, "main is made by the engine; define vec4 apply(vec4 color) or vec4 sample_at(ivec2 pixel)");
+    if (name.is("main")) return fail(name, "main is made by the engine; define one of " + entry_signatures());
     if (is_builtin_function(name.text))
       return fail(name, fmt::format("'{}' is a built-in function of GLSL; choose another name", name.text));
-    if (name.is("apply") || name.is("sample_at")) {
+    if (const auto kind = kind_of_entry(name.text)) {
       if (as_ == ScanAs::library)
         return fail(
             name, fmt::format("'{}' is defined in an included file; an include is a library of functions", name.text));
-      if (body) AFTERGLOW_CHECK(entry(name, result, arguments, arguments_end));
+      if (body) AFTERGLOW_CHECK(entry(*kind, name, result, arguments, arguments_end));
     }
     return add_name(name, false);
   }
 
-  // ---- apply and sample_at ------------------------------------------------------------------------------------------
+  // ---- The entry point ----------------------------------------------------------------------------------------------
 
-  Result<void> entry(const Token& name, const Token& result, std::size_t open, std::size_t close) {
-    const bool apply = name.is("apply");
-    const auto& other = apply ? sample_line_ : apply_line_;
-    auto& own = apply ? apply_line_ : sample_line_;
-    if (other)
-      return fail(name, fmt::format("a shader defines either apply or sample_at; the other is at line {}", *other));
-    if (own) return fail(name, fmt::format("'{}' is defined a second time; the first is at line {}", name.text, *own));
-    own = name.line;
+  Result<void> entry(PassKind kind, const Token& name, const Token& result, std::size_t open, std::size_t close) {
+    if (entry_line_ && out_.interface.kind != kind)
+      return fail(name,
+                  fmt::format("a shader defines one of {}; the other is at line {}", entry_names(), *entry_line_));
+    if (entry_line_)
+      return fail(name, fmt::format("'{}' is defined a second time; the first is at line {}", name.text, *entry_line_));
+    entry_line_ = name.line;
     AFTERGLOW_TRY(const EntryPoint parsed,
-                  parse_entry_point(result, name, std::span(code_).subspan(open + 1, close - open - 1), file_));
-    out_.interface.kind = parsed.kind;
+                  parse_entry_point(kind, result, name, std::span(code_).subspan(open + 1, close - open - 1), file_));
+    out_.interface.kind = kind;
     out_.interface.at_pixel = parsed.at_pixel;
     for (const auto& input : parsed.inputs)
       AFTERGLOW_CHECK(add_input({std::string(input.text), true, input.line}, input));
@@ -344,10 +382,11 @@ class ShaderScanner {
 
   /// Once everything is read: exactly one entry point, and names that a pass can give.
   Result<void> entry_point() {
-    if (!apply_line_ && !sample_line_) {
-      Error error = fail(0, "the shader defines neither apply nor sample_at");
-      error.allowed = "vec4 apply(vec4 color, vec4 NAME, …, ivec2 pixel), vec4 sample_at(ivec2 pixel)";
-      const std::vector<std::string> entries = {"apply", "sample_at"};
+    if (!entry_line_) {
+      Error error = fail(0, "the shader defines none of " + entry_names());
+      error.allowed = entry_signatures();
+      std::vector<std::string> entries = split(entry_names(), ',');
+      for (auto& entry : entries) entry = trim(entry);
       for (const auto& name : out_.names) {
         if (name.macro) continue;
         error.nearest = nearest_name(name.name, entries);
@@ -357,15 +396,30 @@ class ShaderScanner {
       }
       return error;
     }
-    const bool pixel = out_.interface.kind == ShaderKind::pixel;
+    AFTERGLOW_CHECK(groups());
+    const bool pixel = out_.interface.kind == PassKind::pixel;
     for (const auto& input : out_.interface.inputs) AFTERGLOW_CHECK(pass_key(input.name, input.line, pixel));
     for (const auto& param : out_.interface.params) AFTERGLOW_CHECK(pass_key(param.name, param.line, true));
     return {};
   }
 
+  /// Workgroups and what they share belong to compute shaders.
+  Result<void> groups() const {
+    if (out_.interface.kind == PassKind::compute) {
+      if (out_.interface.workgroup) return {};
+      Error error = fail(*entry_line_, "a compute shader declares the size of its workgroups");
+      error.allowed = "layout(local_size_x = 16, local_size_y = 8) in;";
+      return error;
+    }
+    if (workgroup_line_) return fail(*workgroup_line_, "workgroups are for compute shaders (compute_at)");
+    if (!out_.shared.empty()) return fail(out_.shared.front().line, "'shared' is for compute shaders (compute_at)");
+    return {};
+  }
+
   /// Inputs and parameters are keys of g:pass{…}; its own keys cannot be their names.
   Result<void> pass_key(const std::string& name, int line, bool source_is_taken) const {
-    if (name == "shader" || name == "name" || name == "size" || (name == "source" && source_is_taken))
+    if (name == "shader" || name == "compute" || name == "name" || name == "size" ||
+        (name == "source" && source_is_taken))
       return fail(line, fmt::format("'{}' is a key of g:pass itself; choose another name", name));
     return {};
   }
@@ -402,7 +456,7 @@ class ShaderScanner {
   std::size_t at_ = 0;              ///< index into code_
   std::size_t begin_ = 0;           ///< where the declaration begins
   std::set<std::string> constant_ids_, input_names_, seen_;
-  std::optional<int> apply_line_, sample_line_;
+  std::optional<int> entry_line_, workgroup_line_;
 };
 
 }  // namespace

@@ -20,19 +20,27 @@ struct GlobalName {
   int line = 0;
 };
 
+/// A variable that the invocations of a workgroup share.
+struct SharedVariable {
+  std::string name, type;
+  bool array = false;
+  int line = 0;
+};
+
 struct ShaderScan {
   std::vector<Token> tokens;  ///< views of the scanned text
   ShaderInterface interface;  ///< `kind` means nothing for a library
   std::vector<GlobalName> names;
   std::vector<IncludeLine> includes;
   std::vector<Unset> unset;  ///< variables without a value of their own
+  std::vector<SharedVariable> shared;
   bool keeps_state = false;  ///< it has variables at file scope that functions may write
   std::vector<Edit> edits;   ///< in order of the text
 };
 
 enum class ScanAs {
-  stage,   ///< an author's shader: exactly one of `apply` and `sample_at`
-  library  ///< an included file: neither of them, no uniforms, no specialised constants
+  stage,   ///< an author's shader: exactly one entry point (PassKindInfo::entry)
+  library  ///< an included file: none of them, no uniforms, no specialised constants
 };
 
 /// `text` must outlive the result. Errors (script) name `file` and the line.

@@ -12,6 +12,7 @@
 #include "shader/rename.h"
 #include "shader/spirv_module.h"
 #include "shader/token.h"
+#include "shader/workgroup.h"
 
 namespace afterglow {
 namespace {
@@ -64,7 +65,13 @@ class Scales {
     for (const auto& i : module.code) read(i);
   }
 
+  std::uint64_t shared() const { return shared_; }
+
   Result<void> check() {
+    if (shared_ > kMaxSharedBytes)
+      return fail(largest_shared_.second,
+                  fmt::format("the workgroup shares {}, the largest of them '{{}}'", bytes_of(shared_)),
+                  fmt::format("at most {} bytes", kMaxSharedBytes));
     if (largest_.first > kMaxVariableBytes) return too_large();
     Function all = with_calls(main_);
     for (auto* count : {&all.held, &all.copied, &all.instructions})
@@ -136,6 +143,10 @@ class Scales {
 
   void variable(const Instruction& i) {
     const std::uint64_t bytes = bytes_[pointees_[i.type]];
+    if (i.words[3] == spv::StorageClassWorkgroup) {
+      shared_ = saturated_sum({shared_, bytes});
+      if (bytes > largest_shared_.first) largest_shared_ = {bytes, i.result};
+    }
     if (i.words[3] != spv::StorageClassFunction && i.words[3] != spv::StorageClassPrivate) return;
     keep_largest(bytes, i.result);
     if (!arrays_.contains(pointees_[i.type])) return;
@@ -213,11 +224,17 @@ class Scales {
   Function* function_ = nullptr;
   const Instruction* load_ = nullptr;  ///< of an array, just before
   std::uint64_t file_scope_ = 0;
-  std::pair<std::uint64_t, std::uint32_t> largest_{0, 0};
+  std::pair<std::uint64_t, std::uint32_t> largest_{0, 0}, largest_shared_{0, 0};
+  std::uint64_t shared_ = 0;
   std::uint32_t main_ = 0, copied_ = 0;
 };
 
 }  // namespace
+
+std::uint64_t shared_bytes(const std::vector<std::uint32_t>& spirv) {
+  const auto module = parse(spirv);
+  return module ? Scales(*module, {}).shared() : 0;
+}
 
 Result<void> check_weight(const std::vector<std::uint32_t>& spirv, const KernelDesc& kernel) {
   const auto module = parse(spirv);

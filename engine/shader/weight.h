@@ -15,9 +15,13 @@ inline constexpr std::uint64_t kMaxVariableBytes = 1024;  ///< one variable, con
 inline constexpr std::uint64_t kMaxHeldBytes = 4096;      ///< all arrays of a kernel, once for each call of a function
 inline constexpr std::uint64_t kMaxCopiedBytes = 1024;    ///< arrays that are copied whole, once for each call
 inline constexpr std::uint64_t kMaxInstructions = 65536;  ///< of a kernel, once for each call
+// What a workgroup may share: kMaxSharedBytes of shader/workgroup.h.
 
 /// `spirv` was made of `kernel`, and is counted by row: how many an invocation makes is the engine's affair. Errors
 /// (script): a limit, with file and line of the variable or the function.
 Result<void> check_weight(const std::vector<std::uint32_t>& spirv, const KernelDesc& kernel);
+
+/// What the invocations of a workgroup share, in bytes.
+std::uint64_t shared_bytes(const std::vector<std::uint32_t>& spirv);
 
 }  // namespace afterglow

@@ -35,9 +35,9 @@ return fx.effect {
     if s.high_percentile <= s.low_percentile then error("high_percentile must be above low_percentile", 0) end
     if s.max_ev < s.min_ev then error("max_ev must not be below min_ev", 0) end
     local grid = { math.min(source.width, 128), math.min(source.height, 72) }
-    local meter = g:pass { shader = "auto_exposure/meter", source = source, size = grid, center = s.metering == "center" }
-    local rows = g:pass { shader = "auto_exposure/count", grid = meter, size = { kBins // 2, grid[2] } }
-    local wanted = g:pass { shader = "auto_exposure/wanted", rows = rows, size = { 1, 1 }, limits = { s.min_ev, s.max_ev },
+    local meter = g:pass { shader = "auto_exposure/meter", compute = "auto_exposure/meter_group", source = source, size = grid, center = s.metering == "center" }
+    local rows = g:pass { shader = "auto_exposure/count", compute = "auto_exposure/count_group", grid = meter, size = { kBins // 2, grid[2] } }
+    local wanted = g:pass { shader = "auto_exposure/wanted", compute = "auto_exposure/wanted_group", rows = rows, size = { 1, 1 }, limits = { s.min_ev, s.max_ev },
                             percentiles = { s.low_percentile / 100, s.high_percentile / 100 } }
     local before = g:history { name = "before", first = wanted, pre_roll = pre_roll(g, s) }
     local adapted = g:pass { shader = "auto_exposure/adapt", source = wanted, before = before, seconds = g.frame_time,

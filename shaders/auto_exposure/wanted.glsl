@@ -20,15 +20,7 @@ vec4 sample_at(ivec2 pixel) {
     bins[i] = bins_of(i);
     total += bins[i].x + bins[i].z;
   }
-  float skip = total * percentiles.x, rest = total * (percentiles.y - percentiles.x), sum = 0.0, count = 0.0;
-  for (int i = 0; i < kBins; ++i) {
-    vec2 bin = i % 2 == 0 ? bins[i / 2].xy : bins[i / 2].zw;
-    float dark = min(bin.x, skip);
-    skip -= dark;
-    float counted = min(bin.x - dark, rest);
-    rest -= counted;
-    if (counted > 0.0) sum += counted * (bin.y / bin.x);
-    count += counted;
-  }
-  return vec4(clamp(sum / max(count, 1e-20), limits.x, limits.y), 0.0, 0.0, 1.0);
+  Percentiles p = between(percentiles, total);
+  for (int i = 0; i < kBins; ++i) add_bin(p, i % 2 == 0 ? bins[i / 2].xy : bins[i / 2].zw);
+  return vec4(mean_of(p, limits), 0.0, 0.0, 1.0);
 }

@@ -15,6 +15,10 @@ void check(const Scene& scene, const EffectCase& one, const Tolerances& toleranc
   const Made joined = run_stack(one.entries, scene, Way::joined);
   EXPECT_TRUE(agrees(joined.result, from_floats(plain.result.data(), plain.size, 4), tolerances.joined, kRgba))
       << "joined";
+  const Made computed = run_stack(one.entries, scene, Way::computed);
+  if (computed.dispatches > 0) {
+    EXPECT_TRUE(agrees(computed.result, expected, tolerances.full, kRgba)) << "by workgroups";
+  }
   if (half_too) {
     DoubleImage held = expected;
     for (auto& p : held.pixels) p = glm::min(p, Rgba(65504));

@@ -79,6 +79,7 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
   }
   const ProgramOptions options{.config = {.storage = way == Way::joined_half ? Storage::fp16 : Storage::fp32,
                                           .storage_reads = way != Way::plain,
+                                          .compute = way == Way::computed,
                                           .rows = way == Way::plain ? 1 : kMaxRows},
                                .reference = way == Way::plain,
                                .source_is_storage = way != Way::plain,
@@ -86,6 +87,7 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
                                .result_by_rows = way != Way::plain};
   auto program = need(Program::create(*lab.device, shaders, lab.compiler, graph, options));
   made.kernels = program->plan().kernels.size();
+  for (const auto& kernel : program->plan().kernels) made.dispatches += kernel.compute;
   auto runner = need(FrameRunner::create(*lab.device, options.max_memory));
 
   std::map<std::string, HostImage> inputs{{"source", {source.data(), made.size, 4}}};

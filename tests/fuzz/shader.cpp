@@ -39,7 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   joined.target = size % 2 == 0 ? KernelTarget::codes8 : KernelTarget::float16;
   joined.config.rows = 1 + static_cast<int>(size % 2);
   const KernelStage stage{*shader, {}, "x"};
-  if ((*shader)->interface.kind == ShaderKind::sample)
+  if (info_of((*shader)->interface.kind).begins)
     joined.sample = stage;
   else
     joined.stages = {stage, stage};

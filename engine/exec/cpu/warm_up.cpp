@@ -60,8 +60,9 @@ bool WarmUp::helps(const Device& device) { return device.is_cpu() && !cache_is_o
 
 Result<std::unique_ptr<WarmUp>> WarmUp::create(const Device& device, bool validate) {
   Diagnostics nowhere;
-  AFTERGLOW_TRY(auto own,
-                Device::create({.device = device.info().uuid, .validate = validate, .presentation = {}}, nowhere));
+  AFTERGLOW_TRY(
+      auto own,
+      Device::create({.device = device.info().uuid, .validate = validate, .forced = device.forced()}, nowhere));
   auto state = std::make_unique<State>(std::move(own));
   AFTERGLOW_TRY(state->submitter, Submitter::create(*state->device));
   return std::unique_ptr<WarmUp>(new WarmUp(std::move(state)));

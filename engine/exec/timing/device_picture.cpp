@@ -20,7 +20,7 @@ Result<FrameImage> upload_image(const Device& device, const Image& image, VkForm
                                 VkImageLayout layout) {
   AFTERGLOW_TRY(FrameImage out,
                 FrameImage::create(device, {.name = "picture", .size = image.size(), .format = format, .usage = usage},
-                                   device.is_cpu() ? HostAccess::write : HostAccess::none));
+                                   device.maps_images() ? HostAccess::write : HostAccess::none));
   const auto pack = [&](int y, std::byte* to) {
     const auto row = static_cast<std::size_t>(y) * image.width * image.channels;
     return pack_row(image.pixels.data() + row, image.channels, image.width, format, to);
@@ -60,8 +60,8 @@ Result<DevicePicture> DevicePicture::create(const Device& device, const Picture&
                          .size = picture.color.size(),
                          .format = kind.result,
                          .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
-  AFTERGLOW_TRY(out.result_,
-                FrameImage::create(device, result, device.is_cpu() ? HostAccess::read : HostAccess::none, kind.rows));
+  AFTERGLOW_TRY(out.result_, FrameImage::create(device, result,
+                                                device.maps_images() ? HostAccess::read : HostAccess::none, kind.rows));
   return out;
 }
 

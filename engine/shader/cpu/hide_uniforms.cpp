@@ -41,12 +41,13 @@ class Hider {
            std::all_of(i.words.begin() + 3, i.words.end(), [this](std::uint32_t id) { return sure_.contains(id); });
   }
 
-  /// Types, blocks, constants and gl_FragCoord.
+  /// Types, blocks, constants, and gl_FragCoord or gl_WorkGroupID: of both no one has the highest bit.
   void look() {
     std::map<std::uint32_t, std::uint32_t> pointees;  // pointer type → what it points to
     for (const auto& i : module_.code) {
       const Words& w = i.words;
-      if (i.op == spv::OpDecorate && w.size() == 4 && w[2] == spv::DecorationBuiltIn && w[3] == spv::BuiltInFragCoord)
+      if (i.op == spv::OpDecorate && w.size() == 4 && w[2] == spv::DecorationBuiltIn &&
+          (w[3] == spv::BuiltInFragCoord || w[3] == spv::BuiltInWorkgroupId))
         position_ = w[1];
       if ((i.op == spv::OpTypeInt || i.op == spv::OpTypeFloat) && w[2] == 32) shapes_[w[1]] = {w[1], 1};
       if (i.op == spv::OpTypeInt && w[2] == 32 && w[3] == 0) bits_ = w[1];
@@ -101,12 +102,12 @@ class Hider {
       code_.push_back(i);
   }
 
-  /// The sign of the pixel's place, at the head of a function.
+  /// The highest bit of the pixel's or the workgroup's place, at the head of a function.
   std::uint32_t make_zero() {
     const std::uint32_t place = add(spv::OpLoad, position_type_, {position_});
-    const std::uint32_t x =
-        add(spv::OpVectorExtractDynamic, shapes_.at(position_type_).component, {place, zero_index_});
-    const std::uint32_t bits = add(spv::OpBitcast, bits_, {x});
+    const std::uint32_t component = shapes_.at(position_type_).component;
+    const std::uint32_t x = add(spv::OpVectorExtractDynamic, component, {place, zero_index_});
+    const std::uint32_t bits = component == bits_ ? x : add(spv::OpBitcast, bits_, {x});
     return add(spv::OpShiftRightLogical, bits_, {bits, sign_});
   }
 
@@ -151,8 +152,8 @@ class Hider {
   std::set<std::uint32_t> blocks_, chains_;
   std::set<std::uint32_t> sure_;  ///< constants without a zero in them
   bool divides_ = false;
-  std::set<std::uint32_t> differences_;  ///< results of subtractions
-  std::uint32_t position_ = 0, position_type_ = 0;  ///< gl_FragCoord
+  std::set<std::uint32_t> differences_;             ///< results of subtractions
+  std::uint32_t position_ = 0, position_type_ = 0;  ///< gl_FragCoord or gl_WorkGroupID
   std::uint32_t bits_ = 0, bits_of_[5] = {};
   std::uint32_t zero_index_ = 0, sign_ = 0, zero_ = 0;
 };

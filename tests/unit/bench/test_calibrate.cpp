@@ -36,6 +36,12 @@ TEST(Calibrate, NothingToGoByIsNothingChosen) {
   EXPECT_TRUE(fastest_within_errors({point("joined fp16", 1, 1)}).empty());
 }
 
+TEST(Calibrate, ComputeShadersMustBeWorthIt) {
+  EXPECT_TRUE(compute_pays({point("joined fp32", 10, 0), point("joined fp32 compute", 9, 0)}));
+  EXPECT_FALSE(compute_pays({point("joined fp32", 10, 0), point("joined fp32 compute", 9.8, 0)}));
+  EXPECT_FALSE(compute_pays({}));
+}
+
 TEST(Calibrate, CandidatesAreAllDifferent) {
   std::set<std::string> names;
   for (const auto& choice : candidates()) names.insert(execution_name(choice));

@@ -1,7 +1,14 @@
 // Frames in flight: what comes out is what comes out one at a time, in the same order, whatever overlaps.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <future>
+#include <mutex>
+#include <thread>
+
+#include "exec/calibration.h"
 #include "exec/renderer.h"
+#include "exec/submit.h"
 #include "workshop.h"
 
 namespace afterglow {
@@ -74,6 +81,112 @@ TEST_F(RendererTest, FramesInFlightAreThoseOfOneAtATime) {
     EXPECT_EQ(ring->in_flight(), frames);
     while (ring->in_flight() > 0) collect();
     EXPECT_EQ(collected, kFrames);
+  }
+}
+
+/// Holds what is submitted behind it back until it is opened.
+class Gate {
+ public:
+  explicit Gate(const Device& device) : device_(device) {
+    load(create_, "vkCreateEvent");
+    load(destroy_, "vkDestroyEvent");
+    load(set_, "vkSetEvent");
+    load(wait_, "vkCmdWaitEvents");
+    const VkEventCreateInfo info{.sType = VK_STRUCTURE_TYPE_EVENT_CREATE_INFO};
+    EXPECT_EQ(create_(device.handle(), &info, nullptr, &event_), VK_SUCCESS);
+    submitter_ = Submitter::create(device).value();
+  }
+  ~Gate() {
+    open();
+    EXPECT_TRUE(submitter_.wait());
+    destroy_(device_.handle(), event_, nullptr);
+  }
+  void close() {
+    EXPECT_TRUE(submitter_.submit([&](VkCommandBuffer commands) {
+      wait_(commands, 1, &event_, VK_PIPELINE_STAGE_HOST_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, nullptr, 0,
+            nullptr, 0, nullptr);
+    }));
+  }
+  void open() { set_(device_.handle(), event_); }
+
+ private:
+  template <class Function>
+  void load(Function& function, const char* name) {
+    function = reinterpret_cast<Function>(device_.vk().vkGetDeviceProcAddr(device_.handle(), name));
+  }
+  const Device& device_;
+  PFN_vkCreateEvent create_ = nullptr;
+  PFN_vkDestroyEvent destroy_ = nullptr;
+  PFN_vkSetEvent set_ = nullptr;
+  PFN_vkCmdWaitEvents wait_ = nullptr;
+  VkEvent event_ = VK_NULL_HANDLE;
+  Submitter submitter_;
+};
+
+/// While frame 1 is on the device and cannot be done, frame 0 is read back and frame 2 is packed. Nothing here takes
+/// time: what waits for frame 1 waits for good, until a watch opens the gate and the order of events is wrong.
+TEST_F(RendererTest, ReadBackExecutionAndUploadOverlap) {
+  std::vector<std::string> order;
+  std::mutex mutex;
+  const auto note = [&](const char* what) {
+    const std::lock_guard lock(mutex);
+    order.emplace_back(what);
+  };
+  const auto programs = cache();
+  const auto ring = renderer(3);
+  const auto pixels = noise(kSize, 1);
+  // Everything that is made once is made, so that frames 0 to 2 wait for nothing else.
+  for (int i = 0; i < 6; ++i) {
+    if (ring->in_flight() == 3) {
+      HostResult out;
+      ASSERT_TRUE(ring->collect(out));
+    }
+    ASSERT_TRUE(ring->submit(request(*programs, graph(1), pixels)));
+  }
+  HostResult out;
+  while (ring->in_flight() > 0) ASSERT_TRUE(ring->collect(out));
+
+  Gate gate(device());
+  std::promise<void> finished;
+  std::thread watch([&, done = finished.get_future()] {
+    if (done.wait_for(std::chrono::seconds(60)) == std::future_status::ready) return;
+    note("waited for frame 1");
+    gate.open();
+  });
+  EXPECT_TRUE(ring->submit(request(*programs, graph(2), pixels)));
+  gate.close();
+  EXPECT_TRUE(ring->submit(request(*programs, graph(3), pixels)));
+  note("frame 1 is on its way");
+  EXPECT_TRUE(ring->collect(out));
+  note("frame 0 is read back");
+  EXPECT_FLOAT_EQ(out.pixels[0], 2 * pixels[0]);
+  RenderRequest last = request(*programs, graph(4), pixels);
+  std::once_flag packing;
+  last.inputs["source"].read_row = [&](int y, float* row) {
+    std::call_once(packing, [&] {
+      note("frame 2 is packed");
+      gate.open();
+    });
+    std::copy_n(pixels.data() + static_cast<std::ptrdiff_t>(y) * kSize.width * 4, kSize.width * 4, row);
+  };
+  EXPECT_TRUE(ring->submit(std::move(last)));
+  finished.set_value();
+  watch.join();
+  for (const float gain : {3.f, 4.f}) {
+    ASSERT_TRUE(ring->collect(out));
+    EXPECT_FLOAT_EQ(out.pixels[0], gain * pixels[0]);
+  }
+  EXPECT_EQ(order, (std::vector<std::string>{"frame 1 is on its way", "frame 0 is read back", "frame 2 is packed"}));
+}
+
+TEST_F(RendererTest, ADeviceIsMadeToStage) {
+  Diagnostics nowhere;
+  for (const auto& [words, frames] : {std::pair("", device().is_cpu() ? 1 : 3), {"staging", 3}, {"unmapped", 3}}) {
+    const auto own = Device::create({.forced = parse_forced(words).value()}, nowhere);
+    ASSERT_TRUE(own) << own.error().text();
+    const auto made = Renderer::create(**own, {.direct = true, .frames = 3});
+    ASSERT_TRUE(made) << made.error().text();
+    EXPECT_EQ((*made)->frames(), frames) << words;
   }
 }
 

@@ -60,6 +60,29 @@ TEST_F(BuildMessages, MissingInputsAndParameters) {
             "effects/probe.lua:4: error: pass 'glow.lone' of effect 'probe': shader 'lone' needs 'depth', an image");
 }
 
+TEST_F(BuildMessages, WaysByWorkgroups) {
+  const std::string group = "layout(local_size_x = 8) in;\nuniform sampler2D depth;\n";
+  const std::string entry = "vec4 compute_at(ivec2 pixel) { return fetch(depth, pixel); }\n";
+  scene.write("shaders/group.glsl", group + entry);
+  scene.write("shaders/other.glsl", group + "uniform float more;\n" + entry);
+  const auto pass = [&](const std::string& shader, const std::string& compute) {
+    return error("return g:pass { shader = \"" + shader +
+                 "\", source = source, depth = source, size = source,\ncompute = \"" + compute + "\" }");
+  };
+  const std::string lone = "effects/probe.lua:5: error: pass 'glow.lone' of effect 'probe': ";
+  EXPECT_EQ(pass("lone", "plain"),
+            lone + "'plain' is a pixel shader; allowed: a shader that defines vec4 compute_at(ivec2 pixel)");
+  EXPECT_EQ(pass("lone", "other"),
+            lone +
+                "'lone' and 'other' declare different inputs or parameters (sampler2D depth; float "
+                "more, sampler2D depth); allowed: sampler2D depth");
+  EXPECT_EQ(
+      pass("plain", "group"),
+      "effects/probe.lua:5: error: pass 'glow.plain' of effect 'probe': compute is another way of a sample shader; "
+      "'plain' is a pixel shader");
+  EXPECT_EQ(pass("lone", "grup").substr(0, lone.size() + 21), lone + "unknown shader 'grup'");
+}
+
 TEST_F(BuildMessages, WrongValues) {
   EXPECT_EQ(gain(kRest + ", gain = \"much\""), kAt5 + "gain = \"much\" is not a number; allowed: a number");
   EXPECT_EQ(gain(kRest + ", gain = source"), kAt5 + "gain = an image is not a number; allowed: a number");

@@ -79,6 +79,38 @@ TEST_F(Binding, SamplePassTakesItsSize) {
               ElementsAre(PassInput{"depth", graph.source, false}, PassInput{"source", graph.passes[0].output, false}));
 }
 
+TEST_F(Binding, ComputePassesAndWays) {
+  const std::string group = "layout(local_size_x = 8) in;\n";
+  scene.write("shaders/lone_group.glsl",
+              group + "uniform sampler2D depth;\nvec4 compute_at(ivec2 pixel) { return fetch(depth, pixel); }\n");
+  const Graph graph = this->graph(R"(
+    local one = g:pass { shader = "lone", compute = "lone_group", depth = source, size = source, name = "one" }
+    return g:pass { shader = "lone_group", depth = one, size = source, reach = 0 })");
+  ASSERT_EQ(graph.passes.size(), 3u);
+  EXPECT_EQ(graph.passes[0].kind, PassKind::sample);
+  EXPECT_EQ(graph.passes[0].by_workgroups, "lone_group");
+  EXPECT_THAT(shaders_of(graph.passes[0]), ElementsAre("lone", "lone_group"));
+  EXPECT_EQ(graph.passes[1].kind, PassKind::compute);
+  EXPECT_EQ(graph.passes[2].name, "probe.result");  // results are drawn
+  Graph other = graph;
+  other.passes[0].by_workgroups.clear();
+  EXPECT_FALSE(same_structure(graph, other));
+  EXPECT_THAT(to_json(graph), testing::HasSubstr("\"compute\": \"lone_group\""));
+}
+
+TEST_F(Binding, AComputePassThatIsKeptIsCopied) {
+  scene.write("shaders/lone_group.glsl",
+              "layout(local_size_x = 8) in;\nuniform sampler2D depth;\n"
+              "vec4 compute_at(ivec2 pixel) { return fetch(depth, pixel); }\n");
+  const Graph graph = this->graph(R"(
+    local before = g:history { name = "before", size = source }
+    local now = g:pass { shader = "lone_group", depth = before, size = source }
+    g:keep(before, now)
+    return g:pass { shader = "lone", depth = now, size = source })");
+  ASSERT_EQ(graph.histories.size(), 1u);
+  EXPECT_FALSE(is_computed(graph, graph.histories[0].next));
+}
+
 TEST_F(Binding, Filters) {
   const Graph graph = this->graph(R"(
     local half = { source.width // 2, source.height // 2 }

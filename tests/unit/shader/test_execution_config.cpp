@@ -17,15 +17,16 @@ TEST(ExecutionConfig, EveryNameReadsBackAsTheSameChoice) {
   int read = 0;
   for (const auto joining : {Joining::none, Joining::heads, Joining::all})
     for (const auto storage : {Storage::fp32, Storage::fp16})
-      for (int bits = 0; bits < 8; ++bits)
+      for (int bits = 0; bits < 16; ++bits)
         for (const int rows : {1, 2, 8}) {
-          const ExecutionConfig choice{joining, storage, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, rows};
+          const ExecutionConfig choice{joining,         storage, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
+                                       (bits & 8) != 0, rows};
           const auto parsed = parse_execution(execution_name(choice));
           ASSERT_TRUE(parsed) << parsed.error().text();
           EXPECT_EQ(*parsed, choice) << execution_name(choice);
           ++read;
         }
-  EXPECT_EQ(read, 144);
+  EXPECT_EQ(read, 288);
 }
 
 TEST(ExecutionConfig, WordsMayComeInAnyOrderAndWithPlus) {

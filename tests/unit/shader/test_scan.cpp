@@ -44,7 +44,7 @@ layout(constant_id = 5) const float gain = 1.5e-1f;
 vec4 apply(const in vec4 color, vec4 high,
            vec4 low) { uniform_like(threshold); return color; }
 )");
-  EXPECT_EQ(scan.interface.kind, ShaderKind::pixel);
+  EXPECT_EQ(scan.interface.kind, PassKind::pixel);
   const auto& params = scan.interface.params;
   ASSERT_EQ(params.size(), 7u);
   EXPECT_EQ(params[0].name, "threshold");
@@ -78,7 +78,7 @@ vec4 apply(const in vec4 color, vec4 high,
 TEST(Scan, SampleShader) {
   const auto scan =
       scanned("uniform sampler2D source;\r\nvec4 sample_at(ivec2 pixel)\r\n{ return fetch(source, pixel); }");
-  EXPECT_EQ(scan.interface.kind, ShaderKind::sample);
+  EXPECT_EQ(scan.interface.kind, PassKind::sample);
   ASSERT_EQ(scan.interface.inputs.size(), 1u);
   EXPECT_EQ(scan.interface.inputs[0].name, "source");
 }
@@ -183,11 +183,11 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     EntryPoints, ScanErrors,
-    testing::Values(Bad{"", 0, "defines neither apply nor sample_at", "vec4 sample_at(ivec2 pixel)"},
-                    Bad{"\nvec4 aply(vec4 c) { return c; }", 2, "defines neither", "", "apply"},
-                    Bad{"vec4 sampel_at(ivec2 p) { return vec4(0); }", 1, "defines neither", "", "sample_at"},
+    testing::Values(Bad{"", 0, "defines none of apply, sample_at, compute_at", "vec4 sample_at(ivec2 pixel)"},
+                    Bad{"\nvec4 aply(vec4 c) { return c; }", 2, "defines none of", "", "apply"},
+                    Bad{"vec4 sampel_at(ivec2 p) { return vec4(0); }", 1, "defines none of", "", "sample_at"},
                     Bad{kEnd + "vec4 sample_at(ivec2 p) { return vec4(0); }", 2,
-                        "either apply or sample_at; the other is at line 1"},
+                        "one of apply, sample_at, compute_at; the other is at line 1"},
                     Bad{kEnd + kEnd, 2, "'apply' is defined a second time; the first is at line 1"},
                     Bad{"vec3 apply(vec4 c) { return c.rgb; }", 1, "apply must return vec4, not vec3",
                         "vec4 apply(vec4 color"},
@@ -200,6 +200,31 @@ INSTANTIATE_TEST_SUITE_P(
                     Bad{"vec4 apply(inout vec4 c) { return c; }", 1, "'out' and 'inout' are not allowed"},
                     Bad{"vec4 sample_at(vec2 p) { return vec4(0); }", 1, "sample_at takes one argument", "ivec2 pixel"},
                     Bad{"vec4 sample_at(ivec2 p, int q) { return vec4(0); }", 1, "sample_at takes one argument"}));
+
+const std::string kGroups = "layout(local_size_x = 8) in;\n";
+const std::string kCompute = "vec4 compute_at(ivec2 p) { return vec4(0); }\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    Workgroups, ScanErrors,
+    testing::Values(
+        Bad{"\n" + kCompute, 2, "a compute shader declares the size of its workgroups", "layout(local_size_x = 16"},
+        Bad{kGroups + kEnd, 1, "workgroups are for compute shaders"},
+        Bad{"shared vec4 a;\n" + kEnd, 1, "'shared' is for compute shaders"},
+        Bad{kGroups + kGroups + kCompute, 2, "the size of workgroups is declared twice"},
+        Bad{"layout(local_size_z = 8) in;\n" + kCompute, 1, "the size of workgroups has no 'local_size_z'",
+            "local_size_x, local_size_y, pixels_x, pixels_y", "local_size_x"},
+        Bad{"layout(local_size_x = 0) in;\n" + kCompute, 1, "'local_size_x' is no size of workgroups", "1…1024"},
+        Bad{"layout(local_size_x = N) in;\n" + kCompute, 1, "'local_size_x' is no size of workgroups", "1…1024"},
+        Bad{"layout(local_size_x) in;\n" + kCompute, 1, "'local_size_x' is no size of workgroups", "1…1024"},
+        Bad{"layout(local_size_x = 64, local_size_y = 32) in;\n" + kCompute, 1, "a workgroup of 64×32 invocations",
+            "at most 1024 in all"},
+        Bad{"layout(local_size_x = 8, pixels_x = 16) in;\n" + kCompute, 1, "more pixels than it has invocations"},
+        Bad{kGroups + "shared mat4 m;\n" + kCompute, 2, "a shared variable cannot be of type 'mat4'", "float, vec2",
+            "vec4"},
+        Bad{kGroups + "shared vec4 m[2][2];\n" + kCompute, 2, "'m': shared arrays have one dimension"},
+        Bad{kGroups + "shared float m = 1.0;\n" + kCompute, 2, "'m': a shared variable begins as zeros"},
+        Bad{kGroups + "float a;\nvec4 compute_at(int p) { return vec4(0); }\n", 3, "compute_at takes one argument",
+            "vec4 compute_at(ivec2 pixel)"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Preprocessor, ScanErrors,
