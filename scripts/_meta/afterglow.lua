@@ -99,6 +99,24 @@
 ---@class afterglow.settings.color_blit : afterglow.EntryKeys
 ---@field intensity? number|afterglow.Moving  Factor of green; 0: the effect does not run. 0…2, default 0
 
+---Tone curves for all channels and each, and hue, saturation and luma by hue.
+---@class afterglow.settings.curves : afterglow.EntryKeys
+---@field by? "channels"|"luminance"|afterglow.OfTime  What the five points look at. channels: each channel's own light, as film does; contrast adds colour. luminance: the colour as a whole; hues stay. default "channels"
+---@field blacks? number|afterglow.Moving  Gain at six stops below middle grey, and below that. -4…4 EV, default 0
+---@field shadows? number|afterglow.Moving  Gain at three stops below middle grey. -4…4 EV, default 0
+---@field midtones? number|afterglow.Moving  Gain at middle grey (0.18). -4…4 EV, default 0
+---@field highlights? number|afterglow.Moving  Gain at three stops above middle grey (1.44). -4…4 EV, default 0
+---@field whites? number|afterglow.Moving  Gain at six stops above middle grey (11.5), and above that. -4…4 EV, default 0
+---@field red? number[]|afterglow.Moving  Gain of red in shadows, midtones and highlights. {x, y, z}, each -4…4 EV, default {0, 0, 0}
+---@field green? number[]|afterglow.Moving  Gain of green in shadows, midtones and highlights. {x, y, z}, each -4…4 EV, default {0, 0, 0}
+---@field blue? number[]|afterglow.Moving  Gain of blue in shadows, midtones and highlights. {x, y, z}, each -4…4 EV, default {0, 0, 0}
+---@field reds? number[]|afterglow.Moving  Hue, saturation and luma of reds: degrees / 0.3, percent, percent of a stop. Greys stay. {x, y, z}, each -100…100 %, default {0, 0, 0}
+---@field yellows? number[]|afterglow.Moving  Hue, saturation and luma of yellows: degrees / 0.3, percent, percent of a stop. Greys stay. {x, y, z}, each -100…100 %, default {0, 0, 0}
+---@field greens? number[]|afterglow.Moving  Hue, saturation and luma of greens: degrees / 0.3, percent, percent of a stop. Greys stay. {x, y, z}, each -100…100 %, default {0, 0, 0}
+---@field cyans? number[]|afterglow.Moving  Hue, saturation and luma of cyans: degrees / 0.3, percent, percent of a stop. Greys stay. {x, y, z}, each -100…100 %, default {0, 0, 0}
+---@field blues? number[]|afterglow.Moving  Hue, saturation and luma of blues: degrees / 0.3, percent, percent of a stop. Greys stay. {x, y, z}, each -100…100 %, default {0, 0, 0}
+---@field magentas? number[]|afterglow.Moving  Hue, saturation and luma of magentas: degrees / 0.3, percent, percent of a stop. Greys stay. {x, y, z}, each -100…100 %, default {0, 0, 0}
+
 ---Blurs what is out of focus, by depth, as a camera with this lens does.
 ---@class afterglow.settings.depth_of_field : afterglow.EntryKeys
 ---@field focus_distance? number|afterglow.Moving  Distance of what is sharp. 0.01…1000000 m, default 10
@@ -358,6 +376,7 @@
 ---@field chromatic_aberration fun(settings: afterglow.settings.chromatic_aberration): afterglow.Entry  Colour fringes that grow towards the corners.
 ---@field color_adjustments fun(settings: afterglow.settings.color_adjustments): afterglow.Entry  Exposure, contrast, colour filter, hue and saturation.
 ---@field color_blit fun(settings: afterglow.settings.color_blit): afterglow.Entry  Leaves green light alone, scaled; a test of the pipeline, like a night-vision tube.
+---@field curves fun(settings: afterglow.settings.curves): afterglow.Entry  Tone curves for all channels and each, and hue, saturation and luma by hue.
 ---@field depth_of_field fun(settings: afterglow.settings.depth_of_field): afterglow.Entry  Blurs what is out of focus, by depth, as a camera with this lens does.
 ---@field directional_blur fun(settings: afterglow.settings.directional_blur): afterglow.Entry  Smears the picture along one direction, as a moving camera does.
 ---@field dual_kawase fun(settings: afterglow.settings.dual_kawase): afterglow.Entry  A wide, smooth, cheap blur of the whole picture.
