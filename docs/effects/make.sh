@@ -21,8 +21,8 @@ cost() {
   "$program" graph "docs/effects/$1.lua" --size 1920x1080 --format json | jq -r --arg name "$1" '
     [.graph.passes[] | select(.effect == $name)] as $passes
     | ($passes | map(.output.width * .output.height) | add / (1920 * 1080) * 100 | round / 100) as $pictures
-    | if all($passes[]; .kind == "pixel") then "Cost: reads its own pixel alone and is joined with its neighbours; next to nothing."
-      else "Cost: \($passes | length) \(if $passes | length == 1 then "pass that writes" else "passes that write" end) \($pictures) \(if $pictures == 1 then "picture" else "pictures" end) before passes are joined." end'
+    | if all($passes[]; .kind == "pixel") then "Cost: reads its own pixel alone and is fused with its neighbours; next to nothing."
+      else "Cost: \($passes | length) \(if $passes | length == 1 then "pass that writes" else "passes that write" end) \($pictures) \(if $pictures == 1 then "picture" else "pictures" end) before passes are fused." end'
 }
 
 render before

@@ -9,7 +9,7 @@ namespace afterglow {
 namespace {
 
 constexpr const char* kChosen = "chosen";
-constexpr const char* kWatched = "watched";
+constexpr const char* kChecked = "checked";
 constexpr int kLeastSquare = 256;
 
 }  // namespace
@@ -27,13 +27,13 @@ Result<std::vector<bench::Variant>> parse_variants(const std::string& text) {
   std::vector<bench::Variant> out;
   for (const auto& part : split(text, ',')) {
     bench::Variant variant{.label = trim(part), .choice = {}, .settings = {}, .overrides = {}};
-    variant.watch = variant.label == kWatched;
-    if (variant.label != kChosen && !variant.watch) {
+    variant.check_finite = variant.label == kChecked;
+    if (variant.label != kChosen && !variant.check_finite) {
       auto choice = parse_execution(variant.label);
       if (!choice) {
         Error error = std::move(choice).error();
         error.file = "--variants";
-        error.allowed += fmt::format(", {}, {}", kChosen, kWatched);
+        error.allowed += fmt::format(", {}, {}", kChosen, kChecked);
         return error;
       }
       variant.choice = *choice;

@@ -13,7 +13,7 @@ namespace afterglow {
 /// "1920x1080,3840x2160". Errors: usage.
 Result<std::vector<Size>> parse_sizes(const std::string& text);
 
-/// "plain16f,joined fp32+storage-reads,chosen": choices, "chosen" for what `run` would do, "watched" for that with
+/// "plain16f,fused fp32+storage-reads,chosen": choices, "chosen" for what `run` would do, "checked" for that with
 /// values that are not finite looked for, as `run` does. Errors: usage.
 Result<std::vector<bench::Variant>> parse_variants(const std::string& text);
 
@@ -28,7 +28,7 @@ std::vector<Size> scaling_sizes(int most);
 /// The variants that are measured when none are named: the baseline in half and full floats, each optimisation alone
 /// and all together, and what `run` would choose.
 inline constexpr const char* kDefaultVariants =
-    "plain16f,plain32f,heads fp32,heads fp32 storage-reads,joined fp32,joined fp16 storage-reads,"
-    "joined fp32 storage-reads,heads fp32 rows8,joined fp32 storage-reads rows8,chosen";
+    "plain16f,plain32f,fused-filters fp32,fused-filters fp32 storage-reads,fused fp32,fused fp16 storage-reads,"
+    "fused fp32 storage-reads,fused-filters fp32 rows8,fused fp32 storage-reads rows8,chosen";
 
 }  // namespace afterglow

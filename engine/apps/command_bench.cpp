@@ -322,7 +322,7 @@ Command add_bench_command(CLI::App& program) {
   app->footer(
       "Examples:\n"
       "  afterglow bench presets/neon_night.lua -o bench\n"
-      "  afterglow bench look.lua --sizes 1280x720 --variants \"plain16f,joined fp32+storage-reads\" --compare "
+      "  afterglow bench look.lua --sizes 1280x720 --variants \"plain16f,fused fp32+storage-reads\" --compare "
       "old/bench.json\n"
       "  afterglow bench look.lua --vary glow.max_iterations=4,8,16 --quick\n"
       "All that is measured at one size is prepared first and then run in turns; upload and read-back are not in it.");

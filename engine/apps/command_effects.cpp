@@ -43,7 +43,7 @@ nlohmann::json as_json(const EffectSchema& effect) {
                      {"makes_light", space_json(effect, effect.space.makes)},
                      {"file", effect.file.string()},
                      {"settings", std::move(settings)}};
-  for (const auto& hold : effect.holds) out["holds"].push_back(hold_text(hold));
+  for (const auto& hold : effect.invariants) out["holds"].push_back(invariant_text(hold));
   for (const auto& file : effect.shadowed) out["shadowed"].push_back(file.string());
   return out;
 }
@@ -80,9 +80,9 @@ std::string mask_text(const EffectSchema& mask) {
 std::string effect_text(const EffectSchema& effect) {
   std::string out = fmt::format("{}: {}\nat {}, order {}; {}\n{}\n\n{}", effect.name, effect.doc, effect.at,
                                 effect.order, effect.file.string(), space_text(effect), settings_text(effect));
-  if (!effect.holds.empty()) {
+  if (!effect.invariants.empty()) {
     std::vector<std::string> promises;
-    for (const auto& hold : effect.holds) promises.push_back(hold_text(hold));
+    for (const auto& hold : effect.invariants) promises.push_back(invariant_text(hold));
     out += fmt::format("\nholds: {}\n", join(promises));
   }
   for (const auto& file : effect.shadowed) out += fmt::format("\nshadows {}\n", file.string());

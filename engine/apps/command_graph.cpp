@@ -1,4 +1,4 @@
-// `afterglow graph`: the passes a preset becomes, and what was skipped or joined, as dot, svg or json.
+// `afterglow graph`: the passes a preset becomes, and what was skipped or fused, as dot, svg or json.
 #include <fmt/format.h>
 
 #include <memory>
@@ -48,7 +48,7 @@ Result<void> run_graph(const GraphArguments& arguments, Console& console) {
 }  // namespace
 
 Command add_graph_command(CLI::App& program) {
-  auto* app = program.add_subcommand("graph", "Show the passes of a preset, and what was skipped or joined and why");
+  auto* app = program.add_subcommand("graph", "Show the passes of a preset, and what was skipped or fused and why");
   auto arguments = std::make_shared<GraphArguments>();
   arguments->preset.add(*app);
   arguments->picture.add(*app);

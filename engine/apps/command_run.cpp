@@ -246,7 +246,7 @@ Result<std::optional<int>> pre_roll_of(Run& run, FrameLoop& loop) {
     assumed.fps = run.arguments.fps;
     AFTERGLOW_TRY(const BuildContext context, assumed.context(preset));
     // A picture alone is asked itself, and what is said of it is what runs.
-    auto build = frames.size() == 1 ? loop.look_at(frames.front().job) : run.session->evaluate(context);
+    auto build = frames.size() == 1 ? loop.inspect(frames.front().job) : run.session->evaluate(context);
     if (!build && frames.size() == 1 && build.error().kind == ErrorKind::io) build = run.session->evaluate(context);
     if (!build) return std::move(build).error();
     const Graph& graph = (*build)->graph;

@@ -88,7 +88,7 @@ Result<std::vector<stress::Subject>> subjects_of(const StressArguments& a, Conso
 
 struct Opened {
   std::unique_ptr<Device> device;
-  std::unique_ptr<stress::Lab> lab;
+  std::unique_ptr<stress::Harness> harness;
 };
 
 Result<Opened> open(const StressArguments& a, const std::string& name, Diagnostics& diagnostics) {
@@ -98,7 +98,7 @@ Result<Opened> open(const StressArguments& a, const std::string& name, Diagnosti
   AFTERGLOW_TRY(const DeviceOptions asked, device.options());
   AFTERGLOW_TRY(out.device, Device::create(asked, diagnostics));
   out.device->use_pipeline_cache((cache_folder() / "pipelines").string());
-  AFTERGLOW_TRY(out.lab, stress::Lab::create(*out.device, cache_folder(), diagnostics));
+  AFTERGLOW_TRY(out.harness, stress::Harness::create(*out.device, cache_folder(), diagnostics));
   return out;
 }
 
@@ -114,7 +114,7 @@ Result<void> repeat(const StressArguments& a, Console& console) {
   AFTERGLOW_TRY(const stress::Situation situation, stress::read_reproducer(a.repeat, console.diagnostics()));
   Diagnostics quiet;
   AFTERGLOW_TRY(const Opened opened, open(a, a.devices.empty() ? "auto" : a.devices.front(), quiet));
-  AFTERGLOW_TRY(const stress::Outcome outcome, stress::run_check(*opened.lab, situation));
+  AFTERGLOW_TRY(const stress::Outcome outcome, stress::run_check(*opened.harness, situation));
   if (!outcome.applies) {
     output("{}: no longer applies: the effect does not promise it for these settings, or refuses them\n",
            situation.check);
@@ -146,8 +146,8 @@ Result<void> print_digests(const StressArguments& a, Console& console) {
     if (text.empty() || text.size() > 18 || !std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c); }))
       return Error{ErrorKind::usage, fmt::format("'{}' is no trial", text), "--digests-of"};
     const std::uint64_t index = std::stoull(text);
-    opened.lab->forget();
-    AFTERGLOW_TRY(digests[index], stress::digest_of(*opened.lab, trials.at(index), quiet));
+    opened.harness->forget();
+    AFTERGLOW_TRY(digests[index], stress::digest_of(*opened.harness, trials.at(index), quiet));
   }
   output("{}", stress::digests_text(digests));
   return {};
@@ -209,12 +209,12 @@ Result<stress::StressReport> try_device(const StressArguments& a, const std::str
     console.warning(fmt::format("{}: {}: {}{}", f.subject, f.check, f.what,
                                 f.folder.empty() ? "" : "; kept in " + f.folder.string()));
   };
-  AFTERGLOW_TRY(report.summary, stress::run_programme(*opened.lab, trials, options, quiet, step, found));
+  AFTERGLOW_TRY(report.summary, stress::run_programme(*opened.harness, trials, options, quiet, step, found));
   console.end_progress();
   if (!report.summary.interrupted) {
     AFTERGLOW_TRY(report.processes, ask_other_processes(a, device, report.summary.digests));
     auto growth = stress::error_growth(
-        *opened.lab, trials.subjects(), a.quick ? kShortGrowthSize : kGrowthSize, a.quick, a.seed,
+        *opened.harness, trials.subjects(), a.quick ? kShortGrowthSize : kGrowthSize, a.quick, a.seed,
         [&]() -> Result<void> { return interrupted() ? Result<void>(interrupt_error()) : Result<void>(); });
     if (growth)
       report.growth = std::move(*growth);

@@ -31,7 +31,7 @@ const std::string* skip_reason(const Look& look, const std::string& entry) {
 // What became of a pass.
 struct PassFate {
   const Pass* pass;
-  const char* state;  ///< "runs", "joined", "skipped"
+  const char* state;  ///< "runs", "fused", "skipped"
   std::string kernel, reason;
 };
 
@@ -48,7 +48,7 @@ std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
     }
     const PlanKernel& runs = look.plan.kernels[static_cast<std::size_t>(kernel)];
     const bool first = runs.passes.front() == static_cast<int>(i);
-    fates.push_back({&pass, first ? "runs" : "joined", runs.name, first ? "" : kJoinReason});
+    fates.push_back({&pass, first ? "runs" : "fused", runs.name, first ? "" : kFusionReason});
   }
   return fates;
 }
@@ -56,7 +56,7 @@ std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
 std::string fate_text(const Look& look, const PassFate& fate) {
   if (fate.kernel.empty()) return "skipped: " + fate.reason;
   const std::string what = fmt::format("{} {}", info_of(fate.pass->kind).name, size_text(look.build.graph, *fate.pass));
-  if (*fate.state == 'j') return fmt::format("{}, joined into {}", what, fate.kernel);
+  if (*fate.state == 'j') return fmt::format("{}, fused into {}", what, fate.kernel);
   return fate.kernel == fate.pass->name ? what + ", runs" : fmt::format("{}, runs as {}", what, fate.kernel);
 }
 

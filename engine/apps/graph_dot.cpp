@@ -72,12 +72,12 @@ std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& t
                                 (history_of_previous(graph, static_cast<ImageId>(i)) ? "\nof the frame before" : "")));
   for (std::size_t k = 0; k < plan.kernels.size(); ++k) {
     const auto& kernel = plan.kernels[k];
-    const bool joined = kernel.passes.size() > 1;
-    if (joined)
+    const bool fused = kernel.passes.size() > 1;
+    if (fused)
       out += fmt::format("  subgraph cluster{} {{\n    label={};\n    tooltip={};\n", k,
-                         quoted(fmt::format("kernel {}", k)), quoted(kJoinReason));
-    for (const int pass : kernel.passes) out += (joined ? "    " : "  ") + pass_line(graph, pass);
-    if (joined) out += "  }\n";
+                         quoted(fmt::format("kernel {}", k)), quoted(kFusionReason));
+    for (const int pass : kernel.passes) out += (fused ? "    " : "  ") + pass_line(graph, pass);
+    if (fused) out += "  }\n";
   }
   for (std::size_t p = 0; p < graph.passes.size(); ++p) {
     if (kernel_of(plan, static_cast<int>(p)) < 0) continue;
@@ -116,7 +116,7 @@ std::string graph_json(const Graph& graph, const Plan& plan, const std::string& 
   for (const auto& kernel : plan.kernels) {
     Json item{{"name", kernel.name}, {"passes", Json::array()}};
     for (const int pass : kernel.passes) item["passes"].push_back(graph.passes[static_cast<std::size_t>(pass)].name);
-    if (kernel.passes.size() > 1) item["joined_because"] = std::string("the later passes ") + kJoinReason;
+    if (kernel.passes.size() > 1) item["fused_because"] = std::string("the later passes ") + kFusionReason;
     out["kernels"].push_back(std::move(item));
   }
   for (const auto& [entry, text] : notes) out["composition"][entry] = text;

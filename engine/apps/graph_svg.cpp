@@ -153,7 +153,7 @@ std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& t
   const auto skipped = all_skipped(graph, plan);
   std::vector<std::string> lines;
   if (std::ranges::any_of(plan.kernels, [](const auto& k) { return k.passes.size() > 1; }))
-    lines.push_back(std::string("Passes of one tint are joined into one kernel: the later ones ") + kJoinReason + ".");
+    lines.push_back(std::string("Passes of one tint are fused into one kernel: the later ones ") + kFusionReason + ".");
   for (const auto& [entry, text] : notes) lines.push_back(fmt::format("{}: {}", entry, text));
   for (const auto& entry : skipped) lines.push_back(fmt::format("Skipped {}: {}", entry.name, entry.reason));
   for (const auto& line : idle_lines(graph)) lines.push_back("Not run: " + line);

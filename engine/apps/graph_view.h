@@ -10,8 +10,8 @@
 
 namespace afterglow {
 
-/// Why the passes of a kernel behind its first were joined to it.
-inline constexpr const char* kJoinReason = "read only their own pixel of an image that nobody else reads";
+/// Why the passes of a kernel behind its first were fused to it.
+inline constexpr const char* kFusionReason = "read only their own pixel of an image that nobody else reads";
 
 /// What there is to say about entries: by name, "opacity 0.5, mask luma".
 using Notes = std::vector<std::pair<std::string, std::string>>;

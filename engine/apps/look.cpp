@@ -65,7 +65,7 @@ ShaderFindings check_shaders(const Look& look) {
     // The last kernel once more, as it is for display files without and with transparency.
     for (const Graph& graph : graphs)
       for (const bool straight : {false, true}) {
-        FrameWork work{.graph = graph, .codes = true};
+        FrameWork work{.graph = graph, .unorm8 = true};
         encode_for_display(work.graph, {.straight_alpha = straight, .dither = true});
         check(work);
       }

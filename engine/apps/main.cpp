@@ -2,7 +2,7 @@
 #include <exception>
 
 #include "apps/command_line.h"
-#include "apps/last_words.h"
+#include "apps/terminate_handler.h"
 #include "core/result.h"
 
 int main(int argc, char** argv) {

@@ -41,7 +41,7 @@ Result<Rect> part_of_region(const Rect& region, const Rect& data_window, const R
 }
 
 void crop_picture(Picture& picture, const Rect& region, const Rect& part) {
-  if (!picture.codes.empty()) picture.codes = cut(picture.codes, picture.color.width, 4, part);
+  if (!picture.unorm8.empty()) picture.unorm8 = cut(picture.unorm8, picture.color.width, 4, part);
   cut(picture.color, part);
   for (auto& [name, image] : picture.auxiliary) cut(image, part);
   picture.content.clear();

@@ -194,7 +194,7 @@ Result<FrameLoop::Planned> FrameLoop::plan(const FrameJob& job, double step, boo
   return planned;
 }
 
-Result<std::shared_ptr<const Build>> FrameLoop::look_at(const FrameJob& job) {
+Result<std::shared_ptr<const Build>> FrameLoop::inspect(const FrameJob& job) {
   AFTERGLOW_TRY(Planned planned, plan(job, 1, true));
   planned.job = &job;
   planned_ = std::move(planned);
@@ -348,7 +348,7 @@ Result<void> FrameLoop::mend(Reading& reading, Picture& picture) {
   non_finite_.tell(frame.non_finite, frame.job.input, options_.nan_policy, events_.diagnostics);
   if (options_.nan_policy == NanPolicy::fail) return Error{ErrorKind::script, kUntraced};
   picture.color = std::move(trace.result);
-  picture.codes.clear();
+  picture.unorm8.clear();
   return {};
 }
 

@@ -46,7 +46,7 @@ class FrameLoop {
 
   /// The header of a frame's picture, and what the preset says of that frame: kept for `run`, if it comes first there.
   /// Errors: those of reading the header and of the script.
-  Result<std::shared_ptr<const Build>> look_at(const FrameJob& job);
+  Result<std::shared_ptr<const Build>> inspect(const FrameJob& job);
   /// Pictures depend on the frames before them: see FrameLoopOptions.
   void follow_histories() { options_.histories = true; }
   /// Leaves notes for --resume.

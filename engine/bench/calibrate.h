@@ -30,7 +30,7 @@ struct CalibrationRequest {
   int repeat = 9;
 };
 
-/// The ways of execution that calibration tries: all combinations that make sense, joined.
+/// The ways of execution that calibration tries: all combinations that make sense, fused.
 std::vector<ExecutionConfig> candidates();
 
 /// From measured points (with quality), the fastest within each of a few allowed errors. What does not gain at least 3

@@ -51,7 +51,7 @@ Result<PreparedStack> PreparedStack::create(Device& device, const std::filesyste
   out.variant_ = variant;
   StackOptions options = base;
   options.choice = variant.choice;
-  options.flag_non_finite = variant.watch;
+  options.flag_non_finite = variant.check_finite;
   options.preset.overrides.insert(options.preset.overrides.end(), variant.overrides.begin(), variant.overrides.end());
   options.skip_idle = options.skip_idle && is_opaque(picture.color);  // or the program would take it for such
   AFTERGLOW_TRY(out.stack_, Stack::load(preset, options, diagnostics));

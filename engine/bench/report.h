@@ -29,7 +29,7 @@ Result<void> write_report(const Report& report, const std::filesystem::path& fol
 
 /// One point of two reports, medians in milliseconds.
 struct Comparison {
-  std::string what;  ///< "neon_night 1920×1080 joined fp32"
+  std::string what;  ///< "neon_night 1920×1080 fused fp32"
   double before = 0, now = 0;
   double ratio() const { return now / before; }
 };

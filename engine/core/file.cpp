@@ -14,7 +14,7 @@ namespace afterglow {
 namespace fs = std::filesystem;
 
 bool is_file(const fs::path& path, FileRecord* record) {
-  if (record) record->note(path, FileLook::Kind::existence);
+  if (record) record->note(path, FileProbe::Kind::existence);
   std::error_code ec;
   return fs::is_regular_file(path, ec);
 }

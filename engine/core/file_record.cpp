@@ -13,7 +13,7 @@ namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
-using Kind = FileLook::Kind;
+using Kind = FileProbe::Kind;
 
 constexpr std::uint64_t kNothing = 1, kFile = 2, kFolder = 3, kOther = 4, kUnreadable = 5;  // first word of a Hash
 constexpr std::size_t kLargest = 64u << 20;     // bytes that are read to compare contents; larger files by their stamps
@@ -97,21 +97,21 @@ fs::path whole_path(const fs::path& path) {
 
 }  // namespace
 
-FileLook look_at(const fs::path& path, Kind kind) { return {kind, look(path, kind), {}}; }
+FileProbe inspect(const fs::path& path, Kind kind) { return {kind, look(path, kind), {}}; }
 
-void FileRecord::add(const fs::path& path, const FileLook& look) {
+void FileRecord::add(const fs::path& path, const FileProbe& look) {
   const std::lock_guard lock(mutex_);
-  const auto [known, fresh] = looks_.emplace(whole_path(path), look);
+  const auto [known, fresh] = probes_.emplace(whole_path(path), look);
   if (!fresh && known->second.kind >= look.kind) return;
   known->second = look;
   taken_.reset();
 }
 
-void FileRecord::note(const fs::path& path, Kind kind) { add(path, look_at(path, kind)); }
+void FileRecord::note(const fs::path& path, Kind kind) { add(path, inspect(path, kind)); }
 
-std::shared_ptr<const FileLooks> FileRecord::looks() const {
+std::shared_ptr<const FileProbes> FileRecord::looks() const {
   const std::lock_guard lock(mutex_);
-  if (!taken_) taken_ = std::make_shared<const FileLooks>(looks_);
+  if (!taken_) taken_ = std::make_shared<const FileProbes>(probes_);
   return taken_;
 }
 
@@ -128,13 +128,13 @@ FileRecord::Reading::~Reading() {
   if (record_) record_->add(path_, {Kind::content, content(path_), stamp_});
 }
 
-std::vector<fs::path> paths_to_watch(const FileLooks& looks) {
+std::vector<fs::path> paths_to_watch(const FileProbes& looks) {
   std::vector<fs::path> paths;
   for (const auto& [path, known] : looks) paths.push_back(known.kind == Kind::listing ? path / "" : path);
   return paths;
 }
 
-std::optional<fs::path> first_changed(const FileLooks& looks, bool trust_stamps) {
+std::optional<fs::path> first_changed(const FileProbes& looks, bool trust_stamps) {
   for (const auto& [path, known] : looks) {
     const bool trusted = trust_stamps && known.kind == Kind::content && known.stamp != Hash{};
     if (trusted && stamp(path) == known.stamp) continue;

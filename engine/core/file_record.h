@@ -15,7 +15,7 @@
 namespace afterglow {
 
 /// One look at a path. What was looked for in vain is a look as well.
-struct FileLook {
+struct FileProbe {
   enum class Kind : std::uint8_t {
     existence,  ///< is there a file or a folder?
     stamp,      ///< size, times and number of the file: for large ones
@@ -28,15 +28,15 @@ struct FileLook {
 };
 
 /// By absolute path.
-using FileLooks = std::map<std::filesystem::path, FileLook>;
+using FileProbes = std::map<std::filesystem::path, FileProbe>;
 
 /// Takes down what those look at who are given it: `read_file`, `is_file`, a SearchPath. Of two looks at a path, the
 /// first that says most counts. Thread-safe.
 class FileRecord {
  public:
-  void note(const std::filesystem::path& path, FileLook::Kind kind);
+  void note(const std::filesystem::path& path, FileProbe::Kind kind);
   /// What was looked at so far. The same value as the last time while nothing was added.
-  std::shared_ptr<const FileLooks> looks() const;
+  std::shared_ptr<const FileProbes> looks() const;
 
   /// A content that is about to be read; `done` with what was found. Read errors are looks too. Null: notes nothing.
   class Reading {
@@ -54,21 +54,21 @@ class FileRecord {
   };
 
  private:
-  void add(const std::filesystem::path& path, const FileLook& look);
+  void add(const std::filesystem::path& path, const FileProbe& look);
   mutable std::mutex mutex_;
-  FileLooks looks_;
-  mutable std::shared_ptr<const FileLooks> taken_;  ///< null: something was added since
+  FileProbes probes_;
+  mutable std::shared_ptr<const FileProbes> taken_;  ///< null: something was added since
 };
 
 /// A look of that kind, now.
-FileLook look_at(const std::filesystem::path& path, FileLook::Kind kind);
+FileProbe inspect(const std::filesystem::path& path, FileProbe::Kind kind);
 
 /// What Watcher::watch must be given to notice when looks come out differently.
-std::vector<std::filesystem::path> paths_to_watch(const FileLooks& looks);
+std::vector<std::filesystem::path> paths_to_watch(const FileProbes& looks);
 
 /// The first path at which one would see something else now. `trust_stamps`: contents of files whose size, times and
 /// number are the same are not read again; for looking often. (Two changes within one tick of a file system's clock
 /// may have the same times: stamps younger than two seconds are not trusted.)
-std::optional<std::filesystem::path> first_changed(const FileLooks& looks, bool trust_stamps = false);
+std::optional<std::filesystem::path> first_changed(const FileProbes& looks, bool trust_stamps = false);
 
 }  // namespace afterglow

@@ -34,7 +34,7 @@ void add_pack(SearchPath& path, const fs::path& pack) {
     path.user.push_back(pack);
     return;
   }
-  if (path.record) path.record->note(pack, FileLook::Kind::stamp);
+  if (path.record) path.record->note(pack, FileProbe::Kind::stamp);
   auto opened = open_zip(pack, cache_folder());
   if (opened)
     path.user.push_back(std::move(opened).value());
@@ -46,7 +46,7 @@ void add_pack(SearchPath& path, const fs::path& pack) {
 void add_packs(SearchPath& path, const fs::path& folder) {
   std::vector<fs::path> packs;
   std::error_code ec;
-  if (path.record) path.record->note(folder / "packs", FileLook::Kind::listing);
+  if (path.record) path.record->note(folder / "packs", FileProbe::Kind::listing);
   for (fs::directory_iterator it(folder / "packs", ec), end; !ec && it != end; it.increment(ec)) {
     std::error_code ignored;
     if (is_zip(it->path()) || fs::is_directory(it->path(), ignored)) packs.push_back(it->path());
@@ -137,7 +137,7 @@ std::vector<fs::path> folders_of(const fs::path& preset, FileRecord* record) {
   std::vector<fs::path> folders{preset.has_parent_path() ? preset.parent_path() : fs::path(".")};
   const fs::path above = folders[0].parent_path();
   if (folders[0].filename() != "presets") return folders;
-  if (record) record->note(above / "effects", FileLook::Kind::existence);
+  if (record) record->note(above / "effects", FileProbe::Kind::existence);
   std::error_code ec;
   if (fs::is_directory(above / "effects", ec)) folders.push_back(above);
   return folders;

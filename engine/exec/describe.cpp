@@ -63,21 +63,21 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
   desc.config.rows = 1;
   const bool half = options.config.storage == Storage::fp16 && !is_precise(graph, kernel.output);
   desc.target = half ? KernelTarget::float16 : KernelTarget::float32;
-  if (options.codes && kernel.output == graph.result) desc.target = KernelTarget::codes8;
+  if (options.unorm8 && kernel.output == graph.result) desc.target = KernelTarget::unorm8;
   const long long pixels = graph.images[kernel.output].size.area();
-  const Pass& head = graph.passes[kernel.passes.front()];
+  const Pass& anchor = graph.passes[kernel.passes.front()];
   std::size_t first_stage = 1;
-  if (head.kind == PassKind::filter) {
-    const Size source = graph.images[head.inputs.front().image].size, target = graph.images[head.output].size;
-    desc.filter = head.filter;
+  if (anchor.kind == PassKind::filter) {
+    const Size source = graph.images[anchor.inputs.front().image].size, target = graph.images[anchor.output].size;
+    desc.filter = anchor.filter;
     if (pixels >= options.worth.ratio) {
       desc.ratio_x = axis_ratio(source.width, target.width);
       desc.ratio_y = axis_ratio(source.height, target.height);
     } else if (source == target) {
       desc.ratio_x = desc.ratio_y = AxisRatio::same;
     }
-  } else if (info_of(head.kind).begins) {
-    AFTERGLOW_TRY(desc.sample, stage_of(shaders, head, kernel.compute));
+  } else if (info_of(anchor.kind).begins) {
+    AFTERGLOW_TRY(desc.sample, stage_of(shaders, anchor, kernel.compute));
   } else {
     first_stage = 0;
   }
@@ -90,9 +90,9 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
   }
   // What has no stages hands on by itself.
   if (options.flag_non_finite && kernel.output == graph.result)
-    desc.watch = Watch::flag;
+    desc.finite_check = FiniteCheck::flag;
   else if (options.flag_non_finite && !desc.stages.empty())
-    desc.watch = Watch::hand_on;
+    desc.finite_check = FiniteCheck::propagate;
   if (options.config.storage_reads) desc.reads = storage_reads_of(graph, kernel, desc, options);
   if (pixels >= options.worth.rows) desc.config.rows = rows_that_pay(desc, options.config.rows);
   return desc;
@@ -104,7 +104,7 @@ const PassInput* input_of(const Pass& pass, const std::string& name) {
 }
 
 const Pass& pass_of_stage(const Graph& graph, const PlanKernel& kernel, int stage) {
-  // A filter head is no stage: stage 0 is then the second pass. The head's source (stage -1) is the first pass's.
+  // A filter anchor is no stage: stage 0 is then the second pass. The anchor's source (stage -1) is the first pass's.
   const bool filter = graph.passes[kernel.passes.front()].kind == PassKind::filter;
   const int index = stage < 0 ? 0 : stage + (filter ? 1 : 0);
   return graph.passes[kernel.passes[static_cast<std::size_t>(index)]];

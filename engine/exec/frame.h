@@ -39,12 +39,12 @@ struct HostResult {
   /// RGBA. It may be the very memory of the input "source": it is written after all inputs have been read. A vector
   /// that is large enough already is not allocated again.
   std::vector<float> pixels;
-  std::vector<std::uint8_t> codes;  ///< instead of `pixels`, of a program with ProgramOptions::codes: RGBA
+  std::vector<std::uint8_t> unorm8;  ///< instead of `pixels`, of a program with ProgramOptions::unorm8: RGBA
   std::uint64_t clamped = 0;        ///< half storage: source or result samples held at ±65504
   /// Of a program with ProgramOptions::flag_non_finite: some alpha is 0. Such a program's `pixels` have no other alpha.
   bool flagged = false;
   bool keep_alpha = false;  ///< write R, G and B alone where `pixels` has the size of the result already
-  /// In place of `pixels` and `codes`: takes `width` pixels of row y, from column x on, as they lie in an image of
+  /// In place of `pixels` and `unorm8`: takes `width` pixels of row y, from column x on, as they lie in an image of
   /// `format` (RGBA32F, RGBA16F, RGBA8). Returns how many values were held at ±65504. Called on several threads.
   std::function<std::uint64_t(int x, int y, int width, VkFormat format, const std::byte* from)> write_row{};
 };

@@ -104,10 +104,10 @@ Result<std::uint64_t> FrameResult::download_looking(Staging& staging, const Rect
       return out.write_row(part.x, y, part.width, format, from);
     });
   if (format == VK_FORMAT_R8G8B8A8_UNORM) {
-    out.codes.resize(row_values * static_cast<std::size_t>(height));
+    out.unorm8.resize(row_values * static_cast<std::size_t>(height));
     return over_rows_of(staging, part, [&](int y, const std::byte* from) {
       look(from, format);
-      std::memcpy(out.codes.data() + first(y), from, static_cast<std::size_t>(part.width) * 4);
+      std::memcpy(out.unorm8.data() + first(y), from, static_cast<std::size_t>(part.width) * 4);
       return std::uint64_t{0};
     });
   }

@@ -23,7 +23,7 @@ VkFormat format_of(KernelTarget target) {
   switch (target) {
     case KernelTarget::float16:
       return VK_FORMAT_R16G16B16A16_SFLOAT;
-    case KernelTarget::codes8:
+    case KernelTarget::unorm8:
       return VK_FORMAT_R8G8B8A8_UNORM;
     default:
       return VK_FORMAT_R32G32B32A32_SFLOAT;

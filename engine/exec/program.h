@@ -35,9 +35,9 @@ struct ProgramOptions {
   /// With `config.storage_reads`: the source that will be bound has STORAGE usage and comes in GENERAL layout.
   bool source_is_storage = false;
   WorthAKernel worth{};
-  bool codes = false;  ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
+  bool unorm8 = false;  ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
   /// The result's alpha is 0 where a colour that was not finite came up in a pass and no pass of another kernel that
-  /// reads around its pixel made it finite again; elsewhere 1 (`codes`: what the last pass gave). See Watch.
+  /// reads around its pixel made it finite again; elsewhere 1 (`unorm8`: what the last pass gave). See Watch.
   bool flag_non_finite = false;
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.
@@ -144,13 +144,13 @@ class Program {
   /// As it is executed: what was wished, as far as the device can do it.
   const ExecutionConfig& config() const;
   bool flags_non_finite() const;   ///< ProgramOptions::flag_non_finite
-  VkFormat result_format() const;  ///< the storage format, or R8G8B8A8_UNORM with ProgramOptions::codes
+  VkFormat result_format() const;  ///< the storage format, or R8G8B8A8_UNORM with ProgramOptions::unorm8
   /// With `result_by_rows`: how many rows the targets of the result must have; 1: they are not used.
   int result_rows() const;
   /// The layout in which `record` wants the source: SHADER_READ_ONLY_OPTIMAL, or GENERAL (then with STORAGE usage).
   VkImageLayout source_layout() const;
   /// A transient image and the layout it is in after a whole run; null for images without memory of their own (inputs,
-  /// the result, what joined passes hand on). Its pixels are `kept` after the run by a program created with `reference`
+  /// the result, what fused passes hand on). Its pixels are `kept` after the run by a program created with `reference`
   /// alone.
   struct Transient {
     ImageBinding binding;

@@ -54,13 +54,13 @@ struct ProgramCache::State {
 };
 
 bool same_program(const FrameWork& a, const FrameWork& b) {
-  return a.region == b.region && a.codes == b.codes && a.texts == b.texts && same_structure(a.graph, b.graph) &&
+  return a.region == b.region && a.unorm8 == b.unorm8 && a.texts == b.texts && same_structure(a.graph, b.graph) &&
          (!a.region || same_reach(a.graph, b.graph));
 }
 
 ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
                              const ExecutionConfig& config, std::set<Hash>& checked) {
-  ProgramOptions options{.config = config, .source_is_storage = true, .codes = work.codes, .flag_non_finite = true};
+  ProgramOptions options{.config = config, .source_is_storage = true, .unorm8 = work.unorm8, .flag_non_finite = true};
   fit_to_cpu_driver(options.config);
   ShaderFindings found;
   for (const bool compute : {false, true}) {  // both ways of passes that have two
@@ -118,7 +118,7 @@ ProgramOptions ProgramCache::State::program_options() const {
   out.images = &shared->images;
   out.histories = histories;
   if (present) {
-    out.codes = entries.front().work.codes;
+    out.unorm8 = entries.front().work.unorm8;
     out.region = entries.front().work.region;
   }
   return out;

@@ -26,7 +26,7 @@ bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted
 void Program::State::settle_config() {
   ExecutionConfig& config = options.config;
   if (options.reference) {
-    config.joining = Joining::none;
+    config.fusion = Fusion::none;
     config.share_memory = config.hardware_filter = config.compute = false;
     config.rows = 1;
   }

@@ -78,7 +78,7 @@ struct Program::State {
                                                                      : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   }
   VkImageLayout target_layout(ImageId output) const;
-  VkFormat result_format() const { return options.codes ? VK_FORMAT_R8G8B8A8_UNORM : format; }
+  VkFormat result_format() const { return options.unorm8 ? VK_FORMAT_R8G8B8A8_UNORM : format; }
   VkFormat image_format(ImageId image) const;
   ImageDesc result_desc() const;
   const CompiledKernel& compiled_of(std::size_t kernel) const { return compiled.unique[compiled.index[kernel]]; }

@@ -39,7 +39,7 @@ struct RenderRequest {
 struct FrameReport {
   FrameTimes times;
   std::vector<Skipped> skipped;      ///< effects that its content made idle, and kernels that were done before
-  std::vector<std::string> kernels;  ///< of the program that ran, joined passes as "a+b"
+  std::vector<std::string> kernels;  ///< of the program that ran, fused passes as "a+b"
   ProgramMemory memory;              ///< of the whole program, whatever was idle
   std::uint64_t program = 0;         ///< id of the program that ran; 0: nothing ran, the result is the source
 };

@@ -8,7 +8,7 @@
 
 namespace afterglow {
 
-/// Bytes, with the inputs and the result. Of `config` it reads `joining`, `storage` and `share_memory`.
+/// Bytes, with the inputs and the result. Of `config` it reads `fusion`, `storage` and `share_memory`.
 std::uint64_t memory_needed(const Graph& graph, const ExecutionConfig& config);
 
 }  // namespace afterglow

@@ -34,7 +34,7 @@ std::vector<int> count_readers(const Graph& graph, const std::vector<bool>& keep
   return readers;
 }
 
-bool is_head(const Pass& pass) { return info_of(pass.kind).begins; }
+bool is_anchor(const Pass& pass) { return info_of(pass.kind).begins; }
 
 // Whoever runs the graph gives the result's image, and the frame before that of a history: both are drawn to.
 bool must_be_drawn(const Graph& graph, ImageId image) {
@@ -42,9 +42,9 @@ bool must_be_drawn(const Graph& graph, ImageId image) {
 }
 
 bool runs_as_workgroups(const Graph& graph, const PlanKernel& kernel, const ExecutionConfig& config) {
-  const Pass& head = graph.passes[kernel.passes.front()];
-  if (head.kind == PassKind::compute) return true;
-  return config.compute && !head.by_workgroups.empty() && !must_be_drawn(graph, kernel.output);
+  const Pass& anchor = graph.passes[kernel.passes.front()];
+  if (anchor.kind == PassKind::compute) return true;
+  return config.compute && !anchor.by_workgroups.empty() && !must_be_drawn(graph, kernel.output);
 }
 
 // Images that a kernel binds: those that its passes do not hand on to each other, each once where it is read at the own
@@ -72,12 +72,12 @@ class Joiner {
   Joiner(const Graph& graph, const std::vector<bool>& keep)
       : graph_(graph), readers_(count_readers(graph, keep)), kernel_of_(graph.images.size(), -1) {}
 
-  void add(int index, Joining joining) {
+  void add(int index, Fusion fusion) {
     const Pass& pass = graph_.passes[index];
     PlanKernel kernel{{index}, "", pass.output};
-    if (joining != Joining::none && pass.kind == PassKind::pixel)
-      for (int feeder = feeder_of(kernel, joining); feeder >= 0; feeder = feeder_of(kernel, joining))
-        kernel = joined(kernels_[feeder], kernel);
+    if (fusion != Fusion::none && pass.kind == PassKind::pixel)
+      for (int feeder = feeder_of(kernel, fusion); feeder >= 0; feeder = feeder_of(kernel, fusion))
+        kernel = fused(kernels_[feeder], kernel);
     for (const int of : kernel.passes) kernel.name += (kernel.name.empty() ? "" : "+") + graph_.passes[of].name;
     // It runs where its last pass stands, so that everything that its passes read is there.
     kernels_.push_back(std::move(kernel));
@@ -91,14 +91,14 @@ class Joiner {
 
  private:
   // A kernel whose image is read by passes of this one alone, each at its own pixel; -1: none that may join.
-  int feeder_of(const PlanKernel& kernel, Joining joining) const {
+  int feeder_of(const PlanKernel& kernel, Fusion fusion) const {
     for (const int index : kernel.passes)
       for (const auto& input : graph_.passes[index].inputs) {
         const int feeder = kernel_of_[input.image];
         if (feeder < 0 || kernels_[feeder].passes.empty() || !reads_own_pixel(graph_.passes[index], input)) continue;
         if (own_readers(kernel, input.image) != readers_[input.image]) continue;
-        if (joining == Joining::heads && !is_head_of(kernels_[feeder], kernel)) continue;
-        if (is_head(first(kernel)) && is_head(first(kernels_[feeder]))) continue;
+        if (fusion == Fusion::filters && !is_anchor_of(kernels_[feeder], kernel)) continue;
+        if (is_anchor(first(kernel)) && is_anchor(first(kernels_[feeder]))) continue;
         if (first(kernels_[feeder]).kind == PassKind::compute && must_be_drawn(graph_, kernel.output)) continue;
         PlanKernel both{kernel.passes, "", kernel.output};
         both.passes.insert(both.passes.end(), kernels_[feeder].passes.begin(), kernels_[feeder].passes.end());
@@ -117,16 +117,16 @@ class Joiner {
     return count;
   }
 
-  bool is_head_of(const PlanKernel& feeder, const PlanKernel& kernel) const {
+  bool is_anchor_of(const PlanKernel& feeder, const PlanKernel& kernel) const {
     return feeder.passes.size() == 1 && kernel.passes.size() == 1 && first(feeder).kind == PassKind::filter &&
            first(feeder).effect == first(kernel).effect &&
            first(kernel).inputs.front().image == graph_.passes[feeder.passes.front()].output;
   }
 
-  PlanKernel joined(PlanKernel& feeder, const PlanKernel& kernel) const {
+  PlanKernel fused(PlanKernel& feeder, const PlanKernel& kernel) const {
     PlanKernel out{kernel.passes, "", kernel.output};
     out.passes.insert(out.passes.end(), feeder.passes.begin(), feeder.passes.end());
-    std::ranges::sort(out.passes, {}, [&](int pass) { return std::pair(!is_head(graph_.passes[pass]), pass); });
+    std::ranges::sort(out.passes, {}, [&](int pass) { return std::pair(!is_anchor(graph_.passes[pass]), pass); });
     feeder.passes.clear();
     return out;
   }
@@ -161,11 +161,11 @@ bool reads_own_pixel(const Pass& pass, const PassInput& input) {
 }
 
 std::optional<int> value_in(const Graph& graph, const PlanKernel& kernel, ImageId image) {
-  const Pass& head = graph.passes[kernel.passes.front()];
-  const int first_stage = is_head(head) ? 0 : 1;  // number of the first pass: a head makes value 0
+  const Pass& anchor = graph.passes[kernel.passes.front()];
+  const int first_stage = is_anchor(anchor) ? 0 : 1;  // number of the first pass: an anchor makes value 0
   for (std::size_t i = 0; i < kernel.passes.size(); ++i)
     if (graph.passes[kernel.passes[i]].output == image) return static_cast<int>(i) + first_stage;
-  if (!is_head(head) && head.inputs.front().image == image) return 0;
+  if (!is_anchor(anchor) && anchor.inputs.front().image == image) return 0;
   return std::nullopt;
 }
 
@@ -175,7 +175,7 @@ Plan make_plan(const Graph& graph, const ExecutionConfig& config) {
   Joiner joiner(graph, keep);
   for (std::size_t i = 0; i < graph.passes.size(); ++i) {
     if (keep[i])
-      joiner.add(static_cast<int>(i), config.joining);
+      joiner.add(static_cast<int>(i), config.fusion);
     else
       plan.skipped.push_back({graph.passes[i].name, "nobody reads its image"});
   }

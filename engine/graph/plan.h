@@ -1,4 +1,4 @@
-// From graph to plan: passes nobody reads are dropped, neighbouring passes are joined into kernels, transient images
+// From graph to plan: passes nobody reads are dropped, neighbouring passes are fused into kernels, transient images
 // get places in shared memory. Plain data; no Vulkan.
 #pragma once
 
@@ -13,14 +13,14 @@
 
 namespace afterglow {
 
-/// One draw or dispatch: a head pass and the pixel passes joined to it. Indices into Graph::passes: a pass that begins
+/// One draw or dispatch: an anchor pass and the pixel passes fused to it. Indices into Graph::passes: a pass that begins
 /// kernels first, then pixel passes, each behind those whose colours it takes. The last one makes the kernel's image;
 /// what the others make is read by passes of the kernel alone, at their own pixel.
 struct PlanKernel {
   std::vector<int> passes;
   std::string name;  ///< "glow.up[0]+glow.combine+curve"
   ImageId output = kNoImage;
-  bool compute = false;  ///< its head runs as workgroups, which store into the image; else it is drawn
+  bool compute = false;  ///< its anchor runs as workgroups, which store into the image; else it is drawn
 };
 
 struct Plan {
@@ -34,7 +34,7 @@ struct Plan {
   std::vector<Lifetime> lifetimes;  ///< parallel to `transient`; the result and what histories keep live to the end
 };
 
-/// Of `config` it reads `joining` and `compute`. What compute kernels make is transient: neither the result nor kept by
+/// Of `config` it reads `fusion` and `compute`. What compute kernels make is transient: neither the result nor kept by
 /// a history.
 Plan make_plan(const Graph& graph, const ExecutionConfig& config);
 
@@ -42,7 +42,7 @@ Plan make_plan(const Graph& graph, const ExecutionConfig& config);
 bool reads_own_pixel(const Pass& pass, const PassInput& input);
 
 /// Where the kernel has an image's colour at hand when one of its passes wants it, as a number: 0 for the colour that
-/// the head makes or reads, n for what the n-th pixel pass makes (the first stage, KernelStage, is 1). Nothing: it has
+/// the anchor makes or reads, n for what the n-th pixel pass makes (the first stage, KernelStage, is 1). Nothing: it has
 /// to be read.
 std::optional<int> value_in(const Graph& graph, const PlanKernel& kernel, ImageId image);
 

@@ -111,7 +111,7 @@ void display_row(const Picture& picture, int y, float padding_alpha, float* rgba
   padded_row(picture, picture.color.pixels.data(), y, padding_alpha, rgba);
 }
 void display_row(const Picture& picture, int y, std::uint8_t padding_alpha, std::uint8_t* rgba) {
-  padded_row(picture, picture.codes.data(), y, padding_alpha, rgba);
+  padded_row(picture, picture.unorm8.data(), y, padding_alpha, rgba);
 }
 
 void encode_row(const CodeRules& rules, const float* rgba, int width, int x, int y, std::uint8_t* codes) {

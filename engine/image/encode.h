@@ -15,7 +15,7 @@ std::uint64_t to_half(const float* values, std::uint16_t* halves, std::size_t co
 /// it has none.
 void display_row(const Picture& picture, int y, float padding_alpha, float* rgba);
 
-/// The same of `picture.codes`, padded with the codes of that.
+/// The same of `picture.unorm8`, padded with the codes of that.
 void display_row(const Picture& picture, int y, std::uint8_t padding_alpha, std::uint8_t* rgba);
 
 /// How RGBA becomes code values.

@@ -45,7 +45,7 @@ struct Picture {
   /// Hashes of `color` ("source") and of auxiliary images, where they are known: equal hashes mean equal pixels.
   std::map<std::string, Hash> content;
   /// When not empty, `color` as 8-bit display codes that need no more encoding, RGBA: sRGB, alpha straight.
-  std::vector<std::uint8_t> codes;
+  std::vector<std::uint8_t> unorm8;
   bool has_alpha = false;  ///< the file stored alpha; without it the A of `color` is 1
   Rect data_window;        ///< where `color` lies, in the coordinates of the file, after orientation is applied
   Rect display_window;     ///< what a display format shows

@@ -356,13 +356,13 @@ namespace {
 /// A picture whose header was parsed and whose pixels were not read yet.
 struct Opened : OpenedPicture {
   Plan plan;
-  FileLooks looks;  ///< what the files were before
+  FileProbes looks;  ///< what the files were before
   bool read = false;
 };
 
-void note_stamp(const fs::path& file, FileLooks& looks) {
+void note_stamp(const fs::path& file, FileProbes& looks) {
   std::error_code ec;
-  looks.emplace(fs::absolute(file, ec), look_at(file, FileLook::Kind::stamp));
+  looks.emplace(fs::absolute(file, ec), inspect(file, FileProbe::Kind::stamp));
 }
 
 /// May throw.

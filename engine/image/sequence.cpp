@@ -22,7 +22,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 Error bad_frames(const std::string& text, const std::string& why) {
   return Error{ErrorKind::usage, fmt::format("bad frame list '{}': {}", text, why), "", 0,
-               "N, N-M, N-MxSTEP, joined by commas"};
+               "N, N-M, N-MxSTEP, fused by commas"};
 }
 
 /// Reads a number (with a sign) from the front of `text` and removes it.

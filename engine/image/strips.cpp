@@ -13,7 +13,7 @@ void encode_rows(const Picture& picture, const StripForm& form, int first, int r
              channels = std::size_t{form.alpha ? 4u : 3u};
   const float padding = picture.has_alpha ? 0.0f : 1.0f;
   const CodeRules rules{form.type == SampleType::uint16 ? 65535 : 255, form.alpha, form.dither};
-  if (form.type == SampleType::uint8 && !picture.codes.empty()) {
+  if (form.type == SampleType::uint8 && !picture.unorm8.empty()) {
     std::vector<std::uint8_t> row(width * 4);
     for (int i = 0; i < rows; ++i) {
       display_row(picture, first + i, static_cast<std::uint8_t>(padding * 255), row.data());

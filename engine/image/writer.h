@@ -35,7 +35,7 @@ struct WriteOptions {
 Result<void> write_picture(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options,
                            Diagnostics& diagnostics);
 
-/// How `write_picture` will make 8-bit display codes for `file`, so that another can make them (Picture::codes).
+/// How `write_picture` will make 8-bit display codes for `file`, so that another can make them (Picture::unorm8).
 struct DisplayCodes {
   bool straight_alpha = false;
   bool dither = false;

@@ -16,7 +16,7 @@ namespace afterglow {
 namespace {
 
 std::uint64_t bytes_of(const Picture& picture) {
-  std::uint64_t bytes = picture.color.bytes() + picture.codes.size();
+  std::uint64_t bytes = picture.color.bytes() + picture.unorm8.size();
   for (const auto& [name, image] : picture.auxiliary) bytes += image.bytes();
   return bytes;
 }

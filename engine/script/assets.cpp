@@ -159,7 +159,7 @@ std::shared_ptr<const ImageData> load_picture(lua_State* lua, const fs::path& fi
   ReadOptions options;
   options.max_side = kMaxSide;
   options.max_bytes = kMaxBytes;
-  if (runtime.path.record) runtime.path.record->note(file, FileLook::Kind::stamp);
+  if (runtime.path.record) runtime.path.record->note(file, FileProbe::Kind::stamp);
   auto picture = read_picture(file, options, ignored);
   if (!picture) {
     Error error = std::move(picture).error();

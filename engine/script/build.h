@@ -17,7 +17,7 @@ namespace afterglow {
 /// What the effect of an entry promises of this frame's result (script/holds.h).
 struct Promises {
   std::string entry;
-  std::vector<Hold> holds;
+  std::vector<Invariant> invariants;
 };
 
 struct Build {
@@ -30,7 +30,7 @@ struct Build {
   std::optional<Error> promise_error;  ///< the frame is none the worse for it
   /// Everything that was looked at on disk for it so far, also in vain. Never null; the same value while nothing was
   /// added.
-  std::shared_ptr<const FileLooks> files;
+  std::shared_ptr<const FileProbes> files;
 };
 
 }  // namespace afterglow

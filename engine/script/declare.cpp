@@ -6,7 +6,7 @@
 #include <cctype>
 
 #include "core/text.h"
-#include "script/hold_reader.h"
+#include "script/invariant_reader.h"
 #include "script/injection.h"
 #include "script/object.h"
 #include "script/setting.h"
@@ -272,7 +272,7 @@ int declare_effect(lua_State* lua) {
   schema.detail = table.boolean("detail").value_or(false);
   read_space(lua, table, effect);
   read_settings(lua, table, schema);
-  read_holds(lua, table, effect);
+  read_invariants(lua, table, effect);
   effect.active = read_function(lua, table, "active", false);
   effect.build = read_function(lua, table, "build", true);
   effect.idle = read_function(lua, table, "idle", false);

@@ -16,8 +16,8 @@ constexpr double kAny = 1e30;
 
 }  // namespace
 
-const std::vector<HoldKind>& hold_kinds() {
-  static const std::vector<HoldKind> kinds{
+const std::vector<InvariantKind>& invariant_kinds() {
+  static const std::vector<InvariantKind> kinds{
       {"black", "within", {{"within", 0}}, {}, "A black picture stays black."},
       {"constant", "within", {{"within", 1e-5}}, {}, "A picture of one colour stays of one colour."},
       {"mean",
@@ -88,7 +88,7 @@ const std::vector<HoldKind>& hold_kinds() {
   return kinds;
 }
 
-std::string hold_text(const HoldSchema& hold) {
+std::string invariant_text(const InvariantSchema& hold) {
   std::vector<std::string> parts;
   for (const auto& [name, setting] : hold.stated.settings) parts.push_back(fmt::format("{} {}", name, setting));
   for (const auto& [name, value] : hold.stated.numbers)

@@ -11,7 +11,7 @@
 namespace afterglow {
 
 /// A promise that effects can make.
-struct HoldKind {
+struct InvariantKind {
   std::string name;
   std::string main;                        ///< what a bare value stands for: `mean = 1e-3` is { within = 1e-3 }
   std::map<std::string, double> numbers;   ///< its parameters and their defaults; NaN: must be given
@@ -19,9 +19,9 @@ struct HoldKind {
   std::string doc;                         ///< what is promised
 };
 /// All of them, in the order of the documents.
-const std::vector<HoldKind>& hold_kinds();
+const std::vector<InvariantKind>& invariant_kinds();
 
 /// "mean (within 0.001; for some settings)".
-std::string hold_text(const HoldSchema& hold);
+std::string invariant_text(const InvariantSchema& hold);
 
 }  // namespace afterglow

@@ -11,7 +11,7 @@
 #include "script/composite.h"
 #include "script/entry_run.h"
 #include "script/graph_binding.h"
-#include "script/hold_reader.h"
+#include "script/invariant_reader.h"
 #include "script/injection.h"
 #include "script/items.h"
 #include "script/native.h"
@@ -212,7 +212,7 @@ bool Preset::detailed() const {
 }
 std::uint64_t Preset::evaluations() const { return state_->evaluations; }
 std::vector<std::string> Preset::needs() const { return state_->needs; }
-std::shared_ptr<const FileLooks> Preset::looked_at() const { return state_->runtime->path.record->looks(); }
+std::shared_ptr<const FileProbes> Preset::probes() const { return state_->runtime->path.record->looks(); }
 const SearchPath& Preset::path() const { return state_->runtime->path; }
 const std::vector<std::filesystem::path>& Preset::files() const { return state_->runtime->files; }
 
@@ -340,9 +340,9 @@ Result<Build> Preset::evaluate(const BuildContext& context, Diagnostics& diagnos
             .files = {}};
   out.graph = graph.finish(image.id);
   out.promise_error = box.run(state.file, [&](lua_State* lua) {
-    for (const auto& run : state.runs) out.promises.push_back({run.entry.name, holds_of(lua, run, context.size)});
+    for (const auto& run : state.runs) out.promises.push_back({run.entry.name, invariants_of(lua, run, context.size)});
   });
-  out.files = looked_at();
+  out.files = probes();
   return out;
 }
 

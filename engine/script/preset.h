@@ -50,13 +50,13 @@ struct SettingSchema {
 };
 
 /// A promise of an effect about its result (script/holds.h), with its parameters.
-struct Hold {
+struct Invariant {
   std::string name;
   std::map<std::string, double> numbers;        ///< NaN: left open
   std::map<std::string, std::string> settings;  ///< parameters that name a setting
 };
-struct HoldSchema {
-  Hold stated;                        ///< without what is computed
+struct InvariantSchema {
+  Invariant stated;                        ///< without what is computed
   std::vector<std::string> computed;  ///< numbers that depend on settings and size
   bool conditional = false;           ///< holds for some settings or sizes alone
 };
@@ -89,7 +89,7 @@ struct EffectSchema {
   SpaceUse space;                       ///< where it is the same for all settings
   bool space_by_settings = false;       ///< it depends on settings
   std::vector<SettingSchema> settings;  ///< in order of declaration
-  std::vector<HoldSchema> holds;        ///< what it promises
+  std::vector<InvariantSchema> invariants;        ///< what it promises
   std::filesystem::path file;
   std::vector<std::filesystem::path> shadowed;  ///< files of the same name further down the search path
 };
@@ -231,7 +231,7 @@ class Preset {
   const std::vector<std::filesystem::path>& files() const;
 
   /// Everything that was looked at on disk so far, also in vain: what the next Build::files holds.
-  std::shared_ptr<const FileLooks> looked_at() const;
+  std::shared_ptr<const FileProbes> probes() const;
 
   /// Bytes that the script's state holds, after a collection.
   std::size_t memory_used() const;

@@ -30,15 +30,15 @@ struct InputList {
 };
 
 /// A promise as an effect makes it.
-struct DeclaredHold {
-  HoldSchema schema;
+struct DeclaredInvariant {
+  InvariantSchema schema;
   FunctionRef when;  ///< not set: always
   std::map<std::string, FunctionRef> computed;
 };
 
 struct Effect {
   EffectSchema schema;
-  std::vector<DeclaredHold> holds;  ///< parallel to the schema's
+  std::vector<DeclaredInvariant> invariants;  ///< parallel to the schema's
   FunctionRef active, build, idle, space;
   InputList needs, optional;
   bool is_group() const { return !build.set(); }  ///< of fx.group and fx.mix: no script made it

@@ -14,7 +14,7 @@ struct LiveStack::State {
   std::vector<Override> overrides;
   std::string shown;
 
-  std::shared_ptr<const FileLooks> followed;  ///< of frames
+  std::shared_ptr<const FileProbes> followed;  ///< of frames
   std::uint64_t stacks_taken = 0;
   BuiltStack stack;
   mutable std::mutex mutex;
@@ -142,7 +142,7 @@ std::vector<std::string> LiveStack::images() const {
   return state_->stack.stack ? state_->stack.stack->images() : std::vector<std::string>{};
 }
 
-void LiveStack::also_follow(const std::shared_ptr<const FileLooks>& looks) {
+void LiveStack::also_follow(const std::shared_ptr<const FileProbes>& looks) {
   if (looks == state_->followed) return;
   state_->followed = looks;
   state_->builder.also_follow(*looks);

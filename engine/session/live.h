@@ -110,7 +110,7 @@ class LiveStack {
 
   /// What a frame has looked at (Build::files) is followed as well: at another time a preset may use shaders that the
   /// build has not met. Cheap when it is the same value as the last time.
-  void also_follow(const std::shared_ptr<const FileLooks>& looks);
+  void also_follow(const std::shared_ptr<const FileProbes>& looks);
 
   /// Any thread.
   LiveStatus status() const;

@@ -101,7 +101,7 @@ bool LiveBuilder::overtaken() const {
     if (ends_ || wanted_.request) return true;
     if (!wanted_.files) return false;
   }
-  return first_changed(looks_, options_.watch.poll).has_value();
+  return first_changed(probes_, options_.watch.poll).has_value();
 }
 
 // ---- the thread
@@ -137,8 +137,8 @@ void LiveBuilder::run() {
 }
 
 void LiveBuilder::work(const Wanted& why, const LiveRequest& request) {
-  take_new_looks();
-  if (!why.request && !first_changed(looks_, options_.watch.poll) && !first_changed(later_looks_)) return;
+  take_new_probes();
+  if (!why.request && !first_changed(probes_, options_.watch.poll) && !first_changed(later_probes_)) return;
   BuildTimes times;
   times.notice = milliseconds_between(why.since.value_or(Clock::now()), Clock::now());
   {
@@ -259,43 +259,43 @@ void LiveBuilder::warm_up(Stack& stack, BuildTimes& times) {
 }
 
 /// Frames may read what the build did not: other passes at another time.
-void LiveBuilder::also_follow(FileLooks looks) {
+void LiveBuilder::also_follow(FileProbes looks) {
   const std::lock_guard lock(mutex_);
-  new_looks_.merge(looks);
+  new_probes_.merge(looks);
   wanted_.files = true;
   wanted_.note(Clock::now());
   changed_.notify_all();
 }
 
-void LiveBuilder::take_new_looks() {
+void LiveBuilder::take_new_probes() {
   {
     const std::lock_guard lock(mutex_);
-    if (new_looks_.empty()) return;
-    later_looks_.merge(new_looks_);
-    new_looks_.clear();
+    if (new_probes_.empty()) return;
+    later_probes_.merge(new_probes_);
+    new_probes_.clear();
   }
   watch();
 }
 
 void LiveBuilder::watch() {
   if (!watcher_) return;
-  std::vector<std::filesystem::path> paths = paths_to_watch(looks_);
-  for (auto& path : paths_to_watch(later_looks_)) paths.push_back(std::move(path));
+  std::vector<std::filesystem::path> paths = paths_to_watch(probes_);
+  for (auto& path : paths_to_watch(later_probes_)) paths.push_back(std::move(path));
   watcher_->watch(paths);
 }
 
 /// Watches what the build has looked at; what changed before it was watched is looked at again.
-void LiveBuilder::follow(FileLooks looks) {
+void LiveBuilder::follow(FileProbes looks) {
   const auto same_path = [](const auto& a, const auto& b) {
     return a.first == b.first &&
-           (a.second.kind == FileLook::Kind::listing) == (b.second.kind == FileLook::Kind::listing);
+           (a.second.kind == FileProbe::Kind::listing) == (b.second.kind == FileProbe::Kind::listing);
   };
-  const bool same = std::ranges::equal(looks_, looks, same_path);
-  looks_ = std::move(looks);
-  const bool had_more = !later_looks_.empty();
-  later_looks_.clear();  // frames of the new stack read them again
+  const bool same = std::ranges::equal(probes_, looks, same_path);
+  probes_ = std::move(looks);
+  const bool had_more = !later_probes_.empty();
+  later_probes_.clear();  // frames of the new stack read them again
   if (!same || had_more) watch();
-  if (!first_changed(looks_)) return;
+  if (!first_changed(probes_)) return;
   const std::lock_guard lock(mutex_);
   wanted_.files = true;
   wanted_.note(Clock::now());

@@ -40,7 +40,7 @@ struct BuiltStack {
   std::shared_ptr<Heard> heard;
   std::unique_ptr<Diagnostics> diagnostics;
   std::unique_ptr<Stack> stack;
-  std::shared_ptr<const FileLooks> files{};  ///< that the build has looked at
+  std::shared_ptr<const FileProbes> files{};  ///< that the build has looked at
   bool for_frame = false;                    ///< see LiveRequest
 };
 
@@ -63,7 +63,7 @@ class LiveBuilder {
   void change(const std::function<void(LiveRequest&)>& apply, bool build);
   void look();  ///< at the files
   void settle();
-  void also_follow(FileLooks looks);
+  void also_follow(FileProbes looks);
   BuiltParts take();
   void release(BuiltStack stack);  ///< destroys it on the builder's thread
   void forward(const std::function<void(LiveStatus&, LiveStack::Counters&)>& apply);
@@ -102,8 +102,8 @@ class LiveBuilder {
   void give_up(bool for_frame);
   void warm_up(Stack& stack, BuildTimes& times);
   bool overtaken() const;
-  void follow(FileLooks looks);
-  void take_new_looks();
+  void follow(FileProbes looks);
+  void take_new_probes();
   void watch();
   void notify() const;
 
@@ -114,8 +114,8 @@ class LiveBuilder {
   Diagnostics& diagnostics_;
 
   // Of the builder's thread alone.
-  FileLooks looks_;             ///< of the last build
-  FileLooks later_looks_;       ///< of frames since
+  FileProbes probes_;             ///< of the last build
+  FileProbes later_probes_;       ///< of frames since
   std::optional<Basis> basis_;  ///< of the newest stack that was built
   Clock::time_point published_at_{};
   std::unique_ptr<WarmUp> warm_up_;
@@ -126,7 +126,7 @@ class LiveBuilder {
   LiveRequest request_;
   Wanted wanted_;
   bool busy_ = false, ends_ = false;
-  FileLooks new_looks_;           ///< of frames
+  FileProbes new_probes_;           ///< of frames
   std::shared_ptr<Until> until_;  ///< when the script that is running ends at the latest
   Clock::time_point script_began_{};
   BuiltParts parts_;

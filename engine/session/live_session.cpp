@@ -61,7 +61,7 @@ Result<RenderRequest> LiveSession::State::prepare(const BuildContext& next) {
   Stack* stack = live->stack();
   if (!stack) return RenderRequest{};
   auto request = request_of(*stack);
-  live->also_follow(stack->preset().looked_at());
+  live->also_follow(stack->preset().probes());
   if (request && aside && !new_shape) waits = !there_or_late(request->work);
   return request;
 }

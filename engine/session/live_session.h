@@ -52,7 +52,7 @@ class LiveSession {
   const FrameTimes& times() const;  ///< of the last frame
   /// What the last frame left out, with reasons: effects, passes, what was done before.
   std::vector<Skipped> skipped() const;
-  std::vector<std::string> kernels() const;  ///< that the last frame's program has, joined passes as "a+b"
+  std::vector<std::string> kernels() const;  ///< that the last frame's program has, fused passes as "a+b"
   ProgramMemory memory() const;
   Renderer::Counters counters() const;
 

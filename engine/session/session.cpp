@@ -26,7 +26,7 @@ bool lost_alpha(const Picture& picture, const Rect& part) {
     for (int x = part.x; x < part.x + part.width; ++x) {
       const std::size_t alpha =
           4 * (static_cast<std::size_t>(y) * picture.color.width + static_cast<std::size_t>(x)) + 3;
-      if (picture.codes[alpha] == 0 && picture.color.pixels[alpha] >= 1.0f / 255) return true;
+      if (picture.unorm8[alpha] == 0 && picture.color.pixels[alpha] >= 1.0f / 255) return true;
     }
   return false;
 }
@@ -156,12 +156,12 @@ Result<void> Session::collect(Picture& picture) {
   result.keep_alpha = true;
   auto report = s.renderer->collect(result);
   picture.color.pixels = std::move(result.pixels);
-  picture.codes = std::move(result.codes);
+  picture.unorm8 = std::move(result.unorm8);
   if (!report) return std::move(report).error();
   s.last = std::move(*report);
   s.times.frame = s.last.times;
   s.flagged = result.flagged;
-  if (result.flagged && frame.encoding && frame.encoding->straight_alpha && !picture.codes.empty())
+  if (result.flagged && frame.encoding && frame.encoding->straight_alpha && !picture.unorm8.empty())
     s.flagged = lost_alpha(picture, frame.region.value_or(Rect{0, 0, picture.color.width, picture.color.height}));
   return {};
 }

@@ -36,7 +36,7 @@ struct SessionReport {
   std::vector<Skipped> skipped;  ///< effects and passes that no frame of this size runs, with reasons
   /// What the last frame did not run besides, because of its content, or because it was done before.
   std::vector<Skipped> skipped_now;
-  std::vector<std::string> kernels;  ///< what ran in the last frame, joined passes as "a+b"
+  std::vector<std::string> kernels;  ///< what ran in the last frame, fused passes as "a+b"
   ProgramMemory memory;
   std::uint64_t clamped = 0;  ///< half storage: samples of the last frame held at ±65504
   /// With StackOptions::flag_non_finite: the last frame met a colour that is not finite, see ProgramOptions. Pixels
@@ -77,7 +77,7 @@ class Session {
 
   /// Runs the stack: `picture.color` becomes the result; its alpha stays. A stack with nothing to do leaves the picture
   /// untouched. The request's build was evaluated for this size and these auxiliary images.
-  /// With `encoding` the result may come as `picture.codes` instead, and `picture.color` stays the source.
+  /// With `encoding` the result may come as `picture.unorm8` instead, and `picture.color` stays the source.
   /// With `region`, in pixels of the picture and within it, that part of the result is made and the rest is undefined.
   /// Pictures whose `content` is known and was there before are not run again while settings stay.
   Result<void> process(Picture& picture, FrameRequest request);

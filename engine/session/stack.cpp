@@ -14,7 +14,7 @@
 namespace afterglow {
 namespace {
 
-constexpr ExecutionConfig kReference{.joining = Joining::none, .share_memory = false};
+constexpr ExecutionConfig kReference{.fusion = Fusion::none, .share_memory = false};
 
 StackChoice choose(const Device& device, const StackOptions& options, const Calibration& calibration,
                    double max_error) {
@@ -138,14 +138,14 @@ Result<FrameWork> Stack::work(const FrameRequest& frame) {
   FrameWork work{.graph = frame.build->graph,
                  .texts = {},
                  .region = frame.region,
-                 .codes = false,
+                 .unorm8 = false,
                  .frame = frame.build->context.frame,
                  .step = frame.step,
                  .restart = frame.restart};
   state_->cut(work.graph);
   AFTERGLOW_CHECK(validate(work.graph));
-  work.codes = frame.encoding && !state_->options.reference && work.runs();
-  if (work.codes) encode_for_display(work.graph, *frame.encoding);
+  work.unorm8 = frame.encoding && !state_->options.reference && work.runs();
+  if (work.unorm8) encode_for_display(work.graph, *frame.encoding);
   AFTERGLOW_TRY(work.texts, texts_of(work.graph, *state_->shaders));
   return work;
 }

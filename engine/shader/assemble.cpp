@@ -1,4 +1,4 @@
-// Joins a head and pixel stages into the text of one fragment shader. The text holds no image size, no file and no pass
+// Fuses an anchor and pixel stages into the text of one fragment shader. The text holds no image size, no file and no pass
 // name, so that equal work has equal text, and one compiled kernel serves every level of a pyramid.
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "shader/axis.h"
 #include "shader/cpu/interleave.h"
 #include "shader/cpu/storage_reads.h"
-#include "shader/filter_head.h"
+#include "shader/filter_anchor.h"
 #include "shader/give_values.h"
 #include "shader/kernel.h"
 #include "shader/prelude.h"
@@ -46,26 +46,26 @@ class Assembler {
 
   Result<AssembledKernel> run() {
     if (kernel_.filter && kernel_.sample)
-      return Error{ErrorKind::other, "a kernel has one head: a filter or a sample stage"};
+      return Error{ErrorKind::other, "a kernel has one anchor stage: a filter or a sample"};
     if (kernel_.sample && kernel_.sample->shader) out_.workgroup = kernel_.sample->shader->interface.workgroup;
     if (kernel_.config.rows < 1 || kernel_.config.rows > (out_.workgroup ? 1 : kMaxRows))
       return Error{ErrorKind::other, fmt::format("an invocation makes 1 to {} rows, not {}",
                                                  out_.workgroup ? 1 : kMaxRows, kernel_.config.rows)};
-    if (out_.workgroup && kernel_.target == KernelTarget::codes8)
+    if (out_.workgroup && kernel_.target == KernelTarget::unorm8)
       return Error{ErrorKind::other, "a compute shader makes no codes"};
     out_.file_names = {"", "lib/prelude.glsl"};
-    AFTERGLOW_CHECK(head());
+    AFTERGLOW_CHECK(anchor());
     if (watches()) row_ += "  float ag_light = 0.0;\n" + add_light("ag_color");
     keep(0);
     for (std::size_t i = 0; i < kernel_.stages.size(); ++i) AFTERGLOW_CHECK(pixel_stage(i));
     if (out_.images.size() > kMaxImages) {
-      Error error{ErrorKind::script, fmt::format("the joined passes read {} images", out_.images.size())};
+      Error error{ErrorKind::script, fmt::format("the fused passes read {} images", out_.images.size())};
       error.allowed = fmt::format("at most {}", kMaxImages);
       return error;
     }
     out_.glsl += kHeader;
     if (!out_.unset.empty()) out_.glsl += give_value_header();
-    if (kernel_.config.hide_uniforms) out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
+    if (kernel_.config.defeat_uniform_inlining) out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
     out_.glsl += targets();
     if (!block_.empty()) out_.glsl += "layout(set = 0, binding = 0, std140) uniform ag_Block {\n" + block_ + "};\n";
     out_.glsl += images_;
@@ -75,11 +75,11 @@ class Assembler {
     out_.glsl += library_text_ + stages_ + "#line 1 0\n";
     if (kernel_.target == KernelTarget::float16) out_.glsl += kRoundToHalf;
     if (kernel_.target == KernelTarget::float16) row_ += "  ag_color = ag_round_to_half(ag_color);\n";
-    if (kernel_.target == KernelTarget::codes8) row_ += "  ag_color = clamp(ag_color, 0.0, 1.0);\n";
+    if (kernel_.target == KernelTarget::unorm8) row_ += "  ag_color = clamp(ag_color, 0.0, 1.0);\n";
     if (watches()) row_ += "  bool ag_finite = abs(ag_light) <= 3.4028234e38;\n";
-    if (kernel_.watch == Watch::flag)
-      row_ += fmt::format("  ag_color.a {} float(ag_finite);\n", kernel_.target == KernelTarget::codes8 ? "*=" : "=");
-    if (kernel_.watch == Watch::hand_on)
+    if (kernel_.finite_check == FiniteCheck::flag)
+      row_ += fmt::format("  ag_color.a {} float(ag_finite);\n", kernel_.target == KernelTarget::unorm8 ? "*=" : "=");
+    if (kernel_.finite_check == FiniteCheck::propagate)
       row_ += "  ag_color = mix(vec4(uintBitsToFloat(0x7fc00000u)), ag_color, bvec4(ag_finite));\n";
     if (row_.empty()) {
       store("ag_color{0}");
@@ -94,7 +94,7 @@ class Assembler {
   }
 
  private:
-  bool watches() const { return kernel_.watch != Watch::none; }
+  bool watches() const { return kernel_.finite_check != FiniteCheck::none; }
 
   /// The number of the colour that flows into a stage.
   int color_of(std::size_t stage) const { return kernel_.stages[stage].color.value_or(static_cast<int>(stage)); }
@@ -159,7 +159,7 @@ class Assembler {
   }
   void multiply() { row_ += fmt::format("  ag_color = vec4(ag_color.rgb * ag_cover{0}, ag_alpha{0});\n", divisions_); }
 
-  Result<void> head() {
+  Result<void> anchor() {
     if (kernel_.sample) return add_stage(*kernel_.sample, out_.workgroup ? PassKind::compute : PassKind::sample);
     const ImageRead read = add_image(-1, "source", "ag_image0", true);
     images_ += fmt::format("#define ag_texel0(p) {}\n", texel(read, "ag_image0", "p"));
@@ -171,7 +171,7 @@ class Assembler {
       body_ += code;
     } else {
       AFTERGLOW_TRY(const std::string code,
-                    filter_head(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.config.hardware_filter));
+                    filter_anchor(*kernel_.filter, kernel_.ratio_x, kernel_.ratio_y, kernel_.config.hardware_filter));
       head_function_ = "vec4 ag_filter(ivec2 ag_pixel) {\n  vec4 ag_color;\n" + code + "  return ag_color;\n}\n";
       every_row("vec4 ag_color{0} = ag_filter(ag_pixel{0});");
     }

@@ -9,7 +9,7 @@
 
 namespace afterglow {
 
-/// Compiles a kernel of this shader alone (own-pixel or sample head). Cheap when the compiler has it cached.
+/// Compiles a kernel of this shader alone (own-pixel or sample anchor). Cheap when the compiler has it cached.
 /// Thread-safe. Errors (script): as KernelCompiler::compile.
 Result<void> check_shader(KernelCompiler& compiler, std::shared_ptr<const ShaderSource> shader,
                           const std::map<std::string, double>& constants = {});

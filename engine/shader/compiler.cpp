@@ -10,7 +10,7 @@
 
 #include "core/cache_folder.h"
 #include "core/file.h"
-#include "shader/cpu/hide_uniforms.h"
+#include "shader/cpu/defeat_uniform_inlining.h"
 #include "shader/cpu/interleave.h"
 #include "shader/give_values.h"
 #include "shader/glsl.h"
@@ -100,7 +100,7 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   kernel.spirv = std::move(given.spirv);
   kernel.unset = std::move(given.read);
   if (desc.config.rows > 1) kernel.spirv = interleave_rows(kernel.spirv, kTogether);
-  if (desc.config.hide_uniforms) kernel.spirv = hide_uniforms(kernel.spirv);
+  if (desc.config.defeat_uniform_inlining) kernel.spirv = defeat_uniform_inlining(kernel.spirv);
   AFTERGLOW_TRY(const Reflection reflection, reflect(kernel.spirv));
   kernel.block_size = reflection.block_size;
   // Of a block that no shader reads the compiler leaves nothing: there are no bytes to give.

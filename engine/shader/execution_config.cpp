@@ -19,9 +19,9 @@ struct Word {
   void (*apply)(ExecutionConfig&);
 };
 constexpr Word kWords[] = {
-    {"apart", [](ExecutionConfig& c) { c.joining = Joining::none; }},
-    {"heads", [](ExecutionConfig& c) { c.joining = Joining::heads; }},
-    {"joined", [](ExecutionConfig& c) { c.joining = Joining::all; }},
+    {"unfused", [](ExecutionConfig& c) { c.fusion = Fusion::none; }},
+    {"fused-filters", [](ExecutionConfig& c) { c.fusion = Fusion::filters; }},
+    {"fused", [](ExecutionConfig& c) { c.fusion = Fusion::all; }},
     {"fp32", [](ExecutionConfig& c) { c.storage = Storage::fp32; }},
     {"fp16", [](ExecutionConfig& c) { c.storage = Storage::fp16; }},
     {"hardware-filter", [](ExecutionConfig& c) { c.hardware_filter = true; }},
@@ -50,7 +50,7 @@ Error unknown_word(const std::string& word) {
 }  // namespace
 
 std::string execution_name(const ExecutionConfig& config) {
-  std::string name = config.joining == Joining::all ? "joined" : config.joining == Joining::heads ? "heads" : "apart";
+  std::string name = config.fusion == Fusion::all ? "fused" : config.fusion == Fusion::filters ? "fused-filters" : "unfused";
   name += config.storage == Storage::fp16 ? " fp16" : " fp32";
   if (config.hardware_filter) name += " hardware-filter";
   if (config.storage_reads) name += " storage-reads";

@@ -12,10 +12,10 @@
 namespace afterglow {
 
 /// Which passes share a kernel.
-enum class Joining {
-  none,   ///< every pass on its own
-  heads,  ///< a filter with the pixel pass of the same effect that follows it: passes as math.md §4 writes them
-  all     ///< pixel passes with whatever feeds them
+enum class Fusion {
+  none,     ///< every pass on its own
+  filters,  ///< a filter with the pixel pass of the same effect that follows it: passes as math.md §4 writes them
+  all       ///< pixel passes with whatever feeds them
 };
 
 /// What images between kernels hold.
@@ -24,7 +24,7 @@ enum class Storage { fp32, fp16 };
 inline constexpr int kMaxRows = 8;  ///< colour attachments that every desktop device has
 
 struct ExecutionConfig {
-  Joining joining = Joining::all;
+  Fusion fusion = Fusion::all;
   Storage storage = Storage::fp32;
   /// The sampler may interpolate (8-bit fractions) where that helps and the device can.
   bool hardware_filter = false;
@@ -38,19 +38,19 @@ struct ExecutionConfig {
   int rows = 1;
   /// The driver is kept from compiling a kernel again for each value of its parameters, as CPU drivers do. Costs an
   /// instruction a read. It has no word: exec/cpu decides it by the device.
-  bool hide_uniforms = false;
+  bool defeat_uniform_inlining = false;
   friend bool operator==(const ExecutionConfig&, const ExecutionConfig&) = default;
 };
 
 /// The baseline of all comparisons: one RGBA16F fragment pass for each pass of math.md §4, read through a linear
 /// sampler (a B-spline is then four fetches).
 inline constexpr ExecutionConfig kPlain16f{
-    .joining = Joining::heads, .storage = Storage::fp16, .hardware_filter = true};
+    .fusion = Fusion::filters, .storage = Storage::fp16, .hardware_filter = true};
 /// The same in full floats.
 inline constexpr ExecutionConfig kPlain32f{
-    .joining = Joining::heads, .storage = Storage::fp32, .hardware_filter = true};
+    .fusion = Fusion::filters, .storage = Storage::fp32, .hardware_filter = true};
 
-/// "joined fp32 storage-reads rows8": the words of all that is not default, after joining and storage.
+/// "fused fp32 storage-reads rows8": the words of all that is not default, after fusion and storage.
 std::string execution_name(const ExecutionConfig& config);
 
 /// Reads what `execution_name` writes, or "plain16f", "plain32f". Words may be separated by spaces or '+', in any

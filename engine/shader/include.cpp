@@ -104,7 +104,7 @@ class Resolver {
     return error;
   }
 
-  /// Names are made unique per file when shaders are joined, so one name must mean one thing in a file. (Macros may be
+  /// Names are made unique per file when shaders are fused, so one name must mean one thing in a file. (Macros may be
   /// defined again: the file's own hides the other.)
   Result<void> check_names(const std::string& file, const std::vector<GlobalName>& own,
                            const std::vector<std::size_t>& seen) const {

@@ -1,4 +1,4 @@
-// A kernel: one full-screen fragment shader, or one compute shader, made of a head (how the first colour of a pixel is
+// A kernel: one full-screen fragment shader, or one compute shader, made of an anchor (how the first colour of a pixel is
 // found) and pixel stages that follow. Assembled from authors' GLSL and from filters described as data, then compiled
 // to SPIR-V and reflected.
 #pragma once
@@ -20,7 +20,7 @@
 
 namespace afterglow {
 
-/// Colours inside a kernel have numbers: 0 is the head's, n what the n-th pixel stage made.
+/// Colours inside a kernel have numbers: 0 is the anchor's, n what the n-th pixel stage made.
 inline constexpr int kOwnImage = -1;  ///< no such colour: it is read from an image, at the target's pixel
 
 /// One author's shader in a kernel with the values of its specialised parameters (by name; missing: the default).
@@ -41,7 +41,7 @@ struct KernelStage {
   std::map<std::string, std::pair<int, std::string>> again = {};
 };
 
-/// How source and target sizes of a filter head relate on an axis; the executor picks it from the sizes, the
+/// How source and target sizes of a filter anchor relate on an axis; the executor picks it from the sizes, the
 /// assembler emits cheaper addressing for the exact cases.
 enum class AxisRatio { any, same, half, twice, fourfold };  // n_dst = n_src · {?, 1, 1/2, 2, 4}, exactly
 
@@ -51,19 +51,19 @@ enum class ImageRead { sampled, storage_rgba32f, storage_rgba16f };
 
 /// What a kernel writes: RGBA32F; RGBA16F (held to ±65504 and rounded); RGBA8 of codes that the last stage gives as
 /// 0…1.
-enum class KernelTarget { float32, float16, codes8 };
+enum class KernelTarget { float32, float16, unorm8 };
 
-/// What a kernel does where a colour on its way is not finite: that of the head, one that a stage reads at its own
+/// What a kernel does where a colour on its way is not finite: that of the anchor, one that a stage reads at its own
 /// pixel, or what a stage made of them, whatever later stages make of it. (Finite ones whose sum is above 1e38 count as
 /// such.)
-enum class Watch {
+enum class FiniteCheck {
   none,
-  hand_on,  ///< it writes NaN there, so that later kernels see it
-  flag      ///< it writes alpha 0 there, and elsewhere 1 (codes8: what the last stage gave)
+  propagate,  ///< it writes NaN there, so that later kernels see it
+  flag      ///< it writes alpha 0 there, and elsewhere 1 (unorm8: what the last stage gave)
 };
 
 struct KernelDesc {
-  /// Head: exactly one of `filter` (source is bound at image 0) or `sample` is set; neither: the own pixel of image 0.
+  /// Anchor stage: exactly one of `filter` (source is bound at image 0) or `sample` is set; neither: the own pixel of image 0.
   std::optional<Filter> filter;
   AxisRatio ratio_x = AxisRatio::any, ratio_y = AxisRatio::any;
   std::optional<KernelStage> sample;  ///< a shader with sample_at, or with compute_at: then this is a compute shader
@@ -73,7 +73,7 @@ struct KernelDesc {
   /// read is read once.
   ExecutionConfig config{};
   KernelTarget target = KernelTarget::float32;
-  Watch watch = Watch::none;
+  FiniteCheck finite_check = FiniteCheck::none;
   /// Wished for each image slot, in the order of AssembledKernel::images; those beyond the end are sampled. An input
   /// that an author's shader uses in any other way than by the prelude's functions stays sampled.
   std::vector<ImageRead> reads{};
@@ -99,13 +99,13 @@ struct KernelParam {
 /// in a storage image, which is bound behind the others. Push constants: see kPushConstantBytes below.
 struct AssembledKernel {
   std::string glsl;
-  /// Image slots: the head's source (filter or own pixel) or the sample stage's sampler2D inputs in order of
+  /// Image slots: the anchor's source (filter or own pixel) or the sample stage's sampler2D inputs in order of
   /// declaration, then of each pixel stage the image that is its colour (`kOwnImage`: "source") and its pixel-wise and
   /// sampler2D inputs in order of declaration, without those that are colours of the kernel
   /// or were read before.
   struct ImageSlot {
-    int stage = -1;    ///< -1: the head's source; else as in KernelParam::stage
-    std::string name;  ///< input name, or "source" for the head
+    int stage = -1;    ///< -1: the anchor's source; else as in KernelParam::stage
+    std::string name;  ///< input name, or "source" for the anchor
     ImageRead read =
         ImageRead::sampled;  ///< what the kernel got: a combined image sampler or a read-only storage image
   };
@@ -146,7 +146,7 @@ struct CompiledKernel {
 struct LinesRead {
   int together = 0, apart = 0;
 };
-/// For a kernel with this filter as its head; nothing where each row is made by itself.
+/// For a kernel with this filter as its anchor; nothing where each row is made by itself.
 std::optional<LinesRead> lines_shared(const Filter& filter, AxisRatio ratio_y, int rows);
 
 /// Pure text. Errors: script, only for what ShaderLibrary could not see.

@@ -32,7 +32,7 @@ struct ShaderSource {
   };
   std::vector<Include> includes;
   std::vector<std::string>
-      global_names;    ///< identifiers and macros that the file defines at file scope (renamed when shaders are joined)
+      global_names;    ///< identifiers and macros that the file defines at file scope (renamed when shaders are fused)
   Hash hash;           ///< of text and includes
   bool loops = false;  ///< it or a library of it has a loop
   bool keeps_state = false;  ///< it or a library of it has variables at file scope that functions may write

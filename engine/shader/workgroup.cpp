@@ -23,7 +23,7 @@ int number_of(const Token& token) {
 
 }  // namespace
 
-Result<Workgroup> parse_workgroup(const Token& head, std::span<const Token* const> arguments, const std::string& file) {
+Result<Workgroup> parse_workgroup(const Token& anchor, std::span<const Token* const> arguments, const std::string& file) {
   static const std::vector<std::string> kNames = {"local_size_x", "local_size_y", "pixels_x", "pixels_y"};
   std::array<int, 4> sizes{1, 1, 0, 0};
   for (std::size_t i = 0; i < arguments.size(); i += 4) {
@@ -48,13 +48,13 @@ Result<Workgroup> parse_workgroup(const Token& head, std::span<const Token* cons
   Workgroup out{{sizes[0], sizes[1]}, {sizes[2] ? sizes[2] : sizes[0], sizes[3] ? sizes[3] : sizes[1]}};
   if (out.invocations.area() > kMaxInvocations) {
     Error error =
-        shader_error(file, head.line,
+        shader_error(file, anchor.line,
                      fmt::format("a workgroup of {}×{} invocations", out.invocations.width, out.invocations.height));
     error.allowed = fmt::format("at most {} in all", kMaxInvocations);
     return error;
   }
   if (out.pixels.width > out.invocations.width || out.pixels.height > out.invocations.height) {
-    Error error = shader_error(file, head.line, "a workgroup makes more pixels than it has invocations");
+    Error error = shader_error(file, anchor.line, "a workgroup makes more pixels than it has invocations");
     error.allowed = "pixels_x at most local_size_x, pixels_y at most local_size_y";
     return error;
   }

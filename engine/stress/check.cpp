@@ -11,7 +11,7 @@
 namespace afterglow::stress {
 namespace {
 
-const Hold kNoHold;
+const Invariant kNoInvariant;
 
 Outcome compare_bits(const Image& a, const Image& wanted, const std::string& what) {
   std::size_t different = 0, first = 0;
@@ -44,7 +44,7 @@ std::string place_of(const Image& image, std::size_t sample) {
                      kNames[sample % static_cast<std::size_t>(image.channels)]);
 }
 
-Way usual_way(const Lab& lab) { return {.choice = lab.usual()}; }
+Way usual_way(const Harness& harness) { return {.choice = harness.usual()}; }
 
 Outcome compare(const Image& a, const Image& wanted, double allowed, const std::string& what) {
   if (a.size() != wanted.size()) return {.holds = false, .measured = 1, .allowed = 0, .what = what + ": sizes differ"};
@@ -76,15 +76,15 @@ const Check* find_check(const std::string& name) {
   return found == checks().end() ? nullptr : &*found;
 }
 
-Result<Outcome> run_check(Lab& lab, const Situation& situation) {
+Result<Outcome> run_check(Harness& harness, const Situation& situation) {
   const Check& check = *find_check(situation.check);
   if (situation.picture.color.size().area() > check.most_pixels) return not_applicable();
-  const auto facts = lab.facts(situation.look, situation.picture.color.size(), situation.frame);
+  const auto facts = harness.facts(situation.look, situation.picture.color.size(), situation.frame);
   if (!facts) return not_applicable();
-  if (!check.promise) return check.run(lab, situation, kNoHold);
-  const auto hold = std::ranges::find(facts->holds, check.promise, &Hold::name);
-  if (hold == facts->holds.end()) return not_applicable();
-  return check.run(lab, situation, *hold);
+  if (!check.promise) return check.run(harness, situation, kNoInvariant);
+  const auto hold = std::ranges::find(facts->invariants, check.promise, &Invariant::name);
+  if (hold == facts->invariants.end()) return not_applicable();
+  return check.run(harness, situation, *hold);
 }
 
 }  // namespace afterglow::stress

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "stress/lab.h"
+#include "stress/harness.h"
 #include "stress/look.h"
 #include "stress/pictures.h"
 
@@ -32,7 +32,7 @@ struct Check {
   const char* name;
   const char* promise;  ///< the effect's promise that it checks; null: every stack must stand it
   const char* doc;
-  Result<Outcome> (*run)(Lab& lab, const Situation& situation, const Hold& hold);
+  Result<Outcome> (*run)(Harness& harness, const Situation& situation, const Invariant& hold);
   long long most_pixels = 1 << 24;  ///< it runs the stack so often that larger pictures would take too long
 };
 
@@ -41,8 +41,8 @@ std::span<const Check> checks();
 const Check* find_check(const std::string& name);
 
 /// Runs the check that the situation names. A promise that does not hold for these settings does not apply. Errors:
-/// those of Lab; a script that refuses the settings does not apply either.
-Result<Outcome> run_check(Lab& lab, const Situation& situation);
+/// those of Harness; a script that refuses the settings does not apply either.
+Result<Outcome> run_check(Harness& harness, const Situation& situation);
 
 // For the files that hold checks.
 
@@ -66,7 +66,7 @@ inline Picture changed(const Picture& picture) {
 /// The situation's picture without colour: each pixel as bright as its brightest channel.
 Picture greys_of(const Situation& situation);
 /// The usual way of execution, in full floats.
-Way usual_way(const Lab& lab);
+Way usual_way(const Harness& harness);
 /// Compares R, G and B by the measure of docs/math.md §13, over the part of `a` alone when it is given. `allowed` 0:
 /// bit for bit, alpha too.
 Outcome compare(const Image& a, const Image& wanted, double allowed, const std::string& what);

@@ -12,18 +12,18 @@ namespace {
 /// The stack over a family of greys: those of the picture, lifted by `level`.
 class Lifted {
  public:
-  Lifted(Lab& lab, const Situation& s) : lab_(lab), s_(s), base_(greys_of(s)) {}
+  Lifted(Harness& harness, const Situation& s) : harness_(harness), s_(s), base_(greys_of(s)) {}
   Result<Image> at(double level) {
     Picture lifted = changed(base_);
     for (std::size_t i = 0; i < lifted.color.pixels.size(); ++i)
       if (i % 4 < 3) lifted.color.pixels[i] = static_cast<float>(base_.color.pixels[i] * 0.1 + level);
-    AFTERGLOW_TRY(Made made, lab_.run(s_.look, lifted, s_.frame, usual_way(lab_)));
+    AFTERGLOW_TRY(Made made, harness_.run(s_.look, lifted, s_.frame, usual_way(harness_)));
     return std::move(made.image);
   }
   float largest() const { return *std::ranges::max_element(base_.color.pixels); }
 
  private:
-  Lab& lab_;
+  Harness& harness_;
   const Situation& s_;
   Picture base_;
 };
@@ -66,11 +66,11 @@ Result<std::vector<Step>> steps(Lifted& lifted, double low, double high, int cou
 }
 
 /// Looks closer and closer where the most happens: what is left of a jump when the step gets small.
-Result<Outcome> continuous(Lab& lab, const Situation& s, const Hold& hold) {
+Result<Outcome> continuous(Harness& harness, const Situation& s, const Invariant& hold) {
   constexpr int kFirst = 32, kCloser = 8, kZooms = 5;
   constexpr double kRounding = 4e-6;  // of two results, and of the sums that levels are
   const double slope = hold.numbers.at("slope");
-  Lifted lifted(lab, s);
+  Lifted lifted(harness, s);
   AFTERGLOW_TRY(std::vector<Step> found, steps(lifted, 1e-3, 100, kFirst));
   Step worst{};
   for (int zoom = 0; zoom <= kZooms && !found.empty(); ++zoom) {

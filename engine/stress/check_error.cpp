@@ -25,33 +25,33 @@ Outcome against_truth(const Image& image, const std::vector<double>& truth, doub
   return out;
 }
 
-Result<Outcome> check_error(Lab& lab, const Situation& s, const Hold& hold, bool half) {
+Result<Outcome> check_error(Harness& harness, const Situation& s, const Invariant& hold, bool half) {
   const float largest = *std::ranges::max_element(s.picture.color.pixels);
   if (!std::isfinite(hold.numbers.at(half ? "fp16" : "fp32"))) return not_applicable();
   if (largest > hold.numbers.at("up_to") || (half && !exact_in_halves(s.picture.color))) return not_applicable();
-  AFTERGLOW_TRY(const LookFacts facts, lab.facts(s.look, s.picture.color.size(), s.frame));
+  AFTERGLOW_TRY(const LookFacts facts, harness.facts(s.look, s.picture.color.size(), s.frame));
   const auto truth = truth_of(facts, s.picture, s.frame);
   if (!truth) return not_applicable();
   const double allowed = hold.numbers.at(half ? "fp16" : "fp32");
-  Way way = usual_way(lab);
+  Way way = usual_way(harness);
   if (half) way.choice.storage = Storage::fp16;
-  AFTERGLOW_TRY(const Made made, lab.run(s.look, s.picture, s.frame, way));
+  AFTERGLOW_TRY(const Made made, harness.run(s.look, s.picture, s.frame, way));
   return against_truth(made.image, *truth, allowed, half, way);
 }
 
-Result<Outcome> error_fp32(Lab& lab, const Situation& s, const Hold& hold) { return check_error(lab, s, hold, false); }
-Result<Outcome> error_fp16(Lab& lab, const Situation& s, const Hold& hold) { return check_error(lab, s, hold, true); }
+Result<Outcome> error_fp32(Harness& harness, const Situation& s, const Invariant& hold) { return check_error(harness, s, hold, false); }
+Result<Outcome> error_fp16(Harness& harness, const Situation& s, const Invariant& hold) { return check_error(harness, s, hold, true); }
 
 /// Faded, blended and masked effects and groups of them, as far as each promises its error.
-Result<Outcome> composed(Lab& lab, const Situation& s, const Hold&) {
+Result<Outcome> composed(Harness& harness, const Situation& s, const Invariant&) {
   constexpr float kBrightest = 8;   // screens and overlays of brighter light are differences of large numbers
   constexpr double kMasked = 2e-5;  // masks and blends themselves
   if (!s.look.is_composed() || *std::ranges::max_element(s.picture.color.pixels) > kBrightest) return not_applicable();
-  AFTERGLOW_TRY(const LookFacts facts, lab.facts(s.look, s.picture.color.size(), s.frame));
+  AFTERGLOW_TRY(const LookFacts facts, harness.facts(s.look, s.picture.color.size(), s.frame));
   const auto truth = facts.error && facts.runs ? truth_of(facts, s.picture, s.frame) : std::nullopt;
   if (!truth) return not_applicable();
-  const Way way = usual_way(lab);
-  AFTERGLOW_TRY(const Made made, lab.run(s.look, s.picture, s.frame, way));
+  const Way way = usual_way(harness);
+  AFTERGLOW_TRY(const Made made, harness.run(s.look, s.picture, s.frame, way));
   return against_truth(made.image, *truth, *facts.error + kMasked, false, way);
 }
 

@@ -15,13 +15,13 @@ namespace {
 /// Ways that must make the same numbers; the usual one is compared with the plain one in any case.
 const std::vector<ExecutionConfig>& other_choices() {
   static const std::vector<ExecutionConfig> all{
-      {.joining = Joining::none},
-      {.joining = Joining::heads, .share_memory = false},
-      {.joining = Joining::all, .storage_reads = true},
-      {.joining = Joining::all, .share_memory = false, .rows = 3},
-      {.joining = Joining::all, .storage_reads = true, .rows = 8},
-      {.joining = Joining::heads, .storage_reads = true, .rows = 4},
-      {.joining = Joining::all, .compute = true},
+      {.fusion = Fusion::none},
+      {.fusion = Fusion::filters, .share_memory = false},
+      {.fusion = Fusion::all, .storage_reads = true},
+      {.fusion = Fusion::all, .share_memory = false, .rows = 3},
+      {.fusion = Fusion::all, .storage_reads = true, .rows = 8},
+      {.fusion = Fusion::filters, .storage_reads = true, .rows = 4},
+      {.fusion = Fusion::all, .compute = true},
   };
   return all;
 }
@@ -29,8 +29,8 @@ const std::vector<ExecutionConfig>& other_choices() {
 constexpr double kSame = 1e-6;       // between ways of execution, by the measure of math.md §13
 constexpr double kRegrouped = 2e-5;  // where workgroups add in another order
 
-Way half_way(const Lab& lab) {
-  Way way = usual_way(lab);
+Way half_way(const Harness& harness) {
+  Way way = usual_way(harness);
   way.choice.storage = Storage::fp16;
   return way;
 }
@@ -60,9 +60,9 @@ Outcome source_is_sound(const Picture& picture) {
   return {};
 }
 
-Result<Outcome> finite(Lab& lab, const Situation& s, const Hold&) {
+Result<Outcome> finite(Harness& harness, const Situation& s, const Invariant&) {
   if (auto sound = source_is_sound(s.picture); !sound.holds) return sound;
-  AFTERGLOW_TRY(const auto images, lab.images(s.look, s.picture, s.frame));
+  AFTERGLOW_TRY(const auto images, harness.images(s.look, s.picture, s.frame));
   for (const auto& [name, image] : images)
     if (auto outcome = all_finite(image, std::numeric_limits<float>::max(), "image " + name); !outcome.holds)
       return outcome;
@@ -70,15 +70,15 @@ Result<Outcome> finite(Lab& lab, const Situation& s, const Hold&) {
 }
 
 /// As users run it, in full and in half floats, and one of the images in between.
-Result<Outcome> finite_joined(Lab& lab, const Situation& s, const Hold&) {
-  AFTERGLOW_TRY(const LookFacts facts, lab.facts(s.look, s.picture.color.size(), s.frame));
+Result<Outcome> finite_fused(Harness& harness, const Situation& s, const Invariant&) {
+  AFTERGLOW_TRY(const LookFacts facts, harness.facts(s.look, s.picture.color.size(), s.frame));
   Random random(s.seed);
   const std::string between = facts.images.empty() ? "" : random.pick(facts.images);
   for (const bool half : {false, true})
     for (const std::string& shown : {std::string(), between}) {
-      Way way = half ? half_way(lab) : usual_way(lab);
+      Way way = half ? half_way(harness) : usual_way(harness);
       way.show = shown;
-      AFTERGLOW_TRY(const Made made, lab.run(s.look, s.picture, s.frame, way));
+      AFTERGLOW_TRY(const Made made, harness.run(s.look, s.picture, s.frame, way));
       // Only what is stored in half floats ends at their largest.
       const bool stored = half && facts.runs;
       const double largest = stored ? kMaxHalf : std::numeric_limits<float>::max();
@@ -88,11 +88,11 @@ Result<Outcome> finite_joined(Lab& lab, const Situation& s, const Hold&) {
   return Outcome{};
 }
 
-Result<Outcome> alpha(Lab& lab, const Situation& s, const Hold&) {
+Result<Outcome> alpha(Harness& harness, const Situation& s, const Invariant&) {
   for (const bool plain : {false, true}) {
-    Way way = usual_way(lab);
+    Way way = usual_way(harness);
     way.plain = plain;
-    AFTERGLOW_TRY(Made made, lab.run(s.look, s.picture, s.frame, way));
+    AFTERGLOW_TRY(Made made, harness.run(s.look, s.picture, s.frame, way));
     Image wanted = made.image;
     for (std::size_t i = 3; i < wanted.pixels.size(); i += 4) wanted.pixels[i] = s.picture.color.pixels[i];
     if (auto outcome = compare(made.image, wanted, 0, "alpha, " + way.name()); !outcome.holds) return outcome;
@@ -101,26 +101,26 @@ Result<Outcome> alpha(Lab& lab, const Situation& s, const Hold&) {
 }
 
 /// The same picture again, after another one has been through the same memory.
-Result<Outcome> repeated(Lab& lab, const Situation& s, const Hold&) {
+Result<Outcome> repeated(Harness& harness, const Situation& s, const Invariant&) {
   Random random(s.seed);
-  const Way way = random.chance(0.5) ? half_way(lab) : usual_way(lab);
+  const Way way = random.chance(0.5) ? half_way(harness) : usual_way(harness);
   const Picture picture = changed(s.picture);  // so that it does run again
-  AFTERGLOW_TRY(const Made first, lab.run(s.look, picture, s.frame, way));
+  AFTERGLOW_TRY(const Made first, harness.run(s.look, picture, s.frame, way));
   Picture other = picture;
   for (float& v : other.color.pixels) v = 0.7f * (v > 0.5f ? 0.0f : 3.0f);
-  AFTERGLOW_TRY(const Made between, lab.run(s.look, other, s.frame, way));
+  AFTERGLOW_TRY(const Made between, harness.run(s.look, other, s.frame, way));
   (void)between;
-  AFTERGLOW_TRY(const Made second, lab.run(s.look, picture, s.frame, way));
+  AFTERGLOW_TRY(const Made second, harness.run(s.look, picture, s.frame, way));
   return compare(second.image, first.image, 0, "the same picture again, " + way.name());
 }
 
-Result<Outcome> same_ways(Lab& lab, const Situation& s, const Hold&) {
+Result<Outcome> same_ways(Harness& harness, const Situation& s, const Invariant&) {
   Random random(s.seed);
-  AFTERGLOW_TRY(const Made plain, lab.run(s.look, s.picture, s.frame, {.plain = true}));
+  AFTERGLOW_TRY(const Made plain, harness.run(s.look, s.picture, s.frame, {.plain = true}));
   Outcome worst;
-  for (const ExecutionConfig& choice : {lab.usual(), random.pick(other_choices())}) {
+  for (const ExecutionConfig& choice : {harness.usual(), random.pick(other_choices())}) {
     const Way way{.choice = choice};
-    AFTERGLOW_TRY(const Made made, lab.run(s.look, s.picture, s.frame, way));
+    AFTERGLOW_TRY(const Made made, harness.run(s.look, s.picture, s.frame, way));
     Outcome outcome =
         compare(made.image, plain.image, way.choice.compute ? kRegrouped : kSame, way.name() + " against plain");
     if (!outcome.holds) return outcome;
@@ -146,30 +146,30 @@ Image crop(const Image& image, const Rect& part) {
 }
 
 /// A region is the crop of the whole, bit for bit. What is not read of the source must not matter.
-Result<Outcome> region(Lab& lab, const Situation& s, const Hold&) {
+Result<Outcome> region(Harness& harness, const Situation& s, const Invariant&) {
   Random random(s.seed);
-  Way way = random.chance(0.3) ? half_way(lab) : usual_way(lab);
-  AFTERGLOW_TRY(const Made whole, lab.run(s.look, s.picture, s.frame, way));
+  Way way = random.chance(0.3) ? half_way(harness) : usual_way(harness);
+  AFTERGLOW_TRY(const Made whole, harness.run(s.look, s.picture, s.frame, way));
   way.region = random_part(s.picture.color.size(), random);
-  AFTERGLOW_TRY(const Made part, lab.run(s.look, s.picture, s.frame, way));
+  AFTERGLOW_TRY(const Made part, harness.run(s.look, s.picture, s.frame, way));
   return compare(crop(part.image, *way.region), crop(whole.image, *way.region), 0, way.name());
 }
 
 /// Effects that the content makes idle: as if they had run.
-Result<Outcome> idle(Lab& lab, const Situation& s, const Hold&) {
-  Way way = usual_way(lab);
-  AFTERGLOW_TRY(const Made all, lab.run(s.look, s.picture, s.frame, way));
+Result<Outcome> idle(Harness& harness, const Situation& s, const Invariant&) {
+  Way way = usual_way(harness);
+  AFTERGLOW_TRY(const Made all, harness.run(s.look, s.picture, s.frame, way));
   way.skip_idle = true;
-  AFTERGLOW_TRY(const Made some, lab.run(s.look, s.picture, s.frame, way));
+  AFTERGLOW_TRY(const Made some, harness.run(s.look, s.picture, s.frame, way));
   return compare(some.image, all.image, 0, way.name());
 }
 
 constexpr Check kCommonChecks[] = {
     {"finite", nullptr, "nothing non-finite leaves any pass, each on its own in full floats", finite},
-    {"finite_joined", nullptr, "nor as users run it, in full and half floats, nor any image in between", finite_joined},
+    {"finite_fused", nullptr, "nor as users run it, in full and half floats, nor any image in between", finite_fused},
     {"alpha", nullptr, "alpha is the source's, bit for bit", alpha},
     {"repeated", nullptr, "the same picture again gives the same bits", repeated},
-    {"same_ways", nullptr, "joined or not, whatever the layout of memory: within 1e-6 of plain passes in full floats",
+    {"same_ways", nullptr, "fused or not, whatever the layout of memory: within 1e-6 of plain passes in full floats",
      same_ways},
     {"region", nullptr, "a region is the crop of the whole, bit for bit", region},
     {"idle", nullptr, "frames without idle effects are as if they had run, bit for bit", idle},

@@ -23,13 +23,13 @@ Picture with_color(const Situation& s, const std::function<void(int x, int y, fl
 float grey_of(const float* p) { return std::max({p[0], p[1], p[2]}); }
 void set_grey(float* p, float grey) { p[0] = p[1] = p[2] = grey; }
 
-Result<Outcome> black(Lab& lab, const Situation& s, const Hold& hold) {
+Result<Outcome> black(Harness& harness, const Situation& s, const Invariant& hold) {
   const Picture source = with_color(s, [](int, int, float* p) { set_grey(p, 0); });
   Outcome worst;
   for (const bool half : {false, true}) {
-    Way way = usual_way(lab);
+    Way way = usual_way(harness);
     if (half) way.choice.storage = Storage::fp16;
-    AFTERGLOW_TRY(const Made made, lab.run(s.look, source, s.frame, way));
+    AFTERGLOW_TRY(const Made made, harness.run(s.look, source, s.frame, way));
     for (std::size_t i = 0; i < made.image.pixels.size(); ++i) {
       if (i % 4 == 3) continue;
       const double light = std::abs(made.image.pixels[i]);
@@ -42,14 +42,14 @@ Result<Outcome> black(Lab& lab, const Situation& s, const Hold& hold) {
   return worst;
 }
 
-Result<Outcome> constant(Lab& lab, const Situation& s, const Hold& hold) {
+Result<Outcome> constant(Harness& harness, const Situation& s, const Invariant& hold) {
   const auto chosen = Random(s.seed).below(static_cast<std::size_t>(s.picture.color.size().area()));
   const float* color = &s.picture.color.pixels[4 * chosen];
   const Picture source = with_color(s, [&](int, int, float* p) {
     std::copy_n(color, 3, p);
     p[3] = 1;  // effects that see straight colour make of one light as many as there are alphas
   });
-  AFTERGLOW_TRY(const Made made, lab.run(s.look, source, s.frame, usual_way(lab)));
+  AFTERGLOW_TRY(const Made made, harness.run(s.look, source, s.frame, usual_way(harness)));
   Image wanted = made.image;
   for (std::size_t i = 0; i < wanted.pixels.size(); i += 4)
     std::copy_n(made.image.pixels.begin(), 3, &wanted.pixels[i]);
@@ -86,21 +86,21 @@ double gain_of(const Image& before, const Image& after, bool growth_alone) {
   return worst;
 }
 
-Result<Outcome> check_mean(Lab& lab, const Situation& s, const Hold& hold, bool growth_alone) {
+Result<Outcome> check_mean(Harness& harness, const Situation& s, const Invariant& hold, bool growth_alone) {
   auto source = within_margin(s, hold.numbers.at("margin"));
   if (!source) return not_applicable();
   // Of colours, the light of one channel may let another channel pass a threshold.
   if (growth_alone)
     for (std::size_t i = 0; i < source->color.pixels.size(); i += 4)
       set_grey(&source->color.pixels[i], grey_of(&source->color.pixels[i]));
-  AFTERGLOW_TRY(const Made made, lab.run(s.look, *source, s.frame, usual_way(lab)));
+  AFTERGLOW_TRY(const Made made, harness.run(s.look, *source, s.frame, usual_way(harness)));
   const double gain = gain_of(source->color, made.image, growth_alone);
   return within_bound(gain, hold.numbers.at("within"), fmt::format("the mean changes by {:.3g} of itself", gain));
 }
 
-Result<Outcome> mean(Lab& lab, const Situation& s, const Hold& hold) { return check_mean(lab, s, hold, false); }
-Result<Outcome> no_added_light(Lab& lab, const Situation& s, const Hold& hold) {
-  return check_mean(lab, s, hold, true);
+Result<Outcome> mean(Harness& harness, const Situation& s, const Invariant& hold) { return check_mean(harness, s, hold, false); }
+Result<Outcome> no_added_light(Harness& harness, const Situation& s, const Invariant& hold) {
+  return check_mean(harness, s, hold, true);
 }
 
 /// A brighter picture in some places: everywhere by as much as another pixel has, or in one pixel alone.
@@ -118,12 +118,12 @@ Picture brighter(const Situation& s, const Picture& greys) {
   return out;
 }
 
-Result<Outcome> monotone(Lab& lab, const Situation& s, const Hold& hold) {
+Result<Outcome> monotone(Harness& harness, const Situation& s, const Invariant& hold) {
   Situation grey = s;
   grey.picture = greys_of(s);
   const Picture more = brighter(s, grey.picture);
-  AFTERGLOW_TRY(const Made low, lab.run(s.look, grey.picture, s.frame, usual_way(lab)));
-  AFTERGLOW_TRY(const Made high, lab.run(s.look, more, s.frame, usual_way(lab)));
+  AFTERGLOW_TRY(const Made low, harness.run(s.look, grey.picture, s.frame, usual_way(harness)));
+  AFTERGLOW_TRY(const Made high, harness.run(s.look, more, s.frame, usual_way(harness)));
   double worst = 0;
   std::size_t at = 0;
   for (std::size_t i = 0; i < low.image.pixels.size(); ++i) {
@@ -139,7 +139,7 @@ Result<Outcome> monotone(Lab& lab, const Situation& s, const Hold& hold) {
                                   place_of(low.image, at), high.image.pixels[at], low.image.pixels[at]));
 }
 
-Result<Outcome> bounded(Lab& lab, const Situation& s, const Hold& hold) {
+Result<Outcome> bounded(Harness& harness, const Situation& s, const Invariant& hold) {
   const Picture source = greys_of(s);
   double from = hold.numbers.at("from"), to = hold.numbers.at("to");
   double least = 1e30, largest = 0;
@@ -149,7 +149,7 @@ Result<Outcome> bounded(Lab& lab, const Situation& s, const Hold& hold) {
   }
   if (std::isnan(from)) from = std::isnan(to) ? least : 0;
   if (std::isnan(to)) to = largest;
-  AFTERGLOW_TRY(const Made made, lab.run(s.look, source, s.frame, usual_way(lab)));
+  AFTERGLOW_TRY(const Made made, harness.run(s.look, source, s.frame, usual_way(harness)));
   double worst = 0;
   std::size_t at = 0;
   for (std::size_t i = 0; i < made.image.pixels.size(); ++i) {
@@ -167,7 +167,7 @@ Result<Outcome> bounded(Lab& lab, const Situation& s, const Hold& hold) {
 }
 
 /// Of pictures A and B: the sum of their results is the result of their sum.
-Result<Outcome> linear(Lab& lab, const Situation& s, const Hold& hold) {
+Result<Outcome> linear(Harness& harness, const Situation& s, const Invariant& hold) {
   const double up_to = hold.numbers.at("up_to");
   Random random(s.seed);
   const double part = random.between(0.1, 0.9);
@@ -182,9 +182,9 @@ Result<Outcome> linear(Lab& lab, const Situation& s, const Hold& hold) {
     b.color.pixels[i] = static_cast<float>(1 - part) * y;
     sum.color.pixels[i] = a.color.pixels[i] + b.color.pixels[i];
   }
-  AFTERGLOW_TRY(const Made of_a, lab.run(s.look, a, s.frame, usual_way(lab)));
-  AFTERGLOW_TRY(const Made of_b, lab.run(s.look, b, s.frame, usual_way(lab)));
-  AFTERGLOW_TRY(const Made of_sum, lab.run(s.look, sum, s.frame, usual_way(lab)));
+  AFTERGLOW_TRY(const Made of_a, harness.run(s.look, a, s.frame, usual_way(harness)));
+  AFTERGLOW_TRY(const Made of_b, harness.run(s.look, b, s.frame, usual_way(harness)));
+  AFTERGLOW_TRY(const Made of_sum, harness.run(s.look, sum, s.frame, usual_way(harness)));
   Image wanted = of_a.image;
   for (std::size_t i = 0; i < wanted.pixels.size(); ++i)
     wanted.pixels[i] = std::min(wanted.pixels[i] + of_b.image.pixels[i], kLargestColor);
@@ -192,7 +192,7 @@ Result<Outcome> linear(Lab& lab, const Situation& s, const Hold& hold) {
 }
 
 /// Twice as much of the setting adds twice as much.
-Result<Outcome> proportional(Lab& lab, const Situation& s, const Hold& hold) {
+Result<Outcome> proportional(Harness& harness, const Situation& s, const Invariant& hold) {
   const std::string& setting = hold.settings.at("setting");
   const double up_to = hold.numbers.at("up_to");
   Random random(s.seed);
@@ -204,9 +204,9 @@ Result<Outcome> proportional(Lab& lab, const Situation& s, const Hold& hold) {
     return look;
   };
   for (const double amount : {high, low})  // at 0 an effect may be idle, and take settings that it refuses otherwise
-    if (!lab.facts(with(amount), s.picture.color.size(), s.frame)) return not_applicable();
+    if (!harness.facts(with(amount), s.picture.color.size(), s.frame)) return not_applicable();
   const auto added = [&](double amount) -> Result<Image> {
-    AFTERGLOW_TRY(Made made, lab.run(with(amount), s.picture, s.frame, usual_way(lab)));
+    AFTERGLOW_TRY(Made made, harness.run(with(amount), s.picture, s.frame, usual_way(harness)));
     return std::move(made.image);
   };
   AFTERGLOW_TRY(const Image of_high, added(high));

@@ -35,35 +35,35 @@ Picture mapped(const Picture& picture, Size size, const Map& from) {
 }
 
 /// The result of the mapped picture against the mapped result.
-Result<Outcome> commutes(Lab& lab, const Situation& s, const Picture& picture, Size size, const Map& from,
+Result<Outcome> commutes(Harness& harness, const Situation& s, const Picture& picture, Size size, const Map& from,
                          double allowed, const std::string& what) {
-  AFTERGLOW_TRY(const Made straight, lab.run(s.look, picture, s.frame, usual_way(lab)));
-  AFTERGLOW_TRY(const Made turned, lab.run(s.look, mapped(picture, size, from), s.frame, usual_way(lab)));
+  AFTERGLOW_TRY(const Made straight, harness.run(s.look, picture, s.frame, usual_way(harness)));
+  AFTERGLOW_TRY(const Made turned, harness.run(s.look, mapped(picture, size, from), s.frame, usual_way(harness)));
   return compare(turned.image, mapped(straight.image, size, from), allowed, what);
 }
 
-Result<Outcome> mirror(Lab& lab, const Situation& s, const Hold& hold) {
+Result<Outcome> mirror(Harness& harness, const Situation& s, const Invariant& hold) {
   const Size size = s.picture.color.size();
   const double allowed = hold.numbers.at("within");
   AFTERGLOW_TRY(const Outcome across, commutes(
-                                          lab, s, s.picture, size,
+                                          harness, s, s.picture, size,
                                           [&](int x, int y) {
                                             return Place{size.width - 1 - x, y};
                                           },
                                           allowed, "mirrored, left and right"));
   if (!across.holds) return across;
   return commutes(
-      lab, s, s.picture, size,
+      harness, s, s.picture, size,
       [&](int x, int y) {
         return Place{x, size.height - 1 - y};
       },
       allowed, "mirrored, top and bottom");
 }
 
-Result<Outcome> turn_180(Lab& lab, const Situation& s, const Hold& hold) {
+Result<Outcome> turn_180(Harness& harness, const Situation& s, const Invariant& hold) {
   const Size size = s.picture.color.size();
   return commutes(
-      lab, s, s.picture, size,
+      harness, s, s.picture, size,
       [&](int x, int y) {
         return Place{size.width - 1 - x, size.height - 1 - y};
       },
@@ -79,14 +79,14 @@ Picture masked(const Picture& picture, const std::function<bool(int x, int y)>& 
   return out;
 }
 
-Result<Outcome> turn_90(Lab& lab, const Situation& s, const Hold& hold) {
+Result<Outcome> turn_90(Harness& harness, const Situation& s, const Invariant& hold) {
   const Size size = s.picture.color.size(), turned{size.height, size.width};
   const auto m = static_cast<int>(std::min(hold.numbers.at("margin"), 1e6));
   if (2 * m >= size.width || 2 * m >= size.height) return not_applicable();
   const Picture picture =
       masked(s.picture, [&](int x, int y) { return x >= m && y >= m && x < size.width - m && y < size.height - m; });
   return commutes(
-      lab, s, picture, turned,
+      harness, s, picture, turned,
       [&](int x, int y) {
         return Place{y, size.height - 1 - x};
       },
@@ -94,7 +94,7 @@ Result<Outcome> turn_90(Lab& lab, const Situation& s, const Hold& hold) {
 }
 
 /// Moved to the right and down. Light stays `margin` away from all edges before and after.
-Result<Outcome> shift(Lab& lab, const Situation& s, const Hold& hold) {
+Result<Outcome> shift(Harness& harness, const Situation& s, const Invariant& hold) {
   const Size size = s.picture.color.size();
   const double by = hold.numbers.at("by"), margin = hold.numbers.at("margin");
   if (!(by >= 1) || by + 2 * margin >= std::max(size.width, size.height)) return not_applicable();
@@ -112,8 +112,8 @@ Result<Outcome> shift(Lab& lab, const Situation& s, const Hold& hold) {
   const Picture after = mapped(before, size, [&](int x, int y) {
     return Place{std::max(x - dx, 0), std::max(y - dy, 0)};
   });
-  AFTERGLOW_TRY(const Made a, lab.run(s.look, before, s.frame, usual_way(lab)));
-  AFTERGLOW_TRY(const Made b, lab.run(s.look, after, s.frame, usual_way(lab)));
+  AFTERGLOW_TRY(const Made a, harness.run(s.look, before, s.frame, usual_way(harness)));
+  AFTERGLOW_TRY(const Made b, harness.run(s.look, after, s.frame, usual_way(harness)));
   const Size common{size.width - dx, size.height - dy};
   return compare(mapped(b.image, common,
                         [&](int x, int y) {

@@ -13,7 +13,7 @@ namespace {
 
 /// The setting that counts levels, or null.
 const SettingSchema* levels_of(const EffectSchema& effect) {
-  for (const auto& hold : effect.holds) {
+  for (const auto& hold : effect.invariants) {
     const auto named = hold.stated.settings.find("levels");
     if (named == hold.stated.settings.end()) continue;
     const auto found = std::ranges::find(effect.settings, named->second, &SettingSchema::name);
@@ -49,18 +49,18 @@ std::vector<std::string> kinds(bool quick) {
   return out;
 }
 
-Result<std::optional<GrowthRow>> measure(Lab& lab, const Look& look, const Picture& picture) {
-  AFTERGLOW_TRY(const LookFacts facts, lab.facts(look, picture.color.size(), 1));
+Result<std::optional<GrowthRow>> measure(Harness& harness, const Look& look, const Picture& picture) {
+  AFTERGLOW_TRY(const LookFacts facts, harness.facts(look, picture.color.size(), 1));
   const auto truth = truth_of(facts, picture, 1);
   if (!truth) return std::optional<GrowthRow>();
   GrowthRow row;
-  Way way{.choice = lab.usual()};
-  AFTERGLOW_TRY(const Made full, lab.run(look, picture, 1, way));
+  Way way{.choice = harness.usual()};
+  AFTERGLOW_TRY(const Made full, harness.run(look, picture, 1, way));
   row.fp32 = error_against(full.image, *truth, false);
   row.has_fp16 = exact_in_halves(picture.color);
   if (row.has_fp16) {
     way.choice.storage = Storage::fp16;
-    AFTERGLOW_TRY(const Made half, lab.run(look, picture, 1, way));
+    AFTERGLOW_TRY(const Made half, harness.run(look, picture, 1, way));
     row.fp16 = error_against(half.image, *truth, true);
   }
   return std::optional(std::move(row));
@@ -74,17 +74,17 @@ struct Growing {
   std::vector<std::filesystem::path> paths;
 };
 
-Result<void> grow(Lab& lab, const Growing& what, const PictureSpec& spec, std::vector<GrowthRow>& rows) {
+Result<void> grow(Harness& harness, const Growing& what, const PictureSpec& spec, std::vector<GrowthRow>& rows) {
   const Picture picture = make_picture(spec);
   std::size_t passes = 0;
   const int most = static_cast<int>(what.levels.max.value_or(16));
   for (int levels = std::max(1, static_cast<int>(what.levels.min.value_or(1))); levels <= most; ++levels) {
     Look look{{what.variant.entry}, what.paths};
     look.entries.front().set(what.levels.name, {.type = SettingType::integer, .number = {double(levels), 0, 0}});
-    AFTERGLOW_TRY(const LookFacts facts, lab.facts(look, spec.size, 1));
+    AFTERGLOW_TRY(const LookFacts facts, harness.facts(look, spec.size, 1));
     if (facts.passes == passes) break;  // no level more
     passes = facts.passes;
-    AFTERGLOW_TRY(auto row, measure(lab, look, picture));
+    AFTERGLOW_TRY(auto row, measure(harness, look, picture));
     if (!row) return {};
     row->effect = what.effect.name;
     row->variant = what.variant.name;
@@ -97,7 +97,7 @@ Result<void> grow(Lab& lab, const Growing& what, const PictureSpec& spec, std::v
 
 }  // namespace
 
-Result<std::vector<GrowthRow>> error_growth(Lab& lab, const std::vector<Subject>& subjects, Size size, bool quick,
+Result<std::vector<GrowthRow>> error_growth(Harness& harness, const std::vector<Subject>& subjects, Size size, bool quick,
                                             std::uint64_t seed, const std::function<Result<void>()>& step) {
   std::vector<GrowthRow> rows;
   for (const auto& subject : subjects) {
@@ -106,9 +106,9 @@ Result<std::vector<GrowthRow>> error_growth(Lab& lab, const std::vector<Subject>
     for (const auto& variant : variants_of(*subject.effect, subject.looks.front().entries.front(), quick))
       for (const auto& kind : kinds(quick)) {
         AFTERGLOW_CHECK(step());
-        lab.forget();
+        harness.forget();
         AFTERGLOW_CHECK(
-            grow(lab, {*subject.effect, *levels, variant, subject.looks.front().paths}, {kind, size, seed}, rows));
+            grow(harness, {*subject.effect, *levels, variant, subject.looks.front().paths}, {kind, size, seed}, rows));
       }
   }
   return rows;

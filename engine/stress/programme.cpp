@@ -33,8 +33,8 @@ const fs::path& scratch() {
 
 class Run {
  public:
-  Run(Lab& lab, const Trials& trials, const ProgrammeOptions& options, Diagnostics& diagnostics, const Report& report)
-      : lab_(lab), trials_(trials), options_(options), diagnostics_(diagnostics), report_(report) {}
+  Run(Harness& harness, const Trials& trials, const ProgrammeOptions& options, Diagnostics& diagnostics, const Report& report)
+      : harness_(harness), trials_(trials), options_(options), diagnostics_(diagnostics), report_(report) {}
 
   Result<Summary> all(const Step& step) {
     const auto start = Clock::now();
@@ -60,13 +60,13 @@ class Run {
 
   Result<void> one(const Trial& trial) {
     ++summary_.trials;
-    lab_.forget();
-    const auto facts = lab_.facts(trial.look, trial.size, trial.frame);
+    harness_.forget();
+    const auto facts = harness_.facts(trial.look, trial.size, trial.frame);
     if (!facts) return refused(trial, facts.error());
     for (const auto& spec : trial.pictures) AFTERGLOW_CHECK(picture(trial, spec));
     const auto turn = trial.index / trials_.subjects().size();
     if (options_.digests_every > 0 && turn % static_cast<std::uint64_t>(options_.digests_every) == 0) {
-      auto digest = digest_of(lab_, trial, diagnostics_);
+      auto digest = digest_of(harness_, trial, diagnostics_);
       if (digest) summary_.digests[trial.index] = *digest;
     }
     return {};
@@ -97,7 +97,7 @@ class Run {
 
   /// A stack that cannot be made or run is a failure of the check, unless the device is gone.
   Result<Outcome> tried(const Situation& situation) {
-    auto outcome = run_check(lab_, situation);
+    auto outcome = run_check(harness_, situation);
     if (outcome || outcome.error().kind == ErrorKind::device) return outcome;
     return Outcome{.holds = false, .measured = 1, .allowed = 0, .what = "does not run: " + outcome.error().text()};
   }
@@ -125,7 +125,7 @@ class Run {
     if (!options_.out.empty()) {
       finding.folder =
           options_.out / fmt::format("{}-{}-{}-{}", trial.subject, situation.check, trial.index, spec.kind);
-      const auto& info = lab_.device().info();
+      const auto& info = harness_.device().info();
       AFTERGLOW_CHECK(write_reproducer(finding.folder, small.situation, last,
                                        {options_.version, info.name, info.driver, options_.seed, trial.index}));
     }
@@ -134,7 +134,7 @@ class Run {
     return {};
   }
 
-  Lab& lab_;
+  Harness& harness_;
   const Trials& trials_;
   const ProgrammeOptions& options_;
   Diagnostics& diagnostics_;
@@ -167,14 +167,14 @@ Result<Situation> situation_of(const Trial& trial, const PictureSpec& spec, Diag
   return out;
 }
 
-Result<Hash> digest_of(Lab& lab, const Trial& trial, Diagnostics& diagnostics) {
+Result<Hash> digest_of(Harness& harness, const Trial& trial, Diagnostics& diagnostics) {
   Hasher all;
   for (const auto& spec : trial.pictures) {
     AFTERGLOW_TRY(const Situation situation, situation_of(trial, spec, diagnostics));
     for (const Storage storage : {Storage::fp32, Storage::fp16}) {
-      Way way = usual_way(lab);
+      Way way = usual_way(harness);
       way.choice.storage = storage;
-      AFTERGLOW_TRY(const Made made, lab.run(situation.look, situation.picture, situation.frame, way));
+      AFTERGLOW_TRY(const Made made, harness.run(situation.look, situation.picture, situation.frame, way));
       const Hash hash = hash_bytes(made.image.pixels.data(), made.image.bytes());
       all.add(hash.high).add(hash.low);
     }
@@ -182,9 +182,9 @@ Result<Hash> digest_of(Lab& lab, const Trial& trial, Diagnostics& diagnostics) {
   return all.finish();
 }
 
-Result<Summary> run_programme(Lab& lab, const Trials& trials, const ProgrammeOptions& options, Diagnostics& diagnostics,
+Result<Summary> run_programme(Harness& harness, const Trials& trials, const ProgrammeOptions& options, Diagnostics& diagnostics,
                               const Step& step, const Report& report) {
-  return Run(lab, trials, options, diagnostics, report).all(step);
+  return Run(harness, trials, options, diagnostics, report).all(step);
 }
 
 }  // namespace afterglow::stress

@@ -57,11 +57,11 @@ using Step = std::function<Result<void>(const Summary& so_far)>;
 using Report = std::function<void(const Finding&)>;
 
 /// Errors: io (a folder that cannot be written), device, and those of `step` but for interrupted.
-Result<Summary> run_programme(Lab& lab, const Trials& trials, const ProgrammeOptions& options, Diagnostics& diagnostics,
+Result<Summary> run_programme(Harness& harness, const Trials& trials, const ProgrammeOptions& options, Diagnostics& diagnostics,
                               const Step& step, const Report& report);
 
-/// A hash of all results of a trial, in full and half floats: the same in every process. Errors: as Lab::run.
-Result<Hash> digest_of(Lab& lab, const Trial& trial, Diagnostics& diagnostics);
+/// A hash of all results of a trial, in full and half floats: the same in every process. Errors: as Harness::run.
+Result<Hash> digest_of(Harness& harness, const Trial& trial, Diagnostics& diagnostics);
 
 /// What is tried on a picture of a trial, as the programme tries it. Errors: io.
 Result<Situation> situation_of(const Trial& trial, const PictureSpec& spec, Diagnostics& diagnostics);

@@ -6,7 +6,7 @@
 
 #include "image/metrics.h"
 #include "image/picture.h"
-#include "stress/lab.h"
+#include "stress/harness.h"
 
 namespace afterglow::stress {
 

@@ -41,7 +41,7 @@ Error no_display(const std::string& why) {
 struct MainThread {
   std::thread::id id;
   std::timed_mutex busy;
-  std::function<void()> last_words;
+  std::function<void()> terminate_handler;
 };
 MainThread& main_thread() {
   static MainThread only;
@@ -59,7 +59,7 @@ int on_display_lost(void*) {
   const bool here = std::this_thread::get_id() == thread.id;
   std::fputs("error: the connection to the display was lost\n", stderr);
   if (here || thread.busy.try_lock_for(kPatience)) {
-    if (const auto say = std::exchange(thread.last_words, nullptr)) say();
+    if (const auto say = std::exchange(thread.terminate_handler, nullptr)) say();
   }
   std::fflush(nullptr);
   std::_Exit(static_cast<int>(ErrorKind::device));
@@ -107,7 +107,7 @@ Result<std::unique_ptr<DesktopWindow>> DesktopWindow::create(const std::string& 
 DesktopWindow::~DesktopWindow() {
   if (window_) glfwDestroyWindow(window_);
   glfwTerminate();
-  main_thread().last_words = nullptr;
+  main_thread().terminate_handler = nullptr;
   main_thread().busy.unlock();
 }
 
@@ -190,7 +190,7 @@ void DesktopWindow::set_full_screen(bool on) {
 
 void DesktopWindow::set_clipboard(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }
 
-void DesktopWindow::set_last_words(std::function<void()> say) { main_thread().last_words = std::move(say); }
+void DesktopWindow::set_last_words(std::function<void()> say) { main_thread().terminate_handler = std::move(say); }
 
 void DesktopWindow::wait(double seconds) {
   if (seconds <= 0) {

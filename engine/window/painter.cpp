@@ -122,9 +122,9 @@ Result<void> Painter::write_capture(const Buffer& pixels, Size size) {
   Picture picture;
   picture.color = Image(size.width, size.height, 4);
   picture.data_window = picture.display_window = {0, 0, size.width, size.height};
-  picture.codes.resize(static_cast<std::size_t>(size.area()) * 4, 255);
-  for (std::size_t i = 0; i < picture.codes.size(); i += 4) {
-    for (std::size_t c = 0; c < 3; ++c) picture.codes[i + c] = static_cast<std::uint8_t>(pixels.data()[i + order[c]]);
+  picture.unorm8.resize(static_cast<std::size_t>(size.area()) * 4, 255);
+  for (std::size_t i = 0; i < picture.unorm8.size(); i += 4) {
+    for (std::size_t c = 0; c < 3; ++c) picture.unorm8[i + c] = static_cast<std::uint8_t>(pixels.data()[i + order[c]]);
   }
   Diagnostics nowhere;
   const std::filesystem::path file = std::exchange(capture_, {});

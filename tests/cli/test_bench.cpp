@@ -34,7 +34,7 @@ TEST_F(Bench, QuickWritesEveryFile) {
   EXPECT_EQ(all.at("repeat"), 3);
   const json& cell = all.at("cells").at(0);
   ASSERT_EQ(cell.at("points").size(), 2u);
-  EXPECT_EQ(cell.at("points").at(0).at("choice"), "heads fp16 hardware-filter");
+  EXPECT_EQ(cell.at("points").at(0).at("choice"), "fused-filters fp16 hardware-filter");
   EXPECT_EQ(cell.at("points").at(1).at("label"), "chosen");
   EXPECT_LT(cell.at("points").at(1).at("error").at("p9999"), 1e-5);
   EXPECT_THAT(read("out/front.svg"), HasSubstr("</svg>"));
@@ -43,12 +43,12 @@ TEST_F(Bench, QuickWritesEveryFile) {
 
 TEST_F(Bench, VariantsAndVariedSettingsMakeTheMatrix) {
   const Outcome outcome =
-      quick({"--variants", "apart fp32+unshared,chosen", "--vary", "tone_mapping.mode=aces,reinhard,neutral"});
+      quick({"--variants", "unfused fp32+unshared,chosen", "--vary", "tone_mapping.mode=aces,reinhard,neutral"});
   ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
   const json points = report("bench/bench.json").at("cells").at(0).at("points");
   ASSERT_EQ(points.size(), 6u);
   EXPECT_EQ(points.at(1).at("settings"), "tone_mapping.mode=reinhard");
-  EXPECT_EQ(points.at(1).at("choice"), "apart fp32 unshared");
+  EXPECT_EQ(points.at(1).at("choice"), "unfused fp32 unshared");
 }
 
 TEST_F(Bench, ReloadsAreMeasuredOfBothKinds) {
@@ -143,7 +143,7 @@ TEST_F(Bench, RunTakesItsChoiceFromATable) {
   make_exr("a.exr");
   write(
       "table.json",
-      R"({"devices": [{"choices": [{"max_error": 0, "choice": "apart fp32"}, {"max_error": 1e-3, "choice": "joined fp16"}]}]})");
+      R"({"devices": [{"choices": [{"max_error": 0, "choice": "unfused fp32"}, {"max_error": 1e-3, "choice": "fused fp16"}]}]})");
   const auto choice = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"run", "look.lua", "a.exr", "-o", "a.png", "--report", "r.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -152,14 +152,14 @@ TEST_F(Bench, RunTakesItsChoiceFromATable) {
     const json session = json::parse(read("r.json")).at("session");
     return session.at("choice").get<std::string>() + " | " + session.at("choice_from").get<std::string>();
   };
-  EXPECT_EQ(choice({"--calibration", "table.json"}), "joined fp16 | table.json, any device");
-  EXPECT_EQ(choice({"--calibration", "table.json", "--max-error", "1e-4"}), "apart fp32 | table.json, any device");
+  EXPECT_EQ(choice({"--calibration", "table.json"}), "fused fp16 | table.json, any device");
+  EXPECT_EQ(choice({"--calibration", "table.json", "--max-error", "1e-4"}), "unfused fp32 | table.json, any device");
   EXPECT_EQ(choice({"--calibration", "table.json", "--precision", "fp32"}),
-            "joined fp32 | table.json, any device; --precision");
-  EXPECT_EQ(choice({"--calibration", "table.json", "--reference"}), "apart fp32 unshared | --reference");
+            "fused fp32 | table.json, any device; --precision");
+  EXPECT_EQ(choice({"--calibration", "table.json", "--reference"}), "unfused fp32 unshared | --reference");
   EXPECT_THAT(choice({}), HasSubstr("calibration/devices.json"));
   const Outcome devices = run({"devices", "--calibration", "table.json"});
-  EXPECT_THAT(devices.out, HasSubstr("joined fp16"));
+  EXPECT_THAT(devices.out, HasSubstr("fused fp16"));
 }
 
 TEST_F(Bench, ABrokenTableIsAnErrorOfTheFile) {
@@ -169,7 +169,7 @@ TEST_F(Bench, ABrokenTableIsAnErrorOfTheFile) {
   EXPECT_EQ(outcome.exit_code, kFiles);
   EXPECT_TRUE(is_one_error_line(outcome.err));
   EXPECT_THAT(outcome.err, HasSubstr("table.json: error: in entry 1"));
-  EXPECT_THAT(outcome.err, HasSubstr("did you mean 'joined'?"));
+  EXPECT_THAT(outcome.err, HasSubstr("did you mean 'fused'?"));
   EXPECT_FALSE(fs::exists(path("a.png")));
 }
 

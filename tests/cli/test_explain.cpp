@@ -65,7 +65,7 @@ TEST_F(Explain, WhatBecomesOfEffectsAndPasses) {
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
   EXPECT_THAT(outcome.out, ContainsRegex("color_blit .*: skipped, "));
   EXPECT_THAT(outcome.out,
-              ContainsRegex("tone_mapping\\.aces +pixel 1920×1080, joined into color_adjustments.grade\\+"));
+              ContainsRegex("tone_mapping\\.aces +pixel 1920×1080, fused into color_adjustments.grade\\+"));
   EXPECT_THAT(outcome.out, HasSubstr("no position is known"));
   EXPECT_THAT(outcome.err, HasSubstr("no position is known (--at"));
 }

@@ -116,10 +116,10 @@ TEST_F(Inspect, CheckWarmsTheCacheForRun) {
 TEST_F(Inspect, GraphAsJsonNamesKernelsAndSkips) {
   const json graph = parsed({"graph", "look.lua", "--format", "json", "--size", "640x360"});
   EXPECT_GT(graph.at("kernels").size(), 3u);
-  bool joined = false;
+  bool fused = false;
   for (const auto& kernel : graph.at("kernels"))
-    if (kernel.at("passes").size() > 1) joined = kernel.contains("joined_because");
-  EXPECT_TRUE(joined) << "the colour steps join the last pass of the bloom";
+    if (kernel.at("passes").size() > 1) fused = kernel.contains("fused_because");
+  EXPECT_TRUE(fused) << "the colour steps join the last pass of the bloom";
   ASSERT_EQ(graph.at("skipped").size(), 1u);
   EXPECT_EQ(graph.at("skipped").at(0).at("name"), "tone_mapping");
 }

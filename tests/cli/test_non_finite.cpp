@@ -122,7 +122,7 @@ TEST_F(NonFiniteValues, ZerosThatACompilerSeesDivideAsOthersDo) {
     const std::string once = read("o.exr");
     EXPECT_THAT(run_look({}, "o.png").err, HasSubstr(made));
     EXPECT_EQ(run_look({"--reference"}).exit_code, kDone);
-    EXPECT_EQ(read("o.exr"), once) << "every run makes the same bytes, joined passes and single ones";
+    EXPECT_EQ(read("o.exr"), once) << "every run makes the same bytes, fused passes and single ones";
     EXPECT_EQ(run_look({"--nan-policy", "fail"}).exit_code, kScript);
   }
 }

@@ -16,10 +16,10 @@ class PreRoll : public CliTest {
 local fx = require "afterglow"
 return fx.effect { name = "back", settings = {}, build = function(g, s, source)
   local before = g:history { size = { 1, 1 }, pre_roll = 3 }
-  g:keep(before, g:pass { shader = "back/hand_on", before = before, size = { 1, 1 }, frame = g.frame, time = g.frame_time * g.fps })
+  g:keep(before, g:pass { shader = "back/propagate", before = before, size = { 1, 1 }, frame = g.frame, time = g.frame_time * g.fps })
   return g:pass { shader = "back/show", source = source, before = before }
 end })");
-    write("shaders/back/hand_on.glsl",
+    write("shaders/back/propagate.glsl",
           "uniform sampler2D before;\nuniform float frame, time;\n"
           "vec4 sample_at(ivec2 p) { return vec4(frame, fetch(before, p).rg, time); }\n");
     write("shaders/back/show.glsl",
@@ -120,7 +120,7 @@ TEST_F(PreRoll, StillsBeginEachByThemselves) {
 
 TEST_F(PreRoll, IsExplainedAndDrawn) {
   const Outcome explained = run({"explain", "look.lua"});
-  EXPECT_THAT(explained.out, HasSubstr("history back.history: 1×1, keeps back.hand_on; without a frame before it: {0, "
+  EXPECT_THAT(explained.out, HasSubstr("history back.history: 1×1, keeps back.propagate; without a frame before it: {0, "
                                        "0, 0, 0}; pre-roll 3 frames"));
   const Outcome dot = run({"graph", "look.lua", "--format", "dot"});
   EXPECT_THAT(dot.out, HasSubstr("[style=dashed, label=\"next frame\""));

@@ -12,9 +12,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kWithoutRows = "joined fp32";
+constexpr const char* kWithoutRows = "fused fp32";
 /// What the shipped table tells every CPU device; no GPU can write rows this way.
-constexpr const char* kByRows = "joined fp32 storage-reads rows8";
+constexpr const char* kByRows = "fused fp32 storage-reads rows8";
 
 class ImitatedGpu : public CliTest {
  protected:

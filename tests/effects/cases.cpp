@@ -12,9 +12,9 @@ void check(const Scene& scene, const EffectCase& one, const Tolerances& toleranc
   ASSERT_TRUE(plain.ran());
   EXPECT_TRUE(agrees(plain.result, expected, tolerances.full, kRgba)) << "plain";
   EXPECT_TRUE(alpha_is_kept(plain, scene));
-  const Made joined = run_stack(one.entries, scene, Way::joined);
-  EXPECT_TRUE(agrees(joined.result, from_floats(plain.result.data(), plain.size, 4), tolerances.joined, kRgba))
-      << "joined";
+  const Made fused = run_stack(one.entries, scene, Way::fused);
+  EXPECT_TRUE(agrees(fused.result, from_floats(plain.result.data(), plain.size, 4), tolerances.fused, kRgba))
+      << "fused";
   const Made computed = run_stack(one.entries, scene, Way::computed);
   if (computed.dispatches > 0) {
     EXPECT_TRUE(agrees(computed.result, expected, tolerances.full, kRgba)) << "by workgroups";
@@ -22,7 +22,7 @@ void check(const Scene& scene, const EffectCase& one, const Tolerances& toleranc
   if (half_too) {
     DoubleImage held = expected;
     for (auto& p : held.pixels) p = glm::min(p, Rgba(65504));
-    const Made half = run_stack(one.entries, scene, Way::joined_half);
+    const Made half = run_stack(one.entries, scene, Way::fused_half);
     EXPECT_TRUE(agrees(half.result, held, tolerances.half, kRgba)) << "half";
   }
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lab.h"
+#include "harness.h"
 
 namespace afterglow {
 
@@ -15,19 +15,19 @@ struct EffectCase {
 };
 
 struct Tolerances {
-  double full = kFullFloat, joined = kJoined, half = kHalfFloat;
+  double full = kFullFloat, fused = kFused, half = kHalfFloat;
   bool spikes = true;  ///< pictures with single pixels at 1e4 too
 };
 
 /// Positions between pixels are sums of floats: one near 240 is known to 2^-17, and random neighbours differ by factors
 /// of hundreds.
-inline constexpr Tolerances kBetweenPixels{.full = 5e-4, .joined = 5e-5, .half = kHalfFloat, .spikes = false};
+inline constexpr Tolerances kBetweenPixels{.full = 5e-4, .fused = 5e-5, .half = kHalfFloat, .spikes = false};
 /// Steep curves: where they start, what is rounded before them grows.
-inline constexpr Tolerances kSteep{.full = 1e-4, .joined = 1e-5, .half = kHalfFloat};
+inline constexpr Tolerances kSteep{.full = 1e-4, .fused = 1e-5, .half = kHalfFloat};
 /// Decisions by comparing: a rounding may turn one, and those of half floats turn many.
-inline constexpr Tolerances kDecisions{.full = 1e-3, .joined = 1e-4, .half = 1, .spikes = false};
+inline constexpr Tolerances kDecisions{.full = 1e-3, .fused = 1e-4, .half = 1, .spikes = false};
 
-/// Random pictures of every size and a real one: plain passes against the oracle, joined against plain, half floats
+/// Random pictures of every size and a real one: plain passes against the oracle, fused against plain, half floats
 /// against the oracle; alpha is kept.
 void agree_everywhere(const std::vector<EffectCase>& cases, const Tolerances& tolerances = {});
 

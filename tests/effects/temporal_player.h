@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lab.h"
+#include "harness.h"
 #include "session/session.h"
 
 namespace afterglow {

@@ -51,7 +51,7 @@ double difference(const std::vector<float>& soft, const std::vector<float>& opaq
 double expect_straight(const std::string& entries, double tolerance = 1e-5) {
   const Ramp ramp;
   double worst = 0;
-  for (const Way way : {Way::plain, Way::joined}) {
+  for (const Way way : {Way::plain, Way::fused}) {
     const Made soft = run_stack(entries, ramp.soft, way), opaque = run_stack(entries, ramp.opaque, way);
     EXPECT_TRUE(soft.ran()) << entries;
     if (!soft.ran()) return worst;
@@ -157,14 +157,14 @@ TEST_F(Effects, AUsersEffectMayAskForStraightColour) {
   expect_straight("fx.bend { }");
   effect("");
   const Ramp ramp;
-  EXPECT_GT(difference(run_stack("fx.bend { }", ramp.soft, Way::joined).result,
-                       run_stack("fx.bend { }", ramp.opaque, Way::joined).result, ramp.soft),
+  EXPECT_GT(difference(run_stack("fx.bend { }", ramp.soft, Way::fused).result,
+                       run_stack("fx.bend { }", ramp.opaque, Way::fused).result, ramp.soft),
             0.1);
 }
 
 TEST_F(Effects, LightWithoutCoverageIsGradedAsItIs) {
   Scene glow{"glow", DoubleImage(4, 1, Rgba(0.5, 2, 0.125, 0)), {}, {}};
-  for (const Way way : {Way::plain, Way::joined})
+  for (const Way way : {Way::plain, Way::fused})
     EXPECT_TRUE(agrees(run_stack("fx.tone_mapping { mode = \"reinhard\" }", glow, way).result,
                        tone_mapping(glow.source, ToneMode::reinhard), 1e-6, kRgb));
   EXPECT_NEAR(tone_mapping(glow.source, ToneMode::reinhard).pixels[0].g, 2.0 / 3, 1e-12);
@@ -173,7 +173,7 @@ TEST_F(Effects, LightWithoutCoverageIsGradedAsItIs) {
 TEST_F(Effects, StraightColourStaysFiniteWhereAlphaIsTiny) {
   Scene scene{"tiny", DoubleImage(3, 1, Rgba(1e30, 1, 0, 1e-30)), {}, {}};
   scene.source = in_floats(scene.source);
-  const Made made = run_stack("fx.tone_mapping { mode = \"reinhard\" }", scene, Way::joined);
+  const Made made = run_stack("fx.tone_mapping { mode = \"reinhard\" }", scene, Way::fused);
   EXPECT_TRUE(all_finite(made.result));
 }
 

@@ -2,7 +2,7 @@
 // oracle's whole pyramid.
 #include <fmt/format.h>
 
-#include "lab.h"
+#include "harness.h"
 #include "reference/bloom.h"
 
 namespace afterglow {
@@ -102,8 +102,8 @@ void check(const Scene& scene, const BloomSettings& settings) {
   }
   check_each_pass(made, scene, settings);
   check_end_to_end(made, expected);
-  const Made joined = run_stack(lua(settings), scene, Way::joined);
-  EXPECT_TRUE(agrees(joined.result, from_floats(made.result.data(), made.size, 4), kJoined, kRgba)) << "joined";
+  const Made fused = run_stack(lua(settings), scene, Way::fused);
+  EXPECT_TRUE(agrees(fused.result, from_floats(made.result.data(), made.size, 4), kFused, kRgba)) << "fused";
 }
 
 class Bloom : public Effects, public testing::WithParamInterface<Size> {};
@@ -151,8 +151,8 @@ TEST_F(Effects, BloomAtAReferenceHeightAgrees) {
 
 TEST_F(Effects, TheReferenceHeightOfAPictureChangesNothing) {
   const Scene scene = random_scene({96, 54}, 13);
-  EXPECT_EQ(run_stack("fx.bloom { reference_height = 54 }", scene, Way::joined).result,
-            run_stack("fx.bloom {}", scene, Way::joined).result);
+  EXPECT_EQ(run_stack("fx.bloom { reference_height = 54 }", scene, Way::fused).result,
+            run_stack("fx.bloom {}", scene, Way::fused).result);
 }
 
 TEST_F(Effects, BloomSkipsAndSaysWhy) {
@@ -172,7 +172,7 @@ TEST_F(Effects, BloomSkipsAndSaysWhy) {
 TEST_F(Effects, ScatteringKeepsAPictureOfOneColour) {
   Scene scene{"constant", DoubleImage(50, 31, Rgba(4, 2, 0.5, 0.25)), {}, {}};
   const Made made =
-      run_stack("fx.bloom { mode = \"scattering\", intensity = 0.95, scatter = 0.7 }", scene, Way::joined);
+      run_stack("fx.bloom { mode = \"scattering\", intensity = 0.95, scatter = 0.7 }", scene, Way::fused);
   EXPECT_TRUE(agrees(made.result, scene.source, kFullFloat, kRgba));
 }
 

@@ -50,8 +50,8 @@ TEST_F(Effects, DualKawaseAgrees) {
       }
   const auto scene = neon_scene({160, 90}, 560, 330);
   const auto one = kawase(4, 1);
-  EXPECT_TRUE(agrees(run_stack(one.entries, scene, Way::joined).result, one.oracle(scene), kFullFloat, kRgba));
-  EXPECT_TRUE(agrees(run_stack(one.entries, scene, Way::joined_half).result, one.oracle(scene), kHalfFloat, kRgba));
+  EXPECT_TRUE(agrees(run_stack(one.entries, scene, Way::fused).result, one.oracle(scene), kFullFloat, kRgba));
+  EXPECT_TRUE(agrees(run_stack(one.entries, scene, Way::fused_half).result, one.oracle(scene), kHalfFloat, kRgba));
   expect_skipped("fx.dual_kawase { iterations = 0 }", "iterations is 0");
   const Made tiny = run_stack("fx.dual_kawase {}", random_scene({1, 1}, 64), Way::plain);
   EXPECT_EQ(tiny.graph.skipped.at(0).reason, "the picture is a single row or column");

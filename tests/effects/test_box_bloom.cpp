@@ -1,7 +1,7 @@
 // Box bloom, pass by pass.
 #include <fmt/format.h>
 
-#include "lab.h"
+#include "harness.h"
 #include "reference/box_bloom.h"
 
 namespace afterglow {
@@ -42,8 +42,8 @@ void check(const Scene& scene, const BoxBloomSettings& settings) {
   }
   EXPECT_TRUE(agrees(made.result, expected.result, kFullFloat, kRgba));
   EXPECT_TRUE(alpha_is_kept(made, scene));
-  const Made joined = run_stack(lua(settings), scene, Way::joined);
-  EXPECT_TRUE(agrees(joined.result, from_floats(made.result.data(), made.size, 4), kJoined, kRgba)) << "joined";
+  const Made fused = run_stack(lua(settings), scene, Way::fused);
+  EXPECT_TRUE(agrees(fused.result, from_floats(made.result.data(), made.size, 4), kFused, kRgba)) << "fused";
 }
 
 TEST_F(Effects, BoxBloomAgreesAtEverySize) {

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "lab.h"
+#include "harness.h"
 #include "reference/bloom.h"
 #include "reference/color_adjustments.h"
 #include "reference/color_blit.h"

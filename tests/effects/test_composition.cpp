@@ -44,11 +44,11 @@ DoubleImage truth(const std::string& entries, const Scene& scene) {
 
 void expect_true(const std::string& entries, const Scene& scene, double tolerance = kFullFloat) {
   const DoubleImage expected = truth(entries, scene);
-  for (const Way way : {Way::plain, Way::joined}) {
+  for (const Way way : {Way::plain, Way::fused}) {
     const Made made = run_stack(entries, scene, way);
     EXPECT_TRUE(made.ran()) << entries;
     EXPECT_TRUE(agrees(made.result, expected, tolerance, kRgb))
-        << entries << (way == Way::plain ? ", plain" : ", joined");
+        << entries << (way == Way::plain ? ", plain" : ", fused");
     EXPECT_TRUE(alpha_is_kept(made, scene)) << entries;
   }
 }
@@ -146,7 +146,7 @@ TEST_F(Effects, GroupsAndMixesAgree) {
 
 TEST_F(Effects, AMaskRunsInTheKernelOfItsEntry) {
   const Scene scene = light({64, 36});
-  const auto kernels = [&](const std::string& entries) { return run_stack(entries, scene, Way::joined).kernels; };
+  const auto kernels = [&](const std::string& entries) { return run_stack(entries, scene, Way::fused).kernels; };
   const std::string before = "fx.white_balance { temperature = 20 }, ",
                     behind = ", fx.tone_mapping { mode = \"reinhard\" }";
   EXPECT_EQ(kernels(before + "fx.color_adjustments { contrast = 20 }" + behind), 1u);
@@ -175,9 +175,9 @@ TEST_F(Effects, WhatCannotBeSeenDoesNotRun) {
 TEST_F(Effects, FullOpacityAndAFullMaskAreTheEffectItself) {
   const Scene scene = light();
   const std::string effect = "fx.color_adjustments { contrast = 20, saturation = 30";
-  const auto plain = run_stack(effect + " }", scene, Way::joined);
-  EXPECT_EQ(run_stack(effect + ", opacity = 1, mask = 1 }", scene, Way::joined).result, plain.result);
-  EXPECT_TRUE(agrees(run_stack(effect + ", mask = fx.mask.radial { radius = { 9, 9 } } }", scene, Way::joined).result,
+  const auto plain = run_stack(effect + " }", scene, Way::fused);
+  EXPECT_EQ(run_stack(effect + ", opacity = 1, mask = 1 }", scene, Way::fused).result, plain.result);
+  EXPECT_TRUE(agrees(run_stack(effect + ", mask = fx.mask.radial { radius = { 9, 9 } } }", scene, Way::fused).result,
                      from_floats(plain.result.data(), plain.size, 4), 1e-6, kRgba));
 }
 
@@ -194,9 +194,9 @@ TEST_F(Effects, AFileIsAMask) {
   Diagnostics diagnostics;
   ASSERT_TRUE(write_picture(picture, test_files() / "where.exr", {.type = SampleType::float32}, diagnostics));
   const std::string effect = "fx.color_adjustments { post_exposure = 2";
-  const auto all = run_stack(effect + " }", scene, Way::joined);
+  const auto all = run_stack(effect + " }", scene, Way::fused);
   const auto expected = composite(scene.source, from_floats(all.result.data(), all.size, 4), 1, "normal", &red);
-  for (const Way way : {Way::plain, Way::joined})
+  for (const Way way : {Way::plain, Way::fused})
     EXPECT_TRUE(agrees(
         run_stack(effect + ", mask = fx.mask.file { file = \"where.exr\", channel = \"r\" } }", scene, way).result,
         expected, 1e-5, kRgb));
@@ -218,9 +218,9 @@ TEST_F(Effects, CryptomattesSelectByName) {
     }
   scene.layers["CryptoObject00"] = ranks;
   const std::string effect = "fx.color_adjustments { post_exposure = 2, mask = fx.mask.cryptomatte ";
-  const auto all = run_stack("fx.color_adjustments { post_exposure = 2 }", scene, Way::joined);
+  const auto all = run_stack("fx.color_adjustments { post_exposure = 2 }", scene, Way::fused);
   const auto expected = composite(scene.source, from_floats(all.result.data(), all.size, 4), 1, "normal", &disc);
-  for (const Way way : {Way::plain, Way::joined}) {
+  for (const Way way : {Way::plain, Way::fused}) {
     EXPECT_TRUE(agrees(run_stack(effect + "{ names = \"Suzanne\" } }", scene, way).result, expected, 1e-5, kRgb));
     EXPECT_TRUE(agrees(run_stack(effect + "{ names = \"Suzanne, Floor\" } }", scene, way).result,
                        from_floats(all.result.data(), all.size, 4), 1e-5, kRgb));
@@ -228,8 +228,8 @@ TEST_F(Effects, CryptomattesSelectByName) {
                        composite(from_floats(all.result.data(), all.size, 4), scene.source, 1, "normal", &disc), 1e-5,
                        kRgb));
   }
-  EXPECT_EQ(run_stack(effect + "{ names = \"Monkey\" } }", scene, Way::joined).result,
-            run_stack("fx.color_adjustments { }", scene, Way::joined).result);
+  EXPECT_EQ(run_stack(effect + "{ names = \"Monkey\" } }", scene, Way::fused).result,
+            run_stack("fx.color_adjustments { }", scene, Way::fused).result);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "core/text.h"
 #include "files.h"
-#include "lab.h"
+#include "harness.h"
 #include "pictures.h"
 
 namespace afterglow {
@@ -41,15 +41,15 @@ TEST_F(Effects, TheGuidesComputeEffectAgrees) {
   for (const Size size : {Size{1, 1}, Size{1, 7}, Size{7, 1}, Size{64, 64}, Size{101, 57}, Size{301, 130}}) {
     const Scene scene = random_scene(size, 21);
     const DoubleImage expected = stretched(scene.source, 2.5);
-    for (const Way way : {Way::plain, Way::joined, Way::joined_half}) {
+    for (const Way way : {Way::plain, Way::fused, Way::fused_half}) {
       const Made made = run_stack("fx.stretch { white = 2.5 }", scene, way);
       EXPECT_EQ(made.dispatches, 2u);
-      EXPECT_TRUE(agrees(made.result, expected, way == Way::joined_half ? kHalfFloat : 1e-6, kRgb))
+      EXPECT_TRUE(agrees(made.result, expected, way == Way::fused_half ? kHalfFloat : 1e-6, kRgb))
           << size.width << 'x' << size.height;
     }
   }
   Scene scene = random_scene({16, 16}, 3);
-  const Made alone = run_stack("fx.stretch {}, fx.exposure { ev = 1, order = 70 }", scene, Way::joined);
+  const Made alone = run_stack("fx.stretch {}, fx.exposure { ev = 1, order = 70 }", scene, Way::fused);
   EXPECT_TRUE(agrees(alone.result, stretched(scene.source, 2), 1e-6, kRgb));
 }
 

@@ -86,7 +86,7 @@ TEST_F(Effects, FewSamplesComeCloseToMany) {
     DepthOfField many = settings;
     many.samples = 4000;
     const auto expected = depth_of_field(scene.source, *scene.depth, many);
-    const auto made = run_stack(focused(settings).entries, scene, Way::joined).result;
+    const auto made = run_stack(focused(settings).entries, scene, Way::fused).result;
     double sum = 0;
     for (std::size_t i = 0; i < expected.pixels.size(); ++i)
       for (int c = 0; c < 3; ++c) {

@@ -7,7 +7,7 @@
 
 #include "core/paths.h"
 #include "files.h"
-#include "lab.h"
+#include "harness.h"
 
 namespace afterglow {
 namespace {
@@ -139,7 +139,7 @@ TEST_F(Effects, EveryEffectStaysFiniteAtTheEndsOfItsSettings) {
     for (const Side side : {Side::low, Side::high}) entries.push_back(all_at(effect, side));
     for (const auto& entry : entries) {
       if (is_refused(entry, scene)) continue;
-      const Made made = run_stack(entry, scene, Way::joined);
+      const Made made = run_stack(entry, scene, Way::fused);
       EXPECT_TRUE(all_finite(made.result)) << entry;
       EXPECT_TRUE(alpha_is_kept(made, scene)) << entry;
       ++tried;
@@ -150,7 +150,7 @@ TEST_F(Effects, EveryEffectStaysFiniteAtTheEndsOfItsSettings) {
 
 TEST_F(Effects, EveryEffectJoinedIsWhatItIsByItself) {
   const auto scene = moving(neon_scene({96, 54}, 560, 330));
-  // Pixel passes on both sides, which it is joined with where that can be.
+  // Pixel passes on both sides, which it is fused with where that can be.
   const std::string before =
       "fx.channel_mixer { name = \"before\", at = \"after_opaque_and_sky\", order = -1000, red_out_green_in = 10 }, ";
   const std::string behind =
@@ -159,16 +159,16 @@ TEST_F(Effects, EveryEffectJoinedIsWhatItIsByItself) {
     for (const auto& entry : {entry_of(effect), all_at(effect, Side::low)}) {
       if (is_refused(entry, scene)) continue;
       const Made plain = run_stack(before + entry + behind, scene, Way::plain);
-      const Made joined = run_stack(before + entry + behind, scene, Way::joined);
-      EXPECT_LE(joined.kernels, plain.kernels);
-      EXPECT_TRUE(agrees(joined.result, from_floats(plain.result.data(), plain.size, 4), 1e-4, kRgba)) << entry;
+      const Made fused = run_stack(before + entry + behind, scene, Way::fused);
+      EXPECT_LE(fused.kernels, plain.kernels);
+      EXPECT_TRUE(agrees(fused.result, from_floats(plain.result.data(), plain.size, 4), 1e-4, kRgba)) << entry;
     }
 }
 
 /// Nothing changes, to the last bit.
 bool is_identity(const std::string& entry, const Scene& scene) {
   if (is_refused(entry, scene)) return false;
-  const Made made = run_stack(entry, scene, Way::joined);
+  const Made made = run_stack(entry, scene, Way::fused);
   for (std::size_t i = 0; i < scene.source.pixels.size(); ++i)
     for (int c = 0; c < 4; ++c)
       if (made.result[4 * i + static_cast<std::size_t>(c)] != static_cast<float>(scene.source.pixels[i][c]))
@@ -223,7 +223,7 @@ TEST_F(Effects, EveryEffectHasSettingsThatChangeNothing) {
     const auto entries = neutral_entries(effect);
     const bool found = std::ranges::any_of(entries, [&](const auto& entry) { return is_identity(entry, scene); });
     if (found) continue;
-    EXPECT_TRUE(agrees(run_stack(with_neutral_files(effect), flat, Way::joined).result, flat.source, 1e-6, kRgba))
+    EXPECT_TRUE(agrees(run_stack(with_neutral_files(effect), flat, Way::fused).result, flat.source, 1e-6, kRgba))
         << effect.name << " changes every picture, whatever it is set to";
   }
 }

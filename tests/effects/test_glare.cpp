@@ -42,7 +42,7 @@ TEST_F(Effects, StreaksLieFlat) {
 TEST_F(Effects, LensDirtAgrees) {
   agree_everywhere({dirty({}), dirty({.intensity = 5, .threshold = 0, .density = 1, .size = 0.3, .seed = 3}),
                     dirty({.threshold = 0.3, .density = 0.1, .size = 0.01})},
-                   {.full = 2e-3, .joined = 2e-4, .spikes = false});  // hard rims of specks, times light
+                   {.full = 2e-3, .fused = 2e-4, .spikes = false});  // hard rims of specks, times light
   expect_skipped("fx.lens_dirt { intensity = 0 }", "intensity is 0");
   expect_skipped("fx.lens_dirt { density = 0 }", "density is 0");
 }

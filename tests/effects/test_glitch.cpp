@@ -31,9 +31,9 @@ TEST_F(Effects, GlitchAgreesToTheBit) {
       for (const double frame : {1.0, 12.0}) {
         auto scene = random_scene(size, 68);
         scene.frame = frame;
-        for (const Way way : {Way::plain, Way::joined, Way::joined_half})
+        for (const Way way : {Way::plain, Way::fused, Way::fused_half})
           EXPECT_TRUE(agrees(run_stack(one.entries, scene, way).result, one.oracle(scene),
-                             way == Way::joined_half ? kHalfFloat : 0, kRgba))
+                             way == Way::fused_half ? kHalfFloat : 0, kRgba))
               << one.entries << scene.name << " frame " << frame;
       }
   expect_skipped("fx.glitch { scan_line_jitter = 0, rgb_split = 0 }", "all settings are 0");

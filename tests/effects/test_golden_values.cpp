@@ -5,7 +5,7 @@
 #include <map>
 #include <sstream>
 
-#include "lab.h"
+#include "harness.h"
 
 namespace afterglow {
 namespace {

@@ -165,10 +165,10 @@ TEST_F(Effects, AWholeGradeIsOneKernel) {
       "fx.lift_gamma_gain { gamma_offset = 0.1 }, fx.tone_mapping { mode = \"neutral\" }, "
       "fx.color_adjustments { contrast = 10, saturation = 10 }, fx.film_grain { size = 1.5 }";
   const auto scene = neon_scene({160, 90}, 560, 330);
-  const Made plain = run_stack(entries, scene, Way::plain), joined = run_stack(entries, scene, Way::joined);
+  const Made plain = run_stack(entries, scene, Way::plain), fused = run_stack(entries, scene, Way::fused);
   EXPECT_EQ(plain.kernels, 9u);
-  EXPECT_EQ(joined.kernels, 1u);
-  EXPECT_TRUE(agrees(joined.result, from_floats(plain.result.data(), plain.size, 4), kJoined, kRgba));
+  EXPECT_EQ(fused.kernels, 1u);
+  EXPECT_TRUE(agrees(fused.result, from_floats(plain.result.data(), plain.size, 4), kFused, kRgba));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "files.h"
-#include "lab.h"
+#include "harness.h"
 #include "reference/color.h"
 
 namespace OCIO = OCIO_NAMESPACE;
@@ -94,7 +94,7 @@ void agree_with_ocio(const std::string& name, const std::string& text) {
   const Made plain = run_stack(entry(name), scene, Way::plain);
   expect_close(plain.result, expected, "plain");
   EXPECT_TRUE(alpha_is_kept(plain, scene));
-  expect_close(run_stack(entry(name), scene, Way::joined).result, expected, "joined");
+  expect_close(run_stack(entry(name), scene, Way::fused).result, expected, "fused");
 }
 
 TEST_F(Effects, LutCubesAgreeWithOpenColorIo) {
@@ -199,12 +199,12 @@ TEST_F(Effects, LutEncodesAsItSays) {
 }
 
 TEST_F(Effects, LutJoinsItsNeighbours) {
-  write_test_file("joined.cube", "LUT_3D_SIZE 4\n" + random_rows(64));
+  write_test_file("fused.cube", "LUT_3D_SIZE 4\n" + random_rows(64));
   const std::string entries = "fx.tone_mapping {}, fx.color_adjustments { post_exposure = 0.5 }, " +
-                              entry("joined.cube") + ", fx.film_grain {}";
-  const Made joined = run_stack(entries, random_scene({32, 32}, 74), Way::joined);
-  EXPECT_EQ(joined.graph.passes.size(), 4u);
-  EXPECT_EQ(joined.kernels, 1u);
+                              entry("fused.cube") + ", fx.film_grain {}";
+  const Made fused = run_stack(entries, random_scene({32, 32}, 74), Way::fused);
+  EXPECT_EQ(fused.graph.passes.size(), 4u);
+  EXPECT_EQ(fused.kernels, 1u);
 }
 
 TEST_F(Effects, LutErrorsNameTheFileAndTheLine) {

@@ -5,7 +5,7 @@
 
 #include "files.h"
 #include "image/input_space.h"
-#include "lab.h"
+#include "harness.h"
 #include "reference/transfer.h"
 
 namespace afterglow {
@@ -107,7 +107,7 @@ TEST_F(Effects, LutSpacesAreThoseOfTheOracle) {
   for (const auto& name : transfer_names()) {
     DoubleImage expected = light.source;
     for (auto& p : expected.pixels) p = Rgba(rec709_to_transfer(name, Rgb(p)), 1);
-    for (const Way way : {Way::joined}) {
+    for (const Way way : {Way::fused}) {
       EXPECT_TRUE(agrees(run_stack(through(name, "linear"), light, way).result, expected, 2e-5, kRgb)) << "to " << name;
       DoubleImage back = codes.source;
       for (auto& p : back.pixels) p = Rgba(transfer_to_rec709(name, Rgb(p)), 1);
@@ -129,7 +129,7 @@ TEST_F(Effects, LutSpacesGoThereAndBack) {
   write_plain_tables();
   const Scene light = colours_of(-10, 1.5, true);
   for (const auto& name : transfer_names()) {
-    const Made made = run_stack(through(name, "same"), light, Way::joined);
+    const Made made = run_stack(through(name, "same"), light, Way::fused);
     for (std::size_t i = 0; i < light.source.pixels.size(); ++i) {
       const Rgb wanted(light.source.pixels[i]);
       const double size = glm::max(wanted.r, glm::max(wanted.g, wanted.b));
@@ -150,12 +150,12 @@ TEST_F(Effects, LutSpacesRiseAndStayFiniteAtTheirEnds) {
   greys.source = in_floats(greys.source);
   for (const auto& name : transfer_names()) {
     for (const char* output : {"linear", "same"}) {
-      const Made made = run_stack(through(name, output), greys, Way::joined);
+      const Made made = run_stack(through(name, output), greys, Way::fused);
       EXPECT_TRUE(all_finite(made.result)) << name;
       for (std::size_t x = 1; x < 64; ++x)
         EXPECT_GE(made.result[4 * x + 1], made.result[4 * x - 3] * 0.99999F) << name << " " << output << " " << x;
     }
-    EXPECT_TRUE(all_finite(run_stack(through("linear", name), greys, Way::joined).result)) << name;
+    EXPECT_TRUE(all_finite(run_stack(through("linear", name), greys, Way::fused).result)) << name;
   }
 }
 

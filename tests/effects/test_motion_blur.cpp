@@ -56,7 +56,7 @@ TEST_F(Effects, MotionBlurAgrees) {
         if (!with_depth) scene.depth.reset();
         SCOPED_TRACE(entry(v) + (with_depth ? " with depth" : ""));
         const auto expected = motion_blur(scene.source, *scene.motion, scene.depth ? &*scene.depth : nullptr, v);
-        for (const Way way : {Way::plain, Way::joined}) {
+        for (const Way way : {Way::plain, Way::fused}) {
           const Made made = run_stack(entry(v), scene, way);
           EXPECT_TRUE(agrees(made.result, expected, kDecisions.full, kRgba));
           EXPECT_TRUE(alpha_is_kept(made, scene));

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "files.h"
-#include "lab.h"
+#include "harness.h"
 #include "ocio_studio.h"
 #include "reference/color.h"
 
@@ -98,7 +98,7 @@ void expect_view(const std::filesystem::path& file, const char* from, const char
   const auto usual = by_cpu(processor, scene, OCIO::OPTIMIZATION_DEFAULT);
   const std::string entry =
       fmt::format("fx.ocio_view {{ config = \"{}\", view = \"{}\" }}", file.filename().string(), view);
-  const Made plain = run_stack(entry, scene, Way::plain), joined = run_stack(entry, scene, Way::joined);
+  const Made plain = run_stack(entry, scene, Way::plain), fused = run_stack(entry, scene, Way::fused);
   const Off to_exact = off_by(plain.result, exact), to_usual = off_by(plain.result, usual);
   std::vector<float> usual4;
   for (std::size_t i = 0; i < usual.size(); ++i) {
@@ -107,8 +107,8 @@ void expect_view(const std::filesystem::path& file, const char* from, const char
   }
   fmt::print("| {} | {:.1e} | {:.1e} | {:.1e} |\n", view, to_usual.most, to_exact.most, off_by(usual4, exact).most);
   EXPECT_LE(to_usual.most, 1e-4) << view << ": " << to_usual.text;
-  const Off of_joined = off_by(joined.result, usual);
-  EXPECT_LE(of_joined.most, 1e-4) << view << ", joined: " << of_joined.text;
+  const Off of_joined = off_by(fused.result, usual);
+  EXPECT_LE(of_joined.most, 1e-4) << view << ", fused: " << of_joined.text;
 }
 
 TEST_F(Effects, OcioViewsAreWithinATenThousandthOfTheCpuProcessor) {
@@ -143,7 +143,7 @@ TEST_F(Effects, OcioDisplayMakesLightThatIsEncodedIntoTheViewsCodes) {
     const auto expected =
         by_cpu(view_processor(write_studio(), "lin_rec709", "Monitor", view), scene, OCIO::OPTIMIZATION_DEFAULT);
     const Made made = run_stack(fmt::format("fx.ocio_display {{ config = \"studio.ocio\", view = \"{}\" }}", view),
-                                scene, Way::joined);
+                                scene, Way::fused);
     std::vector<float> codes;
     for (const float v : made.result) codes.push_back(static_cast<float>(linear_to_srgb(std::max(double(v), 0.0))));
     std::vector<float> shown;
@@ -169,7 +169,7 @@ TEST_F(Effects, OcioTransformGoesBetweenSpacesThroughLooksAndBack) {
   codes.source = in_floats(codes.source);
   const auto agree = [&](const std::string& settings, const std::vector<float>& expected, bool of_codes = false) {
     const Off off = off_by(run_stack("fx.ocio_transform { config = \"studio.ocio\", " + settings + " }",
-                                     of_codes ? codes : scene, Way::joined)
+                                     of_codes ? codes : scene, Way::fused)
                                .result,
                            expected);
     EXPECT_LE(off.most, 1e-4) << settings << ": " << off.text;

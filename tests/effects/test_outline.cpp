@@ -1,7 +1,7 @@
 // Outline: the mask and the blend, in every mode.
 #include <fmt/format.h>
 
-#include "lab.h"
+#include "harness.h"
 #include "reference/outline.h"
 
 namespace afterglow {
@@ -35,8 +35,8 @@ void check(const Scene& scene, const OutlineSettings& s) {
   EXPECT_TRUE(
       agrees(made.result, outline(scene.source, pointer(scene.depth), pointer(scene.normal), s), kFullFloat, kRgba));
   EXPECT_TRUE(alpha_is_kept(made, scene));
-  const Made joined = run_stack(lua(s), scene, Way::joined);
-  EXPECT_TRUE(agrees(joined.result, from_floats(made.result.data(), made.size, 4), kJoined, kRgba)) << "joined";
+  const Made fused = run_stack(lua(s), scene, Way::fused);
+  EXPECT_TRUE(agrees(fused.result, from_floats(made.result.data(), made.size, 4), kFused, kRgba)) << "fused";
 }
 
 /// Depth as a depth buffer holds it.

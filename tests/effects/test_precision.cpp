@@ -1,5 +1,5 @@
-// Whole stacks as users run them: passes joined, in full and half floats.
-#include "lab.h"
+// Whole stacks as users run them: passes fused, in full and half floats.
+#include "harness.h"
 #include "reference/bloom.h"
 #include "reference/box_bloom.h"
 #include "reference/color_adjustments.h"
@@ -12,7 +12,7 @@ namespace {
 using namespace reference;
 
 struct Look {
-  int effects;  ///< that run: each may differ by kJoined, and those behind it make more of it or less
+  int effects;  ///< that run: each may differ by kFused, and those behind it make more of it or less
   const char* entries;
   DoubleImage (*oracle)(const Scene&);
 };
@@ -52,11 +52,11 @@ void check(const Scene& scene) {
     const auto expected = look.oracle(scene);
     const Made plain = run_stack(look.entries, scene, Way::plain);
     EXPECT_TRUE(agrees(plain.result, expected, kFullFloat, kRgba)) << "plain";
-    const Made joined = run_stack(look.entries, scene, Way::joined);
-    EXPECT_TRUE(agrees(joined.result, expected, kFullFloat, kRgba)) << "joined";
-    EXPECT_TRUE(agrees(joined.result, from_floats(plain.result.data(), plain.size, 4), look.effects * kJoined, kRgba))
-        << "joined and plain";
-    const Made half = run_stack(look.entries, scene, Way::joined_half);
+    const Made fused = run_stack(look.entries, scene, Way::fused);
+    EXPECT_TRUE(agrees(fused.result, expected, kFullFloat, kRgba)) << "fused";
+    EXPECT_TRUE(agrees(fused.result, from_floats(plain.result.data(), plain.size, 4), look.effects * kFused, kRgba))
+        << "fused and plain";
+    const Made half = run_stack(look.entries, scene, Way::fused_half);
     EXPECT_TRUE(agrees(half.result, expected, kHalfFloat, kRgba)) << "half";
   }
 }

@@ -1,7 +1,7 @@
-// Every preset of the installation: it loads, runs as a whole, and the joined passes give what the plain ones give.
+// Every preset of the installation: it loads, runs as a whole, and the fused passes give what the plain ones give.
 #include <algorithm>
 
-#include "lab.h"
+#include "harness.h"
 
 namespace afterglow {
 namespace {
@@ -26,13 +26,13 @@ TEST_F(Effects, EveryPresetRuns) {
   const auto scene = neon_scene({160, 90}, 560, 330);
   for (const auto& preset : presets()) {
     SCOPED_TRACE(preset.string());
-    const Made plain = run_preset(preset, scene, Way::plain), joined = run_preset(preset, scene, Way::joined);
+    const Made plain = run_preset(preset, scene, Way::plain), fused = run_preset(preset, scene, Way::fused);
     EXPECT_TRUE(plain.ran());
     EXPECT_TRUE(plain.graph.skipped.empty()) << plain.graph.skipped[0].name << ": " << plain.graph.skipped[0].reason;
-    EXPECT_TRUE(all_finite(joined.result));
-    EXPECT_TRUE(alpha_is_kept(joined, scene));
-    EXPECT_TRUE(agrees(joined.result, from_floats(plain.result.data(), plain.size, 4), kJoined, kRgba));
-    EXPECT_FALSE(agrees(joined.result, scene.source, 1e-2, kRgb)) << "the preset changes nothing";
+    EXPECT_TRUE(all_finite(fused.result));
+    EXPECT_TRUE(alpha_is_kept(fused, scene));
+    EXPECT_TRUE(agrees(fused.result, from_floats(plain.result.data(), plain.size, 4), kFused, kRgba));
+    EXPECT_FALSE(agrees(fused.result, scene.source, 1e-2, kRgb)) << "the preset changes nothing";
   }
 }
 
@@ -40,7 +40,7 @@ TEST_F(Effects, EveryPresetRunsWithoutDepthAndNormals) {
   auto scene = neon_scene({101, 57}, 700, 200);
   scene.depth.reset();
   scene.normal.reset();
-  for (const auto& preset : presets()) EXPECT_TRUE(all_finite(run_preset(preset, scene, Way::joined).result)) << preset;
+  for (const auto& preset : presets()) EXPECT_TRUE(all_finite(run_preset(preset, scene, Way::fused).result)) << preset;
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Previews: a picture that runs smaller, with its lengths scaled, shows what the whole result shows when it is scaled.
 #include <cmath>
 
-#include "lab.h"
+#include "harness.h"
 #include "reference/resample.h"
 
 namespace afterglow {
@@ -51,8 +51,8 @@ struct Preview : Effects {
   }
   double difference(const std::string& entry) const {
     const std::string entries = entry + " fx.tone_mapping { mode = \"neutral\", exposure = 1 }";
-    const Made full = run_stack(entries, whole, Way::joined);
-    const Made preview = run_stack(entries, small, Way::joined, 1.0 / 3);
+    const Made full = run_stack(entries, whole, Way::fused);
+    const Made preview = run_stack(entries, small, Way::fused, 1.0 / 3);
     return rms(third(from_floats(full.result.data(), full.size, 4)),
                from_floats(preview.result.data(), preview.size, 4));
   }
@@ -77,7 +77,7 @@ TEST_F(Preview, ShowTheWholeLook) {
 TEST_F(Preview, OfPyramidsWithoutScaledLengthsWouldNot) {
   // That the bound can be missed: the same preview with lengths of its own.
   const std::string entries = "fx.dual_kawase { iterations = 4 }, fx.tone_mapping { mode = \"neutral\", exposure = 1 }";
-  const Made full = run_stack(entries, whole, Way::joined), preview = run_stack(entries, small, Way::joined);
+  const Made full = run_stack(entries, whole, Way::fused), preview = run_stack(entries, small, Way::fused);
   EXPECT_GT(
       rms(third(from_floats(full.result.data(), full.size, 4)), from_floats(preview.result.data(), preview.size, 4)),
       1.2 * difference(""));

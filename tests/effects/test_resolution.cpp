@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lab.h"
+#include "harness.h"
 
 namespace afterglow {
 namespace {
@@ -37,7 +37,7 @@ Scene lamps(Size size) {
 /// What the stack adds, as means over pixels of a picture `factor` times smaller.
 std::vector<double> glow(const std::string& entries, Size size, int factor) {
   const Scene scene = lamps(size);
-  const Made made = run_stack(entries, scene, Way::joined);
+  const Made made = run_stack(entries, scene, Way::fused);
   std::vector<double> out;
   for (int y = 0; y < size.height / factor; ++y)
     for (int x = 0; x < size.width / factor; ++x) {
@@ -96,7 +96,7 @@ TEST_F(Effects, ASmallLightWeighsTheSameWhereverItLies) {
       Scene scene{"light", DoubleImage(size, Rgba(0, 0, 0, 1)), {}, {}};
       scene.source.at(x, y) = Rgba(1000, 1000, 1000, 1);
       const Made made =
-          run_stack("fx.bloom { threshold = 0, knee = 0, intensity = 1, reference_height = 56 }", scene, Way::joined);
+          run_stack("fx.bloom { threshold = 0, knee = 0, intensity = 1, reference_height = 56 }", scene, Way::fused);
       double sum = -1000;
       for (std::size_t i = 0; i < made.result.size(); i += 4) sum += made.result[i];
       least = std::min(least, sum);

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <random>
 
-#include "lab.h"
+#include "harness.h"
 
 namespace afterglow {
 namespace {
@@ -98,13 +98,13 @@ TEST_F(Effects, NothingTurnsNonFinite) {
       for (const auto& [name, pixels] : made.images) EXPECT_TRUE(all_finite(pixels)) << entries << " " << name;
       EXPECT_TRUE(all_finite(made.result)) << entries;
       EXPECT_TRUE(alpha_is_kept(made, scene)) << entries;
-      EXPECT_TRUE(all_finite(run_stack(entries, scene, Way::joined).result)) << entries;
+      EXPECT_TRUE(all_finite(run_stack(entries, scene, Way::fused).result)) << entries;
     }
 }
 
 TEST_F(Effects, NothingTurnsNonFiniteInHalfFloats) {
   for (const char* entries : kExtremes) {
-    const Made made = run_stack(entries, stress_scene({37, 23}), Way::joined_half);
+    const Made made = run_stack(entries, stress_scene({37, 23}), Way::fused_half);
     EXPECT_TRUE(all_finite(made.result)) << entries;
     for (const float v : made.result) ASSERT_LE(std::abs(v), 65504.0F) << entries;
   }
@@ -115,7 +115,7 @@ TEST_F(Effects, BlackStaysBlack) {
   for (const char* entries : {"fx.bloom {}", "fx.bloom { mode = \"scattering\", threshold = 0 }", "fx.box_bloom {}",
                               "fx.tone_mapping {}", "fx.tone_mapping { mode = \"neutral\" }",
                               "fx.color_adjustments { contrast = 50, hue_shift = 20, saturation = 50 }"})
-    for (const float v : run_stack(entries, scene, Way::joined).result) ASSERT_EQ(v, 0.0F) << entries;
+    for (const float v : run_stack(entries, scene, Way::fused).result) ASSERT_EQ(v, 0.0F) << entries;
 }
 
 }  // namespace

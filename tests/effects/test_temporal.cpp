@@ -39,7 +39,7 @@ EffectCase stabilised(const FireflyStabilisation& v) {
 }
 
 /// Sums of logarithms in floats.
-constexpr Tolerances kLogarithms{.full = 5e-5, .joined = 1e-5, .half = kHalfFloat};
+constexpr Tolerances kLogarithms{.full = 5e-5, .fused = 1e-5, .half = kHalfFloat};
 
 TEST_F(Effects, AutoExposureOfOnePictureAgrees) {
   agree_everywhere(

@@ -1,4 +1,4 @@
-// An author's shader with libraries: scanned, assembled alone and joined with itself, compiled.
+// An author's shader with libraries: scanned, assembled alone and fused with itself, compiled.
 #include "fuzz.h"
 #include "shader/check.h"
 #include "shader/kernel.h"
@@ -35,14 +35,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::check_error(alone.error(), {ErrorKind::script});
     return 0;
   }
-  KernelDesc joined;
-  joined.target = size % 2 == 0 ? KernelTarget::codes8 : KernelTarget::float16;
-  joined.config.rows = 1 + static_cast<int>(size % 2);
+  KernelDesc fused;
+  fused.target = size % 2 == 0 ? KernelTarget::unorm8 : KernelTarget::float16;
+  fused.config.rows = 1 + static_cast<int>(size % 2);
   const KernelStage stage{*shader, {}, "x"};
   if (info_of((*shader)->interface.kind).begins)
-    joined.sample = stage;
+    fused.sample = stage;
   else
-    joined.stages = {stage, stage};
-  check(compiler.compile(joined));
+    fused.stages = {stage, stage};
+  check(compiler.compile(fused));
   return 0;
 }

@@ -13,16 +13,16 @@ namespace {
 struct World {
   Diagnostics diagnostics;
   std::unique_ptr<Device> device;
-  std::unique_ptr<Lab> lab;
+  std::unique_ptr<Harness> harness;
   World() {
     setenv("AFTERGLOW_HOME", AFTERGLOW_PROJECT_FOLDER, 1);
     setenv("XDG_RUNTIME_DIR", testing::TempDir().c_str(), 0);
     auto made = Device::create({.device = "auto", .validate = true}, diagnostics);
     if (!made) throw std::runtime_error(made.error().text());
     device = std::move(*made);
-    auto a_lab = Lab::create(*device, {}, diagnostics);
+    auto a_lab = Harness::create(*device, {}, diagnostics);
     if (!a_lab) throw std::runtime_error(a_lab.error().text());
-    lab = std::move(*a_lab);
+    harness = std::move(*a_lab);
   }
 };
 
@@ -72,7 +72,7 @@ Look EffectFolder::look(const std::string& effect) const {
   return {{{.effect = effect, .settings = {}, .at = {}}}, {path_}};
 }
 
-Lab& lab() { return *world().lab; }
+Harness& harness() { return *world().harness; }
 int validation_errors() { return world().device->validation_errors(); }
 
 Situation situation(const Look& look, const std::string& check, const PictureSpec& picture, std::uint64_t seed) {
@@ -80,8 +80,8 @@ Situation situation(const Look& look, const std::string& check, const PictureSpe
 }
 
 Outcome outcome_of(const Situation& s) {
-  lab().forget();
-  auto outcome = run_check(lab(), s);
+  harness().forget();
+  auto outcome = run_check(harness(), s);
   if (!outcome) {
     ADD_FAILURE() << outcome.error().text();
     return {};

@@ -34,8 +34,8 @@ class EffectFolder {
   std::filesystem::path path_;
 };
 
-/// The lavapipe device of this process with its lab; the validation layer is on.
-Lab& lab();
+/// The lavapipe device of this process with its harness; the validation layer is on.
+Harness& harness();
 /// Errors that the validation layer has seen so far.
 int validation_errors();
 

@@ -14,7 +14,7 @@ constexpr const char* kBroken =
     "vec4(color.rgb * level, color.a); }";
 
 Trials trials_of(const EffectFolder& folder, const std::vector<std::string>& effects, std::uint64_t seed) {
-  lab();
+  harness();
   Diagnostics quiet;
   auto subjects = subjects_of_effects(effects, {folder.path()}, quiet);
   EXPECT_TRUE(subjects);
@@ -49,7 +49,7 @@ TEST(StressProgramme, FindsShrinksAndKeepsAFault) {
   ProgrammeOptions options{.seed = 3, .cases = 400, .out = folder.path() / "found"};
   Diagnostics quiet;
   int reported = 0;
-  const auto summary = run_programme(lab(), trials, options, quiet, go_on, [&](const Finding&) { ++reported; });
+  const auto summary = run_programme(harness(), trials, options, quiet, go_on, [&](const Finding&) { ++reported; });
   ASSERT_TRUE(summary) << summary.error().text();
   EXPECT_GE(summary->cases, 400u);
   EXPECT_GT(summary->failures, 0u);
@@ -76,7 +76,7 @@ TEST(StressProgramme, EndsInOrderWhenInterrupted) {
   const Trials trials = trials_of(folder, {"good"}, 1);
   Diagnostics quiet;
   const auto summary = run_programme(
-      lab(), trials, {.seed = 1}, quiet,
+      harness(), trials, {.seed = 1}, quiet,
       [](const Summary& so_far) -> Result<void> {
         return so_far.trials < 2 ? Result<void>() : Result<void>(Error{ErrorKind::interrupted, "now"});
       },
@@ -93,7 +93,7 @@ TEST(StressProgramme, ABrokenDefaultIsAnError) {
                 "active = function() error(\"never\", 0) end,");
   const Trials trials = trials_of(folder, {"refuses"}, 1);
   Diagnostics quiet;
-  const auto summary = run_programme(lab(), trials, {.seed = 1}, quiet, go_on, [](const Finding&) {});
+  const auto summary = run_programme(harness(), trials, {.seed = 1}, quiet, go_on, [](const Finding&) {});
   ASSERT_FALSE(summary);
   EXPECT_THAT(summary.error().text(), testing::HasSubstr("never"));
 }
@@ -123,11 +123,11 @@ TEST(StressProgramme, OutputOfAProgram) {
 }
 
 TEST(StressProgramme, ReportsErrorsLevelByLevel) {
-  lab();
+  harness();
   Diagnostics quiet;
   auto subjects = subjects_of_effects({"bloom", "vignette"}, {}, quiet);
   ASSERT_TRUE(subjects);
-  const auto rows = error_growth(lab(), *subjects, {64, 64}, true, 1, [] { return Result<void>(); });
+  const auto rows = error_growth(harness(), *subjects, {64, 64}, true, 1, [] { return Result<void>(); });
   ASSERT_TRUE(rows) << rows.error().text();
   std::set<int> levels;
   for (const auto& row : *rows) {

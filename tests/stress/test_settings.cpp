@@ -66,7 +66,7 @@ TEST(StressSettings, RandomCompositionsLoadAndAreShrunkByOne) {
     Random random(11, i);
     Look look{random_composition(subjects->back().composed, subjects->back().masks, search_path_for({}, {}), random),
               {}};
-    const auto facts = lab().facts(look, {16, 16}, 1);
+    const auto facts = harness().facts(look, {16, 16}, 1);
     EXPECT_TRUE(facts) << look.line() << "\n" << facts.error().text();
     groups += look.text().find("fx.group") != std::string::npos;
     masks += look.text().find("fx.mask") != std::string::npos;
@@ -74,7 +74,7 @@ TEST(StressSettings, RandomCompositionsLoadAndAreShrunkByOne) {
       const std::size_t count = look.entries.size();
       look = look.without(random.below(count));
       ASSERT_EQ(look.entries.size(), count - 1);
-      EXPECT_TRUE(lab().facts(look, {16, 16}, 1)) << look.line();
+      EXPECT_TRUE(harness().facts(look, {16, 16}, 1)) << look.line();
     }
   }
   EXPECT_GT(groups, 20);
@@ -96,7 +96,7 @@ TEST(StressSettings, TheTextOfGroups) {
 
 /// Every effect of the library takes all that is tried on it, but for combinations that it refuses itself.
 TEST(StressSettings, TheLibraryTakesWhatIsTried) {
-  lab();
+  harness();
   Diagnostics quiet;
   const auto subjects = subjects_of_effects({}, {}, quiet);
   ASSERT_TRUE(subjects) << subjects.error().text();
@@ -105,19 +105,19 @@ TEST(StressSettings, TheLibraryTakesWhatIsTried) {
   for (const auto& subject : *subjects)
     for (const auto& look : subject.looks) {
       ++tried;
-      const auto facts = lab().facts(look, {32, 32}, 1);
+      const auto facts = harness().facts(look, {32, 32}, 1);
       refused += !facts;
       if (!facts) {
         EXPECT_EQ(facts.error().message.find("is not in"), std::string::npos) << facts.error().text();
       }
     }
-  lab().forget();
+  harness().forget();
   EXPECT_GT(tried, 300);
   EXPECT_LT(refused, tried / 20);
 }
 
 TEST(StressSettings, UnknownEffectsAreNamed) {
-  lab();
+  harness();
   Diagnostics quiet;
   const auto subjects = subjects_of_effects({"blom"}, {}, quiet);
   ASSERT_FALSE(subjects);

@@ -71,8 +71,8 @@ TEST(StressShrink, OnADevice) {
   Look look = folder.look("other");
   look.entries.push_back({.effect = "broken", .settings = {{"strength", of(0.9)}, {"level", of(2)}}, .at = {}});
   const auto fails = [](const Situation& s) {
-    lab().forget();
-    const auto outcome = run_check(lab(), s);
+    harness().forget();
+    const auto outcome = run_check(harness(), s);
     return outcome && outcome->applies && !outcome->holds;
   };
   const Situation start = situation(look, "finite", {"spike", {40, 30}, 2});

@@ -2,6 +2,6 @@
 
 namespace afterglow {
 
-void fit_to_cpu_driver(ExecutionConfig& config) { config.hide_uniforms = true; }
+void fit_to_cpu_driver(ExecutionConfig& config) { config.defeat_uniform_inlining = true; }
 
 }  // namespace afterglow

@@ -117,11 +117,11 @@ TEST_F(PictureTest, CodesAreThoseOfAFile) {
   SanitizeCounts counts;
   decode_color({.curve = TransferCurve::srgb, .alpha = AlphaKind::straight, .max_code = 255}, read, counts);
   const Picture wanted = expected(read.pixels, DisplayEncoding{.straight_alpha = true});
-  ASSERT_FALSE(wanted.codes.empty());
+  ASSERT_FALSE(wanted.unorm8.empty());
   const StackPtr stack = this->stack();
   run(stack, {codes.data(), kWidth, kHeight, 4, AFTERGLOW_UINT8, 0, 0},
       {result.data(), kWidth, kHeight, 4, AFTERGLOW_UINT8, 0, 0});
-  EXPECT_EQ(result, wanted.codes);
+  EXPECT_EQ(result, wanted.unorm8);
 
   // To floats, and in three channels.
   const Picture linear = expected(read.pixels);

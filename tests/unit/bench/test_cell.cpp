@@ -49,9 +49,9 @@ class Cells : public testing::Test {
 
 TEST_F(Cells, EveryChoiceGivesTheTruth) {
   std::vector<Variant> variants;
-  for (const Joining joining : {Joining::none, Joining::heads, Joining::all})
+  for (const Fusion fusion : {Fusion::none, Fusion::filters, Fusion::all})
     for (ExecutionConfig choice : candidates()) {
-      choice.joining = joining;
+      choice.fusion = fusion;
       variants.push_back({execution_name(choice), choice, {}, {}});
     }
   const auto cell = measure(AFTERGLOW_PROJECT_FOLDER "/presets/neon_night.lua", variants);
@@ -65,7 +65,7 @@ TEST_F(Cells, EveryChoiceGivesTheTruth) {
     EXPECT_EQ(p.execute.samples.size(), 2u);
     EXPECT_EQ(p.passes.size(), static_cast<std::size_t>(p.kernels));
   }
-  EXPECT_GT(cell->points.front().kernels, cell->points.back().kernels);  // apart, joined
+  EXPECT_GT(cell->points.front().kernels, cell->points.back().kernels);  // apart, fused
   EXPECT_GT(cell->copy.median, 0);
   EXPECT_GT(cell->gigabytes_per_second, 0);
 }

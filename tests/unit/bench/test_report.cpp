@@ -14,7 +14,7 @@ using test::point;
 using testing::HasSubstr;
 using testing::Not;
 
-const auto kPoints = [] { return std::vector<Point>{point("plain16f", 20, 1e-3), point("joined fp32", 10, 1e-6)}; };
+const auto kPoints = [] { return std::vector<Point>{point("plain16f", 20, 1e-3), point("fused fp32", 10, 1e-6)}; };
 
 TEST(Report, JsonHasEverythingByName) {
   Report report = test::report(kPoints());
@@ -29,7 +29,7 @@ TEST(Report, JsonHasEverythingByName) {
   EXPECT_EQ(cell.at("truth"), "double precision");
   EXPECT_EQ(cell.at("copy").at("median"), 2);
   const auto& p = cell.at("points").at(1);
-  EXPECT_EQ(p.at("choice"), "joined fp32");
+  EXPECT_EQ(p.at("choice"), "fused fp32");
   EXPECT_EQ(p.at("execute").at("samples").size(), 3u);
   EXPECT_EQ(p.at("error").at("p9999"), 1e-6);
   EXPECT_EQ(p.at("error").at("visible"), 0.25);
@@ -81,7 +81,7 @@ TEST(Report, SvgNamesEveryPointAndDrawsTheFront) {
   const Report report = test::report(points);
   const std::string svg = front_svg(report, report.cells[0]);
   for (const char* text :
-       {"plain16f", "joined fp32", "exact &amp; ", "one copy pass", "look 640×360", "stroke=\"#c43\""})
+       {"plain16f", "fused fp32", "exact &amp; ", "one copy pass", "look 640×360", "stroke=\"#c43\""})
     EXPECT_THAT(svg, HasSubstr(text));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_THAT(svg, Not(HasSubstr("inf")));

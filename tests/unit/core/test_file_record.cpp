@@ -26,7 +26,7 @@ class Record : public testing::Test {
     fs::create_directories((folder_ / name).parent_path());
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
-  static FileLooks noted(const std::function<void(FileRecord&)>& work) {
+  static FileProbes noted(const std::function<void(FileRecord&)>& work) {
     FileRecord record;
     work(record);
     return *record.looks();
@@ -68,7 +68,7 @@ TEST_F(Record, NamesEveryPlaceOfASearchPath) {
   path.installation = folder_ / "third";
   path.record = std::make_shared<FileRecord>();
   EXPECT_EQ(path.find_shader("glow/a.glsl").size(), 1U);
-  const FileLooks looks = *path.record->looks();
+  const FileProbes looks = *path.record->looks();
   EXPECT_FALSE(first_changed(looks));
   write("first/shaders/glow/a.glsl", "");
   EXPECT_EQ(first_changed(looks), folder_ / "first" / "shaders" / "glow" / "a.glsl") << "shadows the other";
@@ -86,7 +86,7 @@ TEST_F(Record, ErrorsOfReadingAreTheSameTheNextTime) {
 }
 
 TEST_F(Record, ListsFolders) {
-  const auto looks = noted([&](FileRecord& record) { record.note(folder_ / "packs", FileLook::Kind::listing); });
+  const auto looks = noted([&](FileRecord& record) { record.note(folder_ / "packs", FileProbe::Kind::listing); });
   EXPECT_FALSE(first_changed(looks));
   write("packs/a.zip", "");
   EXPECT_TRUE(first_changed(looks));
@@ -98,13 +98,13 @@ TEST_F(Record, WhatSaysMostCountsAndStaysTheSameValueUntilSomethingIsAdded) {
   FileRecord record;
   EXPECT_TRUE(is_file(folder_ / "a", &record));
   const auto before = record.looks();
-  EXPECT_EQ(before->at(folder_ / "a").kind, FileLook::Kind::existence);
+  EXPECT_EQ(before->at(folder_ / "a").kind, FileProbe::Kind::existence);
   EXPECT_TRUE(is_file(folder_ / "a", &record));
   EXPECT_EQ(record.looks(), before) << "nothing new";
   EXPECT_TRUE(read_file(folder_ / "a", 100, &record).ok());
   EXPECT_TRUE(is_file(folder_ / "a", &record));
-  EXPECT_EQ(record.looks()->at(folder_ / "a").kind, FileLook::Kind::content);
-  EXPECT_EQ(before->at(folder_ / "a").kind, FileLook::Kind::existence) << "what was handed out stays as it is";
+  EXPECT_EQ(record.looks()->at(folder_ / "a").kind, FileProbe::Kind::content);
+  EXPECT_EQ(before->at(folder_ / "a").kind, FileProbe::Kind::existence) << "what was handed out stays as it is";
   EXPECT_TRUE(read_file(folder_ / "a").ok()) << "without a record";
 }
 

@@ -75,7 +75,7 @@ class Watch : public testing::Test {
   void watch(const std::vector<fs::path>& paths, const WatchOptions& options = {}) {
     watcher_ = std::make_unique<Watcher>(options, [this](auto, bool) {
       const std::lock_guard lock(mutex_);
-      ++looks_;
+      ++probes_;
       changed_.notify_all();
     });
     watcher_->watch(paths);
@@ -83,13 +83,13 @@ class Watch : public testing::Test {
   }
   void forget() {
     const std::lock_guard lock(mutex_);
-    looks_ = 0;
+    probes_ = 0;
   }
   /// Whether a look came since the last call; waits for it.
   bool looked() {
     std::unique_lock lock(mutex_);
-    const bool came = changed_.wait_for(lock, 30s, [&] { return looks_ > 0; });
-    looks_ = 0;
+    const bool came = changed_.wait_for(lock, 30s, [&] { return probes_ > 0; });
+    probes_ = 0;
     return came;
   }
 
@@ -97,7 +97,7 @@ class Watch : public testing::Test {
   std::unique_ptr<Watcher> watcher_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  int looks_ = 0;
+  int probes_ = 0;
 };
 
 TEST_F(Watch, SeesEachWayOfSaving) {
@@ -142,7 +142,7 @@ TEST_F(Watch, DoesNotCareAboutOtherFiles) {
   write(file, "two");
   EXPECT_TRUE(looked());
   const std::lock_guard lock(mutex_);
-  EXPECT_LT(looks_, 5) << "a hundred others, and one that counts";
+  EXPECT_LT(probes_, 5) << "a hundred others, and one that counts";
 }
 
 TEST_F(Watch, SeesWhatAppearsHoweverDeep) {

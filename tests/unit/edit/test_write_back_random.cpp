@@ -111,7 +111,7 @@ std::vector<std::string> comments(const std::string& text) {
   return out;
 }
 
-std::string joined(const std::vector<std::string>& parts) {
+std::string fused(const std::vector<std::string>& parts) {
   std::string out;
   for (const auto& part : parts) out += part;
   return out;
@@ -181,7 +181,7 @@ TEST_F(RandomWriteBack, RoundTrips) {
       }
     const auto is_list = [](const auto& edit) { return edit.setting == "tint" || edit.setting == "offset"; };
     if (std::none_of(edits.begin(), edits.end(), is_list)) {
-      EXPECT_EQ(joined(comments(plan->text)), joined(comments(text)));
+      EXPECT_EQ(fused(comments(plan->text)), fused(comments(text)));
     }
     EXPECT_LE(lost_bytes(text, plan->text), allowed_loss(plan->written));
     const auto again = rewrite_preset(writer.file(), plan->text, edits, scene.options);
@@ -231,7 +231,7 @@ TEST(WriteBackOfShippedPresets, EverySettingThatTheyWrite) {
     ASSERT_TRUE(out) << file << ": " << out.error().text();
     for (const auto& refused : out->refused) ADD_FAILURE() << refused.reason.text();
     EXPECT_EQ(out->written.size(), wanted.size()) << file;
-    EXPECT_EQ(joined(comments(out->text)), joined(comments(text))) << file;
+    EXPECT_EQ(fused(comments(out->text)), fused(comments(text))) << file;
     edits += wanted.size();
   }
   EXPECT_GT(edits, 100u);

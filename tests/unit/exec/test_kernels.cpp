@@ -214,9 +214,9 @@ TEST_F(KernelTest, PixelStagesJoinTheFilterBeforeThem) {
   });
   GraphBuilder builder({64, 64});
   const ImageId result = build(builder, {64, 64});
-  const auto joined = program(builder.finish(result));
-  ASSERT_EQ(joined->plan().kernels.size(), 2u);
-  EXPECT_EQ(joined->plan().kernels[1].name, "up+add+curve");
+  const auto fused = program(builder.finish(result));
+  ASSERT_EQ(fused->plan().kernels.size(), 2u);
+  EXPECT_EQ(fused->plan().kernels[1].name, "up+add+curve");
 }
 
 TEST_F(KernelTest, AuxiliaryImagesOfOneAndThreeChannels) {

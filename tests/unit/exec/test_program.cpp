@@ -55,8 +55,8 @@ class ProgramTest : public Workshop {
     const ImageId left2 =
         b.filter("left2", left, size, Filter{.interpolation = Interpolation::linear, .x = {{-3, 0.5}, {3, 0.5}}});
     const ImageId right = b.pixel("right", "gain", top, {}, {{"gain", number(2)}});
-    const ImageId joined = b.pixel("join", "add", left2, {{"other", right}});
-    return b.finish(b.pixel("again", "add", joined, {{"other", top}}));
+    const ImageId fused = b.pixel("join", "add", left2, {{"other", right}});
+    return b.finish(b.pixel("again", "add", fused, {{"other", top}}));
   }
 
  private:

@@ -299,7 +299,7 @@ TEST_F(ProgramCacheTest, ProgramsAreFoundByAllThatMakesThemAndByNothingElse) {
   texts.texts = Hash{1, 2};
   EXPECT_FALSE(programs->has(texts));
   FrameWork codes = work(1, false);
-  codes.codes = true;
+  codes.unorm8 = true;
   EXPECT_FALSE(programs->has(codes));
   ASSERT_TRUE(programs->prepare(work(1, true), *library_));
   const std::uint64_t other = programs->program()->id();

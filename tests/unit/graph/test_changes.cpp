@@ -8,7 +8,7 @@ namespace afterglow {
 namespace {
 
 /// source → half → up ┐
-///        └──────────→ add → (joined) grade
+///        └──────────→ add → (fused) grade
 struct Scene {
   test::Builder b;
   ImageId half, up, add;

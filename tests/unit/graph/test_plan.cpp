@@ -27,7 +27,7 @@ TEST(Plan, DropsPassesNobodyReads) {
   const ImageId lost = b.filter("lost", a, {4, 4});
   b.filter("lost_too", lost, {2, 2});
   b.pixel("z", a);
-  const Plan plan = make_plan(b.graph, {.joining = Joining::none});
+  const Plan plan = make_plan(b.graph, {.fusion = Fusion::none});
   EXPECT_EQ(names(plan), (Names{"test.a", "test.z"}));
   ASSERT_EQ(plan.skipped.size(), 2u);
   EXPECT_EQ(plan.skipped[0].name, "test.lost");
@@ -40,7 +40,7 @@ TEST(Plan, JoinsPixelPassesWithWhatFeedsThem) {
   const ImageId up = b.filter("up", half, {16, 8});
   b.pixel("tone", b.pixel("add", up, {{"high", b.graph.source, true}}));
   EXPECT_EQ(names(make_plan(b.graph, {})), (Names{"test.down+test.threshold", "test.up+test.add+test.tone"}));
-  EXPECT_EQ(make_plan(b.graph, {.joining = Joining::none}).kernels.size(), 5u);
+  EXPECT_EQ(make_plan(b.graph, {.fusion = Fusion::none}).kernels.size(), 5u);
 }
 
 TEST(Plan, JoinsPassesWhoseImageAllReadAtTheirOwnPixel) {
@@ -51,7 +51,7 @@ TEST(Plan, JoinsPassesWhoseImageAllReadAtTheirOwnPixel) {
   const Plan plan = make_plan(b.graph, {});
   EXPECT_EQ(names(plan), (Names{"test.a+test.b+test.mix"}));
   const PlanKernel& kernel = plan.kernels[0];
-  EXPECT_EQ(value_in(b.graph, kernel, b.graph.source), 0);  // what the head reads
+  EXPECT_EQ(value_in(b.graph, kernel, b.graph.source), 0);  // what the anchor reads
   EXPECT_EQ(value_in(b.graph, kernel, a), 1);
   EXPECT_EQ(value_in(b.graph, kernel, c), 2);
 }
@@ -94,7 +94,7 @@ TEST(Plan, AHeadStandsFirstWhateverIsJoinedToIt) {
   EXPECT_EQ(value_in(b.graph, plan.kernels[0], b.graph.source), std::nullopt);
 }
 
-TEST(Plan, TwoHeadsShareNoKernel) {
+TEST(Plan, TwoAnchorsShareNoKernel) {
   Builder b;
   const ImageId a = b.filter("a", b.graph.source, {16, 8}), c = b.filter("c", b.graph.source, {16, 8});
   b.pixel("add", a, {{"other", c, true}});
@@ -110,10 +110,10 @@ TEST(Plan, DoesNotJoinSamplersOrFiltersToWhatFeedsThem) {
 
 TEST(Plan, JoinedKernelsRunWhereTheirLastPassStood) {
   Builder b;
-  const ImageId head = b.filter("head", b.graph.source, {16, 8});
+  const ImageId anchor = b.filter("anchor", b.graph.source, {16, 8});
   const ImageId side = b.sample("side", {{"source", b.graph.source}}, {16, 8});
-  b.pixel("mix", head, {{"other", side, true}});
-  EXPECT_EQ(names(make_plan(b.graph, {})), (Names{"test.side", "test.head+test.mix"}));
+  b.pixel("mix", anchor, {{"other", side, true}});
+  EXPECT_EQ(names(make_plan(b.graph, {})), (Names{"test.side", "test.anchor+test.mix"}));
 }
 
 TEST(Plan, HeadsAreAFilterAndThePixelPassOfItsEffectThatFollows) {
@@ -121,7 +121,7 @@ TEST(Plan, HeadsAreAFilterAndThePixelPassOfItsEffectThatFollows) {
   const ImageId half = b.pixel("threshold", b.filter("down", b.graph.source, {8, 4}));
   const ImageId up = b.pixel("add", b.filter("up", half, {16, 8}), {{"high", b.graph.source, true}});
   b.pixel("tone", up);  // a second pixel pass stays apart
-  EXPECT_EQ(names(make_plan(b.graph, {.joining = Joining::heads})),
+  EXPECT_EQ(names(make_plan(b.graph, {.fusion = Fusion::filters})),
             (Names{"test.down+test.threshold", "test.up+test.add", "test.tone"}));
 }
 
@@ -129,17 +129,17 @@ TEST(Plan, HeadsOfAnotherEffectStayApart) {
   Builder b;
   b.pixel("tone", b.filter("blur", b.graph.source, {16, 8}));
   b.graph.passes.back().effect = "another";
-  EXPECT_EQ(make_plan(b.graph, {.joining = Joining::heads}).kernels.size(), 2u);
+  EXPECT_EQ(make_plan(b.graph, {.fusion = Fusion::filters}).kernels.size(), 2u);
   EXPECT_EQ(make_plan(b.graph, {}).kernels.size(), 1u);
 }
 
 TEST(Plan, HeadsAreFiltersAlone) {
   Builder b;
   b.pixel("b", b.pixel("a", b.graph.source));
-  EXPECT_EQ(make_plan(b.graph, {.joining = Joining::heads}).kernels.size(), 2u);
+  EXPECT_EQ(make_plan(b.graph, {.fusion = Fusion::filters}).kernels.size(), 2u);
   Builder c;
   c.pixel("ink", c.sample("edges", {{"source", c.graph.source}}, {16, 8}));
-  EXPECT_EQ(make_plan(c.graph, {.joining = Joining::heads}).kernels.size(), 2u);
+  EXPECT_EQ(make_plan(c.graph, {.fusion = Fusion::filters}).kernels.size(), 2u);
 }
 
 TEST(Plan, StopsBeforeTooManyImages) {
@@ -155,7 +155,7 @@ TEST(Plan, StopsBeforeTooManyImages) {
   EXPECT_EQ(make_plan(b.graph, {}).kernels.back().name, "test.x+test.b");  // with "a" there would be 17 images
 }
 
-// On random graphs: joined or not, every pass that matters runs once and after what it reads; lifetimes cover all
+// On random graphs: fused or not, every pass that matters runs once and after what it reads; lifetimes cover all
 // readers.
 TEST(Plan, HoldsOnRandomGraphs) {
   std::mt19937 random(7);
@@ -179,8 +179,8 @@ TEST(Plan, HoldsOnRandomGraphs) {
       }
     }
     ASSERT_TRUE(validate(b.graph));
-    for (const Joining joining : {Joining::none, Joining::heads, Joining::all}) {
-      const Plan plan = make_plan(b.graph, {.joining = joining});
+    for (const Fusion fusion : {Fusion::none, Fusion::filters, Fusion::all}) {
+      const Plan plan = make_plan(b.graph, {.fusion = fusion});
       std::vector<int> made_by(b.graph.images.size(), -1);
       std::vector<int> runs(b.graph.passes.size(), 0);
       for (std::size_t k = 0; k < plan.kernels.size(); ++k) {

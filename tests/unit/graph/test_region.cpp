@@ -124,7 +124,7 @@ TEST(Region, HoldsEveryPixelThatIsNeeded) {
     wanted.width = random.number(1, size.width - wanted.x);
     wanted.height = random.number(1, size.height - wanted.y);
     const int rows = 1 << random.number(0, 3);
-    const Plan plan = make_plan(graph, {.joining = random.number(0, 1) ? Joining::all : Joining::none});
+    const Plan plan = make_plan(graph, {.fusion = random.number(0, 1) ? Fusion::all : Fusion::none});
     const Regions found = regions(graph, plan, wanted, rows);
     const auto needed = search(graph, wanted);
     for (std::size_t i = 0; i < graph.images.size(); ++i) {

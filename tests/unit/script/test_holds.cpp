@@ -20,7 +20,7 @@ std::string declared(const std::string& holds) {
   return scene.load_error();
 }
 
-std::vector<Hold> held(const std::string& holds, const std::string& entry = "fx.glow {}", Size size = {64, 32}) {
+std::vector<Invariant> held(const std::string& holds, const std::string& entry = "fx.glow {}", Size size = {64, 32}) {
   Scene scene;
   scene.effect("glow", "  holds = { " + holds + " }," + kRest);
   scene.stack(entry);
@@ -32,7 +32,7 @@ std::vector<Hold> held(const std::string& holds, const std::string& entry = "fx.
   if (!build) return {};
   EXPECT_FALSE(build->promise_error) << build->promise_error->text();
   EXPECT_EQ(build->promises.at(0).entry, "glow");
-  return build->promises.at(0).holds;
+  return build->promises.at(0).invariants;
 }
 
 TEST(Holds, NamesNumbersAndTables) {
@@ -122,7 +122,7 @@ TEST(Holds, AreToldInWords) {
   auto preset = scene.load();
   ASSERT_TRUE(preset);
   std::vector<std::string> texts;
-  for (const auto& hold : preset->schema("glow").holds) texts.push_back(hold_text(hold));
+  for (const auto& hold : preset->schema("glow").invariants) texts.push_back(invariant_text(hold));
   EXPECT_THAT(texts, testing::ElementsAre("black (within 0)", "continuous (slope by settings)",
                                           "mean (margin 0; within 0.5; for some settings)"));
 }

@@ -188,7 +188,7 @@ TEST_F(OcioFiles, EditsAreNoticed) {
   scene.write("studio.ocio", config_of("!<FileTransform> {src: curve.spi1d}"));
   auto waiting = scene.load();
   ASSERT_FALSE(scene.evaluate(*waiting));
-  const auto looked = waiting->looked_at();
+  const auto looked = waiting->probes();
   EXPECT_FALSE(first_changed(*looked));
   scene.write("tables/curve.spi1d", kCurve);
   EXPECT_EQ(first_changed(*looked), scene.folder() / "tables/curve.spi1d");

@@ -9,10 +9,10 @@ namespace {
 using testing::HasSubstr;
 
 constexpr const char* kTable = R"({ "devices": [
-  { "device": "Card 1", "driver": "blob 7*", "choices": [ { "max_error": 0.005, "choice": "joined fp16 hardware-filter" },
-                                                          { "max_error": 0.001, "choice": "joined fp16" } ] },
-  { "device": "Card*", "choices": [ { "max_error": 0, "choice": "heads fp32" } ] },
-  { "kind": "gpu", "choices": [ { "max_error": 0, "choice": "joined fp32 rows2" } ] }
+  { "device": "Card 1", "driver": "blob 7*", "choices": [ { "max_error": 0.005, "choice": "fused fp16 hardware-filter" },
+                                                          { "max_error": 0.001, "choice": "fused fp16" } ] },
+  { "device": "Card*", "choices": [ { "max_error": 0, "choice": "fused-filters fp32" } ] },
+  { "kind": "gpu", "choices": [ { "max_error": 0, "choice": "fused fp32 rows2" } ] }
 ] })";
 
 DeviceInfo device(const char* name, const char* driver, const char* type = "discrete") {
@@ -31,15 +31,15 @@ std::string choice_for(const DeviceInfo& info, double max_error) {
 
 TEST(Calibration, TakesTheLargestErrorThatIsAllowed) {
   const auto card = device("Card 1", "blob 7.1");
-  EXPECT_EQ(choice_for(card, 0.005), "joined fp16 hardware-filter");
-  EXPECT_EQ(choice_for(card, 0.0049), "joined fp16");
-  EXPECT_EQ(choice_for(card, 0.001), "joined fp16");
+  EXPECT_EQ(choice_for(card, 0.005), "fused fp16 hardware-filter");
+  EXPECT_EQ(choice_for(card, 0.0049), "fused fp16");
+  EXPECT_EQ(choice_for(card, 0.001), "fused fp16");
 }
 
 TEST(Calibration, GoesOnToTheNextEntryThatFits) {
-  EXPECT_EQ(choice_for(device("Card 1", "blob 7.1"), 1e-5), "heads fp32");  // the first has nothing so exact
-  EXPECT_EQ(choice_for(device("Card 1", "blob 8"), 1), "heads fp32");       // another driver
-  EXPECT_EQ(choice_for(device("Other", "blob 7"), 1), "joined fp32 rows2");
+  EXPECT_EQ(choice_for(device("Card 1", "blob 7.1"), 1e-5), "fused-filters fp32");  // the first has nothing so exact
+  EXPECT_EQ(choice_for(device("Card 1", "blob 8"), 1), "fused-filters fp32");       // another driver
+  EXPECT_EQ(choice_for(device("Other", "blob 7"), 1), "fused fp32 rows2");
 }
 
 TEST(Calibration, DevicesItDoesNotKnowAreExact) {
@@ -64,14 +64,14 @@ TEST(Calibration, BrokenTablesSayWhatIsWrong) {
       {"[]", "no list of 'devices'"},
       {R"({"devices": 3})", "no list of 'devices'"},
       {R"({"devices": [7]})", "entry 1"},
-      {R"({"devices": [{"kind": "cpu", "choices": [{"max_error": 0, "choice": "joined"}]}, {"device": 1}]})",
+      {R"({"devices": [{"kind": "cpu", "choices": [{"max_error": 0, "choice": "fused"}]}, {"device": 1}]})",
        "entry 2"},
       {R"({"devices": [{"kind": "fpga"}]})", "'kind'"},
       {R"({"devices": [{}]})", "'choices'"},
       {R"({"devices": [{"choices": []}]})", "'choices'"},
       {R"({"devices": [{"choices": [1]}]})", "no object"},
-      {R"({"devices": [{"choices": [{"choice": "joined"}]}]})", "'max_error'"},
-      {R"({"devices": [{"choices": [{"max_error": -1, "choice": "joined"}]}]})", "negative"},
+      {R"({"devices": [{"choices": [{"choice": "fused"}]}]})", "'max_error'"},
+      {R"({"devices": [{"choices": [{"max_error": -1, "choice": "fused"}]}]})", "negative"},
       {R"({"devices": [{"choices": [{"max_error": 0}]}]})", "'choice'"},
       {R"({"devices": [{"choices": [{"max_error": 0, "choice": "quick"}]}]})", "'quick'"},
   };

@@ -106,16 +106,16 @@ TEST_F(SessionTest, DisplayCodesAreThoseOfTheWriter) {
           ASSERT_TRUE((*session)->process(p, {}, encoding));
           EXPECT_EQ((*session)->device().validation_errors(), 0);
           if (reference) {
-            EXPECT_TRUE(p.codes.empty()) << "the slow truth is encoded in double precision";
+            EXPECT_TRUE(p.unorm8.empty()) << "the slow truth is encoded in double precision";
             EXPECT_EQ(p.color.pixels, light.color.pixels);
             continue;
           }
           const auto expected = written_codes(light, encoding);
-          ASSERT_EQ(p.codes.size(), expected.size());
+          ASSERT_EQ(p.unorm8.size(), expected.size());
           std::size_t different = 0;
           for (std::size_t i = 0; i < expected.size(); ++i) {
-            different += p.codes[i] != expected[i];
-            ASSERT_LE(std::abs(p.codes[i] - expected[i]), 1) << i;
+            different += p.unorm8[i] != expected[i];
+            ASSERT_LE(std::abs(p.unorm8[i] - expected[i]), 1) << i;
           }
           EXPECT_LE(different, expected.size() / 300 + 1);  // within 0.0004 of the border between two codes
           EXPECT_EQ((*session)->report().kernels, std::vector<std::string>{"gain.gain+output.display"});

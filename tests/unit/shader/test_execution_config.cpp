@@ -7,19 +7,19 @@ namespace afterglow {
 namespace {
 
 TEST(ExecutionConfig, NamesSayAllThatIsNotDefault) {
-  EXPECT_EQ(execution_name({}), "joined fp32");
-  EXPECT_EQ(execution_name({.storage_reads = true, .rows = 8}), "joined fp32 storage-reads rows8");
-  EXPECT_EQ(execution_name(kPlain16f), "heads fp16 hardware-filter");
-  EXPECT_EQ(execution_name({.joining = Joining::none, .share_memory = false}), "apart fp32 unshared");
+  EXPECT_EQ(execution_name({}), "fused fp32");
+  EXPECT_EQ(execution_name({.storage_reads = true, .rows = 8}), "fused fp32 storage-reads rows8");
+  EXPECT_EQ(execution_name(kPlain16f), "fused-filters fp16 hardware-filter");
+  EXPECT_EQ(execution_name({.fusion = Fusion::none, .share_memory = false}), "unfused fp32 unshared");
 }
 
 TEST(ExecutionConfig, EveryNameReadsBackAsTheSameChoice) {
   int read = 0;
-  for (const auto joining : {Joining::none, Joining::heads, Joining::all})
+  for (const auto fusion : {Fusion::none, Fusion::filters, Fusion::all})
     for (const auto storage : {Storage::fp32, Storage::fp16})
       for (int bits = 0; bits < 16; ++bits)
         for (const int rows : {1, 2, 8}) {
-          const ExecutionConfig choice{joining,         storage, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
+          const ExecutionConfig choice{fusion,         storage, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
                                        (bits & 8) != 0, rows};
           const auto parsed = parse_execution(execution_name(choice));
           ASSERT_TRUE(parsed) << parsed.error().text();
@@ -30,11 +30,11 @@ TEST(ExecutionConfig, EveryNameReadsBackAsTheSameChoice) {
 }
 
 TEST(ExecutionConfig, WordsMayComeInAnyOrderAndWithPlus) {
-  EXPECT_EQ(*parse_execution("rows4+fp16+heads"),
-            (ExecutionConfig{.joining = Joining::heads, .storage = Storage::fp16, .rows = 4}));
+  EXPECT_EQ(*parse_execution("rows4+fp16+fused-filters"),
+            (ExecutionConfig{.fusion = Fusion::filters, .storage = Storage::fp16, .rows = 4}));
   EXPECT_EQ(*parse_execution("plain16f"), kPlain16f);
   EXPECT_EQ(*parse_execution("plain32f storage-reads"),
-            (ExecutionConfig{.joining = Joining::heads, .hardware_filter = true, .storage_reads = true}));
+            (ExecutionConfig{.fusion = Fusion::filters, .hardware_filter = true, .storage_reads = true}));
 }
 
 TEST(ExecutionConfig, UnknownWordsSayWhatIsAllowed) {
@@ -44,7 +44,7 @@ TEST(ExecutionConfig, UnknownWordsSayWhatIsAllowed) {
     EXPECT_EQ(parsed.error().kind, ErrorKind::usage);
     EXPECT_NE(parsed.error().allowed.find("storage-reads"), std::string::npos);
   }
-  EXPECT_EQ(parse_execution("joind").error().nearest, "joined");
+  EXPECT_EQ(parse_execution("joind").error().nearest, "fused");
 }
 
 }  // namespace

@@ -261,7 +261,7 @@ TEST_F(Join, WrongKindsAndTooManyImagesAreRefused) {
   const auto many = files_.stage("m", "vec4 apply(vec4 c, vec4 a, vec4 b, vec4 d, vec4 e) { return a + b + d + e; }\n");
   EXPECT_EQ(outcome(join({many, many, many})), "ok");
   EXPECT_THAT(outcome(join({many, many, many, many})),
-              HasSubstr("the joined passes read 17 images; allowed: at most 16"));
+              HasSubstr("the fused passes read 17 images; allowed: at most 16"));
 }
 
 TEST_F(Join, ConstantsThatDoNotFitAreRefused) {
@@ -298,14 +298,14 @@ TEST_F(Join, StagesTakeColoursOfEarlierOnes) {
   auto mask = files_.stage("a/mask", "vec4 apply(vec4 c) { return c.rrrr; }\n");
   auto blend = files_.stage("a/blend", "vec4 apply(vec4 c, vec4 below, vec4 mask) { return mix(below, c, mask); }\n");
   effect.straight = true;
-  mask.color = 0;  // of the head, not of the effect
+  mask.color = 0;  // of the anchor, not of the effect
   blend.color = 1;
   blend.values = {{"below", 0}, {"mask", 2}};
   const KernelDesc kernel = join({effect, mask, blend});
   EXPECT_EQ(outcome(kernel), "ok");
   const auto made = assemble(kernel);
   ASSERT_TRUE(made);
-  EXPECT_EQ(made->images.size(), 1u);  // the head's
+  EXPECT_EQ(made->images.size(), 1u);  // the anchor's
   EXPECT_THAT(made->glsl, HasSubstr("ag_color = ag_s2_apply(ag_color, ag_value0, ag_value2);"));
   EXPECT_EQ(count_of(made->glsl, "/ ag_cover"), 1u);
 

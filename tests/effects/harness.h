@@ -24,7 +24,7 @@ struct Made {
   std::map<std::string, std::vector<float>>
       images;  ///< RGBA by pass ("bloom.up[0]"); only of runs with every pass on its own
   std::uint64_t clamped = 0;
-  std::size_t kernels = 0;     ///< how many the passes were joined into
+  std::size_t kernels = 0;     ///< how many the passes were fused into
   std::size_t dispatches = 0;  ///< those of them that ran as workgroups
 
   bool ran() const { return graph.result != graph.source; }
@@ -35,9 +35,9 @@ struct Made {
   Size size_of(const std::string& pass) const;
 };
 
-/// `plain`: every pass on its own in full floats, all images kept. `joined`: as users run it. `computed`: the same,
+/// `plain`: every pass on its own in full floats, all images kept. `fused`: as users run it. `computed`: the same,
 /// with compute shaders for passes that have them.
-enum class Way { plain, joined, joined_half, computed };
+enum class Way { plain, fused, fused_half, computed };
 
 /// Runs the stack `{ ENTRIES }`, Lua text. Failures of any step fail the test. `length_scale`: see BuildContext.
 Made run_stack(const std::string& entries, const Scene& scene, Way way, double length_scale = 1);
@@ -61,7 +61,7 @@ class Effects : public testing::Test {
 
 inline constexpr double kFullFloat = 1e-5;  ///< tolerances of math.md §13
 inline constexpr double kHalfFloat = 2e-3;
-inline constexpr double kJoined = 1e-6;  ///< between joined passes and plain ones
+inline constexpr double kFused = 1e-6;  ///< between fused passes and plain ones
 inline constexpr int kRgb = 3, kRgba = 4;
 
 }  // namespace afterglow

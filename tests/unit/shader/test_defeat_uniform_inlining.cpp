@@ -7,7 +7,7 @@
 #include <spirv-tools/libspirv.hpp>
 
 #include "kernel_runner.h"
-#include "shader/cpu/hide_uniforms.h"
+#include "shader/cpu/defeat_uniform_inlining.h"
 #include "shader_files.h"
 
 namespace afterglow {
@@ -74,14 +74,14 @@ CompiledKernel compiled(bool hide, int rows = 1) {
   KernelCompiler compiler({});
   KernelDesc desc;
   desc.sample = files.stage("test/types", kEveryType);
-  desc.config.hide_uniforms = hide;
+  desc.config.defeat_uniform_inlining = hide;
   desc.config.rows = rows;
   auto kernel = compiler.compile(desc);
   EXPECT_TRUE(kernel) << kernel.error().text();
   return *kernel;
 }
 
-TEST(HideUniforms, PixelsAreTheSameBits) {
+TEST(DefeatUniformInlining, PixelsAreTheSameBits) {
   KernelRunner runner;
   const TestImage image = ramp({37, 21});
   const CompiledKernel plain = compiled(false);
@@ -99,10 +99,10 @@ TEST(HideUniforms, PixelsAreTheSameBits) {
   EXPECT_EQ(runner.validation_errors(), 0);
 }
 
-TEST(HideUniforms, WhatIsNoModuleStays) {
+TEST(DefeatUniformInlining, WhatIsNoModuleStays) {
   const std::vector<std::uint32_t> noise{1, 2, 3};
-  EXPECT_EQ(hide_uniforms(noise), noise);
-  EXPECT_EQ(hide_uniforms({}), std::vector<std::uint32_t>{});
+  EXPECT_EQ(defeat_uniform_inlining(noise), noise);
+  EXPECT_EQ(defeat_uniform_inlining({}), std::vector<std::uint32_t>{});
 }
 
 }  // namespace

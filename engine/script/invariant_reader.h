@@ -13,10 +13,10 @@ struct Effect;
 struct EntryRun;
 
 /// Reads `holds` of the table of fx.effect into the effect; failures are noted in `table`.
-void read_holds(lua_State* lua, TableReader& table, Effect& effect);
+void read_invariants(lua_State* lua, TableReader& table, Effect& effect);
 
 /// The promises that hold for the settings of an entry and a picture of this size. Throws ScriptError: a function of
 /// them fails, or returns no boolean or number.
-std::vector<Hold> holds_of(lua_State* lua, const EntryRun& run, Size size);
+std::vector<Invariant> invariants_of(lua_State* lua, const EntryRun& run, Size size);
 
 }  // namespace afterglow::script

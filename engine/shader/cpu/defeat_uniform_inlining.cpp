@@ -1,4 +1,4 @@
-#include "shader/cpu/hide_uniforms.h"
+#include "shader/cpu/defeat_uniform_inlining.h"
 
 #include <algorithm>
 #include <set>
@@ -160,7 +160,7 @@ class Hider {
 
 }  // namespace
 
-std::vector<std::uint32_t> hide_uniforms(const std::vector<std::uint32_t>& spirv) {
+std::vector<std::uint32_t> defeat_uniform_inlining(const std::vector<std::uint32_t>& spirv) {
   auto module = parse(spirv);
   return module && Hider(*module).run() ? module->join() : spirv;
 }

@@ -1,4 +1,4 @@
-#include "shader/filter_head.h"
+#include "shader/filter_anchor.h"
 
 #include <fmt/format.h>
 
@@ -206,7 +206,7 @@ std::string looped_rows(const std::vector<Read>& x, const std::vector<Read>& y, 
 constexpr const char* kLast = "  ivec2 ag_last = ag_source_size - 1;\n";
 constexpr const char* kTexelSize = "  vec2 ag_texel = 1.0 / vec2(ag_source_size);\n";
 
-Result<std::string> separable_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter) {
+Result<std::string> separable_anchor(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter) {
   Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation);
   auto columns = axis_reads(x, filter.x);
   auto rows = axis_reads(y, filter.y);
@@ -234,7 +234,7 @@ Result<std::string> separable_head(const Filter& filter, AxisRatio ratio_x, Axis
 }
 
 /// Free taps: texels that several taps read are read once.
-Result<std::string> free_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y) {
+Result<std::string> free_anchor(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y) {
   Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation);
   std::map<std::pair<TexelKey, TexelKey>, Weight> texels;  // y, then x
   for (const auto& tap : filter.taps) {
@@ -267,7 +267,7 @@ Result<std::string> free_head(const Filter& filter, AxisRatio ratio_x, AxisRatio
 }
 
 /// Free taps through the sampler: one filtered fetch a tap.
-Result<std::string> free_sampler_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y) {
+Result<std::string> free_sampler_anchor(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y) {
   Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation);
   std::vector<std::pair<std::string, std::string>> reads;
   for (const auto& tap : filter.taps)
@@ -312,12 +312,12 @@ Result<std::string> filter_rows(const Filter& filter, AxisRatio ratio_x, AxisRat
   return out + shared_rows(columns, y, filter.y, rows);
 }
 
-Result<std::string> filter_head(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter) {
+Result<std::string> filter_anchor(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hardware_filter) {
   AFTERGLOW_CHECK(check(filter));
-  if (filter.separable()) return separable_head(filter, ratio_x, ratio_y, hardware_filter);
+  if (filter.separable()) return separable_anchor(filter, ratio_x, ratio_y, hardware_filter);
   if (hardware_filter && filter.interpolation == Interpolation::linear)
-    return free_sampler_head(filter, ratio_x, ratio_y);
-  return free_head(filter, ratio_x, ratio_y);
+    return free_sampler_anchor(filter, ratio_x, ratio_y);
+  return free_anchor(filter, ratio_x, ratio_y);
 }
 
 }  // namespace afterglow

@@ -1,4 +1,4 @@
-#include "apps/last_words.h"
+#include "apps/terminate_handler.h"
 
 #include <unistd.h>
 

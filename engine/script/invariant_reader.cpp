@@ -1,4 +1,4 @@
-#include "script/hold_reader.h"
+#include "script/invariant_reader.h"
 
 #include <fmt/format.h>
 
@@ -15,17 +15,17 @@ namespace {
 
 std::vector<std::string> kind_names() {
   std::vector<std::string> names;
-  for (const auto& kind : hold_kinds()) names.push_back(kind.name);
+  for (const auto& kind : invariant_kinds()) names.push_back(kind.name);
   return names;
 }
 
-const HoldKind* find_kind(const std::string& name) {
-  const auto& kinds = hold_kinds();
-  const auto found = std::ranges::find(kinds, name, &HoldKind::name);
+const InvariantKind* find_kind(const std::string& name) {
+  const auto& kinds = invariant_kinds();
+  const auto found = std::ranges::find(kinds, name, &InvariantKind::name);
   return found == kinds.end() ? nullptr : &*found;
 }
 
-std::vector<std::string> parameters_of(const HoldKind& kind) {
+std::vector<std::string> parameters_of(const InvariantKind& kind) {
   std::vector<std::string> names{"when"};
   for (const auto& [name, value] : kind.numbers) names.push_back(name);
   names.insert(names.end(), kind.setting_names.begin(), kind.setting_names.end());
@@ -33,9 +33,9 @@ std::vector<std::string> parameters_of(const HoldKind& kind) {
 }
 
 /// Collects one promise from the values that the script gives it.
-class HoldReader {
+class InvariantReader {
  public:
-  HoldReader(lua_State* lua, TableReader& table, const EffectSchema& schema, const HoldKind& kind)
+  InvariantReader(lua_State* lua, TableReader& table, const EffectSchema& schema, const InvariantKind& kind)
       : lua_(lua), table_(table), schema_(schema), kind_(kind) {
     hold_.schema.stated.name = kind.name;
     for (const auto& [name, value] : kind.numbers) hold_.schema.stated.numbers[name] = value;
@@ -81,8 +81,8 @@ class HoldReader {
     for (const auto& name : kind_.setting_names)
       if (name == kind_.main && !hold_.schema.stated.settings.contains(name))
         table_.fail(failure(fmt::format("{}: holds: {} needs {}", table_.what(), kind_.name, name), place));
-    effect.schema.holds.push_back(hold_.schema);
-    effect.holds.push_back(std::move(hold_));
+    effect.schema.invariants.push_back(hold_.schema);
+    effect.invariants.push_back(std::move(hold_));
   }
 
  private:
@@ -102,8 +102,8 @@ class HoldReader {
   lua_State* lua_;
   TableReader& table_;
   const EffectSchema& schema_;
-  const HoldKind& kind_;
-  DeclaredHold hold_;
+  const InvariantKind& kind_;
+  DeclaredInvariant hold_;
 };
 
 void fail_unknown(TableReader& table, const std::string& shown, const std::string& name, const KeyPath& place) {
@@ -115,12 +115,12 @@ void fail_unknown(TableReader& table, const std::string& shown, const std::strin
 /// `mean = 1e-3`, `mean = { within = 1e-3, when = … }`; the value is on top of the stack (popped).
 void read_named(lua_State* lua, TableReader& table, Effect& effect, const std::string& name) {
   const KeyPath place{"holds", name};
-  const HoldKind* kind = find_kind(name);
+  const InvariantKind* kind = find_kind(name);
   if (!kind) {
     lua_pop(lua, 1);
     return fail_unknown(table, "'" + tidy_message(name, 60) + "'", name, place);
   }
-  HoldReader reader(lua, table, effect.schema, *kind);
+  InvariantReader reader(lua, table, effect.schema, *kind);
   if (!lua_istable(lua, -1)) {
     reader.take(kind->main, place);
   } else {
@@ -172,7 +172,7 @@ Value result_of(lua_State* lua, const FunctionRef& function, const EntryRun& run
 
 }  // namespace
 
-void read_holds(lua_State* lua, TableReader& table, Effect& effect) {
+void read_invariants(lua_State* lua, TableReader& table, Effect& effect) {
   table.push("holds");
   if (lua_isnil(lua, -1)) return lua_pop(lua, 1);
   const TableReader list(lua, -1, "holds", table, {"holds"});
@@ -184,19 +184,19 @@ void read_holds(lua_State* lua, TableReader& table, Effect& effect) {
     }
     const Value given = read_value(lua, -1);
     lua_pop(lua, 1);
-    const HoldKind* kind = given.kind == Value::Kind::text ? find_kind(given.text) : nullptr;
+    const InvariantKind* kind = given.kind == Value::Kind::text ? find_kind(given.text) : nullptr;
     if (!kind)
       fail_unknown(table, given.shown(), given.text, {"holds", key.name});
     else
-      HoldReader(lua, table, effect.schema, *kind).finish(effect, {"holds", key.name});
+      InvariantReader(lua, table, effect.schema, *kind).finish(effect, {"holds", key.name});
   }
   lua_pop(lua, 1);
 }
 
-std::vector<Hold> holds_of(lua_State* lua, const EntryRun& run, Size size) {
-  std::vector<Hold> out;
-  for (const DeclaredHold& hold : Runtime::of(lua).effects[static_cast<std::size_t>(run.effect)].holds) {
-    Hold one = hold.schema.stated;
+std::vector<Invariant> invariants_of(lua_State* lua, const EntryRun& run, Size size) {
+  std::vector<Invariant> out;
+  for (const DeclaredInvariant& hold : Runtime::of(lua).effects[static_cast<std::size_t>(run.effect)].invariants) {
+    Invariant one = hold.schema.stated;
     if (hold.when.set()) {
       const Value given = result_of(lua, hold.when, run, size);
       if (given.kind != Value::Kind::boolean && given.kind != Value::Kind::nothing)

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "apps/last_words.h"
+#include "apps/terminate_handler.h"
 
 namespace afterglow {
 namespace {
@@ -14,7 +14,7 @@ void throw_where_nothing_may(const std::exception_ptr& exception) noexcept {
   std::rethrow_exception(exception);  // NOLINT(bugprone-exception-escape): what is tested
 }
 
-TEST(LastWords, AreAnErrorAndAnExitCodeOfTheHouse) {
+TEST(TerminateHandler, AreAnErrorAndAnExitCodeOfTheHouse) {
   EXPECT_EXIT(
       {
         install_last_words();

@@ -26,7 +26,7 @@ KernelDesc kernel(Filter filter, AxisRatio ratio_x, AxisRatio ratio_y, bool hard
   return desc;
 }
 
-/// From the head's function on.
+/// From the anchor's function on.
 std::string main_of(const KernelDesc& desc) {
   const auto assembled = assemble(desc);
   if (!assembled) return assembled.error().text();
@@ -51,7 +51,7 @@ std::vector<Tap> gaussian_halving() {
 
 const Filter kPlus{kLinear, {{0, 1}}, {{0, 1}}, {{1, 0, 0.25}, {0, 1, 0.25}, {-1, 0, 0.25}, {0, -1, 0.25}}};
 
-TEST(FilterHead, TexelsAreMergedWhereTheRatioFixesThem) {
+TEST(FilterAnchor, TexelsAreMergedWhereTheRatioFixesThem) {
   EXPECT_EQ(texels(kernel({kLinear}, same, same)), 1);
   EXPECT_EQ(texels(kernel({kLinear}, half, half)), 4);
   EXPECT_EQ(texels(kernel({kLinear}, same, half)), 2);
@@ -68,21 +68,21 @@ TEST(FilterHead, TexelsAreMergedWhereTheRatioFixesThem) {
   EXPECT_EQ(texels(kernel({kLinear, {{0, 1}, {3, 0}}, {{0, 1}}}, same, same)), 1) << "weights of zero read nothing";
 }
 
-TEST(FilterHead, ADoublingHasTwoPhasesAndNoDivision) {
+TEST(FilterAnchor, ADoublingHasTwoPhasesAndNoDivision) {
   const auto text = main_of(kernel({kLinear}, twice, twice));
   EXPECT_THAT(text, HasSubstr("& 1"));
   EXPECT_THAT(text, Not(HasSubstr("ag_phase(")));
   EXPECT_THAT(main_of(kernel({kLinear}, any, same)), HasSubstr("ag_phase(ag_pixel.x"));
 }
 
-TEST(FilterHead, CoordinatesAreClampedOnceAndOnlyWhereTheyCanLeave) {
+TEST(FilterAnchor, CoordinatesAreClampedOnceAndOnlyWhereTheyCanLeave) {
   const auto text = main_of(kernel({kLinear}, half, half));
   EXPECT_EQ(count(text, "clamp("), 0);
   EXPECT_EQ(count(text, "min("), 0);
   EXPECT_EQ(count(main_of(kernel({kCubic}, any, any)), "clamp("), 8);
 }
 
-TEST(FilterHead, TheSamplerIsUsedOnlyWhereItSavesReads) {
+TEST(FilterAnchor, TheSamplerIsUsedOnlyWhereItSavesReads) {
   EXPECT_EQ(fetches(kernel({kLinear}, same, same, true)), 0);
   EXPECT_EQ(fetches(kernel({kLinear}, any, any, true)), 1);
   EXPECT_EQ(fetches(kernel({kLinear}, half, half, true)), 1);
@@ -96,20 +96,20 @@ TEST(FilterHead, TheSamplerIsUsedOnlyWhereItSavesReads) {
   EXPECT_EQ(fetches(kernel(kPlus, half, half, true)), 4);
 }
 
-TEST(FilterHead, MergedFetchesLieBetweenTheirTexels) {
+TEST(FilterAnchor, MergedFetchesLieBetweenTheirTexels) {
   const Filter pair{kLinear, {{0, 1}, {1, 3}}, {{0, 1}}};
   EXPECT_THAT(main_of(kernel(pair, same, same, true)), HasSubstr("float(ag_pixel.x) + 1.25"));
   const Filter signs{kLinear, {{0, 1}, {1, -3}}, {{0, 1}}};
   EXPECT_EQ(fetches(kernel(signs, same, same, true)), 0) << "weights of two signs are no interpolation";
 }
 
-TEST(FilterHead, TheTextDoesNotDependOnSizes) {
+TEST(FilterAnchor, TheTextDoesNotDependOnSizes) {
   const auto a = assemble(kernel({kCubic}, any, any)), b = assemble(kernel({kCubic}, any, any));
   EXPECT_EQ(a->hash, b->hash);
   EXPECT_NE(a->hash, assemble(kernel({kCubic}, any, twice))->hash);
 }
 
-TEST(FilterHead, UnusableFiltersAreRefused) {
+TEST(FilterAnchor, UnusableFiltersAreRefused) {
   const auto message = [](Filter filter, AxisRatio ratio = any) {
     const auto result = assemble(kernel(std::move(filter), ratio, ratio));
     if (result.ok()) return std::string("ok");
@@ -132,13 +132,13 @@ TEST(FilterHead, UnusableFiltersAreRefused) {
   EXPECT_EQ(message({kLinear, {{-65536, 1e30}}, {{65536, -1e-30}}}), "ok");
 }
 
-TEST(FilterHead, AFilterAndASampleStageAreTwoHeads) {
+TEST(FilterAnchor, AFilterAndASampleStageAreTwoAnchors) {
   ShaderFiles files;
   auto desc = kernel({kLinear}, any, any);
   desc.sample = files.stage("s", "vec4 sample_at(ivec2 p) { return vec4(0); }\n");
   const auto result = assemble(desc);
   ASSERT_FALSE(result.ok());
-  EXPECT_THAT(result.error().message, HasSubstr("one head"));
+  EXPECT_THAT(result.error().message, HasSubstr("one anchor"));
 }
 
 /// Every kind of kernel is valid SPIR-V for Vulkan 1.3.
@@ -152,18 +152,18 @@ TEST(Spirv, EveryHeadWithAndWithoutStagesIsValid) {
   const auto sample = files.stage("s",
                                   "uniform sampler2D d;\nvec4 sample_at(ivec2 p) { return sample_scaled(d, p, "
                                   "ivec2(1)) + fetch_linear(d, vec2(p)); }\n");
-  std::vector<KernelDesc> heads(1);
-  heads.emplace_back().sample = sample;
+  std::vector<KernelDesc> anchors(1);
+  anchors.emplace_back().sample = sample;
   for (const auto interpolation : {kNearest, kLinear, kCubic})
     for (const auto ratio_x : {any, same, half, twice})
       for (const auto ratio_y : {any, same, half, twice})
         for (const bool hardware : {false, true}) {
-          heads.push_back(kernel({interpolation, {{-1.25, 0.5}, {0, 0.5}}, {{0, 1}}}, ratio_x, ratio_y, hardware));
+          anchors.push_back(kernel({interpolation, {{-1.25, 0.5}, {0, 0.5}}, {{0, 1}}}, ratio_x, ratio_y, hardware));
           if (ratio_x == ratio_y)
-            heads.push_back(
+            anchors.push_back(
                 kernel({interpolation, {{0, 1}}, {{0, 1}}, {{0.5, -1, 0.5}, {1, 0, 0.5}}}, ratio_x, ratio_y, hardware));
           if (ratio_x == ratio_y)
-            heads.push_back(
+            anchors.push_back(
                 kernel({interpolation, gaussian_halving(), gaussian_halving()}, ratio_x, ratio_y, hardware));
         }
   spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
@@ -173,8 +173,8 @@ TEST(Spirv, EveryHeadWithAndWithoutStagesIsValid) {
   });
   KernelCompiler compiler{std::filesystem::path()};
   int valid = 0;
-  for (std::size_t i = 0; i < heads.size(); ++i) {
-    auto desc = heads[i];
+  for (std::size_t i = 0; i < anchors.size(); ++i) {
+    auto desc = anchors[i];
     desc.target = i % 2 == 1 ? KernelTarget::float16 : KernelTarget::float32;
     if (i % 3 != 0) desc.stages.push_back(first);
     if (i % 3 == 2) desc.stages.push_back(second);

@@ -1,4 +1,4 @@
-#include "lab.h"
+#include "harness.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -20,18 +20,18 @@ namespace {
 namespace fs = std::filesystem;
 
 /// One device for all tests of the process.
-struct Lab {
+struct Harness {
   Diagnostics diagnostics;
   std::unique_ptr<Device> device;
   KernelCompiler compiler{fs::path()};
 
-  static Lab& get() {
-    static Lab lab;
-    return lab;
+  static Harness& get() {
+    static Harness harness;
+    return harness;
   }
 
  private:
-  Lab() {
+  Harness() {
     setenv("AFTERGLOW_HOME", AFTERGLOW_PROJECT_FOLDER, 1);
     setenv("XDG_RUNTIME_DIR", testing::TempDir().c_str(), 0);
     auto made = Device::create({.device = "auto", .validate = true}, diagnostics);
@@ -70,14 +70,14 @@ T need(Result<T> result) {
 }
 
 Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way) {
-  Lab& lab = Lab::get();
+  Harness& harness = Harness::get();
   Made made{.graph = graph, .size = scene.source.size(), .result = {}, .images = {}};
   const auto source = floats(scene.source);
   if (!made.ran()) {
     made.result = source;
     return made;
   }
-  const ProgramOptions options{.config = {.storage = way == Way::joined_half ? Storage::fp16 : Storage::fp32,
+  const ProgramOptions options{.config = {.storage = way == Way::fused_half ? Storage::fp16 : Storage::fp32,
                                           .storage_reads = way != Way::plain,
                                           .compute = way == Way::computed,
                                           .rows = way == Way::plain ? 1 : kMaxRows},
@@ -85,10 +85,10 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
                                .source_is_storage = way != Way::plain,
                                .worth = {0, 0},
                                .result_by_rows = way != Way::plain};
-  auto program = need(Program::create(*lab.device, shaders, lab.compiler, graph, options));
+  auto program = need(Program::create(*harness.device, shaders, harness.compiler, graph, options));
   made.kernels = program->plan().kernels.size();
   for (const auto& kernel : program->plan().kernels) made.dispatches += kernel.compute;
-  auto runner = need(FrameRunner::create(*lab.device, options.max_memory));
+  auto runner = need(FrameRunner::create(*harness.device, options.max_memory));
 
   std::map<std::string, HostImage> inputs{{"source", {source.data(), made.size, 4}}};
   std::vector<float> depth, normal, motion;
@@ -122,12 +122,12 @@ Size Made::size_of(const std::string& pass) const {
 }
 
 Made run_preset(const fs::path& file, const Scene& scene, Way way, double length_scale) {
-  Lab& lab = Lab::get();
+  Harness& harness = Harness::get();
   ShaderLibrary shaders(search_path_for(file, {}));
-  auto preset = need(Preset::load(file, {}, shaders, lab.diagnostics));
+  auto preset = need(Preset::load(file, {}, shaders, harness.diagnostics));
   BuildContext context = context_of(scene);
   context.length_scale = length_scale;
-  const Graph graph = need(preset.evaluate(context, lab.diagnostics)).graph;
+  const Graph graph = need(preset.evaluate(context, harness.diagnostics)).graph;
   const auto valid = validate(graph);
   if (!valid.ok()) throw std::runtime_error(valid.error().text());
   return run(graph, shaders, scene, way);
@@ -138,12 +138,12 @@ Made run_stack(const std::string& entries, const Scene& scene, Way way, double l
 }
 
 std::string build_error(const std::string& entries, const Scene& scene) {
-  Lab& lab = Lab::get();
+  Harness& harness = Harness::get();
   const auto file = write_stack(entries);
   ShaderLibrary shaders(search_path_for(file, {}));
-  auto preset = Preset::load(file, {}, shaders, lab.diagnostics);
+  auto preset = Preset::load(file, {}, shaders, harness.diagnostics);
   if (!preset.ok()) return preset.error().text();
-  const auto graph = preset->evaluate(context_of(scene), lab.diagnostics);
+  const auto graph = preset->evaluate(context_of(scene), harness.diagnostics);
   return graph.ok() ? "" : graph.error().text();
 }
 
@@ -185,7 +185,7 @@ testing::AssertionResult alpha_is_kept(const Made& made, const Scene& scene) {
 }
 
 void Effects::TearDown() {
-  const auto& device = *Lab::get().device;
+  const auto& device = *Harness::get().device;
   EXPECT_EQ(device.validation_errors(), 0) << testing::PrintToString(device.validation_messages());
 }
 

@@ -15,6 +15,6 @@ namespace afterglow {
 /// Adds bits that are 0, but that only a run can tell, to every number read from the uniform block and the push
 /// constants, and to every divisor that may be 0. Results are the same bits, or IEEE's where there were none. A module
 /// that is not as expected is left as it is.
-std::vector<std::uint32_t> hide_uniforms(const std::vector<std::uint32_t>& spirv);
+std::vector<std::uint32_t> defeat_uniform_inlining(const std::vector<std::uint32_t>& spirv);
 
 }  // namespace afterglow

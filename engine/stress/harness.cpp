@@ -1,4 +1,4 @@
-#include "stress/lab.h"
+#include "stress/harness.h"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ BuildContext context_for(Size size, double frame) {
 std::optional<double> promised_error(const Build& build) {
   constexpr double kBlend = 4;  // screens and overlays of what differs by a little, and masks that look at it
   const auto number = [](const Promises& of, const char* hold, const char* name) -> std::optional<double> {
-    const auto found = std::ranges::find(of.holds, hold, &Hold::name);
+    const auto found = std::ranges::find(of.holds, hold, &Invariant::name);
     if (found == of.holds.end() || !std::isfinite(found->numbers.at(name))) return {};
     return found->numbers.at(name);
   };
@@ -65,7 +65,7 @@ std::string Way::name() const {
   return out;
 }
 
-struct Lab::State {
+struct Harness::State {
   Device* device = nullptr;
   Diagnostics* diagnostics = nullptr;
   std::shared_ptr<SharedKernels> shared;
@@ -91,13 +91,13 @@ struct Lab::State {
   Result<Prepared*> prepare(const Look& look, const Way& way, const Picture& picture, double frame);
 };
 
-Lab::Lab(std::unique_ptr<State> state) : state_(std::move(state)) {}
-Lab::~Lab() = default;
-Device& Lab::device() { return *state_->device; }
-const ExecutionConfig& Lab::usual() const { return state_->usual; }
-int Lab::stacks_made() const { return state_->stacks; }
+Harness::Harness(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Harness::~Harness() = default;
+Device& Harness::device() { return *state_->device; }
+const ExecutionConfig& Harness::usual() const { return state_->usual; }
+int Harness::stacks_made() const { return state_->stacks; }
 
-Result<std::unique_ptr<Lab>> Lab::create(Device& device, const std::filesystem::path& cache, Diagnostics& diagnostics) {
+Result<std::unique_ptr<Harness>> Harness::create(Device& device, const std::filesystem::path& cache, Diagnostics& diagnostics) {
   auto state = std::make_unique<State>();
   state->device = &device;
   state->diagnostics = &diagnostics;
@@ -106,16 +106,16 @@ Result<std::unique_ptr<Lab>> Lab::create(Device& device, const std::filesystem::
   state->usual = calibration.find(device.info(), 0).choice;
   state->usual.storage = Storage::fp32;
   state->usual.hardware_filter = false;
-  return std::unique_ptr<Lab>(new Lab(std::move(state)));
+  return std::unique_ptr<Harness>(new Harness(std::move(state)));
 }
 
-void Lab::forget() {
+void Harness::forget() {
   state_->prepared.clear();
   state_->results.clear();
   state_->known.clear();
 }
 
-Result<Prepared*> Lab::State::prepare(const Look& look, const Way& way, const Picture& picture, double frame) {
+Result<Prepared*> Harness::State::prepare(const Look& look, const Way& way, const Picture& picture, double frame) {
   const Size size = picture.color.size();
   const std::string key = fmt::format("{}\n{}\n{}x{}", look.text(), way.name(), size.width, size.height);
   Prepared& one = prepared[key];
@@ -131,7 +131,7 @@ Result<Prepared*> Lab::State::prepare(const Look& look, const Way& way, const Pi
   return &one;
 }
 
-Result<Made> Lab::run(const Look& look, const Picture& picture, double frame, const Way& way) {
+Result<Made> Harness::run(const Look& look, const Picture& picture, double frame, const Way& way) {
   if (picture.content.empty()) return state_->run(look, picture, frame, way);
   std::string key = fmt::format("{}\n{}\n{}", look.text(), way.name(), frame);
   for (const auto& [name, hash] : picture.content) key += hash.hex();
@@ -140,7 +140,7 @@ Result<Made> Lab::run(const Look& look, const Picture& picture, double frame, co
   return state_->results[key] = std::move(made);
 }
 
-Result<Made> Lab::State::run(const Look& look, const Picture& picture, double frame, const Way& way) {
+Result<Made> Harness::State::run(const Look& look, const Picture& picture, double frame, const Way& way) {
   AFTERGLOW_TRY(Prepared* const one, prepare(look, way, picture, frame));
   if (!one->stack->runs()) return untouched(picture);
   AFTERGLOW_TRY(RenderRequest request, one->stack->request(request_for(one->stack->build(), {}, way.region)));
@@ -158,7 +158,7 @@ Result<Made> Lab::State::run(const Look& look, const Picture& picture, double fr
   return made;
 }
 
-Result<std::vector<std::pair<std::string, Image>>> Lab::images(const Look& look, const Picture& picture, double frame) {
+Result<std::vector<std::pair<std::string, Image>>> Harness::images(const Look& look, const Picture& picture, double frame) {
   AFTERGLOW_TRY(const Made result, state_->run(look, picture, frame, {.plain = true}));
   AFTERGLOW_TRY(Prepared* const one, state_->prepare(look, {.plain = true}, picture, frame));
   std::vector<std::pair<std::string, Image>> out;
@@ -180,14 +180,14 @@ Result<std::vector<std::pair<std::string, Image>>> Lab::images(const Look& look,
   return out;
 }
 
-Result<LookFacts> Lab::facts(const Look& look, Size size, double frame) {
+Result<LookFacts> Harness::facts(const Look& look, Size size, double frame) {
   const std::string key = fmt::format("{}\n{}x{}\n{}", look.text(), size.width, size.height, frame);
   const auto found = state_->known.find(key);
   return found != state_->known.end() ? found->second
                                       : state_->known.emplace(key, state_->find_facts(look, size, frame)).first->second;
 }
 
-Result<LookFacts> Lab::State::find_facts(const Look& look, Size size, double frame) {
+Result<LookFacts> Harness::State::find_facts(const Look& look, Size size, double frame) {
   AFTERGLOW_TRY(const auto stack, Stack::load("stress.lua", options(look, {.plain = true}), *diagnostics));
   AFTERGLOW_TRY(const auto build, stack->evaluate(context_for(size, frame)));
   const Graph& graph = build->graph;
@@ -208,7 +208,7 @@ Result<LookFacts> Lab::State::find_facts(const Look& look, Size size, double fra
   facts.error = promised_error(*build);
   if (build->entries->size() == 1 && !look.is_composed()) {
     if (build->promise_error) return *build->promise_error;
-    facts.holds = build->promises.front().holds;
+    facts.invariants = build->promises.front().invariants;
   }
   return facts;
 }
