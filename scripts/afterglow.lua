@@ -107,7 +107,7 @@ local fx = {}
 ---Makes the stack that a preset returns. Effects run by injection point, then `order`, then position in the list.
 ---`max_error` is the error that the executor may make for the sake of speed, by |x − exact| / (|exact| + 0.01).
 ---`reference_height` makes lengths resolution-free: settings in px are pixels of a picture of that height, whatever is run.
----`input_space` says how the colours of pictures are stored, whatever they say themselves: "acescct", "logc3", "slog3", "pq", "hlg", "gamma22",
+---`input_space` says how the colours of pictures are stored, whatever they say themselves: "acescct", "logc3", "logc4", "slog3", "pq", "hlg", "gamma22",
 ---"gamma24", "linear", "srgb"; `--input-space` goes before it.
 ---`position` says where the picture is seen from, for volumes; `--at` goes before it.
 ---Errors: other keys, positions that hold neither an effect nor a volume, two entries of one name.

@@ -13,6 +13,7 @@ namespace {
 constexpr std::array<double, 2> kD65{0.3127, 0.3290};
 constexpr Chromaticities kAp1{{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
 constexpr Chromaticities kWideGamut3{{0.6840, 0.3130}, {0.2210, 0.8480}, {0.0861, -0.1020}, kD65};
+constexpr Chromaticities kWideGamut4{{0.7347, 0.2653}, {0.1424, 0.8576}, {0.0991, -0.0308}, kD65};
 constexpr Chromaticities kSGamut3Cine{{0.766, 0.275}, {0.225, 0.800}, {0.089, -0.087}, kD65};
 constexpr Chromaticities kRec2020{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, kD65};
 
@@ -26,6 +27,14 @@ double from_acescct(double v) {
 double from_logc3(double v) {
   constexpr double cut = 0.010591, a = 5.555556, b = 0.052272, c = 0.247190, d = 0.385537, e = 5.367655, f = 0.092809;
   return v > e * cut + f ? (std::pow(10.0, (std::min(v, 8.0) - d) / c) - b) / a : (v - f) / e;
+}
+
+// ARRI, "LogC4 Logarithmic Color Space Specification" (2022).
+double from_logc4(double v) {
+  const double a = (262144.0 - 16) / 117.45, b = 928.0 / 1023, c = 95.0 / 1023;
+  if (v >= 0) return (std::exp2(14 * (std::min(v, 8.0) - c) / b + 6) - 64) / a;
+  const double s = 7 * std::log(2.0) * std::exp2(7 - 14 * c / b) / (a * b), t = (std::exp2(6 - 14 * c / b) - 64) / a;
+  return v * s + t;
 }
 
 // Sony, "Technical Summary for S-Gamut3.Cine/S-Log3" (2014).
@@ -61,6 +70,7 @@ constexpr std::array kSpaces{
     InputSpace{"hlg", "HLG (ITU-R BT.2100), Rec.2020; the signal 0.75 is 1", from_hlg, kRec2020},
     InputSpace{"linear", "linear Rec.709", as_it_is, kRec709},
     InputSpace{"logc3", "ARRI LogC3 at EI 800, ALEXA Wide Gamut 3", from_logc3, kWideGamut3},
+    InputSpace{"logc4", "ARRI LogC4, ARRI Wide Gamut 4", from_logc4, kWideGamut4},
     InputSpace{"pq", "PQ (SMPTE ST 2084), Rec.2020; 203 cd/m² is 1", from_pq, kRec2020},
     InputSpace{"slog3", "Sony S-Log3, S-Gamut3.Cine", from_slog3, kSGamut3Cine},
     InputSpace{"srgb", "sRGB (IEC 61966-2-1)", srgb_to_linear, kRec709},

@@ -2,10 +2,12 @@
 -- are done in order: matrices and ranges (the domain of a .cube), curves linearly between their entries, cubes tetrahedrally between the
 -- four nearest. Tables know colours from 0 to 1 alone: what is outside of a table's domain gets the colour of its edge.
 -- `input` says how colours are encoded before the look-up, `output` what the table gives; tables for finished pictures want "srgb" (the
--- default), those for scenes often "acescct" (AP1 primaries, ACES S-2016-001). Alpha stays.
+-- default) or a power, those for scenes the logarithm of a camera or of ACES, with its primaries: math.md §24 has curves and sources. Alpha stays.
 local fx = require "afterglow"
 
-local encodings = { linear = 0, srgb = 1, acescct = 2 }
+-- Numbers: shaders/lib/encoding.glsl.
+local encodings = { linear = 0, srgb = 1, acescct = 2, logc3 = 3, logc4 = 4, slog3 = 5, pq = 6, hlg = 7, gamma22 = 8, gamma24 = 9 }
+local of_displays = { srgb = true, gamma22 = true, gamma24 = true }
 
 return fx.effect {
   name = "lut",
@@ -13,8 +15,8 @@ return fx.effect {
   at = "after_post_process", order = 100, alpha = "straight",
   space = function(s)
     local output = s.output == "same" and s.input or s.output
-    if s.input == "srgb" then return "display" end
-    return { needs = "scene", makes = output == "srgb" and "display" or nil }
+    if of_displays[s.input] then return "display" end
+    return { needs = "scene", makes = of_displays[output] and "display" or nil }
   end,
   settings = {
     file = fx.file {
@@ -22,8 +24,14 @@ return fx.effect {
       doc = "The table: beside the preset or on the search path. None: no effect.",
     },
     intensity = fx.float { min = 0, max = 1, default = 1, doc = "How much of the table's colours: 0 none, 1 they alone." },
-    input = fx.enum { "linear", "srgb", "acescct", default = "srgb", doc = "How the table wants its colours: scene-linear Rec.709, sRGB, ACEScct." },
-    output = fx.enum { "same", "linear", "srgb", "acescct", default = "same", doc = "How the colours are encoded that it gives; same: as its input." },
+    input = fx.enum {
+      "linear", "srgb", "acescct", "logc3", "logc4", "slog3", "pq", "hlg", "gamma22", "gamma24",
+      default = "srgb", doc = "How the table wants its colours: scene-linear Rec.709, sRGB, ACEScct, ARRI LogC3 (EI 800) or LogC4, Sony S-Log3, PQ, HLG, a power.",
+    },
+    output = fx.enum {
+      "same", "linear", "srgb", "acescct", "logc3", "logc4", "slog3", "pq", "hlg", "gamma22", "gamma24",
+      default = "same", doc = "How the colours are encoded that it gives; same: as its input.",
+    },
   },
   active = function(s)
     if s.file == "" then return false, "file is not given" end

@@ -1,5 +1,10 @@
-// How colours are encoded for people's tables: scene-linear Rec.709 to one of these, and back.
-// 0: as they are. 1: sRGB (IEC 61966-2-1). 2: ACEScct (S-2016-001) of AP1.
+// How colours are encoded for people's tables: scene-linear Rec.709 to one of these, and back (math.md §24 has the papers). Light beyond
+// what a float holds of a curve's inverse is cut off: it stays finite, and rises as far as it goes.
+
+#include "lib/near_one.glsl"
+
+const int kEncodingLinear = 0, kEncodingSrgb = 1, kEncodingAcescct = 2, kEncodingLogC3 = 3, kEncodingLogC4 = 4, kEncodingSlog3 = 5, kEncodingPq = 6,
+          kEncodingHlg = 7, kEncodingGamma22 = 8, kEncodingGamma24 = 9;
 
 vec3 srgb_from_linear(vec3 c) {
   c = max(c, vec3(0.0));
@@ -28,10 +33,112 @@ vec3 linear_from_acescct(vec3 c) {
   return kRec709FromAp1 * mix(high, low, lessThanEqual(c, vec3(0.155251141552511)));
 }
 
+// From and to Rec.709 of the other primaries; all white points are D65.
+const mat3 kWideGamut3FromRec709 = mat3(0.6313210225, 0.0368199337, 0.0173697319, 0.2708007273, 0.7930369660, 0.1487891849, 0.0978782502,
+                                        0.1701431002, 0.8338410832);
+const mat3 kRec709FromWideGamut3 = mat3(1.6175234363, -0.0705727409, -0.0211017280, -0.5372866222, 1.3346130623, -0.2269538752, -0.0802368141,
+                                        -0.2640403214, 1.2480556033);
+const mat3 kWideGamut4FromRec709 = mat3(0.5658365405, 0.0886256369, 0.0177500401, 0.3403309987, 0.8093468418, 0.1094476209, 0.0938324608,
+                                        0.1020275213, 0.8728023391);
+const mat3 kRec709FromWideGamut4 = mat3(1.8931234427, -0.2057003583, -0.0127057429, -0.7808815036, 1.3402574894, -0.1521848758, -0.1122419390,
+                                        -0.1345571311, 1.1648906187);
+const mat3 kSGamut3CineFromRec709 = mat3(0.6456794776, 0.0875299915, 0.0369574199, 0.2591145470, 0.7596995626, 0.1292809048, 0.0952059754,
+                                         0.1527704459, 0.8337616753);
+const mat3 kRec709FromSGamut3Cine = mat3(1.6269474097, -0.1785155271, -0.0444361150, -0.5401385389, 1.4179409275, -0.1959199662, -0.0868088709,
+                                         -0.2394254003, 1.2403560812);
+const mat3 kRec2020FromRec709 = mat3(0.6274038959, 0.0690972894, 0.0163914389, 0.3292830384, 0.9195403951, 0.0880133079, 0.0433130657,
+                                     0.0113623156, 0.8955952532);
+const mat3 kRec709FromRec2020 = mat3(1.6604910021, -0.1245504745, -0.0181507634, -0.5876411388, 1.1328998971, -0.1005788980, -0.0728498633,
+                                     -0.0083494226, 1.1187296614);
+
+const float kLog2Of10 = 3.321928094887362;
+
+// ARRI LogC3 at EI 800, of ALEXA Wide Gamut 3: c·log10(ax + b) + d above 0.010591, else ex + f.
+vec3 logc3_from_linear(vec3 c) {
+  c = kWideGamut3FromRec709 * c;
+  vec3 high = (0.247190 / kLog2Of10) * log2(max(5.555556 * c + 0.052272, vec3(1e-10))) + 0.385537;
+  return mix(high, 5.367655 * c + 0.092809, lessThanEqual(c, vec3(0.010591)));
+}
+
+vec3 linear_from_logc3(vec3 v) {
+  vec3 high = (exp2((min(v, vec3(7.0)) - 0.385537) * (kLog2Of10 / 0.247190)) - 0.052272) / 5.555556;
+  return kRec709FromWideGamut3 * mix(high, (max(v, vec3(-1e12)) - 0.092809) / 5.367655, lessThanEqual(v, vec3(0.149657834)));
+}
+
+// ARRI LogC4, of ARRI Wide Gamut 4: b·(log2(ax + 64) − 6)/14 + c from t on, else a line.
+vec3 logc4_from_linear(vec3 x) {
+  x = kWideGamut4FromRec709 * x;
+  vec3 high = (log2(max(2231.8263090676883 * x + 64.0, vec3(1e-10))) - 6.0) * 0.06479542593 + 0.09286412512218964;
+  return mix((x + 0.018056996119911) / 0.1135972086105891, high, greaterThanEqual(x, vec3(-0.018056996119911)));
+}
+
+vec3 linear_from_logc4(vec3 v) {
+  vec3 high = (exp2((min(v, vec3(7.0)) - 0.09286412512218964) * 15.433189655172415 + 6.0) - 64.0) / 2231.8263090676883;
+  return kRec709FromWideGamut4 * mix(max(v, vec3(-1e12)) * 0.1135972086105891 - 0.018056996119911, high, greaterThanEqual(v, vec3(0.0)));
+}
+
+// Sony S-Log3, of S-Gamut3.Cine.
+vec3 slog3_from_linear(vec3 x) {
+  x = kSGamut3CineFromRec709 * x;
+  vec3 high = (420.0 + (261.5 / kLog2Of10) * log2(max((x + 0.01) / 0.19, vec3(1e-10)))) / 1023.0;
+  return mix((x * (76.2102946929 / 0.01125) + 95.0) / 1023.0, high, greaterThanEqual(x, vec3(0.01125)));
+}
+
+vec3 linear_from_slog3(vec3 v) {
+  vec3 high = exp2((min(v, vec3(8.0)) * 1023.0 - 420.0) * (kLog2Of10 / 261.5)) * 0.19 - 0.01;
+  return kRec709FromSGamut3Cine * mix((max(v, vec3(-1e12)) * 1023.0 - 95.0) * (0.01125 / 76.2102946929), high, greaterThanEqual(v, vec3(171.2102946929 / 1023.0)));
+}
+
+// PQ (SMPTE ST 2084) of Rec.2020; 203 cd/m² is 1. Light below black has no code. With w = 1 − c1 = c2 − c3 the papers' fractions are written by what is
+// left of 1, where powers of 79 and 1/79 have their digits: (c1 + c2·y)/(1 + c3·y) = 1 − w(1 − y)/(1 + c3·y), and (n − c1)/(c2 − c3·n) = (w − (1 − n))/(w + c3(1 − n)).
+vec3 pq_from_linear(vec3 x) {
+  vec3 y = pow(max(kRec2020FromRec709 * x, vec3(0.0)) * 0.0203, vec3(0.1593017578125));
+  return exp(78.84375 * log_of_one_plus(-0.1640625 * (1.0 - y) / (1.0 + 18.6875 * y)));
+}
+
+vec3 linear_from_pq(vec3 v) {
+  vec3 rest = one_minus_exp(log(clamp(v, 1e-30, 1.0)) / 78.84375);
+  return kRec709FromRec2020 * (pow(max(0.1640625 - rest, vec3(0.0)) / (0.1640625 + 18.6875 * rest), vec3(1.0 / 0.1593017578125)) / 0.0203);
+}
+
+// HLG (ITU-R BT.2100), light of the scene, of Rec.2020; the signal 0.75 is 1. Light below black has no code.
+vec3 hlg_from_linear(vec3 x) {
+  x = max(kRec2020FromRec709 * x, vec3(0.0)) * 0.26496256;
+  return mix(0.17883277 * log(max(12.0 * x - 0.28466892, vec3(1e-10))) + 0.55991073, sqrt(3.0 * x), lessThanEqual(x, vec3(1.0 / 12.0)));
+}
+
+vec3 linear_from_hlg(vec3 v) {
+  v = max(v, vec3(0.0));
+  vec3 high = (exp((min(v, vec3(4.0)) - 0.55991073) / 0.17883277) + 0.28466892) / 12.0;
+  return kRec709FromRec2020 * (mix(high, v * v / 3.0, lessThanEqual(v, vec3(0.5))) / 0.26496256);
+}
+
+// A plain power, mirrored below 0.
+vec3 power_from_linear(vec3 c, float gamma) { return sign(c) * pow(abs(c), vec3(1.0 / gamma)); }
+vec3 linear_from_power(vec3 v, float gamma) { return sign(v) * pow(min(abs(v), vec3(1e12)), vec3(gamma)); }
+
 vec3 encoded(vec3 c, int encoding) {
-  return encoding == 1 ? srgb_from_linear(c) : encoding == 2 ? acescct_from_linear(c) : c;
+  if (encoding == kEncodingSrgb) return srgb_from_linear(c);
+  if (encoding == kEncodingAcescct) return acescct_from_linear(c);
+  if (encoding == kEncodingLogC3) return logc3_from_linear(c);
+  if (encoding == kEncodingLogC4) return logc4_from_linear(c);
+  if (encoding == kEncodingSlog3) return slog3_from_linear(c);
+  if (encoding == kEncodingPq) return pq_from_linear(c);
+  if (encoding == kEncodingHlg) return hlg_from_linear(c);
+  if (encoding == kEncodingGamma22) return power_from_linear(c, 2.2);
+  if (encoding == kEncodingGamma24) return power_from_linear(c, 2.4);
+  return c;
 }
 
 vec3 decoded(vec3 c, int encoding) {
-  return encoding == 1 ? linear_from_srgb(c) : encoding == 2 ? linear_from_acescct(c) : c;
+  if (encoding == kEncodingSrgb) return linear_from_srgb(c);
+  if (encoding == kEncodingAcescct) return linear_from_acescct(c);
+  if (encoding == kEncodingLogC3) return linear_from_logc3(c);
+  if (encoding == kEncodingLogC4) return linear_from_logc4(c);
+  if (encoding == kEncodingSlog3) return linear_from_slog3(c);
+  if (encoding == kEncodingPq) return linear_from_pq(c);
+  if (encoding == kEncodingHlg) return linear_from_hlg(c);
+  if (encoding == kEncodingGamma22) return linear_from_power(c, 2.2);
+  if (encoding == kEncodingGamma24) return linear_from_power(c, 2.4);
+  return c;
 }

@@ -24,6 +24,9 @@ TEST(InputSpace, PublishedValues) {
       {"logc3", 0.391006832034084, 0.18, 1e-8},      // ARRI: 18 % grey is the 10-bit code 400
       {"logc3", 0.092809, 0, 1e-12},                 // f
       {"logc3", 1, 55.0796, 1e-3},                   // ARRI's table for EI 800: the maximum is 55.08
+      {"logc4", 0.278395836548265, 0.18, 1e-9},      // ARRI: 18 % grey is 27.84 %
+      {"logc4", 0.0928641251221896, 0, 1e-9},        // of 0: 95/1023
+      {"logc4", 1, 469.8, 1e-9},                     // the end: 117.45 times 4
       {"slog3", 0.410557184750733, 0.18, 1e-9},      // Sony: 18 % is the 10-bit code 420
       {"slog3", 0.0928641251221896, 0, 1e-12},       // 0 % is 95
       {"slog3", 598.0 / 1023, 0.9, 0.003},           // 90 % is 598
@@ -79,7 +82,7 @@ TEST(InputSpace, UnknownNamesAreTold) {
   ASSERT_FALSE(found);
   EXPECT_EQ(
       found.error().text(),
-      "error: 'logc' is no input space; allowed: acescct, gamma22, gamma24, hlg, linear, logc3, pq, slog3, srgb; did "
+      "error: 'logc' is no input space; allowed: acescct, gamma22, gamma24, hlg, linear, logc3, logc4, pq, slog3, srgb; did "
       "you mean 'logc3'?");
 }
 

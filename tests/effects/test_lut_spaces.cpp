@@ -1,0 +1,163 @@
+// Colour spaces that tables are made for: shaders, what reads pictures, and the oracle, against each other and against
+// the values that colour-science publishes.
+#include <cmath>
+#include <random>
+
+#include "files.h"
+#include "image/input_space.h"
+#include "lab.h"
+#include "reference/transfer.h"
+
+namespace afterglow {
+namespace {
+
+using namespace reference;
+
+struct PublishedCode {
+  const char* space;
+  double light, code, tolerance;
+};
+
+// Tests of colour-science 0.4: log_encoding_ACEScct, log_encoding_ARRILogC3 (0.3: log_encoding_ALEXALogC),
+// log_encoding_ARRILogC4, log_encoding_SLog3, eotf_inverse_ST2084 (of cd/m²), oetf_BT2100_HLG (constants of eight
+// digits).
+const PublishedCode kPublished[] = {
+    {"acescct", 0, 0.072905534195835495, 1e-12},  {"acescct", 0.18, 0.413588402492442, 1e-12},
+    {"acescct", 1, 0.554794520547945, 1e-12},     {"logc3", 0, 0.092809, 1e-12},
+    {"logc3", 0.18, 0.391006832034084, 1e-12},    {"logc3", 1, 0.570631558120417, 1e-12},
+    {"logc4", 0, 0.092864125122190, 1e-12},       {"logc4", 0.18, 0.278395836548265, 1e-12},
+    {"logc4", 1, 0.427519364835306, 1e-12},       {"slog3", 0, 0.092864125122189639, 1e-12},
+    {"slog3", 0.18, 0.41055718475073316, 1e-12},  {"slog3", 1, 0.59602734369012345, 1e-12},
+    {"pq", 0, 0.000000730955903, 1e-12},          {"pq", 100.0 / 203, 0.508078421517399, 1e-12},
+    {"pq", 400.0 / 203, 0.652578597563067, 1e-12}};
+
+TEST(Transfer, PublishedValues) {
+  for (const auto& v : kPublished) {
+    EXPECT_NEAR(light_to_transfer(v.space, v.light), v.code, v.tolerance) << v.space << " " << v.light;
+    EXPECT_NEAR(transfer_to_light(v.space, v.code), v.light, 1e-9) << v.space << " " << v.code;
+  }
+  const double white = transfer_to_light("hlg", 1);  // is the light 1 of the paper
+  EXPECT_NEAR(light_to_transfer("hlg", white * 0.18 / 12), 0.212132034355964, 1e-8);
+  EXPECT_NEAR(light_to_transfer("hlg", white), 0.999999995536569, 1e-8);
+  EXPECT_NEAR(light_to_transfer("hlg", 1), 0.75, 1e-12);
+}
+
+TEST(Transfer, IsWhatPicturesAreReadBy) {
+  for (const InputSpace& space : input_spaces()) {
+    const std::string name = space.name;  // below 0 sRGB says nothing, and PQ has no codes
+    for (double v = name == "pq" || name == "srgb" ? 0 : -0.25; v <= 1; v += 1.0 / 512) {
+      const double light = transfer_to_light(space.name, v);
+      EXPECT_NEAR(space.to_linear(v), light, 2e-8 * std::max(1.0, light)) << space.name << " " << v;
+    }
+    ColorEncoding encoding;
+    use_input_space(space, encoding);
+    const Rgb stored(0.4, 0.5, 0.3);
+    const Rgb curve(space.to_linear(stored.r), space.to_linear(stored.g), space.to_linear(stored.b));
+    const Rgb light = transfer_to_rec709(space.name, stored);
+    for (int row = 0; row < 3; ++row) {
+      double sum = curve[row];
+      if (encoding.matrix) {
+        const auto& m = (*encoding.matrix)[static_cast<std::size_t>(row)];
+        sum = m[0] * curve.r + m[1] * curve.g + m[2] * curve.b;
+      }
+      EXPECT_NEAR(sum, light[row], 1e-8) << space.name;
+    }
+  }
+  EXPECT_EQ(input_spaces().size(), transfer_names().size());
+}
+
+TEST(Transfer, GoesBackAndRises) {
+  for (const auto& name : transfer_names()) {
+    double before = -1;
+    for (double light = 1e-6; light < 40; light *= 1.02) {
+      const double code = light_to_transfer(name, light);
+      EXPECT_GT(code, before) << name << " " << light;
+      EXPECT_NEAR(transfer_to_light(name, code), light, 1e-9 * std::max(1.0, light)) << name << " " << light;
+      before = code;
+    }
+  }
+}
+
+/// A table that changes nothing and ends nowhere.
+void write_plain_tables() {
+  write_test_file("plain.clf",
+                  "<?xml version=\"1.0\"?><ProcessList id=\"p\" compCLFversion=\"3\"><Matrix inBitDepth=\"32f\" "
+                  "outBitDepth=\"32f\"><Array dim=\"3 3\">1 0 0 0 1 0 0 0 1</Array></Matrix></ProcessList>\n");
+}
+
+std::string through(const std::string& input, const std::string& output) {
+  return "fx.lut { file = \"plain.clf\", input = \"" + input + "\", output = \"" + output + "\" }";
+}
+
+Scene colours_of(double low, double high, bool logarithmic) {
+  std::mt19937 random(77);
+  const auto any = [&] {
+    const double v = std::uniform_real_distribution(low, high)(random);
+    return logarithmic ? std::exp2(v) : v;
+  };
+  Scene scene{"colours", DoubleImage(48, 48), {}, {}};
+  for (auto& p : scene.source.pixels) p = Rgba(any(), any(), any(), 1);
+  scene.source = in_floats(scene.source);
+  return scene;
+}
+
+TEST_F(Effects, LutSpacesAreThoseOfTheOracle) {
+  write_plain_tables();
+  const Scene light = colours_of(-14, 5, true), codes = colours_of(0.02, 0.98, false);
+  for (const auto& name : transfer_names()) {
+    DoubleImage expected = light.source;
+    for (auto& p : expected.pixels) p = Rgba(rec709_to_transfer(name, Rgb(p)), 1);
+    for (const Way way : {Way::joined}) {
+      EXPECT_TRUE(agrees(run_stack(through(name, "linear"), light, way).result, expected, 2e-5, kRgb)) << "to " << name;
+      DoubleImage back = codes.source;
+      for (auto& p : back.pixels) p = Rgba(transfer_to_rec709(name, Rgb(p)), 1);
+      // Of colours whose channels are far apart, the smallest is a difference of large numbers.
+      const Made made = run_stack(through("linear", name), codes, way);
+      for (std::size_t i = 0; i < back.pixels.size(); ++i) {
+        const Rgb wanted(back.pixels[i]);
+        const double size =
+            std::max(0.01, glm::max(std::abs(wanted.r), glm::max(std::abs(wanted.g), std::abs(wanted.b))));
+        for (int c = 0; c < 3; ++c)
+          ASSERT_NEAR(double(made.result[4 * i + static_cast<std::size_t>(c)]), wanted[c], 3e-5 * size)
+              << "from " << name;
+      }
+    }
+  }
+}
+
+TEST_F(Effects, LutSpacesGoThereAndBack) {
+  write_plain_tables();
+  const Scene light = colours_of(-10, 1.5, true);
+  for (const auto& name : transfer_names()) {
+    const Made made = run_stack(through(name, "same"), light, Way::joined);
+    for (std::size_t i = 0; i < light.source.pixels.size(); ++i) {
+      const Rgb wanted(light.source.pixels[i]);
+      const double size = glm::max(wanted.r, glm::max(wanted.g, wanted.b));
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(double(made.result[4 * i + static_cast<std::size_t>(c)]), wanted[c], 4e-5 * std::max(size, 0.01))
+            << name;
+    }
+  }
+}
+
+TEST_F(Effects, LutSpacesRiseAndStayFiniteAtTheirEnds) {
+  write_plain_tables();
+  Scene greys{"greys", DoubleImage(64, 2), {}, {}};
+  for (int x = 0; x < 64; ++x) {
+    greys.source.at(x, 0) = Rgba(Rgb(std::exp2(-16 + x * 0.33)), 1);
+    greys.source.at(x, 1) = Rgba(Rgb((x % 2 ? 1 : -1) * std::exp2(-30 + x * 2.0)), 1);  // up to 1e29
+  }
+  greys.source = in_floats(greys.source);
+  for (const auto& name : transfer_names()) {
+    for (const char* output : {"linear", "same"}) {
+      const Made made = run_stack(through(name, output), greys, Way::joined);
+      EXPECT_TRUE(all_finite(made.result)) << name;
+      for (std::size_t x = 1; x < 64; ++x)
+        EXPECT_GE(made.result[4 * x + 1], made.result[4 * x - 3] * 0.99999F) << name << " " << output << " " << x;
+    }
+    EXPECT_TRUE(all_finite(run_stack(through("linear", name), greys, Way::joined).result)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace afterglow
