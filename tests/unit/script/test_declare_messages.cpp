@@ -19,11 +19,11 @@ std::string declared(const std::string& body) {
 std::string setting(const std::string& type) { return declared("  settings = {\n    amount = " + type + ",\n  },"); }
 
 TEST(DeclareMessages, Effects) {
-  EXPECT_EQ(
-      declared("  odrer = 3,"),
-      "effects/glow.lua:3: error: fx.effect has no 'odrer'; allowed: active, alpha, at, build, doc, holds, idle, name, "
-      "needs, optional, order, "
-      "settings, space; did you mean 'order'?");
+  EXPECT_EQ(declared("  odrer = 3,"),
+            "effects/glow.lua:3: error: fx.effect has no 'odrer'; allowed: active, alpha, at, build, detail, doc, "
+            "holds, idle, name, "
+            "needs, optional, order, "
+            "settings, space; did you mean 'order'?");
   EXPECT_EQ(declared("\n  at = \"post\","),
             "effects/glow.lua:4: error: fx.effect: unknown injection point 'post'; allowed: after_opaque_and_sky, "
             "before_post_process, post_process, after_post_process");
@@ -50,7 +50,7 @@ TEST(DeclareMessages, Effects) {
             "effects/glow.lua:4: error: fx.effect: space has no 'make'; allowed: makes, needs; did you mean 'makes'?");
   EXPECT_EQ(declared("  7,"),
             "effects/glow.lua:3: error: fx.effect has a value without a name at position 1; allowed: active, alpha, "
-            "at, build, doc, "
+            "at, build, detail, doc, "
             "holds, idle, name, needs, optional, order, settings, space");
 }
 

@@ -132,10 +132,11 @@ TEST(ListEffects, AllOfThePathByName) {
   EXPECT_THAT(names, testing::Contains("mine"));
   EXPECT_THAT(names, testing::Contains("tone_mapping"));
   EXPECT_THAT(names, testing::Not(testing::Contains("broken")));
-  EXPECT_THAT(scene.warnings,
-              ElementsAre("effect 'broken' is left out: effects/broken.lua:3: error: fx.effect has no "
-                          "'odrer'; allowed: active, alpha, at, build, "
-                          "doc, holds, idle, name, needs, optional, order, settings, space; did you mean 'order'?"));
+  EXPECT_THAT(
+      scene.warnings,
+      ElementsAre("effect 'broken' is left out: effects/broken.lua:3: error: fx.effect has no "
+                  "'odrer'; allowed: active, alpha, at, build, "
+                  "detail, doc, holds, idle, name, needs, optional, order, settings, space; did you mean 'order'?"));
 }
 
 // The names that no effect may have are those that the library has.
