@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "batch/table.h"
+#include "core/table.h"
 #include "image/reader.h"
 #include "image/sequence.h"
 

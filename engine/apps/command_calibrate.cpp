@@ -8,10 +8,10 @@
 #include "apps/interrupt.h"
 #include "apps/options.h"
 #include "apps/output.h"
-#include "batch/table.h"
 #include "bench/calibrate.h"
 #include "core/file.h"
 #include "core/paths.h"
+#include "core/table.h"
 
 namespace afterglow {
 namespace {

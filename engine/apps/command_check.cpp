@@ -10,9 +10,9 @@
 #include "apps/output.h"
 #include "apps/setting_text.h"
 #include "apps/space_text.h"
-#include "batch/json_text.h"
-#include "batch/table.h"
+#include "core/json_text.h"
 #include "core/printable.h"
+#include "core/table.h"
 #include "script/explanation.h"
 
 namespace afterglow {

@@ -6,8 +6,8 @@
 
 #include "apps/command.h"
 #include "apps/output.h"
-#include "batch/json_text.h"
-#include "batch/table.h"
+#include "core/json_text.h"
+#include "core/table.h"
 #include "exec/calibration.h"
 #include "gpu/device.h"
 

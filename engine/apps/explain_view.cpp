@@ -8,8 +8,8 @@
 #include "apps/graph_view.h"
 #include "apps/setting_text.h"
 #include "apps/space_text.h"
-#include "batch/json_text.h"
-#include "batch/table.h"
+#include "core/json_text.h"
+#include "core/table.h"
 #include "core/text.h"
 
 namespace afterglow {

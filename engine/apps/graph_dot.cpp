@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/graph_view.h"
-#include "batch/json_text.h"
+#include "core/json_text.h"
 #include "graph/condition.h"
 #include "graph/history.h"
 

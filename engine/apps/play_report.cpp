@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/options.h"
-#include "batch/json_text.h"
 #include "batch/run_report.h"
-#include "batch/table.h"
+#include "core/json_text.h"
+#include "core/table.h"
 #include "core/version.h"
 
 namespace afterglow {

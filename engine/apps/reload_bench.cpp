@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "batch/json_text.h"
-#include "batch/table.h"
 #include "bench/picture.h"
 #include "core/file.h"
+#include "core/json_text.h"
 #include "core/stopwatch.h"
+#include "core/table.h"
 #include "core/version.h"
 #include "image/writer.h"
 #include "play/player.h"

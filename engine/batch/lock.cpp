@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "batch/json_text.h"
 #include "core/file.h"
+#include "core/json_text.h"
 #include "core/text.h"
 #include "core/version.h"
 #include "shader/execution_config.h"

@@ -19,6 +19,7 @@ struct RunEvents {
   std::function<void()> end_progress;
   /// A frame failed and the rest go on.
   std::function<void(const Error&)> failed;
+  std::function<void(const std::string&)> note;  ///< of what was found on the way, for whoever wants to know
   /// True: the run ends before its next step, with an error of the kind `interrupted`.
   std::function<bool()> interrupted;
 };

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "batch/json_text.h"
-#include "batch/table.h"
+#include "core/json_text.h"
+#include "core/table.h"
 #include "core/text.h"
 #include "core/version.h"
 

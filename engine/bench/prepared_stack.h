@@ -17,7 +17,7 @@ struct Variant {
   std::optional<ExecutionConfig> choice;  ///< empty: as `run` would choose
   std::string settings;                   ///< for reports: what `overrides` add to the preset
   std::vector<Override> overrides;
-  bool check_finite = false;                       ///< values that are not finite are looked for, as `run` does
+  bool check_finite = false;                ///< values that are not finite are looked for, as `run` does
   std::optional<DisplayEncoding> encoding;  ///< the last kernel writes 8-bit codes; not for `try_out`
 };
 

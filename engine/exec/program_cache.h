@@ -28,7 +28,7 @@ struct FrameWork {
   Graph graph{};
   Hash texts{};                  ///< of the graph's shaders: see `texts_of`
   std::optional<Rect> region{};  ///< of the result, in its pixels and within it; empty: all of it
-  bool unorm8 = false;            ///< the last pass gives 8-bit codes
+  bool unorm8 = false;           ///< the last pass gives 8-bit codes
   double frame = 1, step = 1;    ///< number, and how many after the frame before it; see Histories::begin
   bool restart = false;          ///< no frame is before it
   bool runs() const { return graph.result != graph.source; }

@@ -13,9 +13,9 @@
 
 namespace afterglow {
 
-/// One draw or dispatch: an anchor pass and the pixel passes fused to it. Indices into Graph::passes: a pass that begins
-/// kernels first, then pixel passes, each behind those whose colours it takes. The last one makes the kernel's image;
-/// what the others make is read by passes of the kernel alone, at their own pixel.
+/// One draw or dispatch: an anchor pass and the pixel passes fused to it. Indices into Graph::passes: a pass that
+/// begins kernels first, then pixel passes, each behind those whose colours it takes. The last one makes the kernel's
+/// image; what the others make is read by passes of the kernel alone, at their own pixel.
 struct PlanKernel {
   std::vector<int> passes;
   std::string name;  ///< "glow.up[0]+glow.combine+curve"
@@ -42,8 +42,8 @@ Plan make_plan(const Graph& graph, const ExecutionConfig& config);
 bool reads_own_pixel(const Pass& pass, const PassInput& input);
 
 /// Where the kernel has an image's colour at hand when one of its passes wants it, as a number: 0 for the colour that
-/// the anchor makes or reads, n for what the n-th pixel pass makes (the first stage, KernelStage, is 1). Nothing: it has
-/// to be read.
+/// the anchor makes or reads, n for what the n-th pixel pass makes (the first stage, KernelStage, is 1). Nothing: it
+/// has to be read.
 std::optional<int> value_in(const Graph& graph, const PlanKernel& kernel, ImageId image);
 
 /// A block of memory wanted from kernel `first` to kernel `last` (inclusive).

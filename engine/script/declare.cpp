@@ -6,8 +6,8 @@
 #include <cctype>
 
 #include "core/text.h"
-#include "script/invariant_reader.h"
 #include "script/injection.h"
+#include "script/invariant_reader.h"
 #include "script/object.h"
 #include "script/setting.h"
 #include "script/space.h"

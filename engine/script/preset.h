@@ -56,7 +56,7 @@ struct Invariant {
   std::map<std::string, std::string> settings;  ///< parameters that name a setting
 };
 struct InvariantSchema {
-  Invariant stated;                        ///< without what is computed
+  Invariant stated;                   ///< without what is computed
   std::vector<std::string> computed;  ///< numbers that depend on settings and size
   bool conditional = false;           ///< holds for some settings or sizes alone
 };
@@ -84,12 +84,12 @@ struct EntrySpace {
 struct EffectSchema {
   std::string name, doc, at;
   int order = 0;
-  bool straight = false;                ///< its pixel shaders see straight colour: `alpha = "straight"`
-  bool detail = false;                  ///< what it draws depends on single pixels: `detail = true`
-  SpaceUse space;                       ///< where it is the same for all settings
-  bool space_by_settings = false;       ///< it depends on settings
-  std::vector<SettingSchema> settings;  ///< in order of declaration
-  std::vector<InvariantSchema> invariants;        ///< what it promises
+  bool straight = false;                    ///< its pixel shaders see straight colour: `alpha = "straight"`
+  bool detail = false;                      ///< what it draws depends on single pixels: `detail = true`
+  SpaceUse space;                           ///< where it is the same for all settings
+  bool space_by_settings = false;           ///< it depends on settings
+  std::vector<SettingSchema> settings;      ///< in order of declaration
+  std::vector<InvariantSchema> invariants;  ///< what it promises
   std::filesystem::path file;
   std::vector<std::filesystem::path> shadowed;  ///< files of the same name further down the search path
 };

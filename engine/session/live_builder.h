@@ -41,7 +41,7 @@ struct BuiltStack {
   std::unique_ptr<Diagnostics> diagnostics;
   std::unique_ptr<Stack> stack;
   std::shared_ptr<const FileProbes> files{};  ///< that the build has looked at
-  bool for_frame = false;                    ///< see LiveRequest
+  bool for_frame = false;                     ///< see LiveRequest
 };
 
 /// Builds that have not been taken yet: a stack, and newer scripts for it or for the one that is shown.
@@ -114,8 +114,8 @@ class LiveBuilder {
   Diagnostics& diagnostics_;
 
   // Of the builder's thread alone.
-  FileProbes probes_;             ///< of the last build
-  FileProbes later_probes_;       ///< of frames since
+  FileProbes probes_;           ///< of the last build
+  FileProbes later_probes_;     ///< of frames since
   std::optional<Basis> basis_;  ///< of the newest stack that was built
   Clock::time_point published_at_{};
   std::unique_ptr<WarmUp> warm_up_;
@@ -126,7 +126,7 @@ class LiveBuilder {
   LiveRequest request_;
   Wanted wanted_;
   bool busy_ = false, ends_ = false;
-  FileProbes new_probes_;           ///< of frames
+  FileProbes new_probes_;         ///< of frames
   std::shared_ptr<Until> until_;  ///< when the script that is running ends at the latest
   Clock::time_point script_began_{};
   BuiltParts parts_;

@@ -1,5 +1,5 @@
-// Fuses an anchor and pixel stages into the text of one fragment shader. The text holds no image size, no file and no pass
-// name, so that equal work has equal text, and one compiled kernel serves every level of a pyramid.
+// Fuses an anchor and pixel stages into the text of one fragment shader. The text holds no image size, no file and no
+// pass name, so that equal work has equal text, and one compiled kernel serves every level of a pyramid.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,7 +65,8 @@ class Assembler {
     }
     out_.glsl += kHeader;
     if (!out_.unset.empty()) out_.glsl += give_value_header();
-    if (kernel_.config.defeat_uniform_inlining) out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
+    if (kernel_.config.defeat_uniform_inlining)
+      out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
     out_.glsl += targets();
     if (!block_.empty()) out_.glsl += "layout(set = 0, binding = 0, std140) uniform ag_Block {\n" + block_ + "};\n";
     out_.glsl += images_;

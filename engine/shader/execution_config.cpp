@@ -50,7 +50,9 @@ Error unknown_word(const std::string& word) {
 }  // namespace
 
 std::string execution_name(const ExecutionConfig& config) {
-  std::string name = config.fusion == Fusion::all ? "fused" : config.fusion == Fusion::filters ? "fused-filters" : "unfused";
+  std::string name = config.fusion == Fusion::all       ? "fused"
+                     : config.fusion == Fusion::filters ? "fused-filters"
+                                                        : "unfused";
   name += config.storage == Storage::fp16 ? " fp16" : " fp32";
   if (config.hardware_filter) name += " hardware-filter";
   if (config.storage_reads) name += " storage-reads";

@@ -1,4 +1,5 @@
-// The anchor of a kernel that resamples: GLSL that sets ag_color from image 0, made from a Filter. Internal to the room.
+// The anchor of a kernel that resamples: GLSL that sets ag_color from image 0, made from a Filter. Internal to the
+// room.
 #pragma once
 
 #include <string>

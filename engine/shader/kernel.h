@@ -1,6 +1,6 @@
-// A kernel: one full-screen fragment shader, or one compute shader, made of an anchor (how the first colour of a pixel is
-// found) and pixel stages that follow. Assembled from authors' GLSL and from filters described as data, then compiled
-// to SPIR-V and reflected.
+// A kernel: one full-screen fragment shader, or one compute shader, made of an anchor (how the first colour of a pixel
+// is found) and pixel stages that follow. Assembled from authors' GLSL and from filters described as data, then
+// compiled to SPIR-V and reflected.
 #pragma once
 
 #include <cstddef>
@@ -59,11 +59,12 @@ enum class KernelTarget { float32, float16, unorm8 };
 enum class FiniteCheck {
   none,
   propagate,  ///< it writes NaN there, so that later kernels see it
-  flag      ///< it writes alpha 0 there, and elsewhere 1 (unorm8: what the last stage gave)
+  flag        ///< it writes alpha 0 there, and elsewhere 1 (unorm8: what the last stage gave)
 };
 
 struct KernelDesc {
-  /// Anchor stage: exactly one of `filter` (source is bound at image 0) or `sample` is set; neither: the own pixel of image 0.
+  /// Anchor stage: exactly one of `filter` (source is bound at image 0) or `sample` is set; neither: the own pixel of
+  /// image 0.
   std::optional<Filter> filter;
   AxisRatio ratio_x = AxisRatio::any, ratio_y = AxisRatio::any;
   std::optional<KernelStage> sample;  ///< a shader with sample_at, or with compute_at: then this is a compute shader

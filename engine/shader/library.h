@@ -45,8 +45,9 @@ class ShaderLibrary {
  public:
   explicit ShaderLibrary(SearchPath path) : path_(std::move(path)) {}
 
-  /// Finds "NAME.glsl", or what was made under that name (SearchPath::made). Errors (script): unknown name (with the nearest), syntax of declarations, missing include,
-  /// include cycle, neither or both of apply/sample_at; file and line are those of the offending text.
+  /// Finds "NAME.glsl", or what was made under that name (SearchPath::made). Errors (script): unknown name (with the
+  /// nearest), syntax of declarations, missing include, include cycle, neither or both of apply/sample_at; file and
+  /// line are those of the offending text.
   Result<std::shared_ptr<const ShaderSource>> find(const std::string& name);
 
   void reload();                 ///< forget everything read so far

@@ -23,7 +23,8 @@ int number_of(const Token& token) {
 
 }  // namespace
 
-Result<Workgroup> parse_workgroup(const Token& anchor, std::span<const Token* const> arguments, const std::string& file) {
+Result<Workgroup> parse_workgroup(const Token& anchor, std::span<const Token* const> arguments,
+                                  const std::string& file) {
   static const std::vector<std::string> kNames = {"local_size_x", "local_size_y", "pixels_x", "pixels_y"};
   std::array<int, 4> sizes{1, 1, 0, 0};
   for (std::size_t i = 0; i < arguments.size(); i += 4) {

@@ -16,7 +16,8 @@ inline constexpr std::uint64_t kMaxSharedBytes = 32768;  ///< of a workgroup's v
 
 /// `arguments` are the tokens between the parentheses of `layout(local_size_x = N, …) in;`, which begins at `anchor`.
 /// Errors (script): unknown names, sizes out of range.
-Result<Workgroup> parse_workgroup(const Token& anchor, std::span<const Token* const> arguments, const std::string& file);
+Result<Workgroup> parse_workgroup(const Token& anchor, std::span<const Token* const> arguments,
+                                  const std::string& file);
 
 /// Errors (script): a type that workgroups cannot share.
 Result<void> check_shared_type(const Token& type, const std::string& file);

@@ -39,8 +39,12 @@ Result<Outcome> check_error(Harness& harness, const Situation& s, const Invarian
   return against_truth(made.image, *truth, allowed, half, way);
 }
 
-Result<Outcome> error_fp32(Harness& harness, const Situation& s, const Invariant& hold) { return check_error(harness, s, hold, false); }
-Result<Outcome> error_fp16(Harness& harness, const Situation& s, const Invariant& hold) { return check_error(harness, s, hold, true); }
+Result<Outcome> error_fp32(Harness& harness, const Situation& s, const Invariant& hold) {
+  return check_error(harness, s, hold, false);
+}
+Result<Outcome> error_fp16(Harness& harness, const Situation& s, const Invariant& hold) {
+  return check_error(harness, s, hold, true);
+}
 
 /// Faded, blended and masked effects and groups of them, as far as each promises its error.
 Result<Outcome> composed(Harness& harness, const Situation& s, const Invariant&) {

@@ -98,7 +98,9 @@ Result<Outcome> check_mean(Harness& harness, const Situation& s, const Invariant
   return within_bound(gain, hold.numbers.at("within"), fmt::format("the mean changes by {:.3g} of itself", gain));
 }
 
-Result<Outcome> mean(Harness& harness, const Situation& s, const Invariant& hold) { return check_mean(harness, s, hold, false); }
+Result<Outcome> mean(Harness& harness, const Situation& s, const Invariant& hold) {
+  return check_mean(harness, s, hold, false);
+}
 Result<Outcome> no_added_light(Harness& harness, const Situation& s, const Invariant& hold) {
   return check_mean(harness, s, hold, true);
 }

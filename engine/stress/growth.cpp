@@ -97,8 +97,8 @@ Result<void> grow(Harness& harness, const Growing& what, const PictureSpec& spec
 
 }  // namespace
 
-Result<std::vector<GrowthRow>> error_growth(Harness& harness, const std::vector<Subject>& subjects, Size size, bool quick,
-                                            std::uint64_t seed, const std::function<Result<void>()>& step) {
+Result<std::vector<GrowthRow>> error_growth(Harness& harness, const std::vector<Subject>& subjects, Size size,
+                                            bool quick, std::uint64_t seed, const std::function<Result<void>()>& step) {
   std::vector<GrowthRow> rows;
   for (const auto& subject : subjects) {
     const SettingSchema* levels = subject.effect ? levels_of(*subject.effect) : nullptr;

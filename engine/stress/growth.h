@@ -20,9 +20,10 @@ struct GrowthRow {
 };
 
 /// Of every subject whose promise about its error names the setting that counts levels (`levels`), until more levels
-/// change nothing. `quick`: the defaults and three kinds of picture alone. Errors: as Harness::run; what `step` returns.
-Result<std::vector<GrowthRow>> error_growth(Harness& harness, const std::vector<Subject>& subjects, Size size, bool quick,
-                                            std::uint64_t seed, const std::function<Result<void>()>& step);
+/// change nothing. `quick`: the defaults and three kinds of picture alone. Errors: as Harness::run; what `step`
+/// returns.
+Result<std::vector<GrowthRow>> error_growth(Harness& harness, const std::vector<Subject>& subjects, Size size,
+                                            bool quick, std::uint64_t seed, const std::function<Result<void>()>& step);
 
 /// Columns of text: the worst over all kinds of pictures for each effect and number of levels.
 std::string growth_text(const std::vector<GrowthRow>& rows);

@@ -34,8 +34,8 @@ BuildContext context_for(Size size, double frame) {
 std::optional<double> promised_error(const Build& build) {
   constexpr double kBlend = 4;  // screens and overlays of what differs by a little, and masks that look at it
   const auto number = [](const Promises& of, const char* hold, const char* name) -> std::optional<double> {
-    const auto found = std::ranges::find(of.holds, hold, &Invariant::name);
-    if (found == of.holds.end() || !std::isfinite(found->numbers.at(name))) return {};
+    const auto found = std::ranges::find(of.invariants, hold, &Invariant::name);
+    if (found == of.invariants.end() || !std::isfinite(found->numbers.at(name))) return {};
     return found->numbers.at(name);
   };
   if (build.promise_error || build.promises.size() != build.entries->size()) return {};
@@ -97,7 +97,8 @@ Device& Harness::device() { return *state_->device; }
 const ExecutionConfig& Harness::usual() const { return state_->usual; }
 int Harness::stacks_made() const { return state_->stacks; }
 
-Result<std::unique_ptr<Harness>> Harness::create(Device& device, const std::filesystem::path& cache, Diagnostics& diagnostics) {
+Result<std::unique_ptr<Harness>> Harness::create(Device& device, const std::filesystem::path& cache,
+                                                 Diagnostics& diagnostics) {
   auto state = std::make_unique<State>();
   state->device = &device;
   state->diagnostics = &diagnostics;
@@ -158,7 +159,8 @@ Result<Made> Harness::State::run(const Look& look, const Picture& picture, doubl
   return made;
 }
 
-Result<std::vector<std::pair<std::string, Image>>> Harness::images(const Look& look, const Picture& picture, double frame) {
+Result<std::vector<std::pair<std::string, Image>>> Harness::images(const Look& look, const Picture& picture,
+                                                                   double frame) {
   AFTERGLOW_TRY(const Made result, state_->run(look, picture, frame, {.plain = true}));
   AFTERGLOW_TRY(Prepared* const one, state_->prepare(look, {.plain = true}, picture, frame));
   std::vector<std::pair<std::string, Image>> out;
@@ -196,7 +198,7 @@ Result<LookFacts> Harness::State::find_facts(const Look& look, Size size, double
   if (pixels > kMostPixels)
     return Error{ErrorKind::io, fmt::format("its images have {} pixels, more than are tried", pixels)};
   LookFacts facts{.entries = bench::oracle_entries(*build),
-                  .holds = {},
+                  .invariants = {},
                   .runs = graph.result != graph.source,
                   .passes = 0,
                   .images = {}};

@@ -35,7 +35,7 @@ struct Made {
 /// What scripts say about a look for pictures of a size.
 struct LookFacts {
   std::vector<reference::Entry> entries;  ///< those that run, as the oracle wants them
-  std::vector<Invariant> invariants;                ///< promises of a stack of one effect that is not faded, blended or masked
+  std::vector<Invariant> invariants;      ///< promises of a stack of one effect that is not faded, blended or masked
   std::optional<double> error;  ///< against double precision, in full floats, as far as its effects promise it
   bool runs = false;
   std::size_t passes = 0;
@@ -47,7 +47,7 @@ class Harness {
  public:
   /// `device` must outlive it. `cache`: for shaders; empty: none.
   static Result<std::unique_ptr<Harness>> create(Device& device, const std::filesystem::path& cache,
-                                             Diagnostics& diagnostics);
+                                                 Diagnostics& diagnostics);
   ~Harness();
 
   /// The result of a stack for a picture, which begins a sequence. Of a picture whose `content` is known, a result that

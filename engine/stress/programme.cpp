@@ -33,7 +33,8 @@ const fs::path& scratch() {
 
 class Run {
  public:
-  Run(Harness& harness, const Trials& trials, const ProgrammeOptions& options, Diagnostics& diagnostics, const Report& report)
+  Run(Harness& harness, const Trials& trials, const ProgrammeOptions& options, Diagnostics& diagnostics,
+      const Report& report)
       : harness_(harness), trials_(trials), options_(options), diagnostics_(diagnostics), report_(report) {}
 
   Result<Summary> all(const Step& step) {
@@ -182,8 +183,8 @@ Result<Hash> digest_of(Harness& harness, const Trial& trial, Diagnostics& diagno
   return all.finish();
 }
 
-Result<Summary> run_programme(Harness& harness, const Trials& trials, const ProgrammeOptions& options, Diagnostics& diagnostics,
-                              const Step& step, const Report& report) {
+Result<Summary> run_programme(Harness& harness, const Trials& trials, const ProgrammeOptions& options,
+                              Diagnostics& diagnostics, const Step& step, const Report& report) {
   return Run(harness, trials, options, diagnostics, report).all(step);
 }
 

@@ -57,8 +57,8 @@ using Step = std::function<Result<void>(const Summary& so_far)>;
 using Report = std::function<void(const Finding&)>;
 
 /// Errors: io (a folder that cannot be written), device, and those of `step` but for interrupted.
-Result<Summary> run_programme(Harness& harness, const Trials& trials, const ProgrammeOptions& options, Diagnostics& diagnostics,
-                              const Step& step, const Report& report);
+Result<Summary> run_programme(Harness& harness, const Trials& trials, const ProgrammeOptions& options,
+                              Diagnostics& diagnostics, const Step& step, const Report& report);
 
 /// A hash of all results of a trial, in full and half floats: the same in every process. Errors: as Harness::run.
 Result<Hash> digest_of(Harness& harness, const Trial& trial, Diagnostics& diagnostics);

@@ -120,8 +120,9 @@ TEST_F(PreRoll, StillsBeginEachByThemselves) {
 
 TEST_F(PreRoll, IsExplainedAndDrawn) {
   const Outcome explained = run({"explain", "look.lua"});
-  EXPECT_THAT(explained.out, HasSubstr("history back.history: 1×1, keeps back.propagate; without a frame before it: {0, "
-                                       "0, 0, 0}; pre-roll 3 frames"));
+  EXPECT_THAT(explained.out,
+              HasSubstr("history back.history: 1×1, keeps back.propagate; without a frame before it: {0, "
+                        "0, 0, 0}; pre-roll 3 frames"));
   const Outcome dot = run({"graph", "look.lua", "--format", "dot"});
   EXPECT_THAT(dot.out, HasSubstr("[style=dashed, label=\"next frame\""));
 }

@@ -171,8 +171,7 @@ TEST_F(Effects, BloomSkipsAndSaysWhy) {
 
 TEST_F(Effects, ScatteringKeepsAPictureOfOneColour) {
   Scene scene{"constant", DoubleImage(50, 31, Rgba(4, 2, 0.5, 0.25)), {}, {}};
-  const Made made =
-      run_stack("fx.bloom { mode = \"scattering\", intensity = 0.95, scatter = 0.7 }", scene, Way::fused);
+  const Made made = run_stack("fx.bloom { mode = \"scattering\", intensity = 0.95, scatter = 0.7 }", scene, Way::fused);
   EXPECT_TRUE(agrees(made.result, scene.source, kFullFloat, kRgba));
 }
 

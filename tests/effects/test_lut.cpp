@@ -200,8 +200,8 @@ TEST_F(Effects, LutEncodesAsItSays) {
 
 TEST_F(Effects, LutJoinsItsNeighbours) {
   write_test_file("fused.cube", "LUT_3D_SIZE 4\n" + random_rows(64));
-  const std::string entries = "fx.tone_mapping {}, fx.color_adjustments { post_exposure = 0.5 }, " +
-                              entry("fused.cube") + ", fx.film_grain {}";
+  const std::string entries =
+      "fx.tone_mapping {}, fx.color_adjustments { post_exposure = 0.5 }, " + entry("fused.cube") + ", fx.film_grain {}";
   const Made fused = run_stack(entries, random_scene({32, 32}, 74), Way::fused);
   EXPECT_EQ(fused.graph.passes.size(), 4u);
   EXPECT_EQ(fused.kernels, 1u);

@@ -4,8 +4,8 @@
 #include <random>
 
 #include "files.h"
-#include "image/input_space.h"
 #include "harness.h"
+#include "image/input_space.h"
 #include "reference/transfer.h"
 
 namespace afterglow {

@@ -126,7 +126,7 @@ PFN_vkVoidFunction instance_call(const char* function, Load load) {
     using Wrapped = Call<k##call, PFN_vk##call>;                                          \
     Wrapped::next = reinterpret_cast<PFN_vk##call>(load("vk" #call));                     \
     Wrapped::name = #call;                                                                \
-    Wrapped::unorm8 = may;                                                                 \
+    Wrapped::codes = may;                                                                 \
     return Wrapped::next ? reinterpret_cast<PFN_vkVoidFunction>(&Wrapped::run) : nullptr; \
   }
   INSTANCE_CALLS(WRAP)

@@ -19,7 +19,7 @@ TEST(ExecutionConfig, EveryNameReadsBackAsTheSameChoice) {
     for (const auto storage : {Storage::fp32, Storage::fp16})
       for (int bits = 0; bits < 16; ++bits)
         for (const int rows : {1, 2, 8}) {
-          const ExecutionConfig choice{fusion,         storage, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
+          const ExecutionConfig choice{fusion,          storage, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
                                        (bits & 8) != 0, rows};
           const auto parsed = parse_execution(execution_name(choice));
           ASSERT_TRUE(parsed) << parsed.error().text();

@@ -158,7 +158,8 @@ TEST(GiveValues, NamesThatTheFileUsesTwice) {
   EXPECT_THAT(one.pixel, ElementsAre(4.f, 4.f, 4.f, 4.f));
 }
 
-/// By a zero that the compiler can see: on lavapipe's side of defeat_uniform_inlining, or it would be whatever lay in memory.
+/// By a zero that the compiler can see: on lavapipe's side of defeat_uniform_inlining, or it would be whatever lay in
+/// memory.
 TEST(GiveValues, DivisionsAreThoseOfIeee) {
   for (const int rows : {1, 8}) {
     const Made by_zero = made("vec4 apply(vec4 color) { return color / 0.0; }\n", rows);

@@ -1,4 +1,4 @@
-#include "batch/table.h"
+#include "core/table.h"
 
 #include <algorithm>
 

@@ -1,0 +1,228 @@
+#include "apps/run_arguments.h"
+
+#include <fmt/format.h>
+
+#include "core/text.h"
+#include "image/input_space.h"
+
+namespace afterglow {
+namespace {
+
+std::string space_list() {
+  std::vector<std::string> names;
+  for (const InputSpace& space : input_spaces()) names.emplace_back(space.name);
+  return join(names);
+}
+
+void add_files(CLI::App& app, RunArguments& a) {
+  app.add_option("INPUT", a.files.inputs, "Pictures: files, or sequences like shot.####.exr and shot.%04d.exr")
+      ->required();
+  app.add_option("-o,--output", a.files.output, "File, pattern (out.####.png) or folder; the extension says the format")
+      ->type_name("OUTPUT")
+      ->required();
+  const std::string input = "Input", sequence = "Sequences", output = "Output";
+  a.layers.add(app);
+  app.add_option("--input-space", a.input_space,
+                 "Colour space that pictures are stored in, whatever they say: " + space_list())
+      ->type_name("NAME")
+      ->group(input);
+  app.add_option(
+         "--size", a.size,
+         "Scale the picture first, for a quick look: 640x360, 640 (the width), x360, 50%; lengths scale with it")
+      ->type_name("SIZE")
+      ->group(input);
+  app.add_option(
+         "--nan-policy", a.nan_policy,
+         "For values that are not finite, in pictures or made by passes: zero (default), neighbour (the mean of "
+         "finite neighbours) or fail (end with an error; every pass is looked at)")
+      ->check(CLI::IsMember({"zero", "neighbour", "fail"}))
+      ->type_name("POLICY")
+      ->group(input);
+  app.add_option("--region", a.region,
+                 "Only this part of the picture, counted from the upper left corner: the crop of the whole result")
+      ->type_name("X,Y,W,H")
+      ->group(input);
+
+  app.add_option("--frames", a.files.frames, "Frames to run: 1-24, 1-24x2, 1,5,10-12 (default: all there are)")
+      ->type_name("LIST")
+      ->group(sequence);
+  app.add_option("--fps", a.fps, "Frames a second, for animated presets (default 24)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N")
+      ->group(sequence);
+  app.add_option(
+         "--pre-roll", a.pre_roll,
+         "Earlier frames to run first, without writing them, for effects that look back (default: what they ask "
+         "for; 0: none)")
+      ->check(CLI::Range(0, 100000))
+      ->type_name("N")
+      ->group(sequence);
+  app.add_flag("--resume", a.resume, "Skip outputs that are newer than their inputs and made by the same look")
+      ->group(sequence);
+  app.add_flag("--fail-fast", a.fail_fast, "Stop at the first frame that fails")->group(sequence);
+
+  app.add_option("--format", a.files.extension, "For outputs in a folder: png, exr, … (default: that of the input)")
+      ->type_name("EXTENSION")
+      ->group(output);
+  app.add_option("--type", a.type,
+                 "auto, half, float, uint8 or uint16 (auto: EXR half unless the input was float; else 8 bits, or 16 if "
+                 "the input had more)")
+      ->check(CLI::IsMember({"auto", "half", "float", "uint8", "uint16"}))
+      ->type_name("TYPE")
+      ->group(output);
+  app.add_option("--compression", a.compression,
+                 "EXR: none, rle, zip (default), zips, piz, pxr24, b44, b44a, dwaa, dwab; TIFF: its own")
+      ->type_name("NAME[:LEVEL]")
+      ->group(output);
+  app.add_option("--png-level", a.png_level,
+                 "PNG effort, 0 to 9 (default 1: six times faster than 6, files a little larger)")
+      ->check(CLI::Range(0, 9))
+      ->type_name("N")
+      ->group(output);
+  app.add_option("--jpeg-quality", a.jpeg_quality, "JPEG quality, 1 to 100 (default 95)")
+      ->check(CLI::Range(1, 100))
+      ->type_name("N")
+      ->group(output);
+  app.add_option(
+         "--dither", a.dither,
+         "auto, blue or none: blue noise between two codes, the same every time; none rounds to the nearest (auto: "
+         "blue into 8 bits)")
+      ->check(CLI::IsMember({"auto", "blue", "none"}))
+      ->type_name("NOISE")
+      ->group(output);
+  app.add_flag("--keep-layers", a.keep_layers, "EXR to EXR: copy all other channels and parts unchanged")
+      ->group(output);
+}
+
+void add_reports(CLI::App& app, RunArguments& a) {
+  app.add_option("--lock", a.lock, "Write down what this was made with: hashes of scripts, shaders, options; versions")
+      ->type_name("FILE.json")
+      ->group("Output");
+  app.add_option("--locked", a.locked, "Refuse to run when scripts, shaders or options are not those of this lock")
+      ->type_name("FILE.json")
+      ->excludes("--lock")
+      ->group("Output");
+  app.add_flag("--stats{total}", a.stats, "Print where the time went; --stats=passes adds each pass")
+      ->check(CLI::IsMember({"total", "passes"}))
+      ->type_name("[=passes]")
+      ->group("Messages");
+  app.add_option("--report", a.report, "Write times, skipped passes with reasons, and memory as JSON")
+      ->type_name("FILE.json")
+      ->group("Messages");
+}
+
+NanPolicy nan_policy(const std::string& text) {
+  return text == "neighbour" ? NanPolicy::neighbour : text == "fail" ? NanPolicy::fail : NanPolicy::zero;
+}
+
+SampleType sample_type(const std::string& text) {
+  if (text == "half") return SampleType::half;
+  if (text == "float") return SampleType::float32;
+  if (text == "uint8") return SampleType::uint8;
+  if (text == "uint16") return SampleType::uint16;
+  return SampleType::automatic;
+}
+
+/// Every option that changes pixels, for --lock and the hash that --resume compares.
+PixelOptions pixel_options(const RunArguments& a) {
+  const auto flag = [](bool given) { return given ? "yes" : ""; };
+  const auto number = [](std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; };
+  return {{"--set", join(a.preset.overrides, " ")},
+          {"--at", a.preset.at},
+          {"--arg", join(a.preset.values, " ")},
+          {"--precision", a.execution.precision},
+          {"--max-error", number(a.execution.max_error)},
+          {"--reference", flag(a.execution.reference)},
+          {"--layer", a.layers.layer},
+          {"--input-space", a.input_space},
+          {"--depth", a.layers.depth},
+          {"--normal", a.layers.normal},
+          {"--motion", a.layers.motion},
+          {"--size", a.size},
+          {"--region", a.region},
+          {"--nan-policy", a.nan_policy == "neighbour" ? a.nan_policy : ""},
+          {"--fps", number(a.fps)},
+          {"--pre-roll", a.pre_roll ? fmt::format("{}", *a.pre_roll) : ""},
+          {"--type", a.type},
+          {"--compression", a.compression},
+          {"--png-level", fmt::format("{}", a.png_level)},
+          {"--jpeg-quality", fmt::format("{}", a.jpeg_quality)},
+          {"--dither", a.dither},
+          {"--keep-layers", flag(a.keep_layers)}};
+}
+
+Result<SessionOptions> session_options(const RunArguments& a) {
+  SessionOptions options;
+  AFTERGLOW_TRY(options.device, a.device.options());
+  AFTERGLOW_TRY(options.stack, a.execution.options());
+  AFTERGLOW_TRY(options.stack.preset, a.preset.options());
+  options.stack.flag_non_finite = true;
+  if (a.stats == "passes") options.timing = KernelTiming::timestamps;
+  return options;
+}
+
+WriteOptions write_options(const RunArguments& a) {
+  WriteOptions options;
+  options.type = sample_type(a.type);
+  options.compression = a.compression;
+  options.png_level = a.png_level;
+  options.jpeg_quality = a.jpeg_quality;
+  if (a.dither != "auto") options.dither = a.dither == "blue";
+  options.keep_layers = a.keep_layers;
+  return options;
+}
+
+/// What the options say of the frames themselves.
+Result<FrameLoopOptions> loop_options(const RunArguments& a, std::uint64_t max_memory) {
+  FrameLoopOptions options;
+  options.write = write_options(a);
+  options.nan_policy = nan_policy(a.nan_policy);
+  options.fail_fast = a.fail_fast || options.nan_policy == NanPolicy::fail;
+  options.fps = a.fps;
+  options.max_memory = max_memory;
+  options.read.layer = a.layers.layer;
+  options.read.max_bytes = max_memory;
+  options.reuse = !a.execution.reference;
+  const auto not_with = [](const char* option) {
+    return Error{ErrorKind::usage, fmt::format("--keep-layers copies layers as they are and cannot go with {}", option),
+                 "afterglow run"};
+  };
+  if (!a.size.empty()) {
+    AFTERGLOW_TRY(options.size, parse_size_wish(a.size));
+    if (a.keep_layers) return not_with("--size");
+  }
+  if (!a.region.empty()) {
+    AFTERGLOW_TRY(options.region, parse_region(a.region));
+    options.write.dither_x = options.region->x;
+    options.write.dither_y = options.region->y;
+    if (a.keep_layers) return not_with("--region");
+  }
+  return options;
+}
+
+}  // namespace
+
+void RunArguments::add(CLI::App& command) {
+  preset.add(command);
+  add_files(command, *this);
+  device.add(command);
+  execution.add(command);
+  add_reports(command, *this);
+}
+
+Result<BatchRequest> RunArguments::request() const {
+  BatchRequest out{.files = files,
+                   .input_space = input_space,
+                   .pre_roll = pre_roll,
+                   .resume = resume,
+                   .pixel_options = pixel_options(*this),
+                   .lock = lock,
+                   .locked = locked};
+  layers.choose(out.files);
+  AFTERGLOW_TRY(out.session, session_options(*this));
+  AFTERGLOW_TRY(out.loop, loop_options(*this, out.session.stack.max_memory));
+  AFTERGLOW_TRY(out.preset, preset.preset_file());
+  return out;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,31 @@
+// The options of `afterglow run`, declared and understood.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/options.h"
+#include "batch/batch_run.h"
+
+namespace afterglow {
+
+struct RunArguments {
+  PresetArguments preset;
+  DeviceArguments device;
+  ExecutionArguments execution;
+  FrameListRequest files;
+  LayerArguments layers;
+  std::string input_space, size, region;
+  std::string type = "auto", dither = "auto", compression, nan_policy = "zero";
+  int png_level = 1, jpeg_quality = 95;
+  bool keep_layers = false, resume = false, fail_fast = false;
+  double fps = 24;
+  std::optional<int> pre_roll;
+  std::string stats, report, lock, locked;
+
+  void add(CLI::App& command);
+  /// Errors: usage (sizes, regions, options that exclude each other, no such preset).
+  Result<BatchRequest> request() const;
+};
+
+}  // namespace afterglow

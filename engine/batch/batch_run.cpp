@@ -1,0 +1,152 @@
+#include "batch/batch_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include "batch/resume.h"
+#include "batch/schedule.h"
+#include "core/file.h"
+#include "core/stopwatch.h"
+#include "graph/history.h"
+#include "image/writer.h"
+
+namespace afterglow {
+namespace {
+
+constexpr int kFramesInFlight = 2;  // of a sequence: while one runs the next is packed and the last is unpacked
+
+/// What outlives a step.
+struct BatchRun {
+  const BatchRequest& request;
+  const RunEvents& events;
+  RunReport& report;
+  Clock::time_point start = Clock::now();
+  std::unique_ptr<Session> session{};
+  std::optional<Hash> record_look{};
+  std::optional<Lock> lock{};  ///< of what runs, when one is to be written or held against
+
+  double milliseconds() const { return milliseconds_since(start); }
+};
+
+std::string options_text(const PixelOptions& options) {
+  std::string text;
+  for (const auto& [name, value] : options) text += name + "=" + value + "|";
+  return text;
+}
+
+/// How many earlier frames the frames of this run need; empty when none depends on another. Where settings change from
+/// frame to frame some frames are asked.
+Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
+  constexpr std::size_t kMostAsked = 64;
+  const auto& frames = run.report.frames;
+  Preset& preset = run.session->preset();
+  const std::size_t asked = preset.may_change() ? std::min(frames.size(), kMostAsked) : 1;
+  std::optional<int> most;
+  for (std::size_t i = 0; i < asked; ++i) {
+    AssumedPicture assumed;
+    assumed.frame = frames[i * frames.size() / asked].job.frame;
+    assumed.fps = run.request.loop.fps;
+    AFTERGLOW_TRY(const BuildContext context, assumed.context(preset));
+    // A picture alone is asked itself, and what is said of it is what runs.
+    auto build = frames.size() == 1 ? loop.inspect(frames.front().job) : run.session->evaluate(context);
+    if (!build && frames.size() == 1 && build.error().kind == ErrorKind::io) build = run.session->evaluate(context);
+    if (!build) return std::move(build).error();
+    const Graph& graph = (*build)->graph;
+    if (!graph.histories.empty()) most = std::max(most.value_or(0), run.request.pre_roll.value_or(pre_roll(graph)));
+  }
+  return most;
+}
+
+/// The graph of frames as they usually are.
+Result<Graph> usual_graph(BatchRun& run) {
+  AssumedPicture assumed;
+  AFTERGLOW_TRY(const BuildContext context, assumed.context(run.session->preset()));
+  AFTERGLOW_TRY(const auto build, run.session->evaluate(context));
+  return build->graph;
+}
+
+/// Hash of the look for `resume`, and the frames that need not be made.
+Result<void> prepare_resume(BatchRun& run) {
+  const BatchRequest& asked = run.request;
+  if (!asked.resume && run.report.frames.size() < 2) return {};
+  AFTERGLOW_TRY(const Graph graph, usual_graph(run));
+  const std::string options =
+      options_text(asked.pixel_options) + execution_name(run.session->stack().choice().execution);
+  AFTERGLOW_TRY(const Hash look, look_hash(run.session->preset(), graph, options));
+  run.record_look = look;
+  if (!asked.resume) return {};
+  if (const int left = remove_leftovers(run.report.frames))
+    run.events.note(fmt::format("removed {} half-written files of runs that were killed", left));
+  for (auto& frame : run.report.frames)
+    if (is_up_to_date(frame.job, look)) {
+      frame.state = FrameRecord::State::up_to_date;
+      run.events.note(fmt::format("{} is up to date", frame.job.output.string()));
+    }
+  return {};
+}
+
+/// Ends the run when the look is not that of `locked`; keeps what to write into `lock` when the run is done.
+Result<void> prepare_lock(BatchRun& run) {
+  const BatchRequest& asked = run.request;
+  if (asked.lock.empty() && asked.locked.empty()) return {};
+  AFTERGLOW_TRY(const Graph graph, usual_graph(run));
+  AFTERGLOW_TRY(run.lock, lock_of(*run.session, graph, asked.pixel_options));
+  if (asked.locked.empty()) return {};
+  AFTERGLOW_TRY(const Lock locked, read_lock(asked.locked));
+  return hold_against(locked, *run.lock, asked.locked, run.events.diagnostics);
+}
+
+/// Outputs that cannot be written are refused before any work: one of each folder and format.
+Result<void> check_outputs(const BatchRun& run) {
+  std::set<std::pair<std::filesystem::path, std::filesystem::path>> seen;
+  for (const auto& frame : run.report.frames) {
+    const auto& output = frame.job.output;
+    if (!seen.emplace(output.parent_path(), output.extension()).second) continue;
+    AFTERGLOW_CHECK(check_output(output, run.request.loop.write));
+  }
+  return {};
+}
+
+Result<void> run_frames(BatchRun& run) {
+  const BatchRequest& asked = run.request;
+  auto& frames = run.report.frames;
+  AFTERGLOW_CHECK(check_outputs(run));
+  SessionOptions opened = asked.session;
+  opened.frames = frames.size() > 1 ? kFramesInFlight : 1;
+  AFTERGLOW_TRY(run.session, Session::open(asked.preset, opened, run.events.diagnostics));
+  FrameLoopOptions options = asked.loop;
+  options.read.auxiliary = run.session->preset().needs();
+  options.read.input_space = asked.input_space.empty() ? run.session->preset().input_space() : asked.input_space;
+  AFTERGLOW_CHECK(prepare_lock(run));
+  FrameLoop loop(*run.session, options, run.events);
+  AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run, loop));
+  if (earlier) loop.follow_histories();
+  if (earlier && asked.resume) note_earlier_files(frames, asked.files, *earlier);
+  AFTERGLOW_CHECK(prepare_resume(run));
+  Schedule schedule = earlier ? schedule_with_histories(frames, asked.files, *earlier) : plain_schedule(frames);
+  run.report.pre_roll = schedule.earlier.size();
+  run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
+  loop.record_look(run.record_look);
+  auto done = loop.run(schedule);
+  run.report.memory_needed = loop.largest_need();
+  return done;
+}
+
+}  // namespace
+
+Result<void> run_batch(const BatchRequest& request, const RunEvents& events, RunReport& report) {
+  BatchRun run{request, events, report};
+  AFTERGLOW_TRY(const auto jobs, list_frames(request.files));
+  for (const auto& job : jobs) report.frames.push_back({.job = job});
+  auto done = run_frames(run);
+  if (done && !request.lock.empty()) done = write_file_atomically(request.lock, lock_text(*run.lock));
+  if (run.session) report.session = run.session->report();
+  report.wall = run.milliseconds();
+  return done;
+}
+
+}  // namespace afterglow

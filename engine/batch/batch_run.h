@@ -1,0 +1,36 @@
+// A whole run over pictures, sequences or clips: which files, by which preset, how, and what becomes of them. What
+// `afterglow run` and whoever else works through many pictures calls.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "batch/frame_list.h"
+#include "batch/frame_loop.h"
+#include "batch/lock.h"
+#include "batch/run_events.h"
+#include "batch/run_report.h"
+#include "core/result.h"
+#include "session/session.h"
+
+namespace afterglow {
+
+struct BatchRequest {
+  std::filesystem::path preset;
+  SessionOptions session;  ///< the number of frames in flight is the run's own choice
+  FrameListRequest files;
+  FrameLoopOptions loop;    ///< auxiliary inputs, the colour space of inputs, histories and notes are found by the run
+  std::string input_space;  ///< colour space of the pictures; empty: that of the stack
+  std::optional<int> pre_roll;   ///< earlier frames for effects that look back; empty: as many as they ask for
+  bool resume = false;           ///< outputs that are newer than their inputs and made by the same look are kept
+  PixelOptions pixel_options;    ///< everything besides the preset that changes pixels, for locks and `resume`
+  std::filesystem::path lock;    ///< where to write what the run was made with; empty: nowhere
+  std::filesystem::path locked;  ///< a lock that the run must agree with; empty: none
+};
+
+/// Runs it. `report` holds what is known when it returns, also after an error. Errors: usage, script, io, device,
+/// interrupted, as FrameLoop::run, Session::open, list_frames and the functions of lock.h and resume.h say.
+Result<void> run_batch(const BatchRequest& request, const RunEvents& events, RunReport& report);
+
+}  // namespace afterglow
