@@ -32,6 +32,17 @@ struct BatchRun {
   double milliseconds() const { return milliseconds_since(start); }
 };
 
+/// A frame as they usually are: nothing of its picture is known yet.
+BuildContext usual_frame(const BatchRun& run, double frame) {
+  BuildContext context;
+  context.size = {1920, 1080};
+  context.frame = frame;
+  context.fps = run.request.loop.fps;
+  context.time = context.frame / context.fps;
+  for (const auto& name : run.session->preset().needs()) context.auxiliary[name] = context.size;
+  return context;
+}
+
 std::string options_text(const PixelOptions& options) {
   std::string text;
   for (const auto& [name, value] : options) text += name + "=" + value + "|";
@@ -47,10 +58,7 @@ Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
   const std::size_t asked = preset.may_change() ? std::min(frames.size(), kMostAsked) : 1;
   std::optional<int> most;
   for (std::size_t i = 0; i < asked; ++i) {
-    AssumedPicture assumed;
-    assumed.frame = frames[i * frames.size() / asked].job.frame;
-    assumed.fps = run.request.loop.fps;
-    AFTERGLOW_TRY(const BuildContext context, assumed.context(preset));
+    const BuildContext context = usual_frame(run, frames[i * frames.size() / asked].job.frame);
     // A picture alone is asked itself, and what is said of it is what runs.
     auto build = frames.size() == 1 ? loop.inspect(frames.front().job) : run.session->evaluate(context);
     if (!build && frames.size() == 1 && build.error().kind == ErrorKind::io) build = run.session->evaluate(context);
@@ -63,9 +71,7 @@ Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
 
 /// The graph of frames as they usually are.
 Result<Graph> usual_graph(BatchRun& run) {
-  AssumedPicture assumed;
-  AFTERGLOW_TRY(const BuildContext context, assumed.context(run.session->preset()));
-  AFTERGLOW_TRY(const auto build, run.session->evaluate(context));
+  AFTERGLOW_TRY(const auto build, run.session->evaluate(usual_frame(run, 1)));
   return build->graph;
 }
 

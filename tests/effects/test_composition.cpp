@@ -202,7 +202,7 @@ TEST_F(Effects, AFileIsAMask) {
         expected, 1e-5, kRgb));
   std::vector<double> luma(red);
   for (double& v : luma) v *= 0.2126729;  // of red alone, the weight of math.md §2
-  EXPECT_TRUE(agrees(run_stack(effect + ", mask = fx.mask.file { file = \"where.exr\" } }", scene, Way::joined).result,
+  EXPECT_TRUE(agrees(run_stack(effect + ", mask = fx.mask.file { file = \"where.exr\" } }", scene, Way::fused).result,
                      composite(scene.source, from_floats(all.result.data(), all.size, 4), 1, "normal", &luma), 1e-5,
                      kRgb));
   expect_skipped(effect + ", mask = fx.mask.file { } }", "its mask selects nothing: file: no file is named");
