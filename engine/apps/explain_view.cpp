@@ -56,7 +56,7 @@ std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
 std::string fate_text(const Look& look, const PassFate& fate) {
   if (fate.kernel.empty()) return "skipped: " + fate.reason;
   const std::string what = fmt::format("{} {}", info_of(fate.pass->kind).name, size_text(look.build.graph, *fate.pass));
-  if (*fate.state == 'j') return fmt::format("{}, fused into {}", what, fate.kernel);
+  if (std::string_view(fate.state) == "fused") return fmt::format("{}, fused into {}", what, fate.kernel);
   return fate.kernel == fate.pass->name ? what + ", runs" : fmt::format("{}, runs as {}", what, fate.kernel);
 }
 

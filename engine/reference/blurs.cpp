@@ -86,10 +86,16 @@ DoubleImage radial_blur(const DoubleImage& source, double intensity, int samples
 
 DoubleImage directional_blur(const DoubleImage& source, double distance, double angle) {
   const double radians = angle * kPi / 180;
-  const int n = glm::max(2, static_cast<int>(std::ceil(std::sqrt(distance + 1))));
-  const double spacing = distance / std::sqrt(std::pow(n, 4) - 1);
-  const DoubleImage far = resample(source, source.size(), line(n, n * spacing, radians));
-  return with_alpha_of(source, resample(far, source.size(), line(n, spacing, radians)));
+  const int reads = glm::max(2, static_cast<int>(std::ceil(distance)));
+  const int root = static_cast<int>(std::ceil(std::sqrt(reads)));
+  int n = root, m = root;
+  for (int near = root; near <= 2 * root; ++near) {
+    const int far = (reads + near - 1) / near;
+    if (far + near <= 2 * root && far * near < n * m) n = far, m = near;
+  }
+  const double spacing = distance / (n * m);
+  const DoubleImage far = resample(source, source.size(), line(n, m * spacing, radians));
+  return with_alpha_of(source, resample(far, source.size(), line(m, spacing, radians)));
 }
 
 DoubleImage bokeh_blur(const DoubleImage& source, const BokehBlur& s) {

@@ -1,5 +1,6 @@
--- Directional blur: a camera that moves while the shutter is open. n² equally spaced reads on a line are n reads close together of an image
--- that has been blurred by n reads far apart, so that 32 reads twice do for a thousand pixels.
+-- Directional blur: a camera that moves while the shutter is open. n·m equally spaced reads on a line are m reads close together of an image
+-- that has been blurred by n reads far apart, so that 32 reads twice do for a thousand pixels. n·m reads, each for one part of the line, and
+-- at most a pixel apart: where their number is the length, they are a pixel apart and the line is even.
 local fx = require "afterglow"
 
 -- n reads on a line, `spacing` apart.
@@ -10,6 +11,17 @@ local function line(n, spacing, x, y)
     taps[i] = { at * x, at * y, 1 / n }
   end
   return { taps = taps }
+end
+
+-- Two counts whose product is at least `reads` and as near to it as it gets, without more reads than by its root.
+local function factors(reads)
+  local root = math.ceil(math.sqrt(reads))
+  local n, m = root, root
+  for near = root, 2 * root do
+    local far = math.ceil(reads / near)
+    if far + near <= 2 * root and far * near < n * m then n, m = far, near end
+  end
+  return n, m
 end
 
 return fx.effect {
@@ -25,10 +37,10 @@ return fx.effect {
   build = function(g, s, source)
     local radians = s.angle * math.pi / 180
     local x, y = math.cos(radians), -math.sin(radians)
-    local n = math.max(2, math.ceil(math.sqrt(s.distance + 1)))
-    local spacing = s.distance / math.sqrt(n ^ 4 - 1)  -- n² reads spread as far as a line of that length does
-    local image = g:filter { source = source, filter = line(n, n * spacing, x, y), name = "far" }
-    image = g:filter { source = image, filter = line(n, spacing, x, y), name = "near" }
+    local n, m = factors(math.max(2, math.ceil(s.distance)))
+    local spacing = s.distance / (n * m)
+    local image = g:filter { source = source, filter = line(n, m * spacing, x, y), name = "far" }
+    image = g:filter { source = image, filter = line(m, spacing, x, y), name = "near" }
     return g:pass { shader = "bloom/scatter", source = image, high = source, amount = 1, name = "final" }  -- alpha of the picture
   end,
 }

@@ -164,7 +164,7 @@ TEST_F(Bench, RunTakesItsChoiceFromATable) {
 
 TEST_F(Bench, ABrokenTableIsAnErrorOfTheFile) {
   make_exr("a.exr");
-  write("table.json", R"({"devices": [{"choices": [{"max_error": 0, "choice": "jointed"}]}]})");
+  write("table.json", R"({"devices": [{"choices": [{"max_error": 0, "choice": "fusd"}]}]})");
   const Outcome outcome = run({"run", "look.lua", "a.exr", "-o", "a.png", "--calibration", "table.json"});
   EXPECT_EQ(outcome.exit_code, kFiles);
   EXPECT_TRUE(is_one_error_line(outcome.err));

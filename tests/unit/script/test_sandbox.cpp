@@ -208,7 +208,7 @@ TEST(Sandbox, PrintIsANoteAndBounded) {
 TEST(Require, OnlyNamesBesideThePreset) {
   Scene scene;
   scene.write("secret.lua", "return 1");
-  const std::string allowed = "; allowed: names fused by '.', like \"lib.taps\"";
+  const std::string allowed = "; allowed: names joined by '.', like \"lib.taps\"";
   const auto error = [&](const std::string& name) {
     scene.write("inner/preset.lua", "require(" + name + ")");
     ShaderLibrary shaders(search_path_for(scene.folder() / "inner/preset.lua", {}));

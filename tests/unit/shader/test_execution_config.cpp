@@ -44,7 +44,7 @@ TEST(ExecutionConfig, UnknownWordsSayWhatIsAllowed) {
     EXPECT_EQ(parsed.error().kind, ErrorKind::usage);
     EXPECT_NE(parsed.error().allowed.find("storage-reads"), std::string::npos);
   }
-  EXPECT_EQ(parse_execution("joind").error().nearest, "fused");
+  EXPECT_EQ(parse_execution("fusd").error().nearest, "fused");
 }
 
 }  // namespace
