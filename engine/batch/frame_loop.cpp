@@ -304,6 +304,7 @@ Result<void> FrameLoop::finish_running() {
                                                          frame.job.input.string(), report.clamped));
   const int finer = reading->scaling ? reading->scaling->finer : 1;
   shrink_picture(picture, finer);
+  frame.size = {frame.size.width / finer, frame.size.height / finer};  // as it is delivered
   if (const auto& part = reading->request.region)
     crop_picture(picture, *options_.region,
                  {part->x / finer, part->y / finer, part->width / finer, part->height / finer});

@@ -3,8 +3,8 @@
 //
 // An author's shader file, e.g. shaders/glow/threshold.glsl:
 //
-//   #include "lib/color.glsl"                 // an include is a library: hoisted, included once, sees no macros of the
-//   shader uniform float threshold;                  // dynamic parameter: bytes that may change per frame
+//   #include "lib/color.glsl"                 // a library: hoisted, included once, sees no macros of the shader
+//   uniform float threshold;                  // dynamic parameter: bytes that may change per frame
 //   layout(constant_id = 0) const bool fade = false;   // specialised parameter: compiled in
 //   vec4 apply(vec4 color) { … }              // kind `pixel`
 //

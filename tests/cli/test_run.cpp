@@ -64,11 +64,13 @@ return fx.stack { fx.edge_detection { intensity = 20, threshold = 0 }, fx.tone_m
     EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
     return OIIO::ImageBuf(text(file));
   };
-  const OIIO::ImageBuf whole = made("whole.exr", {}), half = made("half.exr", {"--size", "50%"}),
+  const OIIO::ImageBuf whole = made("whole.exr", {}),
+                       half = made("half.exr", {"--size", "50%", "--report", "half.json"}),
                        part = made("part.exr", {"--size", "50%", "--region", "5,3,12,9"}),
                        most = made("most.exr", {"--size", "60%"});
   ASSERT_EQ(half.spec().width, 32);
   ASSERT_EQ(half.spec().height, 18);
+  EXPECT_EQ(nlohmann::json::parse(read("half.json")).at("frames").at(0).at("width"), 32) << "as it is delivered";
   const OIIO::ImageBuf wanted = OIIO::ImageBufAlgo::resize(whole, "box", 0, half.roi());
   const auto difference = OIIO::ImageBufAlgo::compare(wanted, half, 0, 0);
   EXPECT_LT(difference.maxerror, 1e-5);

@@ -368,8 +368,12 @@ TEST_F(PlayWindow, ArgumentsAreDraggedInThePanel) {
   play({"look.lua", "shot.0001.exr", "--paused"});
   ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
   EXPECT_TRUE(until_color(kX, kY, kRed));
+  EXPECT_TRUE(until([&] {  // the slider's handle, orange, in the first row of the panel
+    const Screen screen = shot();
+    return !screen.rgb.empty() && screen.at(923, 171)[0] > 160 && screen.at(923, 171)[2] < 110;
+  }));
   const int before = shot().at(950, 171)[0];
-  ASSERT_TRUE(user("mousemove 923 171"));  // the slider's handle, in the first row of the panel: it is lit
+  ASSERT_TRUE(user("mousemove 923 171"));  // the slider is lit
   EXPECT_TRUE(until([&] { return shot().at(950, 171)[0] != before; }));
   ASSERT_TRUE(user("mousedown 1"));
   EXPECT_TRUE(
