@@ -3,6 +3,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <sstream>
 
@@ -75,6 +76,15 @@ void CliTest::make_truncated_exr(const std::string& name) const {
   write(name, content.substr(0, content.size() / 2));
 }
 
+std::vector<float> CliTest::pixels_of(const std::string& name) const {
+  auto in = OIIO::ImageInput::open(text(name));
+  EXPECT_TRUE(in) << name;
+  if (!in) return {};
+  std::vector<float> pixels(static_cast<std::size_t>(in->spec().width) * in->spec().height * in->spec().nchannels);
+  EXPECT_TRUE(in->read_image(0, 0, 0, in->spec().nchannels, OIIO::TypeDesc::FLOAT, pixels.data()));
+  return pixels;
+}
+
 void CliTest::make_preset(const std::string& name) const {
   write(
       name,
@@ -82,6 +92,25 @@ void CliTest::make_preset(const std::string& name) const {
 }
 
 fs::path preset(const std::string& name) { return fs::path(AFTERGLOW_PROJECT_FOLDER) / "presets" / name; }
+std::string test_name_of(const ::testing::TestParamInfo<std::string>& preset) {
+  std::string name = preset.param;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  return name;
+}
+
+std::vector<std::string> shipped_presets() {
+  std::vector<std::string> names;
+  const fs::path root = fs::path(AFTERGLOW_PROJECT_FOLDER) / "presets";
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    const fs::path relative = fs::relative(entry.path(), root);
+    const bool effect = relative.parent_path().filename() == "effects";
+    if (relative.extension() == ".lua" && !effect) names.push_back(relative.string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 fs::path neon() { return fs::path(AFTERGLOW_TEST_FOLDER) / "images" / "neon.exr"; }
 
 ::testing::AssertionResult is_one_error_line(const std::string& text) {

@@ -34,6 +34,8 @@ class CliTest : public ::testing::Test {
   std::string text(const std::string& name) const { return path(name).string(); }
   void write(const std::string& name, const std::string& content) const;
   std::string read(const std::string& name) const;
+  /// All samples of a picture, as floats; empty, with a failure, when it cannot be read.
+  std::vector<float> pixels_of(const std::string& name) const;
   /// Names of everything below the test's folder, sorted, hidden files too.
   std::vector<std::string> files() const;
 
@@ -49,7 +51,11 @@ class CliTest : public ::testing::Test {
 };
 
 fs::path preset(const std::string& name);  ///< presets/NAME
-fs::path neon();                           ///< tests/images/neon.exr
+/// Every preset that comes along, below presets/, sorted; not their effects.
+std::vector<std::string> shipped_presets();
+/// Its name as that of a test.
+std::string test_name_of(const ::testing::TestParamInfo<std::string>& preset);
+fs::path neon();  ///< tests/images/neon.exr
 
 /// Exactly one line, which starts as errors do. `text` of Outcome::err.
 ::testing::AssertionResult is_one_error_line(const std::string& text);

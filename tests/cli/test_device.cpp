@@ -1,5 +1,4 @@
 // Devices: none, the wrong one, and validation-clean presets.
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -80,11 +79,7 @@ class Processors : public CliTest {
         {"run", preset(look).string(), neon().string(), "-o", name + ".exr", "--type", "float", "--size", "320x180"},
         options);
     EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
-    auto in = OIIO::ImageInput::open(text(name + ".exr"));
-    if (!in) return {};
-    std::vector<float> pixels(static_cast<std::size_t>(in->spec().width) * in->spec().height * in->spec().nchannels);
-    EXPECT_TRUE(in->read_image(0, 0, 0, in->spec().nchannels, OIIO::TypeDesc::FLOAT, pixels.data()));
-    return pixels;
+    return pixels_of(name + ".exr");
   }
 };
 
@@ -106,19 +101,6 @@ TEST_F(Processors, MakeTheSameBytesOrNearlyTheSameNumbers) {
   }
 }
 
-/// Names of presets/*.lua and presets/*/*.lua, but for what lies in their effects folders.
-std::vector<std::string> shipped_presets() {
-  std::vector<std::string> names;
-  const fs::path root = fs::path(AFTERGLOW_PROJECT_FOLDER) / "presets";
-  for (const auto& entry : fs::recursive_directory_iterator(root)) {
-    const fs::path relative = fs::relative(entry.path(), root);
-    const bool effect = relative.parent_path().filename() == "effects";
-    if (relative.extension() == ".lua" && !effect) names.push_back(relative.string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 class ShippedPresets : public CliTest, public ::testing::WithParamInterface<std::string> {};
 
 TEST_P(ShippedPresets, RunCleanUnderValidation) {
@@ -138,12 +120,7 @@ TEST_P(ShippedPresets, PassCheckWithoutWarnings) {
   EXPECT_THAT(outcome.err, IsEmpty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Cli, ShippedPresets, ::testing::ValuesIn(shipped_presets()), [](const auto& info) {
-  std::string name = info.param;
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Cli, ShippedPresets, ::testing::ValuesIn(shipped_presets()), test_name_of);
 
 }  // namespace
 }  // namespace afterglow::test

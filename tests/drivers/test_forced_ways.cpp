@@ -1,6 +1,5 @@
 // AFTERGLOW_FORCE: the ways of other devices on the device at hand. Each makes the picture that the usual way makes,
 // within what it promises, and validation has nothing to say.
-#include <OpenImageIO/imageio.h>
 
 #include <nlohmann/json.hpp>
 
@@ -18,14 +17,6 @@ class ForcedWays : public CliTest {
     RunOptions options;
     options.environment = {{"AFTERGLOW_FORCE", words}, {"AFTERGLOW_VALIDATE", "1"}};
     return options;
-  }
-  std::vector<float> pixels_of(const std::string& name) const {
-    auto in = OIIO::ImageInput::open(text(name));
-    EXPECT_TRUE(in) << name;
-    if (!in) return {};
-    std::vector<float> pixels(static_cast<std::size_t>(in->spec().width) * in->spec().height * in->spec().nchannels);
-    EXPECT_TRUE(in->read_image(0, 0, 0, in->spec().nchannels, OIIO::TypeDesc::FLOAT, pixels.data()));
-    return pixels;
   }
   /// Runs the same with and without the words; the result must be the same within `error` (0: to the last bit).
   void compare(const std::string& words, double error, std::vector<std::string> arguments,

@@ -1,6 +1,5 @@
 // The ways of execution that GPUs take, on a GPU that a layer imitates (gpu_layer.cpp): every command, every preset,
 // with validation against that GPU's limits.
-#include <OpenImageIO/imageio.h>
 
 #include <nlohmann/json.hpp>
 
@@ -36,16 +35,8 @@ class ImitatedGpu : public CliTest {
     write("table.json", R"({"devices": [{"choices": [{"max_error": 0, "choice": ")" + choice + R"("}]}]})");
     return "table.json";
   }
-  std::vector<float> load(const std::string& name) const {
-    auto in = OIIO::ImageInput::open(text(name));
-    EXPECT_TRUE(in) << name;
-    if (!in) return {};
-    std::vector<float> pixels(static_cast<std::size_t>(in->spec().width) * in->spec().height * in->spec().nchannels);
-    EXPECT_TRUE(in->read_image(0, 0, 0, in->spec().nchannels, OIIO::TypeDesc::FLOAT, pixels.data()));
-    return pixels;
-  }
   void expect_near(const std::string& made, const std::string& wanted, double error) const {
-    const auto a = load(made), b = load(wanted);
+    const auto a = pixels_of(made), b = pixels_of(wanted);
     ASSERT_EQ(a.size(), b.size());
     const ErrorMeasure measure = measure_error(a, b);
     EXPECT_TRUE(within(measure, error)) << made << ": " << measure.percentile << ", worst " << measure.worst;
@@ -141,18 +132,6 @@ TEST_F(ImitatedGpu, SidesBeyondItsLimitAreRefusedWithTheLimit) {
   done({"run", preset("plain_aces.lua").string(), "wide.exr", "-o", "narrow.png", "--size", "512x17"}, options);
 }
 
-std::vector<std::string> shipped_presets() {
-  std::vector<std::string> names;
-  const fs::path root = fs::path(AFTERGLOW_PROJECT_FOLDER) / "presets";
-  for (const auto& entry : fs::recursive_directory_iterator(root)) {
-    const fs::path relative = fs::relative(entry.path(), root);
-    if (relative.extension() == ".lua" && relative.parent_path().filename() != "effects")
-      names.push_back(relative.string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 class PresetsOnImitatedGpu : public ImitatedGpu, public ::testing::WithParamInterface<std::string> {};
 
 TEST_P(PresetsOnImitatedGpu, AreTheSameNumbersInFullFloats) {
@@ -169,12 +148,7 @@ TEST_P(PresetsOnImitatedGpu, AreTheSameNumbersInFullFloats) {
   expect_near("gpu.exr", "cpu.exr", 1e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Drivers, PresetsOnImitatedGpu, ::testing::ValuesIn(shipped_presets()), [](const auto& info) {
-  std::string name = info.param;
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Drivers, PresetsOnImitatedGpu, ::testing::ValuesIn(shipped_presets()), test_name_of);
 
 }  // namespace
 }  // namespace afterglow::test
