@@ -21,6 +21,7 @@ pages=(
   "docs/ocio.md|OpenColorIO"
   "docs/embedding.md|Embedding"
   "docs/determinism.md|The same pixels"
+  "docs/stability.md|What is stable"
   "docs/reliability.md|What one can rely on"
   "docs/math.md|The mathematics"
   "docs/benchmarks/README.md|Benchmarks"
@@ -29,6 +30,7 @@ pages=(
   "CONTRIBUTING.md|Working on it"
   "tests/images/README.md|Test pictures"
   "CHANGELOG.md|Changes"
+  "THIRD_PARTY.md|What comes from others"
 )
 
 # The way from a page back to the top of the site.

@@ -5,6 +5,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Additive neon",
+  requires = "0.2",
   fx.bloom { mode = "additive", threshold = 1.2, knee = 0.3, intensity = 0.08, max_iterations = 5, fade_fireflies = true },
   fx.color_adjustments { contrast = 10, saturation = 25 },
   fx.tone_mapping { mode = "neutral" },
