@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/plain_values.h"
 
 #include <algorithm>

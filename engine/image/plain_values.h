@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A quick look at samples: do any need mending?
 #pragma once
 

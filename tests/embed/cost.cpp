@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a call over the C interface costs beside the engine itself: both make the same 1920×1080 picture in turns,
 // each in the memory of its source.
 //
