@@ -184,8 +184,7 @@ TEST_F(ImitatedGpu, HalfFloatsAreTakenWhereEffectsPromiseTheirError) {
   EXPECT_EQ(edges.at("storage"), "fp32");
   EXPECT_THAT(edges.at("choice_from").get<std::string>(),
               HasSubstr("; full floats, as in half floats 'fxaa' promises none"));
-  write("graded.lua",
-        "local fx = require \"afterglow\"\nreturn fx.stack { fx.color_adjustments { contrast = 10 } }\n");
+  write("graded.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.color_adjustments { contrast = 10 } }\n");
   EXPECT_THAT(report_of("graded.lua", {}).first.at("choice_from").get<std::string>(),
               HasSubstr("'color_adjustments' promises an error for light up to 60 alone"));
   const auto [wished, said] = report_of("edges.lua", {"--precision", "fp16"});
