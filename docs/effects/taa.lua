@@ -1,0 +1,7 @@
+local fx = require "afterglow"
+
+return fx.stack {
+  fx.taa { feedback = 0.9 },
+  fx.color_adjustments { post_exposure = 1.5 },
+  fx.tone_mapping { mode = "neutral" },
+}
