@@ -1,3 +1,4 @@
+-- input: tests/images/neon_crop.exr --motion tests/images/neon_crop_motion.exr
 local fx = require "afterglow"
 
 return fx.stack {
