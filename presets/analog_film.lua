@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Colour negative, printed with care: soft shoulders, red halos at the lamps, cool shadows, grain you can almost touch.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- The night the series ends on: skies too blue, windows too warm, and every lamp a small star.
 local fx = require "afterglow"
 

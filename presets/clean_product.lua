@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- For the shop window: true colours, quiet highlights, soft contact shadows, nothing that draws attention to itself.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Insert coin: a cabinet in a dark hall, colours that shout, glass that bends the light of 240 lines.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Shot at noon, set at midnight: the old trick of Westerns. Two stops under, blue through the filter, the sun plays the moon.
 local fx = require "afterglow"
 

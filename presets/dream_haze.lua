@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- How one remembers a summer: light leaks into everything, edges give way, colours are of chalk.
 local fx = require "afterglow"
 

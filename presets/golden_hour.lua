@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- The last half hour of sun: light turns to honey, shadows stay cool, and the air between glows.
 local fx = require "afterglow"
 

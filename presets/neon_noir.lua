@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Rain, neon, and someone to follow: signs burn red halos into the film, wet air carries their colour, and everything else drowns in black.
 -- Haze needs depth; pictures without it keep the rest.
 local fx = require "afterglow"

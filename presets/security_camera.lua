@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- 03:12, camera four: a cheap wide lens, tired tubes, a recorder that has run for years.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- A frame of a Saturday morning: few flat tones, bright colour, ink where things end. Lines come from the picture itself, so photographs work too.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What lies between camera and scene, by depth: fog (math.md §29).
 #pragma once
 

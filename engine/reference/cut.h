@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From one picture to another (math.md §34).
 #pragma once
 

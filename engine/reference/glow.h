@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light that spreads in lenses and film: wide glows, halation, glare, lens flares (math.md §26–§28).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/occlusion.h"
 
 #include <cmath>

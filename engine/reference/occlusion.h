@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ambient occlusion by depth (math.md §31).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/screen.h"
 
 #include <cmath>
@@ -108,7 +109,7 @@ DoubleImage crt(const DoubleImage& source, const Crt& s) {
       light *= 1 + s.phosphor * (1 - glm::clamp(light, 0.0, 1.0)) * (3 * stripe - 1);
       out[c] = light * s.brightness * (1 - lost) * shown;
     }
-    return out;
+    return Rgba(glm::mix(Rgb(source.at(x, y)), Rgb(out), s.intensity), out.a);
   });
 }
 

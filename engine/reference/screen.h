@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How pictures are shown: bars around them, picture tubes, few tones (math.md §30).
 #pragma once
 
@@ -15,7 +16,7 @@ DoubleImage letterbox(const DoubleImage& source, const Letterbox& settings);
 struct Crt {
   int lines = 270;
   double softness = 0.45, scan_lines = 0.85, phosphor = 0.35, phosphor_size = 3, curvature = 0.3, corner = 0.04;
-  double vignette = 0.3, glow = 0.12, convergence = 0.25, brightness = 1.1;
+  double vignette = 0.3, glow = 0.12, convergence = 0.25, brightness = 1.1, intensity = 1;
 };
 DoubleImage crt(const DoubleImage& source, const Crt& settings);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/smaa.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // SMAA 1x without diagonals, with exact areas (math.md §32).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Oracles by name, with their settings as the effects declare them: light in lenses, film and air, and screens.
 #include <algorithm>
 
@@ -99,7 +100,8 @@ DoubleImage run_crt(const DoubleImage& source, const Inputs&, const Settings& s)
                       .vignette = s.number("vignette"),
                       .glow = s.number("glow"),
                       .convergence = s.number("convergence"),
-                      .brightness = s.number("brightness")});
+                      .brightness = s.number("brightness"),
+                      .intensity = s.number("intensity")});
 }
 
 DoubleImage run_ssao(const DoubleImage& source, const Inputs& inputs, const Settings& s) {

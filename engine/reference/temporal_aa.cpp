@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/temporal_aa.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Temporal anti-aliasing, frame by frame (math.md §33).
 #pragma once
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- CRT: a picture tube. The picture is sampled to so many scan lines; a beam with a Gaussian spot draws each of them, wider where it is brighter; stripes of red, green and blue phosphor show
 -- it; glass bends and rounds it, and light spreads a little in it. After T. Lottes' CRT shader (public domain, 2014) and CRT-Royale's beam model; beams and stripes are
 -- normalised, so that the mean light stays and white stays white, and integrated over each pixel, so that no moiré appears at any size.
@@ -20,7 +21,9 @@ return fx.effect {
     glow = fx.float { min = 0, max = 1, default = 0.12, doc = "Share of the light that spreads in the glass." },
     convergence = fx.float { min = 0, max = 4, default = 0.25, unit = "lines", doc = "How far red and blue land beside green." },
     brightness = fx.float { min = 0, max = 4, default = 1.1, doc = "Factor of the light." },
+    intensity = fx.float { min = 0, max = 1, default = 1, doc = "How much of the tube is seen. 0: the picture as it was." },
   },
+  active = function(s) return s.intensity > 0, "intensity is 0" end,
   holds = { "black", error = { fp32 = 3e-3, fp16 = false, up_to = 1 } },
   build = function(g, s, source)
     local down = math.min(s.lines, source.height)
@@ -36,7 +39,7 @@ return fx.effect {
     return g:pass {
       shader = "crt/tube", source = signal, size = source, picture = source, spread = s.glow > 0 and spread or signal, name = "tube",
       soft = s.softness, dark = s.scan_lines * lines_shown, mask = s.phosphor, triad = triad, bend = 0.25 * s.curvature,
-      corner = math.max(s.corner, 1e-4), edge = 1.5 / source.height, falloff = s.vignette, glow = s.glow, apart = s.convergence, brightness = s.brightness,
+      corner = math.max(s.corner, 1e-4), edge = 1.5 / source.height, falloff = s.vignette, glow = s.glow, apart = s.convergence, brightness = s.brightness, intensity = s.intensity,
     }
   end,
 }

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Depth fog: air that takes light from what is far away and gives its own. Beer and Lambert's law along the ray through each pixel; fog that thins with height is integrated
 -- in closed form (C. Wenzel, "Real-time Atmospheric Effects in Games", SIGGRAPH 2006; I. Quilez, "Better fog", 2010). Towards a light the fog takes its colour
 -- (Quilez). What is seen through fog is also blurred by it, as light is scattered on its way: the farther, the more (the idea is OCASM's SSMS for Unity).

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Glare: what a lens or an eye adds to bright light, as Blender's Glare node does it. star: rays from each light, as many as the iris has points; streaks: long rays both ways along one
 -- line; fog_glow: a haze that falls with the square of the distance, as a dirty filter or a wet eye has it. Rays are Kawase's (lib/rays.lua); red goes further than blue,
 -- as it is diffracted more.

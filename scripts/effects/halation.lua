@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Halation: the red glow around highlights on film. Light that passes through the emulsion is thrown back by the film's base and exposes the
 -- red-sensitive layer, which lies deepest, once more; green gets less of it and blue hardly any. The glow falls off as e^(−r/radius), narrower for
 -- green and blue (measurements of the point spread of film with and without backing are in J. S. Courtney-Pratt and others; the looks of film stocks

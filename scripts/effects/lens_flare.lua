@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Lens flare: what a lens makes of light that bounces between its glasses. Ghosts are images of bright light mirrored at the middle of the picture, in the shape of the
 -- iris and each with the colour of a coating; the halo is the same light thrown onto a ring; the starburst is diffraction at the blades of the iris: as many rays as
 -- blades, twice as many where their number is odd. All from the picture itself (J. Chapman, "Pseudo Lens Flare", 2013, and "Screen Space Lens Flare", 2017); the iris is a

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Letterbox: bars that leave a window of another shape. Its edges are exact to parts of a pixel, so that it moves smoothly when the shape is animated.
 local fx = require "afterglow"
 
@@ -15,10 +16,11 @@ return fx.effect {
   doc = "Bars above and below, or at the sides, for another shape of picture.",
   at = "after_post_process", order = 200, space = "display",
   settings = {
-    aspect = fx.float { min = 0.1, max = 20, default = 2.39, doc = "Width over height of what stays: 2.39 scope, 1.85 flat, 1.78 television, 1.33 old film, 1 square." },
+    aspect = fx.float { min = 0, max = 20, default = 2.39, doc = "Width over height of what stays: 2.39 scope, 1.85 flat, 1.78 television, 1.33 old film, 1 square. 0: no bars." },
     color = fx.color { default = { 0, 0, 0 }, doc = "The bars; display-linear." },
     offset = fx.float { min = -1, max = 1, default = 0, doc = "Where the window lies: -1 at the top or left, 0 in the middle, 1 at the bottom or right." },
   },
+  active = function(s) return s.aspect > 0, "aspect is 0" end,
   holds = {
     "monotone", continuous = 1, error = 1e-6,
     black = { when = function(s) return s.color[1] == 0 and s.color[2] == 0 and s.color[3] == 0 end },

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Posterize: light in few steps, as in cartoons and screen prints. The steps are even to the eye (of √luminance), each with an edge of its own softness, and the colour
 -- keeps its hue: its channels are scaled together.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- SMAA 1x: enhanced subpixel morphological anti-aliasing (J. Jimenez, J. Echevarria, T. Sousa, D. Gutierrez, Eurographics 2012). Edges of luma with adaptation to local
 -- contrast; each edge is followed to its two ends; what crosses it there says how the line runs, and how much of each pixel lies beyond it. These areas are computed
 -- for any length where the original reads a texture. Corners are kept sharp as there; the search for diagonals is left out.

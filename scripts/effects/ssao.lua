@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- SSAO: where surfaces stand close together, less light of the surroundings reaches them. Scalable Ambient Obscurance (M. McGuire, M. Mara, D. Luebke, HPG 2012) with its
 -- falloff: reads on a spiral around each pixel, each of which counts by how far it rises above the pixel's surface within the radius. Made at half the size with a
 -- pattern of 4×4 pixels, smoothed along surfaces, and enlarged along them. Light that shines by itself is spared.

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- TAA: each frame is joined with what the frames before it showed at the same places, found by motion vectors. What was there is held to the colours around the pixel now, so that
 -- nothing stays behind what moves: B. Karis, "High Quality Temporal Supersampling" (SIGGRAPH 2014); the bounds are mean and deviation (M. Salvi, "An excursion in
 -- temporal supersampling", GDC 2016); the past is read by Catmull and Rom's spline, so that it stays sharp. For noise and shimmer of renders that are not jittered, too.

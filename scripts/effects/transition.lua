@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Transition: from this picture to another, by `progress`. The other is a file (scaled to cover the picture), a layer of it, or a plain colour. Animate `progress` over the frames:
 --   fx.transition { to = "next.png", kind = "wipe", progress = function(t) return (t - 2) / 0.5 end }
 -- or give it an argument of the look: progress = fx.arg("cut").

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Wide glows: an image is halved again and again, and its levels are added with weights, one for each channel. Level i of the picture that is
 -- delivered blurs like a Gaussian of about 0.76 · 2^i of its pixels: tents on the way down, cubic B-splines on the way up. All of it writes
 -- two thirds of a picture, however wide the glow is.

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Rays of light: each pixel of an image gives a share of its light to the pixels along a line, ever less of it. Three passes do so for each ray:
 -- with n reads each, n³ pixels far, since every number up to n³ is a + n·b + n²·c (M. Kawase, "Frame Buffer Postprocessing Effects in DOUBLE-S.T.E.A.L",
 -- GDC 2003). Beyond the picture there is no light.

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: MIT
 // What a pixel of the glass shows: the three nearest lines, the stripe of phosphor, the spread light.
 #include "lib/color.glsl"
 
 uniform sampler2D source;   // a texel for each place of a line
-uniform sampler2D picture;  // for its alpha
+uniform sampler2D picture;  // as it was
 uniform sampler2D spread;
-uniform float soft, dark, mask, triad, bend, corner, edge, falloff, glow, apart, brightness;
+uniform float soft, dark, mask, triad, bend, corner, edge, falloff, glow, apart, brightness, intensity;
 
 // How much of a pixel's width lies in the stripe that begins at `from` of each triad and is a third of it wide, 0…1.
 float stripe(float x, float from) {
@@ -34,9 +35,9 @@ vec4 sample_at(ivec2 pixel) {
   // Distance from the rounded edge, in shares of half the height; inside below 0.
   vec2 from_corner = abs(p) * vec2(aspect, 1.0) - (vec2(aspect, 1.0) - 2.0 * corner);
   float outside = length(max(from_corner, 0.0)) + min(max(from_corner.x, from_corner.y), 0.0) - 2.0 * corner;
-  float alpha = fetch(picture, pixel).a;
+  vec4 before = fetch(picture, pixel);
   float shown = clamp(0.5 - outside / (2.0 * edge), 0.0, 1.0);
-  if (shown <= 0.0) return vec4(0.0, 0.0, 0.0, alpha);
+  if (shown <= 0.0) return vec4(before.rgb * (1.0 - intensity), before.a);
 
   vec2 at = (p * 0.5 + 0.5) * signal;
   int line = int(floor(at.y));
@@ -61,5 +62,5 @@ vec4 sample_at(ivec2 pixel) {
   vec3 stripes = vec3(stripe(float(pixel.x), 0.0), stripe(float(pixel.x), 1.0 / 3.0), stripe(float(pixel.x), 2.0 / 3.0));
   light *= 1.0 + mask * (1.0 - clamp(light, 0.0, 1.0)) * (3.0 * stripes - 1.0);
   float lost = falloff * clamp(0.5 * dot(p, p), 0.0, 1.0);
-  return vec4(light * (brightness * (1.0 - lost) * shown), alpha);
+  return vec4(lerp(before.rgb, light * (brightness * (1.0 - lost) * shown), intensity), before.a);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The picture through the fog. z is the distance along the viewing axis; the ray through a pixel is (x, y, 1) · z.
 #include "lib/color.glsl"
 #include "lib/depth.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The glow of the coarser levels and this one by its weight.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // c · max(0, min(b, limit) − t)/b, b the largest channel: the light above a threshold, of which none counts for more than the limit.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light along a line: Σ keepⁱ · source(pixel − i · apart), times a gain, and what other rays made.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // picture + tint · glow. Alpha of the picture.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The coarsest level by its weight.
 uniform vec3 weight;
 

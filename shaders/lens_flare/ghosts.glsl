@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ghosts: the light at p comes from c + (p − c)/m for magnifications m (below 0: upside down), each with the colour of a coating. Ring: from the point that lies one
 // radius of the ring nearer to the middle, or beyond it.
 #include "lib/color.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The mean over a regular polygon: 3 · rings · (rings + 1) reads in as many rings, as evenly spread as in a honeycomb. Beyond the picture there is no light.
 uniform sampler2D source;
 uniform float radius;  // of its corners, texels

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shows the window, covers the rest. The window's first and last whole pixel on each axis, and the shares that the ones beside them show.
 #include "lib/color.glsl"
 

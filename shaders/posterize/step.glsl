@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scales a colour so that the square root of its luminance lies on one of the steps, or on the slope between two.
 #include "lib/color.glsl"
 

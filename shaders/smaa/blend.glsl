@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Each pixel takes as much of its neighbours as lies beyond their common edge: of those above and below, or of those beside it, whichever is more.
 #include "lib/color.glsl"
 

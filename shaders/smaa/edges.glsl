@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Edges at the left (r) and upper (g) side of each pixel, 0 or 1. An edge beside one that is twice as strong is none.
 uniform sampler2D source;  // luma
 uniform float threshold;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How much of each pixel lies beyond the line that its edge stands for: of the pixel below its upper edge (r) and of the one above (g), of the pixel right of its left edge (b)
 // and of the one left of it (a).
 uniform sampler2D source;  // edges

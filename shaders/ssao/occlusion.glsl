@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Share of the light that is left (r), and the distance along the viewing axis (a).
 #include "lib/noise.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The picture by its light that is left: the four nearest pixels of the half-sized image, of those at the same distance.
 #include "lib/color.glsl"
 #include "lib/depth.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A mean of seven pixels along an axis, of those that lie at the same distance.
 uniform sampler2D source;
 uniform ivec2 along;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Direction of the surface (rgb, in the camera's space: x right, y up, z towards it) and distance along the viewing axis (a) of every second pixel.
 #include "lib/depth.glsl"
 

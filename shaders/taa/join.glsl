@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The present and the past of each pixel; alpha 1 tells the next frame that there was one.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Another picture, scaled so that it covers this one, about its middle.
 uniform sampler2D source;
 

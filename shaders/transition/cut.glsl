@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // This picture and the other, by how far each pixel has gone over.
 #include "lib/color.glsl"
 #include "lib/noise.glsl"

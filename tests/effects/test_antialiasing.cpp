@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Edges that are smoothed: within a picture (SMAA) and over frames (TAA).
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light that spreads in lenses, film and air, and what shows pictures: halation, glare, lens flares, fog, bars, tubes.
 #include <fmt/format.h>
 
@@ -56,11 +57,13 @@ EffectCase barred(const Letterbox& v) {
 }
 
 EffectCase tubed(const Crt& v) {
-  return {fmt::format("fx.crt {{ lines = {}, softness = {}, scan_lines = {}, phosphor = {}, phosphor_size = {}, "
-                      "curvature = {}, corner = {}, vignette = {}, glow = {}, convergence = {}, brightness = {} }}",
-                      v.lines, v.softness, v.scan_lines, v.phosphor, v.phosphor_size, v.curvature, v.corner, v.vignette,
-                      v.glow, v.convergence, v.brightness),
-          [=](const Scene& s) { return crt(s.source, v); }};
+  return {
+      fmt::format(
+          "fx.crt {{ lines = {}, softness = {}, scan_lines = {}, phosphor = {}, phosphor_size = {}, "
+          "curvature = {}, corner = {}, vignette = {}, glow = {}, convergence = {}, brightness = {}, intensity = {} }}",
+          v.lines, v.softness, v.scan_lines, v.phosphor, v.phosphor_size, v.curvature, v.corner, v.vignette, v.glow,
+          v.convergence, v.brightness, v.intensity),
+      [=](const Scene& s) { return crt(s.source, v); }};
 }
 
 double sum_of(const DoubleImage& image, int channel) {
@@ -194,13 +197,15 @@ TEST_F(Effects, LetterboxAgrees) {
                     barred({.aspect = 20, .offset = -0.3}), barred({.aspect = 0.3, .offset = 1})});
   Scene square{"square", DoubleImage(64, 64, Rgba(0.5, 0.5, 0.5, 1)), {}, {}};
   EXPECT_FALSE(run_stack("fx.letterbox { aspect = 1 }", square, Way::plain).ran());
+  expect_skipped("fx.letterbox { aspect = 0 }", "aspect is 0");
 }
 
 TEST_F(Effects, CrtAgrees) {
   agree_everywhere({tubed({}), tubed({.lines = 16, .softness = 1.5, .glow = 0.5, .convergence = 2}),
                     tubed({.lines = 20, .phosphor = 1, .phosphor_size = 4.3, .curvature = 1, .corner = 0.3}),
-                    tubed({.lines = 40, .scan_lines = 0, .phosphor = 0, .glow = 0, .brightness = 2})},
+                    tubed({.lines = 40, .scan_lines = 0, .phosphor = 0, .glow = 0, .brightness = 2, .intensity = 0.3})},
                    {.full = 3e-3, .fused = 1e-4, .half = 1, .spikes = false});
+  expect_skipped("fx.crt { intensity = 0 }", "intensity is 0");
 }
 
 TEST_F(Effects, CrtKeepsTheMeanLight) {
