@@ -181,6 +181,10 @@ class Preset {
   std::unique_ptr<State> state_;
 };
 
+/// A frame as they usually are: of a picture of this size that has everything the preset asks for, at the time that
+/// `frame` has at `fps` pictures a second.
+BuildContext usual_context(const Preset& preset, Size size, double frame, double fps);
+
 /// May a new effect be called so? Errors (usage): no identifier, a word of Lua or of the library, taken.
 Result<void> check_new_effect_name(const std::string& name, const SearchPath& path);
 
