@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "script/lua_text.h"
+#include "core/lua_text.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 
-namespace afterglow::script {
+namespace afterglow {
 namespace {
 
 bool is_name_char(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
@@ -243,4 +243,4 @@ std::size_t LuaText::end_of_line(std::size_t offset) const {
   return std::min(offset, text_.size());
 }
 
-}  // namespace afterglow::script
+}  // namespace afterglow

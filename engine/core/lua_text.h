@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace afterglow::script {
+namespace afterglow {
 
 enum class TokenKind { name, word, text, number, symbol };  ///< a word is one that Lua keeps for itself: `end`
 
@@ -76,4 +76,4 @@ class LuaText {
   std::vector<std::size_t> start_;  // first token of the called or indexed expression that a token belongs to
 };
 
-}  // namespace afterglow::script
+}  // namespace afterglow

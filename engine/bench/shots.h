@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `bench --temporal`: shots and resolutions of every look and setting, and the tables of them.
+// `bench --temporal`: shots and resolutions of every look and setting.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +8,12 @@
 
 #include "bench/stability.h"
 
-namespace afterglow {
+namespace afterglow::bench {
 
 struct StabilityRequest {
   std::vector<std::filesystem::path> presets;
   SessionOptions options;
-  std::vector<bench::Variant> variants;
+  std::vector<Variant> variants;
   std::vector<Size> sizes;  ///< resolutions to compare, with the first
   std::string shot;         ///< a pattern of files; empty: drifting highlights
   bool quick = false;       ///< few small frames, to see that it works
@@ -22,8 +22,7 @@ struct StabilityRequest {
 /// How often `step` is called.
 std::size_t steps_of(const StabilityRequest& request);
 /// Fills in `temporal` and `resolutions` of the report. Errors: script, usage, device, io, those of `step`.
-Result<void> measure_stability(const StabilityRequest& request, bench::Report& report, Diagnostics& diagnostics,
-                               const bench::Step& step);
-std::string stability_text(const bench::Report& report);
+Result<void> measure_stability(const StabilityRequest& request, Report& report, Diagnostics& diagnostics,
+                               const Step& step);
 
-}  // namespace afterglow
+}  // namespace afterglow::bench

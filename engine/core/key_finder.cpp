@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "script/key_finder.h"
+#include "core/key_finder.h"
 
 #include <vector>
 
-#include "script/lua_text.h"
+#include "core/lua_text.h"
 
-namespace afterglow::script {
+namespace afterglow {
 namespace {
 
 class Finder {
@@ -77,4 +77,4 @@ int line_of_key(std::string_view text, int call_line, std::string_view function,
   return Finder(text, key).find(call_line, function);
 }
 
-}  // namespace afterglow::script
+}  // namespace afterglow

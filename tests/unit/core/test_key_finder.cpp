@@ -2,7 +2,7 @@
 // Which line of a call an error points at.
 #include <gtest/gtest.h>
 
-#include "script/key_finder.h"
+#include "core/key_finder.h"
 
 namespace afterglow::script {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench_stability.h"
+#include "bench/shots.h"
 
 #include <fmt/format.h>
 
-#include "core/table.h"
 #include "image/reader.h"
 #include "image/sequence.h"
 
-namespace afterglow {
+namespace afterglow::bench {
 namespace {
 
 constexpr double kRadii[] = {0.25, 0.5, 1, 2, 4, 8};  ///< pixels
@@ -42,17 +41,11 @@ Result<std::vector<Shot>> shots_of(const StabilityRequest& request, Diagnostics&
     return out;
   }
   for (const double radius : kRadii)
-    out.push_back({fmt::format("highlight of {:g} px", radius), radius,
-                   bench::drifting_highlight(request.quick ? kQuickSize : kSize, radius,
-                                             request.quick ? kQuickFrames : kFrames)});
+    out.push_back(
+        {fmt::format("highlight of {:g} px", radius), radius,
+         drifting_highlight(request.quick ? kQuickSize : kSize, radius, request.quick ? kQuickFrames : kFrames)});
   return out;
 }
-
-std::string look_name(const std::string& preset, const std::string& settings) {
-  return preset + (settings.empty() ? "" : " " + settings);
-}
-
-std::string percent(double share) { return fmt::format("{:.2f} %", 100 * share); }
 
 }  // namespace
 
@@ -62,37 +55,25 @@ std::size_t steps_of(const StabilityRequest& request) {
   return request.presets.size() * request.variants.size() * (shots * frames + request.sizes.size());
 }
 
-Result<void> measure_stability(const StabilityRequest& request, bench::Report& report, Diagnostics& diagnostics,
-                               const bench::Step& step) {
+Result<void> measure_stability(const StabilityRequest& request, Report& report, Diagnostics& diagnostics,
+                               const Step& step) {
   AFTERGLOW_TRY(const auto shots, shots_of(request, diagnostics));
   for (const auto& preset : request.presets)
     for (const auto& variant : request.variants) {
       for (const auto& shot : shots) {
-        AFTERGLOW_TRY(auto curve, bench::measure_shot({.preset = preset,
-                                                       .options = request.options,
-                                                       .variant = variant,
-                                                       .scene = shot.scene,
-                                                       .radius = shot.radius},
-                                                      shot.frames, diagnostics, step));
+        AFTERGLOW_TRY(auto curve, measure_shot({.preset = preset,
+                                                .options = request.options,
+                                                .variant = variant,
+                                                .scene = shot.scene,
+                                                .radius = shot.radius},
+                                               shot.frames, diagnostics, step));
         report.temporal.push_back(std::move(curve));
       }
       AFTERGLOW_TRY(const auto points,
-                    bench::measure_resolutions(preset, request.options, variant, request.sizes, diagnostics, step));
+                    measure_resolutions(preset, request.options, variant, request.sizes, diagnostics, step));
       report.resolutions.insert(report.resolutions.end(), points.begin(), points.end());
     }
   return {};
 }
 
-std::string stability_text(const bench::Report& report) {
-  Table shots({"look", "shot", "swing", "flicker", "of pixels"});
-  for (const auto& c : report.temporal)
-    shots.add({look_name(c.preset, c.settings), c.scene, percent(c.swing), percent(c.flicker), percent(c.pixels)});
-  Table sizes({"look", "size", "largest difference", "RMS"});
-  for (const auto& p : report.resolutions)
-    sizes.add({look_name(p.preset, p.settings), fmt::format("{}×{}", p.size.width, p.size.height), percent(p.worst),
-               percent(p.rms)});
-  return "light that is added, over the frames\n" + shots.text("  ") +
-         "\nlight that is added, against the first size\n" + sizes.text("  ");
-}
-
-}  // namespace afterglow
+}  // namespace afterglow::bench
