@@ -7,7 +7,7 @@
 
 #include "core/table.h"
 #include "core/text.h"
-#include "graph/traffic.h"
+#include "graph/memory.h"
 
 namespace afterglow {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "graph/traffic.h"
+#include "graph/memory.h"
 
 namespace afterglow::bench {
 namespace {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "graph/traffic.h"
-
 #include <set>
 
 #include "graph/history.h"
+#include "graph/memory.h"
 
 namespace afterglow {
 namespace {

@@ -2,7 +2,7 @@
 // Bytes that kernels move, counted by hand.
 #include <gtest/gtest.h>
 
-#include "graph/traffic.h"
+#include "graph/memory.h"
 #include "graphs.h"
 
 namespace afterglow {
