@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Title cards and arcade looks: glow that is added on top, loud and saturated. Every level of the pyramid adds its own halo, so few
 -- iterations keep it tight around the tubes. The neutral curve keeps the hues that ACES would bleach.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- A shot through an image intensifier: green light alone, amplified, glaring at every lamp. Shows that a stack runs by injection point:
 -- the blit comes first (after_opaque_and_sky) wherever it stands in the list.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/bake.h"
 
 #include <fmt/format.h>

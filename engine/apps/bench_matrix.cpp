@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/bench_matrix.h"
 
 #include <fmt/format.h>

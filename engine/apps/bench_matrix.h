@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What `bench` is asked to measure: sizes, ways of execution, varied settings.
 #pragma once
 

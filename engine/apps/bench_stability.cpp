@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/bench_stability.h"
 
 #include <fmt/format.h>

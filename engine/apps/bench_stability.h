@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `bench --temporal`: shots and resolutions of every look and setting, and the tables of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow bench`: run time against error of every way of execution, as files and as a table.
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow effects [NAME]`: what effects there are and what they can be set to, from their own declarations.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow play`: footage through a preset that is being edited.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow stress`: tries to break effects and stacks, and keeps what breaks as cases that can be run again.
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/options.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/reload_bench.h"
 
 #include <fmt/format.h>

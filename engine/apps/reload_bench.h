@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How long an edit takes until its picture is there: real files, the real watcher, a preset with one effect more, whose
 // setting or whose shader is changed.
 #pragma once

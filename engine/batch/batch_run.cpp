@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "batch/batch_run.h"
 
 #include <fmt/format.h>

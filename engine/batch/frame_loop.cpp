@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "batch/frame_loop.h"
 
 #include <fmt/format.h>

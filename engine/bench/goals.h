@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ratios that the project wants to reach, described as data and measured.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/quality.h"
 
 #include <algorithm>

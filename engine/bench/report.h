@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A report as files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loops over threads. No pool, no global state: a thread's start costs some 20 µs, what is worth one takes ms.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "core/printable.h"
 
 #include <string_view>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Text that may stand on a terminal. Names and contents of files that messages quote may hold escape sequences.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "edit/literal.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Values as somebody wrote them into a script: telling those apart that can be changed in place from expressions, and
 // writing others in the same style.
 #pragma once

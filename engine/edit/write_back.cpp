@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "edit/write_back.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "edit/write_back_check.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "edit/write_back_place.h"
 
 #include <fmt/format.h>

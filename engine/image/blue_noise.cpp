@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/blue_noise.h"
 
 #include <array>

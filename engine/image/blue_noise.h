@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Blue noise for dithering: thresholds that spread evenly, without the grid of ordered noise or the clumps of white
 // noise.
 #pragma once

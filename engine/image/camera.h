@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where a picture was taken from, as its file says it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/encode.h"
 
 #include <half.h>

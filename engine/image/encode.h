@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scene-linear floats to what files store: half floats, and code values for displays.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is remembered of a picture's file for the writer.
 #pragma once
 

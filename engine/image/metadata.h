@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a file says about its picture besides the pixels, independent of format and library. Names are OpenImageIO's
 // ("Copyright", "ImageDescription", "Exif:FNumber"), which are close to those of TIFF and Exif.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The measure of error used everywhere in this project (math.md §13).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/movie.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/non_finite.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/oiio_write.h"
 
 #include <OpenImageIO/filesystem.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/output_format.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which metadata of the input a new file keeps: everything but what described the old file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of a picture shared out among threads.
 #pragma once
 

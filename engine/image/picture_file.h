@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One open picture file, whatever its format: parts and channels by name, samples as stored. Behind it are OpenEXR for
 // .exr and OpenImageIO for everything else.
 #pragma once

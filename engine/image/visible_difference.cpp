@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/visible_difference.h"
 
 #include "image/oiio_module.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whether people would see a difference: Yee's model of perception, as OpenImageIO has it.
 #pragma once
 

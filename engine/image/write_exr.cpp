@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/write_exr.h"
 
 #include <ImathBox.h>

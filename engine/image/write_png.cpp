@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/write_png.h"
 
 #include <fmt/format.h>

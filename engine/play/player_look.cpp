@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What one asks a player about the frame on screen, and what one tells it to play.
 #include <algorithm>
 #include <cstring>

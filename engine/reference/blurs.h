@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Blurs of the whole picture, in linear light; alpha kept.
 #pragma once
 

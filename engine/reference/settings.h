@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Settings of a stack's entry as the oracles want them.
 #pragma once
 

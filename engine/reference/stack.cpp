@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/stack.h"
 
 #include "reference/bloom.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a preset says about one frame: a value that nothing changes any more. `Preset::evaluate` makes one a frame, and
 // whoever runs, plans or explains that frame looks at it.
 #pragma once

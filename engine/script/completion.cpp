@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The completion file of lua-language-server for effects and masks: one class of settings each, and `fx.NAME` or
 // `fx.mask.NAME` as a function.
 #include <fmt/format.h>
@@ -68,6 +69,7 @@ std::string settings_class(const EffectSchema& effect, const char* folder, const
 std::string completion_text(const std::vector<EffectSchema>& effects, const std::vector<EffectSchema>& masks) {
   std::string out = fmt::format(
       "---@meta _\n"
+      "-- SPDX-License-Identifier: MIT\n"
       "-- Generated from effects and masks, not to be edited: AFTERGLOW_UPDATE=1 ctest -R Completion.FileIsUpToDate\n"
       "\n"
       "---@alias afterglow.Blend {}\n"

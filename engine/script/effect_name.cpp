@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a new effect may be called.
 #include <fmt/format.h>
 

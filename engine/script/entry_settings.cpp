@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The settings of an entry by name: those of its effect, of how it is put over what it was given, of its mask's parts.
 #include <fmt/format.h>
 

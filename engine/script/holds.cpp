@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/holds.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What an effect promises of its result: `holds` of fx.effect. Nothing in the engine relies on it; `afterglow stress`
 // checks it with pictures and settings that are hard to stand.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads what effects promise, and asks them what holds for a frame.
 #pragma once
 

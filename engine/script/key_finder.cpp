@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/key_finder.h"
 
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Finds the line of a key in the source text of a call, so that an error can point at `treshold = 1` and not at the
 // `fx.glow{` above it. Works on tokens; knows comments, strings, long brackets and nested functions. Pure text.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/lua_text.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The text of a script as tokens, brackets and calls: as much of Lua's grammar as finding and changing what somebody
 // wrote into a table takes. Never runs anything; text that is no Lua gives tokens all the same. Time and memory are
 // linear in the text.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/native.h"
 
 #include <cctype>

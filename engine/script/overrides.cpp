@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/overrides.h"
 
 #include <fmt/format.h>

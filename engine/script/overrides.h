@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `--set ENTRY.SETTING=VALUE` on a stack that is otherwise complete.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/preset.h"
 
 #include <fmt/format.h>

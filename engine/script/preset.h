@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A preset: a sandboxed Lua script that returns a stack. Loading runs the script, finds the effects it names, and
 // checks every setting against its effect's schema; building runs the effects' `build` functions and yields a graph.
 #pragma once

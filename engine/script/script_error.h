@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The one exception of the script room. It never leaves the room: `native<…>` (native.h) turns it into a Lua error, and
 // Sandbox::run turns that into an Error.
 #pragma once

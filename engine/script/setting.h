@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Checks values against what an effect declares. The one place that knows what each setting type allows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "session/display_encoding.h"
 
 #include "image/blue_noise.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "session/picture_inputs.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is checked: invariants of every stack, and what effects promise (`holds`, script/holds.h).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Random opacities, blend modes, masks and groups.
 #include <fmt/format.h>
 

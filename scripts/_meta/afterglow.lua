@@ -1,4 +1,5 @@
 ---@meta _
+-- SPDX-License-Identifier: MIT
 -- Generated from effects and masks, not to be edited: AFTERGLOW_UPDATE=1 ctest -R Completion.FileIsUpToDate
 
 ---@alias afterglow.Blend "normal"|"add"|"screen"|"multiply"|"overlay"|"soft_light"|"lighten"|"darken"

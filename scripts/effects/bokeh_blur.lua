@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Bokeh blur: out of focus as through an iris, everywhere alike (`depth_of_field` looks at distance). Reads on rings over the iris, then a
 -- small disc that fills the gaps between them.
 local fx = require "afterglow"

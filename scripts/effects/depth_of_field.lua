@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Depth of field: what is not at the focus distance blurs, by the circle of confusion of a thin lens. One gather on a golden spiral, after
 -- D. Gustafsson, "Bokeh depth of field in a single pass" (2018): a read counts where its own circle reaches the pixel, and what lies behind
 -- the pixel may not be blurrier than twice the pixel itself. So sharp things neither spread nor are spread over, and blurred things in front

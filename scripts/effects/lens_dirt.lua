@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Lens dirt: dust and smudges on the front glass, seen where bright light falls through them. The light is a wide blur of what exceeds a
 -- threshold; the dirt is made of discs at random places instead of read from a picture.
 local fx = require "afterglow"

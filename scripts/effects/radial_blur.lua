@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Radial blur: a zoom while the shutter is open. Each pixel is the mean of reads on its way to the centre.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads at t = 0…1 of the way from the pixel to its end point, weighted red 1 − 2t, green 1 − |2t − 1|, blue 2t − 1.
 uniform sampler2D source;
 uniform float amount;  // length of the way in pictures, at the middle of a side

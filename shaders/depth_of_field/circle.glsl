@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The picture with the radius of its circle of confusion as alpha, in pixels: below 0 in front of the focus, above 0 behind it.
 #include "lib/depth.glsl"
 

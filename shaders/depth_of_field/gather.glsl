@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mean over a spiral of whole pixels, as wide as any circle around. Points get sparser outwards and weigh more, so that small circles have
 // their share of reads.
 uniform sampler2D source;   // radius of the circle of confusion as alpha

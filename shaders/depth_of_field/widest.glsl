@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The widest circle of each `block` texels along one axis, in alpha.
 layout(constant_id = 0) const bool down = false;  // along y; else along x
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opacity of the dirt, 0…1: two layers of cells, large spots and specks, in each cell at most one disc with an edge of its own softness.
 #include "lib/noise.glsl"
 

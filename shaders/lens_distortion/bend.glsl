@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads the picture at the point where the bent ray comes from; points outside read the edge.
 #include "lib/angle.glsl"
 

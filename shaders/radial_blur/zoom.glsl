@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mean of `samples` reads from the pixel (first) to `amount` of its way to the centre (last).
 uniform sampler2D source;
 uniform float amount;

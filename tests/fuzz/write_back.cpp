@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Settings written back into text: any text as tokens, constructors and calls; and, where it is a preset that loads,
 // whole rewrites, one `ENTRY.SETTING=VALUE` or `ENTRY.SETTING` a line behind "=== edits".
 #include "edit/write_back.h"

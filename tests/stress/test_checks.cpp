@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Each check catches an effect that breaks just that, and lets a good one pass.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/cpu/defeat_uniform_inlining.h"
 
 #include <algorithm>

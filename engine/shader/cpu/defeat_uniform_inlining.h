@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Values that are the same for a whole draw, made to look as if each pixel had its own. Internal to the room.
 //
 // lavapipe compiles a fragment shader again, at every draw, for the values that parameters have just then, where that

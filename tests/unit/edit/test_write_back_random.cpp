@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Random presets in random layouts with random edits: what is read back is what was wanted, nothing else is touched.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The camera's place from worldToCamera.
 #include <gtest/gtest.h>
 

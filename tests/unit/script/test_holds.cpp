@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What effects promise: read, checked, and asked for the settings of a frame.
 #include <gmock/gmock.h>
 

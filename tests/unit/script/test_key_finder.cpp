@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which line of a call an error points at.
 #include <gtest/gtest.h>
 

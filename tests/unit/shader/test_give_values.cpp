@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Variables that authors declare without a value: they are 0, at every turn of a loop and in every call, and those that
 // may be read so are told by file and line.
 #include <gmock/gmock.h>
