@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/loop_places.h"
 
 #include <cstdio>

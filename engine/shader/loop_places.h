@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where the loops of a kernel stand in its authors' files. Internal to the room.
 #pragma once
 

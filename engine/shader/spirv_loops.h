@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The loops of a module: what belongs to each, and how often those that count in whole numbers turn. Internal to the
 // room.
 #pragma once

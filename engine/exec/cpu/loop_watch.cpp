@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/cpu/loop_watch.h"
 
 #include <fmt/format.h>

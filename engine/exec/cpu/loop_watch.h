@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the guarded loops of a program's kernels tell, see CompiledKernel::loops: a word for each kernel, in one buffer.
 #pragma once
 

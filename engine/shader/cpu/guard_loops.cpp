@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/cpu/guard_loops.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loops that may never end get an end, and tell of it. Internal to the room.
 //
 // Nothing ends a shader that runs on the CPU: its device is our own process. (Mesa's lavapipe leaves a loop after 65535

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loops that never end, and loops that look like it: the first are told by file and line, the others keep their bits.
 #include <gmock/gmock.h>
 
@@ -15,14 +16,21 @@ using testing::HasSubstr;
 
 class EndlessLoops : public Workshop {
  protected:
+  void SetUp() override {
+    Workshop::SetUp();
+    shader("copy", "uniform sampler2D source;\nvec4 sample_at(ivec2 pixel) { return fetch(source, pixel); }\n");
+  }
   /// What the shader makes of noise, or what is said about it.
   std::string outcome(const std::string& text, std::vector<float>* pixels = nullptr, Size size = {64, 64},
                       std::map<std::string, ParamValue> params = {}) {
     const std::string name = "loop" + std::to_string(++shaders_);
     shader(name, text);
     GraphBuilder builder(size);
-    Graph graph = builder.finish(builder.sample("pass", name, size, {{"source", builder.source()}}, params));
-    if (text.find("compute_at") != std::string::npos) graph.passes[0].kind = PassKind::compute;
+    const bool by_groups = text.find("compute_at") != std::string::npos;
+    ImageId made = builder.sample("pass", name, size, {{"source", builder.source()}}, params);
+    if (by_groups) made = builder.sample("copy", "copy", size, {{"source", made}});
+    Graph graph = builder.finish(made);
+    if (by_groups) graph.passes[0].kind = PassKind::compute;
     auto program = try_program(graph);
     if (!program) return program.error().text();
     const std::vector<float> source = noise(size, 7);
