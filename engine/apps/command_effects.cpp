@@ -15,8 +15,8 @@
 #include "core/printable.h"
 #include "core/table.h"
 #include "core/text.h"
-#include "script/holds.h"
 #include "script/preset.h"
+#include "script/schema.h"
 
 namespace afterglow {
 namespace {

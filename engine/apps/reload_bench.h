@@ -38,6 +38,8 @@ Result<ReloadBench> measure_reloads(Device& device, const ReloadBenchOptions& op
                                     const std::function<Result<void>(const std::string& what)>& step);
 
 std::string reload_bench_text(const ReloadBench& bench);
-std::string reload_bench_json(const ReloadBench& bench, const std::string& device);
+/// reload-PRESET-WxH.json in `folder`, which is made. Errors: io.
+Result<void> write_reload_bench(const ReloadBench& bench, const std::filesystem::path& preset,
+                                const std::string& device, const std::filesystem::path& folder);
 
 }  // namespace afterglow

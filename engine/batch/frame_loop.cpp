@@ -12,8 +12,7 @@
 #include "batch/scale.h"
 #include "core/stopwatch.h"
 #include "core/text.h"
-#include "image/camera.h"
-#include "image/facts.h"
+#include "image/metadata.h"
 
 namespace afterglow {
 namespace {

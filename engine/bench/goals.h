@@ -57,4 +57,9 @@ struct GoalTools {
 Result<GoalResult> measure_goal(Device& device, const StackOptions& base, const Goal& goal, const GoalTools& tools,
                                 Diagnostics& diagnostics, const Step& step);
 
+/// Adds the result of each goal to the report; commands are run with this program, in a folder that is gone afterwards.
+/// Errors: those of `measure_goal`.
+Result<void> measure_goals(Device& device, const StackOptions& base, const std::vector<Goal>& goals, Report& report,
+                           Diagnostics& diagnostics, const Step& step);
+
 }  // namespace afterglow::bench

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "core/half.h"
-#include "image/parallel.h"
+#include "core/parallel.h"
 
 namespace afterglow::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "image/visible_difference.h"
+#include "image/metrics.h"
 
 namespace afterglow::bench {
 namespace {

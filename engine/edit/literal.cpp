@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "script/setting.h"
+#include "script/schema.h"
 
 namespace afterglow::script {
 namespace {

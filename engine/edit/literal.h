@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "script/lua_text.h"
+#include "core/lua_text.h"
 #include "script/preset.h"
 
 namespace afterglow::script {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "script/lua_text.h"
+#include "core/lua_text.h"
 
 namespace afterglow::script {
 

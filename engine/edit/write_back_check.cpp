@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/text.h"
-#include "script/overrides.h"
+#include "script/schema.h"
 
 namespace afterglow::script {
 namespace {

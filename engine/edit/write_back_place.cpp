@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
+#include "core/printable.h"
 #include "edit/literal.h"
 #include "script/explanation.h"
-#include "script/overrides.h"
-#include "script/script_error.h"
+#include "script/schema.h"
 
 namespace afterglow::script {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "image/blue_noise.h"
-
 #include <array>
 #include <cstdint>
+
+#include "image/encode.h"
 
 namespace afterglow {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "image/camera.h"
-
 #include <cmath>
+
+#include "image/metadata.h"
 
 namespace afterglow {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <mutex>
 
-#include "image/parallel.h"
+#include "core/parallel.h"
 #include "image/plain_values.h"
 #include "image/srgb.h"
 

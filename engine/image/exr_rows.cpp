@@ -6,8 +6,8 @@
 
 #include <atomic>
 
+#include "core/parallel.h"
 #include "image/encode.h"
-#include "image/parallel.h"
 
 namespace afterglow {
 

@@ -11,7 +11,7 @@
 
 #include "core/exception.h"
 #include "core/text.h"
-#include "image/facts.h"
+#include "image/metadata.h"
 
 namespace afterglow {
 namespace {

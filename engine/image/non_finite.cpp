@@ -9,8 +9,8 @@
 #include <mutex>
 #include <vector>
 
+#include "core/parallel.h"
 #include "core/text.h"
-#include "image/parallel.h"
 
 namespace afterglow {
 namespace {

@@ -7,7 +7,7 @@
 #include <charconv>
 
 #include "core/text.h"
-#include "image/facts.h"
+#include "image/metadata.h"
 
 namespace afterglow {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <string_view>
 
-#include "image/facts.h"
+#include "image/metadata.h"
 
 namespace afterglow {
 

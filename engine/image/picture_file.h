@@ -13,8 +13,8 @@
 #include "core/diagnostics.h"
 #include "core/result.h"
 #include "image/color_encoding.h"
-#include "image/facts.h"
 #include "image/layers.h"
+#include "image/metadata.h"
 #include "image/size_limits.h"
 
 namespace afterglow {

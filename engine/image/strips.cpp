@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/parallel.h"
 #include "image/encode.h"
-#include "image/parallel.h"
 
 namespace afterglow {
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "image/visible_difference.h"
-
+#include "image/metrics.h"
 #include "image/oiio_module.h"
 
 namespace afterglow {

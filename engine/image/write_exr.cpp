@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "image/exr_rows.h"
-#include "image/facts.h"
+#include "image/metadata.h"
 #include "image/output_metadata.h"
 
 namespace afterglow {

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "image/exr_rows.h"
-#include "image/facts.h"
+#include "image/metadata.h"
 #include "image/write_exr.h"
 
 namespace afterglow {

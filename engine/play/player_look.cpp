@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "image/facts.h"
+#include "image/metadata.h"
 #include "play/player.h"
 #include "play/player_state.h"
 

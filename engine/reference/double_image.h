@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/geometry.h"
-#include "image/parallel.h"
+#include "core/parallel.h"
 
 namespace afterglow::reference {
 

@@ -49,5 +49,7 @@ struct Oracle {
 
 /// Grading, lens, film, blurs and edges: stack_effects.cpp.
 std::span<const Oracle> more_oracles();
+/// Light in lenses, film and air, and screens: stack_optics.cpp.
+std::span<const Oracle> optic_oracles();
 
 }  // namespace afterglow::reference

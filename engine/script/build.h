@@ -15,7 +15,7 @@
 
 namespace afterglow {
 
-/// What the effect of an entry promises of this frame's result (script/holds.h).
+/// What the effect of an entry promises of this frame's result (script/schema.h).
 struct Promises {
   std::string entry;
   std::vector<Invariant> invariants;

@@ -42,7 +42,7 @@ std::string lua_type(const SettingSchema& setting) {
 }
 
 // Docs are one line each in the file.
-std::string one_line(const std::string& doc) { return script::tidy_message(doc, 1000); }
+std::string one_line(const std::string& doc) { return tidy_message(doc, 1000); }
 
 // "How much is added. 0…1 EV, default 0.2"
 std::string setting_doc(const SettingSchema& setting) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "script/holds.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 
 #include "core/text.h"
+#include "script/schema.h"
 
 namespace afterglow {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "script/holds.h"
 #include "script/lua.h"
+#include "script/schema.h"
 
 namespace afterglow::script {
 

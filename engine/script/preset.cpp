@@ -355,4 +355,10 @@ Result<std::vector<EntrySpace>> Preset::spaces() {
   return out;
 }
 
+BuildContext usual_context(const Preset& preset, Size size, double frame, double fps) {
+  BuildContext out{.size = size, .auxiliary = {}, .frame = frame, .time = frame / fps, .fps = fps};
+  for (const auto& name : preset.needs()) out.auxiliary[name] = size;
+  return out;
+}
+
 }  // namespace afterglow

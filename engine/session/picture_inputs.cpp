@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "image/facts.h"
+#include "image/metadata.h"
 
 namespace afterglow {
 namespace {

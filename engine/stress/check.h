@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is checked: invariants of every stack, and what effects promise (`holds`, script/holds.h).
+// What is checked: invariants of every stack, and what effects promise (`holds`, script/schema.h).
 #pragma once
 
 #include <optional>

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "bad_effects.h"
-#include "script/holds.h"
+#include "script/schema.h"
 
 namespace afterglow::stress {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "image/camera.h"
+#include "image/metadata.h"
 
 namespace afterglow {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "image/parallel.h"
+#include "core/parallel.h"
 
 namespace afterglow {
 namespace {

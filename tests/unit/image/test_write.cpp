@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "image/blue_noise.h"
 #include "image/encode.h"
 #include "image/output_format.h"
 #include "image/srgb.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "scene.h"
-#include "script/holds.h"
+#include "script/schema.h"
 
 namespace afterglow::test {
 namespace {
