@@ -2,8 +2,10 @@
 # Debian packages, from the components of the installation (`./dev package`). Programs and hosts read the same scripts, shaders
 # and modules, so these come with the library.
 set(CPACK_GENERATOR DEB)
+set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_PACKAGE_VENDOR "The Afterglow authors")
-set(CPACK_PACKAGE_CONTACT "The Afterglow authors <afterglow@localhost.localdomain>")
+set(AFTERGLOW_MAINTAINER "The Afterglow authors <maintainers@afterglow.invalid>" CACHE STRING "Who packages are from, with an address")
+set(CPACK_PACKAGE_CONTACT ${AFTERGLOW_MAINTAINER})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -50,7 +52,6 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "mesa-vulkan-drivers, fonts-dejavu-c
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "afterglow-doc, ocio-aces-config")
 afterglow_package(runtime ${library_package} libs "libvulkan1" "Library that finishes rendered pictures" library data)
 install(FILES packaging/copyright DESTINATION ${doc} COMPONENT library)
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "mesa-vulkan-drivers")
 afterglow_package(development libafterglow-dev libdevel "${library_package} ${same}" "Headers of the library that finishes rendered pictures" development)
 install(FILES packaging/copyright DESTINATION ${doc} COMPONENT development)

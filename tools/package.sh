@@ -19,7 +19,11 @@ for deb in "$out"/pack/*.deb; do
   tree=$(mktemp -d)
   dpkg-deb -R "$deb" "$tree"
   find "$tree" -path "$tree/DEBIAN" -prune -o -path '*/share/man/*' -name '*.1' -exec gzip -9n {} +
-  mv "$tree"/usr/share/doc/*/changelog.gz "$tree/usr/share/doc/$(basename "$tree"/usr/share/doc/*)/" 2>/dev/null || true
+  if soname=$(basename -a "$tree"/usr/lib/*/libafterglow.so.? "$tree"/usr/lib/libafterglow.so.? 2>/dev/null | grep -x 'libafterglow.so.[0-9]*' | head -n 1); then
+    rm -f "$tree/DEBIAN/postinst" "$tree/DEBIAN/postrm"
+    echo 'activate-noawait ldconfig' >"$tree/DEBIAN/triggers"
+    echo "libafterglow ${soname##*.} libafterglow${soname##*.} (>= $version)" >"$tree/DEBIAN/shlibs"
+  fi
   (cd "$tree" && find . -path ./DEBIAN -prune -o -type f -printf '%P\0' | LC_ALL=C sort -z | xargs -0 md5sum >DEBIAN/md5sums)
   find "$tree" -exec touch -hd "@$SOURCE_DATE_EPOCH" {} +
   dpkg-deb --root-owner-group -Zxz -b "$tree" "$out/$(basename "$deb")" >/dev/null
@@ -44,7 +48,7 @@ wanted() {
 mkdir -p "$top/licences"
 { wanted; ls /usr/lib/"$(uname -m)"-linux-gnu/libvulkan.so.1; } | while read -r file; do
   cp -L "$file" "$lib/$(basename "$file")"
-  package=$(dpkg -S "$(realpath "$file")" 2>/dev/null | head -n 1 | cut -d: -f1)
+  package=$(dpkg -S "$(realpath "$file")" 2>/dev/null | head -n 1 | cut -d: -f1 || true)
   [[ -z $package || ! -f /usr/share/doc/$package/copyright ]] || cp -L "/usr/share/doc/$package/copyright" "$top/licences/$package"
 done
 cp "$root/LICENSE" "$root/THIRD_PARTY.md" "$top"
@@ -52,7 +56,7 @@ cp "$root/LICENSE" "$root/THIRD_PARTY.md" "$top"
 patchelf --force-rpath --set-rpath "\$ORIGIN/../${lib#"$top"/}" "$top/bin/afterglow"
 patchelf --force-rpath --set-rpath '$ORIGIN' "$lib"/libafterglow.so.*.*
 find "$lib/afterglow" -name '*.so' -exec patchelf --force-rpath --set-rpath '$ORIGIN/..' {} +
-tar --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH" -C "$tree" -cf - "$name" | zstd -q -19 -T0 -f -o "$out/$name.tar.zst"
+tar --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH" -C "$tree" -cf - "$name" | zstd -q -12 -T0 -f -o "$out/$name.tar.zst"
 
 du -h --apparent-size "$out"/*.deb "$out/$name.tar.zst"
 printf 'program and library, stripped: %s, %s\n' "$(du -h --apparent-size "$top/bin/afterglow" | cut -f1)" "$(du -hL --apparent-size "$lib/libafterglow.so.0" | cut -f1)"
