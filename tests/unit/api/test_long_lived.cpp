@@ -85,14 +85,19 @@ TEST_F(LongLived, FramesEditsSizesAndDevices) {
       stack = stack_of(preset(looks[0]));
     }
     const std::string look = preset(looks[i / 25 % 4]);
-    if (i % 25 == 0) ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), str(look))));
+    if (i % 25 == 0) {
+      ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), str(look))));
+    }
     if (i % 100 == 99) {  // and one that is broken
       const std::string broken = preset("fx.gain { amount = nonsense }, 7");
       EXPECT_TRUE(ErrorPtr(afterglow_stack_reload(stack.get(), str(broken))));
     }
-    if (i / 25 % 4 < 2) ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), afterglow_str("gain.amount"), i % 7)));
-    if (i / 25 % 4 < 2 && i % 25 == 24)
+    if (i / 25 % 4 < 2) {
+      ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), afterglow_str("gain.amount"), i % 7)));
+    }
+    if (i / 25 % 4 < 2 && i % 25 == 24) {
       ASSERT_TRUE(fine(afterglow_stack_unset(stack.get(), afterglow_str("gain.amount"))));
+    }
     run(stack.get(), i, 8 + i / 10 % 5, 8 + i / 30 % 3);
   }
   expect_flat(*before, is_long() ? 32u << 20 : 24u << 20);
