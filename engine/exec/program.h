@@ -109,6 +109,12 @@ class Program {
   /// be called for another one of these until it is done.
   int recording() const;
 
+  /// How often a loop of it has run away so far.
+  std::uint64_t runaways() const;
+  /// Of a run that began when `runaways` was that and is over: errors (script) when a loop of a kernel turned more
+  /// often than an invocation may (CompiledKernel::loops). What the run made counts as lost.
+  Result<void> check_loops(std::uint64_t since);
+
   /// Tells programs apart for as long as the process lives.
   std::uint64_t id() const;
 

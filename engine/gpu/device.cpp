@@ -14,6 +14,15 @@ namespace afterglow {
 
 namespace {
 
+/// What CPU devices are asked for besides: see stores_from_fragments.
+bool can_store_from_fragments(const VulkanFunctions& vk, VkPhysicalDevice device) {
+  VkPhysicalDeviceProperties properties{};
+  vk.vkGetPhysicalDeviceProperties(device, &properties);
+  VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+  vk.vkGetPhysicalDeviceFeatures2(device, &features);
+  return properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && features.features.fragmentStoresAndAtomics;
+}
+
 Result<VkDevice> open_device(const VulkanFunctions& vk, const PhysicalDevice& chosen, bool present) {
   const char* swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
   const float priority = 1;
@@ -24,12 +33,14 @@ Result<VkDevice> open_device(const VulkanFunctions& vk, const PhysicalDevice& ch
   const VkPhysicalDeviceVulkan13Features features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
                                                   .synchronization2 = VK_TRUE,
                                                   .dynamicRendering = VK_TRUE};
+  const VkPhysicalDeviceFeatures wanted{.fragmentStoresAndAtomics = can_store_from_fragments(vk, chosen.handle)};
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = &features,
                                 .queueCreateInfoCount = 1,
                                 .pQueueCreateInfos = &queue,
                                 .enabledExtensionCount = present ? 1u : 0u,
-                                .ppEnabledExtensionNames = &swapchain};
+                                .ppEnabledExtensionNames = &swapchain,
+                                .pEnabledFeatures = &wanted};
   VkDevice handle = VK_NULL_HANDLE;
   AFTERGLOW_VK(vk.vkCreateDevice(chosen.handle, &info, nullptr, &handle),
                fmt::format("cannot open device '{}'", chosen.info.name));
@@ -86,6 +97,7 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options, Dia
   device->forced_ = options.forced;
   device->log_ = std::move(log);
   device->device_ = opened.handle;
+  device->stores_from_fragments_ = can_store_from_fragments(instance.functions(), chosen.handle);
   device->functions_ = instance.functions();
   device->instance_ = instance.release(device->messenger_);
   device->physical_ = chosen.handle;

@@ -109,6 +109,8 @@ class Device {
   const Presentation* presentation() const { return presentation_.get(); }
   bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   const ForcedWays& forced() const { return forced_; }
+  /// Fragment shaders may write buffers: on CPU devices that were opened here and can.
+  bool stores_from_fragments() const { return stores_from_fragments_; }
   /// Pixels are best written into images themselves, and read from there.
   bool maps_images() const { return is_cpu() && !forced_.staging && !forced_.unmapped; }
   /// Timestamps around draws mean something (false on CPU devices, where rasterisation is deferred), or have to serve.
@@ -150,6 +152,7 @@ class Device {
   DeviceInfo info_;
   std::uint64_t timestamp_mask_ = 0;
   bool owned_ = false;
+  bool stores_from_fragments_ = false;
   ForcedWays forced_;
   std::string cache_file_;
   std::size_t cached_bytes_ = 0;

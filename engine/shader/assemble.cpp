@@ -68,6 +68,7 @@ class Assembler {
     if (!out_.unset.empty()) out_.glsl += give_value_header();
     if (kernel_.config.defeat_uniform_inlining)
       out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
+    if (kernel_.config.guard_loops) out_.glsl += "// loops are guarded\n";
     out_.glsl += targets();
     if (!block_.empty()) out_.glsl += "layout(set = 0, binding = 0, std140) uniform ag_Block {\n" + block_ + "};\n";
     out_.glsl += images_;

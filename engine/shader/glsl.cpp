@@ -90,7 +90,7 @@ std::string glsl_compiler_version() {
 }
 
 Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const std::vector<std::string>& file_names,
-                                                GlslStage stage) {
+                                                GlslStage stage, bool with_lines) {
   // Never finalised: other users of glslang in the process may come and go as they like.
   static std::once_flag once;
   static bool initialised = false;
@@ -115,6 +115,7 @@ Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const s
 
   glslang::SpvOptions options;
   options.disableOptimizer = true;  // no gain was seen on lavapipe, and it takes longer than the compilation
+  options.generateDebugInfo = with_lines;
   std::vector<std::uint32_t> spirv;
   spv::SpvBuildLogger logger;
   glslang::GlslangToSpv(*program.getIntermediate(language), spirv, &logger, &options);
