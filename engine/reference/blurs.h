@@ -23,13 +23,4 @@ struct BokehBlur {
 };
 DoubleImage bokeh_blur(const DoubleImage& source, const BokehBlur& settings);
 
-struct DepthOfField {
-  double focus_distance = 10, aperture = 5.6, focal_length = 50, sensor_height = 24;
-  double max_radius = 16;
-  int samples = 96;
-};
-/// Radius of the circle of confusion of each pixel, held to ±max_radius; below 0 in front of the focus.
-DoubleImage circles_of_confusion(const DoubleImage& depth, const DepthOfField& settings);
-DoubleImage depth_of_field(const DoubleImage& source, const DoubleImage& depth, const DepthOfField& settings);
-
 }  // namespace afterglow::reference

@@ -4,6 +4,7 @@
 
 #include "reference/blurs.h"
 #include "reference/color.h"
+#include "reference/depth_of_field.h"
 #include "reference/detail.h"
 #include "reference/glare.h"
 #include "reference/glitch.h"
@@ -195,7 +196,11 @@ DoubleImage run_depth_of_field(const DoubleImage& source, const Inputs& inputs, 
                               .focal_length = s.number("focal_length"),
                               .sensor_height = s.number("sensor_height"),
                               .max_radius = s.number("max_radius"),
-                              .samples = s.integer("samples")};
+                              .samples = s.integer("samples"),
+                              .blades = s.integer("blades"),
+                              .rotation = s.number("rotation"),
+                              .squeeze = s.number("squeeze"),
+                              .cat_eye = s.number("cat_eye")};
   if (s.is("depth_space", "linear")) return depth_of_field(source, *inputs.depth, settings);
   return depth_of_field(source, linear_depth(*inputs.depth, s.number("near"), s.number("far"), s.flag("reversed_z")),
                         settings);
