@@ -84,14 +84,48 @@ DoubleImage dual_kawase(const DoubleImage& source, int iterations, double offset
 }
 
 DoubleImage radial_blur(const DoubleImage& source, double intensity, int samples, Point center) {
+  const double amount = glm::min(intensity, 63.0 / 64);
+  const double across = glm::max(center.x, 1 - center.x) * source.width;
+  const double down = glm::max(center.y, 1 - center.y) * source.height;
+  const double length = std::hypot(across, down) * -std::log(1 - amount);
+  const int factor = length > 400 ? 4 : length > 2 ? 2 : 1;
+  const int reads = glm::max(samples, static_cast<int>(std::ceil(length / (1.5 * factor))));
+  const int near = static_cast<int>(std::ceil(std::sqrt(reads))), far = (reads + near - 1) / near;
+  const double ratio = std::pow(1 - amount, 1.0 / (near * far));
+
+  const auto zoomed = [&](const DoubleImage& image, int count, double first, double step) {
+    return generate(image.size(), [&](int x, int y) {
+      const Point target(center.x * image.width, center.y * image.height), away = Point(x + 0.5, y + 0.5) - target;
+      Rgb sum(0);
+      double weights = 0;
+      for (int i = 0; i < count; ++i) {
+        const double weight = std::pow(step, i);
+        const Point at = target + away * (first * weight);
+        sum += weight * Rgb(sample_linear(image, at.x, at.y));
+        weights += weight;
+      }
+      return Rgba(sum / weights, 1);
+    });
+  };
+  DoubleImage image = source;
+  if (factor > 1) {
+    Filter mean;
+    const Size small{(source.width + factor - 1) / factor, (source.height + factor - 1) / factor};
+    mean.x = mean_over(static_cast<double>(source.width) / small.width);
+    mean.y = mean_over(static_cast<double>(source.height) / small.height);
+    image = resample(image, small, mean);
+  }
+  image = zoomed(image, near, 1, ratio);
+  image = zoomed(image, far, std::sqrt(ratio), std::pow(ratio, near));
+  if (factor > 1) {
+    const auto enlarge = factor > 2 ? Interpolation::cubic_bspline : Interpolation::linear;
+    image = resample(image, source.size(), {.interpolation = enlarge});
+  }
   return generate(source.size(), [&](int x, int y) {
-    const Point here(x + 0.5, y + 0.5), target(center.x * source.width, center.y * source.height);
-    Rgb sum(0);
-    for (int i = 0; i < samples; ++i) {
-      const Point at = here + (target - here) * (intensity * i / (samples - 1));
-      sum += Rgb(sample_linear(source, at.x, at.y));
-    }
-    return Rgba(sum / static_cast<double>(samples), source.at(x, y).a);
+    const Point away = Point(x + 0.5, y + 0.5) - center * Point(source.width, source.height);
+    const double share = glm::clamp((amount * glm::length(away) / factor - 0.5) / 1.5, 0.0, 1.0);
+    const Rgba& p = source.at(x, y);
+    return Rgba(Rgb(p) + share * (Rgb(image.at(x, y)) - Rgb(p)), p.a);
   });
 }
 

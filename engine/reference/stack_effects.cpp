@@ -120,11 +120,15 @@ DoubleImage run_chromatic_aberration(const DoubleImage& source, const Inputs&, c
 }
 
 DoubleImage run_lens_distortion(const DoubleImage& source, const Inputs&, const Settings& s) {
-  return lens_distortion(source, {.intensity = s.number("intensity"),
-                                  .x_multiplier = s.number("x_multiplier"),
-                                  .y_multiplier = s.number("y_multiplier"),
-                                  .center = point(s, "center"),
-                                  .scale = s.number("scale")});
+  return lens_distortion(
+      source,
+      {.intensity = s.number("intensity"),
+       .x_multiplier = s.number("x_multiplier"),
+       .y_multiplier = s.number("y_multiplier"),
+       .center = point(s, "center"),
+       .scale = s.number("scale"),
+       .edges = s.choice<LensEdges>(
+           "edges", {{"stretch", LensEdges::stretch}, {"mirror", LensEdges::mirror}, {"black", LensEdges::black}})});
 }
 
 DoubleImage run_film_grain(const DoubleImage& source, const Inputs& inputs, const Settings& s) {
