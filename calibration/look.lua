@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- What calibration measures: a pyramid down and up, sharp lights, a tone curve; the kinds of pass that looks are made of.
 local fx = require "afterglow"
 

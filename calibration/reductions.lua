@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- What calibration decides about compute shaders by: passes that bring a whole picture down to one pixel, in both ways.
 local fx = require "afterglow"
 

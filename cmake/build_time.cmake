@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What keeps builds short: compiled files are kept by ccache; presets for clean builds compile ten files at once (CMakePresets.json).
 find_program(CCACHE ccache)
 if(CCACHE)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Everything comes from Debian packages (see `dev`).
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # afterglow_glsl(TARGET a.frag b.vert …): shaders of the program's own (effects' are compiled at run time) as SPIR-V in headers:
 # `view.frag` becomes "view.frag.h" with `constexpr std::uint32_t kViewFrag[]` in namespace afterglow.
 find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # An installation, in components: the program, the library, what both read at run time, what hosts are compiled with
 # (find_package(afterglow) and pkg-config), the Python module.
 include(CMakePackageConfigHelpers)

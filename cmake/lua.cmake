@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Finds Lua 5.4 as PkgConfig::AFTERGLOW_LUA. Built as C++ it runs destructors when an error unwinds, so such a build is preferred;
 # a C build works too, but a script's error then leaks what the functions on its way had allocated.
 # AFTERGLOW_LUA_MODULE: the pkg-config module to use instead of the first one that is found.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # afterglow_room(NAME SOURCES a.cpp … USES core … LIBRARIES fmt::fmt …)
 # One static library a folder of engine/. `USES` are rooms whose headers its own headers include; `LIBRARIES` stay private.
 function(afterglow_room name)

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Makes the documents into a static site: every Markdown file of the project as a page with navigation, the pictures and files that the pages
 # link, nothing from elsewhere. Needs cmark-gfm (Debian: cmark-gfm).
 #   docs/site.sh FOLDER     FOLDER is made, or brought up to date; open FOLDER/README.html (index.html is the same)
 set -euo pipefail
-[[ $# -eq 1 ]] || { sed -n '2,4s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
+[[ $# -eq 1 ]] || { sed -n '3,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
 mkdir -p "$1"
 out=$(cd "$1" && pwd)
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

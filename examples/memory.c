@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /* A look run on a picture in host memory.
  *
  *   memory PRESET OUTPUT.ppm [ENTRY.SETTING=VALUE]

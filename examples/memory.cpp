@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A look that follows its file, in C++: edits of the preset show from the next frame on.
 //
 //   memory_cpp PRESET [FRAMES]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """A look run on an array, in Python: picture.py PRESET OUTPUT.ppm"""
 import sys
 

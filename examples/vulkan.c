@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /* A look recorded into this program's own command buffers, on its own Vulkan device, between two of its own images.
  *
  *   vulkan PRESET

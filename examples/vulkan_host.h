@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /* The "engine" of the example vulkan.c: a Vulkan device of its own. Like many engines it fetches Vulkan's functions
  * into variables that have the functions' names. */
 #ifndef VULKAN_HOST_H

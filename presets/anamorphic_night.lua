@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Night exteriors and neon, shot on an old anamorphic lens: flat blue flares, fringes towards the corners, light that falls off, teal
 -- shadows against warm highlights, and fine grain that is new in every frame.
 local fx = require "afterglow"

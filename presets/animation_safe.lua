@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Path-traced sequences: noise leaves single pixels of thousands, new ones every frame, and an ordinary bloom turns each into a flickering
 -- disc. Here fireflies are faded before the pyramid, the knee is wide so that nothing pops in, and the finest levels count least.
 local fx = require "afterglow"

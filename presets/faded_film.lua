@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Family albums and flashbacks: a print that has lain in the sun. Blacks are lifted and blue, whites are yellow, colour has gone thin; the
 -- grain is coarse.
 local fx = require "afterglow"

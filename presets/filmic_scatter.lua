@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Exteriors and interiors by day: what an old lens and print film do to highlights. No threshold, so all light is spread, most of it
 -- close by; the picture loses a little of its digital edge everywhere instead of glowing in places.
 local fx = require "afterglow"

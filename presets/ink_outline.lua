@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Illustration and previsualisation: dark lines around objects (depth) and along their creases (normals), colours kept flat by Reinhard's
 -- curve. Needs a picture with depth and normals, such as Blender's multilayer EXR; without them the lines are skipped with a warning.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Screenshots, photographs and other 8-bit pictures: they hold nothing above 1, so the threshold is low, and light is spread rather than
 -- added, so that nothing clips which did not before. No tone curve, as the picture already has one.
 local fx = require "afterglow"

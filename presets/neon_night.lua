@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Night scenes with tubes and signs: for the look author who wants glow that spreads as in a lens, a little more punch, and a
 -- filmic curve. Scattering keeps the light of the picture: walls near a tube take colour from it, and nothing clips early.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Dailies and reviews: nothing but the display transform, to see the render as it is. Try `--set tone_mapping.mode=neutral`.
 local fx = require "afterglow"
 

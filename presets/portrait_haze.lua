@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Faces and beauty shots: a diffusion filter in front of the lens. Wide scattering of everything above the mid tones lifts shadows next to
 -- light skin, and soft contrast with a warm filter does the rest.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Teal and orange: a filmic tone curve, a soft glow, and a colourist's table (assets/luts).
 local fx = require "afterglow"
 

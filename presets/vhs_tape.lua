@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- A tape that was played too often: soft, smeared sideways, colours that no longer lie on each other, lines that jump, the bulge of the
 -- tube. Every frame is another and the same one each time it is made, so sequences can be rendered in any order.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- The library that presets and effects get by `require "afterglow"`.
 --
 -- Everything here is called while a script loads, but for `fx.filters`, which `build` functions may use too. What is wrong

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How much memory the test itself takes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What every Vulkan layer of the tests does to stand between the program and the driver.
 #pragma once
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Makes the table of blue noise that dithering into 8 bits uses: engine/image/blue_noise_table.inc.
 
 Void and cluster (R. Ulichney, "The void-and-cluster method for dither array generation", 1993) on a torus of 64 x 64: every rank

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """How much of a picture each preset clips, beside its tone curve alone: shares of pixels with a channel at 255, as a Markdown table.
 
     tools/clipping.py PROGRAM PICTURE ... [--presets FILE ...] [--size 960] [--keep FOLDER] [--limit 5]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """How well `reference_height` holds lengths at every resolution: one scene at several heights, as a Markdown table.
 
     tools/lengths.py PROGRAM [--heights 540 1080 2160 4320] [--effects NAME ...]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """What opacity, blend modes and masks cost, in copy passes of the picture, as a Markdown table.
 
     tools/mask_cost.py PROGRAM [--size 1920x1080] [--repeat 25]

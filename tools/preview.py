@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """How well previews show each effect: RMS between `run --size` and the whole result scaled down, as a Markdown table.
 
     tools/preview.py PROGRAM PICTURE [--size 320x180] [--effects NAME ...]

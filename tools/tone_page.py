@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Writes docs/tone_mapping.md and its pictures: what each mode of tone_mapping does to greys and to saturated colours, measured.
 
     tools/tone_page.py PROGRAM

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Measures whole commands as users run them: neon_night on 1920×1080 and 3840×2160 enlargements of tests/images/neon.exr.
 # Writes docs/benchmarks/commands.txt; a part of measure.sh. Needs /usr/bin/time (package `time`), oiiotool (openimageio-tools) and a quiet machine.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Measures everything that docs/benchmarks shows, in less than eight minutes on two quiet cores:
 #
 #   docs/benchmarks/measure.sh [FOLDER]

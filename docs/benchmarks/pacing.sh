@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Measures how evenly playback goes without a window: 240 frames of a sequence of 24 (tests/images/neon.exr, a brightness for each), by the clock at
 # 24 fps and as fast as it goes. Writes docs/benchmarks/pacing.txt; a part of measure.sh. Needs oiiotool (openimageio-tools) and a quiet machine.
 set -euo pipefail

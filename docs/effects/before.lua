@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- What the examples of the effects start from.
 local fx = require "afterglow"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Writes docs/effects.md and its pictures: what the program says of each effect (`afterglow effects --markdown`), an example (NAME.lua
 # here) and what it makes of tests/images/neon.exr. Needs jq. The examples are golden cases too (tests/golden).
 #   docs/effects/make.sh [PROGRAM]     PROGRAM: ./dev unless given
@@ -8,10 +9,10 @@ program=${1:-./dev}
 pictures=docs/images/effects
 mkdir -p "$pictures"
 
-# An example may begin with "-- input: FILE OPTION…" when it needs another picture than the usual one.
+# An example may hold "-- input: FILE OPTION…" when it needs another picture than the usual one.
 render() {
   local input
-  input=$(sed -n '1s/^-- input: //p' "docs/effects/$1.lua")
+  input=$(sed -n 's/^-- input: //p' "docs/effects/$1.lua")
   # shellcheck disable=SC2086 # words of the line
   "$program" run "docs/effects/$1.lua" ${input:-tests/images/neon.exr --size 320x180} -o "$pictures/$1.jpg" --jpeg-quality 82 -q
 }

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- input: tests/images/neon_crop.exr --motion tests/images/neon_crop_motion.exr
 local fx = require "afterglow"
 

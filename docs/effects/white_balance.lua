@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 local fx = require "afterglow"
 
 return fx.stack {

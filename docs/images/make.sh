@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Renders the pictures of the README with the program itself, from pictures that the tests use.
 #   docs/images/make.sh [PROGRAM]     PROGRAM: ./dev unless given
 set -euo pipefail

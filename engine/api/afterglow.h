@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /* Afterglow for other programs: loads a look (a Lua preset) and runs it on pictures in host memory, or records it into
  * the caller's Vulkan command buffers. C11; also C++17 and later (afterglow.hpp wraps it in classes).
  *

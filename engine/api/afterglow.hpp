@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Afterglow for C++17 and later: afterglow.h in classes that own what they hold and throw afterglow::Error.
 //
 //   afterglow::Device device;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "api/backend.h"
 
 #include <algorithm>

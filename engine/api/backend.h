@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the C interface needs of the engine, and nothing else. The files named backend… are the only ones of this room
 // that know how the engine runs a stack.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where stacks come from.
 #include <mutex>
 

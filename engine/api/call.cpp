@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "api/call.h"
 
 #include "core/printable.h"

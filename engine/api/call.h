@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What every function of the C interface does: arguments in, no exception out, one error object.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Recording into command buffers of the caller.
 #include "api/handles.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Devices of the C interface.
 #include "api/documents.h"
 #include "api/handles.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What hosts are told as JSON.
 #pragma once
 

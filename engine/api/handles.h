@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the opaque types of afterglow.h are.
 #pragma once
 

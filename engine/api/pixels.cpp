@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "api/pixels.h"
 
 #include <fmt/format.h>

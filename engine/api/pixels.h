@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures of the caller as rows of floats, and rows of results as the caller's samples.
 #pragma once
 

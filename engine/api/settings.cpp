@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Settings of the C interface.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stacks of the C interface: made, run, reloaded, asked.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/bake.h"
 
 #include <fmt/format.h>
@@ -8,7 +9,6 @@
 #include <map>
 
 #include "core/file.h"
-#include "image/color_matrix.h"
 #include "image/input_space.h"
 #include "image/srgb.h"
 #include "image/writer.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A look of pixel effects as a look-up table: the lattice goes through the look as a picture.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One command of the program: its options, declared on a CLI11 subcommand, and what it does.
 #pragma once
 

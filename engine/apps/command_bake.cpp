@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow bake`: a look of pixel effects as a look-up table for other programs, with how far it is from the look.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow calibrate`: measures how a device executes stacks fastest; `run` then looks it up and measures nothing.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow check`: is the preset right, and what would run in which order with which settings? No device needed.
 #include <fmt/format.h>
 

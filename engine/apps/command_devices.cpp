@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow devices`: what --device can choose from.
 #include <fmt/format.h>
 

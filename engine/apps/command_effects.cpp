@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow effects [NAME]`: what effects there are and what they can be set to, from their own declarations.
 #include <fmt/format.h>
 
@@ -14,8 +15,8 @@
 #include "core/printable.h"
 #include "core/table.h"
 #include "core/text.h"
-#include "script/holds.h"
 #include "script/preset.h"
+#include "script/schema.h"
 
 namespace afterglow {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow explain`: where each setting of a frame comes from, and what becomes of each effect and pass. No device
 // needed.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow graph`: the passes a preset becomes, and what was skipped or fused, as dot, svg or json.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program: finds the command, parses its options, turns every failure into one line and an exit code.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow new effect NAME`: a working effect to start from.
 //
 // The templates are a tree of files in the installation that work by themselves; in names and texts, the word my_effect

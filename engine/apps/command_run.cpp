@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow run`: pictures in, finished pictures out.
 #include <memory>
 

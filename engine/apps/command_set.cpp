@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow set`: changes settings in the text of a preset. No device needed.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/console.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the user sees on stderr: errors, warnings, progress. One per process; thread-safe.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/effect_page.h"
 
 #include <fmt/format.h>
@@ -10,14 +11,14 @@
 namespace afterglow {
 namespace {
 
-/// The lines of comment that a script begins with, without their dashes.
+/// The lines of comment that a script begins with, without their dashes and without the one that names its licence.
 std::string head_comment(const std::filesystem::path& file) {
   const auto text = read_file(file);
   if (!text.ok()) return {};
   std::istringstream lines(*text);
   std::string comment;
   for (std::string line; std::getline(lines, line) && line.starts_with("--");)
-    comment += line.substr(line.starts_with("-- ") ? 3 : 2) + "\n";
+    if (!line.starts_with("-- SPDX-")) comment += line.substr(line.starts_with("-- ") ? 3 : 2) + "\n";
   return comment;
 }
 

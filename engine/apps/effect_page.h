@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The document of an effect, from its own declarations and the comment at the head of its script.
 #pragma once
 

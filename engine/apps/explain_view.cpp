@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/explain_view.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Why a look does what it does at one frame, as text and data.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A drawing by levels made here, so that `--format svg` needs no graphviz: images of one size stand side by side in the
 // order in which they are made, smaller ones below, so that a pyramid looks like one. Long rows are wrapped.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A graph and its plan as pictures and data.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/interrupt.h"
 
 #include <unistd.h>

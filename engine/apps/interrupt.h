@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ctrl-C, SIGTERM and SIGHUP as a flag: work stops between its steps, so that nothing half-written is left.
 #pragma once
 

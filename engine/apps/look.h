@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A preset loaded and built for an assumed picture, without a device: what `check` and `graph` look at.
 #pragma once
 

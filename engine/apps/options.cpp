@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/options.h"
 
 #include <fmt/format.h>
@@ -255,11 +256,7 @@ void AssumedPicture::add(CLI::App& command) {
 }
 
 Result<BuildContext> AssumedPicture::context(const Preset& preset) const {
-  BuildContext context;
-  AFTERGLOW_TRY(context.size, parse_size(size));
-  context.frame = frame;
-  context.fps = fps;
-  context.time = frame / fps;
+  AFTERGLOW_TRY(const Size assumed, parse_size(size));
   std::vector<std::string> known{"depth", "normal", "motion"};
   for (const auto& name : preset.needs())
     if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
@@ -268,8 +265,8 @@ Result<BuildContext> AssumedPicture::context(const Preset& preset) const {
       return Error{
           ErrorKind::usage,         fmt::format("--without '{}': there is no such input", name), "", 0, join(known),
           nearest_name(name, known)};
-  for (const auto& name : preset.needs())
-    if (std::find(without.begin(), without.end(), name) == without.end()) context.auxiliary[name] = context.size;
+  BuildContext context = usual_context(preset, assumed, frame, fps);
+  for (const auto& name : without) context.auxiliary.erase(name);
   return context;
 }
 

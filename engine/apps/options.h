@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Options that several commands share: declared once, with one text of help.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Standard output: what a command tells. Whether it arrived is looked at once, at the end, so that output which nobody
 // reads stops no work.
 #pragma once

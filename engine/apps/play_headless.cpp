@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/play_headless.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Playing without a window: as fast as possible or by the clock, for figures and pictures.
 #pragma once
 

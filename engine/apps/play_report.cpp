@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/play_report.h"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include "batch/run_report.h"
 #include "core/json_text.h"
 #include "core/table.h"
+#include "core/text.h"
 #include "core/version.h"
 
 namespace afterglow {

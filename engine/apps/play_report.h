@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What playing has to say for itself: --stats as text, --report as JSON.
 #pragma once
 

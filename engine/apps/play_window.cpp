@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/play_window.h"
 
 #include "apps/interrupt.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Playing in a window.
 #pragma once
 

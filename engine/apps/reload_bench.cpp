@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/reload_bench.h"
 
 #include <fmt/format.h>
@@ -115,6 +116,32 @@ double median(const std::vector<ReloadLatency>& all, Value value) {
   return Percentiles::of(values).median;
 }
 
+std::string json_of(const ReloadBench& bench, const std::string& device) {
+  Json out{{"afterglow", version()},
+           {"device", device},
+           {"width", bench.size.width},
+           {"height", bench.size.height},
+           {"frame_milliseconds", bench.frame}};
+  for (const ReloadRow& row : bench.rows) {
+    const Percentiles seen = Percentiles::of(row.seen);
+    const auto of = [&](auto value) { return median(row.latencies, value); };
+    out["edits"].push_back(Json{{"kind", row.kind},
+                                {"count", seen.count},
+                                {"median", seen.median},
+                                {"p95", seen.p95},
+                                {"max", seen.most},
+                                {"medians", Json{{"notice", of([](const auto& l) { return l.build.notice; })},
+                                                 {"script", of([](const auto& l) { return l.build.script; })},
+                                                 {"shader", of([](const auto& l) { return l.build.shader; })},
+                                                 {"pipeline", of([](const auto& l) { return l.build.pipeline; })},
+                                                 {"warm_up", of([](const auto& l) { return l.build.warm_up; })},
+                                                 {"wait", of([](const auto& l) { return l.build.wait; })},
+                                                 {"execute", of([](const auto& l) { return l.execute; })}}},
+                                {"samples", row.seen}});
+  }
+  return json_text(out);
+}
+
 }  // namespace
 
 Result<ReloadBench> measure_reloads(Device& device, const ReloadBenchOptions& options, Diagnostics& diagnostics,
@@ -167,30 +194,13 @@ std::string reload_bench_text(const ReloadBench& bench) {
                      bench.size.height, bench.frame, table.text("  "));
 }
 
-std::string reload_bench_json(const ReloadBench& bench, const std::string& device) {
-  Json out{{"afterglow", version()},
-           {"device", device},
-           {"width", bench.size.width},
-           {"height", bench.size.height},
-           {"frame_milliseconds", bench.frame}};
-  for (const ReloadRow& row : bench.rows) {
-    const Percentiles seen = Percentiles::of(row.seen);
-    const auto of = [&](auto value) { return median(row.latencies, value); };
-    out["edits"].push_back(Json{{"kind", row.kind},
-                                {"count", seen.count},
-                                {"median", seen.median},
-                                {"p95", seen.p95},
-                                {"max", seen.most},
-                                {"medians", Json{{"notice", of([](const auto& l) { return l.build.notice; })},
-                                                 {"script", of([](const auto& l) { return l.build.script; })},
-                                                 {"shader", of([](const auto& l) { return l.build.shader; })},
-                                                 {"pipeline", of([](const auto& l) { return l.build.pipeline; })},
-                                                 {"warm_up", of([](const auto& l) { return l.build.warm_up; })},
-                                                 {"wait", of([](const auto& l) { return l.build.wait; })},
-                                                 {"execute", of([](const auto& l) { return l.execute; })}}},
-                                {"samples", row.seen}});
-  }
-  return json_text(out);
+Result<void> write_reload_bench(const ReloadBench& bench, const std::filesystem::path& preset,
+                                const std::string& device, const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  const auto [width, height] = bench.size;
+  return write_file_atomically(folder / fmt::format("reload-{}-{}x{}.json", preset.stem().string(), width, height),
+                               json_of(bench, device));
 }
 
 }  // namespace afterglow

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How long an edit takes until its picture is there: real files, the real watcher, a preset with one effect more, whose
 // setting or whose shader is changed.
 #pragma once
@@ -37,6 +38,8 @@ Result<ReloadBench> measure_reloads(Device& device, const ReloadBenchOptions& op
                                     const std::function<Result<void>(const std::string& what)>& step);
 
 std::string reload_bench_text(const ReloadBench& bench);
-std::string reload_bench_json(const ReloadBench& bench, const std::string& device);
+/// reload-PRESET-WxH.json in `folder`, which is made. Errors: io.
+Result<void> write_reload_bench(const ReloadBench& bench, const std::filesystem::path& preset,
+                                const std::string& device, const std::filesystem::path& folder);
 
 }  // namespace afterglow

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/run_arguments.h"
 
 #include <fmt/format.h>

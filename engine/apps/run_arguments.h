@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The options of `afterglow run`, declared and understood.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/setting_text.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Settings as people read them.
 #pragma once
 

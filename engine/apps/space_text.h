@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The light in which an entry runs, as `check` and `explain` tell it.
 #pragma once
 

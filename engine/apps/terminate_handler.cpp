@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/terminate_handler.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the program says when it has to end where nothing can be caught.
 #pragma once
 

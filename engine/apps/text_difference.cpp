@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "apps/text_difference.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What changed between two texts, as `diff -u` shows it, without lines around it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "batch/batch_run.h"
 
 #include <fmt/format.h>
@@ -32,15 +33,8 @@ struct BatchRun {
   double milliseconds() const { return milliseconds_since(start); }
 };
 
-/// A frame as they usually are: nothing of its picture is known yet.
 BuildContext usual_frame(const BatchRun& run, double frame) {
-  BuildContext context;
-  context.size = {1920, 1080};
-  context.frame = frame;
-  context.fps = run.request.loop.fps;
-  context.time = context.frame / context.fps;
-  for (const auto& name : run.session->preset().needs()) context.auxiliary[name] = context.size;
-  return context;
+  return usual_context(run.session->preset(), {1920, 1080}, frame, run.request.loop.fps);
 }
 
 std::string options_text(const PixelOptions& options) {

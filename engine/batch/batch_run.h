@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A whole run over pictures, sequences or clips: which files, by which preset, how, and what becomes of them. What
 // `afterglow run` and whoever else works through many pictures calls.
 #pragma once

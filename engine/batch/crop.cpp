@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "batch/crop.h"
 
 #include <fmt/format.h>

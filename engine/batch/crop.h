@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // --region: a part of the picture, counted from the upper left corner of what a display shows (the display window).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "batch/frame_list.h"
 
 #include <fmt/format.h>

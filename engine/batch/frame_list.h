@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which files a run reads and writes: inputs and outputs paired, before any of them is opened.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "batch/frame_loop.h"
 
 #include <fmt/format.h>
@@ -11,8 +12,7 @@
 #include "batch/scale.h"
 #include "core/stopwatch.h"
 #include "core/text.h"
-#include "image/camera.h"
-#include "image/facts.h"
+#include "image/metadata.h"
 
 namespace afterglow {
 namespace {

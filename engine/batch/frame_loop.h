@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The frames of a run, one after the other; the next is read and the last is written while one is processed, if memory
 // allows.
 #pragma once

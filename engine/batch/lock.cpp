@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "batch/lock.h"
 
 #include <fmt/format.h>

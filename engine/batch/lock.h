@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // --lock and --locked: what a run was made with, written down, and held against what is there now.
 //
 // A lock is a small JSON file. Its `look` is all that decides the pixels besides the pictures: a hash of every script

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "batch/non_finite_record.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a run says about values that are not finite: each cause once, and the sums at the end.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "batch/resume.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // --resume: which outputs need not be made again.
 //
 // Beside the outputs of a sequence stands a folder `.afterglow` with one small file an output, `NAME.made`, that holds

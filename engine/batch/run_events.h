@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a run tells whoever started it while it goes on, and asks them.
 #pragma once
 

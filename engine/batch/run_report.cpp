@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "batch/run_report.h"
 
 #include <fmt/format.h>

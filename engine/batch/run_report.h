@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a run has to say for itself: --stats as text, --report as JSON.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "batch/scale.h"
 
 #include <algorithm>

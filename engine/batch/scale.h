@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // --size: pictures made smaller (or larger) before the stack, for a quick look.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which frames run in which order, when pictures depend on the frames before them: those that were asked for, by
 // number, and as many earlier ones as the histories of the stack need (their results are not written).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which ways of execution are fastest on a device, measured on a real stack, and what single operations cost there.
 #pragma once
 

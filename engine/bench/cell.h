@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One preset at one size under several choices: prepared first, then measured in turns.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whole commands of the program, timed as a user would.
 #pragma once
 

@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: MIT
 #include "bench/goals.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <memory>
@@ -139,6 +141,22 @@ Result<GoalResult> measure_goal(Device& device, const StackOptions& base, const 
   if (kind == ErrorKind::device || kind == ErrorKind::interrupted) return std::move(measured).error();
   out.note = measured.error().text();
   return out;
+}
+
+Result<void> measure_goals(Device& device, const StackOptions& base, const std::vector<Goal>& goals, Report& report,
+                           Diagnostics& diagnostics, const Step& step) {
+  namespace fs = std::filesystem;
+  std::error_code problem;
+  const fs::path folder = fs::temp_directory_path(problem) / fmt::format("afterglow-bench-{}", getpid());
+  const GoalTools tools{fs::read_symlink("/proc/self/exe", problem), folder};
+  for (const auto& goal : goals) {
+    fs::create_directories(folder, problem);
+    auto result = measure_goal(device, base, goal, tools, diagnostics, step);
+    fs::remove_all(folder, problem);
+    if (!result) return std::move(result).error();
+    report.goals.push_back(std::move(result).value());
+  }
+  return {};
 }
 
 }  // namespace afterglow::bench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ratios that the project wants to reach, described as data and measured.
 #pragma once
 
@@ -55,5 +56,10 @@ struct GoalTools {
 /// errors of the device and of `step` end the work.
 Result<GoalResult> measure_goal(Device& device, const StackOptions& base, const Goal& goal, const GoalTools& tools,
                                 Diagnostics& diagnostics, const Step& step);
+
+/// Adds the result of each goal to the report; commands are run with this program, in a folder that is gone afterwards.
+/// Errors: those of `measure_goal`.
+Result<void> measure_goals(Device& device, const StackOptions& base, const std::vector<Goal>& goals, Report& report,
+                           Diagnostics& diagnostics, const Step& step);
 
 }  // namespace afterglow::bench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What single operations on a picture cost on a device, measured in turns.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/oracle.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The truth that errors are measured against.
 #pragma once
 

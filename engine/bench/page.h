@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The parts of bench.html; see engine/bench/page/.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/picture.h"
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 #include <cstdint>
 
 #include "core/half.h"
-#include "image/parallel.h"
+#include "core/parallel.h"
 
 namespace afterglow::bench {
 namespace {

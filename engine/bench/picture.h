@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The picture that is measured when none is given.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/prepared_stack.h"
 
 #include <algorithm>

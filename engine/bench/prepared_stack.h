@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A preset made ready to be measured under one choice of execution.
 #pragma once
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: MIT
 #include "bench/quality.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "image/visible_difference.h"
+#include "image/metrics.h"
 
 namespace afterglow::bench {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How far a result is from the truth.
 #pragma once
 

@@ -1,4 +1,5 @@
-// A report as files.
+// SPDX-License-Identifier: MIT
+// A report as files and as tables for a terminal.
 #pragma once
 
 #include <filesystem>
@@ -36,5 +37,11 @@ struct Comparison {
 /// Points that are in both. Errors: io (`old_json` is no report).
 Result<std::vector<Comparison>> compare_reports(const std::string& old_json, const std::string& file,
                                                 const Report& now);
+
+std::string cell_text(const Cell& cell);
+std::string goals_text(const std::vector<GoalResult>& goals);  ///< empty when there are none
+std::string stability_text(const Report& report);
+/// Ratios beyond `threshold` are marked.
+std::string comparison_text(const std::vector<Comparison>& comparisons, double threshold);
 
 }  // namespace afterglow::bench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the bench has found, as plain data. Times are milliseconds.
 #pragma once
 

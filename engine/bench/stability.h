@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How steady a look is: over the frames of a shot, and over resolutions.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The middle and the spread of repeated measurements.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "core/cache_folder.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Folders of files that can be made again: kept from growing for ever.
 #pragma once
 

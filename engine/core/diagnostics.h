@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where warnings and notes go. The library owns no global logger: whoever calls it passes a Diagnostics.
 #pragma once
 

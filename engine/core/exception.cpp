@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "core/exception.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What exceptions become where they leave code that throws: see result.h.
 #pragma once
 

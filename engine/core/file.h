@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files, whole: read, and written so that they appear whole or not at all.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a piece of work has looked at on disk, so that it can be done again when any of that changes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A linear resampling described as data. What a `filter` pass does; the executor chooses how.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // When to act on signs of change. Internal to the room. Pure: the caller tells the time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Integer sizes and rectangles. Pixel (x, y) covers [x, x+1) × [y, y+1); y grows downwards.
 #pragma once
 

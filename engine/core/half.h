@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Half floats on the CPU (IEEE 754 binary16), rounded to nearest even as GPUs do.
 #pragma once
 

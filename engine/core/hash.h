@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Content hashes (XXH3, 128 bits): cache keys and change detection. Not for security.
 #pragma once
 

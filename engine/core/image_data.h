@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pixels that a program brings along: look-up tables and pictures that an effect reads from files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where files really lie.
 #pragma once
 

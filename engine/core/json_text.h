@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // JSON as the program prints and writes it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shaders that no file holds: made while a preset is evaluated, and found by their names like those of files.
 #pragma once
 

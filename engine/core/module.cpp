@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "core/module.h"
 
 #include <dlfcn.h>

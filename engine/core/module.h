@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Modules: parts of the program in shared libraries of their own, loaded when they are first needed, because what they
 // link takes longer to load than most commands take to run.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "core/own_file.h"
 
 #include <dlfcn.h>

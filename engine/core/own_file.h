@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where this code lies.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Packs: presets, effects and shaders together in a folder or a zip. Zips come from anywhere and are not trusted: they
 // are looked through before anything is unpacked.
 #pragma once

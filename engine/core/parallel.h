@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: MIT
 // Loops over threads. No pool, no global state: a thread's start costs some 20 µs, what is worth one takes ms.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 
@@ -9,5 +11,20 @@ namespace afterglow {
 /// Calls work(i) for every i below `count`, each once, on up to as many threads as the machine has; the caller's is one
 /// of them. An exception ends the loop as soon as what has begun is done; the first one is rethrown.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work);
+
+/// Calls `work(begin, end)` for disjoint ranges that cover [0, rows), on several threads when `values` (samples in all)
+/// is worth it. An exception of any of them is rethrown when those that had begun are done.
+template <class Work>
+void parallel_rows(int rows, long long values, const Work& work) {
+  constexpr long long kValuesPerRange = 1 << 17;
+  constexpr long long kMostRanges = 16;
+  const long long ranges = std::max(std::min<long long>({values / kValuesPerRange, kMostRanges, rows}), 1ll);
+  if (ranges == 1) return work(0, rows);
+  const auto bound = [&](long long i) { return static_cast<int>(rows * i / ranges); };
+  parallel_for(static_cast<std::size_t>(ranges), [&](std::size_t i) {
+    const auto range = static_cast<long long>(i);
+    work(bound(range), bound(range + 1));
+  });
+}
 
 }  // namespace afterglow

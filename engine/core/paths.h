@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where effects, shaders, presets and caches live.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "core/printable.h"
 
 #include <string_view>
@@ -26,6 +27,18 @@ std::string printable(std::string text, bool lines) {
     if (lines && text[i] == '\n') continue;
     if (const std::size_t bytes = unprintable(text, i); bytes > 0) text.replace(i, bytes, 1, ' ');
   }
+  return text;
+}
+
+std::string tidy_message(std::string text, std::size_t limit) {
+  if (text.size() > limit) {
+    std::size_t end = limit;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+    text.resize(end);
+    text += "…";
+  }
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
   return text;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the processor can do beyond what the compiler was told to use.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "core/replace_file.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Other content for a file that somebody owns: as an editor saves it.
 #pragma once
 

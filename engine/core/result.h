@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Result<T>: a value or one Error. The only error style of the engine; exceptions exist inside the Lua
 // boundary and at library edges alone and are converted there. Thread-safe as any value type.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sums and products of sizes that files claim: what does not fit is the largest number, so that no limit is slipped
 // under by running over.
 #pragma once

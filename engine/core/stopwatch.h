@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Wall time on the clock that never jumps, in milliseconds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files that become others when they are whole.
 #pragma once
 

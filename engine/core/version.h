@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which Afterglow this is.
 #pragma once
 

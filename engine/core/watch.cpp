@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "core/watch.h"
 
 #include <fmt/format.h>

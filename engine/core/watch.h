@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tells when files may have changed, however they were saved.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "core/watch_places.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where something must happen for a path to mean something else. Internal to the room.
 #pragma once
 

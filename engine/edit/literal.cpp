@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "edit/literal.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,7 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "script/setting.h"
+#include "script/schema.h"
 
 namespace afterglow::script {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Values as somebody wrote them into a script: telling those apart that can be changed in place from expressions, and
 // writing others in the same style.
 #pragma once
@@ -5,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "script/lua_text.h"
+#include "core/lua_text.h"
 #include "script/preset.h"
 
 namespace afterglow::script {

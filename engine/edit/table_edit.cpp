@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "edit/table_edit.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Changes of one table constructor in the text of a script, in the layout that it has: nothing is written that the
 // change does not need. Pure text.
 #pragma once
@@ -6,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "script/lua_text.h"
+#include "core/lua_text.h"
 
 namespace afterglow::script {
 

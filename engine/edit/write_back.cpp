@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "edit/write_back.h"
 
 #include <fmt/format.h>
@@ -5,11 +6,11 @@
 #include <algorithm>
 
 #include "core/file.h"
+#include "core/key_finder.h"
+#include "core/printable.h"
 #include "edit/write_back_check.h"
 #include "edit/write_back_place.h"
-#include "script/key_finder.h"
-#include "script/overrides.h"
-#include "script/setting.h"
+#include "script/schema.h"
 
 namespace afterglow {
 
@@ -23,24 +24,6 @@ Result<Preset> load_text(const std::filesystem::path& file, std::string text, Pr
   ShaderLibrary shaders(search_path_for(file, options.paths));
   Diagnostics silent;
   return Preset::load(file, options, shaders, silent);
-}
-
-// Errors (usage): values that the setting does not allow.
-Result<void> check_range(const std::string& name, const SettingSchema& schema, const SettingValue& value) {
-  Value given;
-  given.kind = Value::Kind::list;
-  given.count = value.type == SettingType::vec2 ? 2 : 3;
-  std::copy(value.number.begin(), value.number.end(), given.list.begin());
-  given.number = value.number[0];
-  given.text = value.choice;
-  if (value.type == SettingType::enumeration) given.kind = Value::Kind::text;
-  if (value.type == SettingType::boolean) given.kind = Value::Kind::boolean;
-  if (value.type == SettingType::integer || value.type == SettingType::number) given.kind = Value::Kind::number;
-  auto checked = check_setting(name, schema, given);
-  if (checked) return {};
-  Error error = checked.error();
-  error.kind = ErrorKind::usage;
-  return error;
 }
 
 /// An edit with all that is known about it before the text is touched.
@@ -95,7 +78,7 @@ class Rewriter {
     if (task.wanted.type != task.said.schema.type)
       return Error{ErrorKind::usage, fmt::format("{} is of another type", edit.name()), "", 0,
                    allowed_text(task.said.schema)};
-    AFTERGLOW_CHECK(check_range(edit.name(), task.said.schema, task.wanted));
+    AFTERGLOW_CHECK(check_value(edit.name(), task.said.schema, task.wanted));
     const bool removes = !edit.value && !edit.volume.empty();
     const bool is_there = removes ? !task.said.value : task.said.value && is_same(*task.said.value, task.wanted);
     if (is_there && !task.said.moving && edit.value) return {};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Changed settings go back into the text of the preset that they came from: in place, with its comments, layout and
 // everything else kept byte for byte. What a script computes is never overwritten; it is refused with its place and
 // expression. Nothing is written unless the new text, run, gives exactly the wanted settings and all others as before.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "edit/write_back_check.h"
 
 #include <fmt/format.h>
@@ -5,7 +6,7 @@
 #include <algorithm>
 
 #include "core/text.h"
-#include "script/overrides.h"
+#include "script/schema.h"
 
 namespace afterglow::script {
 namespace {

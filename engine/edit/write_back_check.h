@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Does a preset say what edits of another wanted, and everything else as the other did?
 #pragma once
 

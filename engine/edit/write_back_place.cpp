@@ -1,13 +1,14 @@
+// SPDX-License-Identifier: MIT
 #include "edit/write_back_place.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "core/printable.h"
 #include "edit/literal.h"
 #include "script/explanation.h"
-#include "script/overrides.h"
-#include "script/script_error.h"
+#include "script/schema.h"
 
 namespace afterglow::script {
 namespace {

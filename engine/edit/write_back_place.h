@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where the text of a preset speaks of a setting, and what changing it there comes to. Pure text.
 #pragma once
 

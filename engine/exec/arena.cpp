@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/arena.h"
 
 #include <fmt/format.h>

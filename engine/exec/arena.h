@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Memory of the images between kernels: as few allocations as the device allows, shared where lifetimes do not overlap.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What must happen between kernels, as data: pure functions of the plan.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/brightest.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is known of a picture: its brightest value, and whether it is opaque. Found while it is packed for the device.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/calibration.h"
 
 #include <fmt/format.h>

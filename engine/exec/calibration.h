@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What `afterglow calibrate` has measured: which choice is fastest on a device within an allowed error. Running a
 // preset measures nothing; it looks the choice up here, so that two machines with the same device and table make the
 // same pixels.

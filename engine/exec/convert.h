@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pixels between the host's floats and the formats of device images.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/data_images.h"
 
 #include <cstring>

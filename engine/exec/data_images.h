@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The images of a graph that it brings along itself (GraphImage::data), on the device.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/describe.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From the passes of a plan's kernel to the description that the shader room compiles, and back from what the compiler
 // found to passes and images of the graph.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One descriptor set for each kernel of a program.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What goes into a frame, what comes out of it, and how long it took.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/frame_image.h"
 
 namespace afterglow {

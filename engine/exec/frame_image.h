@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A picture of a frame on the device.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/frame_inputs.h"
 
 #include <algorithm>

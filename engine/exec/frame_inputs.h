@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The images that frames bring to the device, and what they hold: pixels that are there already are not uploaded again.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/frame_result.h"
 
 #include <algorithm>

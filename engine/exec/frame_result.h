@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The image that frames are drawn into, and reading it back.
 #pragma once
 

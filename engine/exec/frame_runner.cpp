@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/frame_runner.h"
 
 #include <fmt/format.h>

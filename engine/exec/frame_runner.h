@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Moves pictures between host and device around a program: upload, submit, read back.
 #pragma once
 

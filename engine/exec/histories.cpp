@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/histories.h"
 
 #include <fmt/format.h>

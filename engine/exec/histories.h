@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The images that frames hand on to the frames after them (graph/history.h): two of each, which take turns, so that
 // nothing is copied.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/host_input.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a frame is given, checked against what its program reads.
 #pragma once
 

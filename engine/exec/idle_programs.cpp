@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/idle_programs.h"
 
 #include <algorithm>

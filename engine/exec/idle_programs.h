@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Programs of one graph without what a frame's content makes needless: idle effects, division by alpha
 // (graph/condition.h).
 #pragma once

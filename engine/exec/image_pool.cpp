@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/image_pool.h"
 
 namespace afterglow {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Images between kernels that programs of one device share, so that a program which takes another's place finds what
 // that has made.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/kernel_pipelines.h"
 
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The pipelines of a program's distinct kernels.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/kernel_timer.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Timestamps around kernels, and what they tell when the device is lost.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The uniform buffer of a program: one block for each kernel, filled by name from the passes' parameters.
 #pragma once
 

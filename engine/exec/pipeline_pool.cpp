@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/pipeline_pool.h"
 
 namespace afterglow {

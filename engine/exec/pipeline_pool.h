@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pipelines that programs of one device share: those of kernels with the same text are made once.
 #pragma once
 

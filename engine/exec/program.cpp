@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/program.h"
 
 #include <fmt/format.h>

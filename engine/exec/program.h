@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A graph made runnable on a device: pipelines, memory, descriptors. Record it into any command buffer.
 #pragma once
 

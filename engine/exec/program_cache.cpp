@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/program_cache.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The programs of one stack on one device, and what its frames hand on to each other. A frame's program is found by the
 // structure of its graph, the texts of its shaders, its region and its encoding; values alone never make a new one.
 #pragma once

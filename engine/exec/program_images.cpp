@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which images the kernels of a Program find behind their descriptors.
 #include <fmt/format.h>
 

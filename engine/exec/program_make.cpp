@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Makes what a Program is made of.
 #include <fmt/format.h>
 

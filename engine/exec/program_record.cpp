@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Records the kernels of a Program with their barriers.
 #include <algorithm>
 #include <set>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What has to run of a Program, and what its images hold.
 #include <algorithm>
 #include <bit>

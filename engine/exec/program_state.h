@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a Program is made of. For program.cpp and the files that make and record it.
 #pragma once
 

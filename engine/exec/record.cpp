@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/record.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/renderer.h"
 
 #include <fmt/format.h>

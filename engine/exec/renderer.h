@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The one way to run a stack: frames go in, one after the other, and come out in the same order. Where pixels take the
 // way over staging buffers, several are in flight: one is packed and uploaded while the one before it runs and the one
 // before that is read back.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pixels between host memory and images of any device, over buffers of a few rows: a large picture never exists a third
 // time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/submit.h"
 
 #include "gpu/error.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Command buffers that are recorded, submitted and waited for, again and again, one at a time; the same commands need
 // not be recorded twice.
 #pragma once

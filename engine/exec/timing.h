@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // For those who measure devices rather than make pictures: work that is recorded once and timed, pictures that stay on
 // the device, single kernels, and a copy by a compute shader to compare with.
 #pragma once

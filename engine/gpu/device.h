@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A Vulkan 1.3 device: picked by name, or adopted from the caller. Owns nothing global.
 #pragma once
 

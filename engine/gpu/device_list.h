@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What devices there are, what they lack, and which one an option means. Used by gpu/device alone.
 #pragma once
 

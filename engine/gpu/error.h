@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // VkResult → Error.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The vertex shader of every draw: one triangle that covers the target (math.md §1), as SPIR-V so that a warm start
 // needs no compiler. To make it again: glslangValidator -V --target-env vulkan1.3, then spirv-opt -O --strip-debug, of
 //

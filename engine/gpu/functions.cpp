@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "gpu/functions.h"
 
 #include <dlfcn.h>

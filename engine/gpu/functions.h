@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vulkan's functions, fetched at run time for one instance and one device. Nothing of Vulkan is linked.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Move-only owners of Vulkan objects.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "gpu/image.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // 2-D images: one level, one layer.
 #pragma once
 

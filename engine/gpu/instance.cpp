@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "gpu/instance.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vulkan instances and what the validation layer says. Used by gpu/device alone.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Device memory and buffers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Full-screen draws and dispatches: descriptor layouts, pipeline layouts and pipelines.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The file in which a device keeps its compiled pipelines: our hash of the data, then the data. Drivers check little
 // more than the header, and a file cut short by a full disk must not reach them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "gpu/row_targets.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A linear image as several draw targets: target k is every n-th row of it, from row k on, so that one fragment can
 // write a pixel into each of n neighbouring rows. Memory and readers of the image stay as they are.
 #pragma once

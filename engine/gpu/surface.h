@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Owner of a window's surface.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "gpu/swapchain.h"
 
 #include <algorithm>

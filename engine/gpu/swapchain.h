@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The images of a window: acquired, drawn, presented; made anew when the window changes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "gpu/swapchain_choice.h"
 
 #include <algorithm>

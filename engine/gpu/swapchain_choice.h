@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a swapchain is to be like, from what a surface can do: pure functions.
 #pragma once
 

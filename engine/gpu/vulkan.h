@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vulkan's types without its functions: those are fetched for each instance and device (gpu/functions.h), so that the
 // library works in programs that have function pointers of the same names.
 #pragma once

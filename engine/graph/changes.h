@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What has to run again when something has changed. Pure functions.
 #pragma once
 

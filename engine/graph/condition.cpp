@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "graph/condition.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Skipping by content: which effects have nothing to do for a frame, known from its source alone, and the graph without
 // them. Pure data.
 #pragma once

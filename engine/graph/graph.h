@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The pass graph as plain data: what a preset's `build` functions describe. No Lua, no Vulkan.
 // Images are immutable: a pass makes exactly one new image, so a graph is a list of passes in a valid order.
 #pragma once

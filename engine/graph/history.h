@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Images that are handed from frame to frame: what follows from a graph's histories. Pure functions.
 //
 // A frame that follows another reads, as `previous`, what that one made as `next`. A frame that follows none (the first

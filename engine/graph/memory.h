@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How much device memory the images of a graph take, before anything is made.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From graph to plan: passes nobody reads are dropped, neighbouring passes are fused into kernels, transient images
 // get places in shared memory. Plain data; no Vulkan.
 #pragma once

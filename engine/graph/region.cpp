@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "graph/region.h"
 
 #include <fmt/format.h>

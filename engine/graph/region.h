@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which part of each image a part of the result needs. Pure functions.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Takes passes out of a graph. Pure.
 #pragma once
 

@@ -1,7 +1,8 @@
-#include "image/blue_noise.h"
-
+// SPDX-License-Identifier: MIT
 #include <array>
 #include <cstdint>
+
+#include "image/encode.h"
 
 namespace afterglow {
 namespace {

@@ -1,6 +1,7 @@
-#include "image/camera.h"
-
+// SPDX-License-Identifier: MIT
 #include <cmath>
+
+#include "image/metadata.h"
 
 namespace afterglow {
 

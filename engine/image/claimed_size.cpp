@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/claimed_size.h"
 
 #include <algorithm>

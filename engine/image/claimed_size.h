@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How large pictures say they are, in formats whose readers take memory for the whole picture as soon as they open a
 // file.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/color_encoding.h"
 
 #include <algorithm>
@@ -5,7 +6,8 @@
 #include <limits>
 #include <mutex>
 
-#include "image/parallel.h"
+#include "core/parallel.h"
+#include "image/plain_values.h"
 #include "image/srgb.h"
 
 namespace afterglow {
@@ -93,12 +95,14 @@ void make_alpha_finite(float& alpha, SanitizeCounts& counts) {
   ++counts.alpha;
 }
 
-/// The common case, linear Rec.709 with associated alpha: one pass without branches, so that it vectorises.
+/// The common case, linear Rec.709 with associated alpha. Blocks with nothing to mend are only read; the others take
+/// one pass without branches, so that it vectorises.
 void sanitize_linear(float* rgba, std::size_t pixels, SanitizeCounts& counts) {
   std::uint64_t nan = 0, negative = 0, large = 0, alpha = 0;
   constexpr std::size_t kBlock = 1024;  // 32-bit counters inside a block keep all lanes equally wide
   for (std::size_t begin = 0; begin < pixels; begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, pixels);
+    if (all_plain(rgba + begin * 4, (end - begin) * 4)) continue;
     std::uint32_t block_nan = 0, block_negative = 0, block_large = 0, block_alpha = 0;
     for (std::size_t i = begin; i < end; ++i) {
       float* pixel = rgba + i * 4;

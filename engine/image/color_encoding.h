@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How the colour samples of a file are encoded, and how they become scene-linear Rec.709.
 #pragma once
 

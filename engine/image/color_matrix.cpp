@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/color_matrix.h"
 
 #include <cmath>

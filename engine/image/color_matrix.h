@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colour primaries as 3×3 matrices.
 #pragma once
 

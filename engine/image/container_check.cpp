@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/container_check.h"
 
 #include <fmt/format.h>

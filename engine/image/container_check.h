@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What files say about themselves, read before a library does: sizes that are lies, files that end too
 // early (JPEG decoders invent the missing half), and PNG's colour chunks, which OpenImageIO does not pass on.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/cryptomatte.h"
 
 #include <fmt/format.h>

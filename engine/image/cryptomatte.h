@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cryptomatte (Psyop's specification 1.2.0): which objects, materials or assets cover a pixel, and by how much. Pure
 // data.
 #pragma once

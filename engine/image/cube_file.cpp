@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The text of a .cube (Adobe's specification 1.0 and Resolve's dialect of it), looked through line by line.
 #include <fmt/format.h>
 

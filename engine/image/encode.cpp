@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/encode.h"
 
 #include <half.h>
@@ -10,7 +11,7 @@
 #endif
 
 #include "core/processor.h"
-#include "image/blue_noise.h"
+#include "image/encode.h"
 #include "image/srgb.h"
 
 namespace afterglow {

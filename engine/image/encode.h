@@ -1,8 +1,11 @@
+// SPDX-License-Identifier: MIT
 // Scene-linear floats to what files store: half floats, and code values for displays.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
+#include "core/image_data.h"
 #include "image/picture.h"
 
 namespace afterglow {
@@ -30,5 +33,15 @@ struct CodeRules {
 /// the noise.
 void encode_row(const CodeRules& rules, const float* rgba, int width, int x, int y, std::uint8_t* codes);
 void encode_row(const CodeRules& rules, const float* rgba, int width, int x, int y, std::uint16_t* codes);
+
+/// The noise of dithering is blue: thresholds that spread evenly, without the grid of ordered noise or the clumps of
+/// white noise, in a tile that repeats. Its sides in pixels:
+inline constexpr int kBlueNoiseSize = 64;
+
+/// Threshold in (0, 1) of a pixel of the tile, which repeats; x and y ≥ 0. Each of 4096 evenly spaced ones occurs once.
+float blue_noise(int x, int y);
+
+/// The tile as an image for shaders, threshold in red. Made once.
+std::shared_ptr<const ImageData> blue_noise_image();
 
 }  // namespace afterglow

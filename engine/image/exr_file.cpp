@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/exr_file.h"
 
 #include <ImathBox.h>

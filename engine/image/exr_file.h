@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // OpenEXR files, through OpenEXR itself: it decodes straight into the caller's floats, keeps every attribute, and knows
 // luminance-chroma and deep files, which OpenImageIO 2.4 does not.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads what an EXR header says, on its own and before any library does: headers lie, and the size of what a library
 // would allocate must be known first. No allocation here is larger than the part of the file that covers it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/exr_metadata.h"
 
 #include <OpenEXR/ImfDoubleAttribute.h>

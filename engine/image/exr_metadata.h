@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Metadata between OpenEXR's attributes and the general form, so that it survives a change of format.
 #pragma once
 

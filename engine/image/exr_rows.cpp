@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/exr_rows.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -5,8 +6,8 @@
 
 #include <atomic>
 
+#include "core/parallel.h"
 #include "image/encode.h"
-#include "image/parallel.h"
 
 namespace afterglow {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of a picture's colour in the form that OpenEXR writes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/icc_profile.h"
 
 #include <lcms2.h>

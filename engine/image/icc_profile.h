@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // ICC profiles, through Little CMS.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A picture in host memory: interleaved 32-bit floats, row by row from the top, without padding.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/input_space.h"
 
 #include <algorithm>

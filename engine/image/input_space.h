@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colour spaces that pictures may be stored in without saying so: logarithms of cameras, ACEScct, HDR broadcast, plain
 // powers.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/layers.h"
 
 #include <fmt/format.h>

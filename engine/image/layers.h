@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Finds colour, depth, normals and motion among the channels of a file by the names that renderers give them. Pure
 // data, no file access.
 #pragma once

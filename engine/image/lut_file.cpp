@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/lut_file.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Look-up tables in files: .cube and the other formats that OpenColorIO reads, taken apart into steps that a shader can
 // do, with their numbers in one image.
 #pragma once

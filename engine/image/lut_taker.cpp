@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/lut_taker.h"
 
 #include <fmt/format.h>

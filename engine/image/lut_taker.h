@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A chain of OpenColorIO's transforms taken apart into steps that a shader can do. For the module with OpenColorIO
 // alone.
 #pragma once

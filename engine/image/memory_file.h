@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A file in memory that libraries open by its name.
 #pragma once
 

@@ -1,8 +1,14 @@
+// SPDX-License-Identifier: MIT
 // What a file says about its picture besides the pixels, independent of format and library. Names are OpenImageIO's
 // ("Copyright", "ImageDescription", "Exif:FNumber"), which are close to those of TIFF and Exif.
 #pragma once
 
+#include <OpenEXR/ImfForward.h>
+
 #include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -28,5 +34,25 @@ const MetadataValue* find_metadata(const Metadata& metadata, std::string_view na
 float metadata_number(const MetadataValue& value, float otherwise);
 /// As text: numbers are printed.
 std::string metadata_text(const MetadataValue& value);
+
+/// The camera's place in the scene, from EXR's `worldToCamera` (row vectors: camera = world · M). Empty when there is
+/// none, or when the matrix is not finite or flattens space.
+std::optional<std::array<double, 3>> camera_position(const Metadata& metadata);
+
+/// What is remembered of a picture's file for the writer.
+struct FileFacts {
+  std::filesystem::path file;
+  std::string format;        ///< OpenImageIO's name of it: "openexr", "png", …
+  int bits = 8;              ///< of a colour sample
+  bool floating = false;     ///< half or float samples
+  bool had_profile = false;  ///< an ICC profile was embedded
+  bool had_chromaticities = false;
+  int orientation = 1;
+  int part = 0;  ///< of the colour
+  std::array<std::string, 4>
+      color_channels{};  ///< names in the file of R, G, B, A; grey has the same three; A may be empty
+  Metadata metadata;     ///< everything the file said
+  std::shared_ptr<const Imf::Header> exr_header;  ///< of the colour's part, when the file was EXR
+};
 
 }  // namespace afterglow

@@ -1,8 +1,13 @@
-// The measure of error used everywhere in this project (math.md §13).
+// SPDX-License-Identifier: MIT
+// How far pictures are from each other: the measure of error used everywhere in this project (math.md §13), and whether
+// people would see it.
 #pragma once
 
 #include <cstddef>
 #include <span>
+
+#include "core/result.h"
+#include "image/image.h"
 
 namespace afterglow {
 
@@ -18,5 +23,10 @@ ErrorMeasure measure_error(std::span<const float> x, std::span<const float> refe
 
 /// math.md §13: the 99.99th percentile is within the tolerance and the worst within 50 times of it.
 bool within(const ErrorMeasure& error, double tolerance);
+
+/// Yee's model of perception, as OpenImageIO has it. Share of pixels (0…1) that look different on a display. Both
+/// images have 3 channels and the same size; linear light, 1 is white at 100 cd/m². Errors: io (OpenImageIO is not
+/// installed), other (it failed).
+Result<double> visible_difference(const Image& a, const Image& b);
 
 }  // namespace afterglow

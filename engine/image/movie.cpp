@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/movie.h"
 
 #include <fmt/format.h>
@@ -10,7 +11,7 @@
 
 #include "core/exception.h"
 #include "core/text.h"
-#include "image/facts.h"
+#include "image/metadata.h"
 
 namespace afterglow {
 namespace {

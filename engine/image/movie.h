@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A video file, frame by frame. What Debian's OpenImageIO reads through FFmpeg: MP4, QuickTime and AVI; Matroska and
 // WebM are refused by it, and MPEG streams would keep it busy for ever.
 #pragma once

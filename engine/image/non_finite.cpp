@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/non_finite.h"
 
 #include <fmt/format.h>
@@ -8,8 +9,8 @@
 #include <mutex>
 #include <vector>
 
+#include "core/parallel.h"
 #include "core/text.h"
-#include "image/parallel.h"
 
 namespace afterglow {
 namespace {

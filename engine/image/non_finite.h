@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Values that are not finite: found, counted, and replaced by what a policy says. See docs/non_finite.md.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What OpenColorIO reads: look-up tables as steps (lut_file.h), views and colour spaces of configurations as shaders.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/ocio_chain.h"
 
 #include <fmt/format.h>

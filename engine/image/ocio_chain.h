@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A request as a chain of OpenColorIO's transforms, its names checked. For the module with OpenColorIO alone.
 #pragma once
 

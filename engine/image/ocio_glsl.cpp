@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/ocio_glsl.h"
 
 #include <fmt/format.h>

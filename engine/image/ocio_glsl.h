@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A processor of OpenColorIO as a pixel shader of ours. For the module with OpenColorIO alone.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/ocio_module.h"
 
 #include "core/module.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // OpenColorIO, at arm's length: it takes longer to load than a frame takes to run, and is loaded when the first table
 // or configuration is read.
 #pragma once

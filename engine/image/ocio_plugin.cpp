@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // OpenColorIO's side of read_lut (a file becomes a chain of its transforms, each taken apart into a step) and of
 // configurations.
 #include <OpenColorIO/OpenColorIO.h>

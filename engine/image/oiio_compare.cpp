@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/oiio_compare.h"
 
 #include <OpenImageIO/imagebuf.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Part of the OpenImageIO module: see oiio_module.h and visible_difference.h.
 #pragma once
 

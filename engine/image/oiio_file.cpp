@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/oiio_file.h"
 
 #include <OpenImageIO/imageio.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every format but OpenEXR, through OpenImageIO.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/oiio_metadata.h"
 
 namespace afterglow {

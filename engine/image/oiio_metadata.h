@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Metadata between OpenImageIO's lists and the general form.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/oiio_module.h"
 
 #include "core/module.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // OpenImageIO, at arm's length. Debian's build of it draws in some 250 shared libraries, which take longer to load than
 // a frame takes to read; they are loaded when the first file comes that is neither EXR (read and written) nor PNG
 // (written), or when pictures are compared as people see them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The module's one symbol.
 #include "image/oiio_compare.h"
 #include "image/oiio_file.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/oiio_write.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -9,9 +10,9 @@
 
 #include "core/exception.h"
 #include "core/text.h"
-#include "image/facts.h"
 #include "image/icc_profile.h"
 #include "image/memory_file.h"
+#include "image/metadata.h"
 #include "image/oiio_metadata.h"
 #include "image/output_metadata.h"
 #include "image/strips.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writes JPEG, TIFF and HDR through OpenImageIO.
 #pragma once
 

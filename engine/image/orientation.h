@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The eight orientations of TIFF and Exif, undone: the picture as it is meant to be seen.
 #pragma once
 

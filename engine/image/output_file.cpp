@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/output_file.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A file that is being written, which remembers its first failure: libraries that write pictures do not always look at,
 // or pass on, what a write returned. Behind it stands a plain file descriptor.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/output_format.h"
 
 #include <fmt/format.h>
@@ -6,7 +7,7 @@
 #include <charconv>
 
 #include "core/text.h"
-#include "image/facts.h"
+#include "image/metadata.h"
 
 namespace afterglow {
 namespace {

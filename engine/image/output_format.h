@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What can be written: formats by extension, their sample types and compressions.
 #pragma once
 

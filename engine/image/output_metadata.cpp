@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/output_metadata.h"
 
 #include <OpenEXR/ImfChromaticitiesAttribute.h>

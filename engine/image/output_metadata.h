@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which metadata of the input a new file keeps: everything but what described the old file.
 #pragma once
 
@@ -5,7 +6,7 @@
 
 #include <string_view>
 
-#include "image/facts.h"
+#include "image/metadata.h"
 
 namespace afterglow {
 

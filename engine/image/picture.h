@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a picture file means to the stack, whatever its format: colour made scene-linear, auxiliary layers, windows.
 #pragma once
 

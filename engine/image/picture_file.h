@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One open picture file, whatever its format: parts and channels by name, samples as stored. Behind it are OpenEXR for
 // .exr and OpenImageIO for everything else.
 #pragma once
@@ -12,8 +13,8 @@
 #include "core/diagnostics.h"
 #include "core/result.h"
 #include "image/color_encoding.h"
-#include "image/facts.h"
 #include "image/layers.h"
+#include "image/metadata.h"
 #include "image/size_limits.h"
 
 namespace afterglow {

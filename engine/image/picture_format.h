@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which of OpenImageIO's readers a file is given to. Left to itself it tries all that it has, those of old and odd
 // formats too, whose parsers were never written for files of strangers; FFmpeg among them follows playlists to other
 // files, and that of Photoshop's layers takes whatever memory 500 bytes ask for before anyone can look. So the content

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/png_filter.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/reader.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads pictures of the formats that picture_format.h names and makes them ready for a stack: layers picked, colour
 // decoded to scene-linear Rec.709, alpha associated, orientation applied, values made finite. All functions are
 // thread-safe.

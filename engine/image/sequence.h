@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Numbered files: `shot.####.exr`, `shot.%04d.exr`, frame ranges `1-24`, `1-24x2`, lists `1,5,10-12`.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/size_limits.h"
 
 #include <fmt/format.h>

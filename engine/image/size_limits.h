@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How large a picture may be; refused from the header, before anything is allocated.
 #pragma once
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: MIT
 #include "image/strips.h"
 
 #include <algorithm>
 #include <vector>
 
+#include "core/parallel.h"
 #include "image/encode.h"
-#include "image/parallel.h"
 
 namespace afterglow {
 

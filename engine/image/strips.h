@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The display window as rows of samples in the form that a format without windows stores.
 #pragma once
 

@@ -1,5 +1,5 @@
-#include "image/visible_difference.h"
-
+// SPDX-License-Identifier: MIT
+#include "image/metrics.h"
 #include "image/oiio_module.h"
 
 namespace afterglow {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/write_exr.h"
 
 #include <ImathBox.h>
@@ -7,7 +8,7 @@
 #include <algorithm>
 
 #include "image/exr_rows.h"
-#include "image/facts.h"
+#include "image/metadata.h"
 #include "image/output_metadata.h"
 
 namespace afterglow {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writes OpenEXR through OpenEXR itself: exact attributes, both windows, and other layers copied as they are.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDeepScanLineInputPart.h>
 #include <OpenEXR/ImfDeepScanLineOutputPart.h>
@@ -21,7 +22,7 @@
 #include <vector>
 
 #include "image/exr_rows.h"
-#include "image/facts.h"
+#include "image/metadata.h"
 #include "image/write_exr.h"
 
 namespace afterglow {

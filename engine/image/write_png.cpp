@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/write_png.h"
 
 #include <fmt/format.h>
@@ -10,10 +11,10 @@
 #include <thread>
 #include <vector>
 
+#include "core/parallel.h"
 #include "core/text.h"
-#include "image/facts.h"
+#include "image/metadata.h"
 #include "image/output_metadata.h"
-#include "image/parallel.h"
 #include "image/png_filter.h"
 #include "image/strips.h"
 

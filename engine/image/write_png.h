@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writes PNG. On its own rather than through libpng, so that strips of rows are encoded and compressed on several
 // threads: compression is what a PNG costs.
 #pragma once

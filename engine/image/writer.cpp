@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/writer.h"
 
 #include <fmt/format.h>

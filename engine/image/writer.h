@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writes results whole or not at all. The format is chosen by the extension. Thread-safe. Errors: io, usage (bad option
 // text).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What playing has to say for itself: pace, drops, and how long an edit takes to be seen.
 #pragma once
 

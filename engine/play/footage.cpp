@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "play/footage.h"
 
 #include <fmt/format.h>

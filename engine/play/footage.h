@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is played: single pictures, numbered sequences, videos, or several of them one after the other, as one row of
 // frames.
 #pragma once

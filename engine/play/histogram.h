@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How the values of a picture are spread, and what is wrong with some of them.
 #pragma once
 

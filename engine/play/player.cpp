@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "play/player.h"
 
 #include <algorithm>
@@ -7,8 +8,7 @@
 #include <utility>
 
 #include "core/stopwatch.h"
-#include "image/camera.h"
-#include "image/facts.h"
+#include "image/metadata.h"
 #include "play/player_state.h"
 
 namespace afterglow {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Plays footage through a preset that is being edited. One turn after the other is asked for by whoever draws: a
 // window, or a command without one.
 #pragma once

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: MIT
 // What one asks a player about the frame on screen, and what one tells it to play.
 #include <algorithm>
 #include <cstring>
 
-#include "image/facts.h"
+#include "image/metadata.h"
 #include "play/player.h"
 #include "play/player_state.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a Player holds; private to this room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "play/read_ahead.h"
 
 #include <algorithm>

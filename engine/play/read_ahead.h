@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures in memory before they are due: a bounded cache with threads that read what will be wanted next.
 #pragma once
 

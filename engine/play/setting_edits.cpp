@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "play/setting_edits.h"
 
 #include <algorithm>

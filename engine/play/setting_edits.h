@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the panel has changed: settings over those of the preset, with undo and redo. Plain data.
 #pragma once
 

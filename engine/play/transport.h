@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which frame is due when: play, pause, step, scrub, loop, range, speed. Arithmetic alone: the time comes from whoever
 // calls, in seconds of any clock that never goes backwards.
 #pragma once

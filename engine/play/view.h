@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How a picture is looked at: zoom, pan, exposure, channels, comparison. Plain data and its arithmetic; nothing is
 // drawn here, and nothing changes what is rendered.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The bloom pyramid (math.md §3–§5), each pass alone and the whole with all its intermediates.
 // Alpha: images of the pyramid carry none that means anything; what a combine returns has the alpha of its `high`.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Blurs of the whole picture, in linear light; alpha kept.
 #pragma once
 
@@ -10,7 +11,7 @@ namespace afterglow::reference {
 /// offset counts in 1024ths of a pixel.
 DoubleImage dual_kawase(const DoubleImage& source, int iterations, double offset_wanted);
 
-/// Mean of at least `samples` reads from the pixel to `intensity` of its way to the centre (math.md §28).
+/// Mean of at least `samples` reads from the pixel to `intensity` of its way to the centre (math.md §37).
 DoubleImage radial_blur(const DoubleImage& source, double intensity, int samples, Point center);
 
 /// `distance` pixels long; degrees, 0 across, 90 up and down.

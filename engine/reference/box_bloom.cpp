@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/box_bloom.h"
 
 namespace afterglow::reference {

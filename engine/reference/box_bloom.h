@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Box-blur bloom (math.md §9), the readings of §12 #8–#11.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scalar colour functions (math.md §2): luminance, transfer curves, LogC, HSV.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/color_adjustments.h"
 
 #include <cmath>

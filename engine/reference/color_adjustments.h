@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colour adjustments (math.md §8): each step alone, and all in their order.
 #pragma once
 

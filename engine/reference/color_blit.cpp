@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/color_blit.h"
 
 namespace afterglow::reference {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colour blit (math.md §7): green light alone.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An entry's result over what it was given: opacity, blend modes and masks (math.md §20).
 #pragma once
 

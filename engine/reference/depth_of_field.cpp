@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/depth_of_field.h"
 
 #include <algorithm>

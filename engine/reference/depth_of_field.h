@@ -1,4 +1,5 @@
-// Depth of field: near and far field apart, in a small picture, laid over the sharp one (math.md §26).
+// SPDX-License-Identifier: MIT
+// Depth of field: near and far field apart, in a small picture, laid over the sharp one (math.md §35).
 #pragma once
 
 #include "reference/double_image.h"

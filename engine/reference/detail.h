@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Effects on fine detail: contrast-adaptive sharpening (AMD FidelityFX CAS), squares, edges, FXAA.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/double_image.h"
 
 #include <cmath>

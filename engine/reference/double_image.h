@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures in double precision and the ways to sample them (math.md §1). The ground that every oracle of this room
 // stands on: plain loops over plain definitions, written from the mathematics and sharing nothing with the shaders that
 // they check. All functions of this room are pure and thread-safe; they trust their arguments (sizes ≥ 1, images not
@@ -12,7 +13,7 @@
 #include <vector>
 
 #include "core/geometry.h"
-#include "image/parallel.h"
+#include "core/parallel.h"
 
 namespace afterglow::reference {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light where the lens should have none: anamorphic streaks and lit dirt.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An analogue signal that has come loose (after K. Takahashi's KinoGlitch): whole pixels, random by frame and seed.
 #pragma once
 

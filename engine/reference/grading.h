@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colour grading in the published steps of Unity's URP (LutBuilderHdr.shader, ColorUtils.cs): white balance, channel
 // mixer, split toning, shadows/midtones/highlights, lift/gamma/gain. Colours given as settings are linear.
 #pragma once

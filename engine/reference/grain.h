@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Film grain and the random numbers it is made of: exact integers, so device and oracle agree to the bit.
 #pragma once
 

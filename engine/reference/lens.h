@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a lens does to a picture: vignette, chromatic aberration, lens distortion (Unity URP, UberPost.shader).
 #pragma once
 

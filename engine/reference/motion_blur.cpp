@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/motion_blur.h"
 
 #include <cmath>

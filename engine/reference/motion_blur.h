@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Motion blur by motion vectors: the reconstruction filter of McGuire et al. (I3D 2012), see math.md §16.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/outline.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Outlines from depth and normals (math.md §10, the readings of §12 #16–#21).
 #pragma once
 

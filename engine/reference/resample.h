@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The plain meaning of a core/filter.h Filter: what any way of executing a filter pass must give.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Settings of a stack's entry as the oracles want them.
 #pragma once
 
@@ -48,5 +49,7 @@ struct Oracle {
 
 /// Grading, lens, film, blurs and edges: stack_effects.cpp.
 std::span<const Oracle> more_oracles();
+/// Light in lenses, film and air, and screens: stack_optics.cpp.
+std::span<const Oracle> optic_oracles();
 
 }  // namespace afterglow::reference

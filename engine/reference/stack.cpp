@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/stack.h"
 
 #include "reference/bloom.h"
@@ -100,7 +101,7 @@ constexpr Oracle kOracles[] = {
 };
 
 const Oracle* oracle_of(const Entry& entry) {
-  for (const std::span<const Oracle> oracles : {std::span<const Oracle>(kOracles), more_oracles()})
+  for (const std::span<const Oracle> oracles : {std::span<const Oracle>(kOracles), more_oracles(), optic_oracles()})
     for (const Oracle& oracle : oracles)
       if (entry.effect == oracle.effect) return &oracle;
   return nullptr;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A whole stack in double precision: effects by name, one after the other, as a preset resolves them.
 #pragma once
 

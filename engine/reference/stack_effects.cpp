@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Oracles by name, with their settings as the effects declare them: grading, lens, film, blurs, edges.
 #include <array>
 #include <cmath>

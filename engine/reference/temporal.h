@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Effects that work over several frames, frame by frame: what one makes is given to the next.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The newer tone curves (docs/math.md §21), each in the steps in which its author published it.
 #include <array>
 #include <cmath>

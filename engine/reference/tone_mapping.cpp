@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/tone_mapping.h"
 
 #include <cmath>

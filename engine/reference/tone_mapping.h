@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tone curves (math.md §6): scene-linear light into display range. Alpha is kept; nothing is clamped to 1.
 #pragma once
 

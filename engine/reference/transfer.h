@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colour spaces of cameras and broadcast in double precision, after the papers of their makers (math.md §24): curves of
 // one channel, and the way from and to linear Rec.709.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What Lua has and presets do not: reading it says so, and why.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/animated.h"
 
 #include <fmt/format.h>

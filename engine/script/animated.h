@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Values that presets give: fixed, curves over time, functions of time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/arguments.h"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ Result<ArgumentValue> parse_argument(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::string name = trim(text.substr(0, equals));
   if (equals == std::string::npos || !script::is_identifier(name))
-    return Error{ErrorKind::usage, fmt::format("--arg '{}' gives no argument", script::tidy_message(text, 100)), "", 0,
+    return Error{ErrorKind::usage, fmt::format("--arg '{}' gives no argument", tidy_message(text, 100)), "", 0,
                  "NAME=VALUE"};
   return ArgumentValue{name, text.substr(equals + 1)};
 }

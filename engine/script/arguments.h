@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Arguments of a preset: fx.args{…}, and `--arg NAME=VALUE`.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/assets.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files that effects read besides scripts and shaders: look-up tables, pictures. A name goes inside of the folders that
 // scripts may read, and nowhere else.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a preset says about one frame: a value that nothing changes any more. `Preset::evaluate` makes one a frame, and
 // whoever runs, plans or explains that frame looks at it.
 #pragma once
@@ -14,7 +15,7 @@
 
 namespace afterglow {
 
-/// What the effect of an entry promises of this frame's result (script/holds.h).
+/// What the effect of an entry promises of this frame's result (script/schema.h).
 struct Promises {
   std::string entry;
   std::vector<Invariant> invariants;

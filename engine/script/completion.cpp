@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The completion file of lua-language-server for effects and masks: one class of settings each, and `fx.NAME` or
 // `fx.mask.NAME` as a function.
 #include <fmt/format.h>
@@ -41,7 +42,7 @@ std::string lua_type(const SettingSchema& setting) {
 }
 
 // Docs are one line each in the file.
-std::string one_line(const std::string& doc) { return script::tidy_message(doc, 1000); }
+std::string one_line(const std::string& doc) { return tidy_message(doc, 1000); }
 
 // "How much is added. 0…1 EV, default 0.2"
 std::string setting_doc(const SettingSchema& setting) {
@@ -68,6 +69,7 @@ std::string settings_class(const EffectSchema& effect, const char* folder, const
 std::string completion_text(const std::vector<EffectSchema>& effects, const std::vector<EffectSchema>& masks) {
   std::string out = fmt::format(
       "---@meta _\n"
+      "-- SPDX-License-Identifier: MIT\n"
       "-- Generated from effects and masks, not to be edited: AFTERGLOW_UPDATE=1 ctest -R Completion.FileIsUpToDate\n"
       "\n"
       "---@alias afterglow.Blend {}\n"

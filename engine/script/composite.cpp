@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/composite.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How much of an entry's result counts and where: opacity, blend modes and masks (math.md §20), as passes behind those
 // of its effect. Pixel passes, so that they run in the entry's last kernel.
 #pragma once

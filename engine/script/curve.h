@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Values between values: how settings blend, and curves over time. Pure data and mathematics; no Lua.
 #pragma once
 

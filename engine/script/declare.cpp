@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/declare.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The functions that effects declare themselves with: fx.effect and the setting types.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every effect and mask on the search path.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a new effect may be called.
 #include <fmt/format.h>
 
@@ -26,7 +27,7 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
 
 Result<void> check_new_effect_name(const std::string& name, const SearchPath& path) {
   const auto wrong = [&](const std::string& why, std::string allowed = "") {
-    return Error{ErrorKind::usage, fmt::format("'{}' {}", script::tidy_message(name, 60), why), "", 0,
+    return Error{ErrorKind::usage, fmt::format("'{}' {}", tidy_message(name, 60), why), "", 0,
                  std::move(allowed)};
   };
   if (!script::is_identifier(name))

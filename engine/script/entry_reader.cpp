@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/entry_reader.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads the table of one entry of a stack: fx.NAME{…}, and what fx.extend changes of one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/entry_run.h"
 
 #include <fmt/format.h>

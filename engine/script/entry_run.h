@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs the functions of one entry's effect: `active`, `needs`, `optional`, `build`.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The settings of an entry by name: those of its effect, of how it is put over what it was given, of its mask's parts.
 #include <fmt/format.h>
 
@@ -11,7 +12,7 @@ namespace afterglow {
 using namespace script;
 
 std::string EntryMask::text() const {
-  const auto part = [](const EntryMask& mask) {
+  const auto operand = [](const EntryMask& mask) {
     const bool simple = mask.kind == Kind::named || mask.kind == Kind::number;
     return simple ? mask.text() : "(" + mask.text() + ")";
   };
@@ -21,11 +22,11 @@ std::string EntryMask::text() const {
     case Kind::number:
       return fmt::format("{:.6g}", number);
     case Kind::add:
-      return part(*a) + " + " + part(*b);
+      return operand(*a) + " + " + operand(*b);
     case Kind::subtract:
-      return part(*a) + " - " + part(*b);
+      return operand(*a) + " - " + operand(*b);
     case Kind::multiply:
-      return part(*a) + " * " + part(*b);
+      return operand(*a) + " * " + operand(*b);
   }
   return {};
 }

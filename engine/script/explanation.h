@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How the settings of a frame came about: what `afterglow explain` prints. Settings as JSON.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // fx.extend("NAME", {…}): another preset's stack with some of it changed.
 #include <fmt/format.h>
 

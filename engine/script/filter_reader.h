@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads a filter described as a Lua table.
 #pragma once
 

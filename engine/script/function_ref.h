@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A Lua function that a script gave and that is called later.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/globals.h"
 
 #include <fmt/format.h>

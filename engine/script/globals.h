@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What scripts find in a fresh state: an allow-list, everything on it bounded and deterministic.
 #pragma once
 

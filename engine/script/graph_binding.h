@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The userdata `g` and images that `build` functions work with, over a GraphBuilder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/graph_builder.h"
 
 #include <fmt/format.h>

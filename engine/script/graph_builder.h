@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Builds a Graph pass by pass and checks each pass against what its shader declares. No Lua: the binding turns a table
 // into a PassRequest. Failures carry the key of the request they are about, so that the binding can point at its line.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // GraphBuilder: images that are handed from frame to frame.
 #include <fmt/format.h>
 

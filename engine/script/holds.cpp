@@ -1,11 +1,11 @@
-#include "script/holds.h"
-
+// SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 
 #include "core/text.h"
+#include "script/schema.h"
 
 namespace afterglow {
 namespace {

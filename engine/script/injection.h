@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Injection points, auxiliary inputs, names that are taken: the words that presets and effects may use.
 #pragma once
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: MIT
 // Reads what effects promise, and asks them what holds for a frame.
 #pragma once
 
 #include <vector>
 
-#include "script/holds.h"
 #include "script/lua.h"
+#include "script/schema.h"
 
 namespace afterglow::script {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/items.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What stands in a stack or a group without a name: entries, groups, lists of them.
 #pragma once
 

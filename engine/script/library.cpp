@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The library table `fx`: scripts/afterglow.lua over the native functions given to it as `core`.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tables `string`, `table` and `math` of scripts.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Masks: fx.mask.NAME{…} and what operators make of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `setmetatable` of scripts, whose metatables no limit could hold otherwise: a chain of tables that call each other
 // runs in one loop of Lua's own, weak tables show when garbage is collected and make collecting slow, finalizers run
 // unseen.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reading scripts: chunks, `require`, and the effects on the search path.
 #include <fmt/format.h>
 

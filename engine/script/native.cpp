@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: MIT
 #include "script/native.h"
 
 #include <cctype>
 
+#include "core/key_finder.h"
 #include "script/function_ref.h"
-#include "script/key_finder.h"
 
 namespace afterglow::script {
 
@@ -14,8 +15,8 @@ void locate_failure(lua_State* lua, ScriptError& failure, const char* function) 
   if (where.source < 0) return;
   const Source& source = box.sources()[static_cast<std::size_t>(where.source)];
   box.charge(source.text.size() / 4);  // scripts may fail in a loop
-  where.line =
-      line_of_key(source.text, where.line, failure.function.empty() ? function : failure.function, failure.key);
+  where.line = afterglow::line_of_key(source.text, where.line, failure.function.empty() ? function : failure.function,
+                                      failure.key);
   box.locate(failure.error, where);
 }
 
@@ -32,7 +33,7 @@ void locate_blame(const Sandbox& box, const Blame& blame, Error& error) {
 
 int line_of_key(const Sandbox& box, const std::string& file, int line, std::string_view function, const KeyPath& key) {
   for (const Source& source : box.sources())
-    if (source.path == file) return line_of_key(source.text, line, function, key);
+    if (source.path == file) return afterglow::line_of_key(source.text, line, function, key);
   return line;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How native functions are given to Lua: C++ exceptions become Lua errors at the caller's file and line.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Small values that scripts hold and cannot look into: userdata with a protected metatable and no finalizer.
 #pragma once
 

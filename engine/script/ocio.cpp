@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/ocio.h"
 
 #include <fmt/format.h>

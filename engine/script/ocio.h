@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Parts of OpenColorIO's configurations, for g:ocio.
 #pragma once
 

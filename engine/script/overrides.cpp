@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/overrides.h"
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ Result<Override> parse_override(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::size_t dot = text.find('.');
   if (equals == std::string::npos || dot >= equals || dot == 0 || dot + 1 == equals)
-    return Error{ErrorKind::usage, fmt::format("--set '{}' is no override", script::tidy_message(text, 100)), "", 0,
+    return Error{ErrorKind::usage, fmt::format("--set '{}' is no override", tidy_message(text, 100)), "", 0,
                  "ENTRY.SETTING=VALUE"};
   return Override{trim(text.substr(0, dot)), trim(text.substr(dot + 1, equals - dot - 1)), text.substr(equals + 1)};
 }

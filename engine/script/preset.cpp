@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/preset.h"
 
 #include <fmt/format.h>
@@ -351,6 +352,12 @@ Result<std::vector<EntrySpace>> Preset::spaces() {
   std::vector<EntrySpace> out;
   auto error = state.runtime->box->run(state.file, [&](lua_State* lua) { out = trace_spaces(lua, state.runs); });
   if (error) return std::move(*error);
+  return out;
+}
+
+BuildContext usual_context(const Preset& preset, Size size, double frame, double fps) {
+  BuildContext out{.size = size, .auxiliary = {}, .frame = frame, .time = frame / fps, .fps = fps};
+  for (const auto& name : preset.needs()) out.auxiliary[name] = size;
   return out;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A preset: a sandboxed Lua script that returns a stack. Loading runs the script, finds the effects it names, and
 // checks every setting against its effect's schema; building runs the effects' `build` functions and yields a graph.
 #pragma once
@@ -18,60 +19,13 @@
 #include "core/result.h"
 #include "graph/graph.h"
 #include "image/metadata.h"
+#include "script/schema.h"
 #include "shader/library.h"
 
 namespace afterglow {
 
-enum class SettingType { integer, number, boolean, enumeration, color, vec2, vec3, file, text };
-
 /// In the scene: x, y, z in its units.
 using Position = std::array<double, 3>;
-
-/// A value of a setting; colours are scene-linear.
-struct SettingValue {
-  SettingType type = SettingType::number;
-  std::array<double, 3>
-      number{};  ///< integer and number in [0]; boolean as 0/1 in [0]; vec2 in [0..1]; colour, vec3 in [0..2]
-  /// enumeration: the choice. file: its name, as `find_asset` takes it, or an absolute path when [0] of `number` is 1
-  /// (the command line's, which may name any file); empty: none. text: itself.
-  std::string choice;
-  friend bool operator==(const SettingValue&, const SettingValue&) = default;
-  std::string text() const;  ///< as one would write it in Lua
-};
-
-/// What an effect declares about one setting; help, completion, `effects` and documents come from it.
-struct SettingSchema {
-  std::string name, doc;
-  SettingType type = SettingType::number;
-  SettingValue default_value;
-  std::optional<double> min, max;
-  std::vector<std::string> choices;  ///< enumeration; file: the extensions it may have, without the point
-  std::string unit;
-};
-
-/// A promise of an effect about its result (script/holds.h), with its parameters.
-struct Invariant {
-  std::string name;
-  std::map<std::string, double> numbers;        ///< NaN: left open
-  std::map<std::string, std::string> settings;  ///< parameters that name a setting
-};
-struct InvariantSchema {
-  Invariant stated;                   ///< without what is computed
-  std::vector<std::string> computed;  ///< numbers that depend on settings and size
-  bool conditional = false;           ///< holds for some settings or sizes alone
-};
-
-/// What the numbers of a colour mean: light of a scene, which has no upper end, or light of a display, 0…1. Both
-/// linear.
-enum class LightSpace { any, scene, display };
-/// "scene-linear", "display-linear", "any".
-const char* space_name(LightSpace space);
-
-/// What light an effect is made for, and what it makes of it.
-struct SpaceUse {
-  LightSpace needs = LightSpace::any;  ///< any: whatever comes
-  LightSpace makes = LightSpace::any;  ///< any: what came
-};
 
 /// The light in which an entry of a stack runs.
 struct EntrySpace {
@@ -79,19 +33,6 @@ struct EntrySpace {
   LightSpace before = LightSpace::scene;  ///< what it gets
   LightSpace behind = LightSpace::scene;  ///< what the next one gets
   std::string warning;                    ///< why it stands in the wrong place; empty: it does not
-};
-
-struct EffectSchema {
-  std::string name, doc, at;
-  int order = 0;
-  bool straight = false;                    ///< its pixel shaders see straight colour: `alpha = "straight"`
-  bool detail = false;                      ///< what it draws depends on single pixels: `detail = true`
-  SpaceUse space;                           ///< where it is the same for all settings
-  bool space_by_settings = false;           ///< it depends on settings
-  std::vector<SettingSchema> settings;      ///< in order of declaration
-  std::vector<InvariantSchema> invariants;  ///< what it promises
-  std::filesystem::path file;
-  std::vector<std::filesystem::path> shadowed;  ///< files of the same name further down the search path
 };
 
 /// Where an entry counts, and how much: a mask with the settings of the last build.
@@ -130,13 +71,6 @@ struct StackEntry {
   std::string file;                  ///< where the preset names the effect
   int line = 0;
 };
-
-/// `--set glow.intensity=0.4`: name of the entry (or its effect), setting, text of the value.
-struct Override {
-  std::string entry, setting, value;
-};
-/// Errors: usage.
-Result<Override> parse_override(const std::string& text);
 
 /// An argument that a preset declares by fx.args, and its value.
 struct PresetArgument {
@@ -246,6 +180,10 @@ class Preset {
   explicit Preset(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
+
+/// A frame as they usually are: of a picture of this size that has everything the preset asks for, at the time that
+/// `frame` has at `fps` pictures a second.
+BuildContext usual_context(const Preset& preset, Size size, double frame, double fps);
 
 /// May a new effect be called so? Errors (usage): no identifier, a word of Lua or of the library, taken.
 Result<void> check_new_effect_name(const std::string& name, const SearchPath& path);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/read_only.h"
 
 #include "script/native.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Read-only tables: an empty table whose metatable reads from the real one and refuses writes. Scripts can neither
 // reach the real table nor the metatable.
 #pragma once

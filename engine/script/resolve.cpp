@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/resolve.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The settings of a frame: defaults, what the preset says, volumes, overrides, in this order.
 #pragma once
 

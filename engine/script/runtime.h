@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What one Lua state knows of Afterglow: the scripts it read, the effects and settings they declared, the stack they
 // made. The files library.cpp, declare.cpp, stack.cpp and graph_binding.cpp give Lua the functions that fill it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/sandbox.h"
 
 #include <fmt/format.h>
@@ -19,18 +20,6 @@ constexpr std::size_t kLookEvery = 1u << 20;   // bytes allocated between two lo
 constexpr std::uint64_t kRefusalCost = 1'000'000;  // a refused allocation costs a full collection
 
 }  // namespace
-
-std::string tidy_message(std::string text, std::size_t limit) {
-  if (text.size() > limit) {
-    std::size_t end = limit;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-    text.resize(end);
-    text += "…";
-  }
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
-  return text;
-}
 
 Result<std::unique_ptr<Sandbox>> Sandbox::create(const ScriptLimits& limits) {
   std::unique_ptr<Sandbox> box(new Sandbox(limits));

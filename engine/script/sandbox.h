@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One sandboxed Lua 5.4 state: capped memory, a budget of instructions and time that no script can swallow,
 // allow-listed globals, and errors that carry file and line. Knows nothing of presets and effects.
 //

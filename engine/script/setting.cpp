@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/setting.h"
 
 #include <fmt/format.h>
@@ -219,6 +220,23 @@ void push_setting(lua_State* lua, const SettingValue& value) {
     lua_rawseti(lua, -2, i + 1);
   }
   make_read_only(lua);
+}
+
+Result<void> check_value(const std::string& full_name, const SettingSchema& schema, const SettingValue& value) {
+  Value given;
+  given.kind = Value::Kind::list;
+  given.count = value.type == SettingType::vec2 ? 2 : 3;
+  std::copy(value.number.begin(), value.number.end(), given.list.begin());
+  given.number = value.number[0];
+  given.text = value.choice;
+  if (value.type == SettingType::enumeration) given.kind = Value::Kind::text;
+  if (value.type == SettingType::boolean) given.kind = Value::Kind::boolean;
+  if (value.type == SettingType::integer || value.type == SettingType::number) given.kind = Value::Kind::number;
+  auto checked = check_setting(full_name, schema, given);
+  if (checked) return {};
+  Error error = checked.error();
+  error.kind = ErrorKind::usage;
+  return error;
 }
 
 }  // namespace script

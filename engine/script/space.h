@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `space` of an effect: the light that it is made for, and the light that each entry of a stack gets.
 #pragma once
 

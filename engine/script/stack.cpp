@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/stack.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The functions that presets are made of: fx.NAME{…} and fx.stack{…}.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/table_reader.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads the one table that the functions of the library take: checks its keys and collects what is wrong, so that the
 // failure reported is the first one in the source text, whatever order Lua keeps keys in.
 #pragma once

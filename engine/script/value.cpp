@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/value.h"
 
 #include <fmt/format.h>

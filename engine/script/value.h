@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A value as a script or the command line gave it, before anyone decided what it must be.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/volume.h"
 
 #include <fmt/format.h>
@@ -124,7 +125,7 @@ void read_wanted(lua_State* lua, TableReader& volume, DeclaredVolume& declared) 
 }
 
 // A failure of a volume that was made elsewhere: at its key there.
-[[noreturn]] void fail_at(const Sandbox& box, const DeclaredVolume& volume, ScriptError error) {
+[[noreturn]] void fail_volume(const Sandbox& box, const DeclaredVolume& volume, ScriptError error) {
   error.error.file = volume.file;
   error.error.line = line_of_key(box, volume.file, volume.line, "volume", error.key);
   throw error;
@@ -138,14 +139,14 @@ void aim(lua_State* lua, DeclaredVolume& volume, const DeclaredVolume::Wanted& w
   for (const auto& setting : schema.settings) names.push_back(setting.name);
   const auto found = std::find(names.begin(), names.end(), wanted.setting);
   if (found == names.end())
-    fail_at(box, volume,
-            failure(fmt::format("fx.volume: effect '{}' has no setting '{}'", schema.name,
-                                tidy_message(wanted.setting, 60)),
-                    key, join(names), nearest_name(wanted.setting, names)));
+    fail_volume(box, volume,
+                failure(fmt::format("fx.volume: effect '{}' has no setting '{}'", schema.name,
+                                    tidy_message(wanted.setting, 60)),
+                        key, join(names), nearest_name(wanted.setting, names)));
   const auto index = static_cast<std::size_t>(found - names.begin());
   auto checked = check_animated(lua, fmt::format("fx.volume: {}.{}", wanted.entry, wanted.setting),
                                 schema.settings[index], wanted.value);
-  if (!checked) fail_at(box, volume, {checked.error(), key, {}});
+  if (!checked) fail_volume(box, volume, {checked.error(), key, {}});
   volume.targets.push_back({declared.entry.name, index, std::move(*checked)});
 }
 
@@ -174,9 +175,9 @@ void aim_volume(lua_State* lua, DeclaredVolume& volume, const std::vector<Declar
       aim(lua, volume, wanted, declared);
     }
     if (!found)
-      fail_at(Sandbox::of(lua), volume,
-              failure(fmt::format("fx.volume: the stack has no entry '{}'", tidy_message(wanted.entry, 60)),
-                      {"settings", wanted.entry}, join(names), nearest_name(wanted.entry, names)));
+      fail_volume(Sandbox::of(lua), volume,
+                  failure(fmt::format("fx.volume: the stack has no entry '{}'", tidy_message(wanted.entry, 60)),
+                          {"settings", wanted.entry}, join(names), nearest_name(wanted.entry, names)));
   }
   volume.wanted.clear();
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // fx.volume{…}: settings that hold in a part of the scene, or everywhere with a weight.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/volume_shape.h"
 
 #include <algorithm>

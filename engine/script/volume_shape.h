@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where a volume lies and how strongly it counts at a point. Pure mathematics; no Lua.
 #pragma once
 

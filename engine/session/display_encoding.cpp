@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: MIT
 #include "session/display_encoding.h"
 
-#include "image/blue_noise.h"
+#include "image/encode.h"
 
 namespace afterglow {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The last step to an 8-bit display file, as a pass of the graph.
 #pragma once
 

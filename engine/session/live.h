@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A stack that follows its files: edits are built on a thread of their own and taken between frames.
 #pragma once
 

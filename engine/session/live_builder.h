@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The thread on which a LiveStack's builds happen. Internal to the room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "session/live_session.h"
 
 #include <algorithm>

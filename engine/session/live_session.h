@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A LiveStack and what runs it: pictures in, source and result on the device. What a player drives.
 #pragma once
 

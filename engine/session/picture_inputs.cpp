@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: MIT
 #include "session/picture_inputs.h"
 
 #include <fmt/format.h>
 
-#include "image/facts.h"
+#include "image/metadata.h"
 
 namespace afterglow {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A picture as a Renderer takes it.
 #pragma once
 

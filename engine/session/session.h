@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Preset + pictures → pictures. What the command line, the player and tests share: a Stack, a device of its own, and
 // the transfers.
 #pragma once

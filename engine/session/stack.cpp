@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "session/stack.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A preset made runnable on a device, without moving any pixels: what an engine records into its own command buffer,
 // and what Session drives for whole pictures.
 #pragma once

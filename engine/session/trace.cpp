@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "session/trace.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Finds out which passes of a frame make values that are not finite, and makes the frame without them: every pass runs
 // by itself, in full floats where that means the same, with a pass behind it that mends what it made. So each pass
 // reads finite values alone, and what it makes that is not finite is its own doing.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Fuses an anchor and pixel stages into the text of one fragment shader. The text holds no image size, no file and no
 // pass name, so that equal work has equal text, and one compiled kernel serves every level of a pyramid.
 #include <fmt/format.h>

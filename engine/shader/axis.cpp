@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/axis.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How a filter reads along one axis: which texels, with which weights, as GLSL. Internal to the room.
 //
 // The point of a tap lies at p + offset, p = (x + ½)·n_src/n_dst; t = p − ½ + offset, texel i = ⌊t⌋, fraction f = t −

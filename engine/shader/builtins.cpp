@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/builtins.h"
 
 #include <unordered_set>

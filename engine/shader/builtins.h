@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Names that GLSL, or the engine's prelude, gives to every shader. Internal to the room.
 #pragma once
 

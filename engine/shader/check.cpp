@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/check.h"
 
 namespace afterglow {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Validates one shader by itself, with no device: what `afterglow check` does for every shader of a preset.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // KernelCompiler: memory cache, disk cache, compiler, in this order.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/declared.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The variables that a file of GLSL declares in its functions and beside them, found by its tokens. Internal to the
 // room.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/directives.h"
 
 #include <fmt/format.h>

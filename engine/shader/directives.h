@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The preprocessor lines of one file: which there may be, and what they say. Internal to the room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/entry_point.h"
 
 #include <fmt/format.h>

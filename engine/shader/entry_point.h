@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The signature of the function that an author's shader defines for the engine. Internal to the room.
 #pragma once
 

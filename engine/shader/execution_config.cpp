@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/execution_config.h"
 
 #include <fmt/format.h>

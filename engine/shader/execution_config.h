@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How a stack is executed, as one value: the calibration chooses it, the bench varies it, a report names it, and every
 // room down to the kernel reads it. It is declared here alone, in the first room that needs it. Every value of it makes
 // the same picture, within the error that its storage and its fetches allow.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/filter_anchor.h"
 
 #include <fmt/format.h>

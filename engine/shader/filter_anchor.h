@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The anchor of a kernel that resamples: GLSL that sets ag_color from image 0, made from a Filter. Internal to the
 // room.
 #pragma once

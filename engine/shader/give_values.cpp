@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/give_values.h"
 
 #include <fmt/format.h>

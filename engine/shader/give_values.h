@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Variables that authors declare without a value get zeros, so that no pixel depends on what lay in memory. In the text
 // each is marked where it is declared; in the SPIR-V made of it the marks become stores of zeros. Internal to the room.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/glsl.h"
 
 #include <fmt/format.h>

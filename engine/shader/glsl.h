@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // glslang behind one function. Internal to the room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Finds and reads the libraries that a shader includes. Internal to the room.
 #pragma once
 

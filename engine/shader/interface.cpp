@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/interface.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a shader of an effect declares: its kind, inputs and parameters, found by scanning its text (no compiler
 // needed).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A kernel: one full-screen fragment shader, or one compute shader, made of an anchor (how the first colour of a pixel
 // is found) and pixel stages that follow. Assembled from authors' GLSL and from filters described as data, then
 // compiled to SPIR-V and reflected.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/kernel_file.h"
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A compiled kernel as bytes of a cache file. Internal to the room.
 #pragma once
 

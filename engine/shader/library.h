@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Finds, reads and scans shader files by name along a search path. In-process cache; no compiler, no device.
 #pragma once
 

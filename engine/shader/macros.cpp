@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/macros.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bounds what the preprocessor makes of a shader before the compiler sees it: forty short #define lines can double
 // forty times. Internal to the room.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The text of shaders/lib/prelude.glsl, built into the library. Internal to the room.
 #pragma once
 

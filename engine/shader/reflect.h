@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a kernel's SPIR-V really declares, by SPIRV-Cross. Internal to the room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/rename.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rewrites a file's text so that any files can stand in one kernel: every name it defines at file scope gets a prefix
 // of its own, uniforms and includes vanish, constants get their values; lines stay where they are. Internal to the
 // room.

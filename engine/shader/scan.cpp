@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/scan.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Finds what one file of GLSL declares at file scope, by its tokens. Internal to the room.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // SPIR-V as a list of instructions that can be taken apart and put together again. Internal to the room.
 #pragma once
 

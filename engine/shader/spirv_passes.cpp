@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/spirv_passes.h"
 
 namespace afterglow {

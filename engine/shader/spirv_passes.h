@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Passes of SPIRV-Tools over a module that is taken apart.
 #pragma once
 

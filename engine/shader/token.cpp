@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/token.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // GLSL text cut into tokens: enough to find declarations and to rename identifiers, without a compiler. Internal to the
 // room.
 #pragma once

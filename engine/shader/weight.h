@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What authors' shaders may hold at most. Drivers unfold arrays, copies and calls into single instructions, and take
 // minutes, gigabytes or their own death for what stands in a short line; nothing ends a driver. Internal to the room.
 #pragma once

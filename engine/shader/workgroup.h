@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a compute shader declares of its workgroups. Internal to the room.
 #pragma once
 

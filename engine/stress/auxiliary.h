@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Depth, normals, motion and a layer for pictures that are made.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "stress/check.h"
 
 #include <fmt/format.h>

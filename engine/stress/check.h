@@ -1,4 +1,5 @@
-// What is checked: invariants of every stack, and what effects promise (`holds`, script/holds.h).
+// SPDX-License-Identifier: MIT
+// What is checked: invariants of every stack, and what effects promise (`holds`, script/schema.h).
 #pragma once
 
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The promise that nothing jumps.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The promise about the error against double precision.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What every stack must stand, whatever its effects promise.
 #include <fmt/format.h>
 

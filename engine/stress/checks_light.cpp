@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Promises about light: what stays black, of one colour, in order, within bounds, in proportion.
 #include <fmt/format.h>
 

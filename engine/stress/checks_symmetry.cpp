@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Promises about where things are: mirrored, turned and moved pictures.
 #include <fmt/format.h>
 

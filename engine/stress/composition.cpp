@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: MIT
 // Random opacities, blend modes, masks and groups.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "core/text.h"
-#include "script/injection.h"
+#include "script/schema.h"
 #include "stress/auxiliary.h"
 #include "stress/settings.h"
 
@@ -45,7 +46,8 @@ void compose(LookEntry& entry, const std::vector<EffectSchema>& masks, Random& r
     if (!has("opacity") && random.chance(0.5))
       entry.composition.emplace_back("opacity", random.chance(0.1) ? "0" : number(random.unit()));
     if (!has("blend") && random.chance(0.5))
-      entry.composition.emplace_back("blend", fmt::format("\"{}\"", random.pick(script::blend_modes())));
+      entry.composition.emplace_back("blend",
+                                     fmt::format("\"{}\"", random.pick(script::entry_key_schema("blend").choices)));
     if (!masks.empty() && random.chance(0.6)) entry.composition.emplace_back("mask", random_mask(masks, random));
   }
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "stress/growth.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How errors grow from level to level of a pyramid, by what is in the picture.
 #pragma once
 

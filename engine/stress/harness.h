@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs stacks on pictures, in any way of execution, and keeps what can be used again.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "stress/look.h"
 
 #include <fmt/format.h>

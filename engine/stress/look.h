@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A stack as data that can be taken apart: entries with the settings that are not at their defaults.
 #pragma once
 

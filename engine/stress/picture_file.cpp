@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "stress/picture_file.h"
 
 #include <OpenEXR/ImfChannelList.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A picture with its auxiliary inputs as one EXR file of full floats, so that what was found can be found again.
 #pragma once
 

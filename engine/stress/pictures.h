@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures that are hard to stand. Each is made from its kind, size and seed alone, the same on every machine.
 #pragma once
 

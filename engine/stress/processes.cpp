@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "stress/processes.h"
 
 #include <fcntl.h>

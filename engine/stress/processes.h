@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program started again, to see whether other processes make the same bytes.
 #pragma once
 

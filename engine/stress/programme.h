@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The programme that tries to break Afterglow: trial after trial, check after check; what fails is made small and kept.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the programme found, for people and for other programs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A failing case as a folder that anybody can run again: input.exr, preset.lua, case.json, README.txt.
 #pragma once
 

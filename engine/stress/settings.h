@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Values of settings that are worth trying, from what an effect declares about them.
 #pragma once
 

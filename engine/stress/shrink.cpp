@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "stress/shrink.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Makes a situation smaller for as long as it fails in the same check.
 #pragma once
 

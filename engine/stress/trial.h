@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is tried, one after the other: made from a seed and a number alone, so that any of it can be made again.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "stress/truth.h"
 
 #include <algorithm>

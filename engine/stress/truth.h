@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Results in double precision, and how far those of a device are from them.
 #pragma once
 

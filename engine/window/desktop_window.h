@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A window of the desktop, through GLFW.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Figures over the picture: frame times, reload latency, histogram.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/help_sheet.h"
 
 #include <cstring>

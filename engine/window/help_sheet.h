@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every key and what it does, from the list that the keys themselves go by.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/interface.h"
 
 #include <backends/imgui_impl_glfw.h>

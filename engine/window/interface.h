@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Dear ImGui: its context, fonts and style for a window.
 #pragma once
 

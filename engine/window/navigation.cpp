@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The mouse over the picture: wheel zooms at the pointer, a drag moves the picture or the wipe, a double click goes
 // between fit and 1:1.
 #include <cmath>

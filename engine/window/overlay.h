@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is drawn over the picture. Each talks to the Player and ImGui alone.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Puts picture and interface into the window.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/panel.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The settings panel: everything that the effects of the stack declare, with what becomes of them; how the picture is
 // looked at; writing back.
 #pragma once

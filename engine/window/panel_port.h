@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the panel asks of whoever plays: as small as it can be, so that the panel is tested with ImGui and a preset
 // alone.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/panel_row.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A row of the panel: a value with its name, where it comes from, and what takes a change back.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/panel_save.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The panel's edits into the preset's file, and back out of it.
 #pragma once
 

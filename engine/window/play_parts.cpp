@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/play_parts.h"
 
 #include "window/help_sheet.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel, transport bar and help sheet of a window that plays.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/player_port.h"
 
 namespace afterglow {

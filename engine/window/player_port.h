@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The player as the panel sees it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The main loop of a window that plays.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/setting_widget.h"
 
 #include <algorithm>

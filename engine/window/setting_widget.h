@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One setting as a row of the panel: what fits its type and range.
 #pragma once
 

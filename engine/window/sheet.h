@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Dark sheets over the picture, for overlay.cpp and figures_overlay.cpp.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/shortcuts.h"
 
 #define GLFW_INCLUDE_NONE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Keys and what they do: the one list that the main loop, the help sheet and the documents go by.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How the interface looks.
 #pragma once
 

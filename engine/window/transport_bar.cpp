@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/transport_bar.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The bar below the picture: play, step, scrub, range, loop, speed, and what playing says of itself.
 #pragma once
 

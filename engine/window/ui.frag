@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The interface: vertex colours times the atlas of glyphs.
 #version 450
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What those who draw the interface share.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The interface: triangles in pixels of the window, colours as sRGB codes.
 #version 450
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/ui_pipeline.h"
 
 #include <imgui.h>

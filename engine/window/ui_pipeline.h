@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The pipeline that draws the interface's triangles.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/ui_renderer.h"
 
 #include <imgui.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Draws what Dear ImGui wants drawn.
 #pragma once
 

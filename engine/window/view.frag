@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A picture as one looks at it: placed, filtered, exposed, compared, marked, encoded (view_pass.h says how).
 #version 450
 

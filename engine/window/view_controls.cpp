@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/view_controls.h"
 
 #include <string>

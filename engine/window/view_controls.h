@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How the picture is looked at, as controls of the panel: which image, exposure, channels, marks, comparison.
 #pragma once
 

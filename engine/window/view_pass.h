@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Draws source and result as a View says, into any colour target, in one full-screen pass.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/window_app.h"
 
 #include <fmt/format.h>

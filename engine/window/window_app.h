@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // State of a window that plays, for window_app.cpp (loop and frame), window_actions.cpp (keys) and navigation.cpp
 // (mouse).
 #pragma once

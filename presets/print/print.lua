@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Posters and comics: tone-mapped, then screened into dots of ink on paper. The halftone is an effect of this preset's own: it lives
 -- beside it (effects/halftone.lua, shaders/halftone/dots.glsl) and the program knows nothing about it. A start for effects of your own.
 local fx = require "afterglow"

@@ -1,4 +1,5 @@
 ---@meta _
+-- SPDX-License-Identifier: MIT
 -- Generated from effects and masks, not to be edited: AFTERGLOW_UPDATE=1 ctest -R Completion.FileIsUpToDate
 
 ---@alias afterglow.Blend "normal"|"add"|"screen"|"multiply"|"overlay"|"soft_light"|"lighten"|"darken"
@@ -99,6 +100,20 @@
 ---@class afterglow.settings.color_blit : afterglow.EntryKeys
 ---@field intensity? number|afterglow.Moving  Factor of green; 0: the effect does not run. 0…2, default 0
 
+---A picture tube: scan lines, phosphor stripes, curved glass.
+---@class afterglow.settings.crt : afterglow.EntryKeys
+---@field lines? integer|afterglow.Moving  Scan lines of the tube. integer 16…4320, default 270
+---@field softness? number|afterglow.Moving  Width of the beam's spot along a line. 0.2…4 lines, default 0.45
+---@field scan_lines? number|afterglow.Moving  How dark it is between lines. 0: not. 0…1, default 0.85
+---@field phosphor? number|afterglow.Moving  How much the stripes of phosphor show. 0: not. 0…1, default 0.35
+---@field phosphor_size? number|afterglow.Moving  Width of three stripes, red, green and blue. 1…64 px, default 3
+---@field curvature? number|afterglow.Moving  How round the glass is. 0: flat. 0…1, default 0.3
+---@field corner? number|afterglow.Moving  Radius of the picture's corners, as a share of its height. 0…0.5, default 0.04
+---@field vignette? number|afterglow.Moving  Light lost in the corners. 0…1, default 0.3
+---@field glow? number|afterglow.Moving  Share of the light that spreads in the glass. 0…1, default 0.12
+---@field convergence? number|afterglow.Moving  How far red and blue land beside green. 0…4 lines, default 0.25
+---@field brightness? number|afterglow.Moving  Factor of the light. 0…4, default 1.1
+
 ---Tone curves for all channels and each, and hue, saturation and luma by hue.
 ---@class afterglow.settings.curves : afterglow.EntryKeys
 ---@field by? "channels"|"luminance"|afterglow.OfTime  What the five points look at. channels: each channel's own light, as film does; contrast adds colour. luminance: the colour as a whole; hues stay. default "channels"
@@ -116,6 +131,28 @@
 ---@field cyans? number[]|afterglow.Moving  Hue, saturation and luma of cyans: degrees / 0.3, percent, percent of a stop. Greys stay. {x, y, z}, each -100…100 %, default {0, 0, 0}
 ---@field blues? number[]|afterglow.Moving  Hue, saturation and luma of blues: degrees / 0.3, percent, percent of a stop. Greys stay. {x, y, z}, each -100…100 %, default {0, 0, 0}
 ---@field magentas? number[]|afterglow.Moving  Hue, saturation and luma of magentas: degrees / 0.3, percent, percent of a stop. Greys stay. {x, y, z}, each -100…100 %, default {0, 0, 0}
+
+---Fog and haze by depth, thinning with height, that scatters light.
+---@class afterglow.settings.depth_fog : afterglow.EntryKeys
+---@field density? number|afterglow.Moving  How thick the fog is: behind 1/density metres of it 37 % are left. 0: no fog. 0…1000000 1/m, default 0.02
+---@field start? number|afterglow.Moving  Clear air in front of the camera. 0…1000000000 m, default 2
+---@field color? number[]|string|afterglow.Moving  Light of the fog itself; scene-linear. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.2, 0.23, 0.29}
+---@field ambient? number|afterglow.Moving  How much of the fog's light is that of the picture around, as signs and skies colour the air near them. 0…1, default 0.5
+---@field max_opacity? number|afterglow.Moving  The fog never hides more than this. 0…1, default 0.85
+---@field sky? number|afterglow.Moving  How much of the fog lies before what is infinitely far (1e9 m and more). 0…1, default 0.25
+---@field scattering? number|afterglow.Moving  How much the fog blurs what is seen through it. 0: not. 0…1, default 0.5
+---@field scattering_radius? number|afterglow.Moving  How far it blurs and takes light from, as a share of the picture's height. 0.01…1, default 0.25
+---@field height_falloff? number|afterglow.Moving  How the fog thins with height: a third each 1/falloff metres. 0: everywhere alike. 0…100 1/m, default 0
+---@field camera_height? number|afterglow.Moving  Height of the camera above the level where `density` holds. -1000000…1000000 m, default 1.6
+---@field camera_pitch? number|afterglow.Moving  How far the camera looks up; below 0 down. -90…90 degrees, default 0
+---@field field_of_view? number|afterglow.Moving  Angle of the picture from top to bottom. 1…170 degrees, default 40
+---@field sun_color? number[]|string|afterglow.Moving  Colour of the fog towards a light; black: the same everywhere. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
+---@field sun? number[]|afterglow.Moving  Where that light stands: {0, 0} is the upper left corner, {1, 1} the lower right; may lie outside. {x, y}, each -10…10, default {0.5, 0.4}
+---@field sun_focus? number|afterglow.Moving  How close to the light the fog has its colour: the power of the angle's cosine. 0.5…1000, default 12
+---@field depth_space? "linear"|"device"|afterglow.OfTime  What the depth input holds: distance along the viewing axis, or device depth 0-1, made linear with near, far and reversed_z. default "linear"
+---@field near? number|afterglow.Moving  Near plane, for device depth. ≥ 1e-06 scene units, default 0.3
+---@field far? number|afterglow.Moving  Far plane, for device depth. ≥ 1e-06 scene units, default 1000
+---@field reversed_z? boolean|afterglow.OfTime  Device depth is 1 at the near plane. default true
 
 ---Blurs what is out of focus, by depth, as a camera with this lens does.
 ---@class afterglow.settings.depth_of_field : afterglow.EntryKeys
@@ -176,6 +213,18 @@
 ---@field subpixel_blending? number|afterglow.Moving  How much single pixels and thin lines are smoothed; softens the picture. 0…1, default 0.75
 ---@field quality? "low"|"medium"|"high"|afterglow.OfTime  How far the ends of an edge are looked for: low 6.5 pixels, medium and high 18.5, high with finer steps. default "high"
 
+---Stars, streaks or a foggy glow around bright lights.
+---@class afterglow.settings.glare : afterglow.EntryKeys
+---@field kind? "star"|"streaks"|"fog_glow"|afterglow.OfTime  star: rays around each light. streaks: rays along one line. fog_glow: a haze. default "star"
+---@field intensity? number|afterglow.Moving  Light of the glare, as a share of the light that glares; all rays of a light share it. 0: none. 0…100, default 0.18
+---@field threshold? number|afterglow.Moving  Brightness (largest channel) from which light glares; linear. 0…1000000, default 8
+---@field clamp? number|afterglow.Moving  No light counts for more than this; linear. 0…1000000, default 200
+---@field points? integer|afterglow.Moving  star: rays around a light. integer 2…16, default 6
+---@field angle? number|afterglow.Moving  star, streaks: direction of the first ray; 0 is to the right, 90 up. -360…360 degrees, default 15
+---@field size? number|afterglow.Moving  How far light goes, as a share of the picture's height: where a ray has lost 99 %; the extent of the haze. 0.005…2, default 0.25
+---@field dispersion? number|afterglow.Moving  star, streaks: how much longer red rays are than blue ones. 0: rays have the light's own colour. 0…1, default 0.4
+---@field tint? number[]|string|afterglow.Moving  Colour of the glare. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+
 ---Scan lines that jump, a shaking picture, colours that part.
 ---@class afterglow.settings.glitch : afterglow.EntryKeys
 ---@field scan_line_jitter? number|afterglow.Moving  How many scan lines jump sideways, and how far. 0…1, default 0.3
@@ -184,6 +233,14 @@
 ---@field rgb_split? number|afterglow.Moving  How far red and blue part; 1: up to a twenty-fifth of the picture each way. 0…1, default 0.1
 ---@field vertical_roll? number|afterglow.Moving  Speed at which the picture rolls; above 0 upwards. -30…30 pictures/s, default 0
 ---@field seed? integer|afterglow.Moving  Another number, another pattern. integer ≥ 0, default 0
+
+---The red and orange glow around highlights on film.
+---@class afterglow.settings.halation : afterglow.EntryKeys
+---@field intensity? number|afterglow.Moving  Share of the light that comes back through the film. 0: none. 0…100, default 0.18
+---@field radius? number|afterglow.Moving  Distance over which red falls to a third (1/e); green 0.6 and blue 0.4 of it. 0.5…500 px, default 14
+---@field threshold? number|afterglow.Moving  Brightness (largest channel) from which light comes back; linear. 0…1000000, default 1
+---@field clamp? number|afterglow.Moving  No light counts for more than this: film is exposed fully at some point; linear. 0…1000000, default 20
+---@field color? number[]|string|afterglow.Moving  How much each layer of the film gets of it. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 0.28, 0.06}
 
 ---Dust on the lens that lights up around bright lights.
 ---@class afterglow.settings.lens_dirt : afterglow.EntryKeys
@@ -200,6 +257,29 @@
 ---@field y_multiplier? number|afterglow.Moving  How much of it happens down. 0…1, default 1
 ---@field center? number[]|afterglow.Moving  The point that stays: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
 ---@field scale? number|afterglow.Moving  Enlarges the result around the centre, to hide edges that were drawn in. 0.01…5, default 1
+
+---Ghosts, a halo and a starburst from the brightest lights.
+---@class afterglow.settings.lens_flare : afterglow.EntryKeys
+---@field ghosts? number|afterglow.Moving  Strength of the ghosts. 0: none. 0…100, default 0.12
+---@field halo? number|afterglow.Moving  Strength of the ring. 0: none. 0…100, default 0.05
+---@field starburst? number|afterglow.Moving  Light of the rays, as a share of the light they come from. 0: none. 0…100, default 0.15
+---@field threshold? number|afterglow.Moving  Brightness (largest channel) from which light flares; linear. 0…1000000, default 12
+---@field clamp? number|afterglow.Moving  No light counts for more than this; linear. 0…1000000, default 150
+---@field count? integer|afterglow.Moving  How many ghosts. integer 1…8, default 7
+---@field spacing? number|afterglow.Moving  How far ghosts lie apart: a factor of their distance from the middle. 0.1…2, default 1
+---@field blades? integer|afterglow.Moving  Blades of the iris: the corners of ghosts. integer 3…12, default 6
+---@field rotation? number|afterglow.Moving  Turns the iris. -360…360 degrees, default 12
+---@field iris? number|afterglow.Moving  Radius of the iris's image, as a share of the picture's height. 0.005…0.1, default 0.045
+---@field halo_radius? number|afterglow.Moving  Radius of the ring, as a share of the picture's height. 0.05…1, default 0.42
+---@field ray_length? number|afterglow.Moving  Where rays have lost 99 % of their light, as a share of the picture's height. 0.01…2, default 0.22
+---@field dispersion? number|afterglow.Moving  How far colours part in ghosts, ring and rays. 0…1, default 0.5
+---@field tint? number[]|string|afterglow.Moving  Colour of it all. {r, g, b} with numbers ≥ 0, "#rrggbb", default {1, 1, 1}
+
+---Bars above and below, or at the sides, for another shape of picture.
+---@class afterglow.settings.letterbox : afterglow.EntryKeys
+---@field aspect? number|afterglow.Moving  Width over height of what stays: 2.39 scope, 1.85 flat, 1.78 television, 1.33 old film, 1 square. 0.1…20, default 2.39
+---@field color? number[]|string|afterglow.Moving  The bars; display-linear. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
+---@field offset? number|afterglow.Moving  Where the window lies: -1 at the top or left, 0 in the middle, 1 at the bottom or right. -1…1, default 0
 
 ---The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.
 ---@class afterglow.settings.lift_gamma_gain : afterglow.EntryKeys
@@ -264,6 +344,12 @@
 ---@class afterglow.settings.pixelate : afterglow.EntryKeys
 ---@field size? number|afterglow.Moving  Side of a square. 1: the picture as it is. 1…1024 px, default 8
 
+---Few flat tones, as in cartoons and prints; after tone mapping.
+---@class afterglow.settings.posterize : afterglow.EntryKeys
+---@field levels? integer|afterglow.Moving  Tones from black to white. integer 2…64, default 5
+---@field softness? number|afterglow.Moving  How much of a step is a slope: 0 hard edges, 1 one slope after the other. 0…1, default 0.3
+---@field intensity? number|afterglow.Moving  How much of it is mixed in. 0: none. 0…1, default 1
+
 ---Streaks towards a centre, as of a zoom or of speed.
 ---@class afterglow.settings.radial_blur : afterglow.EntryKeys
 ---@field intensity? number|afterglow.Moving  Share of the way to the centre that is smeared. 0: none. 0…1, default 0.15
@@ -288,11 +374,42 @@
 ---@field intensity? number|afterglow.Moving  Share of the sharpened picture. 0: none. 0…1, default 0.6
 ---@field contrast? number|afterglow.Moving  How much is sharpened: 0 CAS at its softest, 1 at its strongest. 0…1, default 0
 
+---Morphological anti-aliasing: smooth edges without blur; after tone mapping.
+---@class afterglow.settings.smaa : afterglow.EntryKeys
+---@field threshold? number|afterglow.Moving  Contrast of luma from which there is an edge. 0.01…0.5, default 0.08
+---@field search? integer|afterglow.Moving  How far the ends of an edge are looked for, each way. integer 1…112 px, default 32
+---@field corner_rounding? number|afterglow.Moving  How much corners are rounded: 0 keeps them sharp. 0…100 %, default 25
+
 ---Tints shadows and highlights in colours of their own.
 ---@class afterglow.settings.split_toning : afterglow.EntryKeys
 ---@field shadows? number[]|string|afterglow.Moving  Tint of the shadows; #808080 leaves them alone. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.21404114, 0.21404114, 0.21404114}
 ---@field highlights? number[]|string|afterglow.Moving  Tint of the highlights; #808080 leaves them alone. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0.21404114, 0.21404114, 0.21404114}
 ---@field balance? number|afterglow.Moving  Above 0 more of the picture counts as highlights, below 0 as shadows. -100…100 %, default 0
+
+---Soft contact shadows in corners and under things, by depth.
+---@class afterglow.settings.ssao : afterglow.EntryKeys
+---@field intensity? number|afterglow.Moving  How dark occluded places get. 0: no effect. 0…8, default 1
+---@field radius? number|afterglow.Moving  Nothing farther away than this occludes. 0.001…10000 m, default 0.6
+---@field max_radius? number|afterglow.Moving  The radius in the picture, as a share of its height, is held to this for what is near. 0.01…1, default 0.2
+---@field samples? integer|afterglow.Moving  Reads for each pixel. integer 4…64, default 16
+---@field bias? number|afterglow.Moving  How far something must rise above a surface to occlude, as a share of the radius: keeps flat things clean. 0…1, default 0.03
+---@field spare? number|afterglow.Moving  Brightness (largest channel) from which light is spared, fully at four times as much; linear. Lamps have no shadows. 0…1000000, default 1.5
+---@field color? number[]|string|afterglow.Moving  What occluded places are multiplied by. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
+---@field field_of_view? number|afterglow.Moving  Angle of the picture from top to bottom. 1…170 degrees, default 40
+---@field normals? "from_depth"|"view"|"world"|afterglow.OfTime  from_depth: surfaces are found from depth alone. view, world: from the normals of the picture, in the camera's space (x right, y up, z towards it) or the world's. default "from_depth"
+---@field camera_forward? number[]|afterglow.Moving  world: where the camera looks. {x, y, z}, each -1…1, default {0, 1, 0}
+---@field camera_up? number[]|afterglow.Moving  world: what is up for the camera. {x, y, z}, each -1…1, default {0, 0, 1}
+---@field depth_space? "linear"|"device"|afterglow.OfTime  What the depth input holds: distance along the viewing axis, or device depth 0-1, made linear with near, far and reversed_z. default "linear"
+---@field near? number|afterglow.Moving  Near plane, for device depth. ≥ 1e-06 scene units, default 0.3
+---@field far? number|afterglow.Moving  Far plane, for device depth. ≥ 1e-06 scene units, default 1000
+---@field reversed_z? boolean|afterglow.OfTime  Device depth is 1 at the near plane. default true
+
+---Temporal anti-aliasing: steadies noise and shimmering edges over frames, by motion vectors.
+---@class afterglow.settings.taa : afterglow.EntryKeys
+---@field feedback? number|afterglow.Moving  How much of the past is kept in each frame: 0.9 averages about ten frames. 0: no effect. 0…0.98, default 0.88
+---@field bounds? number|afterglow.Moving  How far the past may lie from the colours around, in standard deviations: more is steadier, and leaves trails. 0…10, default 1.25
+---@field direction? "to_previous"|"to_next"|afterglow.OfTime  Where motion vectors point: to the place in the frame before (Blender, most engines), or to that in the next one (Nuke's forward). default "to_previous"
+---@field motion_scale? number[]|afterglow.Moving  Factor of the motion vectors: {1, -1} for files with y downwards, {width, height} for motion in pictures. {x, y}, each -16384…16384, default {1, 1}
 
 ---Brings scene-linear light into display range.
 ---@class afterglow.settings.tone_mapping : afterglow.EntryKeys
@@ -305,6 +422,20 @@
 ---@field toe_length? number|afterglow.Moving  hable: how much of the darks the toe takes. 0…1, default 0.5
 ---@field shoulder_length? number|afterglow.Moving  hable: how much of the display's range is left to the brights. 0…1, default 0.6
 ---@field shoulder_angle? number|afterglow.Moving  hable: above 0 the shoulder is still rising at white, as of film that has more to give. 0…1, default 0.2
+
+---Goes over to another picture: dissolve, fade, wipe, iris, clock, blinds, scatter, push.
+---@class afterglow.settings.transition : afterglow.EntryKeys
+---@field progress? number|afterglow.Moving  0: this picture. 1: the other. 0…1, default 0
+---@field kind? "dissolve"|"fade"|"wipe"|"iris"|"clock"|"blinds"|"scatter"|"push"|afterglow.OfTime  dissolve: both at once. fade: through `color`. wipe: a line moves over. iris: a circle opens. clock: a hand goes round. blinds: strips. scatter: grains. push: one moves the other out. default "dissolve"
+---@field to? string|afterglow.OfTime  The other picture; none: `color`. default ""
+---@field layer? string|afterglow.OfTime  In place of `to`: a layer of the picture's own file, by name. default ""
+---@field color? number[]|string|afterglow.Moving  The other picture where none is given, and what `fade` goes through. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
+---@field angle? number|afterglow.Moving  wipe, push, blinds: where it moves to; 0 right, 90 up (push: the nearest of the four sides). clock: where the hand starts. -360…360 degrees, default 0
+---@field softness? number|afterglow.Moving  wipe, iris, clock, blinds, scatter: width of the edge, as a share of the whole way. 0…1, default 0.05
+---@field center? number[]|afterglow.Moving  iris, clock: the point it is about; {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
+---@field count? integer|afterglow.Moving  blinds: how many strips. integer 1…256, default 12
+---@field grain? number|afterglow.Moving  scatter: size of the grains. 1…512 px, default 24
+---@field seed? integer|afterglow.Moving  scatter: another number, another order. integer ≥ 0, default 0
 
 ---Darkens or colours the picture towards its corners.
 ---@class afterglow.settings.vignette : afterglow.EntryKeys
@@ -376,7 +507,9 @@
 ---@field chromatic_aberration fun(settings: afterglow.settings.chromatic_aberration): afterglow.Entry  Colour fringes that grow towards the corners.
 ---@field color_adjustments fun(settings: afterglow.settings.color_adjustments): afterglow.Entry  Exposure, contrast, colour filter, hue and saturation.
 ---@field color_blit fun(settings: afterglow.settings.color_blit): afterglow.Entry  Leaves green light alone, scaled; a test of the pipeline, like a night-vision tube.
+---@field crt fun(settings: afterglow.settings.crt): afterglow.Entry  A picture tube: scan lines, phosphor stripes, curved glass.
 ---@field curves fun(settings: afterglow.settings.curves): afterglow.Entry  Tone curves for all channels and each, and hue, saturation and luma by hue.
+---@field depth_fog fun(settings: afterglow.settings.depth_fog): afterglow.Entry  Fog and haze by depth, thinning with height, that scatters light.
 ---@field depth_of_field fun(settings: afterglow.settings.depth_of_field): afterglow.Entry  Blurs what is out of focus, by depth, as a camera with this lens does.
 ---@field directional_blur fun(settings: afterglow.settings.directional_blur): afterglow.Entry  Smears the picture along one direction, as a moving camera does.
 ---@field dual_kawase fun(settings: afterglow.settings.dual_kawase): afterglow.Entry  A wide, smooth, cheap blur of the whole picture.
@@ -385,9 +518,13 @@
 ---@field film_grain fun(settings: afterglow.settings.film_grain): afterglow.Entry  Grain of film: fine noise, new in each frame; best after tone mapping.
 ---@field firefly_stabilisation fun(settings: afterglow.settings.firefly_stabilisation): afterglow.Entry  Takes down single bright pixels that flash up in one frame of a sequence.
 ---@field fxaa fun(settings: afterglow.settings.fxaa): afterglow.Entry  Fast approximate anti-aliasing: smooths jagged edges; after tone mapping.
+---@field glare fun(settings: afterglow.settings.glare): afterglow.Entry  Stars, streaks or a foggy glow around bright lights.
 ---@field glitch fun(settings: afterglow.settings.glitch): afterglow.Entry  Scan lines that jump, a shaking picture, colours that part.
+---@field halation fun(settings: afterglow.settings.halation): afterglow.Entry  The red and orange glow around highlights on film.
 ---@field lens_dirt fun(settings: afterglow.settings.lens_dirt): afterglow.Entry  Dust on the lens that lights up around bright lights.
 ---@field lens_distortion fun(settings: afterglow.settings.lens_distortion): afterglow.Entry  Bends the picture as a wide lens (barrel) or a long one (pincushion) does.
+---@field lens_flare fun(settings: afterglow.settings.lens_flare): afterglow.Entry  Ghosts, a halo and a starburst from the brightest lights.
+---@field letterbox fun(settings: afterglow.settings.letterbox): afterglow.Entry  Bars above and below, or at the sides, for another shape of picture.
 ---@field lift_gamma_gain fun(settings: afterglow.settings.lift_gamma_gain): afterglow.Entry  The colourist's three wheels: lift for the darks, gamma for the middle, gain for the brights.
 ---@field lut fun(settings: afterglow.settings.lut): afterglow.Entry  Colours by a look-up table from a file (.cube and others).
 ---@field motion_blur fun(settings: afterglow.settings.motion_blur): afterglow.Entry  Blurs what moves, by motion vectors.
@@ -395,11 +532,16 @@
 ---@field ocio_transform fun(settings: afterglow.settings.ocio_transform): afterglow.Entry  Colours from one space of an OpenColorIO configuration to another, with looks.
 ---@field outline fun(settings: afterglow.settings.outline): afterglow.Entry  Ink lines along edges of depth, of normals, or of both.
 ---@field pixelate fun(settings: afterglow.settings.pixelate): afterglow.Entry  Large square pixels, each the mean of what it covers.
+---@field posterize fun(settings: afterglow.settings.posterize): afterglow.Entry  Few flat tones, as in cartoons and prints; after tone mapping.
 ---@field radial_blur fun(settings: afterglow.settings.radial_blur): afterglow.Entry  Streaks towards a centre, as of a zoom or of speed.
 ---@field shadows_midtones_highlights fun(settings: afterglow.settings.shadows_midtones_highlights): afterglow.Entry  Colours and brightens shadows, midtones and highlights, each by itself.
 ---@field sharpen fun(settings: afterglow.settings.sharpen): afterglow.Entry  Contrast-adaptive sharpening of fine detail; best after tone mapping.
+---@field smaa fun(settings: afterglow.settings.smaa): afterglow.Entry  Morphological anti-aliasing: smooth edges without blur; after tone mapping.
 ---@field split_toning fun(settings: afterglow.settings.split_toning): afterglow.Entry  Tints shadows and highlights in colours of their own.
+---@field ssao fun(settings: afterglow.settings.ssao): afterglow.Entry  Soft contact shadows in corners and under things, by depth.
+---@field taa fun(settings: afterglow.settings.taa): afterglow.Entry  Temporal anti-aliasing: steadies noise and shimmering edges over frames, by motion vectors.
 ---@field tone_mapping fun(settings: afterglow.settings.tone_mapping): afterglow.Entry  Brings scene-linear light into display range.
+---@field transition fun(settings: afterglow.settings.transition): afterglow.Entry  Goes over to another picture: dissolve, fade, wipe, iris, clock, blinds, scatter, push.
 ---@field vignette fun(settings: afterglow.settings.vignette): afterglow.Entry  Darkens or colours the picture towards its corners.
 ---@field white_balance fun(settings: afterglow.settings.white_balance): afterglow.Entry  Takes a colour cast away or adds one: temperature and tint.
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Anamorphic streaks: the horizontal flares of an anamorphic lens. A pyramid that is halved across alone; on the way up each level takes a
 -- share of the coarser one (after K. Takahashi's Kino/Streak for Unity, whose settings and tint these are).
 local fx = require "afterglow"

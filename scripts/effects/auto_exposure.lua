@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Auto exposure: brings every picture to middle grey, and follows changes over time as an eye or a camera does. A histogram of log2 luminance
 -- with its dark and bright ends left out, as in Unity (HDRP) and Unreal; adaptation as in Unreal: even in stops while far off, exponential near
 -- the end, and the same whatever the frame rate. The first frame of a sequence is exposed at once.

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Bloom: light that is too bright for the picture spreads around itself.
 -- A Gaussian pyramid of the light above a soft threshold, added to or scattered over the picture.
 -- After Catlike Coding, "Custom SRP" parts 11 (Post Processing) and 12 (HDR): passes, weights and order are theirs.

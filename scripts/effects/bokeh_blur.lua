@@ -1,5 +1,6 @@
+-- SPDX-License-Identifier: MIT
 -- Bokeh blur: out of focus as through an iris, everywhere alike (`depth_of_field` looks at distance). Wide irises work on a smaller picture. There
--- every second texel of the iris is read across and down, and the mean of 2×2 pixels fills the gaps between them exactly. math.md §27.
+-- every second texel of the iris is read across and down, and the mean of 2×2 pixels fills the gaps between them exactly. math.md §36.
 local fx = require "afterglow"
 
 -- Radius of the smallest iris with `blades` straight sides (fewer than 3: round) that has the point on its rim.

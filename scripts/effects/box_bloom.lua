@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Box bloom: a cheaper, harder bloom with a linear threshold and four-sample blurs, good for display-referred pictures.
 -- After "Unity post-processing: bloom by box blur" tutorials; where their listings disagree or read an image while it is written, the
 -- well-defined reading is taken: the way up starts at the second coarsest level and uses the stored sizes.

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- CDL: the Color Decision List of the American Society of Cinematographers (v1.2): slope, offset and power for each channel, then
 -- saturation around Rec.709's luma. It is how looks travel between set, edit and grading. On scene-linear light there is no white to
 -- hold on to: values above 1 stay what they are. Files (.cc, .cdl) are read by `lut`.

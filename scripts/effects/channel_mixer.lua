@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Channel mixer: each channel of the result is a weighted sum of the picture's, as in Unity, Photoshop and film printing.
 local fx = require "afterglow"
 

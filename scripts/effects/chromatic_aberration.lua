@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Chromatic aberration: a lens that magnifies colours differently. Along a line towards the centre red is read first and blue last; length
 -- and growth with the cube of the distance are Unity's (UberPost, URP), whose three reads are `samples = 3`. More make a spectrum of it,
 -- as HDRP does with a lookup table; there are as many as fringes are long.

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Colour adjustments in the order exposure, contrast, filter, hue, saturation, as Unity's volume component of that name has them.
 -- A step that is neutral is not compiled in; when all are, the effect does not run, and does not clamp to 60 either.
 local fx = require "afterglow"

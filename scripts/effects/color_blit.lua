@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Colour blit: green light alone. The smallest effect there is: one setting, one pass; a pattern to copy.
 -- After Unity's URP example of a full-screen blit.
 local fx = require "afterglow"

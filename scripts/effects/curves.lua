@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Curves: tone by brightness, for all channels or each, and hue, saturation and luma by hue. A tone curve is a gain in stops through
 -- five points on the scale of stops from middle grey (0.18): blacks −6, shadows −3, midtones 0, highlights +3, whites +6; it goes on flat
 -- beyond them. So it works on light of any brightness, and black stays black. Between the points: cubic pieces whose slopes are the harmonic

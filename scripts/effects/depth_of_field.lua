@@ -1,7 +1,8 @@
+-- SPDX-License-Identifier: MIT
 -- Depth of field: what is not at the focus distance blurs, by the circle of confusion of a thin lens. What lies in front of the focus and what
 -- lies behind are blurred apart, in a small picture, and laid over the sharp one at full size: after J. Jimenez, "Next Generation Post Processing
 -- in Call of Duty: Advanced Warfare" (SIGGRAPH 2014) and G. Abadie, "A Life of a Bokeh" (SIGGRAPH 2018). Each pixel reads
--- few texels, and its neighbours those between, so that none of them shows. Settings as of Unity's URP (Bokeh) and Blender's cameras. math.md §26.
+-- few texels, and its neighbours those between, so that none of them shows. Settings as of Unity's URP (Bokeh) and Blender's cameras. math.md §35.
 local fx = require "afterglow"
 
 return fx.effect {

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Directional blur: a camera that moves while the shutter is open. n·m equally spaced reads on a line are m reads close together of an image
 -- that has been blurred by n reads far apart, so that 32 reads twice do for a thousand pixels. n·m reads, each for one part of the line, and
 -- at most a pixel apart: where their number is the length, they are a pixel apart and the line is even.

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Dual Kawase blur: the cheapest wide blur there is, five reads a level down and eight up. After M. Bjørge, "Bandwidth-Efficient Rendering",
 -- SIGGRAPH 2015 (ARM). Frosted glass behind titles and menus, dreamy overlays.
 local fx = require "afterglow"

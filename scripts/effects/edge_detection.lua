@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Edge detection on perceived brightness, by the gradient operators of Sobel, Scharr and Roberts. Each is scaled so that a straight step
 -- from black to white is 1. For lines of objects instead of brightness see `outline`.
 local fx = require "afterglow"

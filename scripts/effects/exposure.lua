@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Exposure: light times 2^ev, as by a camera's shutter. It comes first of all that is done at `post_process`, so that whatever asks how bright light
 -- is (the threshold of a bloom, the tone curve) finds the light as it was exposed. `auto_exposure` meters what it gets and would take
 -- this back: beside it, use its `compensation`.

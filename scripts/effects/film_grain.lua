@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Film grain: noise that is strongest in the darks, another pattern for each frame and the same one whenever that frame is made. Response to
 -- luminance as in Unity (HDRP and URP); the noise is computed instead of read from scans.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Firefly stabilisation: takes single bright pixels that flash up for a frame down to what stands around them or was there before. A pixel keeps its
 -- light when its surroundings are about as bright (two pixels of the ring at distance 2: edges, lines, highlights of some size) or when each of the
 -- last frames had such light within `search` pixels (small lights, also moving ones). Colours are only scaled down, never mixed with other frames,

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- FXAA: smooths jagged edges by what can be seen in the picture alone. Timothy Lottes' FXAA 3.11, in the form of Catlike Coding's
 -- "Custom SRP 17: FXAA", with its settings. Luma (perceptual brightness) is √luminance.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Glitch: an analogue signal that has come loose. Jitter of scan lines and shaking as in K. Takahashi's KinoGlitch for Unity (AnalogGlitch),
 -- with its scales; random numbers come from the frame and the seed alone, and shifts are whole pixels that wrap around.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Lens dirt: dust and smudges on the front glass, seen where bright light falls through them. The light is a wide blur of what exceeds a
 -- threshold; the dirt is made of smudges and of grains at random places instead of read from a picture. It is out of focus, and the light behind
 -- it wide: both are made at a quarter of the size.

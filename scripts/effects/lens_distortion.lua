@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Lens distortion: barrel and pincushion. Unity's model (URP, UberPost: DistortUV): a point at distance r of the centre is read at
 -- tan(θr)/σ for a barrel and atan(σr)/θ for a pincushion, θ = min(1.6·100·|intensity|, 160) degrees, σ = 2 tan(θ/2).
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Lift, gamma, gain: the three wheels of a colourist, with Unity's scales (ColorUtils.PrepareLiftGammaGain). A colour turns a wheel
 -- (only its hue and saturation count, white is the middle), the offset beside it turns the ring.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- LUT: colours by a look-up table in a file. OpenColorIO reads the file (.cube of Adobe and Resolve, .3dl, .csp, .spi1d, .spi3d, .clf, …); its steps
 -- are done in order: matrices and ranges (the domain of a .cube), curves linearly between their entries, cubes tetrahedrally between the
 -- four nearest. Tables know colours from 0 to 1 alone: what is outside of a table's domain gets the colour of its edge.

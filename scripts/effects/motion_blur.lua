@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Motion blur from motion vectors: the reconstruction filter of M. McGuire, P. Hennessy, M. Bukowski, B. Osman, "A Reconstruction Filter for
 -- Plausible Motion Blur" (I3D 2012). The longest motion of each tile and of its neighbours says along which line a pixel reads; a
 -- read counts when its own motion carries it to the pixel, when the pixel's motion uncovers it, or when both are blurred together; depth, when

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- OpenColorIO display: the view of a studio's configuration, in place of a tone curve. The shader is OpenColorIO's own, so that every view that
 -- it can show is done, and the same to 1e-4 as its CPU processor shows it. The configuration is a file beside the preset or on the search path, else
 -- the one that the variable OCIO of the environment names.

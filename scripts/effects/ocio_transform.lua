@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- OpenColorIO transform: from one colour space of a configuration to another, through looks where they are given; by OpenColorIO's own shader, the same to
 -- 1e-4 as its CPU processor. A space that is not given is linear Rec.709, the space that looks work in (how a configuration is asked for it: see
 -- ocio_display). Values go out as the space has them: whoever goes to a logarithm has to come back before the tone curve.

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Outlines where depth or normals change from pixel to pixel.
 -- After "HDRP full-screen outlines" (custom pass, offset and ddx/ddy variants), with its rounding, border and scale errors mended:
 -- neighbours are whole pixels, reads are clamped to the picture, every factor is a setting.

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Pixelate: the picture in squares, each of the mean of its light. Means do not flicker as single samples would. Squares start at the upper
 -- left corner; those at the right and lower edge may be cut.
 local fx = require "afterglow"

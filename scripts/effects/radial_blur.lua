@@ -1,6 +1,7 @@
+-- SPDX-License-Identifier: MIT
 -- Radial blur: a zoom while the shutter is open. Reads on the way to the centre lie in a fixed ratio to each other, so that n·m of them are n
 -- reads far apart of an image that has been blurred by m reads close together: there are as many as the longest streak needs. The streaks are
--- made in a smaller picture; around the centre, where they are short, the sharp one stands. math.md §28.
+-- made in a smaller picture; around the centre, where they are short, the sharp one stands. math.md §37.
 local fx = require "afterglow"
 
 return fx.effect {

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Shadows, midtones, highlights: a factor for each, shared out by luminance, as Unity's component of that name has it.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Split toning: one tint for the shadows and another for the highlights, by soft light in gamma space, as Unity and photographers' programs
 -- do it. Middle grey (#808080) is neutral.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Tone mapping: one curve per look, chosen by name. Everything before it is scene-linear light, everything behind it is the light of a display,
 -- 0 to 1. docs/tone_mapping.md shows what each curve does to greys and to saturated colours, with its source.
 local fx = require "afterglow"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Vignette: light falls off towards the corners. Formula and scales of Unity's URP (UberPost: ApplyVignette).
 local fx = require "afterglow"
 

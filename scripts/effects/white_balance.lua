@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- White balance: the picture as if it had been lit by another white, by von Kries adaptation in CAT02's cone space. Temperature and tint
 -- move the white along and across the daylight locus as in Unity (ColorUtils.ColorBalanceToLMSCoeffs). All of it is one matrix.
 local fx = require "afterglow"

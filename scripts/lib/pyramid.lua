@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Pyramids of the picture that is delivered. An effect that halves its source again and again reaches as far as the source has pixels; a
 -- preview, which runs smaller (g.length_scale < 1), has fewer. So the levels are counted on the delivered picture, and those that are finer than
 -- the preview are left out: there its own pixels stand for them.

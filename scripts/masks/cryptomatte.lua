@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Objects and materials by name.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- By distance.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- A picture beside the preset.
 local fx = require "afterglow"
 

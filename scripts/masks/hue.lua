@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- By hue.
 local fx = require "afterglow"
 

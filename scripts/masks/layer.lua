@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- A layer that the picture brings along.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- A gradient.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- By brightness.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- An ellipse.
 local fx = require "afterglow"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // high + tint · color. Alpha of `high`.
 #include "lib/color.glsl"
 

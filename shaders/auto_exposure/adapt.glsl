@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From the exposure value of the frame before towards the wanted one: `speed` stops a second while further than kNear off, then
 // exponentially with the same slope at the joint. Exact for any time, so that two short steps are one long one.
 uniform float seconds;

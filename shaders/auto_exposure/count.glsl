@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Two bins of the histogram of one row of the grid: weight and weight·EV of each. A value between two bins counts for both, so that nothing
 // jumps; their means are those of the values, so that the width of the bins does not show.
 #include "lib/exposure.glsl"

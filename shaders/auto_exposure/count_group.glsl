@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The same as count.glsl: a workgroup makes the bins of one row, and reads each cell of it once.
 #include "lib/exposure.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lib/color.glsl"
 
 uniform sampler2D adapted;  // one texel: the exposure value that is middle grey

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mean exposure value of the pixels that a cell of the grid covers, and how much the cell counts.
 #include "lib/exposure_grid.glsl"
 

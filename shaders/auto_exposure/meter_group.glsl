@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The same as meter.glsl: a workgroup reads the pixels of a cell side by side.
 #include "lib/workgroup.glsl"
 #include "lib/exposure_grid.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mean of the histogram without its ends: the exposure value that the picture asks for.
 #include "lib/exposure.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The same as wanted.glsl: a workgroup adds the rows, a column of them each, and goes through the bins.
 #include "lib/exposure.glsl"
 

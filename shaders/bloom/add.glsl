@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // high + intensity · color, where `color` is the enlarged image of the level below. Alpha of `high`.
 #include "lib/color.glsl"
 

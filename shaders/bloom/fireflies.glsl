@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Half-size prefilter that fades fireflies: five samples on a diagonal cross, each thresholded first, then averaged with weights
 // 1/(luminance + 1), so that one very bright sample no longer outweighs the four others (Catlike Coding, Custom SRP 12: "HDR").
 // Each bilinear sample already covers 2×2 texels: together they see 6×6 without its four sides' middles.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light that is brighter than `most` counts as if it were this bright.
 #include "lib/soft_knee.glsl"
 

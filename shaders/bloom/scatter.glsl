@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Spreads light instead of adding it: amount 0 keeps `high`, 1 leaves the enlarged image of the level below. Alpha of `high`.
 #include "lib/color.glsl"
 

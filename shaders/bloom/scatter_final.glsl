@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // lerp(high, color + (high − T(high)), amount), written so that it is `high` to the last bit where nothing blooms: what is spread is only the light that passed the threshold T, so the light that T took
 // away is given back and a picture of one colour stays as it is (Catlike Coding, Custom SRP 12: "Scattering Threshold").
 #include "lib/soft_knee.glsl"

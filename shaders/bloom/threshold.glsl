@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Keeps the part of the light that blooms.
 #include "lib/soft_knee.glsl"
 

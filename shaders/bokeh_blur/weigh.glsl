@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colour times its weight, and the weight: 1 + highlights·luminance² over its largest value, so that nothing outgrows half floats.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // c · max(0, b − t)/max(b, 1e-5): a hard threshold on brightness, linear, without a knee.
 #include "lib/color.glsl"
 

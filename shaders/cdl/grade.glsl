@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // ASC CDL: (c·slope + offset)^power, then saturation around Rec.709's luma. Light is not held to 1; what offset takes below black is black.
 #include "lib/color.glsl"
 

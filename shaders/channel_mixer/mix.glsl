@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A 3×3 matrix on colours, given as the rows of its result.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads at t = 0…1 of the way from the pixel to its end point, weighted red 1 − 2t, green 1 − |2t − 1|, blue 2t − 1: as many as the way has
 // pixels, so that no read shows by itself.
 uniform sampler2D source;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Exposure, contrast, filter, hue and saturation in this order (Unity's colour adjustments). A step that is neutral is not compiled in.
 #include "lib/color.glsl"
 #include "lib/hue.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Green light alone, scaled: c · (0, intensity, 0, 1).
 uniform float intensity;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An entry's result over what it was given, everywhere alike.
 #include "lib/blend.glsl"
 

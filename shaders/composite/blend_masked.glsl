@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An entry's result over what it was given, as far as its mask says.
 #include "lib/blend.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A mask and numbers: factor · mask + offset.
 uniform float factor;
 uniform float offset;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Hue, saturation and luma by hue: six points, smoothsteps between them. What has no hue stays: luma counts by HSV's saturation, and the
 // others leave greys alone by themselves.
 #include "lib/color.glsl"

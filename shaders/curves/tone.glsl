@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A gain in stops by brightness: a cubic through five points, three stops apart around middle grey, for each channel.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The widest circle of a tile and its eight neighbours: whatever reaches a pixel of the tile. In alpha, below 0 as all in front of the focus.
 uniform sampler2D source;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What lies at the focus or behind it, blurred by its own circle: sum over the iris, weights in alpha. Where something in front hides it, what
 // is seen around stands for it. What is sharp counts next to nothing: it is not seen in the small picture.
 #include "blurred.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mean over 2×2 pixels, which together have read every texel. It lies half a pixel further right and down.
 uniform sampler2D source;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The picture where it is sharp, what is blurred behind it where it is not, and over both what is blurred in front.
 #include "blurred.glsl"
 #include "circle.glsl"

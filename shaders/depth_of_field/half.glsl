@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Half the size again, as `small` does it: of four the widest circle counts, and the light of those whose circles are like it.
 uniform sampler2D source;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The iris, and which texels a pixel reads.
 //
 // A pixel reads every second texel across and down, and its neighbours those between, so that the mean over 2×2 pixels has read each texel

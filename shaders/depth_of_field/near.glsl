@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What lies in front of the focus, spread over everything around it: its light, and how much of what is behind it covers, in alpha.
 #include "blurred.glsl"
 #include "lens.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Three levels in one image: the finest at the left, the others one below the other beside it.
 uniform sampler2D source;
 uniform sampler2D second;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The widest circle in front of the focus of each `block` texels along one axis, in alpha, not below 0.
 layout(constant_id = 0) const bool down = false;  // along y; else along x
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Length of the gradient of perceived brightness, above a threshold, as the strength of a line.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light times a factor.
 #include "lib/color.glsl"
 

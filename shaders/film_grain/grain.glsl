@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // c·(1 + strength·noise·response curve): grain scales with light, so black stays black and colours keep their hue where it is grey.
 #include "lib/color.glsl"
 #include "lib/noise.glsl"

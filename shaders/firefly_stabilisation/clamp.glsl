@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scales down what is brighter than its surroundings and its past allow.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The brightness of this frame and of the three before it.
 #include "lib/color.glsl"
 

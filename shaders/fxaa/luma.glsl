@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Perceptual brightness.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Along each edge the way to its two ends tells how the edge slants; the pixel is then read from between itself and the other side.
 layout(constant_id = 0) const int quality = 2;
 

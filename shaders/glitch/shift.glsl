@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads each channel from another place of the same or a rolled line.
 #include "lib/noise.glsl"
 

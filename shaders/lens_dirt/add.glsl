@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // high + intensity · color. Alpha of `high`.
 #include "lib/color.glsl"
 

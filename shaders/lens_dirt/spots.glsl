@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opacity of the dirt, 0…1: smudges, large grains of dust out of focus with brighter rims, and specks.
 #include "lib/noise.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads the picture at the point where the bent ray comes from; points outside read the edge, its mirror image, or nothing.
 #include "lib/angle.glsl"
 

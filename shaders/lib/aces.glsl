@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The fitted ACES transform (Unity core render pipeline, ACES.hlsl: AcesTonemap(unity_to_ACES(x)); after the Academy's RRT and sRGB ODT
 // with their curves replaced by one rational function per channel, S. Hill and K. Narkowicz).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tangents to 1e-7 on every device: Vulkan allows its own `tan` and `atan` 4096 units in the last place, and some take them. Polynomials of
 // M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 4.3.101 and 4.4.49.
 

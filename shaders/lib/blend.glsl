@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An entry's result over what it was given (math.md §20). Modes are numbers in the order of the documents.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What several effects need to know about light. Colours are scene-linear Rec.709.
 
 /// The largest value an effect returns. The source of a stack is at most this; keeping to it, sums and products of two colours'

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scene-linear light to what 8-bit display files hold.
 
 /// The sRGB curve (IEC 61966-2-1) of 0 ≤ x ≤ 1: 12.92·x up to 0.0031308, then 1.055·x^(1/2.4) − 0.055, that is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which of the two nearest 8-bit codes a pixel gets, so that an area of them has the light that was meant.
 #include "lib/display.glsl"
 

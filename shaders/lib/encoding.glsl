@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How colours are encoded for people's tables: scene-linear Rec.709 to one of these, and back (math.md §24 has the papers). Light beyond
 // what a float holds of a curve's inverse is cut off: it stays finite, and rises as far as it goes.
 

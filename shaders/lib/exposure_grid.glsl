@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A cell of the grid over the picture.
 #include "lib/color.glsl"
 

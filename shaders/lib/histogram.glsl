@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A histogram that the invocations of a workgroup fill together: for compute shaders. Counts are whole numbers, so that it does not matter who
 // comes first. Between filling and reading stands a `barrier()` that all invocations reach.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Turning hues in HSV, rounding as little as 32 bits allow.
 //
 // The definition goes colour → (H, S, V) → H + shift → colour, with an ε of 1e-4 in both divisions (S. Hocevar's RGB to HSV, as in Unity's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Contrast in Alexa LogC (El 1000), as in Unity's colour adjustments: Lin((LogC(x) − p)·k + p) with the pivot p = 0.4135884, ACEScc's middle
 // grey. LogC(x) = c·log10(v) + d with v = 5.555556x + 0.047996, so the whole is a power around the pivot's v₀ = 10^((p − d)/c):
 //   x' = (v·(v/v₀)^(k−1) − 0.047996)/5.555556.

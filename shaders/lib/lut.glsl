@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Look-up tables as g:lookup lays them out (see engine/image/lut_file.h): where the numbers are, and what to do with them. The reads stand in
 // the shader itself, where the engine can choose how images are read.
 

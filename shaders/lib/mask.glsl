@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What several masks need. A mask is how much a pixel counts, 0…1, in every channel.
 
 // 1 between `from` and `to`, 0 beyond `soft` outside of them (> 0), smooth between.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is left of 1: logarithms of numbers near 1 and powers that differ little from 1, with the digits of the difference.
 
 /// log(1 + x), x > −1.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Noise from integers: the same on every device and in every run.
 
 /// Three random words of three (pcg3d: M. Jarzynski, M. Olano, "Hash Functions for GPU Rendering", JCGT 9/3, 2020).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What every shader of an effect can call. The engine puts this text into each kernel by itself: do not include it.
 //
 // Pixels and texels: (0, 0) is the upper left one, y grows downwards, the centre of texel i is at i + 1/2. Reads outside an

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lib/color.glsl"
 
 /// Bloom's threshold with a quadratic knee (Catlike Coding, Custom SRP 11: "Bloom"; the curve is Unity's):

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the invocations of a workgroup find together: for compute shaders. All of them must call these functions, at the same place of
 // the program, never inside of an `if` that only some take. Values are combined as a tree whose shape depends on the size of the workgroup alone,
 // so that the same values always give the same bits.

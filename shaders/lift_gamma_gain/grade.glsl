@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // (c·gain + lift)^power; what lift takes below black is black.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // c → lerp(c, decode(steps(encode(c))), intensity): the steps of a look-up table that g:lookup read, one behind the other.
 #include "lib/color.glsl"
 #include "lib/encoding.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One channel of a layer, or its luminance.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Coverage of the wanted objects in one image of a cryptomatte, which has two ranks of (id, coverage) a pixel, added to that of the images
 // before it.
 layout(constant_id = 0) const bool first = true;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lib/mask.glsl"
 
 uniform float from;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One channel of a picture of any size, stretched over this one.
 #include "lib/color.glsl"
 

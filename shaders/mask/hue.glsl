@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // By hue on the circle of degrees; greys have none, so colours count by their saturation, (max − min)/max.
 #include "lib/mask.glsl"
 

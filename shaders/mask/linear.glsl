@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From 0 at one point to 1 at the other, the same along lines across; points in pictures.
 uniform vec2 from;
 uniform vec2 to;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lib/color.glsl"
 #include "lib/mask.glsl"
 

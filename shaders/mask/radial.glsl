@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // 1 within an ellipse, 0 beyond `soft` outside of it, in picture heights.
 uniform vec2 center;  // in pictures
 uniform vec2 radius;  // in picture heights, > 0

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mean along the longest motion around, over whole pixels. Each read counts for what it covers of the pixel while the shutter is open.
 #include "lib/color.glsl"
 #include "lib/noise.glsl"

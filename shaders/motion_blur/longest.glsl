@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The longest motion of each `block` texels along one axis; of equal ones the first.
 layout(constant_id = 0) const bool down = false;  // along y; else along x
 

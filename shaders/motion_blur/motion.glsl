@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Half the way that a pixel moves while the shutter is open, held to max_radius (xy), its depth (z), and the way's length before it was held (w).
 layout(constant_id = 0) const bool has_depth = false;
 

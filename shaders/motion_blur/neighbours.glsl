@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The longest motion of a tile and its eight neighbours; of equal ones the first, from the upper left.
 uniform sampler2D source;
 

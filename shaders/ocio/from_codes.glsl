@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Codes that a display gets, to light: the inverse of the sRGB curve that outputs encode with.
 #include "lib/encoding.glsl"
 

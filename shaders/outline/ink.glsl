@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Draws the lines (their strength is the colour that flows in) over the picture. Alpha of the picture.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How strongly a line is drawn at each pixel, 0…1, from differences of depth, of normals, or of both.
 // One-sided differences to the right and below: a line sits on the left or upper pixel of an edge. Differences are taken before they
 // are scaled, so that far surfaces keep their digits.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The last step to an 8-bit display file without transparency: the nearest codes.
 #include "lib/display.glsl"
 

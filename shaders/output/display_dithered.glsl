@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The same with blue noise between two codes.
 #include "lib/dither.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The last step to an 8-bit display file with transparency: colours are divided by the alpha of the original picture, which no effect
 // changes, in linear light; where it is 0 they stay undivided. The nearest codes.
 #include "lib/display.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Behind each pass of a frame that is traced (--nan-policy zero): what is not finite becomes 0.
 #include "lib/finite.glsl"
 

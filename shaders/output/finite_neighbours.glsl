@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Behind each pass of a frame that is traced (--nan-policy neighbour): what is not finite becomes the mean of the finite values of the
 // same channel in the smallest square around it that has one, up to 4 pixels away; 0 where none has.
 #include "lib/finite.glsl"

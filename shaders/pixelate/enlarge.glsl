@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Each pixel shows its block; one that lies on two or four shows as much of each as it covers. Alpha of the picture.
 uniform sampler2D source;
 uniform sampler2D picture;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mean of what each block covers along one axis. Blocks of whole sides cover whole texels; others share the texels at their ends.
 layout(constant_id = 0) const bool down = false;  // along y; else along x
 

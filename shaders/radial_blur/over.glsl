@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The smeared picture, which is smaller, where its streaks are longer than its pixels; the sharp one around the centre. Alpha of the picture.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mean of `count` reads on the way to the centre, each `ratio` times as far from it as the one before, weighted by how far.
 uniform sampler2D source;
 uniform vec2 center;  // 0…1

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // c·(S·s + M·m + H·h): s, m, h add up to 1 and come from luminance (Unity's LutBuilder: "Shadows, midtones, highlights").
 #include "lib/color.glsl"
 

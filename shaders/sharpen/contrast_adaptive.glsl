@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // FidelityFX CAS: a cross of negative weights −peak·√(room/brightest), where room is what lies between the darkest of the 3×3 pixels and
 // black, or the brightest and white, whichever is less.
 #include "lib/color.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Soft light with two tints, shared out by luminance; in gamma 2.2 (Unity's LutBuilder: "Split toning").
 #include "lib/color.glsl"
 

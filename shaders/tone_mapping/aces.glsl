@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Filmic: the fitted ACES transform. Inputs are held to 0…60 as in all tone curves here.
 #include "lib/aces.glsl"
 

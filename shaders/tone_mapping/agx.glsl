@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // AgX (T. Sobotka, 2022) with Blender 4.0's matrices over Rec.2020 and B. Wrensch's looks: light of 10 stops below middle grey to 6.5 above,
 // as a logarithm, through Sobotka's sigmoid; the matrix before it pulls saturated light towards white, so that bright light bleaches as on film.
 layout(constant_id = 0) const int look = 0;  // 0 base, 1 punchy, 2 golden

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // H. Uchimura, "HDR theory and practice" (CEDEC 2017), the curve of Gran Turismo SPORT with its published numbers: a toe, a straight line
 // from m to m + l₀ that leaves light as it is, an exponential shoulder towards P = 1.
 vec4 apply(vec4 color) {

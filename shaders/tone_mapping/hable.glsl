@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Piecewise power curves (J. Hable, "Filmic Tonemapping with Piecewise Power Curves", 2017): a toe, a line, a shoulder. The numbers of the three
 // are made by the effect; x is light over white.
 #include "lib/near_one.glsl"

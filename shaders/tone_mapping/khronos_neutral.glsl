@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Khronos PBR Neutral (E. Chiu, B. Hearne et al., 2024): colours below 0.8 keep what a material's base colour was, minus the 4 % that a
 // dielectric reflects; above, the peak is compressed and moves towards white.
 vec4 apply(vec4 color) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Unity's neutral curve: Hable's N(x) = (x(ax + cb) + de)/(x(ax + b) + df) − e/f with a=0.2 b=0.29 c=0.24 d=0.272 e=0.02 f=0.3, as k·N(kx)
 // with k = 1/N(5.3), so that 5.3/k = 4.035 is white. Over one denominator N loses its constant term,
 //   N(x) = x(a(f − e)x + b(cf − e)) / (f(x(ax + b) + df)),

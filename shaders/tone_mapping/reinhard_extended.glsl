@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reinhard et al. 2002 (eq. 4) on luminance Y: Y' = Y(1 + Y/w²)/(1 + Y), so that Y = w becomes 1. Colours keep their ratios.
 #include "lib/color.glsl"
 

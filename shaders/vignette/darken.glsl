@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // c · lerp(corner, 1, max(1 − d², 0)^power), d the distance from the centre in pictures, times `extent`.
 #include "lib/color.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli_test.h"
 
 #include <OpenImageIO/imageio.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the tests of the command line share: a folder of their own, small pictures and presets, and ways to look at the
 // outcome.
 #pragma once

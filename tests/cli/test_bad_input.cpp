@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Exit code 4 for pictures that cannot be used: one line, at once, and nothing left behind.
 #include <OpenImageIO/imageio.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Exit code 3: whatever is wrong with a preset, an effect or a shader.
 #include "cli_test.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // bake: a look as a table, its error, and what cannot be one.
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // bench and calibrate as users run them; runs that take their choice from a calibration.
 #include <nlohmann/json.hpp>
 

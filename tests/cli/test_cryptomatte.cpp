@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A whole file of Blender's, with its cryptomattes by object and by material: masks are what Blender's own Cryptomatte
 // node makes of the same file (tests/images/blender/cryptomatte.py made both).
 #include <OpenImageIO/imagebuf.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Devices: none, the wrong one, and validation-clean presets.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // explain, and volumes and animated settings as users run them.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>

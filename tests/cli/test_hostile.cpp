@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What strangers' files make the program say and do: exit codes of the README, one line, nothing for the terminal to
 // obey.
 #include <OpenImageIO/imageio.h>

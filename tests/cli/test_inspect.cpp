@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // check, graph and effects: what they tell about a preset.
 #include <nlohmann/json.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `cmake --install`: a tree that works from wherever it is put, and a package that other projects find.
 #include "cli_test.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // --lock writes down what a run was made with; --locked refuses another look.
 #include <nlohmann/json.hpp>
 

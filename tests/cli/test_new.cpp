@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // new effect: what it writes works at once and passes its own test.
 #include <cstdlib>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // --nan-policy as users see it: values that are not finite in pictures and in what passes make, named and mended.
 #include <OpenImageIO/imageio.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Outputs appear whole or not at all.
 #include <sys/mount.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Presets and effects used by name, from folders and zips.
 #include <cstdlib>
 

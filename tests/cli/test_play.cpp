@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow play --headless`: figures, pictures, what is refused, Ctrl-C.
 #include <csignal>
 #include <fstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Effects that look back, over ranges of frames: a frame has the same pixels whichever others are asked for.
 #include <nlohmann/json.hpp>
 

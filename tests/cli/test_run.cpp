@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow run` on single pictures: what it writes and reports.
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sequences: what is read and written under which name, frames that fail, --resume, Ctrl-C.
 #include <csignal>
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // set: settings changed in a preset's own text, as users run it.
 #include <unistd.h>
 

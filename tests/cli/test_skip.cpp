@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a run leaves out, as users see it: regions, held frames, frames in which an effect has nothing to do.
 #include <OpenImageIO/imageio.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Signals, closed pipes, full devices and named pipes: what ends the program, what does not, and what is left behind.
 #include <sys/stat.h>
 #include <unistd.h>

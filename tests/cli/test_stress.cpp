@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // stress as users run it: the library stands it, a broken effect does not, and what is kept can be run again.
 #include <chrono>
 #include <csignal>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Exit code 2, help, and the one line that says what was wrong.
 #include "cli_test.h"
 

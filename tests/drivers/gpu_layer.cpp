@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // VK_LAYER_AFTERGLOW_gpu: makes any Vulkan driver look like a discrete GPU of the least abilities that Vulkan allows,
 // so that a machine without one runs the ways of execution that GPUs take.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // AFTERGLOW_FORCE: the ways of other devices on the device at hand. Each makes the picture that the usual way makes,
 // within what it promises, and validation has nothing to say.
 

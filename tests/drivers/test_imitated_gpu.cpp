@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The ways of execution that GPUs take, on a GPU that a layer imitates (gpu_layer.cpp): every command, every preset,
 // with validation against that GPU's limits.
 

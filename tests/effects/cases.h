@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is tested of every effect alike: settings beside what the oracle makes of them.
 #pragma once
 

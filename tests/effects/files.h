@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A folder for files that tests write; it goes when the process ends.
 #pragma once
 

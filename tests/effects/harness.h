@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A device, and what it takes to run a stack on it pass by pass and to compare each image with the oracle's.
 #pragma once
 

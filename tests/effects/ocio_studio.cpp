@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "ocio_studio.h"
 
 #include <fmt/format.h>

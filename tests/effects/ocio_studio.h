@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Configurations of OpenColorIO as studios have them, written into the folder of test files: every kind of step that
 // its version 2.1 knows, by view.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures for the tests of effects. Every value is exact in the type that the device stores, so that device and oracle
 // start alike.
 #pragma once

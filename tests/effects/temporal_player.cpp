@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "temporal_player.h"
 
 #include <fmt/format.h>

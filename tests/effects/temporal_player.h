@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Frames of a sequence through one stack, as a session runs them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Soft edges: effects that bend colour see it without its alpha, whatever that is (math.md §19).
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bloom, pass by pass: each image against the oracle's pass on the device's own previous image, and against the
 // oracle's whole pyramid.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Blurs of the whole picture: dual Kawase, radial, directional, bokeh.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Box bloom, pass by pass.
 #include <fmt/format.h>
 

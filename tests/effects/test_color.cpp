@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tone mapping, colour adjustments and colour blit.
 #include <fmt/format.h>
 

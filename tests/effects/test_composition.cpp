@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opacity, blend modes, masks, groups and mixes on every entry, against the oracle (math.md §20).
 #include <fmt/format.h>
 #include <gtest/gtest.h>

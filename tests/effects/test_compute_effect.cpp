@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The effect with compute shaders that docs/writing_effects.md shows, taken from its text, against double precision.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Depth of field: the oracle, and what may not leak.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Effects on fine detail: sharpening, squares, edges, FXAA.
 #include <fmt/format.h>
 

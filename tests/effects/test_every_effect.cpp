@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What holds for every effect that is found on the search path, whatever it is: nobody has to write a line here for a
 // new one. Its settings are read from its own declaration, and tried at their defaults, limits and choices.
 #include <fmt/format.h>

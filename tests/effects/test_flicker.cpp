@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How much a bloom flickers from frame to frame, with fireflies and without. AFTERGLOW_FLICKER=shot.####.exr measures a
 // sequence instead of the synthetic one and prints the table of docs/benchmarks/flicker.md;
 // AFTERGLOW_FLICKER_SETTINGS="search = 1" does so for other settings of firefly_stabilisation.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Anamorphic streaks and lens dirt.
 #include <fmt/format.h>
 

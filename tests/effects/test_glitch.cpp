@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Glitch: whole pixels, so device and oracle agree to the bit.
 #include <fmt/format.h>
 

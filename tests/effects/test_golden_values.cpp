@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The golden values (math.md §14) through the device.
 #include <fmt/format.h>
 

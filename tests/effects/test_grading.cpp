@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colour grading: white balance, channel mixer, split toning, shadows/midtones/highlights, lift/gamma/gain.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Film grain: the oracle to the bit of its noise, and what makes it grain.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Frames in which an effect has nothing to do: run without it, bit for bit as with it.
 #include <gtest/gtest.h>
 #include <unistd.h>

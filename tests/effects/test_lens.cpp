@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a lens does: vignette, chromatic aberration, lens distortion.
 #include <fmt/format.h>
 

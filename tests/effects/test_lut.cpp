@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Look-up tables: against OpenColorIO's own evaluation, tetrahedral on the CPU.
 #include <OpenColorIO/OpenColorIO.h>
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colour spaces that tables are made for: shaders, what reads pictures, and the oracle, against each other and against
 // the values that colour-science publishes.
 #include <cmath>

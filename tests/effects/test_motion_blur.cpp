@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Motion blur: the oracle, and what may and may not be blurred.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Views of OpenColorIO's configurations: against its CPU processor.
 #include <OpenColorIO/OpenColorIO.h>
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Outline: the mask and the blend, in every mode.
 #include <fmt/format.h>
 

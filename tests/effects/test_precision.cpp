@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whole stacks as users run them: passes fused, in full and half floats.
 #include "harness.h"
 #include "reference/bloom.h"

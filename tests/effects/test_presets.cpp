@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every preset of the installation: it loads, runs as a whole, and the fused passes give what the plain ones give.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Previews: a picture that runs smaller, with its lengths scaled, shows what the whole result shows when it is scaled.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A region is the crop of the whole result, bit for bit.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One scene at several resolutions: with a reference height the glow is the same, without it is not.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whatever finite light comes in and however extreme the settings are, what comes out is finite.
 #include <cmath>
 #include <random>

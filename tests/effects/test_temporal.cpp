@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Effects that look back: each frame of synthetic sequences against the oracle, and what makes them what they are.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a call from Python costs beside the engine's own work in that very call: cost.py PRESET [ROUNDS]
 
 The engine's share is what report() says of the call: upload, execution and read-back."""

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // docs/embedding.md shows code that is compiled and run: each block is part of a file of examples/, word by word.
 #include <gtest/gtest.h>
 

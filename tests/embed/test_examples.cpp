@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The programs of examples/, run as their users do.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the shared library shows of itself, and what it asks for.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The Python module: arrays in and out, settings, errors, reload, threads."""
 import logging
 import os

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the tests of faults share: the program run with one fault at a time, at every place where it can strike or at
 // some of them.
 #pragma once

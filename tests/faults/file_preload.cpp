@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Preloaded before the program (LD_PRELOAD): what disks and other programs do to its files.
 //
 //   AFTERGLOW_FAULT_ROOT=FOLDER  only files in it are touched

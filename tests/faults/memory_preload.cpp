@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Preloaded before the program (LD_PRELOAD): lets one of its allocations fail.
 //
 //   AFTERGLOW_FAULT_CALL=N     the Nth allocation fails with std::bad_alloc (from 1; 0: none)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What disks do, and other programs to our files.
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Processes that die, and processes that meet.
 #include <future>
 

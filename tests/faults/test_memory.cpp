@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program's own allocations fail, one at a time.
 #include "fault_test.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vulkan calls that fail: memory runs out at any of them, or the device is lost.
 #include "fault_test.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // VK_LAYER_AFTERGLOW_fault: between the program and the driver, lets one Vulkan call fail that may.
 //
 //   AFTERGLOW_FAULT_CALL=N     the Nth such call fails (from 1; 0: none)

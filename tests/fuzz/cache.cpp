@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files of the caches: compiled kernels and pipelines. The first byte chooses whether the bytes are taken as they are,
 // or get the header and the hash that let them through to what stands behind.
 #include <cstring>

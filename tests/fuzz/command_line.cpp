@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The arguments of every command, one a line: parsed, and the values of options read; nothing is run.
 #include "apps/command_line.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the harnesses share: a folder to put hostile files into, inputs that are several files, and claims that must
 // hold whatever comes in.
 #pragma once

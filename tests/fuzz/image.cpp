@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Picture files of every format, header and pixels, within limits that leave no room for a bomb.
 #include <fmt/format.h>
 

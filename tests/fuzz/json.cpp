@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every JSON file that the program reads: calibrations, locks, goals, earlier reports of bench.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Look-up tables: the first line is the extension, the rest the file.
 #include <cmath>
 

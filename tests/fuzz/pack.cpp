@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Zips: what is unpacked lies inside of the cache and within the limits.
 #include "core/pack.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A preset with effects, modules and shaders beside it: loaded and built, without a device.
 #include <fmt/format.h>
 

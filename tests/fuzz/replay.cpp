@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Feeds files to a harness without libFuzzer: every input that was ever worth keeping runs with the ordinary tests.
 #include <algorithm>
 #include <cstdio>

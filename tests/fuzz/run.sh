@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Runs the fuzzers that are built, one process at a time. `./dev fuzz` builds them and calls this.
 #
 #   run.sh FOLDER all|HARNESS… [SECONDS]   fuzz each for so long (60); FOLDER is the build folder, where the grown

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Frame lists and patterns of numbered files.
 #include "image/sequence.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `--set ENTRY.SETTING=VALUE` against every setting of every effect: what is taken is allowed, finite, and reads back
 // from its own text.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An author's shader with libraries: scanned, assembled alone and fused with itself, compiled.
 #include "fuzz.h"
 #include "shader/check.h"

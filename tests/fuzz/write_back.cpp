@@ -1,14 +1,15 @@
+// SPDX-License-Identifier: MIT
 // Settings written back into text: any text as tokens, constructors and calls; and, where it is a preset that loads,
 // whole rewrites, one `ENTRY.SETTING=VALUE` or `ENTRY.SETTING` a line behind "=== edits".
 #include "edit/write_back.h"
 
 #include <fmt/format.h>
 
+#include "core/key_finder.h"
 #include "core/text.h"
 #include "edit/literal.h"
 #include "edit/table_edit.h"
 #include "fuzz.h"
-#include "script/key_finder.h"
 
 using namespace afterglow;
 
@@ -16,17 +17,17 @@ namespace {
 
 /// What is said of any text must be about that text.
 void check_text(const std::string& source) {
-  const script::LuaText text(source);
+  const LuaText text(source);
   std::size_t at = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     FUZZ_CLAIM(text[i].begin >= at && text[i].end() <= source.size() && !text[i].text.empty(), source);
     at = text[i].end();
-    if (const std::size_t other = text.partner(i); other != script::LuaText::kNone)
+    if (const std::size_t other = text.partner(i); other != LuaText::kNone)
       FUZZ_CLAIM(other < text.size() && text.partner(other) == i, source);
   }
   int constructors = 0;
   for (std::size_t i = 0; i < text.size() && constructors < 16; ++i) {
-    if (!text.is(i, "{") || text.partner(i) == script::LuaText::kNone) continue;
+    if (!text.is(i, "{") || text.partner(i) == LuaText::kNone) continue;
     ++constructors;
     const std::string longer = script::replaced(source, script::insert_item(text, i, "added_key", "1.5"));
     FUZZ_CLAIM(longer.size() > source.size(), source);
@@ -39,7 +40,7 @@ void check_text(const std::string& source) {
   }
   for (const auto& call : text.calls()) {
     FUZZ_CLAIM(call.open < text.size() && call.first_line <= call.line, source);
-    FUZZ_CLAIM(script::line_of_key(source, call.line, call.callee, {}) >= 1, source);
+    FUZZ_CLAIM(line_of_key(source, call.line, call.callee, {}) >= 1, source);
   }
 }
 

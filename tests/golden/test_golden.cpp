@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whole pictures: the program runs each case and the result is compared with the picture beside it.
 //
 // case.json: { "preset": …, "input": …, "output": "png"|"exr", "arguments": […], "fail": t, "fail_fraction": f,

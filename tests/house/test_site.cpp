@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The documents as a site: every page is made, and every link leads somewhere.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bad_effects.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Effects that break what they promise, each in one way, and a device to catch them with.
 #pragma once
 

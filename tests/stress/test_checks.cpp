@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: MIT
 // Each check catches an effect that breaks just that, and lets a good one pass.
 #include <algorithm>
 
 #include "bad_effects.h"
-#include "script/holds.h"
+#include "script/schema.h"
 
 namespace afterglow::stress {
 namespace {

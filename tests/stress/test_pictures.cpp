@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The pictures hold what they are named for, and are the same whenever they are made.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

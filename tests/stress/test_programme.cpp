@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The programme as a whole: what it tries, what it finds, how it ends.
 #include <nlohmann/json.hpp>
 

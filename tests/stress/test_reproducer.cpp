@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A case that was kept is the same case when it is read again.
 #include <cstring>
 #include <fstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which settings are tried.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

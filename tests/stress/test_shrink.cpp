@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A failing case becomes as small as it can.
 #include "bad_effects.h"
 #include "stress/shrink.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "played_window.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow play` in a window, as users run it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Window, swapchain and interface on a display of their own, without a player.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

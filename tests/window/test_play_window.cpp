@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `afterglow play` in a real window: Xvfb, lavapipe, validation, and a user made of xdotool.
 #include <gtest/gtest.h>
 

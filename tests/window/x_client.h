@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a desktop does to a window: asks it to close, drops files on it. Of X11, directly.
 #pragma once
 

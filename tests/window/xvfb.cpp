@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "xvfb.h"
 
 #include <fcntl.h>

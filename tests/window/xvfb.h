@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A display of its own for each test.
 #pragma once
 

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Five effects that read only their own pixel; the looks pixel_1 to pixel_5 hold one each.
 local fx = require "afterglow"
 return fx.stack {

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- The look that the first goals are about.
 local fx = require "afterglow"
 return fx.stack {

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- The same with fireflies faded and colours adjusted.
 local fx = require "afterglow"
 return fx.stack {

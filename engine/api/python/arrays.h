@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Arrays of numpy as pictures of afterglow.h.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The Python module: afterglow.hpp with arrays of numpy. What users read stands in __init__.pyi.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The classes of the Python module.
 #pragma once
 

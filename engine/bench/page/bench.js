@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 "use strict";
 const report = JSON.parse(document.getElementById("data").textContent);
 const byId = id => document.getElementById(id);

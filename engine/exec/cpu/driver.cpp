@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/cpu/driver.h"
 
 namespace afterglow {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What every stack needs on drivers that run shaders on the CPU, whatever the calibration says.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/cpu/image_reads.h"
 
 #include "exec/describe.h"

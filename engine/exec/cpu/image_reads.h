@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Images read as storage images, for drivers that run shaders on the CPU: there a texel takes a third of the time that
 // a sampler takes.
 #pragma once

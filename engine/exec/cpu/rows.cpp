@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/cpu/rows.h"
 
 namespace afterglow {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Several rows of the target an invocation, for drivers that run shaders on the CPU: what neighbouring rows both read
 // is read once.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/cpu/warm_up.h"
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Drivers of CPU devices compile a kernel when something is first drawn with it: in the middle of a frame, on the
 // thread that waits for it. Here a pixel is drawn with each kernel before, on a device of its own, where nobody waits.
 // The driver's cache on disk hands what it has compiled to the device that plays.

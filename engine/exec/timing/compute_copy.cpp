@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/timing/compute_copy.h"
 
 #include <array>

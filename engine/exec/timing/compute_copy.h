@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The copy of a picture by a compute shader, for comparison with a full-screen draw.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The compute shader of ComputeCopy, as SPIR-V, since the shader room makes fragment shaders alone. To make it again:
 // glslangValidator -V --target-env vulkan1.2, then spirv-opt -O --strip-debug, of
 //

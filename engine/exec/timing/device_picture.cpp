@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/timing/device_picture.h"
 
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A picture and room for a result on the device, shared by all that is measured on that picture.
 #pragma once
 

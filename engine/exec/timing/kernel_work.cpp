@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/timing/kernel_work.h"
 
 #include "exec/record.h"

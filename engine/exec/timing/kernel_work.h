@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One kernel alone on one picture: what floors and calibration measure.
 #pragma once
 

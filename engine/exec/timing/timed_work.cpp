@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exec/timing/timed_work.h"
 
 #include "core/stopwatch.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Work for the device that is recorded once and submitted again and again.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/cpu/defeat_uniform_inlining.h"
 
 #include <algorithm>
@@ -93,7 +94,6 @@ class Hider {
                           i.op == spv::OpVariable || i.op == spv::OpLine || i.op == spv::OpNoLine;
     if (!declares && zero_ == 0) zero_ = make_zero();
     if (i.op == spv::OpAccessChain && blocks_.contains(i.words[3])) chains_.insert(i.result);
-    if (i.op == spv::OpFSub) differences_.insert(i.result);
     if (i.op == spv::OpLoad && chains_.contains(i.words[3]) && shapes_.contains(i.type))
       load(i);
     else if (is_division(i.op) && shapes_.contains(i.type) && !sure_.contains(i.words[4]))
@@ -123,7 +123,7 @@ class Hider {
     division.words[4] = module_.fresh();
     hide(i.type, i.words[4], division.words[4]);
     // A driver that knows that y − y is 0 takes 0/x for 0, whatever x turns out to be.
-    if (differences_.contains(i.words[3])) {
+    if (!sure_.contains(i.words[3])) {
       division.words[3] = module_.fresh();
       hide(i.type, i.words[3], division.words[3]);
     }
@@ -152,7 +152,6 @@ class Hider {
   std::set<std::uint32_t> blocks_, chains_;
   std::set<std::uint32_t> sure_;  ///< constants without a zero in them
   bool divides_ = false;
-  std::set<std::uint32_t> differences_;             ///< results of subtractions
   std::uint32_t position_ = 0, position_type_ = 0;  ///< gl_FragCoord or gl_WorkGroupID
   std::uint32_t bits_ = 0, bits_of_[5] = {};
   std::uint32_t zero_index_ = 0, sign_ = 0, zero_ = 0;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of pixels side by side: the work on one row is a long chain of dependent steps, in which a processor mostly
 // waits; the steps of several rows taken in turns fill the gaps. Internal to the room.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "shader/cpu/storage_reads.h"
 
 #include <fmt/format.h>

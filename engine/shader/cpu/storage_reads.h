@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The prelude's reading functions for images that are bound as storage images. GLSL cannot pass a storage image of one
 // format to a function for any format, so each such image gets functions of its own, and an author's `fetch(depth, p)`
 // becomes `ag_r2_fetch(p)`. Internal to the room.

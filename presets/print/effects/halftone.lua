@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Halftone: dots of ink whose area stands for darkness. An effect that belongs to one preset; copy the folder to make your own.
 local fx = require "afterglow"
 

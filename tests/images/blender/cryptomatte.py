@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Makes cryptomatte.exr and cryptomatte_mattes.exr:
 #   blender --background --factory-startup --python cryptomatte.py -- FOLDER
 # Four objects with three materials, out of focus and moving, so that pixels are shared by several of them. The second file holds what

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What tests of the C interface share: a device, a folder with effects, and errors that end a test.
 #pragma once
 

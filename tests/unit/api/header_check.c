@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /* afterglow.h is C11 without a warning. */
 #include "afterglow.h"
 

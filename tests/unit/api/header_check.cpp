@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // afterglow.h and afterglow.hpp are C++17 without a warning.
 #define AFTERGLOW_VULKAN
 #include "afterglow.hpp"

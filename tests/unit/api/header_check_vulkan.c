@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /* The same with Vulkan. */
 #define AFTERGLOW_VULKAN
 #include "afterglow.h"

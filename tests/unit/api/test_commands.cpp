@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Recording: what is refused before there is anything to record. examples/vulkan.c records.
 #include "fixture.h"
 

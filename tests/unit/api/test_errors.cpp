@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Errors as objects, structures of other versions, arguments that are not there.
 #include "fixture.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Frames of a sequence, devices that go before their stacks, stacks on several threads.
 #include <thread>
 

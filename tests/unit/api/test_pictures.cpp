@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures in host memory, in every form: the same pixels as a Session makes.
 #include <cmath>
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Presets from files and texts, loaded again, followed.
 #include <condition_variable>
 #include <mutex>

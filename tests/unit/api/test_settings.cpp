@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Settings by name: their schema, values in and out.
 #include "fixture.h"
 

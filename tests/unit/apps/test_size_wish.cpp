@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // --size: both sides, one of them, or a share; what pictures are scaled to, and back.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What calibration chooses from measured times and errors.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The bench on the real device: every choice makes the right picture, and what is measured is what was asked for.
 #include <gmock/gmock.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files of goals.
 #include <gmock/gmock.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The made picture, and measures of quality.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reports as JSON, CSV, HTML and SVG, and comparing them.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The scenes of `bench --temporal`, and what it measures, against what is known of simple looks.
 #include <gtest/gtest.h>
 #include <unistd.h>

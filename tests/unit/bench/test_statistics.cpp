@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Medians, spreads, and which points are on the front.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Caches that are held within limits.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Zips as packs: what is unpacked, and what is refused before anything is.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Settings that go back into the text of a preset: what stays, what is refused, what lands in the file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Random presets in random layouts with random edits: what is read back is what was wanted, nothing else is touched.
 #include <gtest/gtest.h>
 
@@ -5,10 +6,10 @@
 #include <random>
 
 #include "core/file.h"
+#include "core/lua_text.h"
 #include "edit/write_back.h"
 #include "scene.h"
 #include "script/explanation.h"
-#include "script/lua_text.h"
 
 namespace afterglow::test {
 namespace {
@@ -98,7 +99,7 @@ PresetEdit random_edit(Random& random, std::size_t entries) {
 
 /// Every comment of the text, in order.
 std::vector<std::string> comments(const std::string& text) {
-  const script::LuaText lua(text);
+  const LuaText lua(text);
   std::vector<std::string> out;
   std::size_t at = 0;
   for (std::size_t i = 0; i <= lua.size(); ++i) {
@@ -272,7 +273,7 @@ TEST_F(RandomWriteBack, HostileTextsEndInAnAnswer) {
       EXPECT_TRUE(!out || out->before == text);
     }
     // Pure text, valid or not: the tokens lie in order within it.
-    const script::LuaText lua(text);
+    const LuaText lua(text);
     std::size_t at = 0;
     for (std::size_t i = 0; i < lua.size(); ++i) {
       ASSERT_GE(lua[i].begin, at);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which blocks share an allocation: as data, without a device.
 #include <gtest/gtest.h>
 

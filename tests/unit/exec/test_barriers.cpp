@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Hazards between kernels, checked as data: synchronization validation does not see those between images that share
 // memory.
 #include <gtest/gtest.h>

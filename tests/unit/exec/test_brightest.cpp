@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The brightest value of a picture, by whichever instructions the processor has.
 #include <gtest/gtest.h>
 

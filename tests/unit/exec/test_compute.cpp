@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compute passes: workgroups that share variables, against sums and histograms in double precision; as one of two ways
 // of a pass; with everything that kernels are done with (stages, regions, half floats, reuse).
 #include <gmock/gmock.h>

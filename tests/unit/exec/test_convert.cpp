@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pixels between floats and halves, and rows over threads.
 #include <gtest/gtest.h>
 

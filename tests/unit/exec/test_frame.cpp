@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Frames: reuse, sizes, timing, counts, errors.
 #include <gmock/gmock.h>
 

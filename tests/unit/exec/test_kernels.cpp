@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every kind of kernel against plain double-precision arithmetic.
 #include <fmt/format.h>
 

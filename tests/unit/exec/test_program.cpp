@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Programs: structure, memory, parameters, errors, recording into a caller's command buffer.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Frames in flight: what comes out is what comes out one at a time, in the same order, whatever overlaps.
 #include <gtest/gtest.h>
 

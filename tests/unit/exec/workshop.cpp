@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "workshop.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the tests of this room share: a validated device, shaders written on the spot, graphs put together by hand, and
 // plain double-precision pictures to compare with.
 #pragma once

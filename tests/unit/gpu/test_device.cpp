@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Devices of this machine; lavapipe at least.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

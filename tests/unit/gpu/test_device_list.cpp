@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which device an option means: as data, without a driver.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which memory type is taken: as data, for kinds of machine that a test does not run on.
 #include <gtest/gtest.h>
 

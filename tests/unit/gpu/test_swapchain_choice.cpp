@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a swapchain is to be like, as data.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Small graphs for tests, built the way the script room builds them.
 #pragma once
 

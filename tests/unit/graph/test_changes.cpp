@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What has to run again after a change.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which effects a frame's content makes idle, and the graph without them.
 #include <gtest/gtest.h>
 

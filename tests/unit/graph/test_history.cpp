@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Histories as data: what they need, what goes without them, and what makes them another one.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a part of the result needs of each image, against a search pixel by pixel.
 #include <gtest/gtest.h>
 

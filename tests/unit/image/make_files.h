@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Makes input files with OpenImageIO and OpenEXR themselves.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A limit on memory while one thing is done.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // EXR headers byte by byte: what no library writes. No pixels follow.
 #pragma once
 

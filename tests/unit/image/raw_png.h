@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // PNG files byte by byte: what OpenImageIO does not write.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Missing, damaged and hostile files: one clear error, no crash, nothing large allocated.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

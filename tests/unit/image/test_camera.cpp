@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: MIT
 // The camera's place from worldToCamera.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "image/camera.h"
+#include "image/metadata.h"
 
 namespace afterglow {
 namespace {

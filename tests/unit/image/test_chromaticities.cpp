@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One scene in four EXR files, as the published set has it in Chromaticities/: Rec.709 and CIE XYZ, each as RGB and as
 // luminance and chroma. Read, they look alike. What goes into the files is computed here from chromaticities, in double
 // precision.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ids and manifests of cryptomattes, by the specification.
 #include <gtest/gtest.h>
 

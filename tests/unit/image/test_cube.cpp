@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // .cube files that are wrong, by accident or on purpose: refused at the line, before anything large is allocated.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Headers that ask for more than they bring, one test a trick: refused before memory is taken, in words that are true.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colour spaces of cameras and broadcast, against the values that their makers publish.
 #include <gtest/gtest.h>
 

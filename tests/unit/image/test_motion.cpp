@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Motion vectors: under which names they are found, and that they come out as pixels a frame with y down.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Values that are not finite: found where they are, and replaced by what is around them.
 #include <gtest/gtest.h>
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <stdexcept>
 #include <vector>
 
-#include "image/parallel.h"
+#include "core/parallel.h"
 
 namespace afterglow {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Profiles, alpha and orientation of real files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
 #include <OpenEXR/ImfDeepFrameBuffer.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every format and sample type that people bring, at even, odd and tiny sizes.
 #include <gtest/gtest.h>
 

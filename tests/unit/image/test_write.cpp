@@ -1,10 +1,10 @@
+// SPDX-License-Identifier: MIT
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "image/blue_noise.h"
 #include "image/encode.h"
 #include "image/output_format.h"
 #include "image/srgb.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Outputs appear whole or not at all.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Real files as a row of frames.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

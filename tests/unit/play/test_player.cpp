@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Playing without a window, on a device: a fake clock, real files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The cache of pictures: bounded, in order, cancelled, with errors. Reading is held up and let go by the tests.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which frame is due when. The clock is a number that the tests set.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

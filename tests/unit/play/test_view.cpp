@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Screen ↔ picture.
 #include <gtest/gtest.h>
 

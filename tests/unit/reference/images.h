@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures for the tests of the oracle.
 #pragma once
 

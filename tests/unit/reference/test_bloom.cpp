@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Properties that math.md §3–§5 and §9 list.
 #include <gmock/gmock.h>
 

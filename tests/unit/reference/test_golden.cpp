@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every line of tests/golden_values.txt: values of an independent implementation (math.md §14).
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A folder with a preset, effects and shaders for one test, and what comes out of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Curves and functions of t as settings.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

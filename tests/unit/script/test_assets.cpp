@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files that effects read: the setting type, where a name is looked up, and where it never leads.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

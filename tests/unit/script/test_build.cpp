@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Preset::build: skipping, auxiliary inputs, determinism, and what many runs cost.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the author of an effect reads when `build` is wrong: file and line of the key, pass and effect.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The completion file for lua-language-server. After a change of an effect's settings it is written anew by
 //   AFTERGLOW_UPDATE=1 ctest --test-dir build -R Completion.FileIsUpToDate
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How entries are put together: opacity, blend, masks, groups, mixes, arguments; and what is said where it is wrong.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the author of an effect reads when its declaration is wrong.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ways out of a sandbox that are known of Lua and of those who embed it, one test each; test_sandbox.cpp and
 // test_limits.cpp hold those that were tried before. The clock's limit is far away: what ends is ended by a count.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // fx.extend: another preset with some of it changed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

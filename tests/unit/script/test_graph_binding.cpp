@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What g:pass, g:filter, g:input and g:skip make.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: MIT
 // What effects promise: read, checked, and asked for the settings of a frame.
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "scene.h"
-#include "script/holds.h"
+#include "script/schema.h"
 
 namespace afterglow::test {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Settings in px are lengths of the delivered picture: what effects read of them in a picture that runs smaller or
 // larger.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Hostile scripts: each ends in one clear error, whatever it tries to swallow it with, and the host lives on.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

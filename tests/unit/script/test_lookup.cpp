@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where effects and their shaders are found, and what shadows what.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Broken scripts: presets and effects with random damage load or fail with one script error, and never crash or hang.
 #include <gtest/gtest.h>
 

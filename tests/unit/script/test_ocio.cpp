@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Configurations of OpenColorIO that effects name: where they may lie, what is wrong with them, and what is noticed
 // when they change.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where an entry runs: injection point, then order, then position; and what entries are called.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

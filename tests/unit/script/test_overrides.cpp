@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // --set ENTRY.SETTING=VALUE.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From a preset file to a graph.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

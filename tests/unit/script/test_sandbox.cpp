@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What scripts must not reach, one test a way out; and what they may rely on instead.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

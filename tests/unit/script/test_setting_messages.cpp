@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a look author reads when a setting or a stack is wrong: whole messages, with file and line.
 #include <gtest/gtest.h>
 

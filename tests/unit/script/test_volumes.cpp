@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // fx.volume: how settings blend. A table computed by hand, and random stacks against a plain re-implementation.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A folder with a small preset, its effect and its shaders, and a session that follows them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which choice is taken from a calibration, and what a bad one says.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Images that frames hand on to the next: what follows what, and that nothing else reaches a picture.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reloads: what is built again, what stays, and what an error leaves behind. Real files, no window.
 #include <gmock/gmock.h>
 

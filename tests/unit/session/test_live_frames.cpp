@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Presets whose passes come and go with the frame, built beside the drawing thread; kernels timed one by one; kernels
 // drawn with before they are needed.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Thousands of reloads leave nothing behind.
 #include "live_fixture.h"
 #include "resident.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What an edit leaves alone while a frame stands still: counted, and bit for bit what a fresh run makes.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Frames and kernels that need not run again: counted, and bit for bit what a fresh run makes.
 #include <gtest/gtest.h>
 #include <unistd.h>

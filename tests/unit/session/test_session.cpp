@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stack and Session on the real device with presets and effects written to a folder of the test's own.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs one compiled kernel on a device and reads the target back: enough to compare kernels with formulas.
 #pragma once
 

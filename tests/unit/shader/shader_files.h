@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A folder of shader files that lives as long as a test, and short ways to use it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // KernelCompiler: reflection, errors, caches in memory and on disk, threads.
 #include <gmock/gmock.h>
 #include <sys/stat.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Parameters whose values the driver is not to know: the pixels stay, and the module is valid. (That it then compiles
 // nothing again: FramesLeaveNothingBehind in tests/effects.)
 #include <gtest/gtest.h>

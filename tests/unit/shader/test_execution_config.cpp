@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Choices of execution as text.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The GLSL made for filters: how many texels it reads, that it is valid SPIR-V for every combination, what is refused.
 #include <gmock/gmock.h>
 

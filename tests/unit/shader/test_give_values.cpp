@@ -1,5 +1,7 @@
+// SPDX-License-Identifier: MIT
 // Variables that authors declare without a value: they are 0, at every turn of a loop and in every call, and those that
 // may be read so are told by file and line.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <array>
@@ -166,6 +168,15 @@ TEST(GiveValues, DivisionsAreThoseOfIeee) {
     for (const float value : by_zero.pixel) EXPECT_TRUE(std::isinf(value) && value > 0);
     const Made of_zero = made("vec4 apply(vec4 color) { return (color - color) / (color - color); }\n", rows);
     for (const float value : of_zero.pixel) EXPECT_TRUE(std::isnan(value));
+    for (const char* zeros : {"(color - color) / 0.0", "vec4(0.0) / (color - color)", "0.0 * color / 0.0",
+                              "twice(color - color) / (color - color)", "mod(color - color, vec4(0.0))"}) {
+      SCOPED_TRACE(zeros);
+      const Made made_of = made(fmt::format("vec4 twice(vec4 c) {{ vec4 d = c; if (d.r < 1.0) d *= 2.0; return d; }}\n"
+                                            "vec4 apply(vec4 color) {{ return {}; }}\n",
+                                            zeros),
+                                rows);
+      for (const float value : made_of.pixel) EXPECT_TRUE(std::isnan(value)) << value;
+    }
     const Made difference = made(
         "vec4 apply(vec4 color) { return vec4(1.0, -1.0, 2.0, 3.0) / vec4(color.r - color.r, 0.0, 2.0, "
         "color.b * 0.0); }\n",

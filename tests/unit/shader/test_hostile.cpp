@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Text that is meant to hurt: it ends in one error, quickly, or compiles; never in a crash.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Any authors' shaders in one kernel: names never clash, lines stay where they are.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Finding shaders and their includes on disk.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What kernels compute, on a device: filters against their formula in double precision, the prelude, rounding to half
 // floats.
 #include <gmock/gmock.h>

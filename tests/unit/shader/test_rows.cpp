@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Several rows an invocation: what the work on one pixel is taken apart into, and that every row gets the very bits
 // that it gets alone.
 #include <gmock/gmock.h>

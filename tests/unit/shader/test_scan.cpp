@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a shader declares, and every message about what it must not.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Images read as storage images: which inputs can be, what becomes of the author's reads, and that it is valid SPIR-V.
 #include <gmock/gmock.h>
 

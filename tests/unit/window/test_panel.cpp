@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The interface without a window: frames of Dear ImGui with a pointer and keys that are moved by hand, on a real
 // preset.
 #include <gmock/gmock.h>

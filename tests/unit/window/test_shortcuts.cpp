@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Keys: each action has one, no key has two, and the sheet's words are those of the list.
 #include <gtest/gtest.h>
 

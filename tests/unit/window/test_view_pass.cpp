@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The view on lavapipe against the same mathematics in double precision.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the view shows of a picture, in double precision on the CPU: written from view_pass.h, not from the shader.
 #pragma once
 

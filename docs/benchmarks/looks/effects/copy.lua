@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 local fx = require "afterglow"
 return fx.effect {
   name = "copy", doc = "Nothing, pixel by pixel: what a pass costs before it does anything.",

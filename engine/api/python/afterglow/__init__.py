@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Afterglow finishes rendered pictures: glow, tone mapping, colour, outlines.
 
     import afterglow

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One dot for each cell of a rotated grid. Its area is the share of light that is missing at its centre, so that the mean brightness of
 // the print is that of the picture: light adds up linearly, and the colours here are linear.
 #include "lib/color.glsl"

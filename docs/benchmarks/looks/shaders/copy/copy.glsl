@@ -1,1 +1,2 @@
+// SPDX-License-Identifier: MIT
 vec4 apply(vec4 color) { return color; }

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "apps/play_arguments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/paths.h"
+#include "core/text.h"
+#include "image/writer.h"
+
+namespace afterglow {
+
+void PlayArguments::add(CLI::App& app) {
+  preset.add(app);
+  add_input(app);
+  add_playing(app);
+  device.add(app);
+  execution.add(app);
+}
+
+void PlayArguments::add_input(CLI::App& app) {
+  app.add_option("INPUT", inputs,
+                 "Pictures, sequences like shot.####.exr and shot.%04d.exr, videos (MP4, QuickTime, AVI)")
+      ->required();
+  const std::string group = "Input";
+  app.add_option("--frames", frames,
+                 "Frames to play: 1-24, 1-24x2, 1,5,10-12 (default: all; missing ones hold the one before)")
+      ->type_name("LIST")
+      ->group(group);
+  layers.add(app);
+  app.add_option("--cache", cache, "Memory for pictures read ahead (default 2G)")->type_name("SIZE")->group(group);
+  app.add_option("--readers", readers, "Threads that read ahead (default 2)")
+      ->check(CLI::Range(1, 64))
+      ->type_name("N")
+      ->group(group);
+}
+
+void PlayArguments::add_playing(CLI::App& app) {
+  const std::string group = "Playing", alone = "Without a window";
+  app.add_option("--fps", fps, "Frames a second (default: the video's, else 24)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N")
+      ->group(group);
+  app.add_option("--speed", speed, "0.1 to 8, below 0 backwards (default 1)")->type_name("X")->group(group);
+  app.add_option("--loop", loop, "loop (default), once or ping-pong")->type_name("MODE")->group(group);
+  app.add_option("--b", other, "A second preset to compare with")->type_name("PRESET")->group(group);
+  app.add_option("--show", show, "An image between passes instead of the result: 'source', a pass's name (see `graph`)")
+      ->type_name("IMAGE")
+      ->group(group);
+  app.add_flag("--poll", poll, "Look at files regularly instead of waiting for the system to tell of changes")
+      ->group(group);
+  const std::string window = "Window";
+  app.add_flag("--full-screen", full_screen, "Fill the screen")->group(window);
+  app.add_flag("--paused", paused, "Begin with the first frame, standing still")->group(window);
+  app.add_option("--ui-scale", ui_scale, "Size of the interface, 0.5 to 4 (default: the desktop's)")
+      ->check(CLI::Range(0.5, 4.0))
+      ->type_name("X")
+      ->group(window);
+  app.add_flag("--headless", headless, "Play without a window, and end")->group(alone);
+  app.add_option("--count", count, "Frames to play, looping as --loop says (default: each once)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N")
+      ->group(alone);
+  auto* clock =
+      app.add_flag("--real-time", real_time, "By the clock, dropping what comes too late (default)")->group(alone);
+  app.add_flag("--fast", fast, "Every frame, as fast as possible")->group(alone)->excludes(clock);
+  app.add_option("--screenshot", screenshot, "Write the last frame that was shown")->type_name("FILE")->group(alone);
+  app.add_flag("--stats", stats, "Print frame times, drops, and the latency of reloads")->group("Messages");
+  app.add_option("--report", report, "Write them as JSON")->type_name("FILE.json")->group("Messages");
+}
+
+Result<void> PlayArguments::check() const {
+  if (!(std::abs(speed) >= Transport::kSlowest && std::abs(speed) <= Transport::kFastest))
+    return Error{ErrorKind::usage, fmt::format("'{}' is no speed", speed), "--speed", 0, "0.1 to 8, -0.1 to -8"};
+  if (headless && !loop.empty() && loop != "once" && count == 0)
+    return Error{ErrorKind::usage, fmt::format("--loop {} without a window needs an end: --count N", loop),
+                 "afterglow play"};
+  if (!headless && (count > 0 || fast || real_time || !screenshot.empty()))
+    return Error{ErrorKind::usage, "--count, --fast, --real-time and --screenshot go with --headless",
+                 "afterglow play"};
+  // The format goes by the extension: wrong ones are refused before any work.
+  return screenshot.empty() ? Result<void>{} : check_output(screenshot, {});
+}
+
+Result<PlayerOptions> PlayArguments::player() const {
+  PlayerOptions out;
+  AFTERGLOW_TRY(out.live.stack, execution.options());
+  AFTERGLOW_TRY(out.live.stack.preset, preset.options());
+  AFTERGLOW_TRY(out.preset, preset.preset_file());
+  if (!other.empty()) {
+    AFTERGLOW_TRY(out.other_preset, find_preset_file(other, {preset.paths.begin(), preset.paths.end()}));
+  }
+  out.live.watch.poll = poll;
+  out.footage.inputs = inputs;
+  out.footage.frames = frames;
+  out.footage.read.layer = layers.layer;
+  out.footage.read.max_bytes = out.live.stack.max_memory;
+  layers.choose(out.footage.read);
+  auto memory = parse_memory(cache);
+  if (!memory) {
+    Error error = std::move(memory).error();
+    error.file = "--cache";
+    return error;
+  }
+  out.read_ahead = {memory.value(), readers};
+  out.fps = fps;
+  if (!loop.empty()) {
+    AFTERGLOW_TRY(out.loop, parse_loop_mode(loop));
+  }
+  AFTERGLOW_CHECK(check());
+  out.show = show;
+  return out;
+}
+
+Result<void> PlayArguments::check_shown(Player& player) const {
+  if (show.empty()) return {};
+  const std::vector<std::string> images = player.live().images();
+  if (images.empty() || std::ranges::find(images, show) != images.end()) return {};
+  return Error{ErrorKind::usage,          fmt::format("there is no image '{}'", show), "--show", 0, join(images),
+               nearest_name(show, images)};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// The options of `afterglow play`, declared and understood.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/options.h"
+#include "play/player.h"
+
+namespace afterglow {
+
+struct PlayArguments {
+  PresetArguments preset;
+  DeviceArguments device;
+  ExecutionArguments execution;
+  std::vector<std::string> inputs;
+  LayerArguments layers;
+  std::string frames;
+  std::string other, show, loop, cache = "2G", screenshot, report;
+  std::optional<double> fps;
+  double speed = 1;
+  int readers = 2;
+  std::uint64_t count = 0;
+  bool full_screen = false, paused = false;
+  std::optional<double> ui_scale;
+  bool headless = false, fast = false, real_time = false, stats = false, poll = false;
+
+  void add(CLI::App& command);
+  /// Errors: usage (options that exclude each other, formats that --screenshot cannot have), script (no such preset).
+  Result<PlayerOptions> player() const;
+  /// Is the image of --show there? Once the player has a build. Errors: usage.
+  Result<void> check_shown(Player& player) const;
+
+ private:
+  void add_input(CLI::App& command);
+  void add_playing(CLI::App& command);
+  Result<void> check() const;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,106 @@
+-- SPDX-License-Identifier: MIT
+-- Wide glows: an image is halved again and again, and its levels are added with weights, one for each channel. Level i of the picture that is
+-- delivered blurs like a Gaussian of about 0.76 · 2^i of its pixels: tents on the way down, cubic B-splines on the way up. All of it writes
+-- two thirds of a picture, however wide the glow is.
+local fx = require "afterglow"
+local pyramids = require "lib.pyramid"
+
+local glow = {}
+
+-- Width and height of the whole image of which `source` is a preview of this scale.
+local function whole(source, scale)
+  return pyramids.delivered({ length_scale = scale }, source)
+end
+
+-- Deviation of level i, in pixels of the picture that is delivered.
+local function sigma(i) return 0.76 * 2 ^ i end
+
+-- How many levels a picture of this size has: the coarsest still has four pixels each way.
+local function deepest(source, scale)
+  local width, height = whole(source, scale)
+  local n = 1
+  while math.min(width, height) // 2 ^ (n + 1) >= 4 do n = n + 1 end
+  return n
+end
+
+-- Weights of an exponential glow, e^(−r/radius): what a mixture of Gaussians takes of each deviation. `radii`: one for each channel, in pixels of the
+-- image, which is `scale` of the whole. They sum up to 1.
+function glow.exponential(source, scale, radii)
+  local widest = math.max(radii[1], radii[2], radii[3]) / scale
+  local n = 1
+  while n < deepest(source, scale) and sigma(n) < 3 * widest do n = n + 1 end
+  local weights, sum = {}, { 0, 0, 0 }
+  for i = 1, n do
+    weights[i] = {}
+    for c = 1, 3 do
+      local q = sigma(i) / math.max(radii[c] / scale, 0.5)
+      weights[i][c] = q ^ 3 * math.exp(-0.5 * q * q)
+      sum[c] = sum[c] + weights[i][c]
+    end
+  end
+  for i = 1, n do
+    for c = 1, 3 do weights[i][c] = weights[i][c] / sum[c] end
+  end
+  return weights
+end
+
+-- Weights of a glow that falls with the square of the distance up to `extent` pixels of the image: each doubling of the distance holds
+-- as much light as the one before.
+function glow.fog(source, scale, extent)
+  local weights, sum = {}, 0
+  for i = 1, deepest(source, scale) do
+    local q = sigma(i) / math.max(extent / scale, 0.5)
+    local w = math.exp(-0.5 * q * q)
+    if i > 1 and w < 1e-3 then break end
+    weights[i], sum = { w, w, w }, sum + w
+  end
+  for _, w in ipairs(weights) do
+    for c = 1, 3 do w[c] = w[c] / sum end
+  end
+  return weights
+end
+
+-- The glow of `source` at its size, `scale` of the whole image (g.length_scale of the picture). `bright(image)` makes of the picture at half its size the light that glows.
+function glow.of(g, source, scale, weights, bright)
+  local width, height = whole(source, scale)
+  local sizes = {}
+  for i = 1, #weights do
+    width, height = math.max(width // 2, 1), math.max(height // 2, 1)
+    sizes[i] = { width, height }
+  end
+  local start, image = 1, nil
+  if scale == 1 then
+    image = g:filter { source = source, size = sizes[1], filter = fx.filters.bilinear(), name = "half" }
+  else
+    if scale < 1 then start = pyramids.start(sizes, source.width, source.height) end
+    image = pyramids.resized(g, source, sizes[start][1], sizes[start][2], "scaled")
+  end
+  image = bright(image)
+  local levels = { [start] = image }
+  for i = start + 1, #sizes do
+    levels[i] = g:filter { source = levels[i - 1], size = sizes[i], filter = fx.filters.tent(), name = ("down[%d]"):format(i - 2) }
+  end
+  -- Levels that are finer than a preview look like its own pixels.
+  local first = { 0, 0, 0 }
+  for i = 1, start do
+    for c = 1, 3 do first[c] = first[c] + weights[i][c] end
+  end
+  image = nil
+  for i = #sizes, start, -1 do
+    local weight = i == start and first or weights[i]
+    if image then
+      image = g:filter { source = image, size = levels[i], filter = fx.filters.bspline(), name = ("up[%d]"):format(i - 1) }
+      image = g:pass { shader = "glow/add", source = image, level = levels[i], weight = weight, name = ("sum[%d]"):format(i - 1) }
+    else
+      image = g:pass { shader = "glow/weigh", source = levels[i], weight = weight, name = ("sum[%d]"):format(i - 1) }
+    end
+  end
+  return g:filter { source = image, size = source, filter = fx.filters.bspline(), name = "glow" }
+end
+
+-- What of an image is brighter than the threshold; no light counts for more than the limit.
+function glow.bright(g, image, threshold, limit)
+  return g:pass { shader = "glow/bright", source = image, threshold = threshold, limit = limit, name = "bright" }
+end
+
+return glow

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: MIT
+// Light that spreads in lenses, film and air, and what shows pictures: halation, glare, lens flares, fog, bars, tubes.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cases.h"
+#include "reference/air.h"
+#include "reference/cut.h"
+#include "reference/glow.h"
+#include "reference/occlusion.h"
+#include "reference/screen.h"
+
+namespace afterglow {
+namespace {
+
+using namespace reference;
+
+std::string rgb(const Rgb& c) { return fmt::format("{{ {}, {}, {} }}", c.r, c.g, c.b); }
+
+EffectCase halated(const Halation& v) {
+  return {fmt::format("fx.halation {{ intensity = {}, radius = {}, threshold = {}, clamp = {}, color = {} }}",
+                      v.intensity, v.radius, v.threshold, v.clamp, rgb(v.color)),
+          [=](const Scene& s) { return halation(s.source, v); }};
+}
+
+EffectCase glared(const Glare& v, const char* kind) {
+  return {fmt::format("fx.glare {{ kind = \"{}\", intensity = {}, threshold = {}, clamp = {}, points = {}, angle = {}, "
+                      "size = {}, dispersion = {}, tint = {} }}",
+                      kind, v.intensity, v.threshold, v.clamp, v.points, v.angle, v.size, v.dispersion, rgb(v.tint)),
+          [=](const Scene& s) { return glare(s.source, v); }};
+}
+
+EffectCase flared(const LensFlare& v) {
+  return {
+      fmt::format("fx.lens_flare {{ ghosts = {}, halo = {}, starburst = {}, threshold = {}, clamp = {}, count = {}, "
+                  "spacing = {}, blades = {}, rotation = {}, iris = {}, halo_radius = {}, ray_length = {}, "
+                  "dispersion = {}, tint = {} }}",
+                  v.ghosts, v.halo, v.starburst, v.threshold, v.clamp, v.count, v.spacing, v.blades, v.rotation, v.iris,
+                  v.halo_radius, v.ray_length, v.dispersion, rgb(v.tint)),
+      [=](const Scene& s) { return lens_flare(s.source, v); }};
+}
+
+EffectCase fogged(const DepthFog& v) {
+  return {fmt::format("fx.depth_fog {{ density = {}, start = {}, color = {}, ambient = {}, max_opacity = {}, sky = {}, "
+                      "scattering = {}, scattering_radius = {}, height_falloff = {}, camera_height = {}, "
+                      "camera_pitch = {}, field_of_view = {}, sun_color = {}, sun = {{ {}, {} }}, sun_focus = {} }}",
+                      v.density, v.start, rgb(v.color), v.ambient, v.max_opacity, v.sky, v.scattering,
+                      v.scattering_radius, v.height_falloff, v.camera_height, v.camera_pitch, v.field_of_view,
+                      rgb(v.sun_color), v.sun_x, v.sun_y, v.sun_focus),
+          [=](const Scene& s) { return depth_fog(s.source, *s.depth, v); }};
+}
+
+EffectCase barred(const Letterbox& v) {
+  return {fmt::format("fx.letterbox {{ aspect = {}, color = {}, offset = {} }}", v.aspect, rgb(v.color), v.offset),
+          [=](const Scene& s) { return letterbox(s.source, v); }};
+}
+
+EffectCase tubed(const Crt& v) {
+  return {
+      fmt::format(
+          "fx.crt {{ lines = {}, softness = {}, scan_lines = {}, phosphor = {}, phosphor_size = {}, "
+          "curvature = {}, corner = {}, vignette = {}, glow = {}, convergence = {}, brightness = {}, intensity = {} }}",
+          v.lines, v.softness, v.scan_lines, v.phosphor, v.phosphor_size, v.curvature, v.corner, v.vignette, v.glow,
+          v.convergence, v.brightness, v.intensity),
+      [=](const Scene& s) { return crt(s.source, v); }};
+}
+
+double sum_of(const DoubleImage& image, int channel) {
+  double sum = 0;
+  for (const auto& p : image.pixels) sum += p[channel];
+  return sum;
+}
+
+/// Black with one light in the middle.
+Scene lamp(Size size, double light) {
+  Scene scene{"lamp", DoubleImage(size), DoubleImage(size, Rgba(5, 0, 0, 1)), {}};
+  scene.source.at(size.width / 2, size.height / 2) = Rgba(light, light, light, 1);
+  return scene;
+}
+
+TEST_F(Effects, HalationAgrees) {
+  agree_everywhere({halated({.threshold = 0.3}),
+                    halated({.intensity = 2, .radius = 60, .threshold = 0, .clamp = 5, .color = {0.2, 1, 3}}),
+                    halated({.radius = 0.5, .threshold = 0.5})});
+  expect_skipped("fx.halation { intensity = 0 }", "intensity is 0");
+  expect_skipped("fx.halation { threshold = 9, clamp = 2 }", "clamp is not above threshold");
+  expect_skipped("fx.halation { color = { 0, 0, 0 } }", "color is black");
+}
+
+TEST_F(Effects, HalationPassByPass) {
+  for (const Size size : kSizes) {
+    const auto scene = random_scene(size, 71);
+    const Made made = run_stack("fx.halation { radius = 5, threshold = 0.5 }", scene, Way::plain);
+    SCOPED_TRACE(scene.name);
+    const auto light = glow_bright(glow_half(scene.source), 0.5, 20);
+    const auto weights = exponential_weights(size, 5.0 * Rgb(1, 0.6, 0.4));
+    EXPECT_TRUE(agrees(made.pixels("halation.bright"), light, kFullFloat, kRgb));
+    EXPECT_TRUE(agrees(made.pixels("halation.glow"), glow_of(light, size, weights), kFullFloat, kRgb));
+  }
+}
+
+TEST_F(Effects, HalationIsRedAndKeepsItsShare) {
+  const auto scene = lamp({256, 256}, 16);
+  const Made made = run_stack("fx.halation { radius = 10, threshold = 0, intensity = 0.5 }", scene, Way::plain);
+  const auto result = from_floats(made.result.data(), made.size, 4);
+  const double added = sum_of(result, 0) - 16;
+  EXPECT_NEAR(added, 0.5 * 16, 0.02 * 16);  // a share of the light, none at the edges
+  EXPECT_GT(result.at(128, 100).r, 20 * result.at(128, 100).b);
+}
+
+TEST_F(Effects, GlareAgrees) {
+  agree_everywhere(
+      {glared({.threshold = 1}, "star"),
+       glared({.threshold = 0.5, .points = 5, .angle = 90, .size = 1, .dispersion = 1, .tint = {2, 1, 0}}, "star"),
+       glared({.kind = GlareKind::streaks, .threshold = 1, .angle = 0, .dispersion = 0}, "streaks")},
+      kBetweenPixels);
+  agree_everywhere({glared({.kind = GlareKind::fog_glow, .threshold = 0.5}, "fog_glow"),
+                    glared({.kind = GlareKind::fog_glow, .intensity = 3, .threshold = 0, .size = 2}, "fog_glow")});
+  expect_skipped("fx.glare { intensity = 0 }", "intensity is 0");
+  expect_skipped("fx.glare { clamp = 1 }", "clamp is not above threshold");
+  expect_skipped("fx.glare { tint = { 0, 0, 0 } }", "tint is black");
+}
+
+TEST_F(Effects, GlareOfEveryKindIsAShareOfTheLight) {
+  const auto scene = lamp({400, 400}, 400);
+  for (const char* kind : {"star", "streaks", "fog_glow"}) {
+    const Made made = run_stack(fmt::format("fx.glare {{ kind = \"{}\", threshold = 0, clamp = 1000, intensity = 0.5, "
+                                            "size = 0.2, dispersion = 0 }}",
+                                            kind),
+                                scene, Way::plain);
+    const auto result = from_floats(made.result.data(), made.size, 4);
+    EXPECT_NEAR(sum_of(result, 1) - 400, 200, 10) << kind;
+  }
+}
+
+TEST_F(Effects, StarsHaveTheirPoints) {
+  const auto scene = lamp({300, 300}, 5000);
+  const Made made = run_stack("fx.glare { points = 4, angle = 0, size = 0.4, clamp = 5000 }", scene, Way::plain);
+  const auto result = from_floats(made.result.data(), made.size, 4);
+  for (const int way : {-30, 30}) {
+    EXPECT_GT(result.at(150 + way, 150).g, 20 * result.at(150 + way, 150 + way).g);
+    EXPECT_GT(result.at(150, 150 + way).g, 20 * result.at(150 + way, 150 + way).g);
+  }
+}
+
+TEST_F(Effects, LensFlareAgrees) {
+  agree_everywhere({flared({.threshold = 1}),
+                    flared({.ghosts = 1, .halo = 0, .starburst = 0, .threshold = 0.5, .count = 8, .blades = 5}),
+                    flared({.ghosts = 0, .halo = 0, .starburst = 1, .threshold = 0.5, .blades = 5}),
+                    flared({.ghosts = 0.1, .halo = 2, .starburst = 0, .threshold = 1, .clamp = 20, .iris = 0.1})},
+                   {.full = 2e-3, .fused = 5e-4, .half = 1, .spikes = false});
+  expect_skipped("fx.lens_flare { ghosts = 0, halo = 0, starburst = 0 }", "ghosts, halo and starburst are 0");
+  expect_skipped("fx.lens_flare { tint = { 0, 0, 0 } }", "tint is black");
+}
+
+TEST_F(Effects, GhostsAreMirroredAtTheMiddle) {
+  Scene scene{"lamp", DoubleImage(480, 270), {}, {}};
+  for (int y = 80; y < 88; ++y)
+    for (int x = 140; x < 148; ++x) scene.source.at(x, y) = Rgba(100, 100, 100, 1);
+  const Made made =
+      run_stack("fx.lens_flare { count = 2, halo = 0, starburst = 0, dispersion = 0 }", scene, Way::plain);
+  const auto result = from_floats(made.result.data(), made.size, 4);
+  // The second ghost is as large as the light's image, on the other side of (240, 135).
+  EXPECT_GT(result.at(336, 187).r, 0.05);
+  EXPECT_LT(result.at(336, 83).r, 1e-3);
+  EXPECT_LT(result.at(60, 187).r, 1e-3);
+}
+
+TEST_F(Effects, DepthFogAgrees) {
+  agree_everywhere({fogged({}), fogged({.density = 0.2, .start = 0, .ambient = 0, .max_opacity = 1, .scattering = 0}),
+                    fogged({.density = 0.05,
+                            .sky = 1,
+                            .height_falloff = 0.3,
+                            .camera_height = 3,
+                            .camera_pitch = -10,
+                            .field_of_view = 70,
+                            .sun_color = {3, 2, 1},
+                            .sun_x = 0.8,
+                            .sun_y = -0.2})},
+                   {.full = 2e-4, .fused = 2e-5, .half = kHalfFloat, .spikes = false});
+  expect_skipped("fx.depth_fog { density = 0 }", "density is 0");
+  expect_skipped("fx.depth_fog { max_opacity = 0 }", "max_opacity is 0");
+}
+
+TEST_F(Effects, FogFollowsBeerAndLambert) {
+  Scene scene{"wall", DoubleImage(65, 65), DoubleImage(65, 65, Rgba(10, 0, 0, 1)), {}};
+  const Made made = run_stack(
+      "fx.depth_fog { density = 0.1, start = 0, max_opacity = 1, scattering = 0, ambient = 0, color = { 1, 1, 1 } }",
+      scene, Way::plain);
+  EXPECT_NEAR(made.result[4 * (32 * 65 + 32)], 1 - std::exp(-1.0), 1e-5);  // the middle's ray is 10 m long
+  EXPECT_GT(made.result[0], made.result[4 * (32 * 65 + 32)]);              // the corner's is longer
+}
+
+TEST_F(Effects, LetterboxAgrees) {
+  agree_everywhere({barred({.aspect = 2.39}), barred({.aspect = 3.1, .color = {0.2, 0.4, 2}}),
+                    barred({.aspect = 20, .offset = -0.3}), barred({.aspect = 0.3, .offset = 1})});
+  Scene square{"square", DoubleImage(64, 64, Rgba(0.5, 0.5, 0.5, 1)), {}, {}};
+  EXPECT_FALSE(run_stack("fx.letterbox { aspect = 1 }", square, Way::plain).ran());
+  expect_skipped("fx.letterbox { aspect = 0 }", "aspect is 0");
+}
+
+TEST_F(Effects, CrtAgrees) {
+  agree_everywhere({tubed({}), tubed({.lines = 16, .softness = 1.5, .glow = 0.5, .convergence = 2}),
+                    tubed({.lines = 20, .phosphor = 1, .phosphor_size = 4.3, .curvature = 1, .corner = 0.3}),
+                    tubed({.lines = 40, .scan_lines = 0, .phosphor = 0, .glow = 0, .brightness = 2, .intensity = 0.3})},
+                   {.full = 3e-3, .fused = 1e-4, .half = 1, .spikes = false});
+  expect_skipped("fx.crt { intensity = 0 }", "intensity is 0");
+}
+
+TEST_F(Effects, CrtKeepsTheMeanLight) {
+  const Scene grey{"grey", DoubleImage(240, 240, Rgba(0.25, 0.25, 0.25, 1)), {}, {}};
+  const Made made =
+      run_stack("fx.crt { lines = 60, curvature = 0, corner = 0, vignette = 0, brightness = 1 }", grey, Way::plain);
+  const auto result = from_floats(made.result.data(), made.size, 4);
+  double sum = 0;
+  for (int y = 60; y < 180; ++y)
+    for (int x = 60; x < 180; ++x) sum += result.at(x, y).g;
+  EXPECT_NEAR(sum / (120 * 120), 0.25, 0.01);
+}
+
+EffectCase shaded(const Ssao& v, const char* normals) {
+  return {fmt::format("fx.ssao {{ intensity = {}, radius = {}, max_radius = {}, samples = {}, bias = {}, spare = {}, "
+                      "color = {}, field_of_view = {}, normals = \"{}\", camera_forward = {}, camera_up = {} }}",
+                      v.intensity, v.radius, v.max_radius, v.samples, v.bias, v.spare, rgb(v.color), v.field_of_view,
+                      normals, rgb(v.camera_forward), rgb(v.camera_up)),
+          [=](const Scene& s) { return ssao(s.source, *s.depth, s.normal ? &*s.normal : nullptr, v); }};
+}
+
+TEST_F(Effects, SsaoAgrees) {
+  agree_everywhere(
+      {shaded({}, "from_depth"),
+       shaded({.intensity = 3, .radius = 5, .max_radius = 0.5, .samples = 40, .color = {0.3, 0.1, 0}}, "from_depth"),
+       shaded({.radius = 2, .normals = SurfaceNormals::view}, "view"),
+       shaded({.spare = 1e6,
+               .field_of_view = 70,
+               .normals = SurfaceNormals::world,
+               .camera_forward = {0.3, 0.8, -0.2},
+               .camera_up = {0.1, 0, 1}},
+              "world")},
+      kDecisions);
+  expect_skipped("fx.ssao { intensity = 0 }", "intensity is 0");
+  expect_skipped("fx.ssao { color = { 1, 1, 1 } }", "color is white");
+}
+
+TEST_F(Effects, SsaoShadesCornersAndLeavesPlanes) {
+  // A floor that meets a wall 8 m away, seen from 2 m above it.
+  const Size size{160, 120};
+  Scene scene{"corner", DoubleImage(size, Rgba(0.5, 0.5, 0.5, 1)), DoubleImage(size), {}};
+  const double tan = std::tan(20 * 3.14159265358979 / 180);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const double down = (2 * (y + 0.5) / size.height - 1) * tan;
+      scene.depth->at(x, y).r = std::min(8.0, down > 0 ? 2 / down : 8.0);
+    }
+  scene.depth = in_floats(*scene.depth);
+  const Made made = run_stack("fx.ssao { radius = 1 }", scene, Way::plain);
+  const auto at = [&](int y) { return made.result[4 * static_cast<std::size_t>(y * size.width + 80)]; };
+  const int corner = static_cast<int>((2 / 8.0 / tan + 1) / 2 * size.height);
+  EXPECT_LT(at(corner), 0.42F);
+  EXPECT_GT(at(20), 0.495F);              // the wall
+  EXPECT_GT(at(size.height - 4), 0.49F);  // the floor at the camera's feet
+}
+
+EffectCase cut(const Cut& v, const char* kind) {
+  return {fmt::format(
+              "fx.transition {{ kind = \"{}\", progress = {}, color = {}, angle = {}, softness = {}, center = {{ "
+              "{}, {} }}, count = {}, grain = {}, seed = {} }}",
+              kind, v.progress, rgb(v.color), v.angle, v.softness, v.center_x, v.center_y, v.count, v.grain, v.seed),
+          [=](const Scene& s) { return transition(s.source, nullptr, v); }};
+}
+
+TEST_F(Effects, TransitionAgrees) {
+  const Rgb red{2, 0.1, 0};
+  const double p = 0.43;
+  agree_everywhere(
+      {cut({p, CutKind::dissolve, red}, "dissolve"), cut({p, CutKind::fade, red}, "fade"),
+       cut({0.8, CutKind::fade, red}, "fade"), cut({p, CutKind::wipe, red, 33, 0.3}, "wipe"),
+       cut({p, CutKind::iris, red, 0, 0.2, 0.3, 0.9}, "iris"), cut({p, CutKind::clock, red, 100, 0.4}, "clock"),
+       cut({p, CutKind::blinds, red, 250, 0.8, 0.5, 0.5, 3}, "blinds"),
+       cut({p, CutKind::scatter, red, 0, 0.4, 0.5, 0.5, 1, 3.5, 9}, "scatter"),
+       cut({p, CutKind::push, red, 70}, "push"), cut({p, CutKind::push, red, 200}, "push")},
+      {.full = 5e-4, .fused = 1e-5, .half = 5e-3});
+  expect_skipped("fx.transition {}", "progress is 0");
+}
+
+TEST_F(Effects, TransitionsEndAtTheOtherPicture) {
+  Scene scene = random_scene({64, 36}, 73);
+  scene.layers["next"] = random_scene({64, 36}, 74).source;
+  for (const char* kind : {"dissolve", "fade", "wipe", "iris", "clock", "blinds", "scatter", "push"}) {
+    const Made made = run_stack(fmt::format("fx.transition {{ kind = \"{}\", layer = \"next\", progress = 1 }}", kind),
+                                scene, Way::plain);
+    EXPECT_TRUE(agrees(made.result, scene.layers["next"], 1e-6, kRgb)) << kind;
+  }
+}
+
+EffectCase stepped(const Posterize& v) {
+  return {
+      fmt::format("fx.posterize {{ levels = {}, softness = {}, intensity = {} }}", v.levels, v.softness, v.intensity),
+      [=](const Scene& s) { return posterize(s.source, v); }};
+}
+
+TEST_F(Effects, PosterizeAgrees) {
+  agree_everywhere({stepped({}), stepped({.levels = 2, .softness = 1}), stepped({.levels = 12, .intensity = 0.4})},
+                   {.full = 1e-3, .fused = 1e-4, .half = 2e-2});
+  expect_skipped("fx.posterize { intensity = 0 }", "intensity is 0");
+}
+
+TEST_F(Effects, PosterizeLeavesFewTones) {
+  Scene ramp{"ramp", DoubleImage(1000, 1), {}, {}};
+  for (int x = 0; x < 1000; ++x) ramp.source.at(x, 0) = Rgba(Rgb(x / 999.0 * x / 999.0), 1);
+  const Made made = run_stack("fx.posterize { levels = 5, softness = 0 }", ramp, Way::plain);
+  for (int x = 0; x < 1000; ++x) {
+    const double tone = std::sqrt(made.result[4 * static_cast<std::size_t>(x)]) * 4;
+    EXPECT_NEAR(tone, std::round(tone), 2e-2) << x;
+  }
+}
+
+}  // namespace
+}  // namespace afterglow
