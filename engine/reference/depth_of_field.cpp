@@ -94,16 +94,18 @@ double before_means(double radius, int level) {
 struct Pyramid {
   std::vector<DoubleImage> levels;
 
+  /// `finest`: in place of each texel, the pixel of the finest level in its middle.
   /// f(texel, offset of its centre from the pixel's) for the texels of a level that pixel (x, y) reads: every second
   /// row and column, others than its neighbours.
   template <class F>
-  void visit(int x, int y, int level, double reach, F&& f) const {
+  void visit(int x, int y, int level, double reach, F&& f, bool finest = false) const {
     const DoubleImage& image = levels[static_cast<std::size_t>(level)];
     const int texel = 1 << level, far = static_cast<int>(std::ceil(reach)) + texel;
     for (int v = (y - far) >> level; v <= (y + far) >> level; ++v)
       for (int u = (x - far) >> level; u <= (x + far) >> level; ++u)
         if (((u - y) & 1) == 0 && ((v - x - y) & 1) == 0)
-          f(image.clamped(u, v), Point((u + 0.5) * texel - x - 0.5, (v + 0.5) * texel - y - 0.5));
+          f(finest ? levels[0].clamped(u * texel + texel / 2, v * texel + texel / 2) : image.clamped(u, v),
+            Point((u + 0.5) * texel - x - 0.5, (v + 0.5) * texel - y - 0.5));
   }
 };
 
@@ -138,13 +140,16 @@ DoubleImage far_field(const Pyramid& pyramid, const Iris& iris, int factor) {
     const double radius = before_means(circle, level);
     if (radius <= 0) return Rgba(Rgb(own), 1) * weight;
     Rgba sum(0);
-    pyramid.visit(x, y, level, radius + iris.soft() / 2, [&](const Rgba& read, Point offset) {
-      const double held = hidden ? radius : glm::clamp(read.a / circle, 0.0, 1.0) * radius;
-      const double counts = hidden ? glm::clamp(2 * read.a / circle + 1.5, 0.0, 1.0)
-                                   : blurred_by(glm::max(read.a, 0.0) * factor, factor) *
-                                         glm::min(iris.area(radius) / iris.area(held), 4.0);
-      sum += counts * iris.disc(held, iris.radius_of(offset, x, y, small.size())) * Rgba(Rgb(read), 1);
-    });
+    pyramid.visit(
+        x, y, level, radius + iris.soft() / 2,
+        [&](const Rgba& read, Point offset) {
+          const double held = hidden ? radius : glm::clamp(read.a / circle, 0.0, 1.0) * radius;
+          const double counts = hidden ? glm::clamp(2 * read.a / circle + 1.5, 0.0, 1.0)
+                                       : blurred_by(glm::max(read.a, 0.0) * factor, factor) *
+                                             glm::min(iris.area(radius) / iris.area(held), 4.0);
+          sum += counts * iris.disc(held, iris.radius_of(offset, x, y, small.size())) * Rgba(Rgb(read), 1);
+        },
+        hidden);
     return (sum * static_cast<double>(4 << (2 * level)) / iris.area(radius) + 1e-5 * Rgba(Rgb(own), 1)) * weight;
   });
 }

@@ -19,7 +19,7 @@ vec4 sample_at(ivec2 pixel) {
   vec4 own = fetch(source, pixel);
   bool hidden = own.a < 0.0;
   float circle = abs(own.a), weight = max(blurred(circle * factor, factor), 1.0 / 4096.0);
-  int level = min(level_for(circle, samples) + (hidden ? 1 : 0), 2);  // what is seen around may be coarser
+  int level = min(level_for(circle, samples) + (hidden ? 1 : 0), 2);  // what is seen around is read more sparsely
   float radius = before_means(circle, level);
   if (radius <= 0.0) return vec4(own.rgb, 1.0) * weight;
   vec3 tube = tube_at(vec2(pixel) + 0.5, vec2(small), cat_eye);
@@ -31,7 +31,9 @@ vec4 sample_at(ivec2 pixel) {
     float down = (float(y) * texel + shift.y) * stretch.y;
     ivec2 columns = columns_of(pixel, reach / stretch.x, down / stretch.x, level);
     for (int x = columns.x; x <= columns.y; x += 2) {
-      vec4 read = fetch(source, origin + clamp(ivec2(x, y), ivec2(0), last));
+      // Coarse texels hold what is in front alone, where there is any: what is seen past it are single pixels of the finest level.
+      ivec2 place = hidden ? clamp((ivec2(x, y) << level) + (1 << level) / 2, ivec2(0), small - 1) : origin + clamp(ivec2(x, y), ivec2(0), last);
+      vec4 read = fetch(source, place);
       float away = iris_radius(vec2((float(x) * texel + shift.x) * stretch.x, down), blades, turns, tube, has_tube);
       // Nothing reaches further than its own circle, nor further over this pixel than this pixel's. Smaller circles hold more light.
       float ratio = read.a * per_circle, held = hidden ? radius : clamp(ratio, 0.0, 1.0) * radius;
