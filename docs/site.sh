@@ -13,6 +13,7 @@ command -v cmark-gfm >/dev/null || { echo "docs/site.sh: error: cmark-gfm is not
 # Pages, in the order of the navigation: file and title.
 pages=(
   "README.md|Afterglow"
+  "docs/gallery.md|Gallery"
   "docs/effects.md|Effects"
   "docs/composition.md|Composing looks"
   "docs/writing_effects.md|Writing an effect"
@@ -21,6 +22,7 @@ pages=(
   "docs/ocio.md|OpenColorIO"
   "docs/embedding.md|Embedding"
   "docs/determinism.md|The same pixels"
+  "docs/stability.md|What is stable"
   "docs/reliability.md|What one can rely on"
   "docs/math.md|The mathematics"
   "docs/benchmarks/README.md|Benchmarks"
@@ -29,6 +31,7 @@ pages=(
   "CONTRIBUTING.md|Working on it"
   "tests/images/README.md|Test pictures"
   "CHANGELOG.md|Changes"
+  "THIRD_PARTY.md|What comes from others"
 )
 
 # The way from a page back to the top of the site.
@@ -80,10 +83,15 @@ finish() {
     }'
 }
 
+# A picture whose title is "before: FILE" becomes two, one over the other, with a slider between them.
+compare() {
+  sed -E 's|<p><img src="([^"]*/)([^"/]*)" alt="([^"]*)" title="before: ([^"]*)" /></p>|<figure class="compare"><img src="\1\2" alt="\3"><img src="\1\4" alt="before"><input type="range" value="50" aria-label="how much of the picture is before \3" oninput="this.parentNode.style.setProperty(\x27--at\x27, this.value + \x27%\x27)"></figure>|'
+}
+
 page() { # FILE TITLE
   local file=$1 title=$2 target=$out/${1%.md}.html body
   body=$(mktemp)
-  cmark-gfm --unsafe -e table -e strikethrough -e autolink "$file" | finish >"$body"
+  cmark-gfm --unsafe -e table -e strikethrough -e autolink "$file" | finish | compare >"$body"
   mkdir -p "$(dirname "$target")"
   {
     printf '<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<meta name="viewport" content="width=device-width">\n'
@@ -130,6 +138,11 @@ aside { display: flex; flex-direction: column; gap: .15rem; font-size: .9rem; pa
   max-height: 100vh; overflow: auto; }
 main { grid-column: 2; }
 img { max-width: 100%; height: auto; }
+.compare { position: relative; margin: 1em 0; --at: 50%; }
+.compare img { display: block; width: 100%; }
+.compare img + img { position: absolute; inset: 0; clip-path: inset(0 calc(100% - var(--at)) 0 0); border-right: 0; }
+.compare::after { content: ""; position: absolute; top: 0; bottom: 0; left: var(--at); width: 2px; background: #fff; pointer-events: none; }
+.compare input { position: absolute; inset: 0; width: 100%; height: 100%; margin: 0; opacity: 0; cursor: ew-resize; }
 table { border-collapse: collapse; display: block; overflow-x: auto; }
 td, th { border: 1px solid var(--line); padding: .25rem .6rem; text-align: left; vertical-align: top; }
 code { font: .9em ui-monospace, monospace; background: var(--faint); padding: .1em .25em; border-radius: 3px; }

@@ -4,6 +4,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Toon",
+  requires = "0.2",
   fx.color_adjustments { post_exposure = 0.9, contrast = 6, saturation = 30 },
   fx.tone_mapping { mode = "khronos_neutral" },
   fx.posterize { at = "after_post_process", order = 90, levels = 5, softness = 0.25, opacity = 0.85 },

@@ -1,4 +1,5 @@
 -- SPDX-License-Identifier: MIT
+-- input: tests/images/showcase/alley.exr
 local fx = require "afterglow"
 
 return fx.stack {

@@ -1,4 +1,5 @@
 -- SPDX-License-Identifier: MIT
+-- input: tests/images/showcase/sea.exr --set cdl.slope=1.4,1.2,1
 local fx = require "afterglow"
 
 return fx.stack {

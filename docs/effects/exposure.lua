@@ -1,4 +1,5 @@
 -- SPDX-License-Identifier: MIT
+-- input: tests/images/showcase/alley.exr --set exposure.ev=1.5
 local fx = require "afterglow"
 
 return fx.stack {

@@ -1,4 +1,5 @@
 -- SPDX-License-Identifier: MIT
+-- input: tests/images/showcase/sea.exr --set color_adjustments.post_exposure=0.3
 local fx = require "afterglow"
 
 return fx.stack {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Writes docs/effects.md and its pictures: what the program says of each effect (`afterglow effects --markdown`), an example (NAME.lua
-# here) and what it makes of tests/images/neon.exr. Needs jq. The examples are golden cases too (tests/golden).
+# here) and what it makes of a scene of tests/images/showcase. Needs jq. The examples are golden cases too (tests/golden), on other pictures.
 #   docs/effects/make.sh [PROGRAM]     PROGRAM: ./dev unless given
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -9,12 +9,31 @@ program=${1:-./dev}
 pictures=docs/images/effects
 mkdir -p "$pictures"
 
-# An example may hold "-- input: FILE OPTION…" when it needs another picture than the usual one.
+# The examples are made for a scene that is darker.
+exposure="--set color_adjustments.post_exposure=0.3"
+usual="tests/images/showcase/alley.exr $exposure"
+
+# An example may hold "-- input: FILE OPTION…" when another picture shows it better.
+input() {
+  local own
+  own=$(sed -n 's/^-- input: //p' "docs/effects/$1.lua")
+  printf '%s' "${own:-$usual}"
+}
+
+# The picture that an example is compared with: what before.lua makes of the same file. Prints its name.
+before() { # FILE …
+  local name options=
+  name=before_$(basename "${1%.*}")
+  [[ $1 == tests/images/showcase/* ]] && options=$exposure
+  # shellcheck disable=SC2086 # words of the options
+  [[ $pictures/$name.jpg -nt $started ]] ||
+    "$program" run docs/effects/before.lua "$1" $options -o "$pictures/$name.jpg" --jpeg-quality 82 -q >&2
+  printf '%s' "$name"
+}
+
 render() {
-  local input
-  input=$(sed -n 's/^-- input: //p' "docs/effects/$1.lua")
-  # shellcheck disable=SC2086 # words of the line
-  "$program" run "docs/effects/$1.lua" ${input:-tests/images/neon.exr --size 320x180} -o "$pictures/$1.jpg" --jpeg-quality 82 -q
+  # shellcheck disable=SC2046 # words of the line
+  "$program" run "docs/effects/$1.lua" $(input "$1") -o "$pictures/$1.jpg" --jpeg-quality 82 -q
 }
 
 # Passes, and the pixels they write in units of the picture; both at 1920x1080.
@@ -26,7 +45,8 @@ cost() {
       else "Cost: \($passes | length) \(if $passes | length == 1 then "pass that writes" else "passes that write" end) \($pictures) \(if $pictures == 1 then "picture" else "pictures" end) before passes are fused." end'
 }
 
-render before
+started=$(mktemp)
+trap 'rm -f "$started"' EXIT
 names=$("$program" effects --json | jq -r '.[].name')
 for name in $names; do render "$name"; done
 {
@@ -35,16 +55,15 @@ for name in $names; do render "$name"; done
 
 Made by docs/effects/make.sh from the effects themselves; `afterglow effects NAME` tells the same. Every setting has a default, so
 `fx.vignette {}` is a whole entry. Effects run by injection point and order, wherever they stand in the list; `at` and `order` in an entry
-move one. The pictures show what each example makes of the first picture; all end with a neutral tone curve. The cost is counted in what
+move one. The pictures show what each example makes of a scene; all end with a neutral tone curve. [gallery.md](gallery.md) shows them all, small. The cost is counted in what
 `afterglow graph docs/effects/NAME.lua --size 1920x1080 --format json` describes; `afterglow bench docs/effects/NAME.lua` measures times on your device.
-
-![before](images/effects/before.jpg)
 
 INTRO
   for name in $names; do
     "$program" effects "$name" --markdown
     cost "$name"
-    printf '\n![%s](images/effects/%s.jpg)\n\n```lua\n' "$name" "$name"
+    # shellcheck disable=SC2046 # words of the line
+    printf '\n![%s](images/effects/%s.jpg "before: %s.jpg")\n\n```lua\n' "$name" "$name" "$(before $(input "$name"))"
     sed -n "s/^  \(fx\.$name .*\),\$/\1/p" "docs/effects/$name.lua"
     printf '```\n\n'
   done

@@ -67,4 +67,14 @@ void Descriptors::write_image(std::size_t kernel, std::size_t slot, VkImageView 
   device_->vk().vkUpdateDescriptorSets(device_->handle(), 1, &write, 0, nullptr);
 }
 
+void Descriptors::write_buffer(std::size_t kernel, std::size_t slot, const VkDescriptorBufferInfo& buffer) const {
+  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                   .dstSet = sets_[kernel],
+                                   .dstBinding = static_cast<std::uint32_t>(slot) + 1,
+                                   .descriptorCount = 1,
+                                   .descriptorType = images_[kernel][slot],
+                                   .pBufferInfo = &buffer};
+  device_->vk().vkUpdateDescriptorSets(device_->handle(), 1, &write, 0, nullptr);
+}
+
 }  // namespace afterglow

@@ -28,6 +28,9 @@ class Descriptors {
   void write_image(std::size_t kernel, std::size_t slot, VkImageView view, VkImageLayout layout,
                    VkSampler sampler) const;
 
+  /// The whole of it, or a part; `slot` as for images. As above.
+  void write_buffer(std::size_t kernel, std::size_t slot, const VkDescriptorBufferInfo& buffer) const;
+
  private:
   const Device* device_ = nullptr;
   DescriptorPoolHandle pool_;

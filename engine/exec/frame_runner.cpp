@@ -73,6 +73,8 @@ struct FrameRunner::State {
     HostImage source;
     FrameTimes times;
     Plan plan{};                                   ///< of `ran`, for messages
+    Program* running = nullptr;                    ///< what was submitted
+    std::uint64_t runaways = 0;                    ///< of it, when the frame began
     std::optional<Clock::time_point> submitted{};  ///< none: its kernels have been waited for
   };
   std::optional<Begun> begun;
@@ -263,9 +265,11 @@ Result<void> FrameRunner::State::wait() {
   const auto since = *std::exchange(begun->submitted, std::nullopt);
   auto done = submitter.wait();
   begun->times.execute = milliseconds_since(since);
-  if (done) return {};
-  recorded = {};
+  auto ended = done && begun->running ? begun->running->check_loops(begun->runaways) : Result<void>();
+  if (done && ended) return {};
   result.set_writer(0);
+  if (!ended) return ended;
+  recorded = {};
   return KernelTimer::blame(std::move(done).error(), begun->plan);
 }
 
@@ -290,6 +294,8 @@ Result<void> FrameRunner::State::start(Program& program, const std::map<std::str
   if (begun->times.kernels_run > 0) {
     result.set_writer(0);
     begun->plan = chosen->plan();
+    begun->running = chosen;
+    begun->runaways = chosen->runaways();
     AFTERGLOW_CHECK(execute(*chosen, run, timing));
     chosen->up_to_date();
     result.set_writer(chosen->id());

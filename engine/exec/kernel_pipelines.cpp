@@ -15,6 +15,7 @@ std::vector<VkDescriptorType> descriptor_types(const CompiledKernel& kernel) {
     types.push_back(image.read == ImageRead::sampled ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
                                                      : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
   if (kernel.workgroup) types.push_back(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);  // the target
+  if (!kernel.loops.empty()) types.push_back(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
   return types;
 }
 

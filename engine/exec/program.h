@@ -38,7 +38,8 @@ struct ProgramOptions {
   WorthAKernel worth{};
   bool unorm8 = false;  ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
   /// The result's alpha is 0 where a colour that was not finite came up in a pass and no pass of another kernel that
-  /// reads around its pixel made it finite again; elsewhere 1 (`unorm8`: what the last pass gave). See Watch.
+  /// reads around its pixel made it finite again, and where a pass made more than the half floats of its image hold;
+  /// elsewhere 1 (`unorm8`: what the last pass gave). See FiniteCheck.
   bool flag_non_finite = false;
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.
@@ -108,6 +109,12 @@ class Program {
   /// histories. kUnlikeOthers: the frame has none before it; its commands are good for it alone, and `record` must not
   /// be called for another one of these until it is done.
   int recording() const;
+
+  /// How often a loop of it has run away so far.
+  std::uint64_t runaways() const;
+  /// Of a run that began when `runaways` was that and is over: errors (script) when a loop of a kernel turned more
+  /// often than an invocation may (CompiledKernel::loops). What the run made counts as lost.
+  Result<void> check_loops(std::uint64_t since);
 
   /// Tells programs apart for as long as the process lives.
   std::uint64_t id() const;

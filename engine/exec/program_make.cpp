@@ -39,6 +39,7 @@ void Program::State::settle_config() {
       config.hardware_filter && filters(format) && (graph.histories.empty() || filters(VK_FORMAT_R32G32B32A32_SFLOAT));
   config.storage_reads = config.storage_reads && supports(device, format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
   if (device.is_cpu()) fit_to_cpu_driver(config);
+  config.guard_loops = config.guard_loops && device.stores_from_fragments();
 }
 
 /// The linear image that a result by rows is.
@@ -170,6 +171,7 @@ Result<void> Program::State::compile(KernelCompiler& compiler, const std::vector
   AFTERGLOW_TRY(data, DataImages::create(device, graph, options.config.storage_reads));
   AFTERGLOW_TRY(sampler, create_sampler(device, options.config.hardware_filter ? VK_FILTER_LINEAR : VK_FILTER_NEAREST));
   AFTERGLOW_TRY(parameters, ParameterBuffer::create(device, graph, plan, pointers));
+  AFTERGLOW_TRY(loops, LoopWatch::create(device, plan, pointers));
   return {};
 }
 
@@ -192,6 +194,10 @@ Result<void> Program::State::make_descriptors() {
                        .images = descriptor_types(kernel)});
     }
   AFTERGLOW_TRY(descriptors, Descriptors::create(device, needs));
+  for (int which = 0; which < sets(); ++which)
+    for (std::size_t i = 0; i < plan.kernels.size(); ++i)
+      if (const auto word = loops.word(i))
+        descriptors.write_buffer(set_index(which, i), needs[i].images.size() - 1, *word);
   for (int which = 0; which < sets(); ++which) write_set(which, [this](ImageId id) { return look_between(id); });
   return {};
 }

@@ -77,6 +77,17 @@ std::optional<Hash>& Program::State::holds(std::size_t kernel) {
   return pooled ? pooled->holds : made[kernel];
 }
 
+std::uint64_t Program::runaways() const { return state_->loops.runaways(); }
+
+Result<void> Program::check_loops(std::uint64_t since) {
+  State& s = *state_;
+  s.loops.look();
+  if (s.loops.runaways() == since) return {};
+  for (std::size_t i = 0; i < s.plan.kernels.size(); ++i) s.holds(i).reset();
+  if (s.histories) s.histories->reset();
+  return s.loops.error();
+}
+
 std::vector<bool> Program::begin_run(const InputVersions& inputs, bool result_lost) {
   State& s = *state_;
   const std::size_t count = s.plan.kernels.size();

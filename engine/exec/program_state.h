@@ -8,6 +8,7 @@
 
 #include "exec/arena.h"
 #include "exec/barriers.h"
+#include "exec/cpu/loop_watch.h"
 #include "exec/data_images.h"
 #include "exec/describe.h"
 #include "exec/descriptors.h"
@@ -42,6 +43,7 @@ struct Program::State {
       images;  ///< to bind, parallel to the plan's kernels; of compute kernels also the target
   std::vector<std::vector<ImageId>> reads;  ///< what must be ready to be read before each kernel
   ParameterBuffer parameters;
+  LoopWatch loops;
   Arena arena;
   DataImages data;
   KernelPipelines pipelines;  ///< of compiled.unique

@@ -68,6 +68,7 @@ class Assembler {
     if (!out_.unset.empty()) out_.glsl += give_value_header();
     if (kernel_.config.defeat_uniform_inlining)
       out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
+    if (kernel_.config.guard_loops) out_.glsl += "// loops are guarded\n";
     out_.glsl += targets();
     if (!block_.empty()) out_.glsl += "layout(set = 0, binding = 0, std140) uniform ag_Block {\n" + block_ + "};\n";
     out_.glsl += images_;
@@ -76,7 +77,11 @@ class Assembler {
     if (!readers_.empty()) out_.glsl += "#line 1 1\n" + readers_;
     out_.glsl += library_text_ + stages_ + "#line 1 0\n";
     if (kernel_.target == KernelTarget::float16) out_.glsl += kRoundToHalf;
-    if (kernel_.target == KernelTarget::float16) row_ += "  ag_color = ag_round_to_half(ag_color);\n";
+    if (kernel_.target == KernelTarget::float16) {
+      if (watches())
+        row_ += "  if (any(greaterThan(abs(ag_color.rgb), vec3(65504.0)))) ag_light = uintBitsToFloat(0x7f800000u);\n";
+      row_ += "  ag_color = ag_round_to_half(ag_color);\n";
+    }
     if (kernel_.target == KernelTarget::unorm8) row_ += "  ag_color = clamp(ag_color, 0.0, 1.0);\n";
     if (watches()) row_ += "  bool ag_finite = abs(ag_light) <= 3.4028234e38;\n";
     if (kernel_.finite_check == FiniteCheck::flag)

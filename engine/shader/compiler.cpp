@@ -12,16 +12,20 @@
 #include "core/cache_folder.h"
 #include "core/file.h"
 #include "shader/cpu/defeat_uniform_inlining.h"
+#include "shader/cpu/guard_loops.h"
 #include "shader/cpu/interleave.h"
 #include "shader/give_values.h"
 #include "shader/glsl.h"
 #include "shader/kernel.h"
 #include "shader/kernel_file.h"
+#include "shader/loop_places.h"
 #include "shader/reflect.h"
 #include "shader/weight.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
+
+const std::uint32_t kMaxLoopTurns = kMaxTurns;
 
 struct KernelCompiler::State {
   /// One text; its mutex is held while it is being made, so that other threads wait for it instead of doing it again.
@@ -94,9 +98,17 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   constexpr int kTogether = 4;  // rows: more of them would not fit into a processor's registers
   KernelFile kernel;
   kernel.text = assembled.hash;
-  AFTERGLOW_TRY(kernel.spirv, compile_glsl(assembled.glsl, assembled.file_names,
-                                           assembled.workgroup ? GlslStage::compute : GlslStage::fragment));
+  const GlslStage stage = assembled.workgroup ? GlslStage::compute : GlslStage::fragment;
+  const std::size_t bound = assembled.images.size() + (assembled.workgroup ? 1 : 0);  // and the target
+  AFTERGLOW_TRY(kernel.spirv, compile_glsl(assembled.glsl, assembled.file_names, stage));
   AFTERGLOW_CHECK(check_weight(kernel.spirv, desc));
+  if (desc.config.guard_loops) {
+    LoopsGuarded guarded = guard_loops(kernel.spirv, static_cast<std::uint32_t>(bound) + 1);
+    kernel.spirv = std::move(guarded.spirv);
+    if (guarded.guarded) {
+      AFTERGLOW_TRY(kernel.loops, loop_places(assembled.glsl, stage));
+    }
+  }
   ValuesGiven given = give_values(std::move(kernel.spirv), assembled.unset);
   kernel.spirv = std::move(given.spirv);
   kernel.unset = std::move(given.read);
@@ -119,7 +131,6 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   }
   if (!unread && reflection.members.size() != assembled.params.size())
     return Error{ErrorKind::other, "the compiled shader has other parameters than declared"};
-  const std::size_t bound = assembled.images.size() + (assembled.workgroup ? 1 : 0);  // and the target
   for (const auto binding : reflection.image_bindings)
     if (binding < 1 || binding > bound)
       return Error{ErrorKind::other, "the compiled shader has other images than declared"};
@@ -164,6 +175,11 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   out.target = desc.target;
   for (const auto number : made->unset)
     if (number < assembled.unset.size()) out.warnings.push_back(unset_warning(assembled.unset[number]));
+  for (std::size_t i = 0; i + 1 < made->loops.size(); i += 2) {
+    const std::size_t file = made->loops[i];
+    out.loops.push_back({file < assembled.file_names.size() ? assembled.file_names[file] : std::string(),
+                         static_cast<int>(made->loops[i + 1])});
+  }
   out.hash = assembled.hash;
   return out;
 }

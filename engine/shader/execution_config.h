@@ -40,6 +40,8 @@ struct ExecutionConfig {
   /// The driver is kept from compiling a kernel again for each value of its parameters, as CPU drivers do. Costs an
   /// instruction a read. It has no word: exec/cpu decides it by the device.
   bool defeat_uniform_inlining = false;
+  /// Loops that may never end are ended, with an error (kernel.h, CompiledKernel::loops). Likewise without a word.
+  bool guard_loops = false;
   friend bool operator==(const ExecutionConfig&, const ExecutionConfig&) = default;
 };
 

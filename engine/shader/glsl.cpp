@@ -90,7 +90,7 @@ std::string glsl_compiler_version() {
 }
 
 Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const std::vector<std::string>& file_names,
-                                                GlslStage stage) {
+                                                GlslStage stage, bool with_lines) {
   // Never finalised: other users of glslang in the process may come and go as they like.
   static std::once_flag once;
   static bool initialised = false;
@@ -98,15 +98,13 @@ Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const s
   if (!initialised) return Error{ErrorKind::other, "the GLSL compiler cannot be initialised"};
 
   const EShLanguage language = stage == GlslStage::compute ? EShLangCompute : EShLangFragment;
-  // From 1.6 on sizes of workgroups are ids, which takes a feature of the device (maintenance4).
-  const auto version = stage == GlslStage::compute ? glslang::EShTargetSpv_1_5 : glslang::EShTargetSpv_1_6;
   glslang::TShader shader(language);
   const char* text = glsl.data();
   const int length = static_cast<int>(glsl.size());
   shader.setStringsWithLengths(&text, &length, 1);
   shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
-  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
-  shader.setEnvTarget(glslang::EShTargetSpv, version);
+  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
+  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
   const auto rules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
   if (!shader.parse(GetDefaultResources(), 460, false, rules)) return compile_error(shader.getInfoLog(), file_names);
   glslang::TProgram program;
@@ -115,6 +113,7 @@ Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const s
 
   glslang::SpvOptions options;
   options.disableOptimizer = true;  // no gain was seen on lavapipe, and it takes longer than the compilation
+  options.generateDebugInfo = with_lines;
   std::vector<std::uint32_t> spirv;
   spv::SpvBuildLogger logger;
   glslang::GlslangToSpv(*program.getIntermediate(language), spirv, &logger, &options);

@@ -56,7 +56,7 @@ enum class KernelTarget { float32, float16, unorm8 };
 
 /// What a kernel does where a colour on its way is not finite: that of the anchor, one that a stage reads at its own
 /// pixel, or what a stage made of them, whatever later stages make of it. (Finite ones whose sum is above 1e38 count as
-/// such.)
+/// such; so does what half floats cannot hold, in a kernel that writes them.)
 enum class FiniteCheck {
   none,
   propagate,  ///< it writes NaN there, so that later kernels see it
@@ -141,8 +141,18 @@ struct CompiledKernel {
   KernelTarget target = KernelTarget::float32;
   /// What authors should know, as FILE:LINE: TEXT: variables that may be read before they have a value (they are 0).
   std::vector<std::string> warnings;
+  /// With `config.guard_loops`, where each loop stands, when one of them may be endless. The kernel then needs a
+  /// storage buffer of one word, 0 before it runs, behind all images: afterwards it is 0, or n when loop n − 1 turned
+  /// more often than an invocation may; its pixels mean nothing then.
+  struct LoopPlace {
+    std::string file;  ///< empty: the engine's own text
+    int line = 0;
+  };
+  std::vector<LoopPlace> loops;
   Hash hash;
 };
+/// Turns that the loops of one invocation may make together, where they are guarded.
+extern const std::uint32_t kMaxLoopTurns;
 
 /// Lines of texels that neighbouring rows of the target read: all `together`, and each by itself, summed.
 struct LinesRead {

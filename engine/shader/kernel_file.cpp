@@ -18,7 +18,7 @@ struct Header {
 };
 struct Fixed {
   std::uint64_t text_high, text_low;
-  std::uint32_t block_size, offsets, unset, words;
+  std::uint32_t block_size, offsets, unset, loops, words;
 };
 
 /// Takes `count` words off the front, which are known to be there.
@@ -42,10 +42,12 @@ std::string encode(const KernelFile& kernel) {
                     kernel.block_size,
                     static_cast<std::uint32_t>(kernel.offsets.size()),
                     static_cast<std::uint32_t>(kernel.unset.size()),
+                    static_cast<std::uint32_t>(kernel.loops.size()),
                     static_cast<std::uint32_t>(kernel.spirv.size())};
   append(content, &fixed, sizeof fixed);
   append(content, kernel.offsets.data(), kernel.offsets.size() * sizeof(std::uint32_t));
   append(content, kernel.unset.data(), kernel.unset.size() * sizeof(std::uint32_t));
+  append(content, kernel.loops.data(), kernel.loops.size() * sizeof(std::uint32_t));
   append(content, kernel.spirv.data(), kernel.spirv.size() * sizeof(std::uint32_t));
   const Hash hash = hash_text(content);
   const Header header{kMagic, kKernelFileVersion, content.size(), hash.high, hash.low};
@@ -65,12 +67,14 @@ std::optional<KernelFile> decode(std::string_view bytes) {
   if (hash_text(bytes) != Hash{header.hash_high, header.hash_low}) return std::nullopt;
   std::memcpy(&fixed, bytes.data(), sizeof fixed);
   bytes.remove_prefix(sizeof fixed);
-  if (fixed.offsets > kMaxWords || fixed.unset > kMaxWords || fixed.words > kMaxWords) return std::nullopt;
-  if (bytes.size() != (std::size_t{fixed.offsets} + fixed.unset + fixed.words) * sizeof(std::uint32_t))
+  if (fixed.offsets > kMaxWords || fixed.unset > kMaxWords || fixed.loops > kMaxWords || fixed.words > kMaxWords)
     return std::nullopt;
-  KernelFile kernel{{fixed.text_high, fixed.text_low}, fixed.block_size, {}, {}, {}};
+  if (bytes.size() != (std::size_t{fixed.offsets} + fixed.unset + fixed.loops + fixed.words) * sizeof(std::uint32_t))
+    return std::nullopt;
+  KernelFile kernel{{fixed.text_high, fixed.text_low}, fixed.block_size, {}, {}, {}, {}};
   kernel.offsets = take_words(bytes, fixed.offsets);
   kernel.unset = take_words(bytes, fixed.unset);
+  kernel.loops = take_words(bytes, fixed.loops);
   kernel.spirv = take_words(bytes, fixed.words);
   if (kernel.spirv.empty() || kernel.spirv[0] != kSpirvMagic) return std::nullopt;
   return kernel;

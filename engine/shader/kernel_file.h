@@ -13,13 +13,15 @@
 namespace afterglow {
 
 /// Raise when the bytes, the meaning of offsets or the way of compiling change.
-inline constexpr std::uint32_t kKernelFileVersion = 3;
+inline constexpr std::uint32_t kKernelFileVersion = 5;
 
 struct KernelFile {
   Hash text;  ///< of the assembled GLSL it was made from
   std::uint32_t block_size = 0;
   std::vector<std::uint32_t> offsets;  ///< of the parameters, in the order of AssembledKernel::params
   std::vector<std::uint32_t> unset;    ///< numbers of the variables that may be read before they have a value
+  std::vector<std::uint32_t>
+      loops;  ///< of a guarded kernel: file (in AssembledKernel::file_names) and line of each loop
   std::vector<std::uint32_t> spirv;
 };
 

@@ -74,5 +74,35 @@ TEST_F(Hostile, AScriptThatNothingInterruptsEndsAllTheSame) {
   EXPECT_EQ(run({"check", "look.lua"}).exit_code, kScript);
 }
 
+/// On CPU devices nothing but the engine ends a shader.
+TEST_F(Hostile, AShaderThatNeverEndsIsToldAndEnded) {
+  write("effects/spin.lua",
+        "return require(\"afterglow\").effect { name = \"spin\", doc = \"Spins.\", at = \"post_process\", order = 300, "
+        "settings = "
+        "{},\n  build = function(g, s, source) return g:pass { shader = \"spin\", source = source } end }\n");
+  write("shaders/spin.glsl", "vec4 apply(vec4 color) {\n  while (true)\n    color.r += 1.0;\n  return color;\n}\n");
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.spin {} }\n");
+  make_exr("a.exr");
+  const std::string told =
+      "shaders/spin.glsl:2: error: a loop did not end within 32768 turns of one pixel, in 'spin.spin'";
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"run", "look.lua", "a.exr", "-o", "out.exr"},
+        {"run", "look.lua", "a.exr", "-o", "out.exr", "--reference"},
+        {"run", "look.lua", "a.exr", "-o", "out.exr", "--stats=passes"},
+        {"play", "look.lua", "a.exr", "--headless", "--count", "3", "--fast"}}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, kScript) << arguments[0] << ": " << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(told)) << arguments[0];
+  }
+  EXPECT_FALSE(fs::exists(path("out.exr")));
+  RunOptions forced;
+  forced.environment["AFTERGLOW_FORCE"] = "staging";
+  make_exr("b.exr");
+  fs::create_directory(path("graded"));
+  const Outcome outcome = run({"run", "look.lua", "a.exr", "b.exr", "-o", "graded/"}, forced);
+  EXPECT_EQ(outcome.exit_code, kScript) << "with two frames in flight";
+  EXPECT_THAT(outcome.err, HasSubstr(told));
+}
+
 }  // namespace
 }  // namespace afterglow::test

@@ -50,10 +50,9 @@ const KernelRunner::Pipeline& KernelRunner::pipeline(const CompiledKernel& kerne
   auto& made = pipelines_[{kernel.hash, format}];
   if (made) return *made;
   made = std::make_unique<Pipeline>();
-  made->layout = need(create_draw_layout(
-      *device_, {kernel.block_size > 0,
-                 std::vector<VkDescriptorType>(kernel.images.size(), VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER),
-                 kPushConstantBytes}));
+  std::vector<VkDescriptorType> types(kernel.images.size(), VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+  if (!kernel.loops.empty()) types.push_back(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+  made->layout = need(create_draw_layout(*device_, {kernel.block_size > 0, types, kPushConstantBytes}));
   made->vertex = need(create_shader_module(*device_, kFullscreenVertex, "vertex"));
   made->fragment = need(create_shader_module(*device_, kernel.spirv, "kernel"));
   made->pipeline = need(create_draw_pipeline(*device_, made->layout, made->vertex.get(), made->fragment.get(),
@@ -108,13 +107,18 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
   if (!block.empty()) std::memcpy(uniforms.data(), block.data(), block.size());
   uniforms.memory().flush();
 
+  const auto loops = need(Buffer::create(*device_, 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, HostAccess::read, "loops"));
+  std::memset(loops.data(), 0, 4);
+  loops.memory().flush();
+
   const auto& [layout, vertex, fragment, pipeline] = this->pipeline(kernel, format);
   const auto sampler = need(create_sampler(*device_, VK_FILTER_LINEAR));
 
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
-                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 16}};
+                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 16},
+                                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1}};
   const VkDescriptorPoolCreateInfo pool_info{
-      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1, .poolSizeCount = 2, .pPoolSizes = sizes};
+      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1, .poolSizeCount = 3, .pPoolSizes = sizes};
   VkDescriptorPool raw_pool = VK_NULL_HANDLE;
   need(vk.vkCreateDescriptorPool(device, &pool_info, nullptr, &raw_pool));
   const DescriptorPoolHandle descriptors(*device_, raw_pool);
@@ -126,6 +130,7 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
   VkDescriptorSet set = VK_NULL_HANDLE;
   need(vk.vkAllocateDescriptorSets(device, &set_info, &set));
   const VkDescriptorBufferInfo buffer{uniforms.get(), 0, VK_WHOLE_SIZE};
+  const VkDescriptorBufferInfo word{loops.get(), 0, VK_WHOLE_SIZE};
   std::vector<VkDescriptorImageInfo> views;
   for (const auto& input : inputs) views.push_back({sampler.get(), input.view(), kRead});
   std::vector<VkWriteDescriptorSet> writes;
@@ -137,6 +142,8 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
                       .descriptorType = type});
     return writes.back();
   };
+  if (!kernel.loops.empty())
+    write(static_cast<std::uint32_t>(kernel.images.size()) + 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER).pBufferInfo = &word;
   if (kernel.block_size > 0) write(0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER).pBufferInfo = &buffer;
   for (std::size_t i = 0; i < views.size(); ++i)
     write(static_cast<std::uint32_t>(i) + 1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER).pImageInfo = &views[i];

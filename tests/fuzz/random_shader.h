@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+// An author's shader out of bytes: loops, branches, vectors and functions nested in any way, of which each one
+// compiles. All its loops end soon. For the fuzzer of what is done to SPIR-V, and for the test that draws some of them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace afterglow::fuzz {
+
+class RandomShader {
+ public:
+  RandomShader(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
+
+  /// With an image `source`, and parameters `n` (int; 0 to 9 keep it short) and `g` (float).
+  std::string text() {
+    std::string functions;
+    functions_ = static_cast<int>(take(3));
+    for (int f = 0; f < functions_; ++f) {
+      called_ = f;
+      functions +=
+          "vec4 f" + std::to_string(f) + "(vec4 c, int k) {\n" + block(2, false) + "  return " + vector(2) + ";\n}\n";
+    }
+    called_ = functions_;
+    return "uniform sampler2D source;\nuniform int n;\nuniform float g;\n" + functions +
+           "vec4 sample_at(ivec2 pixel) {\n  vec4 c = fetch(source, pixel);\n  int k = n;\n" + block(3, false) +
+           "  return c;\n}\n";
+  }
+
+ private:
+  /// 0 … count − 1; 0 behind the end.
+  unsigned take(unsigned count) { return at_ < size_ ? data_[at_++] % count : 0; }
+  std::string digit() { return std::to_string(take(7)); }
+
+  std::string number(int depth) {
+    switch (depth > 0 ? take(7) : take(3)) {
+      case 0:
+        return "c." + component();
+      case 1:
+        return "g";
+      case 2:
+        return "float(k)";
+      case 3:
+        return "(" + number(depth - 1) + " / " + number(depth - 1) + ")";
+      case 4:
+        return "sin(" + number(depth - 1) + ")";
+      case 5:
+        return "(" + condition(depth - 1) + " ? " + number(depth - 1) + " : " + number(depth - 1) + ")";
+      default:
+        return "max(" + number(depth - 1) + ", " + digit() + ".5)";
+    }
+  }
+  std::string component() { return std::string(1, "xyzw"[take(4)]); }
+  std::string condition(int depth) {
+    switch (depth > 0 ? take(4) : take(2)) {
+      case 0:
+        return number(0) + " > " + digit() + ".25";
+      case 1:
+        return "k < " + digit();
+      case 2:
+        return "(" + condition(depth - 1) + " && " + condition(depth - 1) + ")";
+      default:
+        return "(" + condition(depth - 1) + " || " + condition(depth - 1) + ")";
+    }
+  }
+  std::string vector(int depth) {
+    switch (depth > 0 ? take(5) : take(2)) {
+      case 0:
+        return "c";
+      case 1:
+        return "vec4(" + number(0) + ")";
+      case 2:
+        return "(" + vector(depth - 1) + " * 0.5 + " + vector(depth - 1) + ")";
+      case 3:
+        return called_ > 0 ? "f" + std::to_string(take(static_cast<unsigned>(called_))) + "(" + vector(0) + ", k)"
+                           : "c.yzwx";
+      default:
+        return "mix(" + vector(depth - 1) + ", " + vector(depth - 1) + ", " + number(depth - 1) + ")";
+    }
+  }
+
+  std::string block(int depth, bool in_loop) {
+    std::string out;
+    for (unsigned statements = 1 + take(3); statements > 0; --statements) out += statement(depth, in_loop);
+    return out;
+  }
+
+  std::string statement(int depth, bool in_loop) {
+    if (++statements_ > kMostStatements) return "c += 1.0;\n";
+    const std::string i = "i" + std::to_string(++names_);
+    switch (depth > 0 ? take(11) : take(3)) {
+      case 0:
+        return "c = " + vector(2) + ";\n";
+      case 1:
+        return "c." + component() + " += " + number(2) + ";\n";
+      case 2:
+        return "k = (k + " + digit() + ") % 8;\n";
+      case 3:
+        return "if (" + condition(1) + ") {\n" + block(depth - 1, in_loop) + "} else {\n" + block(depth - 1, in_loop) +
+               "}\n";
+      case 4:
+        return "for (int " + i + " = 0; " + i + " < " + bound() + "; " + i + " += " + step() + ") {\n" +
+               block(depth - 1, true) + "}\n";
+      case 5:
+        return "for (int " + i + " = " + bound() + "; " + i + " >= " + digit() + "; --" + i + ") {\n" +
+               block(depth - 1, true) + "}\n";
+      case 6:
+        return "int " + i + " = 0;\nwhile (" + i + "++ < " + bound() + " && " + condition(1) + ") {\n" +
+               block(depth - 1, true) + "}\n";
+      case 7:
+        return "int " + i + " = 0;\ndo {\n" + block(depth - 1, true) + "} while (++" + i + " < " + bound() + ");\n";
+      case 8:
+        return "switch (k % 3) {\ncase 0:\n" + block(depth - 1, false) + "break;\ncase 1:\n" + block(depth - 1, false) +
+               "default:\n" + block(depth - 1, false) + "}\n";
+      case 9:
+        return in_loop ? "if (" + condition(0) + ") " + (take(2) == 0 ? "break;\n" : "continue;\n")
+                       : "if (" + condition(0) + ") return c;\n";
+      default:
+        return "for (int " + i + " = 0;; ++" + i + ") {\n  if (" + i + " >= " + bound() + ") break;\n" +
+               block(depth - 1, true) + "}\n";
+    }
+  }
+  std::string bound() {
+    switch (take(4)) {
+      case 0:
+        return "n";
+      case 1:
+        return "min(n, " + digit() + ")";
+      case 2:
+        return "k % 4";
+      default:
+        return digit();
+    }
+  }
+  std::string step() { return std::to_string(1 + take(3)); }
+
+  static constexpr int kMostStatements = 40;
+  const std::uint8_t* data_;
+  std::size_t size_, at_ = 0;
+  int functions_ = 0, called_ = 0, names_ = 0, statements_ = 0;
+};
+
+}  // namespace afterglow::fuzz

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Loops that never end, and loops that look like it: the first are told by file and line, the others keep their bits.
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <spirv-tools/libspirv.hpp>
+
+#include "exec/renderer.h"
+#include "shader/kernel.h"
+#include "workshop.h"
+
+namespace afterglow {
+namespace {
+
+using testing::HasSubstr;
+
+class EndlessLoops : public Workshop {
+ protected:
+  void SetUp() override {
+    Workshop::SetUp();
+    shader("copy", "uniform sampler2D source;\nvec4 sample_at(ivec2 pixel) { return fetch(source, pixel); }\n");
+  }
+  /// What the shader makes of noise, or what is said about it.
+  std::string outcome(const std::string& text, std::vector<float>* pixels = nullptr, Size size = {64, 64},
+                      std::map<std::string, ParamValue> params = {}) {
+    const std::string name = "loop" + std::to_string(++shaders_);
+    shader(name, text);
+    GraphBuilder builder(size);
+    const bool by_groups = text.find("compute_at") != std::string::npos;
+    ImageId made = builder.sample("pass", name, size, {{"source", builder.source()}}, params);
+    if (by_groups) made = builder.sample("copy", "copy", size, {{"source", made}});
+    Graph graph = builder.finish(made);
+    if (by_groups) graph.passes[0].kind = PassKind::compute;
+    auto program = try_program(graph);
+    if (!program) return program.error().text();
+    const std::vector<float> source = noise(size, 7);
+    auto runner = FrameRunner::create(device(), 6ull << 30);
+    EXPECT_TRUE(runner);
+    HostResult out;
+    const auto run = [&] {
+      return (*runner)->run(**program, {{"source", {.pixels = source.data(), .size = size}}}, out, KernelTiming::none);
+    };
+    const auto first = run();
+    if (first && pixels) *pixels = out.pixels;
+    const auto again = run();  // what was told once is told again, and does not stay
+    EXPECT_EQ(first.ok(), again.ok());
+    return first ? "ok" : first.error().text();
+  }
+  static std::string sample(const std::string& body, const std::string& before = "") {
+    return "uniform sampler2D source;\n" + before +
+           "vec4 sample_at(ivec2 pixel) {\n  vec4 c = fetch(source, pixel);\n" + body + "\n  return c;\n}\n";
+  }
+  int shaders_ = 0;
+};
+
+TEST_F(EndlessLoops, AreToldByFileAndLine) {
+  const auto endless = [&](const std::string& text, int line) {
+    const std::string said = outcome(text);
+    EXPECT_THAT(said, HasSubstr(".glsl:" + std::to_string(line) + ": error: a loop did not end within 32768 turns"))
+        << text;
+  };
+  endless(sample("while (true) c.r += 1.0;"), 4);
+  endless(sample("c.g = 1.0;\nfor (;;) {\n  c.r = sin(c.r);\n  if (c.r > 2.0) return c;\n}"), 5);
+  endless(sample("do c.r += 0.5; while (c.r > -1.0);"), 4);
+  endless(sample("for (float x = 0.0; x < 1.0; x += c.g * 1e-30) c.b += x;"), 4);
+  endless(sample("for (int i = 0; i < 1000000; ++i) c.r += float(i);"), 4);
+  endless(sample("for (int i = 0; i < int(c.r) + 40000; ++i) c.r += float(i);"), 4);
+  endless(sample("for (int i = 2147483646; i <= 2147483647; ++i) c.r += 1.0;"), 4);
+  endless(sample("for (int i = 0; i > -2147483647 - 1 + image_size(source).x * 0; i -= 3) c.r += 1.0;"), 4);
+  endless(sample("for (int i = 0; i < 300; ++i)\n  for (int j = 0; j < image_size(source).x * 9; ++j) c.r += 1.0;"), 5);
+  endless(sample("c = f(c);", "vec4 f(vec4 v) {\n  while (v.r > -1.0) {\n    v.r += 1.0;\n  }\n  return v;\n}\n"), 3);
+  endless(sample("for (int i = 0; i < image_size(source).x; ++i) {\n  for (int j = 0; j < 1000; ++j) c.r += 1.0;\n}"),
+          4);
+  endless(
+      "uniform sampler2D source;\nlayout(local_size_x = 8, local_size_y = 8) in;\nvec4 compute_at(ivec2 pixel) {\n"
+      "  vec4 c = fetch(source, pixel);\n  while (c.a > -1.0) c.a += 1.0;\n  return c;\n}\n",
+      5);
+}
+
+/// The first pixel that runs out of turns ends the frame: one by one, these would take hours.
+TEST_F(EndlessLoops, EndTheirFrame) {
+  EXPECT_THAT(outcome(sample("for (;;) for (int i = 0; i < 4000; ++i) c = sin(c) + cos(c.bgra * float(i));"), nullptr,
+                      {512, 512}),
+              HasSubstr("did not end"));
+}
+
+/// A loop that ends keeps its bits, whatever its guard.
+TEST_F(EndlessLoops, LoopsThatEndKeepTheirBits) {
+  const auto same = [&](const std::string& guarded, const std::string& plain,
+                        const std::map<std::string, ParamValue>& params = {}) {
+    std::vector<float> a, b;
+    EXPECT_EQ(outcome(guarded, &a, {37, 21}, params), "ok") << guarded;
+    EXPECT_EQ(outcome(plain, &b, {37, 21}), "ok") << plain;
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0) << guarded;
+  };
+  const std::string add = "c = c * 0.5 + fetch(source, pixel + ivec2(i, 0));";
+  const std::string five = sample("for (int i = 0; i < 5; ++i) " + add);
+  const std::string down = sample("for (int i = 4; i >= 0; --i) " + add);
+  const std::map<std::string, ParamValue> n{{"n", number(5)}}, last{{"n", number(4)}};
+  same(sample("for (int i = 0; i < n; ++i) " + add, "uniform int n;\n"), five, n);
+  same(sample("for (int i = 0; i <= n; ++i) " + add, "uniform int n;\n"), five, last);
+  same(sample("for (int i = n - 1; i >= 0; --i) " + add, "uniform int n;\n"), down, n);
+  same(sample("for (int i = n; i > -1; i -= 1) " + add, "uniform int n;\n"), down, last);
+  same(sample("int i = 0; while (i < n) { " + add + " ++i; }", "uniform int n;\n"), five, n);
+  same(sample("int i = 0; for (;;) { if (i == n) break; " + add + " ++i; }", "uniform int n;\n"), five, n);
+  same(sample("int i = 0; do { " + add + " } while (++i < n);", "uniform int n;\n"), five, n);
+  same(sample("for (int i = 0; i < n; ++i) { if (i == 7) continue; " + add + " if (i == 4) return c; }",
+              "uniform int n;\n"),
+       five, {{"n", number(50)}});
+  same(sample("for (int i = 9; i < n; ++i) " + add, "uniform int n;\n"), sample(""), n);
+  same(sample("for (int i = 0; i < n; i += 3) " + add, "uniform int n;\n"),
+       sample("for (int i = 0; i < 6; i += 3) " + add), n);
+  // The bound moves: not a loop that counts.
+  same(sample("int m = 9; for (int i = 0; i < m; ++i) { m -= n - 4; " + add + " }", "uniform int n;\n"), five, n);
+  // 100 · 100 and 5 · 30000 / 5 turns are no end.
+  same(sample("float s = 0.0; for (int i = 0; i < n; ++i) s += 1.0; c.r = s;", "uniform int n;\n"),
+       sample("c.r = 30000.0;"), {{"n", number(30000)}});
+  same(sample("float s = 0.0; for (int i = 0; i < n; ++i) for (int j = 0; j < n; ++j) s += 1.0; c.r = s;",
+              "uniform int n;\n"),
+       sample("c.r = 10000.0;"), {{"n", number(100)}});
+  same(sample("float s = 0.0; for (int i = 0; i < 60; ++i) for (int j = 0; j < 60; ++j) s += 1.0; c.r = s;"),
+       sample("c.r = 3600.0;"));
+}
+
+/// Each kernel's guard costs a buffer: small loops of constants have none.
+TEST_F(EndlessLoops, SmallLoopsHaveNoGuard) {
+  const auto guarded = [&](const std::string& body, const std::string& before = "") {
+    const std::string name = "small" + std::to_string(++shaders_);
+    shader(name, sample(body, before));
+    KernelDesc desc;
+    desc.sample = KernelStage{.shader = *library_->find(name), .constants = {}, .label = "s"};
+    desc.config.guard_loops = true;
+    const auto kernel = compiler_->compile(desc);
+    EXPECT_TRUE(kernel) << kernel.error().text();
+    EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_1).Validate(kernel->spirv));
+    return !kernel->loops.empty();
+  };
+  EXPECT_FALSE(guarded("c *= 2.0;"));
+  EXPECT_FALSE(guarded("for (int i = 0; i < 64; ++i) for (int j = 8; j > -9; j -= 2) c.r += 1.0;"));
+  EXPECT_FALSE(guarded("for (int i = 0; i <= 4095; ++i) c.r += 1.0;"));
+  EXPECT_TRUE(guarded("for (int i = 0; i <= 4096; ++i) c.r += 1.0;"));
+  EXPECT_TRUE(guarded("for (int i = 0; i < 65; ++i) for (int j = 0; j < 65; ++j) c.r += 1.0;"));
+  EXPECT_TRUE(guarded("for (int i = 0; i < n; ++i) c.r += 1.0;", "uniform int n;\n"));
+  EXPECT_TRUE(guarded("for (uint i = 0u; i < 5u; ++i) c.r += 1.0;")) << "other numbers are not followed";
+}
+
+}  // namespace
+}  // namespace afterglow

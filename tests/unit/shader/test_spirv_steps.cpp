@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Everything that is done to SPIR-V on CPU devices leaves the pixels of random shaders as they are, bit for bit. (That
+// the modules are valid, of many more shaders: tests/fuzz/spirv.cpp.)
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+#include <spirv-tools/libspirv.hpp>
+
+#include "../../fuzz/random_shader.h"
+#include "kernel_runner.h"
+#include "shader_files.h"
+
+namespace afterglow {
+namespace {
+
+TestImage waves(Size size) {
+  TestImage out{size, std::vector<float>(static_cast<std::size_t>(size.area()) * 4)};
+  for (std::size_t i = 0; i < out.rgba.size(); ++i) out.rgba[i] = static_cast<float>(i * 37 % 101) / 23.f;
+  return out;
+}
+
+std::vector<std::byte> values(const CompiledKernel& kernel, std::int32_t n, float g) {
+  std::vector<std::byte> out(kernel.block_size);
+  for (const auto& param : kernel.params)
+    std::memcpy(&out[param.offset], param.name == "n" ? static_cast<const void*>(&n) : &g, 4);
+  return out;
+}
+
+/// NaN is NaN, whatever its bits.
+bool same(const TestImage& a, const TestImage& b) {
+  for (std::size_t i = 0; i < a.rgba.size(); ++i)
+    if (std::memcmp(&a.rgba[i], &b.rgba[i], 4) != 0 && !(a.rgba[i] != a.rgba[i] && b.rgba[i] != b.rgba[i]))
+      return false;
+  return true;
+}
+
+TEST(SpirvSteps, PixelsOfRandomShadersStay) {
+  const TestImage image = waves({9, 8});
+  std::mt19937 random(11);
+  KernelCompiler compiler({});
+  int guarded = 0;
+  for (int round = 0; round < 16; ++round) {
+    std::vector<std::uint8_t> bytes(36);
+    for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
+    const std::string text = fuzz::RandomShader(bytes.data(), bytes.size()).text();
+    const ShaderFiles files;
+    KernelDesc desc;
+    desc.sample = files.stage("test/random", text);
+    const auto plain = compiler.compile(desc);
+    ASSERT_TRUE(plain) << plain.error().text() << "\n" << text;
+    desc.config.defeat_uniform_inlining = desc.config.guard_loops = true;
+    desc.config.rows = round % 4 == 3 ? 4 : 1;
+    const auto changed = compiler.compile(desc);
+    ASSERT_TRUE(changed) << changed.error().text() << "\n" << text;
+    EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_1).Validate(changed->spirv)) << text;
+    guarded += !changed->loops.empty();
+    for (const int n : {0, 5}) {
+      const TestImage want = runner().run(*plain, {image}, image.size, values(*plain, n, 0.75f));
+      const TestImage made = runner().run(*changed, {image}, image.size, values(*changed, n, 0.75f));
+      EXPECT_TRUE(same(want, made)) << "n = " << n << ", rows " << desc.config.rows << "\n" << text;
+    }
+  }
+  EXPECT_GT(guarded, 4);
+  EXPECT_EQ(runner().validation_errors(), 0);
+}
+
+}  // namespace
+}  // namespace afterglow
