@@ -14,7 +14,7 @@ function(afterglow_glsl target)
     endforeach()
     set(header ${CMAKE_CURRENT_BINARY_DIR}/${source}.h)
     add_custom_command(OUTPUT ${header}
-      COMMAND ${GLSLANG_VALIDATOR} -V --quiet --target-env vulkan1.3 -x -o ${header}.words ${CMAKE_CURRENT_SOURCE_DIR}/${source}
+      COMMAND ${GLSLANG_VALIDATOR} -V --quiet --target-env vulkan1.1 -x -o ${header}.words ${CMAKE_CURRENT_SOURCE_DIR}/${source}
       COMMAND ${CMAKE_COMMAND} -D words=${header}.words -D header=${header} -D symbol=${symbol} -P ${PROJECT_SOURCE_DIR}/cmake/glsl_header.cmake
       DEPENDS ${source} ${PROJECT_SOURCE_DIR}/cmake/glsl_header.cmake
       COMMENT "Compiling ${source}" VERBATIM)

@@ -22,6 +22,7 @@ pages=(
   "docs/ocio.md|OpenColorIO"
   "docs/embedding.md|Embedding"
   "docs/determinism.md|The same pixels"
+  "docs/stability.md|What is stable"
   "docs/reliability.md|What one can rely on"
   "docs/math.md|The mathematics"
   "docs/benchmarks/README.md|Benchmarks"
@@ -30,6 +31,7 @@ pages=(
   "CONTRIBUTING.md|Working on it"
   "tests/images/README.md|Test pictures"
   "CHANGELOG.md|Changes"
+  "THIRD_PARTY.md|What comes from others"
 )
 
 # The way from a page back to the top of the site.

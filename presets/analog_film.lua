@@ -4,6 +4,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Analog film",
+  requires = "0.2",
   reference_height = 1080,
   fx.bloom { mode = "scattering", threshold = 0.2, knee = 1, intensity = 0.1, scatter = 0.5, fade_fireflies = true },
   fx.halation { intensity = 0.12, radius = 11, threshold = 1.2, clamp = 14 },

@@ -4,6 +4,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Anime night",
+  requires = "0.2",
   reference_height = 1080,
   fx.depth_fog { density = 0.008, start = 5, color = { 0.08, 0.1, 0.26 }, ambient = 0.55, max_opacity = 0.6, sky = 0.25, scattering = 0.7 },
   fx.bloom { mode = "scattering", threshold = 0.8, knee = 0.8, intensity = 0.2, scatter = 0.75, fade_fireflies = true },

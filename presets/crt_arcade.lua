@@ -4,6 +4,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "CRT arcade",
+  requires = "0.2",
   reference_height = 1080,
   fx.bloom { mode = "scattering", threshold = 0.9, knee = 0.6, intensity = 0.12, scatter = 0.6, fade_fireflies = true },
   fx.color_adjustments { post_exposure = 0.45, contrast = 12, saturation = 24 },

@@ -4,6 +4,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Day for night",
+  requires = "0.2",
   reference_height = 1080,
   fx.curves { by = "luminance", whites = -2.2, highlights = -1.2, midtones = -0.3, shadows = 0, blacks = -0.3 },
   fx.glare { kind = "fog_glow", threshold = 1, clamp = 20, intensity = 0.12, size = 0.5, tint = { 0.6, 0.78, 1 } },

@@ -4,6 +4,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Dream haze",
+  requires = "0.2",
   reference_height = 1080,
   fx.depth_fog { density = 0.01, start = 3, color = { 0.3, 0.27, 0.34 }, ambient = 0.7, max_opacity = 0.5, sky = 0.3, scattering = 0.8 },
   fx.bloom { mode = "scattering", threshold = 0.3, knee = 1, intensity = 0.34, scatter = 0.72, fade_fireflies = true },

@@ -4,6 +4,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Golden hour",
+  requires = "0.2",
   reference_height = 1080,
   fx.depth_fog { density = 0.004, start = 6, color = { 0.32, 0.24, 0.17 }, ambient = 0.6, max_opacity = 0.45, sky = 0.3, scattering = 0.6 },
   fx.white_balance { temperature = 16, tint = 3 },

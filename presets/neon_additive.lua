@@ -6,6 +6,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Additive neon",
+  requires = "0.2",
   fx.bloom { mode = "additive", threshold = 1.2, knee = 0.3, intensity = 0.08, max_iterations = 5, fade_fireflies = true },
   fx.color_adjustments { post_exposure = 0.3, contrast = 8, saturation = 12 },
   fx.tone_mapping { mode = "khronos_neutral" },

@@ -5,6 +5,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Neon noir",
+  requires = "0.2",
   reference_height = 1080,
   fx.depth_fog { density = 0.012, start = 4, color = { 0.02, 0.03, 0.06 }, ambient = 0.8, max_opacity = 0.7, sky = 0.2, scattering = 0.6 },
   fx.bloom { mode = "scattering", threshold = 1, knee = 0.7, intensity = 0.16, scatter = 0.72, fade_fireflies = true },

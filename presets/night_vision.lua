@@ -5,6 +5,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Night vision",
+  requires = "0.2",
   fx.bloom { mode = "additive", threshold = 0.6, knee = 0.8, intensity = 0.02, max_iterations = 6, fade_fireflies = true },
   fx.color_blit { intensity = 2 },
   fx.color_adjustments { post_exposure = 0.8, contrast = 30, saturation = -8 },

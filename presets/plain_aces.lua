@@ -4,5 +4,6 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Plain ACES",
+  requires = "0.2",
   fx.tone_mapping { mode = "aces" },
 }

@@ -4,6 +4,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Security camera",
+  requires = "0.2",
   reference_height = 1080,
   fx.bloom { mode = "scattering", threshold = 0.9, knee = 0.6, intensity = 0.22, scatter = 0.55, fade_fireflies = true },
   fx.lens_distortion { intensity = 0.3, scale = 1.08 },

@@ -4,6 +4,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Teal and orange",
+  requires = "0.2",
   fx.bloom { mode = "scattering", threshold = 1.0, intensity = 0.12, fade_fireflies = true },
   fx.color_adjustments { post_exposure = 0.8, contrast = 8 },
   fx.tone_mapping { mode = "neutral" },

@@ -5,6 +5,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "VHS tape",
+  requires = "0.2",
   fx.bloom { mode = "scattering", threshold = 0.6, knee = 1, intensity = 0.2, scatter = 0.5, fade_fireflies = true },
   fx.directional_blur { distance = 3 },
   fx.lens_distortion { intensity = 0.12, scale = 1.04 },

@@ -42,7 +42,7 @@
 #endif
 
 #define AFTERGLOW_VERSION_MAJOR 0
-#define AFTERGLOW_VERSION_MINOR 1
+#define AFTERGLOW_VERSION_MINOR 2
 #define AFTERGLOW_VERSION_PATCH 0
 #define AFTERGLOW_MAKE_VERSION(major, minor, patch) \
   ((uint32_t)(major) << 22 | (uint32_t)(minor) << 12 | (uint32_t)(patch))
@@ -374,8 +374,9 @@ AFTERGLOW_API afterglow_error *afterglow_stack_report(const afterglow_stack *sta
 
 #if defined(VULKAN_CORE_H_)
 
-/* Objects of the caller, which must outlive the device and its stacks. Instance and device are of Vulkan 1.3, with the
- * features dynamicRendering and synchronization2 enabled; the queue can draw. */
+/* Objects of the caller, which must outlive the device and its stacks. Instance and device are of Vulkan 1.3, or
+ * of 1.1 and 1.2 with VK_KHR_dynamic_rendering and VK_KHR_synchronization2; the features dynamicRendering and
+ * synchronization2 are enabled; the queue can draw. */
 typedef struct afterglow_adopted_device {
   size_t struct_size;
   VkInstance instance;

@@ -30,5 +30,7 @@ Command add_calibrate_command(CLI::App& program);
 Command add_play_command(CLI::App& program);
 Command add_stress_command(CLI::App& program);
 Command add_bake_command(CLI::App& program);
+Command add_completion_command(CLI::App& program);
+Command add_man_command(CLI::App& program);
 
 }  // namespace afterglow

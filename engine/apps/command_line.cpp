@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/command.h"
+#include "apps/commit.h"
 #include "apps/interrupt.h"
 #include "apps/options.h"
 #include "apps/output.h"
@@ -121,17 +122,18 @@ enum class Work { all, parsing };
 
 int run(Console& console, int argc, char** argv, Work work) {
   CLI::App program("Finishes rendered pictures: Lua looks on Vulkan.", "afterglow");
-  program.set_version_flag("--version", std::string("afterglow ") + version());
+  const std::string of_commit = *commit() ? fmt::format(" (commit {})", commit()) : "";
+  program.set_version_flag("--version", fmt::format("afterglow {}{}", version(), of_commit));
   program.require_subcommand(1);
   program.footer(kFooter);
   program.get_formatter()->column_width(34);
 
   const std::vector<Command> commands{
-      add_run_command(program),       add_check_command(program),   add_graph_command(program),
-      add_explain_command(program),   add_effects_command(program), add_new_command(program),
-      add_set_command(program),       add_devices_command(program), add_bench_command(program),
-      add_calibrate_command(program), add_play_command(program),    add_stress_command(program),
-      add_bake_command(program)};
+      add_run_command(program),       add_check_command(program),      add_graph_command(program),
+      add_explain_command(program),   add_effects_command(program),    add_new_command(program),
+      add_set_command(program),       add_devices_command(program),    add_bench_command(program),
+      add_calibrate_command(program), add_play_command(program),       add_stress_command(program),
+      add_bake_command(program),      add_completion_command(program), add_man_command(program)};
   MessageArguments messages;
   for (const auto& command : commands) messages.add(*command.options);
 

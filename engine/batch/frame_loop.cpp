@@ -314,12 +314,12 @@ Result<void> FrameLoop::finish_running() {
   return {};
 }
 
-/// The frame's result. One in which something was not finite is made once more from its file, pass by pass and mended.
+/// The frame's result. One in which something was not finite, or more than half floats hold, is made once more from its
+/// file, pass by pass in full floats and mended.
 Result<void> FrameLoop::make(Reading& reading, Picture& picture) {
   AFTERGLOW_CHECK(session_.collect(picture));
   const SessionReport report = session_.report();
-  const bool overflow = report.clamped > 0 && !non_finite_.overflow_told();
-  if (!report.flagged && !overflow) return {};
+  if (!report.flagged && report.clamped == 0) return {};
   return mend(reading, picture);
 }
 
@@ -335,19 +335,19 @@ Result<void> FrameLoop::mend(Reading& reading, Picture& picture) {
   FrameRecord& frame = *reading.frame;
   const bool flagged = session_.report().flagged;
   auto traced = trace_again(reading);
-  if (!traced && !flagged) return {};  // only a name is missing
+  if (!traced && !flagged) return {};  // as near as half floats get
   if (!traced) {
     Error error = std::move(traced).error();
     error.message = "values that are not finite came up; the frame could not be made pass by pass: " + error.message;
     return error;
   }
   Trace trace = std::move(traced).value();
-  if (trace.overflow) non_finite_.tell_overflow(*trace.overflow, frame.job.input, events_.diagnostics);
-  if (!flagged) return {};
   take_findings(frame.non_finite, trace, picture);
-  frame.non_finite.untraced = trace.passes.empty();
+  frame.non_finite.untraced = flagged && trace.passes.empty() && trace.overflows.empty();
+  non_finite_.tell_overflows(frame.non_finite, frame.job.input, events_.diagnostics);
   non_finite_.tell(frame.non_finite, frame.job.input, options_.nan_policy, events_.diagnostics);
-  if (options_.nan_policy == NanPolicy::fail) return Error{ErrorKind::script, kUntraced};
+  if (options_.nan_policy == NanPolicy::fail && (frame.non_finite.untraced || !trace.passes.empty()))
+    return Error{ErrorKind::script, kUntraced};
   picture.color = std::move(trace.result);
   picture.unorm8.clear();
   return {};

@@ -22,6 +22,7 @@ std::string finding_text(const PassFinding& finding) {
 
 void take_findings(FrameNonFinite& frame, const Trace& trace, const Picture& picture) {
   frame.passes = trace.passes;
+  frame.overflows = trace.overflows;
   for (auto& finding : frame.passes) {
     if (finding.size != picture.color.size()) continue;
     finding.found.first->x += picture.data_window.x - picture.display_window.x;
@@ -52,13 +53,14 @@ void NonFiniteRecord::tell(const FrameNonFinite& frame, const std::filesystem::p
   if (frame.untraced) diagnostics.warn_once("not finite, untraced", fmt::format("{}: {}", input.string(), kUntraced));
 }
 
-void NonFiniteRecord::tell_overflow(const PassOverflow& overflow, const std::filesystem::path& input,
-                                    Diagnostics& diagnostics) {
-  overflow_told_ = true;
-  diagnostics.warn(
-      fmt::format("{}: pass '{}' overflows half floats: {} samples above 65504, first at {}; --precision fp32 "
-                  "keeps them",
-                  input.string(), overflow.pass, overflow.samples, overflow.first.text()));
+void NonFiniteRecord::tell_overflows(const FrameNonFinite& frame, const std::filesystem::path& input,
+                                     Diagnostics& diagnostics) const {
+  for (const auto& overflow : frame.overflows)
+    diagnostics.warn_once(
+        "overflow: " + overflow.pass,
+        fmt::format("{}: pass '{}' overflows half floats: {} samples above 65504, first at {}; the frame was made "
+                    "again in full floats",
+                    input.string(), overflow.pass, overflow.samples, overflow.first.text()));
 }
 
 void NonFiniteRecord::sum_up(Diagnostics& diagnostics) const {

@@ -18,6 +18,7 @@ namespace afterglow {
 struct FrameNonFinite {
   std::map<std::string, NonFinite> input;  ///< by layer
   std::vector<PassFinding> passes;         ///< in their order
+  std::vector<PassOverflow> overflows;     ///< of a frame that half floats could not hold, in their order
   bool untraced = false;                   ///< something was not finite, but nothing is when every pass runs by itself
 };
 
@@ -37,15 +38,14 @@ class NonFiniteRecord {
   /// Warns about passes that were not warned about before.
   void tell(const FrameNonFinite& frame, const std::filesystem::path& input, NanPolicy policy,
             Diagnostics& diagnostics) const;
-  void tell_overflow(const PassOverflow& overflow, const std::filesystem::path& input, Diagnostics& diagnostics);
-  bool overflow_told() const { return overflow_told_; }
+  /// The same about passes that made more than half floats hold.
+  void tell_overflows(const FrameNonFinite& frame, const std::filesystem::path& input, Diagnostics& diagnostics) const;
   /// One warning with the counts of all frames, when there was anything.
   void sum_up(Diagnostics& diagnostics) const;
 
  private:
   std::map<std::string, std::uint64_t> samples_;  ///< by source: "input color", "pass glow.down[2]"
   std::size_t frames_ = 0, of_ = 0;
-  bool overflow_told_ = false;
 };
 
 }  // namespace afterglow

@@ -35,6 +35,14 @@ Json counts_json(const NonFinite& found) {
           {"first", Json{{"x", found.first->x}, {"y", found.first->y}, {"value", value}}}};
 }
 
+Json overflows_json(const FrameNonFinite& found) {
+  Json out = Json::array();
+  for (const auto& pass : found.overflows)
+    out.push_back(
+        {{"pass", pass.pass}, {"effect", pass.effect}, {"samples", pass.samples}, {"first", pass.first.text()}});
+  return out;
+}
+
 Json non_finite_json(const FrameNonFinite& found) {
   Json out = Json::object();
   for (const auto& [layer, counts] : found.input) {
@@ -133,6 +141,7 @@ Json frame_json(const FrameRecord& frame) {
            {"state", kStates[static_cast<int>(frame.state)]}};
   if (frame.error) out["error"] = frame.error->text();
   if (auto found = non_finite_json(frame.non_finite); !found.empty()) out["non_finite"] = std::move(found);
+  if (auto found = overflows_json(frame.non_finite); !found.empty()) out["beyond_half_floats"] = std::move(found);
   if (frame.state != FrameRecord::State::done) return out;
   out["width"] = frame.size.width;
   out["height"] = frame.size.height;

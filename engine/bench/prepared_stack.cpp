@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "graph/memory.h"
+
 namespace afterglow::bench {
 namespace {
 
@@ -77,6 +79,9 @@ Result<Point> PreparedStack::try_out(Device& device, const Picture& picture, boo
   const Program& program = *stack_->program();
   point.kernels = static_cast<int>(program.plan().kernels.size());
   point.image_memory = program.memory().arena;
+  const Traffic traffic = traffic_of(program.graph(), program.plan(), program.config(), &program.parts());
+  point.traffic = traffic.total;
+  point.unavoidable = traffic.unavoidable;
   AFTERGLOW_TRY(const auto renderer, Renderer::create(device, {.max_memory = 64ull << 30}));
   std::map<std::string, HostImage> inputs{
       {"source", {picture.color.pixels.data(), picture.color.size(), picture.color.channels}}};

@@ -24,14 +24,16 @@ std::string quality_columns(const std::optional<Quality>& quality) {
 std::string report_csv(const Report& report) {
   std::string out =
       "device,driver,preset,width,height,label,choice,settings,median_ms,lower_quartile_ms,upper_quartile_ms,upload_ms,"
-      "read_back_ms,copy_ms,memory_ms,kernels,image_memory,error_max,error_p9999,error_rms,psnr,visible,front\n";
+      "read_back_ms,copy_ms,memory_ms,kernels,image_memory,traffic_bytes,unavoidable_bytes,error_max,error_p9999,error_"
+      "rms,psnr,visible,front\n";
   for (const auto& cell : report.cells)
     for (const auto& p : cell.points)
-      out += fmt::format("{},{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{}\n",
-                         quoted(report.device), quoted(report.driver), quoted(cell.preset), cell.size.width,
-                         cell.size.height, quoted(p.label), quoted(p.choice), quoted(p.settings), p.execute.median,
-                         p.execute.lower, p.execute.upper, p.upload, p.read_back, cell.copy.median, cell.memory.median,
-                         p.kernels, p.image_memory, quality_columns(p.quality), p.front ? 1 : 0);
+      out +=
+          fmt::format("{},{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{}\n",
+                      quoted(report.device), quoted(report.driver), quoted(cell.preset), cell.size.width,
+                      cell.size.height, quoted(p.label), quoted(p.choice), quoted(p.settings), p.execute.median,
+                      p.execute.lower, p.execute.upper, p.upload, p.read_back, cell.copy.median, cell.memory.median,
+                      p.kernels, p.image_memory, p.traffic, p.unavoidable, quality_columns(p.quality), p.front ? 1 : 0);
   return out;
 }
 

@@ -39,6 +39,8 @@ Json point_json(const Point& point) {
            {"settings", point.settings},
            {"kernels", point.kernels},
            {"image_memory", point.image_memory},
+           {"traffic_bytes", point.traffic},
+           {"unavoidable_bytes", point.unavoidable},
            {"execute", spread_json(point.execute)},
            {"upload", point.upload},
            {"read_back", point.read_back},

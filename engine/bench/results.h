@@ -29,6 +29,8 @@ struct Point {
   double upload = 0, read_back = 0;
   int kernels = 0;
   std::uint64_t image_memory = 0;  ///< bytes between passes
+  std::uint64_t traffic = 0;       ///< bytes that kernels read and write: graph/memory.h
+  std::uint64_t unavoidable = 0;   ///< of them, what no way can spare
   std::vector<KernelTime> passes;  ///< each alone
   std::optional<Quality> quality;  ///< empty: there was nothing to compare with
   bool front = false;              ///< nothing else is both faster and closer to the truth

@@ -24,7 +24,7 @@ fs::path own_file() {
 
 bool is_in_build_folder() {
   const fs::path build = AFTERGLOW_BUILD_FOLDER, own = own_file();
-  return std::mismatch(build.begin(), build.end(), own.begin(), own.end()).first == build.end();
+  return !build.empty() && std::mismatch(build.begin(), build.end(), own.begin(), own.end()).first == build.end();
 }
 
 }  // namespace afterglow

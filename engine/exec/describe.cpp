@@ -89,10 +89,10 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
     connect(graph, kernel, pass, static_cast<int>(desc.stages.size()) + (desc.sample ? 1 : 0), own_reads, stage);
     desc.stages.push_back(std::move(stage));
   }
-  // What has no stages hands on by itself.
+  // What has no stages hands on by itself, unless it must tell what half floats do not hold.
   if (options.flag_non_finite && kernel.output == graph.result)
     desc.finite_check = FiniteCheck::flag;
-  else if (options.flag_non_finite && !desc.stages.empty())
+  else if (options.flag_non_finite && (half || !desc.stages.empty()))
     desc.finite_check = FiniteCheck::propagate;
   if (options.config.storage_reads) desc.reads = storage_reads_of(graph, kernel, desc, options);
   if (pixels >= options.worth.rows) desc.config.rows = rows_that_pay(desc, options.config.rows);

@@ -38,7 +38,8 @@ struct ProgramOptions {
   WorthAKernel worth{};
   bool unorm8 = false;  ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
   /// The result's alpha is 0 where a colour that was not finite came up in a pass and no pass of another kernel that
-  /// reads around its pixel made it finite again; elsewhere 1 (`unorm8`: what the last pass gave). See Watch.
+  /// reads around its pixel made it finite again, and where a pass made more than the half floats of its image hold;
+  /// elsewhere 1 (`unorm8`: what the last pass gave). See FiniteCheck.
   bool flag_non_finite = false;
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.

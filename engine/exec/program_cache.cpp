@@ -43,6 +43,10 @@ struct ProgramCache::State {
     return std::ranges::find_if(entries, [&](const Entry& entry) { return same_program(entry.work, work); });
   }
   Result<void> fit_histories();
+  /// Of the present program.
+  Storage storage() const {
+    return present ? entries.front().work.storage.value_or(options.config.storage) : options.config.storage;
+  }
   ProgramOptions program_options() const;
   /// What a whole program is made of: the graph, or what is left of it for opaque pictures, which most are. Frames with
   /// another alpha get a program of their own (`for_content`).
@@ -55,8 +59,8 @@ struct ProgramCache::State {
 };
 
 bool same_program(const FrameWork& a, const FrameWork& b) {
-  return a.region == b.region && a.unorm8 == b.unorm8 && a.texts == b.texts && same_structure(a.graph, b.graph) &&
-         (!a.region || same_reach(a.graph, b.graph));
+  return a.region == b.region && a.unorm8 == b.unorm8 && a.storage == b.storage && a.texts == b.texts &&
+         same_structure(a.graph, b.graph) && (!a.region || same_reach(a.graph, b.graph));
 }
 
 ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
@@ -110,6 +114,7 @@ double ProgramCache::milliseconds() const { return state_->milliseconds; }
 ProgramOptions ProgramCache::State::program_options() const {
   ProgramOptions out;
   out.config = options.config;
+  out.config.storage = storage();
   out.reference = options.reference;
   out.source_is_storage = out.result_by_rows = options.own_images;
   out.flag_non_finite = options.flag_non_finite;
@@ -127,7 +132,7 @@ ProgramOptions ProgramCache::State::program_options() const {
 
 /// What earlier frames handed on stays where it still means the same.
 Result<void> ProgramCache::State::fit_histories() {
-  const bool half = options.config.storage == Storage::fp16 && !options.reference;
+  const bool half = storage() == Storage::fp16 && !options.reference;
   return histories->fit(device, entries.front().work.graph,
                         {.half = half, .storage = options.config.storage_reads, .max_memory = options.max_memory});
 }
@@ -263,7 +268,7 @@ Result<std::unique_ptr<Program>> ProgramCache::by_passes(const Graph& graph, con
   const State& s = *state_;
   ProgramOptions options;
   const bool halves = std::ranges::any_of(graph.histories, [](const History& history) { return !history.precise; });
-  if (halves) options.config.storage = s.options.config.storage;
+  if (halves) options.config.storage = s.storage();
   options.config.storage_reads = s.options.config.storage_reads;  // as the histories are made
   options.reference = true;
   options.region = region;

@@ -30,8 +30,10 @@ struct FrameWork {
   Hash texts{};                  ///< of the graph's shaders: see `texts_of`
   std::optional<Rect> region{};  ///< of the result, in its pixels and within it; empty: all of it
   bool unorm8 = false;           ///< the last pass gives 8-bit codes
-  double frame = 1, step = 1;    ///< number, and how many after the frame before it; see Histories::begin
-  bool restart = false;          ///< no frame is before it
+  /// In place of that of ProgramCacheOptions::config, which looks at no frame.
+  std::optional<Storage> storage{};
+  double frame = 1, step = 1;  ///< number, and how many after the frame before it; see Histories::begin
+  bool restart = false;        ///< no frame is before it
   bool runs() const { return graph.result != graph.source; }
 };
 /// Can one program do for both, with other values?

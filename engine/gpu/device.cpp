@@ -24,22 +24,25 @@ bool can_store_from_fragments(const VulkanFunctions& vk, VkPhysicalDevice device
 }
 
 Result<VkDevice> open_device(const VulkanFunctions& vk, const PhysicalDevice& chosen, bool present) {
-  const char* swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+  const auto extensions = extensions_to_enable(vk, chosen.handle, chosen.info.api_version, present);
   const float priority = 1;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                       .queueFamilyIndex = chosen.queue_family,
                                       .queueCount = 1,
                                       .pQueuePriorities = &priority};
-  const VkPhysicalDeviceVulkan13Features features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
-                                                  .synchronization2 = VK_TRUE,
-                                                  .dynamicRendering = VK_TRUE};
+  VkPhysicalDeviceSynchronization2Features synchronization{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES, .synchronization2 = VK_TRUE};
+  const VkPhysicalDeviceDynamicRenderingFeatures features{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES,
+      .pNext = &synchronization,
+      .dynamicRendering = VK_TRUE};
   const VkPhysicalDeviceFeatures wanted{.fragmentStoresAndAtomics = can_store_from_fragments(vk, chosen.handle)};
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = &features,
                                 .queueCreateInfoCount = 1,
                                 .pQueueCreateInfos = &queue,
-                                .enabledExtensionCount = present ? 1u : 0u,
-                                .ppEnabledExtensionNames = &swapchain,
+                                .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+                                .ppEnabledExtensionNames = extensions.data(),
                                 .pEnabledFeatures = &wanted};
   VkDevice handle = VK_NULL_HANDLE;
   AFTERGLOW_VK(vk.vkCreateDevice(chosen.handle, &info, nullptr, &handle),
@@ -144,7 +147,7 @@ Result<std::unique_ptr<Device>> Device::adopt(const AdoptedDevice& adopted, Diag
 
 /// What created and adopted devices have in common.
 Result<void> Device::finish() {
-  AFTERGLOW_CHECK(functions_.load_device(device_));
+  AFTERGLOW_CHECK(functions_.load_device(device_, info_.api_version));
   if (owned_) functions_.vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
   // VK_EXT_debug_utils is enabled with validation, or by the caller whose instance it is.
   if (owned_ && messenger_ == VK_NULL_HANDLE) {

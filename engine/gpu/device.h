@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A Vulkan 1.3 device: picked by name, or adopted from the caller. Owns nothing global.
+// A Vulkan device: picked by name, or adopted from the caller. Owns nothing global.
 #pragma once
 
 #include <cstdint>
@@ -53,8 +53,9 @@ struct DeviceOptions {
   ForcedWays forced{};
 };
 
-/// A caller's objects to work on; they must outlive the Device. The instance and device are of Vulkan 1.3 with
-/// dynamicRendering and synchronization2 enabled.
+/// A caller's objects to work on; they must outlive the Device. The instance and device are of Vulkan 1.3, or
+/// of 1.1 and 1.2 with VK_KHR_dynamic_rendering and VK_KHR_synchronization2; dynamicRendering and synchronization2 are
+/// enabled.
 struct AdoptedDevice {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
@@ -87,7 +88,7 @@ class Device {
   /// With "auto", a device that cannot be opened is passed over with a warning. `diagnostics` is used during the call
   /// alone. Errors: device (none, none that matches, none usable, none that can present, no validation layer).
   static Result<std::unique_ptr<Device>> create(const DeviceOptions& options, Diagnostics& diagnostics);
-  /// Destroys none of the caller's objects. Errors: device (not Vulkan 1.3, a queue family without graphics).
+  /// Destroys none of the caller's objects. Errors: device (too old, a queue family without graphics).
   static Result<std::unique_ptr<Device>> adopt(const AdoptedDevice& adopted, Diagnostics& diagnostics);
   ~Device();
   Device(const Device&) = delete;

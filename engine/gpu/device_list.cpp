@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <set>
 
 #include "core/text.h"
 #include "gpu/error.h"
@@ -14,6 +15,8 @@
 namespace afterglow {
 
 namespace {
+
+constexpr const char* kPortabilitySubset = "VK_KHR_portability_subset";  // its header is one of beta extensions
 
 const char* type_name(VkPhysicalDeviceType type) {
   switch (type) {
@@ -42,13 +45,34 @@ bool can_present(const VulkanFunctions& vk, VkPhysicalDevice device, std::uint32
   return vk.vkGetPhysicalDeviceSurfaceSupportKHR(device, family, surface, &supported) == VK_SUCCESS && supported;
 }
 
-bool has_swapchains(const VulkanFunctions& vk, VkPhysicalDevice device) {
+std::set<std::string> extensions_of(const VulkanFunctions& vk, VkPhysicalDevice device) {
   std::uint32_t count = 0;
-  if (vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr) != VK_SUCCESS) return false;
+  if (vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr) != VK_SUCCESS) return {};
   std::vector<VkExtensionProperties> extensions(count);
   vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
-  return std::ranges::any_of(
-      extensions, [](const auto& e) { return std::string_view(e.extensionName) == VK_KHR_SWAPCHAIN_EXTENSION_NAME; });
+  std::set<std::string> names;
+  for (const auto& extension : extensions) names.insert(extension.extensionName);
+  return names;
+}
+
+/// Extensions that stand for what later versions of Vulkan have, with those that they are built on.
+std::vector<const char*> stand_ins(std::uint32_t api_version) {
+  std::vector<const char*> names;
+  if (api_version < VK_API_VERSION_1_2)
+    names = {VK_KHR_CREATE_RENDERPASS_2_EXTENSION_NAME, VK_KHR_DEPTH_STENCIL_RESOLVE_EXTENSION_NAME};
+  if (api_version < VK_API_VERSION_1_3) {
+    names.push_back(VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME);
+    names.push_back(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
+  }
+  return names;
+}
+
+bool can_compute_alone(const VulkanFunctions& vk, VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  return std::ranges::any_of(families, [](const auto& f) { return (f.queueFlags & VK_QUEUE_COMPUTE_BIT) != 0; });
 }
 
 /// The first family with graphics and compute (graphics alone is good enough for what we record) that can present to
@@ -75,22 +99,31 @@ bool can_draw_and_sample(const VulkanFunctions& vk, VkPhysicalDevice device, VkF
 
 std::string what_it_lacks(const VulkanFunctions& vk, VkPhysicalDevice device, std::uint32_t api_version,
                           VkSurfaceKHR surface) {
-  if (api_version < VK_API_VERSION_1_3) {
-    return fmt::format("needs Vulkan 1.3, has {}.{}", VK_API_VERSION_MAJOR(api_version),
-                       VK_API_VERSION_MINOR(api_version));
-  }
+  const std::string version =
+      fmt::format("{}.{}", VK_API_VERSION_MAJOR(api_version), VK_API_VERSION_MINOR(api_version));
+  if (api_version < VK_API_VERSION_1_1) return "needs Vulkan 1.1, has " + version;
+  const auto extensions = extensions_of(vk, device);
   std::vector<std::string> lacks;
-  VkPhysicalDeviceVulkan13Features features13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-  VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &features13};
+  for (const char* name : stand_ins(api_version))
+    if (!extensions.contains(name)) lacks.push_back(fmt::format("{} (or Vulkan 1.3, it has {})", name, version));
+  if (!lacks.empty()) return "lacks " + join(lacks);
+  VkPhysicalDeviceSynchronization2Features synchronization{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES};
+  VkPhysicalDeviceDynamicRenderingFeatures rendering{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES, .pNext = &synchronization};
+  VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &rendering};
   vk.vkGetPhysicalDeviceFeatures2(device, &features);
-  if (!features13.dynamicRendering) lacks.push_back("dynamicRendering");
-  if (!features13.synchronization2) lacks.push_back("synchronization2");
+  if (!rendering.dynamicRendering) lacks.push_back("dynamicRendering");
+  if (!synchronization.synchronization2) lacks.push_back("synchronization2");
   if (!graphics_family(vk, device, VK_NULL_HANDLE)) {
-    lacks.push_back("a graphics queue");
+    lacks.push_back(can_compute_alone(vk, device)
+                        ? "a graphics queue (those that it has only compute; passes are drawn)"
+                        : "a graphics queue");
   } else if (!graphics_family(vk, device, surface)) {
     lacks.push_back("a graphics queue that can show pictures in this window");
   }
-  if (surface != VK_NULL_HANDLE && !has_swapchains(vk, device)) lacks.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  if (surface != VK_NULL_HANDLE && !extensions.contains(VK_KHR_SWAPCHAIN_EXTENSION_NAME))
+    lacks.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   if (!can_draw_and_sample(vk, device, VK_FORMAT_R32G32B32A32_SFLOAT)) lacks.push_back("drawing to RGBA32F");
   if (!can_draw_and_sample(vk, device, VK_FORMAT_R16G16B16A16_SFLOAT)) lacks.push_back("drawing to RGBA16F");
   return lacks.empty() ? "" : "lacks " + join(lacks);
@@ -121,6 +154,15 @@ Result<std::size_t> usable_or_error(std::span<const DeviceInfo> devices, std::si
 }
 
 }  // namespace
+
+std::vector<const char*> extensions_to_enable(const VulkanFunctions& vk, VkPhysicalDevice device,
+                                              std::uint32_t api_version, bool present) {
+  std::vector<const char*> names = stand_ins(api_version);
+  if (present) names.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  // Drivers that leave out parts of Vulkan want to be told that this is known.
+  if (extensions_of(vk, device).contains(kPortabilitySubset)) names.push_back(kPortabilitySubset);
+  return names;
+}
 
 PhysicalDevice describe_device(const VulkanFunctions& vk, VkPhysicalDevice device, VkSurfaceKHR surface) {
   VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};

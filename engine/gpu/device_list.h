@@ -22,6 +22,10 @@ struct PhysicalDevice {
 Result<std::vector<PhysicalDevice>> enumerate_devices(const VulkanFunctions& vk, VkInstance instance,
                                                       VkSurfaceKHR surface = VK_NULL_HANDLE);
 
+/// What a device of this version is opened with, `present`: to show pictures in a window too.
+std::vector<const char*> extensions_to_enable(const VulkanFunctions& vk, VkPhysicalDevice device,
+                                              std::uint32_t api_version, bool present);
+
 /// Name, type, driver, uuid and whether it can be used; with `surface`, whether it can present to it too.
 PhysicalDevice describe_device(const VulkanFunctions& vk, VkPhysicalDevice device,
                                VkSurfaceKHR surface = VK_NULL_HANDLE);

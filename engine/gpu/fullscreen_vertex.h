@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The vertex shader of every draw: one triangle that covers the target (math.md §1), as SPIR-V so that a warm start
-// needs no compiler. To make it again: glslangValidator -V --target-env vulkan1.3, then spirv-opt -O --strip-debug, of
+// needs no compiler. To make it again: glslangValidator -V --target-env vulkan1.1, then spirv-opt -O --strip-debug, of
 //
 //   #version 450
 //   void main() {
@@ -13,7 +13,7 @@
 namespace afterglow {
 
 inline constexpr std::uint32_t kFullscreenVertex[] = {
-    0x07230203, 0x00010600, 0x0008000b, 0x00000022, 0x00000000, 0x00020011, 0x00000001, 0x0006000b, 0x00000001,
+    0x07230203, 0x00010300, 0x0008000b, 0x00000022, 0x00000000, 0x00020011, 0x00000001, 0x0006000b, 0x00000001,
     0x4c534c47, 0x6474732e, 0x3035342e, 0x00000000, 0x0003000e, 0x00000000, 0x00000001, 0x0007000f, 0x00000000,
     0x00000004, 0x6e69616d, 0x00000000, 0x0000000d, 0x00000011, 0x00050048, 0x0000000b, 0x00000000, 0x0000000b,
     0x00000000, 0x00050048, 0x0000000b, 0x00000001, 0x0000000b, 0x00000001, 0x00050048, 0x0000000b, 0x00000002,

@@ -50,9 +50,16 @@ Result<void> VulkanFunctions::load_instance(VkInstance instance) {
   return {};
 }
 
-Result<void> VulkanFunctions::load_device(VkDevice device) {
+Result<void> VulkanFunctions::load_device(VkDevice device, std::uint32_t api_version) {
   const auto find = [&](const char* name) { return vkGetDeviceProcAddr(device, name); };
   AFTERGLOW_DEVICE_FUNCTIONS(AFTERGLOW_NEED)
+  const bool is_core = api_version >= VK_API_VERSION_1_3;
+#define AFTERGLOW_NEED_PROMOTED(name)                                       \
+  name = reinterpret_cast<PFN_##name>(find(is_core ? #name : #name "KHR")); \
+  if (!name) name = reinterpret_cast<PFN_##name>(find(#name "KHR"));        \
+  if (!name) return missing(is_core ? #name : #name "KHR");
+  AFTERGLOW_DEVICE_PROMOTED_FUNCTIONS(AFTERGLOW_NEED_PROMOTED)
+#undef AFTERGLOW_NEED_PROMOTED
   AFTERGLOW_DEVICE_EXTENSION_FUNCTIONS(AFTERGLOW_LOAD)
   return {};
 }

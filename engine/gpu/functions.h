@@ -8,7 +8,8 @@
 namespace afterglow {
 
 // Functions that need no instance.
-#define AFTERGLOW_GLOBAL_FUNCTIONS(F) F(vkCreateInstance) F(vkEnumerateInstanceLayerProperties)
+#define AFTERGLOW_GLOBAL_FUNCTIONS(F) \
+  F(vkCreateInstance) F(vkEnumerateInstanceExtensionProperties) F(vkEnumerateInstanceLayerProperties)
 
 // Functions of an instance. Those of extensions are null unless the instance has them.
 #define AFTERGLOW_INSTANCE_FUNCTIONS(F)       \
@@ -44,7 +45,6 @@ namespace afterglow {
   F(vkBeginCommandBuffer)             \
   F(vkBindBufferMemory)               \
   F(vkBindImageMemory)                \
-  F(vkCmdBeginRendering)              \
   F(vkCmdBindDescriptorSets)          \
   F(vkCmdBindIndexBuffer)             \
   F(vkCmdBindPipeline)                \
@@ -58,15 +58,12 @@ namespace afterglow {
   F(vkCmdDispatchBase)                \
   F(vkCmdDraw)                        \
   F(vkCmdDrawIndexed)                 \
-  F(vkCmdEndRendering)                \
   F(vkCmdFillBuffer)                  \
-  F(vkCmdPipelineBarrier2)            \
   F(vkCmdPushConstants)               \
   F(vkCmdResetQueryPool)              \
   F(vkCmdSetScissor)                  \
   F(vkCmdSetViewport)                 \
   F(vkCmdUpdateBuffer)                \
-  F(vkCmdWriteTimestamp2)             \
   F(vkCreateBuffer)                   \
   F(vkCreateCommandPool)              \
   F(vkCreateComputePipelines)         \
@@ -109,19 +106,23 @@ namespace afterglow {
   F(vkGetImageSubresourceLayout)      \
   F(vkGetPipelineCacheData)           \
   F(vkGetQueryPoolResults)            \
-  F(vkGetSemaphoreCounterValue)       \
   F(vkInvalidateMappedMemoryRanges)   \
   F(vkMapMemory)                      \
   F(vkMergePipelineCaches)            \
-  F(vkQueueSubmit2)                   \
   F(vkQueueWaitIdle)                  \
   F(vkResetCommandPool)               \
   F(vkResetFences)                    \
-  F(vkSignalSemaphore)                \
   F(vkUnmapMemory)                    \
   F(vkUpdateDescriptorSets)           \
-  F(vkWaitForFences)                  \
-  F(vkWaitSemaphores)
+  F(vkWaitForFences)
+/// Of Vulkan 1.3, or of VK_KHR_dynamic_rendering and VK_KHR_synchronization2, where they end in KHR.
+#define AFTERGLOW_DEVICE_PROMOTED_FUNCTIONS(F) \
+  F(vkCmdBeginRendering)                       \
+  F(vkCmdEndRendering)                         \
+  F(vkCmdPipelineBarrier2)                     \
+  F(vkCmdWriteTimestamp2)                      \
+  F(vkQueueSubmit2)
+/// Null where their extension is not enabled.
 #define AFTERGLOW_DEVICE_EXTENSION_FUNCTIONS(F) \
   F(vkAcquireNextImageKHR)                      \
   F(vkCreateSwapchainKHR)                       \
@@ -139,6 +140,7 @@ struct VulkanFunctions {
   AFTERGLOW_INSTANCE_FUNCTIONS(AFTERGLOW_DECLARE)
   AFTERGLOW_INSTANCE_EXTENSION_FUNCTIONS(AFTERGLOW_DECLARE)
   AFTERGLOW_DEVICE_FUNCTIONS(AFTERGLOW_DECLARE)
+  AFTERGLOW_DEVICE_PROMOTED_FUNCTIONS(AFTERGLOW_DECLARE)
   AFTERGLOW_DEVICE_EXTENSION_FUNCTIONS(AFTERGLOW_DECLARE)
 #undef AFTERGLOW_DECLARE
 
@@ -146,7 +148,8 @@ struct VulkanFunctions {
   /// Errors: device (no loader; a function is missing, named). Then those of one instance and one device.
   static Result<VulkanFunctions> load(PFN_vkGetInstanceProcAddr get = nullptr);
   Result<void> load_instance(VkInstance instance);
-  Result<void> load_device(VkDevice device);
+  /// `api_version`: of the device; below 1.3 the promoted functions are those of the extensions.
+  Result<void> load_device(VkDevice device, std::uint32_t api_version);
 };
 
 }  // namespace afterglow

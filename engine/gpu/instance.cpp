@@ -46,6 +46,14 @@ bool has_layer(const VulkanFunctions& vk) {
   return std::ranges::any_of(layers, [](const auto& l) { return std::strcmp(l.layerName, kLayer) == 0; });
 }
 
+bool has_extension(const VulkanFunctions& vk, std::string_view name) {
+  std::uint32_t count = 0;
+  if (vk.vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr) != VK_SUCCESS) return false;
+  std::vector<VkExtensionProperties> extensions(count);
+  vk.vkEnumerateInstanceExtensionProperties(nullptr, &count, extensions.data());
+  return std::ranges::any_of(extensions, [&](const auto& e) { return name == e.extensionName; });
+}
+
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                           VkDebugUtilsMessageTypeFlagsEXT types,
                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
@@ -81,7 +89,7 @@ Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log, const std:
   AFTERGLOW_TRY(out.functions_, VulkanFunctions::load());
   std::uint32_t version = VK_API_VERSION_1_0;
   if (out.functions_.vkEnumerateInstanceVersion) out.functions_.vkEnumerateInstanceVersion(&version);
-  if (version < VK_API_VERSION_1_3) return Error{ErrorKind::device, "the Vulkan loader is older than 1.3"};
+  if (version < VK_API_VERSION_1_1) return Error{ErrorKind::device, "the Vulkan loader is older than 1.1"};
   if (log && !has_layer(out.functions_)) {
     return Error{ErrorKind::device, std::string("validation was asked for, but the layer ") + kLayer +
                                         " is not installed (Debian: vulkan-validationlayers)"};
@@ -108,6 +116,11 @@ Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log, const std:
                                          .pEnabledValidationFeatures = &synchronization};
   std::vector<const char*> names;
   for (const auto& extension : extensions) names.push_back(extension.c_str());
+  // Without it the loader hides drivers that leave out parts of Vulkan, as those over Metal do.
+  if (has_extension(out.functions_, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
+    names.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+    info.flags |= VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR;
+  }
   if (log) {
     names.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     names.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);

@@ -9,9 +9,11 @@
 #include "core/file.h"
 #include "core/inside.h"
 #include "core/text.h"
+#include "core/version.h"
 #include "script/globals.h"
 #include "script/native.h"
 #include "script/object.h"
+#include "script/requirement.h"
 #include "script/runtime.h"
 #include "script/value.h"
 
@@ -99,11 +101,22 @@ int do_require(lua_State* lua) {
 
 }  // namespace
 
+/// Of the script that was read last, a preset: what it needs may be anywhere in it, so it is asked before it runs.
+void check_requirement(const Sandbox& box) {
+  const Source& source = box.sources().back();
+  const auto newer = newer_requirement(source.text, *parse_version(version()));
+  if (newer)
+    throw ScriptError{{ErrorKind::script,
+                       fmt::format("the preset requires Afterglow {}; this is {}", newer->version, version()),
+                       source.path, newer->line}};
+}
+
 DeclaredStack load_stack(lua_State* lua, const fs::path& file, const std::optional<std::string>& text) {
   Runtime& runtime = Runtime::of(lua);
   std::error_code ec;
   const Loading loading(runtime, "preset " + fs::weakly_canonical(file, ec).string());
   load_chunk(lua, file, false, text);
+  check_requirement(*runtime.box);
   call(lua, 0, 1);
   const Handle* handle = to_object<Handle>(lua, -1, kStackKind);
   if (!handle)

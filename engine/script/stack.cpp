@@ -10,6 +10,7 @@
 #include "script/entry_reader.h"
 #include "script/items.h"
 #include "script/object.h"
+#include "script/requirement.h"
 #include "script/runtime.h"
 #include "script/table_reader.h"
 
@@ -86,6 +87,9 @@ void name_entries(TableReader& table, DeclaredStack& stack) {
 
 void read_stack(lua_State* lua, TableReader& table, DeclaredStack& stack) {
   if (const auto name = table.text("name")) stack.name = tidy_message(*name, 100);
+  if (const auto oldest = table.text("requires"); oldest && !parse_version(*oldest))
+    table.fail(failure(fmt::format("{}: requires = \"{}\" is no version", table.what(), tidy_message(*oldest, 40)),
+                       {"requires"}, "\"0.2\" or \"0.2.1\": the oldest Afterglow that runs the preset"));
   if (const auto max_error = table.number("max_error")) stack.max_error = max_error;
   if (stack.max_error && *stack.max_error <= 0)
     table.fail(failure(fmt::format("{}: max_error = {} is out of range", table.what(), number_text(*stack.max_error)),
@@ -114,7 +118,8 @@ void push_stack(lua_State* lua, DeclaredStack stack) {
 }
 
 const std::vector<std::string>& stack_keys() {
-  static const std::vector<std::string> keys{"input_space", "max_error", "name", "position", "reference_height"};
+  static const std::vector<std::string> keys{"input_space", "max_error",        "name",
+                                             "position",    "reference_height", "requires"};
   return keys;
 }
 

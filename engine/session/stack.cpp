@@ -11,6 +11,7 @@
 #include "graph/history.h"
 #include "graph/memory.h"
 #include "graph/region.h"
+#include "session/half_floats.h"
 
 namespace afterglow {
 namespace {
@@ -37,6 +38,13 @@ StackChoice choose(const Device& device, const StackOptions& options, const Cali
   return choice;
 }
 
+/// Whether AFTERGLOW_FORCE says what images hold.
+bool forces_storage(const Device& device) {
+  const auto with = [&](Storage storage) { return parse_execution(device.forced().execution, {.storage = storage}); };
+  const auto half = with(Storage::fp16), full = with(Storage::fp32);
+  return half && full && half->storage == full->storage;
+}
+
 }  // namespace
 
 struct Stack::State {
@@ -49,12 +57,15 @@ struct Stack::State {
   std::vector<std::string> images;  ///< of the last graph
   bool shows = true;
   Calibration calibration;
-  StackChoice choice;
+  StackChoice choice;                      ///< by the device
+  StackChoice chosen;                      ///< by what the last frame's effects promise, too
+  bool may_be_full = false;                ///< half floats are the device's choice alone
   std::shared_ptr<const Build> build;      ///< that was prepared last
   std::unique_ptr<ProgramCache> programs;  ///< null without a device
   double script_ms = 0;
 
   void cut(Graph& graph);
+  void choose_storage(const Build& frame);
 };
 
 Stack::Stack(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -85,7 +96,7 @@ ShaderLibrary& Stack::shaders() { return *state_->shaders; }
 ProgramCache* Stack::programs() { return state_->programs.get(); }
 Program* Stack::program() const { return state_->programs ? state_->programs->program() : nullptr; }
 const std::shared_ptr<const Build>& Stack::build() const { return state_->build; }
-const StackChoice& Stack::choice() const { return state_->choice; }
+const StackChoice& Stack::choice() const { return state_->chosen; }
 void Stack::show(const std::string& image) { state_->shown = image; }
 bool Stack::shows() const { return state_->shows; }
 const std::vector<std::string>& Stack::images() const { return state_->images; }
@@ -110,7 +121,7 @@ std::vector<Skipped> Stack::skipped() const {
 
 VkFormat Stack::result_format() const {
   if (const Program* program = this->program()) return program->result_format();
-  return state_->choice.execution.storage == Storage::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT
+  return state_->chosen.execution.storage == Storage::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT
                                                            : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
@@ -135,11 +146,31 @@ void Stack::State::cut(Graph& graph) {
   separate_result(graph);
 }
 
+/// Half floats where every effect of the frame promises what is allowed. Where they are asked for, they are taken, and
+/// what they may cost is told.
+void Stack::State::choose_storage(const Build& frame) {
+  chosen = choice;
+  if (choice.execution.storage != Storage::fp16 || options.choice) return;
+  const HalfFloatPromise promise = half_float_promise(frame);
+  if (promise.error <= choice.max_error) return;
+  if (may_be_full) {
+    chosen.execution.storage = Storage::fp32;
+    chosen.from += fmt::format("; full floats, as in half floats {}", promise.reason);
+  } else if (options.precision == Precision::fp16) {
+    diagnostics->warn_once("half floats",
+                           fmt::format("precision fp16 may miss the error of {:g} that is allowed (--max-error): "
+                                       "in half floats {}",
+                                       choice.max_error, promise.reason));
+  }
+}
+
 Result<FrameWork> Stack::work(const FrameRequest& frame) {
+  state_->choose_storage(*frame.build);
   FrameWork work{.graph = frame.build->graph,
                  .texts = {},
                  .region = frame.region,
                  .unorm8 = false,
+                 .storage = state_->chosen.execution.storage,
                  .frame = frame.build->context.frame,
                  .step = frame.step,
                  .restart = frame.restart};
@@ -169,6 +200,8 @@ std::uint64_t Stack::memory_needed(const Build& build) const {
 void Stack::use(Device& device, bool own_images) {
   const StackOptions& options = state_->options;
   state_->choice = choose(device, options, state_->calibration, state_->choice.max_error);
+  state_->chosen = state_->choice;
+  state_->may_be_full = options.precision == Precision::automatic && !forces_storage(device);
   if (const auto& cache = options.cache_folder; !cache.empty() && !options.shared)
     device.use_pipeline_cache((cache / "pipelines").string());
   state_->programs = std::make_unique<ProgramCache>(device, state_->shared,

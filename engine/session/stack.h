@@ -96,6 +96,7 @@ class Stack {
   /// Looks up how to execute on a device. Call before `prepare`. `own_images`: source and result will be a
   /// Renderer's, made as the programs like them best.
   void use(Device& device, bool own_images = false);
+  /// With the storage of the last `work`: half floats are for frames whose effects promise their error alone.
   const StackChoice& choice() const;
   /// What was made on the device; null before `use`.
   ProgramCache* programs();

@@ -3,12 +3,11 @@
 
 #include <cmath>
 
+#include "core/half.h"
 #include "session/picture_inputs.h"
 
 namespace afterglow {
 namespace {
-
-constexpr float kMaxHalf = 65504;
 
 /// The pass that mends `image`; its own image is the next one.
 Pass guard_of(const Graph& graph, ImageId image, NanPolicy policy) {
@@ -144,9 +143,10 @@ Result<void> Tracer::State::look(Stack& stack, const Graph& graph, Trace& trace)
     if (found.count() > 0)
       trace.passes.push_back(
           {pass.name, pass.effect, pass.file, pass.line, stack.shader_file(pass.shader).string(), read->size(), found});
-    if (!trace.overflow && (trace.overflow = overflow_in(*read, part))) {
-      trace.overflow->pass = pass.name;
-      trace.overflow->effect = pass.effect;
+    if (auto overflow = overflow_in(*read, part)) {
+      overflow->pass = pass.name;
+      overflow->effect = pass.effect;
+      trace.overflows.push_back(std::move(*overflow));
     }
   }
   return {};

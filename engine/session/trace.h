@@ -28,7 +28,7 @@ struct PassFinding {
   NonFinite found;     ///< places are pixels of that image
 };
 
-/// Finite values that half floats cannot hold.
+/// Finite values that half floats cannot hold, of one pass.
 struct PassOverflow {
   std::string pass, effect;
   std::uint64_t samples = 0;
@@ -36,9 +36,9 @@ struct PassOverflow {
 };
 
 struct Trace {
-  std::vector<PassFinding> passes;       ///< in their order
-  std::optional<PassOverflow> overflow;  ///< the first pass with values above 65504
-  Image result;                          ///< RGB mended; A that of the source
+  std::vector<PassFinding> passes;      ///< in their order
+  std::vector<PassOverflow> overflows;  ///< passes with values beyond ±65504, in their order
+  Image result;                         ///< RGB mended; A that of the source
 };
 
 /// The graph with a pass behind each that makes what is not finite 0, or a mean of neighbours. `made[i]`: the image

@@ -77,7 +77,11 @@ class Assembler {
     if (!readers_.empty()) out_.glsl += "#line 1 1\n" + readers_;
     out_.glsl += library_text_ + stages_ + "#line 1 0\n";
     if (kernel_.target == KernelTarget::float16) out_.glsl += kRoundToHalf;
-    if (kernel_.target == KernelTarget::float16) row_ += "  ag_color = ag_round_to_half(ag_color);\n";
+    if (kernel_.target == KernelTarget::float16) {
+      if (watches())
+        row_ += "  if (any(greaterThan(abs(ag_color.rgb), vec3(65504.0)))) ag_light = uintBitsToFloat(0x7f800000u);\n";
+      row_ += "  ag_color = ag_round_to_half(ag_color);\n";
+    }
     if (kernel_.target == KernelTarget::unorm8) row_ += "  ag_color = clamp(ag_color, 0.0, 1.0);\n";
     if (watches()) row_ += "  bool ag_finite = abs(ag_light) <= 3.4028234e38;\n";
     if (kernel_.finite_check == FiniteCheck::flag)

@@ -98,15 +98,13 @@ Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const s
   if (!initialised) return Error{ErrorKind::other, "the GLSL compiler cannot be initialised"};
 
   const EShLanguage language = stage == GlslStage::compute ? EShLangCompute : EShLangFragment;
-  // From 1.6 on sizes of workgroups are ids, which takes a feature of the device (maintenance4).
-  const auto version = stage == GlslStage::compute ? glslang::EShTargetSpv_1_5 : glslang::EShTargetSpv_1_6;
   glslang::TShader shader(language);
   const char* text = glsl.data();
   const int length = static_cast<int>(glsl.size());
   shader.setStringsWithLengths(&text, &length, 1);
   shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
-  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
-  shader.setEnvTarget(glslang::EShTargetSpv, version);
+  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
+  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
   const auto rules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
   if (!shader.parse(GetDefaultResources(), 460, false, rules)) return compile_error(shader.getInfoLog(), file_names);
   glslang::TProgram program;

@@ -56,7 +56,7 @@ enum class KernelTarget { float32, float16, unorm8 };
 
 /// What a kernel does where a colour on its way is not finite: that of the anchor, one that a stage reads at its own
 /// pixel, or what a stage made of them, whatever later stages make of it. (Finite ones whose sum is above 1e38 count as
-/// such.)
+/// such; so does what half floats cannot hold, in a kernel that writes them.)
 enum class FiniteCheck {
   none,
   propagate,  ///< it writes NaN there, so that later kernels see it

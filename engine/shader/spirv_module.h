@@ -14,7 +14,7 @@
 
 namespace afterglow {
 
-inline constexpr spv_target_env kSpirvEnvironment = SPV_ENV_VULKAN_1_3;
+inline constexpr spv_target_env kSpirvEnvironment = SPV_ENV_VULKAN_1_1;
 
 using Words = std::vector<std::uint32_t>;
 

@@ -5,6 +5,7 @@ local fx = require "afterglow"
 
 return fx.stack {
   name = "Print",
+  requires = "0.2",
   fx.bloom { mode = "scattering", intensity = 0.15, fade_fireflies = true },
   fx.color_adjustments { post_exposure = 2.4, contrast = -5, saturation = 20 },
   fx.tone_mapping { mode = "neutral" },

@@ -286,6 +286,29 @@ TEST_F(NonFiniteValues, OverflowOfHalfFloatsIsNamed) {
   EXPECT_THAT(run_look({"--precision", "fp32"}).err, IsEmpty());
 }
 
+/// Half floats that overflow inside of a stack, where the last pass makes small numbers of them.
+TEST_F(NonFiniteValues, OverflowInsideAStackIsNamedAndTheFrameMadeInFullFloats) {
+  make("a.exr", {});
+  write("shaders/deep/up.glsl",
+        "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { vec4 c = fetch(source, p); return p == ivec2(4, 9) ? "
+        "vec4(92952.0, c.gba) : c; }\n");
+  write("shaders/deep/down.glsl",
+        "uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return fetch(source, p) * vec4(vec3(0.5), 1.0); }\n");
+  write("effects/deep.lua",
+        "local fx = require \"afterglow\"\nreturn fx.effect { name = \"deep\", at = \"post_process\", settings = {}, "
+        "build = function(g, s, source)\n  local up = g:pass { shader = \"deep/up\", source = source, name = \"up\" }\n"
+        "  return g:pass { shader = \"deep/down\", source = up, name = \"down\" }\nend }\n");
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.deep {} }\n");
+  const Outcome half = run_look({"--precision", "fp16", "--max-error", "1"});
+  EXPECT_EQ(half.exit_code, kDone);
+  EXPECT_THAT(half.err, HasSubstr("pass 'deep.up' overflows half floats: 1 samples above 65504, first at pixel 4,9"));
+  EXPECT_EQ(load("o.exr")[at(4, 9, 0)], 46476);
+  const Json told = report()["frames"][0]["beyond_half_floats"];
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0]["pass"], "deep.up");
+  EXPECT_EQ(told[0]["samples"], 1);
+}
+
 TEST_F(NonFiniteValues, TransparentPicturesTellToo) {
   make("a.exr", {{5, 12, 3, 0.25f}, {20, 4, 3, 0.0f}});
   make_effect(

@@ -11,6 +11,9 @@
 //   AFTERGLOW_GPU_COHERENT=1   the host's memory is coherent, as a driver must have some; without, a forgotten flush
 //   shows AFTERGLOW_GPU_SIDE=N       images and framebuffers have sides of at most N
 //
+//   AFTERGLOW_GPU_VULKAN=1.1   or 1.2: the device has no newer Vulkan; later functions, features and SPIR-V are refused
+//   AFTERGLOW_GPU_QUEUES=compute   its queues only compute
+//
 // A call that no GPU would stand ends the program with a line that names it. Put the validation layer before this one
 // (VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation:VK_LAYER_AFTERGLOW_gpu): it then checks against these limits. One
 // device at a time, as the program has it.
@@ -42,7 +45,7 @@ namespace {
       call(GetBufferMemoryRequirements2) call(GetDeviceImageMemoryRequirements)                                        \
           call(GetDeviceBufferMemoryRequirements) call(AllocateMemory) call(FreeMemory) call(MapMemory)                \
               call(UnmapMemory) call(FlushMappedMemoryRanges) call(InvalidateMappedMemoryRanges) call(CreateQueryPool) \
-                  call(DestroyQueryPool) call(GetQueryPoolResults)
+                  call(DestroyQueryPool) call(GetQueryPoolResults) call(CreateShaderModule)
 
 /// The functions below this layer.
 struct Next {
@@ -67,11 +70,22 @@ std::uint32_t largest_side() {
   return text && *text ? static_cast<std::uint32_t>(std::atoi(text)) : ~0u;
 }
 
+/// Minor version of the Vulkan that the device has.
+std::uint32_t minor_version() {
+  static const char* text = std::getenv("AFTERGLOW_GPU_VULKAN");
+  return text && std::strlen(text) == 3 ? static_cast<std::uint32_t>(text[2] - '0') : 3;
+}
+bool only_computes() {
+  static const char* text = std::getenv("AFTERGLOW_GPU_QUEUES");
+  return text && std::string_view(text) == "compute";
+}
+
 constexpr int kTimestampBits = 36;
 constexpr float kTimestampPeriod = 38.4f;  // nanoseconds
 
 void imitate(VkPhysicalDeviceProperties& properties) {
   properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+  properties.apiVersion = std::min(properties.apiVersion, VK_MAKE_API_VERSION(0, 1, minor_version(), 200));
   std::snprintf(properties.deviceName, sizeof properties.deviceName, "Imitated GPU");
   VkPhysicalDeviceLimits& limits = properties.limits;
   for (auto* side : {&limits.maxImageDimension2D, &limits.maxFramebufferWidth, &limits.maxFramebufferHeight})
@@ -90,6 +104,11 @@ void imitate(VkPhysicalDeviceProperties& properties) {
   limits.nonCoherentAtomSize = 256;
   limits.bufferImageGranularity = 65536;
   limits.timestampPeriod = kTimestampPeriod;
+}
+
+void imitate(VkQueueFamilyProperties& family) {
+  family.timestampValidBits = kTimestampBits;
+  if (only_computes()) family.queueFlags &= ~VkQueueFlags{VK_QUEUE_GRAPHICS_BIT};
 }
 
 /// Whether images of this kind exist only where the processor made them.
@@ -303,12 +322,12 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice physica
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties(VkPhysicalDevice physical, std::uint32_t* count,
                                                                   VkQueueFamilyProperties* out) {
   next.GetPhysicalDeviceQueueFamilyProperties(physical, count, out);
-  for (std::uint32_t i = 0; out && i < *count; ++i) out[i].timestampValidBits = kTimestampBits;
+  for (std::uint32_t i = 0; out && i < *count; ++i) imitate(out[i]);
 }
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties2(VkPhysicalDevice physical, std::uint32_t* count,
                                                                    VkQueueFamilyProperties2* out) {
   next.GetPhysicalDeviceQueueFamilyProperties2(physical, count, out);
-  for (std::uint32_t i = 0; out && i < *count; ++i) out[i].queueFamilyProperties.timestampValidBits = kTimestampBits;
+  for (std::uint32_t i = 0; out && i < *count; ++i) imitate(out[i].queueFamilyProperties);
 }
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties(VkPhysicalDevice physical,
                                                              VkPhysicalDeviceMemoryProperties* out) {
@@ -363,7 +382,42 @@ bool is_named(std::string_view asked, std::string_view name) {
   return asked == name || (asked.ends_with("KHR") && asked.substr(0, asked.size() - 3) == name);
 }
 
+/// Functions of later versions than the device has, as far as a program may be tempted.
+bool is_too_new(std::string_view name) {
+  static const std::set<std::string_view> of_3{"vkCmdBeginRendering",   "vkCmdEndRendering",
+                                               "vkCmdPipelineBarrier2", "vkCmdWriteTimestamp2",
+                                               "vkQueueSubmit2",        "vkCmdCopyImage2",
+                                               "vkCmdCopyBuffer2",      "vkCmdBlitImage2",
+                                               "vkCmdSetEvent2",        "vkGetDeviceImageMemoryRequirements"};
+  static const std::set<std::string_view> of_2{"vkWaitSemaphores",    "vkSignalSemaphore", "vkGetSemaphoreCounterValue",
+                                               "vkCreateRenderPass2", "vkResetQueryPool",  "vkCmdDrawIndirectCount"};
+  return (minor_version() < 3 && of_3.contains(name)) || (minor_version() < 2 && of_2.contains(name));
+}
+
+/// Ends the program when a device of the older Vulkan would not know what it is given.
+void check_age(const VkDeviceCreateInfo& info) {
+  for (auto* more = static_cast<const VkBaseInStructure*>(info.pNext); more; more = more->pNext) {
+    if (minor_version() < 3 && more->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES)
+      refuse("features of Vulkan 1.3 are enabled");
+    if (minor_version() < 2 && more->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES)
+      refuse("features of Vulkan 1.2 are enabled");
+  }
+  std::set<std::string_view> enabled(info.ppEnabledExtensionNames,
+                                     info.ppEnabledExtensionNames + info.enabledExtensionCount);
+  if (minor_version() < 3)
+    for (const char* name : {VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME, VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME})
+      if (!enabled.contains(name)) refuse("an extension is used that is not enabled");
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* info,
+                                                  const VkAllocationCallbacks* allocator, VkShaderModule* module) {
+  constexpr std::uint32_t kNewest[] = {0x10000, 0x10300, 0x10500, 0x10600};  // by Vulkan's minor version
+  if (info->pCode[1] > kNewest[std::min(minor_version(), 3u)]) refuse("SPIR-V is newer than the device");
+  return next.CreateShaderModule(device, info, allocator, module);
+}
+
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device(VkDevice device, const char* name) {
+  if (is_too_new(name)) return nullptr;
   if (is_named(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&get_device);
 #define OWN(call) \
   if (is_named(name, "vk" #call) && next.call) return reinterpret_cast<PFN_vkVoidFunction>(&call);
@@ -393,6 +447,7 @@ VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const Vk
   using Link = VkLayerDeviceCreateInfo;
   auto* link = chain::link_of<Link, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO>(info->pNext);
   if (!link) return VK_ERROR_INITIALIZATION_FAILED;
+  check_age(*info);
   const auto below = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
   next.device = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
   link->u.pLayerInfo = link->u.pLayerInfo->pNext;

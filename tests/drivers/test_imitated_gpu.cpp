@@ -133,6 +133,67 @@ TEST_F(ImitatedGpu, SidesBeyondItsLimitAreRefusedWithTheLimit) {
   done({"run", preset("plain_aces.lua").string(), "wide.exr", "-o", "narrow.png", "--size", "512x17"}, options);
 }
 
+/// Vulkan 1.1 and 1.2 with two extensions: the layer refuses what is newer, and validation says what it thinks of it.
+TEST_F(ImitatedGpu, OlderVulkanSuffices) {
+  make_exr("a.exr", 96, 54);
+  for (const char* version : {"1.1", "1.2"}) {
+    SCOPED_TRACE(version);
+    RunOptions options = on_gpu();
+    options.environment["AFTERGLOW_GPU_VULKAN"] = version;
+    for (const char* look : {"neon_night.lua", "vhs_tape.lua", "shallow_focus.lua"}) {
+      std::vector<std::string> arguments{"run",     preset(look).string(), "a.exr", "--type",
+                                         "float",   "--precision",         "fp32",  "-o",
+                                         "old.exr", "--stats=passes"};
+      done(arguments, options);
+      arguments[8] = "new.exr";
+      done(arguments);
+      EXPECT_EQ(pixels_of("old.exr"), pixels_of("new.exr")) << look;
+    }
+  }
+}
+
+TEST_F(ImitatedGpu, DevicesThatLackSomethingSayWhat) {
+  make_exr("a.exr");
+  RunOptions options = on_gpu();
+  options.environment["AFTERGLOW_GPU_QUEUES"] = "compute";
+  const std::vector<std::string> arguments{"run", preset("plain_aces.lua").string(), "a.exr", "-o", "a.png"};
+  const Outcome computes = run(arguments, options);
+  EXPECT_EQ(computes.exit_code, kDevice) << computes.err;
+  EXPECT_THAT(computes.err, HasSubstr("lacks a graphics queue (those that it has only compute; passes are drawn)"));
+  options = on_gpu();
+  options.environment["AFTERGLOW_GPU_VULKAN"] = "1.0";
+  const Outcome old = run(arguments, options);
+  EXPECT_EQ(old.exit_code, kDevice) << old.err;
+  EXPECT_THAT(old.err, HasSubstr("needs Vulkan 1.1, has 1.0"));
+}
+
+/// Half floats only where the effects promise their error: the shipped table allows them to every GPU.
+TEST_F(ImitatedGpu, HalfFloatsAreTakenWhereEffectsPromiseTheirError) {
+  make_exr("a.exr", 96, 54);
+  write("glow.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.bloom { threshold = 0.5 } }\n");
+  write("edges.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.bloom {}, fx.fxaa {} }\n");
+  const auto report_of = [&](const std::string& look, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run", look, "a.exr", "-o", "a.exr.exr", "--report", "report.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = done(arguments);
+    return std::pair(json::parse(read("report.json")).at("session"), outcome.err);
+  };
+  EXPECT_EQ(report_of("glow.lua", {}).first.at("storage"), "fp16");
+  EXPECT_EQ(report_of("glow.lua", {"--max-error", "1e-3"}).first.at("storage"), "fp32");
+  const auto edges = report_of("edges.lua", {}).first;
+  EXPECT_EQ(edges.at("storage"), "fp32");
+  EXPECT_THAT(edges.at("choice_from").get<std::string>(),
+              HasSubstr("; full floats, as in half floats 'fxaa' promises none"));
+  write("graded.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.color_adjustments { contrast = 10 } }\n");
+  EXPECT_THAT(report_of("graded.lua", {}).first.at("choice_from").get<std::string>(),
+              HasSubstr("'color_adjustments' promises an error for light up to 60 alone"));
+  const auto [wished, said] = report_of("edges.lua", {"--precision", "fp16"});
+  EXPECT_EQ(wished.at("storage"), "fp16");
+  EXPECT_THAT(said,
+              HasSubstr("precision fp16 may miss the error of 0.002 that is allowed (--max-error): in half floats "
+                        "'fxaa' promises none"));
+}
+
 class PresetsOnImitatedGpu : public ImitatedGpu, public ::testing::WithParamInterface<std::string> {};
 
 TEST_P(PresetsOnImitatedGpu, AreTheSameNumbersInFullFloats) {
@@ -147,6 +208,31 @@ TEST_P(PresetsOnImitatedGpu, AreTheSameNumbersInFullFloats) {
   done(to("gpu.exr"));
   done(to("cpu.exr"), {});
   expect_near("gpu.exr", "cpu.exr", 1e-5);
+}
+
+/// Whatever the shipped table and the effects' promises make of an allowed error, it is kept: of a render, against the
+/// same passes one by one in full floats.
+TEST_P(PresetsOnImitatedGpu, KeepTheErrorThatIsAllowed) {
+  const std::vector<std::string> look{
+      "run", preset(GetParam()).string(), neon().string(), "--size", "320x180", "--type", "float"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    auto arguments = look;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  done(with({"--reference", "-o", "truth.exr"}), {});
+  for (const char* error : {"", "0.02"}) {
+    SCOPED_TRACE(error);
+    std::vector<std::string> more{"--report", "report.json", "-o", "gpu.exr"};
+    if (*error) more.insert(more.end(), {"--max-error", error});
+    done(with(more));
+    const double allowed = json::parse(read("report.json")).at("session").at("max_error").get<double>();
+    const ErrorMeasure measure = measure_error(pixels_of("gpu.exr"), pixels_of("truth.exr"));
+    EXPECT_LE(measure.percentile, allowed);
+    if (*error) continue;
+    done(with({"-o", "cpu.exr"}), {});
+    EXPECT_LE(measure_error(pixels_of("cpu.exr"), pixels_of("truth.exr")).percentile, allowed) << "on lavapipe";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Drivers, PresetsOnImitatedGpu, ::testing::ValuesIn(shipped_presets()), test_name_of);

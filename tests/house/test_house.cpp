@@ -164,5 +164,17 @@ TEST(House, SourcesNameTheirLicence) {
   EXPECT_TRUE(read_file(kProject / "LICENSE").value().starts_with("MIT License\n"));
 }
 
+/// So that an older program says what it is too old for.
+TEST(House, PresetsNameTheOldestProgramThatRunsThem) {
+  int presets = 0;
+  for (const auto& file : files_below(kProject / "presets", {".lua"})) {
+    const std::string text = read_file(file).value();
+    if (text.find("return fx.effect") != std::string::npos) continue;
+    ++presets;
+    EXPECT_NE(text.find("\n  requires = \"0."), std::string::npos) << file;
+  }
+  EXPECT_GE(presets, 15);
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -317,7 +317,8 @@ class Guard {
     bool declared = false, decorated = false;
     for (std::size_t at = 0; at < module_.code.size(); ++at) {
       Instruction& i = module_.code[at];
-      if (i.op == spv::OpEntryPoint) {
+      // From SPIR-V 1.4 on the interface names every global; before, inputs and outputs alone.
+      if (i.op == spv::OpEntryPoint && module_.header[1] >= 0x10400) {
         i.words.insert(i.words.end(), {turns_, where_, buffer_});
         i.words[0] += 3u << spv::WordCountShift;
       }

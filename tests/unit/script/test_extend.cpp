@@ -127,7 +127,7 @@ TEST_F(Extend, Messages) {
   EXPECT_EQ(error("\"base\", {\n glwo = {} }"),
             "preset.lua:3: error: fx.extend: the stack has no entry 'glwo'; allowed: glow, rim, input_space, "
             "max_error, name, "
-            "position, reference_height; "
+            "position, reference_height, requires; "
             "did you mean 'glow'?");
   EXPECT_EQ(error("\"base\", {\n glow = {\n gian = 1 } }"),
             "preset.lua:4: error: effect 'glow' has no setting 'gian'; allowed: gain, levels; did you mean 'gain'?");

@@ -142,7 +142,7 @@ TEST(FilterAnchor, AFilterAndASampleStageAreTwoAnchors) {
   EXPECT_THAT(result.error().message, HasSubstr("one anchor"));
 }
 
-/// Every kind of kernel is valid SPIR-V for Vulkan 1.3.
+/// Every kind of kernel is valid SPIR-V for Vulkan 1.1.
 TEST(Spirv, EveryHeadWithAndWithoutStagesIsValid) {
   ShaderFiles files;
   const auto first = files.stage(
@@ -167,7 +167,7 @@ TEST(Spirv, EveryHeadWithAndWithoutStagesIsValid) {
             anchors.push_back(
                 kernel({interpolation, gaussian_halving(), gaussian_halving()}, ratio_x, ratio_y, hardware));
         }
-  spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
+  spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_1);
   std::string problems;
   tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* message) {
     problems += std::string(message) + "\n";

@@ -37,7 +37,7 @@ Made made(const std::string& shader, int rows = 1, bool hide = true) {
   Made out;
   EXPECT_TRUE(kernel) << kernel.error().text();
   if (!kernel) return out;
-  EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_3).Validate(kernel->spirv));
+  EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_1).Validate(kernel->spirv));
   for (const auto& warning : kernel->warnings) {
     EXPECT_THAT(warning, testing::StartsWith(files.path("test/unset.glsl").string() + ":"));
     out.warnings.push_back(warning.substr(warning.find(".glsl:") + 6));

@@ -78,7 +78,7 @@ TEST(StorageReads, AnInputThatCannotBeStaysSampled) {
 TEST(StorageReads, KernelsAreValidAndLinesStay) {
   const ShaderFiles files;
   KernelCompiler compiler({});
-  const spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
+  const spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_1);
   for (const ImageRead read : {ImageRead::storage_rgba32f, ImageRead::storage_rgba16f}) {
     KernelDesc sampled, filtered, own;
     sampled.sample = files.stage("test/edges", kEdges);

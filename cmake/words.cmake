@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: MIT
+# Writes the manual pages and the completions of the program's commands, as it prints them.
+function(print_to file)
+  execute_process(COMMAND ${program} ${ARGN} OUTPUT_FILE ${file} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+file(MAKE_DIRECTORY ${folder}/man1 ${folder}/bash ${folder}/zsh ${folder}/fish)
+print_to(${folder}/bash/afterglow completion bash)
+print_to(${folder}/zsh/_afterglow completion zsh)
+print_to(${folder}/fish/afterglow.fish completion fish)
+print_to(${folder}/man1/afterglow.1 man)
+file(STRINGS ${folder}/man1/afterglow.1 references REGEX "^\\.BR afterglow")
+foreach(reference ${references})
+  string(REGEX REPLACE "^\\.BR afterglow.-([a-z]+) .*" "\\1" command ${reference})
+  print_to(${folder}/man1/afterglow-${command}.1 man ${command})
+endforeach()
+file(TOUCH ${folder}/made)

@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Makes Debian packages and a relocatable archive of a build (CMake preset `package`): tools/package.sh BUILD OUTPUT.
+# Called by `./dev package`. Needs dpkg-dev, patchelf, zstd. The same sources give the same bytes: times are those of the commit.
+set -euo pipefail
+build=$(cd "$1" && pwd)
+mkdir -p "$2"
+out=$(cd "$2" && pwd)
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+version=$(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$build/CMakeCache.txt")
+name=afterglow-$version-linux-$(uname -m)
+SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git -C "$root" log -1 --format=%ct 2>/dev/null || stat -c %Y "$root/CMakeLists.txt")}
+export SOURCE_DATE_EPOCH
+
+# Packages. Files get the time of the commit, so that packing them twice gives the same archive.
+rm -f "$out"/*.deb
+(cd "$build" && umask 022 && cpack -G DEB -B "$out/pack" >"$build/cpack.log") || { tail -n 20 "$build/cpack.log" >&2; exit 1; }
+for deb in "$out"/pack/*.deb; do
+  tree=$(mktemp -d)
+  dpkg-deb -R "$deb" "$tree"
+  find "$tree" -path "$tree/DEBIAN" -prune -o -path '*/share/man/*' -name '*.1' -exec gzip -9n {} +
+  mv "$tree"/usr/share/doc/*/changelog.gz "$tree/usr/share/doc/$(basename "$tree"/usr/share/doc/*)/" 2>/dev/null || true
+  (cd "$tree" && find . -path ./DEBIAN -prune -o -type f -printf '%P\0' | LC_ALL=C sort -z | xargs -0 md5sum >DEBIAN/md5sums)
+  find "$tree" -exec touch -hd "@$SOURCE_DATE_EPOCH" {} +
+  dpkg-deb --root-owner-group -Zxz -b "$tree" "$out/$(basename "$deb")" >/dev/null
+  rm -rf "$tree"
+done
+rm -rf "$out/pack"
+
+# The archive: the program and the library with every library that they need, but for those of the C library and of drivers.
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+top=$tree/$name
+for component in program library data development; do
+  cmake --install "$build" --prefix "$top" --component "$component" --strip >/dev/null
+done
+libraries=$(find "$top" -name '*.so*' -type f)
+lib=$(dirname "$(find "$top" -name 'libafterglow.so.?' | head -n 1)")
+wanted() {
+  # shellcheck disable=SC2086 # a list
+  ldd "$top/bin/afterglow" $libraries 2>/dev/null | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
+    grep -vE '/(lib(c|m|dl|rt|pthread|resolv|util)\.so|libafterglow|ld-linux)'
+}
+mkdir -p "$top/licences"
+{ wanted; ls /usr/lib/"$(uname -m)"-linux-gnu/libvulkan.so.1; } | while read -r file; do
+  cp -L "$file" "$lib/$(basename "$file")"
+  package=$(dpkg -S "$(realpath "$file")" 2>/dev/null | head -n 1 | cut -d: -f1)
+  [[ -z $package || ! -f /usr/share/doc/$package/copyright ]] || cp -L "/usr/share/doc/$package/copyright" "$top/licences/$package"
+done
+cp "$root/LICENSE" "$root/THIRD_PARTY.md" "$top"
+# By RPATH, not RUNPATH: it holds for the libraries of libraries too.
+patchelf --force-rpath --set-rpath "\$ORIGIN/../${lib#"$top"/}" "$top/bin/afterglow"
+patchelf --force-rpath --set-rpath '$ORIGIN' "$lib"/libafterglow.so.*.*
+find "$lib/afterglow" -name '*.so' -exec patchelf --force-rpath --set-rpath '$ORIGIN/..' {} +
+tar --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH" -C "$tree" -cf - "$name" | zstd -q -19 -T0 -f -o "$out/$name.tar.zst"
+
+du -h --apparent-size "$out"/*.deb "$out/$name.tar.zst"
+printf 'program and library, stripped: %s, %s\n' "$(du -h --apparent-size "$top/bin/afterglow" | cut -f1)" "$(du -hL --apparent-size "$lib/libafterglow.so.0" | cut -f1)"
