@@ -2,7 +2,7 @@
 local fx = require "afterglow"
 
 return fx.stack {
-  fx.glare { kind = "star", threshold = 4, intensity = 0.3, size = 0.4, points = 6 },
+  fx.glare { kind = "star", threshold = 14, size = 0.3 },
   fx.color_adjustments { post_exposure = 1.5 },
   fx.tone_mapping { mode = "neutral" },
 }

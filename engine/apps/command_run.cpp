@@ -5,6 +5,7 @@
 #include "apps/command.h"
 #include "apps/output.h"
 #include "apps/run_arguments.h"
+#include "apps/sandbox.h"
 #include "batch/run_report.h"
 #include "core/file.h"
 
@@ -23,6 +24,10 @@ RunEvents events_of(Console& console) {
 
 Result<void> run_run(const RunArguments& a, Console& console) {
   AFTERGLOW_TRY(const BatchRequest request, a.request());
+  if (a.sandbox) {
+    AFTERGLOW_TRY(const Confinement left, sandbox_of(a));
+    AFTERGLOW_CHECK(confine(left));
+  }
   RunReport report;
   auto done = run_batch(request, events_of(console), report);
   if (!a.stats.empty() && report.session) output("{}", report_text(report, a.stats == "passes"));

@@ -39,6 +39,10 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->check(CLI::IsMember({"zero", "neighbour", "fail"}))
       ->type_name("POLICY")
       ->group(input);
+  app.add_flag("--sandbox", a.sandbox,
+               "For pictures from strangers: the process gives up the network, other programs and every file but the "
+               "pictures, the look's and the output's folder (Linux: Landlock, seccomp)")
+      ->group(input);
   app.add_option("--region", a.region,
                  "Only this part of the picture, counted from the upper left corner: the crop of the whole result")
       ->type_name("X,Y,W,H")

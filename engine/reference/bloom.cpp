@@ -32,6 +32,12 @@ DoubleImage combine(const DoubleImage& up, const DoubleImage& high, F&& f) {
   });
 }
 
+/// The colour as if its brightest channel were at most `most`; 0: as it is.
+Rgb held(const Rgb& c, double most) {
+  const double b = glm::max(c.r, glm::max(c.g, c.b));
+  return most > 0 && b > most ? c * (most / b) : c;
+}
+
 }  // namespace
 
 BloomThreshold BloomThreshold::from_gamma(double threshold, double knee) { return {gamma_to_linear(threshold), knee}; }
@@ -127,7 +133,9 @@ DoubleImage bloom_scatter(const DoubleImage& up, const DoubleImage& high, double
 
 DoubleImage bloom_scatter_final(const DoubleImage& up, const DoubleImage& high, double intensity,
                                 const BloomThreshold& threshold) {
-  return combine(up, high, [&](const Rgb& low, const Rgb& h) { return h + intensity * (low - threshold(h)); });
+  return combine(up, high, [&](const Rgb& low, const Rgb& h) {
+    return h + intensity * (low - threshold(held(h, threshold.clamp)));
+  });
 }
 
 std::vector<Size> bloom_sizes(Size size, int max_iterations, int downscale_limit) {
@@ -142,14 +150,16 @@ std::vector<Size> bloom_sizes(Size size, int max_iterations, int downscale_limit
 
 BloomImages bloom(const DoubleImage& source, const BloomSettings& settings) {
   BloomImages out;
-  const DoubleImage scaled = settings.reference_height > 0 ? bloom_scaled(source, settings.reference_height) : source;
+  const DoubleImage glowing = map_color(source, [&](const Rgb& c) { return held(c, settings.clamp); });
+  const DoubleImage scaled = settings.reference_height > 0 ? bloom_scaled(glowing, settings.reference_height) : glowing;
   const auto sizes = bloom_sizes(scaled.size(), settings.max_iterations, settings.downscale_limit);
   if (sizes.empty() || settings.intensity <= 0) {
     out.result = source;
     return out;
   }
   out.ran = true;
-  const auto threshold = BloomThreshold::from_gamma(settings.threshold, settings.knee);
+  auto threshold = BloomThreshold::from_gamma(settings.threshold, settings.knee);
+  threshold.clamp = settings.clamp;
   out.prefilter =
       settings.fade_fireflies ? bloom_prefilter_fireflies(scaled, threshold) : bloom_prefilter(scaled, threshold);
 

@@ -22,6 +22,7 @@ struct BloomSettings {
   bool bicubic_upsampling = true;
   bool fade_fireflies = false;
   int reference_height = 0;  ///< pixels; 0: the pyramid is built on the picture as it is
+  double clamp = 0;          ///< the brightest channel that glows in full; 0: any
 };
 
 /// The picture as it would be at this height: halved while that leaves at least as much on both sides, then the mean of
@@ -33,6 +34,7 @@ DoubleImage bloom_scaled(const DoubleImage& source, int height);
 struct BloomThreshold {
   double t = 1;  ///< linear
   double knee = 0.5;
+  double clamp = 0;
   static BloomThreshold from_gamma(double threshold, double knee);
   Rgb operator()(const Rgb& c) const;
 };

@@ -25,21 +25,32 @@ Filter line(int count, double spacing, double angle) {
   return of_taps(std::move(taps));
 }
 
-/// 6k points on ring k of a circle or polygon of radius 1; the centre's disc has three quarters of a point's area.
-Filter rings(int count, double spacing, int blades, double turn) {
-  std::vector<Tap2d> taps{{0, 0, 0.75}};
-  for (int ring = 1; ring <= count; ++ring)
-    for (int i = 0; i < 6 * ring; ++i) {
-      const double angle = 2 * kPi * i / (6 * ring);
-      double r = ring * spacing;
-      if (blades >= 3) {
-        const double side = 2 * kPi / blades;
-        r *= std::cos(side / 2) / std::cos(std::fmod(angle, side) - side / 2);
-      }
-      taps.push_back({r * std::cos(angle + turn), r * std::sin(angle + turn), 1});
-    }
+/// Mean over `ratio` texels along an axis, 1 or more: twice as many reads as texels.
+std::vector<Tap> mean_over(double ratio) {
+  if (ratio <= 1) return {{0, 1}};
+  const int n = static_cast<int>(std::ceil(2 * ratio));
+  std::vector<Tap> taps;
+  for (int i = 0; i < n; ++i) taps.push_back({(i - (n - 1) / 2.0) * ratio / n, 1.0 / n});
+  return taps;
+}
+
+/// Every `step`th texel of an iris; texels are `side` pixels wide.
+Filter iris(double radius, const BokehBlur& s, int step, int side) {
+  const int reach = static_cast<int>(std::ceil(radius / (step * side))) + 1;
+  std::vector<Tap2d> taps;
   double sum = 0;
-  for (const auto& tap : taps) sum += tap.weight;
+  for (int j = -reach; j <= reach; ++j)
+    for (int i = -reach; i <= reach; ++i) {
+      const double angle = std::atan2(j, i) - s.rotation * kPi / 180;
+      double on_rim = std::hypot(i, j) * step * side;
+      if (s.blades >= 3) {
+        const double part = 2 * kPi / s.blades;
+        on_rim *= std::cos(angle - part * (std::floor(angle / part) + 0.5)) / std::cos(part / 2);
+      }
+      const double weight = glm::clamp((radius - on_rim) / (step * side) + 0.5, 0.0, 1.0);
+      if (weight > 0) taps.push_back({static_cast<double>(i * step), static_cast<double>(j * step), weight});
+      sum += weight;
+    }
   for (auto& tap : taps) tap.weight /= sum;
   return of_taps(std::move(taps));
 }
@@ -74,14 +85,48 @@ DoubleImage dual_kawase(const DoubleImage& source, int iterations, double offset
 }
 
 DoubleImage radial_blur(const DoubleImage& source, double intensity, int samples, Point center) {
+  const double amount = glm::min(intensity, 63.0 / 64);
+  const double across = glm::max(center.x, 1 - center.x) * source.width;
+  const double down = glm::max(center.y, 1 - center.y) * source.height;
+  const double length = std::hypot(across, down) * -std::log(1 - amount);
+  const int factor = length > 400 ? 4 : length > 2 ? 2 : 1;
+  const int reads = glm::max(samples, static_cast<int>(std::ceil(length / (1.5 * factor))));
+  const int near = static_cast<int>(std::ceil(std::sqrt(reads))), far = (reads + near - 1) / near;
+  const double ratio = std::pow(1 - amount, 1.0 / (near * far));
+
+  const auto zoomed = [&](const DoubleImage& image, int count, double first, double step) {
+    return generate(image.size(), [&](int x, int y) {
+      const Point target(center.x * image.width, center.y * image.height), away = Point(x + 0.5, y + 0.5) - target;
+      Rgb sum(0);
+      double weights = 0;
+      for (int i = 0; i < count; ++i) {
+        const double weight = std::pow(step, i);
+        const Point at = target + away * (first * weight);
+        sum += weight * Rgb(sample_linear(image, at.x, at.y));
+        weights += weight;
+      }
+      return Rgba(sum / weights, 1);
+    });
+  };
+  DoubleImage image = source;
+  if (factor > 1) {
+    Filter mean;
+    const Size small{(source.width + factor - 1) / factor, (source.height + factor - 1) / factor};
+    mean.x = mean_over(static_cast<double>(source.width) / small.width);
+    mean.y = mean_over(static_cast<double>(source.height) / small.height);
+    image = resample(image, small, mean);
+  }
+  image = zoomed(image, near, 1, ratio);
+  image = zoomed(image, far, std::sqrt(ratio), std::pow(ratio, near));
+  if (factor > 1) {
+    const auto enlarge = factor > 2 ? Interpolation::cubic_bspline : Interpolation::linear;
+    image = resample(image, source.size(), {.interpolation = enlarge});
+  }
   return generate(source.size(), [&](int x, int y) {
-    const Point here(x + 0.5, y + 0.5), target(center.x * source.width, center.y * source.height);
-    Rgb sum(0);
-    for (int i = 0; i < samples; ++i) {
-      const Point at = here + (target - here) * (intensity * i / (samples - 1));
-      sum += Rgb(sample_linear(source, at.x, at.y));
-    }
-    return Rgba(sum / static_cast<double>(samples), source.at(x, y).a);
+    const Point away = Point(x + 0.5, y + 0.5) - center * Point(source.width, source.height);
+    const double share = glm::clamp((amount * glm::length(away) / factor - 0.5) / 1.5, 0.0, 1.0);
+    const Rgba& p = source.at(x, y);
+    return Rgba(Rgb(p) + share * (Rgb(image.at(x, y)) - Rgb(p)), p.a);
   });
 }
 
@@ -105,67 +150,26 @@ DoubleImage bokeh_blur(const DoubleImage& source, const BokehBlur& s) {
     const double y = glm::min(luminance(Rgb(p)), 1.0), weight = 1 + s.highlights * y * y;
     p = Rgba(Rgb(p) * weight, weight);
   }
-  const double spacing = s.radius / 4.5;
-  DoubleImage image = resample(weighed, source.size(), rings(4, spacing, s.blades, s.rotation * kPi / 180));
-  image = resample(image, source.size(), rings(1, spacing / 2, 0, 0));
+  int factor = s.radius <= 4 ? 1 : s.radius <= 14 ? 2 : 4;
+  while (s.radius > 16 * factor) factor *= 2;
+  const Size small{(source.width + factor - 1) / factor, (source.height + factor - 1) / factor};
+  DoubleImage image = weighed;
+  if (factor > 1) {
+    Filter mean;
+    mean.x = mean_over(static_cast<double>(source.width) / small.width);
+    mean.y = mean_over(static_cast<double>(source.height) / small.height);
+    image = resample(image, small, mean);
+  }
+  const bool sparse = s.radius > 2 * factor;
+  const double means = (4 + (factor > 1 ? 1 : 0)) / 3.0 * factor * factor;  // what squares blur, as a disc's r²
+  const double radius = sparse ? std::sqrt(glm::max(s.radius * s.radius - means, 0.0)) : s.radius;
+  image = resample(image, small, iris(radius, s, sparse ? 2 : 1, factor));
+  if (sparse) image = resample(image, small, of_taps({{-.5, -.5, .25}, {.5, -.5, .25}, {-.5, .5, .25}, {.5, .5, .25}}));
+  if (factor > 1)
+    image = resample(image, source.size(),
+                     {.interpolation = factor > 2 ? Interpolation::cubic_bspline : Interpolation::linear});
   for (auto& p : image.pixels) p = Rgba(Rgb(p) / p.a, 1);
   return with_alpha_of(source, image);
-}
-
-DoubleImage circles_of_confusion(const DoubleImage& depth, const DepthOfField& s) {
-  const double f = s.focal_length * 1e-3, d = glm::max(s.focus_distance, 1.01 * f);
-  const double aperture = f / s.aperture, pixels_per_metre = depth.height / (s.sensor_height * 1e-3);
-  return generate(depth.size(), [&](int x, int y) {
-    const double z = depth.at(x, y).r;
-    const double diameter = aperture * f * (z - d) / (z * (d - f));
-    return Rgba(glm::clamp(diameter / 2 * pixels_per_metre, -s.max_radius, s.max_radius));
-  });
-}
-
-namespace {
-
-/// The widest circle of the tiles around each tile of `side` pixels.
-DoubleImage widest_around(const DoubleImage& circles, int side) {
-  DoubleImage tiles((circles.width + side - 1) / side, (circles.height + side - 1) / side, Rgba(0));
-  for (int y = 0; y < circles.height; ++y)
-    for (int x = 0; x < circles.width; ++x) {
-      double& widest = tiles.at(x / side, y / side).r;
-      widest = glm::max(widest, std::abs(circles.at(x, y).r));
-    }
-  return generate(tiles.size(), [&](int x, int y) {
-    double widest = 0;
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) widest = glm::max(widest, tiles.clamped(x + dx, y + dy).r);
-    return Rgba(widest);
-  });
-}
-
-}  // namespace
-
-DoubleImage depth_of_field(const DoubleImage& source, const DoubleImage& depth, const DepthOfField& s) {
-  const DoubleImage circles = circles_of_confusion(depth, s);
-  const int side = static_cast<int>(std::ceil(s.max_radius));
-  const DoubleImage around = widest_around(circles, side);
-  const double golden_angle = kPi * (3 - std::sqrt(5.0));
-  return generate(source.size(), [&](int x, int y) {
-    const double own = circles.at(x, y).r, widest = around.at(x / side, y / side).r;
-    if (widest < 0.5) return source.at(x, y);
-    const double limit = glm::min(widest + 0.5, s.max_radius);
-    double weight = 0.5 / s.samples;
-    Rgb sum = weight * Rgb(source.at(x, y));
-    for (int i = 0; i < s.samples; ++i) {
-      const double t = (i + 0.5) / s.samples, radius = t * limit, angle = -golden_angle * (i + 1);
-      const int px = x + static_cast<int>(std::floor(std::cos(angle) * radius + 0.5));
-      const int py = y + static_cast<int>(std::floor(std::sin(angle) * radius + 0.5));
-      const double circle = circles.clamped(px, py).r;
-      const double reach = circle > own ? glm::min(std::abs(circle), 2 * std::abs(own)) : std::abs(circle);
-      const double in = glm::clamp(reach - radius + 0.5, 0.0, 1.0), covered = in * in * (3 - 2 * in);
-      const Rgb mean = sum / weight;
-      sum += t * (mean + covered * (Rgb(source.clamped(px, py)) - mean));
-      weight += t;
-    }
-    return Rgba(sum / weight, source.at(x, y).a);
-  });
 }
 
 }  // namespace afterglow::reference

@@ -11,7 +11,7 @@ namespace afterglow::reference {
 /// offset counts in 1024ths of a pixel.
 DoubleImage dual_kawase(const DoubleImage& source, int iterations, double offset_wanted);
 
-/// Mean of `samples` reads from the pixel to `intensity` of its way to the centre.
+/// Mean of at least `samples` reads from the pixel to `intensity` of its way to the centre (math.md §37).
 DoubleImage radial_blur(const DoubleImage& source, double intensity, int samples, Point center);
 
 /// `distance` pixels long; degrees, 0 across, 90 up and down.
@@ -23,14 +23,5 @@ struct BokehBlur {
   double rotation = 0, highlights = 0;
 };
 DoubleImage bokeh_blur(const DoubleImage& source, const BokehBlur& settings);
-
-struct DepthOfField {
-  double focus_distance = 10, aperture = 5.6, focal_length = 50, sensor_height = 24;
-  double max_radius = 16;
-  int samples = 96;
-};
-/// Radius of the circle of confusion of each pixel, held to ±max_radius; below 0 in front of the focus.
-DoubleImage circles_of_confusion(const DoubleImage& depth, const DepthOfField& settings);
-DoubleImage depth_of_field(const DoubleImage& source, const DoubleImage& depth, const DepthOfField& settings);
 
 }  // namespace afterglow::reference

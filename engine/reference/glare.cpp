@@ -20,20 +20,33 @@ DoubleImage bright_half(const DoubleImage& source, double threshold) {
                    [&](const Rgb& c) { return box_bloom_threshold(c, threshold, BoxBrightness::max); });
 }
 
-double layer(double x, double y, const LensDirt& s, std::uint32_t number) {
+Words words_of(int i, int j, const LensDirt& s, std::uint32_t number) {
+  return pcg3d({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), 8 * s.seed + number});
+}
+
+/// At most one grain in each cell; its rim is brighter than its middle.
+double grains(double x, double y, const LensDirt& s, std::uint32_t number) {
   const int home_x = static_cast<int>(std::floor(x)), home_y = static_cast<int>(std::floor(y));
   double sum = 0;
   for (int j = home_y - 1; j <= home_y + 1; ++j)
     for (int i = home_x - 1; i <= home_x + 1; ++i) {
-      const Words place = pcg3d({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), 2 * s.seed + number});
-      const Words kind = pcg3d(place);
+      const Words place = words_of(i, j, s, number), kind = pcg3d(place);
       if (unit(place[2]) >= s.density) continue;
-      const double radius = 0.1 + 0.4 * unit(kind[0]), softness = 0.1 + 0.9 * unit(kind[1]);
-      const double distance = std::hypot(x - i - unit(place[0]), y - j - unit(place[1]));
-      const double opacity = 0.1 + 0.9 * unit(kind[2]) * unit(kind[2]);
-      sum += opacity * glm::clamp((radius - distance) / (radius * softness), 0.0, 1.0);
+      const double radius = 0.08 + 0.42 * unit(kind[0]) * unit(kind[0]);
+      const double inside = 1 - std::hypot(x - i - unit(place[0]), y - j - unit(place[1])) / radius;
+      const double opacity = 0.05 + 0.95 * std::pow(unit(kind[2]), 3);
+      sum += opacity * glm::clamp(inside / (0.2 + 0.6 * unit(kind[1])), 0.0, 1.0) *
+             (1 - 0.5 * glm::clamp(inside * 2.5, 0.0, 1.0));
     }
   return sum;
+}
+
+double smooth_noise(double x, double y, const LensDirt& s, std::uint32_t number) {
+  const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
+  const auto ease = [](double t) { return t * t * (3 - 2 * t); };
+  const double u = ease(x - i), v = ease(y - j);
+  const auto at = [&](int di, int dj) { return unit(words_of(i + di, j + dj, s, number)[0]); };
+  return (at(0, 0) * (1 - u) + at(1, 0) * u) * (1 - v) + (at(0, 1) * (1 - u) + at(1, 1) * u) * v;
 }
 
 }  // namespace
@@ -57,11 +70,13 @@ DoubleImage anamorphic_streaks(const DoubleImage& source, const AnamorphicStreak
   });
 }
 
-DoubleImage lens_dirt_spots(Size size, const LensDirt& s) {
-  const double cell = glm::max(s.size * size.height, 2.0);
+DoubleImage lens_dirt_spots(Size size, double cell, const LensDirt& s) {
   return generate(size, [&](int x, int y) {
     const double px = (x + 0.5) / cell, py = (y + 0.5) / cell;
-    return Rgba(glm::min(0.6 * layer(px, py, s, 0) + 0.4 * layer(4 * px, 4 * py, s, 1), 1.0));
+    const double cloud = 0.5 * smooth_noise(px / 4, py / 4, s, 2) + 0.3 * smooth_noise(px / 1.5, py / 1.5, s, 3) +
+                         0.2 * smooth_noise(px * 2, py * 2, s, 4);
+    const double smudges = s.density * glm::clamp(2.5 * cloud - 1, 0.0, 1.0);
+    return Rgba(glm::min(0.5 * smudges + 1.5 * grains(px, py, s, 0) + 0.8 * grains(4 * px, 4 * py, s, 1), 1.0));
   });
 }
 
@@ -70,11 +85,15 @@ DoubleImage lens_dirt(const DoubleImage& source, const LensDirt& s) {
   tent.x = tent.y = {{-1, 0.25}, {0, 0.5}, {1, 0.25}};
   DoubleImage light = bright_half(source, s.threshold);
   while (glm::min(light.width, light.height) >= 16) light = resample(light, half(light.size()), tent);
-  light = resample(light, source.size(), {.interpolation = Interpolation::cubic_bspline});
-  const DoubleImage spots = lens_dirt_spots(source.size(), s);
+  const Filter enlarge{.interpolation = Interpolation::cubic_bspline};
+  const Size small{(source.width + 3) / 4, (source.height + 3) / 4};
+  light = resample(light, small, enlarge);
+  const DoubleImage spots = lens_dirt_spots(small, glm::max(s.size * source.height / 4, 1.0), s);
+  for (std::size_t i = 0; i < light.pixels.size(); ++i) light.pixels[i] *= spots.pixels[i].r;
+  light = resample(light, source.size(), enlarge);
   return generate(source.size(), [&](int x, int y) {
     const Rgba& p = source.at(x, y);
-    return Rgba(Rgb(p) + s.intensity * spots.at(x, y).r * Rgb(light.at(x, y)), p.a);
+    return Rgba(Rgb(p) + s.intensity * Rgb(light.at(x, y)), p.a);
   });
 }
 

@@ -18,8 +18,8 @@ struct LensDirt {
   double intensity = 1, threshold = 1, density = 0.4, size = 0.06;
   std::uint32_t seed = 0;
 };
-/// Opacity of the dirt, 0…1, in all channels.
-DoubleImage lens_dirt_spots(Size size, const LensDirt& settings);
+/// Opacity of the dirt, 0…1, in all channels; the larger cells are `cell` pixels wide.
+DoubleImage lens_dirt_spots(Size size, double cell, const LensDirt& settings);
 DoubleImage lens_dirt(const DoubleImage& source, const LensDirt& settings);
 
 }  // namespace afterglow::reference

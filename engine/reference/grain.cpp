@@ -16,18 +16,19 @@ double normal(std::uint32_t word) {
   return sum / std::sqrt(4 * 65535.0 / 12);
 }
 
-Rgb cell_noise(int x, int y, const FilmGrain& s) {
+/// Red, grey, blue, green.
+Rgba cell_noise(int x, int y, const FilmGrain& s) {
   const Words w =
       pcg3d({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y) + (s.seed << 16u), s.frame + s.seed});
-  return {normal(w[0]), normal(w[1]), normal(w[2])};
+  return {normal(w[0]), normal(w[1]), normal(w[2]), normal(pcg3d(w)[1])};
 }
 
 /// Bilinear between cells; the weights are scaled so that their squares add up to 1.
-Rgb noise(int x, int y, const FilmGrain& s) {
+Rgba noise(int x, int y, const FilmGrain& s) {
   const double px = (x + 0.5) / s.size - (s.size == 1 ? 0.5 : 0), py = (y + 0.5) / s.size - (s.size == 1 ? 0.5 : 0);
   const int cx = static_cast<int>(std::floor(px)), cy = static_cast<int>(std::floor(py));
   const double wx[2] = {1 - (px - cx), px - cx}, wy[2] = {1 - (py - cy), py - cy};
-  Rgb sum(0);
+  Rgba sum(0);
   double squares = 0;
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i) {
@@ -54,8 +55,9 @@ Words pcg3d(Words v) {
 
 DoubleImage film_grain(const DoubleImage& source, const FilmGrain& s) {
   return generate(source.size(), [&](int x, int y) {
-    Rgb n = noise(x, y, s);
-    n = Rgb(n.g) + s.colored * (n - Rgb(n.g));
+    const Rgba each = noise(x, y, s);
+    const Rgb grey(each.g), coloured(each.r, each.a, each.b);
+    const Rgb n = (grey + s.colored * (coloured - grey)) / std::hypot(s.colored, 1 - s.colored);
     const Rgba& p = source.at(x, y);
     const double dark = 1 - std::sqrt(glm::clamp(luminance(Rgb(p) / cover(p)), 0.0, 1.0));
     const double response = 1 + (dark - 1) * s.response;

@@ -34,9 +34,12 @@ DoubleImage chromatic_aberration(const DoubleImage& source, double intensity, in
   return generate(source.size(), [&](int x, int y) {
     const Point uv = uv_of(x, y, source.size()), coords = 2.0 * uv - 1.0;
     const Point end = uv - coords * glm::dot(coords, coords) * intensity * 0.05;
+    const double reach = glm::length((end - uv) * (2.0 / 3) * Point(source.width, source.height));
+    const auto whole = [](double pixels) { return static_cast<int>(std::floor(pixels + 0.7)); };
+    const int steps = samples == 3 ? 2 : std::max({2, whole(reach * 2 / 3), std::min(samples - 1, whole(reach))});
     Rgb sum(0), weights(0);
-    for (int i = 0; i < samples; ++i) {
-      const double t = static_cast<double>(i) / (samples - 1);
+    for (int i = 0; i <= steps; ++i) {
+      const double t = static_cast<double>(i) / steps;
       const Rgb weight(glm::max(0.0, 1 - 2 * t), 1 - std::abs(2 * t - 1), glm::max(0.0, 2 * t - 1));
       sum += weight * Rgb(read(source, uv + (end - uv) * (t * 2 / 3)));
       weights += weight;
@@ -57,7 +60,14 @@ DoubleImage lens_distortion(const DoubleImage& source, const LensDistortion& s) 
       uv += ray * ((s.intensity > 0 ? std::tan(std::min(r * theta, kRightAngle)) / (r * sigma)
                                     : std::atan(r * sigma) / (r * theta)) -
                    1);
-    return Rgba(Rgb(read(source, uv)), source.at(x, y).a);
+    double inside = 1;
+    for (int axis = 0; axis < 2; ++axis) {
+      const double side = axis == 0 ? source.width : source.height;
+      if (s.edges == LensEdges::mirror) uv[axis] = std::abs(uv[axis] - 2 * std::round(uv[axis] / 2));
+      // Of bilinear reads among black pixels beyond the edge.
+      if (s.edges == LensEdges::black) inside *= glm::clamp(glm::min(uv[axis], 1 - uv[axis]) * side + 0.5, 0.0, 1.0);
+    }
+    return Rgba(Rgb(read(source, uv)) * inside, source.at(x, y).a);
   });
 }
 

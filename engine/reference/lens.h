@@ -21,10 +21,12 @@ DoubleImage vignette(const DoubleImage& source, const Vignette& settings);
 /// `samples` reads along the fringe, weighted as a spectrum; 3 are Unity's three.
 DoubleImage chromatic_aberration(const DoubleImage& source, double intensity, int samples);
 
+enum class LensEdges { stretch, mirror, black };
 struct LensDistortion {
   double intensity = 0.2, x_multiplier = 1, y_multiplier = 1;
   Point center{0.5};
   double scale = 1;
+  LensEdges edges = LensEdges::stretch;
 };
 DoubleImage lens_distortion(const DoubleImage& source, const LensDistortion& settings);
 

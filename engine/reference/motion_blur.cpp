@@ -64,10 +64,11 @@ DoubleImage motion_blur(const DoubleImage& source, const DoubleImage& motion, co
     };
     const double offset =
         (pcg3d({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0})[0] >> 8) / 16777216.0 - 0.5;
-    double weight = 1 / own;
+    const int count = glm::min(s.samples, static_cast<int>(std::floor(2 * glm::length(along) + 0.7)) + 1);
+    double weight = count / (s.samples * own);
     Rgb sum = Rgb(color) * weight;
-    for (int i = 0; i < s.samples; ++i) {
-      const double t = 2 * (i + offset + 1) / (s.samples + 1) - 1;
+    for (int i = 0; i < count; ++i) {
+      const double t = 2 * (i + offset + 1) / (count + 1) - 1;
       const int px = x + static_cast<int>(std::floor(along.x * t + 0.5));
       const int py = y + static_cast<int>(std::floor(along.y * t + 0.5));
       if (px == x && py == y) continue;

@@ -37,7 +37,27 @@ Rgb normal_value(const DoubleImage& normal, Pixel p, const OutlineSettings& s) {
   return Rgb(normal.clamped(p.x, p.y)) * s.normal_scale;
 }
 
+/// How far the pixel ahead, at one or more pixels along an axis, leaves the plane through the centre and the pixel
+/// behind it (where there is none: the plane through the two ahead). Inverse distance is linear on a plane; its
+/// differences count as far as the one ahead exceeds that behind.
+double edge_off_the_plane(const DoubleImage& depth, Pixel c, int dx, int dy, const OutlineSettings& s) {
+  const auto z_at = [&](int steps) {
+    const double d = depth.clamped(c.x + steps * dx, c.y + steps * dy).r;
+    return s.device_depth_input && s.source != OutlineSource::device_depth ? linear_eye_depth(d, s) : d;
+  };
+  const bool raw = s.source == OutlineSource::device_depth, inside = c.x >= dx && c.y >= dy;
+  const auto value = [&](int steps) { return raw ? z_at(steps) : 1 / glm::max(z_at(steps), 1e-6); };
+  const double ahead = value(1) - value(0), along = inside ? value(0) - value(-1) : value(2) - value(1);
+  const bool goes_on = ahead * along > 0;
+  const double off = goes_on ? glm::max(std::abs(ahead) - std::abs(along), 0.0) : std::abs(ahead);
+  return (raw ? off : off * z_at(0) * z_at(1)) * std::abs(s.depth_scale);
+}
+
 double depth_edge(const DoubleImage& depth, const Samples& at, const OutlineSettings& s) {
+  if (s.level_slopes && s.difference == OutlineDifference::offset) {
+    const int apart = at.right.x - at.centre.x;
+    return edge_off_the_plane(depth, at.centre, apart, 0, s) + edge_off_the_plane(depth, at.centre, 0, apart, s);
+  }
   const double z = depth_value(depth, at.centre, s);
   return std::abs(z - depth_value(depth, at.right, s)) + std::abs(z - depth_value(depth, at.below, s));
 }

@@ -24,6 +24,7 @@ struct OutlineSettings {
   double fade_distance = 1000;  ///< where the width reaches 0; without a depth input there is no fade
   double depth_scale = 1, normal_scale = 1;
   double divide_factor = 1;
+  bool level_slopes = true;  ///< offset: planes draw no line
   double contrast = 1;
   Rgb color{0, 0, 0};
   OutlineBlend blend = OutlineBlend::lerp;

@@ -120,7 +120,8 @@ DoubleImage posterize(const DoubleImage& source, const Posterize& s) {
     const double at = eye * (s.levels - 1), below = std::floor(at);
     const double slope = glm::clamp((at - below - 0.5) / glm::max(s.softness, 1e-3) + 0.5, 0.0, 1.0);
     const double scale = (below + slope) / (s.levels - 1) / glm::max(eye, 1e-6);
-    return glm::mix(c, c * scale * scale, s.intensity);
+    const double most = glm::max(c.r, glm::max(c.g, c.b));
+    return glm::mix(c, c * glm::min(scale * scale, glm::max(1.0, 1 / glm::max(most, 1e-6))), s.intensity);
   });
 }
 

@@ -23,7 +23,8 @@ DoubleImage run_bloom(const DoubleImage& source, const Inputs&, const Settings& 
                         .scatter = s.number("scatter"),
                         .bicubic_upsampling = s.flag("bicubic_upsampling"),
                         .fade_fireflies = s.flag("fade_fireflies"),
-                        .reference_height = s.integer("reference_height")})
+                        .reference_height = s.integer("reference_height"),
+                        .clamp = s.number("clamp")})
       .result;
 }
 
@@ -87,6 +88,7 @@ DoubleImage run_outline(const DoubleImage& source, const Inputs& inputs, const S
       .depth_scale = s.number("depth_scale"),
       .normal_scale = s.number("normal_scale"),
       .divide_factor = s.number("divide_factor"),
+      .level_slopes = s.flag("level_slopes"),
       .contrast = s.number("contrast"),
       .color = s.color("color"),
       .blend = s.is("blend", "add") ? OutlineBlend::add : OutlineBlend::lerp};

@@ -5,6 +5,7 @@
 
 #include "reference/blurs.h"
 #include "reference/color.h"
+#include "reference/depth_of_field.h"
 #include "reference/detail.h"
 #include "reference/glare.h"
 #include "reference/glitch.h"
@@ -120,11 +121,15 @@ DoubleImage run_chromatic_aberration(const DoubleImage& source, const Inputs&, c
 }
 
 DoubleImage run_lens_distortion(const DoubleImage& source, const Inputs&, const Settings& s) {
-  return lens_distortion(source, {.intensity = s.number("intensity"),
-                                  .x_multiplier = s.number("x_multiplier"),
-                                  .y_multiplier = s.number("y_multiplier"),
-                                  .center = point(s, "center"),
-                                  .scale = s.number("scale")});
+  return lens_distortion(
+      source,
+      {.intensity = s.number("intensity"),
+       .x_multiplier = s.number("x_multiplier"),
+       .y_multiplier = s.number("y_multiplier"),
+       .center = point(s, "center"),
+       .scale = s.number("scale"),
+       .edges = s.choice<LensEdges>(
+           "edges", {{"stretch", LensEdges::stretch}, {"mirror", LensEdges::mirror}, {"black", LensEdges::black}})});
 }
 
 DoubleImage run_film_grain(const DoubleImage& source, const Inputs& inputs, const Settings& s) {
@@ -196,7 +201,11 @@ DoubleImage run_depth_of_field(const DoubleImage& source, const Inputs& inputs, 
                               .focal_length = s.number("focal_length"),
                               .sensor_height = s.number("sensor_height"),
                               .max_radius = s.number("max_radius"),
-                              .samples = s.integer("samples")};
+                              .samples = s.integer("samples"),
+                              .blades = s.integer("blades"),
+                              .rotation = s.number("rotation"),
+                              .squeeze = s.number("squeeze"),
+                              .cat_eye = s.number("cat_eye")};
   if (s.is("depth_space", "linear")) return depth_of_field(source, *inputs.depth, settings);
   return depth_of_field(source, linear_depth(*inputs.depth, s.number("near"), s.number("far"), s.flag("reversed_z")),
                         settings);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 
 namespace afterglow {
@@ -48,10 +49,12 @@ class Finder {
   void function(std::size_t begin) {
     blocks_.clear();
     defined_.clear();
+    home_.clear();
     std::size_t end = begin;
     for (std::size_t label = 0; code_[end].op != spv::OpFunctionEnd; ++end) {
       if (code_[end].result != 0) defined_[code_[end].result] = end;
       if (code_[end].op == spv::OpLabel) label = end;
+      if (code_[end].result != 0) home_[code_[end].result] = code_[label].result;
       if (ends_block(code_[end].op)) blocks_[code_[label].result] = {label, end, {}};
     }
     for (const auto& [label, block] : std::map(blocks_))
@@ -70,6 +73,7 @@ class Finder {
           loop.parent = static_cast<int>(outer);
       }
       loops_[inner].counting = counting(loops_[inner], begin, end);
+      loops_[inner].most_turns = most_turns(loops_[inner], begin, end);
     }
   }
 
@@ -80,7 +84,8 @@ class Finder {
               .merge = code_[head].words[1],
               .head = head,
               .blocks = {header},
-              .counting = {}};
+              .counting = {},
+              .most_turns = {}};
     std::vector<std::uint32_t> open{header};
     while (!open.empty()) {
       const Block& block = blocks_.at(open.back());
@@ -114,6 +119,78 @@ class Finder {
     return out;
   }
 
+  /// Of a loop that also ends when a variable that counts from a constant reaches another: `i < 9 && more`, with
+  /// breaks.
+  std::optional<std::uint64_t> most_turns(const Loop& loop, std::size_t begin, std::size_t end) const {
+    const Block* before = nullptr;
+    for (const auto label : blocks_.at(loop.header).from) {
+      if (loop.blocks.contains(label)) continue;
+      if (before) return std::nullopt;
+      before = &blocks_.at(label);
+    }
+    if (!before || code_[before->end].op != spv::OpBranch) return std::nullopt;
+    const Find find = [&](std::uint32_t id) {
+      const auto home = home_.find(id);
+      return home != home_.end() && loop.blocks.contains(home->second) ? &code_[defined_.at(id)] : nullptr;
+    };
+    std::optional<std::uint64_t> most;
+    for (const auto label : loop.blocks) {
+      const Instruction& leave = code_[blocks_.at(label).end];
+      if (leave.op != spv::OpBranchConditional || leave.words[3] != loop.merge || leave.words[2] == loop.merge ||
+          comes_past(loop, label, loop.header))
+        continue;
+      for (const auto condition : all_true(loop, leave.words[1])) {
+        Counting counting;
+        if (!compares(condition, find, counting) ||
+            !steps(loop, blocks_.at(code_[loop.head].words[2]), begin, end, counting))
+          continue;
+        count(*before, counting);
+        if (counting.turns) most = std::min(most.value_or(*counting.turns), *counting.turns);
+      }
+    }
+    return most;
+  }
+
+  /// Whether a turn may come from the head to `block` (the head itself: to the next turn) past another one.
+  bool comes_past(const Loop& loop, std::uint32_t without, std::uint32_t block) const {
+    std::set<std::uint32_t> seen{without, loop.merge};
+    std::vector<std::uint32_t> open{loop.header};
+    if (without == loop.header) return false;
+    while (!open.empty()) {
+      const Block& at = blocks_.at(open.back());
+      open.pop_back();
+      for (const auto to : targets_of(code_[at.end])) {
+        if (to == block && to != without) return true;
+        if (to != loop.header && seen.insert(to).second) open.push_back(to);
+      }
+    }
+    return false;
+  }
+
+  /// Conditions that hold when this one does: the sides of &&, which may be a branch around the second.
+  std::vector<std::uint32_t> all_true(const Loop& loop, std::uint32_t condition, int depth = 0) const {
+    std::vector<std::uint32_t> out{condition};
+    const auto found = defined_.find(condition);
+    if (found == defined_.end() || depth > kMostSides) return out;
+    const Instruction& i = code_[found->second];
+    std::vector<std::uint32_t> sides;
+    if (i.op == spv::OpLogicalAnd) sides = {i.words[3], i.words[4]};
+    if (i.op == spv::OpPhi && i.words.size() == 7)
+      for (const std::size_t first : {std::size_t{3}, std::size_t{5}}) {
+        const Instruction& branch = code_[blocks_.at(i.words[first + 1]).end];
+        const std::uint32_t other = i.words[first == 3 ? 6 : 4];
+        if (branch.op == spv::OpBranchConditional && branch.words[1] == i.words[first] &&
+            branch.words[3] == home_.at(condition) && branch.words[2] != branch.words[3] &&
+            !comes_past(loop, i.words[first + 1], other) && !comes_past(loop, branch.words[2], other))
+          sides = {i.words[3], i.words[5]};
+      }
+    for (const auto side : sides) {
+      const auto more = all_true(loop, side, depth + 1);
+      out.insert(out.end(), more.begin(), more.end());
+    }
+    return out;
+  }
+
   bool left_by_test_alone(const Loop& loop, std::uint32_t test) const {
     return std::ranges::all_of(loop.blocks, [&](std::uint32_t label) {
       const auto targets = targets_of(code_[blocks_.at(label).end]);
@@ -123,12 +200,17 @@ class Finder {
 
   /// The test: variable, type, bound and which comparison; the step's sign for now.
   bool compares(std::uint32_t condition, const Block& test, Counting& out) const {
-    const Instruction* compare = within(condition, test);
+    return compares(
+        condition, [&](std::uint32_t id) { return within(id, test); }, out);
+  }
+  using Find = std::function<const Instruction*(std::uint32_t)>;
+  bool compares(std::uint32_t condition, const Find& find, Counting& out) const {
+    const Instruction* compare = find(condition);
     if (!compare) return false;
     const spv::Op op = compare->op;
     const bool up = op == spv::OpSLessThan || op == spv::OpSLessThanEqual;
     if (!up && op != spv::OpSGreaterThan && op != spv::OpSGreaterThanEqual) return false;
-    const Instruction* counter = within(compare->words[3], test);
+    const Instruction* counter = find(compare->words[3]);
     if (!counter || counter->op != spv::OpLoad || counter->type != int_ || counter->words.size() != 4) return false;
     out.step = up ? 1 : -1;
     out.inclusive = op == spv::OpSLessThanEqual || op == spv::OpSGreaterThanEqual;
@@ -256,12 +338,14 @@ class Finder {
   }
 
   static constexpr std::int64_t kMostStep = 1 << 20;
+  static constexpr int kMostSides = 8;
   const std::vector<Instruction>& code_;
   std::vector<Loop> loops_;
   std::uint32_t int_ = 0;
   std::map<std::uint32_t, std::int32_t> numbers_;
   std::map<std::uint32_t, spv::StorageClass> storage_;
   std::map<std::uint32_t, Block> blocks_;         ///< of the function, by label
+  std::map<std::uint32_t, std::uint32_t> home_;   ///< in the function: id → label of its block
   std::map<std::uint32_t, std::size_t> defined_;  ///< in the function: id → where
 };
 

@@ -35,6 +35,7 @@ struct Loop {
   std::set<std::uint32_t> blocks;       ///< labels, the header's included
   int parent = -1;                      ///< index of the loop around it
   std::optional<Counting> counting;
+  std::optional<std::uint64_t> most_turns;  ///< when constants say so, however else it may be left
 };
 
 /// In the order of the module.

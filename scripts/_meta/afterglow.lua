@@ -48,6 +48,7 @@
 ---@field scatter? number|afterglow.Moving  Scattering mode: how far light spreads, as the share that each level takes from the coarser ones. 0.05…0.95, default 0.7
 ---@field bicubic_upsampling? boolean|afterglow.OfTime  Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow. default true
 ---@field reference_height? integer|afterglow.Moving  The glow is that of the picture scaled to this height: the same at every resolution. 0: of the picture as it is. integer 0…16384 lines, default 0
+---@field clamp? number|afterglow.Moving  Light that is brighter than this (largest channel, linear) glows as if it were this bright, so that single wild pixels do not white out a picture; for path-traced pictures about 50. 0: no limit. 0…65504, default 0
 ---@field fade_fireflies? boolean|afterglow.OfTime  Weigh down isolated very bright pixels before the pyramid, so that they do not flicker. default false
 
 ---Blurs the picture as a lens out of focus: bright points become discs or polygons.
@@ -57,7 +58,7 @@
 ---@field rotation? number|afterglow.Moving  Turns the iris. -180…180 degrees, default 0
 ---@field highlights? number|afterglow.Moving  Makes bright points count for more, where the picture lost their true light (8 bits); HDR pictures need none. 0…50, default 0
 
----A simple, punchy glow: hard linear threshold, four-sample blur down and up, added to the picture.
+---A simple, punchy glow, as its source makes it: hard linear threshold, four-sample blur down and up, added to the picture. Its glow has corners; that of bloom is round.
 ---@class afterglow.settings.box_bloom : afterglow.EntryKeys
 ---@field threshold? number|afterglow.Moving  Brightness from which light glows; linear, without a knee. 0…3, default 0.8
 ---@field blur_iterations? integer|afterglow.Moving  Levels of blur; each doubles the reach. 0 and 1 add the thresholded light unblurred. integer 0…7, default 5
@@ -86,7 +87,7 @@
 ---Colour fringes that grow towards the corners.
 ---@class afterglow.settings.chromatic_aberration : afterglow.EntryKeys
 ---@field intensity? number|afterglow.Moving  Length of the fringes; 1 is a thirtieth of the picture at the middle of its sides. 0: none. 0…1, default 0.3
----@field samples? integer|afterglow.Moving  Reads along a fringe: 3 are three sharp pictures, more blend into a spectrum. integer 3…24, default 6
+---@field samples? integer|afterglow.Moving  3: three sharp pictures. More: a spectrum, of at least so many reads where a fringe has as many pixels, and of as many as it needs to be even. integer 3…24, default 6
 
 ---Exposure, contrast, colour filter, hue and saturation.
 ---@class afterglow.settings.color_adjustments : afterglow.EntryKeys
@@ -96,7 +97,7 @@
 ---@field hue_shift? number|afterglow.Moving  Turns every hue; 120 takes red to green. -180…180 degrees, default 0
 ---@field saturation? number|afterglow.Moving  -100 leaves luminance (Rec.709) alone, 100 doubles the distance from it. -100…100 %, default 0
 
----Leaves green light alone, scaled; a test of the pipeline, like a night-vision tube.
+---The teaching example: the smallest effect there is, to copy from. Leaves green light alone, scaled.
 ---@class afterglow.settings.color_blit : afterglow.EntryKeys
 ---@field intensity? number|afterglow.Moving  Factor of green; 0: the effect does not run. 0…2, default 0
 
@@ -113,6 +114,7 @@
 ---@field glow? number|afterglow.Moving  Share of the light that spreads in the glass. 0…1, default 0.12
 ---@field convergence? number|afterglow.Moving  How far red and blue land beside green. 0…4 lines, default 0.25
 ---@field brightness? number|afterglow.Moving  Factor of the light. 0…4, default 1.1
+---@field intensity? number|afterglow.Moving  How much of the tube is seen. 0: the picture as it was. 0…1, default 1
 
 ---Tone curves for all channels and each, and hue, saturation and luma by hue.
 ---@class afterglow.settings.curves : afterglow.EntryKeys
@@ -156,12 +158,16 @@
 
 ---Blurs what is out of focus, by depth, as a camera with this lens does.
 ---@class afterglow.settings.depth_of_field : afterglow.EntryKeys
----@field focus_distance? number|afterglow.Moving  Distance of what is sharp. 0.01…1000000 m, default 10
----@field aperture? number|afterglow.Moving  The smaller, the more blur. 0.1…64 f-number, default 5.6
+---@field focus_distance? number|afterglow.Moving  Distance of what is sharp. 0.01…1000000 m, default 5
+---@field aperture? number|afterglow.Moving  The smaller, the more blur. 0.1…64 f-number, default 1.4
 ---@field focal_length? number|afterglow.Moving  The longer, the more blur. 1…1000 mm, default 50
 ---@field sensor_height? number|afterglow.Moving  Height of the sensor or film: 24 is full frame. 1…200 mm, default 24
 ---@field max_radius? number|afterglow.Moving  No blur gets wider than this. 1…64 px, default 16
----@field samples? integer|afterglow.Moving  Reads for each pixel: more are smoother, and dearer. integer 8…512, default 96
+---@field samples? integer|afterglow.Moving  About how many reads a pixel of the small picture takes at most; wider circles read coarser pixels instead. More are sharper, and dearer. integer 8…512, default 64
+---@field blades? integer|afterglow.Moving  Sides of the iris, 3 or more; fewer: round. integer 0…12, default 0
+---@field rotation? number|afterglow.Moving  Turns the iris. -180…180 degrees, default 0
+---@field squeeze? number|afterglow.Moving  Anamorphic lens: 2 makes discs half as wide as high, 0.5 half as high as wide. 0.25…4, default 1
+---@field cat_eye? number|afterglow.Moving  How much the tube of the lens cuts from discs in the corners of the picture. 0…1, default 0
 ---@field depth_space? "linear"|"device"|afterglow.OfTime  What the depth input holds: distance along the viewing axis in m, or device depth 0-1, made linear with near, far and reversed_z. default "linear"
 ---@field near? number|afterglow.Moving  Near plane, for device depth. ≥ 1e-06 m, default 0.3
 ---@field far? number|afterglow.Moving  Far plane, for device depth. ≥ 1e-06 m, default 1000
@@ -257,6 +263,7 @@
 ---@field y_multiplier? number|afterglow.Moving  How much of it happens down. 0…1, default 1
 ---@field center? number[]|afterglow.Moving  The point that stays: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
 ---@field scale? number|afterglow.Moving  Enlarges the result around the centre, to hide edges that were drawn in. 0.01…5, default 1
+---@field edges? "stretch"|"mirror"|"black"|afterglow.OfTime  What stands where the picture ends: its last pixels, its mirror image, or black. default "stretch"
 
 ---Ghosts, a halo and a starburst from the brightest lights.
 ---@class afterglow.settings.lens_flare : afterglow.EntryKeys
@@ -277,7 +284,7 @@
 
 ---Bars above and below, or at the sides, for another shape of picture.
 ---@class afterglow.settings.letterbox : afterglow.EntryKeys
----@field aspect? number|afterglow.Moving  Width over height of what stays: 2.39 scope, 1.85 flat, 1.78 television, 1.33 old film, 1 square. 0.1…20, default 2.39
+---@field aspect? number|afterglow.Moving  Width over height of what stays: 2.39 scope, 1.85 flat, 1.78 television, 1.33 old film, 1 square. 0: no bars. 0…20, default 2.39
 ---@field color? number[]|string|afterglow.Moving  The bars; display-linear. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
 ---@field offset? number|afterglow.Moving  Where the window lies: -1 at the top or left, 0 in the middle, 1 at the bottom or right. -1…1, default 0
 
@@ -300,7 +307,7 @@
 ---Blurs what moves, by motion vectors.
 ---@class afterglow.settings.motion_blur : afterglow.EntryKeys
 ---@field shutter_angle? number|afterglow.Moving  How long the shutter is open: 360 is the whole frame. 0: no blur. 0…720 degrees, default 180
----@field samples? integer|afterglow.Moving  Reads for each pixel that moves: more are smoother, and dearer. integer 3…128, default 24
+---@field samples? integer|afterglow.Moving  Most reads for each pixel that moves, of as many as it passes pixels: more are smoother, and dearer. integer 3…128, default 24
 ---@field max_radius? number|afterglow.Moving  No blur reaches further each way. 1…128 px, default 32
 ---@field motion_scale? number[]|afterglow.Moving  Factor of the motion vectors: {1, -1} for files with y downwards, {width, height} for motion in pictures. {x, y}, each -16384…16384, default {1, 1}
 ---@field depth_softness? number|afterglow.Moving  Difference of depth over which one thing is in front of another. 0.0001…1000000 m, default 0.1
@@ -337,6 +344,7 @@
 ---@field normal_scale? number|afterglow.Moving  Factor of normal differences; a right angle differs by 1.41. default 1
 ---@field divide_factor? number|afterglow.Moving  The edge is divided by this. ≥ 1e-06, default 1
 ---@field contrast? number|afterglow.Moving  Steepness around an edge of one half: 1 leaves it, high values make lines hard and drop weak ones. ≥ 0, default 1
+---@field level_slopes? boolean|afterglow.OfTime  offset: depth counts as far as it leaves the plane that goes on from the pixel behind, so that ground seen at a grazing angle draws no line. false: every difference counts, as in the source. default true
 ---@field color? number[]|string|afterglow.Moving  Ink. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
 ---@field blend? "lerp"|"add"|afterglow.OfTime  lerp: ink covers the picture. add: ink is light that is added. default "lerp"
 
@@ -353,7 +361,7 @@
 ---Streaks towards a centre, as of a zoom or of speed.
 ---@class afterglow.settings.radial_blur : afterglow.EntryKeys
 ---@field intensity? number|afterglow.Moving  Share of the way to the centre that is smeared. 0: none. 0…1, default 0.15
----@field samples? integer|afterglow.Moving  Reads on the way; few show as copies of bright spots. integer 2…128, default 16
+---@field samples? integer|afterglow.Moving  Reads on the way, at least: long streaks take as many as they need to be even. integer 2…128, default 16
 ---@field center? number[]|afterglow.Moving  The point that stays sharp: {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
 
 ---Colours and brightens shadows, midtones and highlights, each by itself.
@@ -501,12 +509,12 @@
 ---@field auto_exposure fun(settings: afterglow.settings.auto_exposure): afterglow.Entry  Exposes for middle grey by a histogram of the picture, and adapts to changes over time.
 ---@field bloom fun(settings: afterglow.settings.bloom): afterglow.Entry  Bright light spreads around itself: a Gaussian pyramid of what exceeds a soft threshold, added or scattered.
 ---@field bokeh_blur fun(settings: afterglow.settings.bokeh_blur): afterglow.Entry  Blurs the picture as a lens out of focus: bright points become discs or polygons.
----@field box_bloom fun(settings: afterglow.settings.box_bloom): afterglow.Entry  A simple, punchy glow: hard linear threshold, four-sample blur down and up, added to the picture.
+---@field box_bloom fun(settings: afterglow.settings.box_bloom): afterglow.Entry  A simple, punchy glow, as its source makes it: hard linear threshold, four-sample blur down and up, added to the picture. Its glow has corners; that of bloom is round.
 ---@field cdl fun(settings: afterglow.settings.cdl): afterglow.Entry  Slope, offset, power and saturation of an ASC CDL.
 ---@field channel_mixer fun(settings: afterglow.settings.channel_mixer): afterglow.Entry  Mixes red, green and blue into new channels; what would be negative is black.
 ---@field chromatic_aberration fun(settings: afterglow.settings.chromatic_aberration): afterglow.Entry  Colour fringes that grow towards the corners.
 ---@field color_adjustments fun(settings: afterglow.settings.color_adjustments): afterglow.Entry  Exposure, contrast, colour filter, hue and saturation.
----@field color_blit fun(settings: afterglow.settings.color_blit): afterglow.Entry  Leaves green light alone, scaled; a test of the pipeline, like a night-vision tube.
+---@field color_blit fun(settings: afterglow.settings.color_blit): afterglow.Entry  The teaching example: the smallest effect there is, to copy from. Leaves green light alone, scaled.
 ---@field crt fun(settings: afterglow.settings.crt): afterglow.Entry  A picture tube: scan lines, phosphor stripes, curved glass.
 ---@field curves fun(settings: afterglow.settings.curves): afterglow.Entry  Tone curves for all channels and each, and hue, saturation and luma by hue.
 ---@field depth_fog fun(settings: afterglow.settings.depth_fog): afterglow.Entry  Fog and haze by depth, thinning with height, that scatters light.

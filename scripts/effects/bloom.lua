@@ -61,6 +61,7 @@ end
 local function reach(s, source) return 24 * 2 ^ pyramid(s, source) end
 
 local function passes_all(s) return s.threshold == 0 and not s.fade_fireflies end
+local function is_linear(s) return passes_all(s) and s.clamp == 0 and s.intensity <= 1 end
 local function scatters(s) return s.mode == "scattering" end
 
 return fx.effect {
@@ -84,6 +85,8 @@ return fx.effect {
     bicubic_upsampling = fx.bool { default = true, doc = "Enlarge levels with cubic B-splines instead of bilinearly: smoother, less blocky glow." },
     reference_height = fx.int { min = 0, max = 16384, default = 0, unit = "lines",
       doc = "The glow is that of the picture scaled to this height: the same at every resolution. 0: of the picture as it is." },
+    clamp = fx.float { min = 0, max = 65504, default = 0,
+      doc = "Light that is brighter than this (largest channel, linear) glows as if it were this bright, so that single wild pixels do not white out a picture; for path-traced pictures about 50. 0: no limit." },
     fade_fireflies = fx.bool { default = false, doc = "Weigh down isolated very bright pixels before the pyramid, so that they do not flicker." },
   },
 
@@ -112,7 +115,7 @@ return fx.effect {
       local gain = scatters(s) and math.min(s.intensity, kScatterLimit) or s.intensity * pyramid(s, source)
       return 1 + gain * (s.fade_fireflies and 6 or 1)
     end },
-    linear = { within = 1e-3, when = function(s) return passes_all(s) and s.intensity <= 1 end },
+    linear = { within = 1e-3, when = is_linear },
     proportional = { setting = "intensity", up_to = function(s) return scatters(s) and kScatterLimit or 10 end },
     turn_90 = { margin = reach, when = is_even },
     shift = { by = function(s, source) return 2 ^ (pyramid(s, source) + 1) end, margin = reach, when = is_even },
@@ -138,9 +141,10 @@ return fx.effect {
       width, height = width // 2, height // 2
     end
 
-    local knee = knee_vector(s)
+    local knee, most = knee_vector(s), s.clamp > 0 and s.clamp or 1e30
     local start = preview and pyramids.start(sizes, source.width, source.height) or 1
     local image = source
+    if s.clamp > 0 then image = g:pass { shader = "bloom/hold", source = image, most = most, name = "hold" } end
     if start == 1 then
       image = pyramids.resized(g, image, full_width, full_height, "scaled")
       if s.fade_fireflies then
@@ -192,6 +196,6 @@ return fx.effect {
       return g:pass { shader = "bloom/add", source = up, high = source, intensity = math.min(s.intensity, 1e30), name = "final" }
     end
     return g:pass { shader = "bloom/scatter_final", source = up, high = source, amount = math.min(s.intensity, kScatterLimit),
-                    knee = knee, name = "final" }
+                    knee = knee, most = most, name = "final" }
   end,
 }

@@ -7,7 +7,7 @@ local pyramids = require "lib.pyramid"
 
 return fx.effect {
   name = "box_bloom",
-  doc = "A simple, punchy glow: hard linear threshold, four-sample blur down and up, added to the picture.",
+  doc = "A simple, punchy glow, as its source makes it: hard linear threshold, four-sample blur down and up, added to the picture. Its glow has corners; that of bloom is round.",
   at = "post_process", order = 100,
   settings = {
     threshold = fx.float { min = 0, max = 3, default = 0.8, doc = "Brightness from which light glows; linear, without a knee." },

@@ -5,7 +5,7 @@ local fx = require "afterglow"
 
 return fx.effect {
   name = "color_blit",
-  doc = "Leaves green light alone, scaled; a test of the pipeline, like a night-vision tube.",
+  doc = "The teaching example: the smallest effect there is, to copy from. Leaves green light alone, scaled.",
   at = "after_opaque_and_sky", order = 0,
   settings = {
     intensity = fx.float { min = 0, max = 2, default = 0, doc = "Factor of green; 0: the effect does not run." },

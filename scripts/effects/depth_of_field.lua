@@ -1,8 +1,8 @@
 -- SPDX-License-Identifier: MIT
--- Depth of field: what is not at the focus distance blurs, by the circle of confusion of a thin lens. One gather on a golden spiral, after
--- D. Gustafsson, "Bokeh depth of field in a single pass" (2018): a read counts where its own circle reaches the pixel, and what lies behind
--- the pixel may not be blurrier than twice the pixel itself. So sharp things neither spread nor are spread over, and blurred things in front
--- have soft edges. Settings as of Unity's URP (Bokeh).
+-- Depth of field: what is not at the focus distance blurs, by the circle of confusion of a thin lens. What lies in front of the focus and what
+-- lies behind are blurred apart, in a small picture, and laid over the sharp one at full size: after J. Jimenez, "Next Generation Post Processing
+-- in Call of Duty: Advanced Warfare" (SIGGRAPH 2014) and G. Abadie, "A Life of a Bokeh" (SIGGRAPH 2018). Each pixel reads
+-- few texels, and its neighbours those between, so that none of them shows. Settings as of Unity's URP (Bokeh) and Blender's cameras. math.md §35.
 local fx = require "afterglow"
 
 return fx.effect {
@@ -10,12 +10,16 @@ return fx.effect {
   doc = "Blurs what is out of focus, by depth, as a camera with this lens does.",
   at = "post_process", order = 10, space = "scene",
   settings = {
-    focus_distance = fx.float { min = 0.01, max = 1e6, default = 10, unit = "m", doc = "Distance of what is sharp." },
-    aperture = fx.float { min = 0.1, max = 64, default = 5.6, unit = "f-number", doc = "The smaller, the more blur." },
+    focus_distance = fx.float { min = 0.01, max = 1e6, default = 5, unit = "m", doc = "Distance of what is sharp." },
+    aperture = fx.float { min = 0.1, max = 64, default = 1.4, unit = "f-number", doc = "The smaller, the more blur." },
     focal_length = fx.float { min = 1, max = 1000, default = 50, unit = "mm", doc = "The longer, the more blur." },
     sensor_height = fx.float { min = 1, max = 200, default = 24, unit = "mm", doc = "Height of the sensor or film: 24 is full frame." },
     max_radius = fx.float { min = 1, max = 64, default = 16, unit = "px", doc = "No blur gets wider than this." },
-    samples = fx.int { min = 8, max = 512, default = 96, doc = "Reads for each pixel: more are smoother, and dearer." },
+    samples = fx.int { min = 8, max = 512, default = 64, doc = "About how many reads a pixel of the small picture takes at most; wider circles read coarser pixels instead. More are sharper, and dearer." },
+    blades = fx.int { min = 0, max = 12, default = 0, doc = "Sides of the iris, 3 or more; fewer: round." },
+    rotation = fx.float { min = -180, max = 180, default = 0, unit = "degrees", doc = "Turns the iris." },
+    squeeze = fx.float { min = 0.25, max = 4, default = 1, doc = "Anamorphic lens: 2 makes discs half as wide as high, 0.5 half as high as wide." },
+    cat_eye = fx.float { min = 0, max = 1, default = 0, doc = "How much the tube of the lens cuts from discs in the corners of the picture." },
     depth_space = fx.enum { "linear", "device", default = "linear",
       doc = "What the depth input holds: distance along the viewing axis in m, or device depth 0-1, made linear with near, far and reversed_z." },
     near = fx.float { min = 1e-6, default = 0.3, unit = "m", doc = "Near plane, for device depth." },
@@ -24,22 +28,49 @@ return fx.effect {
   },
   needs = { "depth" },
 
-  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, 
+  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1,
     error = { fp32 = 5e-4, fp16 = false, up_to = 50, when = function(s) return s.depth_space == "linear" end } },
   build = function(g, s, source)
     local f = s.focal_length / 1000
     local d = math.max(s.focus_distance, 1.01 * f)  -- nearer nothing is ever sharp
     -- Radius for what is infinitely far: half the diameter f²/(N(d − f)) on the sensor, in pixels.
     local infinity = 0.5 * f * f / (s.aperture * (d - f)) / (s.sensor_height / 1000) * source.height
-    local image = g:pass { shader = "depth_of_field/circle", source = source, depth = g:input("depth"), focus_distance = d,
-                           infinity = math.min(infinity, 1e6), max_radius = s.max_radius, device_input = s.depth_space == "device",
-                           reversed_z = s.reversed_z, inverse_clip = { 1 / s.near, 1 / s.far }, name = "circle" }
-    -- Reads go no further than the widest circle of the tiles around: where little is blurred, they lie close.
-    local tile = math.ceil(s.max_radius)
-    local across, down = (source.width + tile - 1) // tile, (source.height + tile - 1) // tile
-    local rows = g:pass { shader = "depth_of_field/widest", source = image, size = { across, source.height }, block = tile, down = false, name = "rows" }
-    local tiles = g:pass { shader = "depth_of_field/widest", source = rows, size = { across, down }, block = tile, down = true, name = "tiles" }
-    return g:pass { shader = "depth_of_field/gather", source = image, picture = source, widest = g:pass { shader = "depth_of_field/around", source = tiles },
-                    block = tile, max_radius = s.max_radius, samples = s.samples }
+    local radius = math.max(s.max_radius, 1e-3)
+    local depth = g:input("depth")
+    local function with_circles(pass)
+      pass.depth, pass.focus = depth, { d, math.min(infinity, 1e6), radius }
+      pass.device_input, pass.reversed_z, pass.inverse_clip = s.depth_space == "device", s.reversed_z, { 1 / s.near, 1 / s.far }
+      return g:pass(pass)
+    end
+    -- In the small picture no circle is wider than 32 pixels.
+    local factor = math.max(2, math.ceil(radius / 32))
+    local size = { (source.width + factor - 1) // factor, (source.height + factor - 1) // factor }
+    local small = with_circles { shader = "depth_of_field/small", size = size, picture = source, factor = factor, name = "small" }
+    -- What is in front is looked for no further than the widest circle of the tiles around.
+    local block = math.max(8, math.ceil(radius / factor) + 2)
+    local across, down = (size[1] + block - 1) // block, (size[2] + block - 1) // block
+    local rows = g:pass { shader = "depth_of_field/widest", source = small, size = { across, size[2] }, block = block, down = false, name = "rows" }
+    local tiles = g:pass { shader = "depth_of_field/widest", source = rows, size = { across, down }, block = block, down = true, name = "tiles" }
+    local widest = g:pass { shader = "depth_of_field/around", source = tiles }
+
+    local second = g:pass { shader = "depth_of_field/half", source = small, size = { (size[1] + 1) // 2, (size[2] + 1) // 2 }, name = "second" }
+    local third = g:pass { shader = "depth_of_field/half", source = second, size = { (second.width + 1) // 2, (second.height + 1) // 2 }, name = "third" }
+    local pyramid = g:pass { shader = "depth_of_field/pyramid", source = small, second = second, third = third,
+                             size = { size[1] + second.width, math.max(size[2], second.height + third.height) }, name = "pyramid" }
+    -- The sides of the iris, each by the direction from its middle outwards; 1/cos(π/blades) makes its corners lie on the circle.
+    local blades, side = s.blades, 2 * math.pi / math.max(s.blades, 3)
+    local first, outwards = s.rotation * math.pi / 180 + side / 2, 1 / math.cos(side / 2)
+    local function through_lens(pass)
+      pass.source, pass.size, pass.small, pass.blades, pass.has_tube, pass.cat_eye, pass.samples, pass.factor = pyramid, size, size, blades, s.cat_eye > 0, s.cat_eye, s.samples, factor
+      pass.turns = { math.cos(first) * outwards, math.sin(first) * outwards, math.cos(side), math.sin(side) }
+      pass.stretch = { math.max(1, s.squeeze), math.max(1, 1 / s.squeeze), 2 * math.max(s.squeeze, 1 / s.squeeze) }
+      return g:pass(pass)
+    end
+    local far = through_lens { shader = "depth_of_field/far", name = "far" }
+    local disc = blades < 3 and 1 or math.sin(side) / side
+    local near = through_lens { shader = "depth_of_field/near", widest = widest, block = block, part = disc / math.max(s.squeeze, 1 / s.squeeze), name = "near" }
+    far = g:pass { shader = "depth_of_field/fill", source = far, name = "far_filled" }
+    near = g:pass { shader = "depth_of_field/fill", source = near, name = "near_filled" }
+    return with_circles { shader = "depth_of_field/final", size = source, picture = source, far = far, near = near, factor = factor, name = "final" }
   end,
 }

@@ -20,6 +20,6 @@ return fx.effect {
     local size = math.max(1, s.size)  -- a preview cannot show finer grain
     local coarse = math.floor(size * 64) / 64
     return g:pass { shader = "film_grain/grain", source = source, strength = 0.25 * s.intensity, response = s.response,
-                    size_of_grain = { coarse, size - coarse }, colored = s.colored, frame = math.floor(g.frame) & 0x7fffffff, seed = s.seed, fine = size == 1 }
+                    size_of_grain = { coarse, size - coarse }, colored = s.colored, frame = math.floor(g.frame) & 0x7fffffff, seed = s.seed, fine = size == 1, grey = s.colored == 0 }
   end,
 }

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 -- Lens dirt: dust and smudges on the front glass, seen where bright light falls through them. The light is a wide blur of what exceeds a
--- threshold; the dirt is made of discs at random places instead of read from a picture.
+-- threshold; the dirt is made of smudges and of grains at random places instead of read from a picture. It is out of focus, and the light behind
+-- it wide: both are made at a quarter of the size.
 local fx = require "afterglow"
 local pyramids = require "lib.pyramid"
 
@@ -39,11 +40,16 @@ return fx.effect {
     for i = start + 1, #sizes do
       image = g:filter { source = image, size = sizes[i], filter = fx.filters.tent(), name = ("down[%d]"):format(i - 1) }
     end
-    local light = g:filter { source = image, size = source, filter = fx.filters.bspline(), name = "light" }
-    local cell = math.max(s.size * source.height, 2)
+    -- A preview's dirt is made in pixels as large as the delivered picture's are in its own.
+    local factor = math.max(1, math.floor(4 * g.length_scale + 0.5))
+    local small = { (source.width + factor - 1) // factor, (source.height + factor - 1) // factor }
+    local cell = math.max(s.size * source.height / factor, 1)
     local coarse = math.floor(cell * 64) / 64
-    local dirt = g:pass { shader = "lens_dirt/spots", size = source, cell = { coarse, cell - coarse }, density = s.density,
+    local dirt = g:pass { shader = "lens_dirt/spots", size = small, cell = { coarse, cell - coarse }, density = s.density,
                           seed = s.seed, name = "spots" }
-    return g:pass { shader = "lens_dirt/add", source = light, high = source, dirt = dirt, intensity = s.intensity, name = "final" }
+    local light = g:filter { source = image, size = small, filter = fx.filters.bspline(), name = "light" }
+    local lit = g:pass { shader = "lens_dirt/lit", source = light, dirt = dirt, name = "lit" }
+    local up = factor == 1 and lit or g:filter { source = lit, size = source, filter = fx.filters.bspline(), name = "up" }
+    return g:pass { shader = "lens_dirt/add", source = up, high = source, intensity = s.intensity, name = "final" }
   end,
 }

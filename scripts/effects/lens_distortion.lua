@@ -3,6 +3,8 @@
 -- tan(θr)/σ for a barrel and atan(σr)/θ for a pincushion, θ = min(1.6·100·|intensity|, 160) degrees, σ = 2 tan(θ/2).
 local fx = require "afterglow"
 
+local function fills(s) return s.edges ~= "black" end
+
 return fx.effect {
   name = "lens_distortion",
   doc = "Bends the picture as a wide lens (barrel) or a long one (pincushion) does.",
@@ -13,18 +15,20 @@ return fx.effect {
     y_multiplier = fx.float { min = 0, max = 1, default = 1, doc = "How much of it happens down." },
     center = fx.vec2 { min = 0, max = 1, default = { 0.5, 0.5 }, doc = "The point that stays: {0, 0} is the upper left corner, {1, 1} the lower right." },
     scale = fx.float { min = 0.01, max = 5, default = 1, doc = "Enlarges the result around the centre, to hide edges that were drawn in." },
+    edges = fx.enum { "stretch", "mirror", "black", default = "stretch", doc = "What stands where the picture ends: its last pixels, its mirror image, or black." },
   },
   active = function(s)
     local bends = s.intensity ~= 0 and (s.x_multiplier > 0 or s.y_multiplier > 0)
     return bends or s.scale ~= 1, "nothing bends and scale is 1"
   end,
-  -- Positions between pixels are rounded: the more, the larger the picture; so what is read at a hard edge is off by as much.
-  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1,
-            error = { fp32 = function(_, source) return 1e-3 + 2e-5 * math.max(source.width, source.height) end, fp16 = function(_, source) return 4e-3 + 2e-5 * math.max(source.width, source.height) end, up_to = 1 } },
+  -- Positions between pixels are rounded: the more, the larger the picture; so what is read at a hard edge is off by as much, and what is
+  -- mirrored from far outside is anywhere.
+  holds = { "black", constant = { when = fills }, bounded = { when = fills }, "monotone", "linear", continuous = 1,
+            error = { fp32 = function(_, source) return 1e-3 + 2e-5 * math.max(source.width, source.height) end, fp16 = function(_, source) return 4e-3 + 2e-5 * math.max(source.width, source.height) end, up_to = 1, when = function(s) return s.edges ~= "mirror" end } },
   build = function(g, s, source)
     local theta = math.min(1.6 * math.max(math.abs(s.intensity) * 100, 1), 160) * math.pi / 180
     return g:pass {
-      shader = "lens_distortion/bend", source = source, barrel = s.intensity >= 0,
+      shader = "lens_distortion/bend", source = source, barrel = s.intensity >= 0, mirrored = s.edges == "mirror", black = s.edges == "black",
       theta = theta, sigma = 2 * math.tan(theta / 2), bend = s.intensity ~= 0 and 1 or 0,
       center = { s.center[1] - 0.5, s.center[2] - 0.5 },
       axes = { math.max(s.x_multiplier, 1e-4), math.max(s.y_multiplier, 1e-4) }, inverse_scale = 1 / s.scale,

@@ -12,7 +12,7 @@ return fx.effect {
   at = "post_process", order = 20, space = "scene",
   settings = {
     shutter_angle = fx.float { min = 0, max = 720, default = 180, unit = "degrees", doc = "How long the shutter is open: 360 is the whole frame. 0: no blur." },
-    samples = fx.int { min = 3, max = 128, default = 24, doc = "Reads for each pixel that moves: more are smoother, and dearer." },
+    samples = fx.int { min = 3, max = 128, default = 24, doc = "Most reads for each pixel that moves, of as many as it passes pixels: more are smoother, and dearer." },
     max_radius = fx.float { min = 1, max = 128, default = 32, unit = "px", doc = "No blur reaches further each way." },
     motion_scale = fx.vec2 { min = -16384, max = 16384, default = { 1, 1 },
       doc = "Factor of the motion vectors: {1, -1} for files with y downwards, {width, height} for motion in pictures." },

@@ -1,5 +1,7 @@
 -- SPDX-License-Identifier: MIT
--- Radial blur: a zoom while the shutter is open. Each pixel is the mean of reads on its way to the centre.
+-- Radial blur: a zoom while the shutter is open. Reads on the way to the centre lie in a fixed ratio to each other, so that n·m of them are n
+-- reads far apart of an image that has been blurred by m reads close together: there are as many as the longest streak needs. The streaks are
+-- made in a smaller picture; around the centre, where they are short, the sharp one stands. math.md §37.
 local fx = require "afterglow"
 
 return fx.effect {
@@ -8,7 +10,7 @@ return fx.effect {
   at = "post_process", order = 82,
   settings = {
     intensity = fx.float { min = 0, max = 1, default = 0.15, doc = "Share of the way to the centre that is smeared. 0: none." },
-    samples = fx.int { min = 2, max = 128, default = 16, doc = "Reads on the way; few show as copies of bright spots." },
+    samples = fx.int { min = 2, max = 128, default = 16, doc = "Reads on the way, at least: long streaks take as many as they need to be even." },
     center = fx.vec2 { min = 0, max = 1, default = { 0.5, 0.5 }, doc = "The point that stays sharp: {0, 0} is the upper left corner, {1, 1} the lower right." },
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
@@ -16,6 +18,26 @@ return fx.effect {
   holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1,
             error = { fp32 = function(_, source) return 1e-3 + 2e-5 * math.max(source.width, source.height) end, fp16 = function(_, source) return 4e-3 + 2e-5 * math.max(source.width, source.height) end, up_to = 1 } },
   build = function(g, s, source)
-    return g:pass { shader = "radial_blur/zoom", source = source, amount = s.intensity, samples = s.samples, center = s.center }
+    local amount = math.min(s.intensity, 63 / 64)
+    -- To the corner that is farthest from the centre, in pixels.
+    local across, down = math.max(s.center[1], 1 - s.center[1]) * source.width, math.max(s.center[2], 1 - s.center[2]) * source.height
+    local length = math.sqrt(across * across + down * down) * -math.log(1 - amount)
+    local factor = length > 2 and (length > 400 and 4 or 2) or 1
+    local reads = math.max(s.samples, math.ceil(length / (1.5 * factor)))
+    local near = math.ceil(math.sqrt(reads))
+    local far = math.ceil(reads / near)
+    local ratio = (1 - amount) ^ (1 / (near * far))
+    local size = { (source.width + factor - 1) // factor, (source.height + factor - 1) // factor }
+    local image = source
+    if factor > 1 then
+      image = g:filter { source = image, size = size, filter = fx.filters.area(source.width / size[1], source.height / size[2]), name = "small" }
+    end
+    image = g:pass { shader = "radial_blur/zoom", source = image, center = s.center, first = 1, ratio = ratio, count = near, name = "near" }
+    image = g:pass { shader = "radial_blur/zoom", source = image, center = s.center, first = math.sqrt(ratio), ratio = ratio ^ near, count = far, name = "far" }
+    if factor > 1 then
+      image = g:filter { source = image, size = source, filter = factor > 2 and fx.filters.bspline() or fx.filters.bilinear(), name = "up" }
+    end
+    return g:pass { shader = "radial_blur/over", source = image, picture = source, center = { s.center[1] * source.width, s.center[2] * source.height },
+                    amount = amount, factor = factor, name = "final" }
   end,
 }

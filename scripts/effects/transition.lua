@@ -1,7 +1,6 @@
 -- SPDX-License-Identifier: MIT
--- Transition: from this picture to another, by `progress`. The other is a file (scaled to cover the picture), a layer of it, or a plain colour. Animate `progress` over the frames:
---   fx.transition { to = "next.png", kind = "wipe", progress = function(t) return (t - 2) / 0.5 end }
--- or give it an argument of the look: progress = fx.arg("cut").
+-- Transition: from this picture to another, by `progress`. The other is a file (scaled to cover the picture), a layer of the picture's own file, or a plain colour. `progress` moves
+-- with the frames, as in progress = fx.curve { { 48, 0 }, { 60, 1 } }, or is an argument of the look (docs/composition.md). Formulas: docs/math.md §34.
 local fx = require "afterglow"
 
 local kKinds = { dissolve = 0, fade = 1, wipe = 2, iris = 3, clock = 4, blinds = 5, scatter = 6, push = 7 }

@@ -5,8 +5,9 @@
 
 uniform float amount;
 uniform vec4 knee;
+uniform float most;
 
 vec4 apply(vec4 color, vec4 high) {
-  vec3 spread = soft_knee_threshold(high.rgb, knee);
+  vec3 spread = soft_knee_threshold(held_light(high.rgb, most), knee);
   return vec4(high.rgb + amount * (color.rgb - spread), high.a);
 }

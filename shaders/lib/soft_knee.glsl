@@ -11,3 +11,6 @@ vec3 soft_knee_threshold(vec3 c, vec4 knee) {
   float contribution = max(s * (s * knee.w), b - knee.x);
   return c * (contribution / max(b, 1e-5));
 }
+
+/// The colour as if its brightest channel were at most `most`.
+vec3 held_light(vec3 c, float most) { return c * min(1.0, most / max(brightest(c), 1e-5)); }

@@ -29,10 +29,12 @@ vec4 sample_at(ivec2 pixel) {
   float own_way = max(length(own.xy), 0.5);
   // Another offset for each pixel turns steps into fine grain.
   float offset = unit_of(pcg3d(uvec3(pixel, 0))).x - 0.5;
-  float weight = 1.0 / own_way;
   vec3 mean = color.rgb;
-  for (int i = 0; i < samples; ++i) {
-    float t = (float(i) + offset + 1.0) / float(samples + 1) * 2.0 - 1.0;
+  // No more reads than there are pixels on the way. (0.7: what is rounded decides nothing where motion is in whole or half pixels.)
+  int count = min(samples, int(floor(2.0 * length(way) + 0.7)) + 1);
+  float weight = float(count) / (float(samples) * own_way);
+  for (int i = 0; i < count; ++i) {
+    float t = (float(i) + offset + 1.0) / float(count + 1) * 2.0 - 1.0;
     ivec2 at = pixel + ivec2(floor(way * t + 0.5));
     if (at == pixel) continue;
     vec4 read = fetch(source, at);

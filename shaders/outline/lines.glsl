@@ -12,6 +12,7 @@ layout(constant_id = 4) const bool device_input = false; // `depth` holds device
 layout(constant_id = 5) const bool reversed_z = true;    // device depth 1 is the near plane
 layout(constant_id = 6) const bool raw_depth = false;    // compare device depth as it is, not made linear
 layout(constant_id = 7) const bool combine_max = false;  // the stronger of the two; else weighted
+layout(constant_id = 8) const bool level_slopes = false; // planes draw no line, however steep
 
 uniform sampler2D depth;   // what is not used may be any image: it is never read
 uniform sampler2D normal;
@@ -45,6 +46,22 @@ float normal_change(vec3 a, vec3 b) { return min(length(clamp(a - b, -1e15, 1e15
 // pixels lie farther apart, the part that goes on shrinks with them.
 float step_of(float ahead, float behind) { return scale < 1.0 ? ahead - (1.0 - scale) * min(ahead, behind) : ahead; }
 
+// How much farther or nearer the pixel ahead is than the plane through the pixel and the one behind it. Along a line on the screen the inverse
+// distance of a plane is linear, so its change ahead is that behind; in distances: |z − z₋|·z₊/z₋. Where nothing lies behind, the plane is that
+// through the two pixels ahead.
+float change_from_plane(ivec2 centre, ivec2 ahead) {
+  ivec2 behind = 2 * centre - ahead, further = 2 * ahead - centre;
+  bool inside = min(behind.x, behind.y) >= 0;
+  float z = depth_at(centre), next = depth_at(ahead), other = depth_at(inside ? behind : further);
+  float change = depth_change(z, next), slope = inside ? depth_change(other, z) : depth_change(next, other);
+  bool goes_on = inside ? (next > z) == (z > other) : (next > z) == (other > next);
+  if (!raw_depth) {
+    float from = device_input ? distance_of(inside ? other : z) : inside ? other : z, to = device_input ? distance_of(inside ? next : other) : inside ? next : other;
+    slope = min(slope * (inside ? max(to, 1e-6) / max(from, 1e-6) : max(from, 1e-6) / max(to, 1e-6)), kMaxEdge);
+  }
+  return goes_on ? max(change - slope, 0.0) : change;
+}
+
 int reach(ivec2 pixel) {
   float w = width;
   if (fade) {
@@ -64,7 +81,9 @@ vec4 sample_at(ivec2 pixel) {
   ivec2 right = centre + ivec2(apart, 0), below = centre + ivec2(0, apart);
 
   float depth_edge = 0.0, normal_edge = 0.0;
-  if (use_depth) {
+  if (use_depth && level_slopes) {
+    depth_edge = change_from_plane(centre, right) + change_from_plane(centre, below);
+  } else if (use_depth) {
     float z = depth_at(centre);
     depth_edge = step_of(depth_change(z, depth_at(right)), depth_change(z, depth_at(2 * centre - right))) +
                  step_of(depth_change(z, depth_at(below)), depth_change(z, depth_at(2 * centre - below)));

@@ -11,5 +11,6 @@ vec4 apply(vec4 color) {
   float slope = clamp((at - below - 0.5) / soft + 0.5, 0.0, 1.0);  // a step lies half way between two tones
   float tone = (below + slope) / steps;
   float scale = eye > 1.0 ? 1.0 : tone / max(eye, 1e-6);
-  return vec4(lerp(color.rgb, color.rgb * (scale * scale), share), color.a);
+  scale = min(scale * scale, max(1.0, 1.0 / max(brightest(color.rgb), 1e-6)));  // no channel is driven above white
+  return vec4(lerp(color.rgb, color.rgb * scale, share), color.a);
 }

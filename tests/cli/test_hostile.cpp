@@ -104,5 +104,36 @@ TEST_F(Hostile, AShaderThatNeverEndsIsToldAndEnded) {
   EXPECT_THAT(outcome.err, HasSubstr(told));
 }
 
+/// The same pictures; and nothing beside them, the look and the output.
+TEST_F(Hostile, ASandboxShowsTheProgramItsPicturesAlone) {
+  make_preset("looks/look.lua");
+  make_exr("in/a.0001.exr");
+  make_exr("in/a.0002.exr");
+  make_exr("elsewhere/b.exr");
+  fs::create_directory(path("free"));
+  fs::create_directory(path("kept"));
+  const Outcome free = run({"run", "looks/look.lua", "in/a.####.exr", "-o", "free/"});
+  ASSERT_EQ(free.exit_code, kDone) << free.err;
+  const Outcome kept = run({"run", "looks/look.lua", "in/a.####.exr", "-o", "kept/", "--sandbox"});
+  if (kept.exit_code == kDevice) {
+    EXPECT_THAT(kept.err, HasSubstr("cannot confine a process"));
+    GTEST_SKIP() << "this kernel has no Landlock";
+  }
+  ASSERT_EQ(kept.exit_code, kDone) << kept.err;
+  for (const char* name : {"a.0001.exr", "a.0002.exr"})
+    EXPECT_EQ(read(std::string("free/") + name), read(std::string("kept/") + name)) << name;
+  // A frame that leads out of its folder.
+  fs::remove(path("in/a.0002.exr"));
+  fs::create_symlink(path("elsewhere/b.exr"), path("in/a.0002.exr"));
+  EXPECT_EQ(run({"run", "looks/look.lua", "in/a.####.exr", "-o", "free/"}).exit_code, kDone);
+  const Outcome out = run({"run", "looks/look.lua", "in/a.####.exr", "-o", "kept/", "--sandbox"});
+  EXPECT_EQ(out.exit_code, kFiles) << out.err;
+  EXPECT_THAT(out.err, HasSubstr("a.0002.exr"));
+  // Errors are as before.
+  const Outcome none = run({"run", "looks/look.lua", "in/none.exr", "-o", "kept/x.png", "--sandbox"});
+  EXPECT_EQ(none.exit_code, kFiles);
+  EXPECT_THAT(none.err, HasSubstr("none.exr"));
+}
+
 }  // namespace
 }  // namespace afterglow::test

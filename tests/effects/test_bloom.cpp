@@ -15,9 +15,9 @@ std::string lua(const BloomSettings& s) {
   return fmt::format(
       "fx.bloom {{ mode = \"{}\", max_iterations = {}, downscale_limit = {}, threshold = {}, knee = {}, intensity = "
       "{}, scatter = {}, "
-      "bicubic_upsampling = {}, fade_fireflies = {}, reference_height = {} }}",
+      "bicubic_upsampling = {}, fade_fireflies = {}, reference_height = {}, clamp = {} }}",
       s.mode == BloomMode::additive ? "additive" : "scattering", s.max_iterations, s.downscale_limit, s.threshold,
-      s.knee, s.intensity, s.scatter, s.bicubic_upsampling, s.fade_fireflies, s.reference_height);
+      s.knee, s.intensity, s.scatter, s.bicubic_upsampling, s.fade_fireflies, s.reference_height, s.clamp);
 }
 
 std::string bloom_image(const char* name, std::size_t i) { return fmt::format("bloom.{}[{}]", name, i); }
@@ -29,8 +29,9 @@ std::vector<float> interleaved_floats(const DoubleImage& image) {
 
 /// Each pass on what the device itself gave to it.
 void check_each_pass(const Made& made, const Scene& scene, const BloomSettings& s) {
-  const auto threshold = BloomThreshold::from_gamma(s.threshold, s.knee);
-  DoubleImage picture = scene.source;
+  auto threshold = BloomThreshold::from_gamma(s.threshold, s.knee);
+  threshold.clamp = s.clamp;
+  DoubleImage picture = made.has("bloom.hold") ? made.image("bloom.hold") : scene.source;
   for (std::size_t i = 0; made.has(bloom_image("scaled", i)); ++i) picture = made.image(bloom_image("scaled", i));
   if (s.reference_height > 0) {
     EXPECT_TRUE(agrees(interleaved_floats(picture), bloom_scaled(scene.source, s.reference_height), kFullFloat, kRgb))
@@ -148,6 +149,20 @@ TEST_F(Effects, BloomAtAReferenceHeightAgrees) {
     for (const bool fireflies : {false, true})
       check(random_scene({240, 135}, 11, true), {.fade_fireflies = fireflies, .reference_height = height});
   check(random_scene({101, 57}, 12), {.mode = BloomMode::scattering, .downscale_limit = 1, .reference_height = 20});
+}
+
+TEST_F(Effects, BloomHoldsWildPixels) {
+  for (const auto mode : {BloomMode::additive, BloomMode::scattering})
+    for (const bool fireflies : {false, true})
+      check(random_scene({101, 57}, 14, true), {.mode = mode, .fade_fireflies = fireflies, .clamp = 2.5});
+  Scene scene{"wild", DoubleImage(256, 144, Rgba(0.2, 0.2, 0.2, 1)), {}, {}};
+  scene.source.at(128, 72) = Rgba(65504, 30000, 0, 1);
+  const auto brightest_far_away = [&](const char* entry) {
+    const auto made = run_stack(entry, scene, Way::fused).result;
+    return made[4 * (static_cast<std::size_t>(256) * 30 + 30)];
+  };
+  EXPECT_GT(brightest_far_away("fx.bloom {}"), 1);
+  EXPECT_NEAR(brightest_far_away("fx.bloom { clamp = 50 }"), 0.2, 0.01);
 }
 
 TEST_F(Effects, TheReferenceHeightOfAPictureChangesNothing) {

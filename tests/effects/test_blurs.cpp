@@ -80,24 +80,32 @@ TEST_F(Effects, DirectionalBlurIsAsLongAsItSays) {
 
 TEST_F(Effects, BokehBlurAgrees) {
   agree_everywhere({defocused({}), defocused({.radius = 3, .blades = 6, .rotation = 20, .highlights = 10}),
-                    defocused({.radius = 40, .blades = 5}), defocused({.radius = 0.5, .highlights = 50})});
+                    defocused({.radius = 40, .blades = 5}), defocused({.radius = 0.5, .highlights = 50}),
+                    defocused({.radius = 64, .blades = 3, .rotation = -80}), defocused({.radius = 13})});
   expect_skipped("fx.bokeh_blur { radius = 0 }", "radius is 0");
 }
 
-TEST_F(Effects, BokehOfAPointIsADiscOfItsLight) {
-  const auto made = run_stack("fx.bokeh_blur { radius = 9 }", point({41, 41}), Way::plain).result;
-  double sum = 0, outside = 0;
-  int inside = 0;
-  for (int y = 0; y < 41; ++y)
-    for (int x = 0; x < 41; ++x) {
-      const double v = made[4 * static_cast<std::size_t>(41 * y + x)], r = std::hypot(x - 20, y - 20);
-      sum += v;
-      if (r > 11) outside += v;
-      if (r < 7 && v > 1) ++inside;
-    }
-  EXPECT_NEAR(sum, 1000, 1);
-  EXPECT_EQ(outside, 0);
-  EXPECT_GT(inside, 140);  // of 149: no holes between the rings
+TEST_F(Effects, BokehOfAPointIsAnEvenDiscOfItsLight) {
+  for (const int radius : {3, 6, 9, 14, 20, 33, 50, 64}) {
+    const int side = 2 * radius + 61, middle = side / 2;
+    const auto made =
+        run_stack(fmt::format("fx.bokeh_blur {{ radius = {} }}", radius), point({side, side}), Way::plain).result;
+    double sum = 0, outside = 0, inside = 0, squares = 0;
+    int count = 0;
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        const double v = made[4 * static_cast<std::size_t>(side * y + x)], r = std::hypot(x - middle, y - middle);
+        sum += v;
+        if (r > 1.3 * radius + 4) outside += v;
+        if (r > 0.75 * radius - 3) continue;
+        inside += v, squares += v * v, ++count;
+      }
+    EXPECT_NEAR(sum, 1000, 20) << radius;
+    EXPECT_LT(outside, 10) << radius;
+    if (count == 0) continue;
+    const double mean = inside / count;
+    EXPECT_LT(std::sqrt(glm::max(squares / count - mean * mean, 0.0)), 0.06 * mean) << radius;
+  }
 }
 
 TEST_F(Effects, BlursKeepOneColour) {

@@ -61,5 +61,24 @@ TEST_F(Effects, FilmGrainHasMeanOneAndItsDeviationAtEverySize) {
   }
 }
 
+TEST_F(Effects, ColouredGrainIsAlikeInAllChannels) {
+  const Scene scene{"grey", DoubleImage(256, 256, Rgba(0.25, 0.25, 0.25, 1)), {}, {}};
+  for (const double colored : {0.0, 0.3, 0.5, 1.0}) {
+    const auto made =
+        run_stack(fmt::format("fx.film_grain {{ intensity = 1, colored = {} }}", colored), scene, Way::plain).result;
+    double squares[3] = {}, products[3] = {};
+    for (std::size_t i = 0; i < made.size(); i += 4)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double a = made[i + c] / 0.25 - 1, b = made[i + (c + 1) % 3] / 0.25 - 1;
+        squares[c] += a * a, products[c] += a * b;
+      }
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(squares[c] / squares[1], 1, 0.03) << colored << " " << c;
+      const double shared = products[c] / squares[c], wanted = (1 - colored) * (1 - colored);
+      EXPECT_NEAR(shared, wanted / (wanted + colored * colored), 0.03) << colored << " " << c;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -25,8 +25,11 @@ EffectCase fringed(double intensity, int samples) {
 
 EffectCase bent(const LensDistortion& v) {
   return {fmt::format("fx.lens_distortion {{ intensity = {}, x_multiplier = {}, y_multiplier = {}, center = {{ {}, {} "
-                      "}}, scale = {} }}",
-                      v.intensity, v.x_multiplier, v.y_multiplier, v.center.x, v.center.y, v.scale),
+                      "}}, scale = {}, edges = \"{}\" }}",
+                      v.intensity, v.x_multiplier, v.y_multiplier, v.center.x, v.center.y, v.scale,
+                      v.edges == LensEdges::mirror  ? "mirror"
+                      : v.edges == LensEdges::black ? "black"
+                                                    : "stretch"),
           [=](const Scene& s) { return lens_distortion(s.source, v); }};
 }
 
@@ -53,6 +56,8 @@ TEST_F(Effects, LensDistortionAgrees) {
   agree_everywhere(
       {bent({.intensity = 0.4}), bent({.intensity = -0.6}), bent({.intensity = 0, .scale = 1.7}),
        bent({.intensity = 0.3, .x_multiplier = 0, .y_multiplier = 0.6, .center = {0.4, 0.55}, .scale = 0.8}),
+       bent({.intensity = 0.3, .scale = 0.6, .edges = LensEdges::mirror}),
+       bent({.intensity = -0.3, .center = {0.6, 0.4}, .scale = 0.5, .edges = LensEdges::black}),
        bent({.intensity = 0.3, .center = {0.2, 0.9}}), bent({.intensity = -1, .scale = 2})},
       kBetweenPixels);
   expect_skipped("fx.lens_distortion { intensity = 0 }", "nothing bends and scale is 1");

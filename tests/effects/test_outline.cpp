@@ -16,12 +16,12 @@ std::string lua(const OutlineSettings& s) {
       "fx.outline {{ source = \"{}\", difference = \"{}\", depth_space = \"{}\", near = {}, far = {}, reversed_z = {}, "
       "combine = \"{}\", "
       "normal_factor = {}, width = {}, fade_distance = {}, depth_scale = {}, normal_scale = {}, divide_factor = {}, "
-      "contrast = {}, "
+      "contrast = {}, level_slopes = {}, "
       "color = {{ {}, {}, {} }}, blend = \"{}\" }}",
       kSources[static_cast<int>(s.source)], s.difference == OutlineDifference::offset ? "offset" : "derivative",
       s.device_depth_input ? "device" : "linear", s.near, s.far, s.reversed_z,
       s.combine == OutlineCombine::weighted ? "weighted" : "max", s.normal_factor, s.width, s.fade_distance,
-      s.depth_scale, s.normal_scale, s.divide_factor, s.contrast, s.color.r, s.color.g, s.color.b,
+      s.depth_scale, s.normal_scale, s.divide_factor, s.contrast, s.level_slopes, s.color.r, s.color.g, s.color.b,
       s.blend == OutlineBlend::lerp ? "lerp" : "add");
 }
 
@@ -66,6 +66,7 @@ TEST_F(Effects, OutlineAgreesAtEverySizeAndSource) {
                                        .depth_scale = 0.2,
                                        .normal_scale = 0.7,
                                        .divide_factor = 1.5,
+                                       .level_slopes = turn % 5 != 0,
                                        .contrast = 1 + 0.5 * (turn % 5),
                                        .color = {0.1, 0.02, 0.3},
                                        .blend = turn % 3 ? OutlineBlend::lerp : OutlineBlend::add});
@@ -82,6 +83,32 @@ TEST_F(Effects, OutlineOfARealFrameAgrees) {
                 .contrast = 4});
   check(scene, {});
   check(scene, {.source = OutlineSource::depth, .difference = OutlineDifference::derivative, .depth_scale = 10});
+}
+
+TEST_F(Effects, PlanesDrawNoLineHoweverSteep) {
+  // Ground to the horizon, and a box that stands on it.
+  Scene scene{"ground", DoubleImage(96, 64, Rgba(1, 1, 1, 1)), DoubleImage(96, 64),
+              DoubleImage(96, 64, Rgba(0, 0, 1, 1))};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 96; ++x) {
+      const bool box = x >= 40 && x < 60 && y >= 10 && y < 50;
+      scene.depth->at(x, y) = Rgba(box ? 6 : 200 / (y + 0.5 + 0.1 * x), 0, 0, 1);
+    }
+  scene.depth = in_floats(*scene.depth);
+  const auto lines = [&](const char* more, int width, int x, int y) {
+    const Made made = run_stack(
+        fmt::format("fx.outline {{ combine = \"max\", depth_scale = 20, contrast = 5, width = {}{} }}", width, more),
+        scene, Way::plain);
+    return made.pixels("outline.lines")[4 * static_cast<std::size_t>(96 * y + x)];
+  };
+  for (const int width : {1, 3}) {
+    for (const auto& [x, y] : {std::pair{0, 0}, {20, 1}, {70, 4}, {0, 30}, {80, 12}}) {
+      EXPECT_EQ(lines("", width, x, y), 0) << x << " " << y;
+    }
+    EXPECT_EQ(lines("", width, 39, 12), 1);
+    EXPECT_EQ(lines("", width, 59, 12), 1);
+    EXPECT_EQ(lines(", level_slopes = false", width, 20, 1), 1);
+  }
 }
 
 TEST_F(Effects, OutlineFromDeviceDepthAgrees) {

@@ -62,9 +62,8 @@ class Weights {
 
   std::uint64_t turns_of(std::size_t loop) {
     weights_[loop] = saturated_sum({1, turns_within(static_cast<int>(loop), loops_[loop].function)});
-    const auto& counting = loops_[loop].counting;
-    const std::uint64_t turns =
-        counting && counting->turns ? saturated_product({*counting->turns, weights_[loop]}) : kSaturated;
+    const auto most = loops_[loop].most_turns;
+    const std::uint64_t turns = most ? saturated_product({*most, weights_[loop]}) : kSaturated;
     guarded_[loop] = turns > kFewTurns;
     return guarded_[loop] ? 0 : turns;
   }

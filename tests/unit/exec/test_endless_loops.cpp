@@ -139,6 +139,9 @@ TEST_F(EndlessLoops, SmallLoopsHaveNoGuard) {
   EXPECT_FALSE(guarded("c *= 2.0;"));
   EXPECT_FALSE(guarded("for (int i = 0; i < 64; ++i) for (int j = 8; j > -9; j -= 2) c.r += 1.0;"));
   EXPECT_FALSE(guarded("for (int i = 0; i <= 4095; ++i) c.r += 1.0;"));
+  EXPECT_FALSE(guarded("for (int i = 0; i < 9 && abs(c.r) < c.g; ++i) { if (c.b > c.r) break; c.r += 1.0; }"));
+  EXPECT_TRUE(guarded("for (int i = 0; i < 9 || abs(c.r) < c.g; ++i) c.r += 1.0;"));
+  EXPECT_TRUE(guarded("for (int i = 0; i < 9 && c.r < c.g; ++i) { if (c.b > c.r) i = 0; c.r += 1.0; }"));
   EXPECT_TRUE(guarded("for (int i = 0; i <= 4096; ++i) c.r += 1.0;"));
   EXPECT_TRUE(guarded("for (int i = 0; i < 65; ++i) for (int j = 0; j < 65; ++j) c.r += 1.0;"));
   EXPECT_TRUE(guarded("for (int i = 0; i < n; ++i) c.r += 1.0;", "uniform int n;\n"));
