@@ -2,6 +2,7 @@
 // A second real Vulkan driver: SwiftShader, as Debian's chromium packages bring it (./dev test --drivers fetches it).
 // Its built-in functions, filters and limits are its own. Skipped where it is not at hand.
 
+#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "cli_test.h"
@@ -27,6 +28,7 @@ class OtherDriver : public CliTest {
   }
   static RunOptions on_it() {
     RunOptions options;
+    options.limit = std::chrono::seconds(600);  // it compiles and draws slowly
     options.environment = {{"VK_DRIVER_FILES", driver()}, {"VK_ICD_FILENAMES", driver()}, {"AFTERGLOW_VALIDATE", "1"}};
     return options;
   }

@@ -12,7 +12,8 @@
 namespace afterglow {
 namespace {
 
-constexpr std::uint32_t kFirstVersion = 0x00010400;  // from here on entry points name all their variables
+constexpr std::uint32_t kFirstVersion = 0x00010300;  // from here on there are storage buffers as a class of their own
+constexpr std::uint32_t kNamesAllVersion = 0x00010400;  // from here on entry points name all their variables
 
 /// Which loops need a guard, and how many turns a turn of each stands for: those of the loops of constants within.
 class Weights {
@@ -317,8 +318,8 @@ class Guard {
     bool declared = false, decorated = false;
     for (std::size_t at = 0; at < module_.code.size(); ++at) {
       Instruction& i = module_.code[at];
-      // From SPIR-V 1.4 on the interface names every global; before, inputs and outputs alone.
-      if (i.op == spv::OpEntryPoint && module_.header[1] >= 0x10400) {
+      // Before, they name inputs and outputs alone.
+      if (i.op == spv::OpEntryPoint && module_.header[1] >= kNamesAllVersion) {
         i.words.insert(i.words.end(), {turns_, where_, buffer_});
         i.words[0] += 3u << spv::WordCountShift;
       }
