@@ -78,7 +78,9 @@ PixelMask hue_mask(const Settings& s) {
 
 PixelMask radial_mask(const Settings& s, Size size) {
   const auto [cx, cy] = s.pair("center");
-  const auto [rx, ry] = s.pair("radius");
+  const auto [wide, high] = s.pair("radius");
+  if (wide <= 0 || high <= 0) return [](int, int, const Rgb&) { return 0.0; };
+  const double rx = std::max(wide, 1e-6), ry = std::max(high, 1e-6);
   const double soft = std::max(s.number("softness"), 1e-6), angle = s.number("rotation") * std::numbers::pi / 180;
   return [=](int x, int y, const Rgb&) {
     const double dx = (x + 0.5 - cx * size.width) / size.height, dy = (y + 0.5 - cy * size.height) / size.height;

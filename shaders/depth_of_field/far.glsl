@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What lies at the focus or behind it, blurred by its own circle: sum over the iris, weights in alpha. Where something in front hides it, what
 // is seen around stands for it. What is sharp counts next to nothing: it is not seen in the small picture.
-#include "blurred.glsl"
-#include "lens.glsl"
+#include "lib/blurred.glsl"
+#include "lib/iris.glsl"
 
 layout(constant_id = 0) const int blades = 0;  // 3 or more: straight sides
 layout(constant_id = 1) const bool has_tube = false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The picture where it is sharp, what is blurred behind it where it is not, and over both what is blurred in front.
-#include "blurred.glsl"
-#include "circle.glsl"
+#include "lib/blurred.glsl"
+#include "lib/circle_of_confusion.glsl"
 #include "lib/depth.glsl"
 
 layout(constant_id = 0) const bool device_input = false;

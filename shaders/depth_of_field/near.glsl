@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What lies in front of the focus, spread over everything around it: its light, and how much of what is behind it covers, in alpha.
-#include "blurred.glsl"
-#include "lens.glsl"
+#include "lib/blurred.glsl"
+#include "lib/iris.glsl"
 
 layout(constant_id = 0) const int blades = 0;  // 3 or more: straight sides
 layout(constant_id = 1) const bool has_tube = false;

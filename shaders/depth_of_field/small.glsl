@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A small picture: the mean of each square of `factor` pixels, with the radius of its circle of confusion in alpha, in pixels of the small
 // picture. Of a square that lies across an edge the widest circle counts, and the light of pixels whose circles are like it.
-#include "circle.glsl"
+#include "lib/circle_of_confusion.glsl"
 #include "lib/depth.glsl"
 
 layout(constant_id = 0) const bool device_input = false;

@@ -103,7 +103,7 @@ TEST(Documents, EveryEffectHasItsPlaceInTheReference) {
     ++effects;
     ASSERT_FALSE(section.empty()) << name << " is not in docs/effects.md; run docs/effects/make.sh";
     EXPECT_NE(section.find("\nCost: "), std::string::npos) << name;
-    EXPECT_NE(section.find("](images/effects/" + name + ".jpg)"), std::string::npos) << name;
+    EXPECT_NE(section.find("](images/effects/" + name + ".jpg "), std::string::npos) << name;
     EXPECT_TRUE(fs::exists(kProjectFolder / "docs/images/effects" / (name + ".jpg"))) << name;
     EXPECT_NE(section.find("```lua\nfx." + name), std::string::npos) << name << ": no example";
     // Formula or source stand in the comment that the effect's file begins with.
