@@ -28,13 +28,15 @@ Result<Truth> find_truth(Device& device, const CellRequest& request, Diagnostics
   AFTERGLOW_TRY(const auto build, stack->evaluate(context_of(picture)));
   const auto entries = oracle_entries(*build);
   const std::string unknown = reference::effect_without_oracle(entries);
-  if (unknown.empty()) return Truth{"double precision", oracle_result(picture, entries)};
+  if (unknown.empty() && build->length_scale == 1) return Truth{"double precision", oracle_result(picture, entries)};
 
   AFTERGLOW_TRY(PreparedStack slow,
                 PreparedStack::create(device, request.preset, options, {.label = "--reference"}, picture, diagnostics));
   std::vector<float> rgb;
   AFTERGLOW_TRY(const Point ignored, slow.try_out(device, picture, false, rgb));
-  return Truth{fmt::format("--reference: '{}' has no oracle", unknown), {rgb.begin(), rgb.end()}};
+  const std::string why = unknown.empty() ? "the oracle knows no scaled lengths (reference_height)"
+                                          : fmt::format("'{}' has no oracle", unknown);
+  return Truth{"--reference: " + why, {rgb.begin(), rgb.end()}};
 }
 
 /// What is measured in turns.

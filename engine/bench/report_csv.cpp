@@ -29,7 +29,7 @@ std::string report_csv(const Report& report) {
   for (const auto& cell : report.cells)
     for (const auto& p : cell.points)
       out +=
-          fmt::format("{},{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{}\n",
+          fmt::format("{},{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{},{},{}\n",
                       quoted(report.device), quoted(report.driver), quoted(cell.preset), cell.size.width,
                       cell.size.height, quoted(p.label), quoted(p.choice), quoted(p.settings), p.execute.median,
                       p.execute.lower, p.execute.upper, p.upload, p.read_back, cell.copy.median, cell.memory.median,

@@ -22,8 +22,9 @@ struct Promises {
 };
 
 struct Build {
-  BuildContext context;  ///< of the frame
-  Graph graph;           ///< `graph.skipped`: effects and passes that were left out, with reasons
+  BuildContext context;     ///< of the frame
+  double length_scale = 1;  ///< pixels for each pixel that settings in px are given in
+  Graph graph;              ///< `graph.skipped`: effects and passes that were left out, with reasons
   /// In the order of execution, with the settings of this frame. Never null.
   std::shared_ptr<const std::vector<StackEntry>> entries;
   std::shared_ptr<const Explanation> explanation;  ///< how the settings came about. Never null

@@ -333,6 +333,7 @@ Result<Build> Preset::evaluate(const BuildContext& context, Diagnostics& diagnos
   box.diagnostics = nullptr;
   if (error) return with_entry(std::move(*error), current);
   Build out{.context = context,
+            .length_scale = state.length_scale,
             .graph = {},
             .entries = state.entries,
             .explanation = state.explanation,

@@ -46,6 +46,9 @@ std::optional<Module> parse(const Words& spirv);
 using Renaming = std::map<std::uint32_t, std::uint32_t>;
 Instruction renamed(Instruction instruction, const Renaming& names);
 
+/// Declares the vectors of bool that selections of vectors need before SPIR-V 1.4. Before the next function is called.
+void declare_bool_vectors(Module& module);
+
 /// Makes selections out of branches that only choose values, in the function [begin, end) of the module; returns its
 /// new end. Both sides are then always computed; a side that reads images, writes, calls or loops stays a branch.
 std::size_t select_instead_of_branching(Module& module, std::size_t begin, std::size_t end);

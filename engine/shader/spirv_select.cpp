@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "shader/spirv_module.h"
@@ -22,9 +23,33 @@ struct Side {
   std::size_t block_length() const { return begin == 0 ? 0 : end - begin + 2; }  ///< with label and branch
 };
 
+constexpr std::uint32_t kOneConditionForAll = 0x00010400;  // from here on one bool selects whole vectors and records
+
+/// The types of a module that selections need.
+struct Types {
+  std::uint32_t boolean = 0;
+  std::map<std::uint32_t, std::uint32_t> counts;        ///< type → components: 1 of scalars, 2 to 4 of vectors
+  std::map<std::uint32_t, std::uint32_t> bool_vectors;  ///< components → type
+
+  explicit Types(const Module& module) {
+    for (const auto& i : module.code) {
+      if (i.op == spv::OpTypeBool) boolean = i.words[1];
+      if (i.op == spv::OpTypeBool || i.op == spv::OpTypeInt || i.op == spv::OpTypeFloat) counts[i.words[1]] = 1;
+      if (i.op == spv::OpTypeVector) counts[i.words[1]] = i.words[3];
+      if (i.op == spv::OpTypeVector && i.words[2] == boolean) bool_vectors[i.words[3]] = i.words[1];
+    }
+  }
+};
+
 class Selector {
  public:
-  Selector(Module& module, std::size_t begin, std::size_t end) : code_(module.code), begin_(begin), end_(end) {
+  Selector(Module& module, std::size_t begin, std::size_t end)
+      : module_(module),
+        code_(module.code),
+        begin_(begin),
+        end_(end),
+        one_for_all_(module.header[1] >= kOneConditionForAll),
+        types_(module) {
     for (const auto& instruction : code_)
       if (instruction.op == spv::OpConstant) constants_.insert(instruction.result);
   }
@@ -63,6 +88,17 @@ class Selector {
     return Side{label, begin, i};
   }
 
+  /// What selects values of this type; 0: nothing can.
+  std::uint32_t condition_for(std::uint32_t type, std::uint32_t condition, std::vector<Instruction>& code) {
+    const auto count = types_.counts.find(type);
+    if (one_for_all_ || (count != types_.counts.end() && count->second == 1)) return condition;
+    if (count == types_.counts.end() || !types_.bool_vectors.contains(count->second)) return 0;
+    const std::uint32_t all = module_.fresh();
+    code.push_back(Instruction::of_ids(spv::OpCompositeConstruct, types_.bool_vectors.at(count->second), all,
+                                       Words(count->second, condition)));
+    return all;
+  }
+
   /// The selection whose OpSelectionMerge is at `at`.
   bool convert(std::size_t at) {
     const std::uint32_t merge = code_[at].words[1], condition = code_[at + 1].words[1];
@@ -82,8 +118,10 @@ class Selector {
       const Words& phi = code_[behind].words;  // type, result, then (value, from) twice
       if (phi.size() != 7) return false;
       const bool yes_first = phi[4] == yes->label && phi[6] == no->label;
+      const std::uint32_t chooses = condition_for(phi[1], condition, straight);
+      if (chooses == 0) return false;
       straight.push_back(Instruction::of_ids(spv::OpSelect, phi[1], phi[2],
-                                             {condition, yes_first ? phi[3] : phi[5], yes_first ? phi[5] : phi[3]}));
+                                             {chooses, yes_first ? phi[3] : phi[5], yes_first ? phi[5] : phi[3]}));
     }
     const auto first = code_.begin() + static_cast<std::ptrdiff_t>(at);
     const auto last = code_.begin() + static_cast<std::ptrdiff_t>(behind);
@@ -96,12 +134,26 @@ class Selector {
     return true;
   }
 
+  Module& module_;
   std::vector<Instruction>& code_;
   std::size_t begin_, end_;
+  bool one_for_all_;
+  Types types_;
   std::set<std::uint32_t> constants_;
 };
 
 }  // namespace
+
+void declare_bool_vectors(Module& module) {
+  const Types types(module);
+  if (module.header[1] >= kOneConditionForAll || types.boolean == 0) return;
+  std::vector<Instruction> missing;
+  for (std::uint32_t n = 2; n <= 4; ++n)
+    if (!types.bool_vectors.contains(n))
+      missing.push_back(Instruction::of_words(spv::OpTypeVector, {module.fresh(), types.boolean, n}));
+  const auto first = std::ranges::find(module.code, spv::OpFunction, &Instruction::op);
+  module.code.insert(first, missing.begin(), missing.end());
+}
 
 std::size_t select_instead_of_branching(Module& module, std::size_t begin, std::size_t end) {
   return Selector(module, begin, end).run();

@@ -22,7 +22,9 @@ return fx.effect {
     -- To the corner that is farthest from the centre, in pixels.
     local across, down = math.max(s.center[1], 1 - s.center[1]) * source.width, math.max(s.center[2], 1 - s.center[2]) * source.height
     local length = math.sqrt(across * across + down * down) * -math.log(1 - amount)
-    local factor = length > 2 and (length > 400 and 4 or 2) or 1
+    -- Of the picture that is delivered: a preview is small as it is.
+    local whole = length / g.length_scale
+    local factor = whole > 2 and math.max(1, math.min(4, math.floor((whole > 400 and 4 or 2) * g.length_scale + 0.5))) or 1
     local reads = math.max(s.samples, math.ceil(length / (1.5 * factor)))
     local near = math.ceil(math.sqrt(reads))
     local far = math.ceil(reads / near)

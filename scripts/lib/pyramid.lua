@@ -6,10 +6,12 @@ local fx = require "afterglow"
 
 local pyramid = {}
 
--- Width and height of the picture that is delivered, of which `source` is a preview.
+-- Width and height of the picture that is delivered, of which `source` is a preview; no side longer than images can be (1 line that stands for
+-- 1080 would be).
 function pyramid.delivered(g, source)
   if g.length_scale == 1 then return source.width, source.height end
-  return math.max(1, math.floor(source.width / g.length_scale + 0.5)), math.max(1, math.floor(source.height / g.length_scale + 0.5))
+  local function side(pixels) return math.min(math.max(1, math.floor(pixels / g.length_scale + 0.5)), 16384) end
+  return side(source.width), side(source.height)
 end
 
 -- `image` at another size: halved while that leaves at least as much, then the mean over what is left; bilinear where it grows.

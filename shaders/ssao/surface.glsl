@@ -31,7 +31,7 @@ vec3 slope(ivec2 at, ivec2 by, float z, vec3 here) {
 vec4 sample_at(ivec2 pixel) {
   ivec2 at = min(2 * pixel, image_size(depth) - 1);
   float z = distance_at(at);
-  vec3 n;
+  vec3 n = vec3(0.0);
   if (source_normals == 0) {
     vec3 here = place(at, z);
     n = cross(slope(at, ivec2(0, 1), z, here), slope(at, ivec2(1, 0), z, here));

@@ -200,6 +200,7 @@ std::vector<std::uint32_t> interleave_rows(const std::vector<std::uint32_t>& spi
   if (function == 0 || main == 0) return spirv;
   module = flatten(std::move(*module), function);
   if (!module) return spirv;
+  declare_bool_vectors(*module);
   Range range = range_of(*module, function);
   range.end = select_instead_of_branching(*module, range.begin, range.end);
   auto body = body_of(*module, range);
