@@ -94,16 +94,19 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options, Dia
                 open_chosen(instance.functions(), std::move(infos), devices, options, diagnostics));
   const PhysicalDevice& chosen = devices[opened.index];
 
+  // From here on the Device can let go of all of it, whatever fails.
   std::unique_ptr<Device> device(new Device);
   device->owned_ = true;
-  device->presentation_ = options.presentation;
-  device->forced_ = options.forced;
-  device->log_ = std::move(log);
   device->device_ = opened.handle;
-  device->stores_from_fragments_ = can_store_from_fragments(instance.functions(), chosen.handle);
   device->functions_ = instance.functions();
   device->instance_ = instance.release(device->messenger_);
+  AFTERGLOW_CHECK(device->functions_.load_device(opened.handle, chosen.info.api_version));
+
+  device->log_ = std::move(log);
+  device->presentation_ = options.presentation;
+  device->forced_ = options.forced;
   device->physical_ = chosen.handle;
+  device->stores_from_fragments_ = can_store_from_fragments(device->functions_, chosen.handle);
   device->queue_family_ = chosen.queue_family;
   device->info_ = chosen.info;
   AFTERGLOW_CHECK(device->finish());
@@ -140,6 +143,7 @@ Result<std::unique_ptr<Device>> Device::adopt(const AdoptedDevice& adopted, Diag
   device->queue_ = adopted.queue;
   device->queue_family_ = adopted.queue_family;
   device->info_ = described.info;
+  AFTERGLOW_CHECK(device->functions_.load_device(adopted.device, described.info.api_version));
   AFTERGLOW_CHECK(device->finish());
   diagnostics.note(fmt::format("device: {} ({}, adopted)", described.info.name, described.info.type));
   return device;
@@ -147,7 +151,6 @@ Result<std::unique_ptr<Device>> Device::adopt(const AdoptedDevice& adopted, Diag
 
 /// What created and adopted devices have in common.
 Result<void> Device::finish() {
-  AFTERGLOW_CHECK(functions_.load_device(device_, info_.api_version));
   if (owned_) functions_.vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
   // VK_EXT_debug_utils is enabled with validation, or by the caller whose instance it is.
   if (owned_ && messenger_ == VK_NULL_HANDLE) {
@@ -178,7 +181,7 @@ Result<void> Device::finish() {
 Device::~Device() {
   if (pipeline_cache_ != VK_NULL_HANDLE) functions_.vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
   if (!owned_) return;
-  functions_.vkDestroyDevice(device_, nullptr);
+  if (functions_.vkDestroyDevice) functions_.vkDestroyDevice(device_, nullptr);
   destroy_instance(functions_, instance_, messenger_);
 }
 
