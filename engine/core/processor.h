@@ -22,4 +22,14 @@ inline bool has_f16c() {
 #endif
 }
 
+/// For functions that are compiled for it (`__attribute__((target("avx2")))`).
+inline bool has_avx2() {
+#if defined(__x86_64__)
+  static const bool has = __builtin_cpu_supports("avx2");
+  return has;
+#else
+  return false;
+#endif
+}
+
 }  // namespace afterglow

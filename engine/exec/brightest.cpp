@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/half.h"
+#include "core/processor.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define AFTERGLOW_AVX2 1
@@ -39,11 +40,6 @@ void add_pixels(const float* from, std::size_t pixels, Range& range) {
 }
 
 #if AFTERGLOW_AVX2
-
-bool has_avx2() {
-  static const bool has = __builtin_cpu_supports("avx2");
-  return has;
-}
 
 /// The same, two pixels at a time, four in flight.
 __attribute__((target("avx2"))) void add_pixels_avx2(const float* from, std::size_t pixels, Range& range) {

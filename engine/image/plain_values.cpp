@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "core/processor.h"
 #include "image/picture.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -31,11 +32,6 @@ bool plain(const float* values, std::size_t count) {
 }
 
 #if AFTERGLOW_AVX2
-
-bool has_avx2() {
-  static const bool has = __builtin_cpu_supports("avx2");
-  return has;
-}
 
 /// The same of 8 values at a time; `count` is a multiple of 16.
 __attribute__((target("avx2"))) bool plain_avx2(const float* values, std::size_t count) {
