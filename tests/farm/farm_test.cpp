@@ -11,7 +11,7 @@
 namespace afterglow::test {
 
 bool wait_until(const std::function<bool()>& holds) {
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   while (std::chrono::steady_clock::now() < limit) {
     if (holds()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

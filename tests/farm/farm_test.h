@@ -11,7 +11,7 @@
 
 namespace afterglow::test {
 
-/// Looks every few milliseconds until it holds; false after two minutes.
+/// Looks every few milliseconds until it holds; false after a minute.
 bool wait_until(const std::function<bool()>& holds);
 
 class FarmTest : public CliTest {

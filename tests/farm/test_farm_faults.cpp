@@ -9,8 +9,8 @@
 namespace afterglow::test {
 namespace {
 
-/// So that a frame takes some 25 ms, and a chunk of many is caught at its work.
-constexpr int kWork = 60'000;
+/// So that a frame takes some 20 ms, and a chunk of many is caught at its work.
+constexpr int kWork = 30'000;
 
 class FarmFaults : public FarmTest {
  protected:
@@ -61,9 +61,9 @@ class FarmFaults : public FarmTest {
 
 TEST_F(FarmFaults, ANodeThatDiesLosesNothing) {
   AFTERGLOW_NEEDS_CLUSTER();
-  make_truth(100);
-  ASSERT_EQ(submit({"--chunk", "100"}).exit_code, kDone);
-  const std::string node = catch_a_chunk(100)["node"];
+  make_truth(160);
+  ASSERT_EQ(submit({"--chunk", "160"}).exit_code, kDone);
+  const std::string node = catch_a_chunk(160)["node"];
   cluster_->kill_node(node);
   // What slurmctld does itself when it has not heard of a node for SlurmdTimeout.
   ASSERT_EQ(slurm("scontrol", {"update", "nodename=" + node, "state=down", "reason=dead"}).exit_code, 0);
@@ -80,9 +80,9 @@ TEST_F(FarmFaults, ANodeThatDiesLosesNothing) {
 
 TEST_F(FarmFaults, AProcessThatIsKilledBeginsAgainWhereItWas) {
   AFTERGLOW_NEEDS_CLUSTER();
-  make_truth(100);
-  ASSERT_EQ(submit({"--chunk", "100"}).exit_code, kDone);
-  const auto caught = catch_a_chunk(100);
+  make_truth(160);
+  ASSERT_EQ(submit({"--chunk", "160"}).exit_code, kDone);
+  const auto caught = catch_a_chunk(160);
   ASSERT_EQ(kill(caught["process"].get<int>(), SIGKILL), 0);
   const auto there = times();
   const Outcome waited = farm({"status", "out", "--wait"});
@@ -91,15 +91,15 @@ TEST_F(FarmFaults, AProcessThatIsKilledBeginsAgainWhereItWas) {
   expect_untouched(there);
   expect_nothing_half_written("out");
   const auto report = report_of("out");
-  EXPECT_EQ(report["frames_done"], 100);
+  EXPECT_EQ(report["frames_done"], 160);
   EXPECT_THAT(read(fs::relative(job_of("out") / "logs" / "0.log", path("")).string()), HasSubstr("exit code 137 on n"));
 }
 
 TEST_F(FarmFaults, AnUrgentJobTakesTheNodesAndGivesThemBack) {
   AFTERGLOW_NEEDS_CLUSTER();
-  make_truth(100);
-  ASSERT_EQ(submit({"--chunk", "100", "--retries", "0"}).exit_code, kDone);
-  catch_a_chunk(100);
+  make_truth(160);
+  ASSERT_EQ(submit({"--chunk", "160", "--retries", "0"}).exit_code, kDone);
+  catch_a_chunk(160);
   ASSERT_EQ(slurm("sbatch", {"--partition=urgent", "--nodes=4", "--exclusive", "--output=/dev/null", "--wrap=true"})
                 .exit_code,
             0);
@@ -107,7 +107,7 @@ TEST_F(FarmFaults, AnUrgentJobTakesTheNodesAndGivesThemBack) {
     return !slurm("squeue", {"--noheader", "--states=PENDING", "--partition=farm"}).out.empty();
   }));
   const auto there = times();
-  EXPECT_LT(there.size(), 100u);
+  EXPECT_LT(there.size(), 160u);
   const Outcome waited = farm({"status", "out", "--wait"});
   EXPECT_EQ(waited.exit_code, kDone) << waited.err;
   expect_as_one_run("out", "one");
