@@ -71,9 +71,16 @@ install(FILES README.md CHANGELOG.md THIRD_PARTY.md DESTINATION ${doc} COMPONENT
 install(DIRECTORY docs examples DESTINATION ${doc} COMPONENT documents
   PATTERN "*.sh" EXCLUDE PATTERN "benchmarks/looks" EXCLUDE)
 
-# A changelog by Debian's rules, packed without a time.
+# A changelog by Debian's rules, of the commit's time and packed without one.
+if(NOT DEFINED ENV{SOURCE_DATE_EPOCH})
+  execute_process(COMMAND git -C ${PROJECT_SOURCE_DIR} log -1 --format=%ct OUTPUT_VARIABLE commit_time OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  if(NOT commit_time)
+    file(TIMESTAMP ${PROJECT_SOURCE_DIR}/CMakeLists.txt commit_time %s UTC)
+  endif()
+  set(ENV{SOURCE_DATE_EPOCH} ${commit_time})
+endif()
 set(changelog ${CMAKE_BINARY_DIR}/changelog.gz)
-string(TIMESTAMP release_date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # SOURCE_DATE_EPOCH where it is set
+string(TIMESTAMP release_date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 file(WRITE ${CMAKE_BINARY_DIR}/changelog
   "afterglow (${PROJECT_VERSION}) unstable; urgency=medium\n\n  * See CHANGELOG.md (afterglow-doc).\n\n -- ${CPACK_PACKAGE_CONTACT}  ${release_date}\n")
 execute_process(COMMAND gzip -9nc ${CMAKE_BINARY_DIR}/changelog OUTPUT_FILE ${changelog})
