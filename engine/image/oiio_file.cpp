@@ -12,6 +12,7 @@
 #include "core/saturated.h"
 #include "core/text.h"
 #include "image/icc_profile.h"
+#include "image/input_space.h"
 #include "image/oiio_metadata.h"
 
 namespace afterglow {
@@ -98,7 +99,7 @@ class OiioFile : public PictureFile {
     if (use_profile(spec, encoding, diagnostics)) return encoding;
     if (container_.kind == ContainerFacts::Kind::png) {
       use_png_chunks(encoding, diagnostics);
-    } else if (integer) {
+    } else if (integer && format_ != "pnm") {  // whose files say nothing: "Rec709" is the library's guess
       use_color_space(spec.get_string_attribute("oiio:ColorSpace"), encoding, diagnostics);
     }
     return encoding;
@@ -225,6 +226,8 @@ class OiioFile : public PictureFile {
     if (space.empty() || space == "srgb") return;
     if (space == "linear" || space == "lin_srgb" || space == "lin_rec709" || space == "scene_linear") {
       encoding.curve = TransferCurve::linear;
+    } else if (space == "kodaklog") {
+      use_input_space(*find_input_space("cineon").value(), encoding);
     } else if (space == "rec709") {
       encoding.curve = TransferCurve::rec709;
     } else if (space.starts_with("gamma")) {

@@ -83,7 +83,7 @@ TEST(InputSpace, UnknownNamesAreTold) {
   ASSERT_FALSE(found);
   EXPECT_EQ(
       found.error().text(),
-      "error: 'logc' is no input space; allowed: acescct, gamma22, gamma24, hlg, linear, logc3, logc4, pq, slog3, srgb; did "
+      "error: 'logc' is no input space; allowed: acescct, cineon, gamma22, gamma24, hlg, linear, logc3, logc4, pq, slog3, srgb; did "
       "you mean 'logc3'?");
 }
 
