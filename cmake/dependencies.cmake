@@ -23,3 +23,7 @@ find_package(OpenEXR REQUIRED)
 find_package(ZLIB REQUIRED)
 pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO)
 pkg_check_modules(LCMS2 REQUIRED IMPORTED_TARGET lcms2)
+# Videos: 5.1 (Debian 12) to 7.1 (Debian 13).
+if(AFTERGLOW_FFMPEG)
+  pkg_check_modules(FFMPEG REQUIRED IMPORTED_TARGET libavformat>=59.27 libavcodec>=59.37 libavutil>=57.28 libswscale>=6.7 zimg>=3.0.4)
+endif()
