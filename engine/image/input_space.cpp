@@ -66,6 +66,12 @@ double from_cineon(double v) {
   return (std::pow(10.0, (std::min(v, 8.0) * 1023 - 685) / 300) - black) / (1 - black);
 }
 
+// ITU-R BT.709-6: the curve of cameras, undone.
+double from_rec709(double v) {
+  const double a = std::abs(v);
+  return std::copysign(a < 0.081 ? a / 4.5 : std::pow((a + 0.099) / 1.099, 1 / 0.45), v);
+}
+
 double mirrored_power(double v, double exponent) { return std::copysign(std::pow(std::abs(v), exponent), v); }
 double from_gamma22(double v) { return mirrored_power(v, 2.2); }
 double from_gamma24(double v) { return mirrored_power(v, 2.4); }
@@ -81,6 +87,7 @@ constexpr std::array kSpaces{
     InputSpace{"logc3", "ARRI LogC3 at EI 800, ALEXA Wide Gamut 3", from_logc3, kWideGamut3},
     InputSpace{"logc4", "ARRI LogC4, ARRI Wide Gamut 4", from_logc4, kWideGamut4},
     InputSpace{"pq", "PQ (SMPTE ST 2084), Rec.2020; 203 cd/m² is 1", from_pq, kRec2020},
+    InputSpace{"rec709", "BT.709, the curve of cameras", from_rec709, kRec709},
     InputSpace{"slog3", "Sony S-Log3, S-Gamut3.Cine", from_slog3, kSGamut3Cine},
     InputSpace{"srgb", "sRGB (IEC 61966-2-1)", srgb_to_linear, kRec709},
 };

@@ -89,9 +89,9 @@ class OiioFile : public PictureFile {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(color.part)];
     ColorEncoding encoding;
     encoding.grey = color.channels[0] == color.channels[1];
-    if (color.channels[3] >= 0)
-      encoding.alpha =
-          spec.get_int_attribute("oiio:UnassociatedAlpha", 0) ? AlphaKind::straight : AlphaKind::associated;
+    // JPEG 2000 is left straight where that is asked for, without a word.
+    const bool straight = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || format_ == "jpeg2000";
+    if (color.channels[3] >= 0) encoding.alpha = straight ? AlphaKind::straight : AlphaKind::associated;
     const OIIO::TypeDesc type = sample_type(color);
     const bool integer = !type.is_floating_point();
     if (integer && type.size() <= 2) encoding.max_code = type.size() == 1 ? 255 : 65535;

@@ -19,12 +19,12 @@
 #include "image/output_metadata.h"
 #include "image/output_space.h"
 #include "image/strips.h"
+#include "image/write_webp.h"
 
 namespace afterglow {
 namespace {
 
 constexpr int kRows = 64;         // a strip
-constexpr int kWebpQuality = 90;  // as jpeg_quality stands for: hardly to be seen
 constexpr int kTiffZipLevel = 2;  // zlib; OpenImageIO takes 6, three times slower for a few per cent
 
 /// An OutputFile as OpenImageIO wants to see it.
@@ -106,12 +106,6 @@ Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& for
     case OutputKind::targa:
       spec.attribute("compression", compression.name.empty() ? "rle" : compression.name);
       break;
-    case OutputKind::webp:
-      spec.attribute("compression", compression.name.empty() ? "lossless" : compression.name);
-      if (compression.name == "lossy")
-        spec.attribute("CompressionQuality",
-                       compression.level < 0 ? kWebpQuality : static_cast<int>(std::min(compression.level, 100.0f)));
-      break;
     case OutputKind::jpeg:
       spec.attribute("CompressionQuality", std::clamp(options.jpeg_quality, 1, 100));
       spec.attribute("jpeg:subsampling", "4:4:4");
@@ -147,6 +141,15 @@ Result<void> read_back(const std::string& name) {
   return {};
 }
 
+/// Five halvings of the sides are what OpenImageIO asks OpenJPEG for.
+Result<void> check_jpeg2000(Size size) {
+  constexpr int kLeast = 32;
+  if (size.width >= kLeast && size.height >= kLeast) return {};
+  return Error{ErrorKind::io,
+               fmt::format("cannot be written: JPEG 2000 files have sides of at least {} pixels, not {}x{}", kLeast,
+                           size.width, size.height)};
+}
+
 /// Writes to `name`, or to `proxy` where there is one.
 Result<void> write_rows(const Picture& picture, const OutputFormat& format, const std::string& name, OiioOutput* proxy,
                         const WriteOptions& options) {
@@ -163,8 +166,20 @@ Result<void> write_rows(const Picture& picture, const OutputFormat& format, cons
     widen(form.type, strip.data(), form.row_bytes(picture) * static_cast<std::size_t>(rows) / form.sample_bytes());
     if (!output->write_scanlines(y, y + rows, 0, oiio_type(form.type), strip.data())) return library_failed(*output);
   }
-  if (!output->close()) return library_failed(*output);
+  const bool closed = output->close();
+  // A JPEG 2000 that fails here returns true; a TIFF that is well says that Exif data failed.
+  if (!closed || (format.kind == OutputKind::jpeg2000 && output->has_error())) return library_failed(*output);
   return {};
+}
+
+/// Lossless, or with the quality of "lossy:N".
+Result<void> write_webp(const Picture& picture, const OutputFormat& format, OutputFile& out,
+                        const WriteOptions& options) {
+  constexpr float kQuality = 90;
+  AFTERGLOW_TRY(const Compression compression, parse_compression(options.compression));
+  std::optional<float> quality;
+  if (compression.name == "lossy") quality = compression.level < 0 ? kQuality : std::min(compression.level, 100.0f);
+  return write_webp(picture, strip_form(picture, format, options), out, quality);
 }
 
 /// libtiff opens its file itself: OpenImageIO 2.4 cannot look back at a TIFF that goes through a proxy, and then
@@ -183,6 +198,8 @@ Result<void> write_with_oiio(const Picture& picture, const OutputFormat& format,
                              const std::string& name, const WriteOptions& options) {
   try {
     if (format.kind == OutputKind::tiff) return write_through_memory(picture, format, out, options);
+    if (format.kind == OutputKind::webp) return write_webp(picture, format, out, options);
+    if (format.kind == OutputKind::jpeg2000) AFTERGLOW_CHECK(check_jpeg2000(picture.display_window.size()));
     OiioOutput proxy(out, name);
     return write_rows(picture, format, name, &proxy, options);
   } catch (const std::exception& error) {

