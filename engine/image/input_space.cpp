@@ -66,10 +66,11 @@ double from_cineon(double v) {
   return (std::pow(10.0, (std::min(v, 8.0) * 1023 - 685) / 300) - black) / (1 - black);
 }
 
-// ITU-R BT.709-6: the curve of cameras, undone.
+// ITU-R BT.709-6: the curve of cameras, undone; with the digits of BT.2020, so that its two pieces meet.
 double from_rec709(double v) {
+  constexpr double kAlpha = 1.09929682680944, kBeta = 0.018053968510807;
   const double a = std::abs(v);
-  return std::copysign(a < 0.081 ? a / 4.5 : std::pow((a + 0.099) / 1.099, 1 / 0.45), v);
+  return std::copysign(a < 4.5 * kBeta ? a / 4.5 : std::pow((a + kAlpha - 1) / kAlpha, 1 / 0.45), v);
 }
 
 double mirrored_power(double v, double exponent) { return std::copysign(std::pow(std::abs(v), exponent), v); }
