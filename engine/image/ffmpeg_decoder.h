@@ -18,6 +18,7 @@ class FfmpegDecoder {
   /// Decoded frames of up to `cache_bytes` are kept: going backwards decodes each group of pictures once.
   FfmpegDecoder(FfmpegPackets packets, const MovieIndex& index, std::uint64_t cache_bytes);
 
+  FfmpegInput& input() { return packets_.input(); }
   /// Errors: io (damaged, built on what is damaged).
   Result<FrameHandle> frame(int number);
   /// The order in which frames come out of a decode from the beginning, as packets: for streams without time stamps.

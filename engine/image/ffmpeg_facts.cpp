@@ -79,8 +79,9 @@ void use_aspect(FfmpegInput& input, const AVFrame& first, MovieFacts& facts) {
   }
   facts.pixel_aspect = rational(aspect);
   facts.size = square_pixels(facts.stored, aspect);
-  facts.notes.push_back(fmt::format("its pixels are {}:{}; {}x{} is scaled to {}x{} square ones", aspect.num, aspect.den,
-                                    facts.stored.width, facts.stored.height, facts.size.width, facts.size.height));
+  facts.notes.push_back(fmt::format("its pixels are {}:{}; {}x{} is scaled to {}x{} square ones", aspect.num,
+                                    aspect.den, facts.stored.width, facts.stored.height, facts.size.width,
+                                    facts.size.height));
 }
 
 MovieColor color_of(const AVFrame& frame, AVCodecID codec) {

@@ -14,10 +14,10 @@ namespace afterglow {
 struct MoviePacket {
   std::int64_t pts = 0, dts = 0, pos = 0;
   int size = 0;
-  bool key = false;      ///< decoding can begin here
-  bool exact = false;    ///< and what follows is right from here on; else from the next key packet on
-  bool shown = true;     ///< it makes a frame that shows
-  bool damaged = false;  ///< the file itself says so, or ends in it
+  bool key = false;       ///< decoding can begin here
+  bool exact = false;     ///< and what follows is right from here on; else from the next key packet on
+  bool shown = true;      ///< it makes a frame that shows
+  bool damaged = false;   ///< the file itself says so, or ends in it
   bool needless = false;  ///< no other frame is made of it
 };
 

@@ -25,8 +25,11 @@ class FfmpegMovie : public MovieSource {
     request_ = request;
     AFTERGLOW_TRY(auto input, reopen(request));
     AFTERGLOW_TRY(index_, index_movie(*input));
-    if (needs_order()) AFTERGLOW_CHECK(order_frames(std::move(input)));
-    else begin(std::move(input));
+    if (needs_order()) {
+      AFTERGLOW_CHECK(order_frames(std::move(input)));
+    } else {
+      begin(std::move(input));
+    }
     return look_at_first();
   }
 
@@ -57,8 +60,7 @@ class FfmpegMovie : public MovieSource {
 
   /// Raw streams and AVI say when packets are decoded and not when frames show.
   bool needs_order() const {
-    return std::ranges::any_of(index_.packets,
-                               [](const MoviePacket& p) { return p.shown && p.pts == AV_NOPTS_VALUE; });
+    return std::ranges::any_of(index_.packets, [](const MoviePacket& p) { return p.shown && p.pts == AV_NOPTS_VALUE; });
   }
 
   Result<void> order_frames(std::unique_ptr<FfmpegInput> input) {
@@ -112,9 +114,11 @@ class FfmpegMovie : public MovieSource {
       facts_.pts = index_.pts;
       facts_.missing = index_.missing;
       fill_in(facts_);
-      AFTERGLOW_CHECK(check_sides({0, 0, facts_.size.width, facts_.size.height}, "frame", request_.limits, request_.file));
+      AFTERGLOW_CHECK(
+          check_sides({0, 0, facts_.size.width, facts_.size.height}, "frame", request_.limits, request_.file));
       if (is_readable_format(static_cast<AVPixelFormat>((*first)->format))) return {};
-      return Error{ErrorKind::io, fmt::format("is a video of a pixel format that is not read ({})", facts_.pixel_format),
+      return Error{ErrorKind::io,
+                   fmt::format("is a video of a pixel format that is not read ({})", facts_.pixel_format),
                    request_.file.string()};
     }
     return Error{ErrorKind::io, "is a video without a frame that can be decoded: the first " + why.message,

@@ -99,8 +99,7 @@ Result<void> FfmpegPackets::seek(int packet) {
 
 Result<void> FfmpegPackets::read(AVPacket& packet) {
   const MoviePacket& expected = index_.packets[static_cast<std::size_t>(next_)];
-  if (!take(packet) || packet.size != expected.size)
-    return Error{ErrorKind::io, "changed while it was read"};
+  if (!take(packet) || packet.size != expected.size) return Error{ErrorKind::io, "changed while it was read"};
   packet.pts = packet.dts = next_;
   ++next_;
   return {};

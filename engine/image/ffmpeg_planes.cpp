@@ -17,7 +17,7 @@ extern "C" {
 #include <vector>
 
 namespace afterglow {
-namespace {
+namespace to_rgb {  // a type of the header has these in it
 
 constexpr std::size_t kAlign = 64;  // of zimg's rows and planes
 
@@ -25,10 +25,11 @@ struct AlignedDelete {
   void operator()(std::byte* bytes) const { ::operator delete[](bytes, std::align_val_t{kAlign}); }
 };
 using AlignedBytes = std::unique_ptr<std::byte[], AlignedDelete>;
-AlignedBytes aligned_bytes(std::size_t size) {
-  return AlignedBytes(static_cast<std::byte*>(::operator new[](std::max<std::size_t>(size, 1), std::align_val_t{kAlign})));
+static AlignedBytes aligned_bytes(std::size_t size) {
+  return AlignedBytes(
+      static_cast<std::byte*>(::operator new[](std::max<std::size_t>(size, 1), std::align_val_t{kAlign})));
 }
-std::size_t aligned(std::size_t size) { return (size + kAlign - 1) / kAlign * kAlign; }
+static std::size_t aligned(std::size_t size) { return (size + kAlign - 1) / kAlign * kAlign; }
 
 /// How samples lie once they are planes of their own.
 struct Layout {
@@ -41,11 +42,15 @@ struct Layout {
   int colors() const { return grey ? 1 : 3; }
   int planes() const { return colors() + (alpha ? 1 : 0); }
   /// zimg takes whole samples of chroma alone: sides are rounded up, and what is not there is not looked at.
-  int even_width(int width) const { return rgb || grey ? width : -(-width >> format->log2_chroma_w) << format->log2_chroma_w; }
-  int even_height(int height) const { return rgb || grey ? height : -(-height >> format->log2_chroma_h) << format->log2_chroma_h; }
+  int even_width(int width) const {
+    return rgb || grey ? width : -(-width >> format->log2_chroma_w) << format->log2_chroma_w;
+  }
+  int even_height(int height) const {
+    return rgb || grey ? height : -(-height >> format->log2_chroma_h) << format->log2_chroma_h;
+  }
 };
 
-bool planes_will_do(const AVPixFmtDescriptor& format) {
+static bool planes_will_do(const AVPixFmtDescriptor& format) {
   if ((format.flags & (AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_BITSTREAM)) != 0) return false;
   if ((format.flags & AV_PIX_FMT_FLAG_BE) != 0 && format.comp[0].depth > 8) return false;
   for (int i = 0; i < format.nb_components; ++i) {
@@ -58,7 +63,7 @@ bool planes_will_do(const AVPixFmtDescriptor& format) {
   return true;
 }
 
-bool layout_of(AVPixelFormat pixels, Layout& out) {
+static bool layout_of(AVPixelFormat pixels, Layout& out) {
   const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(pixels);
   constexpr std::uint64_t kNot = AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_BAYER;
   if (!format || (format->flags & kNot) != 0 || std::strncmp(format->name, "xyz", 3) == 0) return false;
@@ -86,14 +91,14 @@ struct GraphDelete {
 };
 using Graph = std::unique_ptr<zimg_filter_graph, GraphDelete>;
 
-zimg_chroma_location_e place_of_chroma(int location) {
+static zimg_chroma_location_e place_of_chroma(int location) {
   return location > AVCHROMA_LOC_UNSPECIFIED && location <= AVCHROMA_LOC_BOTTOM
              ? static_cast<zimg_chroma_location_e>(location - 1)
              : ZIMG_CHROMA_LEFT;
 }
 
 /// Colour, or alpha alone as a grey picture of full range.
-Result<Graph> make_graph(const FramePlanes& planes, const Layout& layout, bool alpha) {
+static Result<Graph> make_graph(const FramePlanes& planes, const Layout& layout, bool alpha) {
   zimg_image_format from, to;
   zimg_image_format_default(&from, ZIMG_API_VERSION);
   zimg_image_format_default(&to, ZIMG_API_VERSION);
@@ -113,8 +118,7 @@ Result<Graph> make_graph(const FramePlanes& planes, const Layout& layout, bool a
   to.pixel_range = ZIMG_RANGE_FULL;
   if (!grey) {
     to.matrix_coefficients = ZIMG_MATRIX_RGB;
-    from.matrix_coefficients =
-        layout.rgb ? ZIMG_MATRIX_RGB : static_cast<zimg_matrix_coefficients_e>(planes.matrix);
+    from.matrix_coefficients = layout.rgb ? ZIMG_MATRIX_RGB : static_cast<zimg_matrix_coefficients_e>(planes.matrix);
     from.transfer_characteristics = to.transfer_characteristics =
         static_cast<zimg_transfer_characteristics_e>(planes.transfer);
     from.color_primaries = to.color_primaries = static_cast<zimg_color_primaries_e>(planes.primaries);
@@ -133,7 +137,8 @@ Result<Graph> make_graph(const FramePlanes& planes, const Layout& layout, bool a
   if (graph) return graph;
   std::array<char, 256> why{};
   zimg_get_last_error(why.data(), why.size());
-  return Error{ErrorKind::io, fmt::format("is of a kind that cannot be made RGB ({}: {})", layout.format->name, why.data())};
+  return Error{ErrorKind::io,
+               fmt::format("is of a kind that cannot be made RGB ({}: {})", layout.format->name, why.data())};
 }
 
 /// The frame's samples as planes that zimg takes: its own, or copies.
@@ -164,7 +169,8 @@ class Planes {
     return (layout.format->flags & AV_PIX_FMT_FLAG_PAL) != 0 ? 3 : layout.format->nb_components - 1;
   }
 
-  void copy(const AVFrame& frame, const Layout& layout, int plane, int component, const Size& there, const Size& wanted) {
+  void copy(const AVFrame& frame, const Layout& layout, int plane, int component, const Size& there,
+            const Size& wanted) {
     const int width = there.width;
     const std::size_t row = aligned(static_cast<std::size_t>(wanted.width) * static_cast<std::size_t>(layout.bytes));
     const std::size_t size = row * static_cast<std::size_t>(wanted.height);
@@ -225,7 +231,7 @@ struct Spread {
   }
 };
 
-Result<void> process(const zimg_filter_graph& graph, const Planes& planes, int first_plane, int count, const Size& size,
+static Result<void> process(const zimg_filter_graph& graph, const Planes& planes, int first_plane, int count, const Size& size,
                      Spread spread) {
   std::size_t scratch = 0;
   unsigned lines = 0;
@@ -252,7 +258,9 @@ Result<void> process(const zimg_filter_graph& graph, const Planes& planes, int f
   return Error{ErrorKind::io, fmt::format("cannot be made RGB ({})", why.data())};
 }
 
-}  // namespace
+}  // namespace to_rgb
+
+using namespace to_rgb;
 
 struct FfmpegPlanes::Graphs {
   FramePlanes planes;

@@ -15,12 +15,12 @@ namespace afterglow {
 /// What of a frame's samples is told nowhere is filled in.
 struct FramePlanes {
   AVPixelFormat format = AV_PIX_FMT_NONE;
-  Size stored, wanted;    ///< `wanted`: scaled to, for pixels that are not square
-  int matrix = 1;         ///< of H.273
-  int transfer = 1;       ///< of H.273; for matrices that depend on it
-  int primaries = 1;      ///< the same
+  Size stored, wanted;  ///< `wanted`: scaled to, for pixels that are not square
+  int matrix = 1;       ///< of H.273
+  int transfer = 1;     ///< of H.273; for matrices that depend on it
+  int primaries = 1;    ///< the same
   bool full_range = false;
-  int chroma_place = 1;   ///< AVChromaLocation
+  int chroma_place = 1;  ///< AVChromaLocation
   bool operator==(const FramePlanes&) const = default;
 };
 

@@ -37,7 +37,8 @@ class MovieFrameFile : public PictureFile {
     const std::size_t row = static_cast<std::size_t>(size.width) * 4;
     // What the reader asks for as a rule: all channels of RGBA at once.
     const bool together = !targets.empty() && std::ranges::all_of(targets, [&](const ReadTarget& target) {
-      return target.pixel_stride == 4 && target.row_stride == row && target.base - target.channel == targets[0].base - targets[0].channel;
+      return target.pixel_stride == 4 && target.row_stride == row &&
+             target.base - target.channel == targets[0].base - targets[0].channel;
     });
     if (together && targets[0].channel == 0 && targets.size() == parts_.front().channels.size())
       return read_into(targets[0].base, row);
@@ -46,8 +47,8 @@ class MovieFrameFile : public PictureFile {
     for (const ReadTarget& target : targets)
       for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x)
-          target.base[static_cast<std::size_t>(y) * target.row_stride + static_cast<std::size_t>(x) * target.pixel_stride] =
-              whole.at(x, y)[target.channel];
+          target.base[static_cast<std::size_t>(y) * target.row_stride +
+                      static_cast<std::size_t>(x) * target.pixel_stride] = whole.at(x, y)[target.channel];
     return {};
   }
 
@@ -100,9 +101,9 @@ void tell(const Movie& movie, Diagnostics& diagnostics) {
     diagnostics.warn(fmt::format("{}: asks to be turned by {:.4g} degrees, which is not done", name, facts.turned));
   if (facts.missing > 0) {
     const std::size_t whole = facts.pts.size() - facts.missing;
-    diagnostics.warn(facts.missing == 1
-                         ? fmt::format("{}: is truncated: it ends after frame {}", name, whole)
-                         : fmt::format("{}: is truncated: frames {}-{} are missing", name, whole + 1, facts.pts.size()));
+    diagnostics.warn(facts.missing == 1 ? fmt::format("{}: is truncated: it ends after frame {}", name, whole)
+                                        : fmt::format("{}: is truncated: frames {}-{} are missing", name, whole + 1,
+                                                      facts.pts.size()));
   }
 }
 

@@ -17,7 +17,8 @@ namespace afterglow {
 class Movie {
  public:
   /// Reads the file once, for an index of its frames. Notes what is assumed where it says nothing, warns of what is
-  /// damaged or missing. Errors: io (no video that can be read, with what can be done about it; sides beyond the limits).
+  /// damaged or missing. Errors: io (no video that can be read, with what can be done about it; sides beyond the
+  /// limits).
   static Result<std::shared_ptr<Movie>> open(const std::filesystem::path& file, const SizeLimits& limits,
                                              Diagnostics& diagnostics);
 

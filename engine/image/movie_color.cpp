@@ -110,7 +110,8 @@ void fill_in(MovieFacts& facts) {
   const bool srgb = color.rgb || color.picture;
   const auto take = [&](int& code, bool known, int value, const char* what) {
     if (known) return;
-    if (code != kUnsaid && code != 0 && code != 3) facts.notes.push_back(fmt::format("its {} {} is not known", what, code));
+    if (code != kUnsaid && code != 0 && code != 3)
+      facts.notes.push_back(fmt::format("its {} {} is not known", what, code));
     code = value;
     taken.emplace_back(what);
   };
@@ -123,7 +124,9 @@ void fill_in(MovieFacts& facts) {
   take(color.transfer, is_known_transfer(color.transfer), srgb ? 13 : 1, "transfer");
   if (!taken.empty())
     facts.notes.push_back(fmt::format("does not say its {}; {} is taken", join(taken, ", "),
-                                      srgb ? "sRGB" : small ? "BT.601, as of standard definition," : "BT.709"));
+                                      srgb    ? "sRGB"
+                                      : small ? "BT.601, as of standard definition,"
+                                              : "BT.709"));
 }
 
 ColorEncoding movie_encoding(const MovieFacts& facts) {

@@ -99,8 +99,8 @@ bool png_moves(std::ifstream& in) {
   ByteReader bytes(in);
   while (bytes) {
     const std::uint32_t size = bytes.big(), kind = bytes.big();
-    if (!bytes || kind == 0x49444154) return false;         // IDAT
-    if (kind == 0x6163544c) return bytes.big() > 1;          // acTL
+    if (!bytes || kind == 0x49444154) return false;  // IDAT
+    if (kind == 0x6163544c) return bytes.big() > 1;  // acTL
     bytes.skip(static_cast<std::streamoff>(size) + 4);
   }
   return false;
