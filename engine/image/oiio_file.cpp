@@ -46,16 +46,11 @@ class OiioFile : public PictureFile {
       AFTERGLOW_CHECK(open_input(format));
       format_ = input_->format_name();
       AFTERGLOW_CHECK(add_parts(limits));
-      if (specs_.front().get_int_attribute("oiio:Movie", 0) != 0) note_movie(specs_.front());
     } catch (const std::exception& error) {
       return failed("cannot be read: " + exception_text(error));
     }
     return {};
   }
-
-  int frames() const override { return frames_; }
-  double frames_per_second() const override { return frames_per_second_; }
-  void select_frame(int frame) override { frame_ = frame; }
 
   std::uint64_t buffer_bytes(int part) const override {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
@@ -161,13 +156,6 @@ class OiioFile : public PictureFile {
     return {};
   }
 
-  void note_movie(const OIIO::ImageSpec& spec) {
-    frames_ = spec.get_int_attribute("oiio:subimages", 0);
-    int rate[2] = {0, 1};
-    if (spec.getattribute("FramesPerSecond", OIIO::TypeRational, rate) && rate[1] != 0)
-      frames_per_second_ = static_cast<double>(rate[0]) / rate[1];
-  }
-
   OIIO::TypeDesc sample_type(const ChannelChoice& color) const {
     return specs_[static_cast<std::size_t>(color.part)].channelformat(color.channels[0]);
   }
@@ -179,7 +167,7 @@ class OiioFile : public PictureFile {
     // Looking for further pages of a TIFF leaves its reader in a state in which it keeps silent when a disk fails.
     if (format_ == "tiff" && !std::exchange(opened_for_pixels_, true)) AFTERGLOW_CHECK(open_input(format_));
     static_cast<void>(input_->geterror());  // of earlier calls that succeeded another way
-    const bool read = input_->read_image(part + frame_, 0, first.channel, first.channel + channels, OIIO::TypeFloat,
+    const bool read = input_->read_image(part, 0, first.channel, first.channel + channels, OIIO::TypeFloat,
                                          first.base, x_stride, y_stride, y_stride * spec.height);
     // OpenImageIO 2.4 returns true, and black, for strips of a TIFF that are damaged or missing; but it says so.
     const std::string why = input_->geterror();
@@ -244,8 +232,6 @@ class OiioFile : public PictureFile {
   OIIO::ImageInput::unique_ptr input_;
   bool opened_for_pixels_ = false;
   std::vector<OIIO::ImageSpec> specs_;
-  int frames_ = 0, frame_ = 0;  ///< of a video; its frames are sub-images of one part
-  double frames_per_second_ = 0;
 };
 
 }  // namespace
