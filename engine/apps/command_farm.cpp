@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <numeric>
 
 #include "apps/command.h"
 #include "apps/farm_arguments.h"
@@ -13,19 +12,11 @@
 #include "apps/output.h"
 #include "core/file.h"
 #include "core/text.h"
-#include "farm/jobs_file.h"
-#include "farm/process.h"
-#include "farm/report.h"
 #include "farm/slurm.h"
+#include "farm/status.h"
 
 namespace afterglow {
 namespace {
-
-std::vector<std::size_t> every_chunk(const farm::Job& job) {
-  std::vector<std::size_t> out(job.chunks.size());
-  std::iota(out.begin(), out.end(), 0);
-  return out;
-}
 
 Result<void> report_on(const farm::Job& job, const FarmArguments& a) {
   AFTERGLOW_TRY(const auto status, farm::status_of(job));
@@ -50,28 +41,20 @@ void tell_submission(const farm::Job& job, const farm::Submissions& submitted, s
   output("{}\nslurm {}: {} chunks\n", job.folder.string(), join(ids), chunks);
 }
 
-Result<void> print_plan(const farm::Job& job) {
-  const auto most = farm::largest_array();
-  const std::size_t size = most ? *most : job.chunks.size();
-  output("# {} frames in {} chunks{}\n", job.frames(), job.chunks.size(),
-         job.pre_roll ? fmt::format(", each behind {} frames of pre-roll", *job.pre_roll) : "");
-  for (const auto& plan : farm::array_plans(every_chunk(job), size))
-    output("{}\n", farm::shell_line(farm::sbatch_words(job, plan)));
-  output("\n# {}\n{}", (job.folder / "task.sh").string(), farm::task_script(job));
-  return {};
-}
-
 Result<void> run_submit(const FarmArguments& a, Console& console) {
   AFTERGLOW_TRY(const PlannedJob planned, plan_job(a, !a.dry_run, console));
   const farm::Job& job = planned.job;
-  if (a.dry_run) return print_plan(job);
+  if (a.dry_run) {
+    output("{}", farm::plan_text(job));
+    return {};
+  }
   if (!a.jobs.empty()) {
     AFTERGLOW_TRY(const std::string text, farm::jobs_text(job, planned.files, planned.frames));
     AFTERGLOW_CHECK(write_file_atomically(a.jobs, text));
     output("{}\n{}: {} chunks\n", job.folder.string(), a.jobs, job.chunks.size());
     return {};
   }
-  auto submitted = farm::submit(job, every_chunk(job));
+  auto submitted = farm::submit(job, farm::every_chunk(job));
   if (!submitted) {
     if (!is_file(job.folder / "slurm.json")) farm::discard_job(job);
     return std::move(submitted).error();

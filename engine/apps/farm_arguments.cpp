@@ -31,7 +31,7 @@ bool is_one_of(const std::string& name, const auto& names) {
   return std::ranges::any_of(names, [&](const char* one) { return name == one; });
 }
 
-/// "lut.file=/luts/film.cube" with the packed file where the value names one.
+/// "grade.file=/tables/film.cube" with the packed file where the value names one.
 std::string packed_override(const std::string& text, const fs::path& folder) {
   const std::size_t at = text.find('=');
   std::error_code ec;

@@ -65,6 +65,17 @@ Json begun_json(std::size_t chunk, int number) {
               {"began", seconds_now()}};
 }
 
+/// What a try that never ended has left half-written beside the outputs.
+void clean_up_after(const Job& job, const AttemptFile& attempt) {
+  const auto text = read_file(attempt.path);
+  const Json json = text ? Json::parse(*text, nullptr, false) : Json();
+  if (!json.is_object() || !json.contains("temporaries") || !json["temporaries"].is_string()) return;
+  const auto mark = json["temporaries"].get<std::string>();
+  const fs::path outputs = job.folder.parent_path().parent_path();
+  if (!mark.empty())
+    for (const fs::path& folder : {outputs, outputs / ".afterglow"}) remove_temporaries_of(mark, folder);
+}
+
 }  // namespace
 
 std::string node_name() {
@@ -97,8 +108,11 @@ Result<Attempt> Attempt::begin(const Job& job, std::size_t chunk) {
   Attempt out;
   out.chunk_ = chunk;
   AFTERGLOW_TRY(const auto before, attempts_of(job));
-  for (const auto& one : before)
-    if (one.chunk == chunk) out.number_ = one.number + 1;
+  for (const auto& one : before) {
+    if (one.chunk != chunk) continue;
+    out.number_ = one.number + 1;
+    if (!one.exit_code) clean_up_after(job, one);
+  }
   for (;; ++out.number_) {
     out.begun_ = attempt_path(folder, chunk, out.number_, kBegun);
     const fs::path temporary = temporary_beside(out.begun_);

@@ -32,7 +32,8 @@ Result<std::vector<AttemptFile>> attempts_of(const Job& job);
 /// A try on this machine.
 class Attempt {
  public:
-  /// Takes the chunk's next number, whoever else does so at the same time. Errors: io.
+  /// Takes the chunk's next number, whoever else does so at the same time. What earlier tries that were killed have
+  /// left half-written goes. Errors: io.
   static Result<Attempt> begin(const Job& job, std::size_t chunk);
   /// `report` is what report_json made. A disk that is full takes the exit code all the same. Errors: io.
   Result<void> end(int exit_code, const std::string& error, const std::string& report) const;

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "core/file.h"
 #include "core/hash.h"
@@ -76,6 +77,8 @@ Job job_of_json(const Json& json) {
   if (!json.at("pre_roll").is_null()) job.pre_roll = json.at("pre_roll").get<int>();
   job.needs = needs_of(json.at("needs"));
   for (const auto& chunk : json.at("chunks")) job.chunks.push_back(chunk_of(chunk));
+  for (const auto& chunk : job.chunks)
+    if (chunk.count < 1) throw std::invalid_argument("a chunk without frames");
   return job;
 }
 
@@ -193,7 +196,7 @@ Result<Job> read_job(const fs::path& folder) {
     std::error_code ec;
     job.folder = fs::absolute(folder, ec).lexically_normal();
     return job;
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const std::exception& error) {
     return not_a_job(file, error.what());
   }
 }

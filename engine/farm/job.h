@@ -74,6 +74,10 @@ Result<Job> read_job(const std::filesystem::path& folder);
 /// The job that is meant: its folder, its ID with the outputs in this folder, or a folder of outputs, whose latest job
 /// it is. Errors: io.
 Result<Job> find_job(const std::string& given);
+/// The job for schedulers that Afterglow does not speak to: its chunks with their commands, needs and outputs, as JSON.
+/// `frames` are those of the job, in the order of the chunks. Errors: usage (a name that is no UTF-8).
+Result<std::string> jobs_text(const Job& job, const FrameListRequest& request, const std::vector<FrameJob>& frames);
+
 /// Removes a job that nobody has begun.
 void discard_job(const Job& job);
 /// Are the packed files what they were? Errors: io, naming the first that is not.

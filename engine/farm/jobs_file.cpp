@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "farm/jobs_file.h"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 
+#include "farm/job.h"
 #include "farm/process.h"
 
 namespace afterglow::farm {

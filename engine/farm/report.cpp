@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "farm/report.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include "core/text.h"
 #include "core/version.h"
 #include "farm/attempt.h"
+#include "farm/status.h"
 
 namespace afterglow::farm {
 namespace {

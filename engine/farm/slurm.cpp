@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 
 #include "core/file.h"
@@ -188,6 +189,21 @@ std::vector<std::string> sbatch_words(const Job& job, const ArrayPlan& plan) {
   words.push_back((job.folder / "task.sh").string());
   words.push_back(fmt::format("{}", plan.base));
   return words;
+}
+
+std::vector<std::size_t> every_chunk(const Job& job) {
+  std::vector<std::size_t> out(job.chunks.size());
+  std::iota(out.begin(), out.end(), 0);
+  return out;
+}
+
+std::string plan_text(const Job& job) {
+  const auto most = largest_array();
+  std::string out = fmt::format("# {} frames in {} chunks{}\n", job.frames(), job.chunks.size(),
+                                job.pre_roll ? fmt::format(", each behind {} frames of pre-roll", *job.pre_roll) : "");
+  for (const auto& plan : array_plans(every_chunk(job), most ? *most : job.chunks.size()))
+    out += shell_line(sbatch_words(job, plan)) + "\n";
+  return out + fmt::format("\n# {}\n{}", (job.folder / "task.sh").string(), task_script(job));
 }
 
 Result<std::size_t> largest_array() {

@@ -40,6 +40,12 @@ std::vector<ArrayPlan> array_plans(const std::vector<std::size_t>& chunks, std::
 /// The words that submit it.
 std::vector<std::string> sbatch_words(const Job& job, const ArrayPlan& plan);
 
+/// How the job would be submitted, and the script: what --dry-run prints. Asks Slurm how large arrays may be, where it
+/// is there.
+std::string plan_text(const Job& job);
+/// The chunks of a job by number.
+std::vector<std::size_t> every_chunk(const Job& job);
+
 /// MaxArraySize of the cluster. Errors: io (Slurm is not there, or does not answer).
 Result<std::size_t> largest_array();
 /// Submits the chunks and takes down each array as it is accepted. Where one is refused, those before it are cancelled.

@@ -50,4 +50,13 @@ std::string status_line(const JobStatus& status);
 /// What a program that waited for the job ends with: nothing when all is done, else an error that says how much is not.
 Result<void> outcome_of(const Job& job, const JobStatus& status);
 
+/// The reports of all chunks as one: of every frame what its last try says, with the times of the try that made it;
+/// sums by node and device.
+struct MergedReport {
+  std::string text;  ///< for people
+  std::string json;
+};
+/// Errors: io. A report that cannot be read is left out and said so.
+Result<MergedReport> merged_report(const Job& job, const JobStatus& status);
+
 }  // namespace afterglow::farm

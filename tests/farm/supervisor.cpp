@@ -16,7 +16,8 @@ namespace afterglow::test {
 namespace {
 
 [[noreturn]] void become_program(const std::vector<std::string>& words) {
-  signal(SIGCHLD, SIG_DFL);
+  for (const int changed : {SIGCHLD, SIGINT, SIGTERM, SIGHUP}) signal(changed, SIG_DFL);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int nothing = open("/dev/null", O_RDWR);
   for (const int stream : {0, 1, 2}) dup2(nothing, stream);
   std::vector<char*> arguments;

@@ -4,7 +4,6 @@
 #include <fstream>
 
 #include "farm/attempt.h"
-#include "farm/jobs_file.h"
 #include "farm/process.h"
 #include "farm/slurm.h"
 #include "farm/status.h"
@@ -120,6 +119,30 @@ TEST_F(FarmFiles, WhatWasPackedMustStayAsItIs) {
   EXPECT_EQ(outcome.exit_code, kFiles);
   EXPECT_THAT(outcome.err, HasSubstr("look.lua: error: has changed since the job was submitted; submit it again"));
   EXPECT_THAT(farm({"status", "out"}).out, HasSubstr("1 failed"));
+}
+
+TEST_F(FarmFiles, WhatAMachineThatDiedHasLeftGoes) {
+  ASSERT_EQ(write_jobs({"--chunk", "5"}).exit_code, kDone);
+  const auto jobs = nlohmann::json::parse(read("jobs.json"));
+  const auto job = farm::read_job(job_of("out"));
+  ASSERT_TRUE(job);
+  // Tries on another machine: nobody here knows its processes.
+  write(fs::relative(job->folder / "attempts" / "0.1.begun", path("")).string(), R"({"temporaries": "0badcafe-77"})");
+  write("out/.shot.0002.0badcafe-77-3.tmp.exr", "half");
+  write("out/.afterglow/.shot.0002.exr.0badcafe-77-4.tmp.made", "half");
+  write("out/.shot.0002.0badcafe-771-3.tmp.exr", "somebody else's");
+  EXPECT_EQ(run_line(jobs["chunks"][1]).exit_code, kDone);
+  EXPECT_TRUE(fs::exists(path("out/.shot.0002.0badcafe-77-3.tmp.exr"))) << "another chunk's";
+  const Outcome made = run_line(jobs["chunks"][0]);
+  EXPECT_EQ(made.exit_code, kDone) << made.err;
+  EXPECT_FALSE(fs::exists(path("out/.shot.0002.0badcafe-77-3.tmp.exr")));
+  EXPECT_FALSE(fs::exists(path("out/.afterglow/.shot.0002.exr.0badcafe-77-4.tmp.made")));
+  EXPECT_TRUE(fs::exists(path("out/.shot.0002.0badcafe-771-3.tmp.exr")));
+  const auto tries = farm::attempts_of(*job);
+  ASSERT_TRUE(tries);
+  ASSERT_EQ(tries->size(), 3u);
+  EXPECT_EQ((*tries)[1].number, 2) << "of the first chunk the second";
+  EXPECT_EQ((*tries)[1].exit_code, 0);
 }
 
 TEST_F(FarmFiles, DescriptionsThatAreNoneAreRefused) {
