@@ -142,8 +142,9 @@ Result<FrameHandle> FfmpegDecoder::frame(int number) {
   const int packet = index_.order[at(number)];
   const int start = index_.start_for(packet);
   if (!cached(packet) || !settled_[at(packet)]) {
-    const bool fits = start_ >= 0 && start_ <= start && !ended_ && packets_.position() >= start;
-    if (!fits || emitted_ >= number) AFTERGLOW_CHECK(begin_at(start));
+    const bool covers = start_ >= 0 && start_ <= start && packets_.position() >= start;
+    const bool comes = cached(packet) || (emitted_ < number && !ended_);
+    if (!covers || !comes) AFTERGLOW_CHECK(begin_at(start));
     AFTERGLOW_CHECK(decode_until(packet, start));
   }
   AFTERGLOW_CHECK(check_whole(packet, start));

@@ -151,6 +151,8 @@ Result<CodecHandle> FfmpegInput::open_decoder() const {
   constexpr unsigned kMostThreads = 4;  // each holds pictures of its own
   codec->thread_count = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads));
   codec->err_recognition = AV_EF_CRCCHECK;
+  // Whether a frame has what it is built on is known from the index, not guessed from the stream.
+  codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
   const auto side = static_cast<std::int64_t>(limits_.max_side);
   codec->max_pixels = std::min(side * side, static_cast<std::int64_t>(limits_.max_bytes / 4));
   if (const int opened = avcodec_open2(codec.get(), codec_, nullptr); opened < 0)
