@@ -12,6 +12,7 @@
 #include "core/saturated.h"
 #include "core/text.h"
 #include "image/icc_profile.h"
+#include "image/input_space.h"
 #include "image/oiio_metadata.h"
 
 namespace afterglow {
@@ -83,9 +84,9 @@ class OiioFile : public PictureFile {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(color.part)];
     ColorEncoding encoding;
     encoding.grey = color.channels[0] == color.channels[1];
-    if (color.channels[3] >= 0)
-      encoding.alpha =
-          spec.get_int_attribute("oiio:UnassociatedAlpha", 0) ? AlphaKind::straight : AlphaKind::associated;
+    // JPEG 2000 is left straight where that is asked for, without a word.
+    const bool straight = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || format_ == "jpeg2000";
+    if (color.channels[3] >= 0) encoding.alpha = straight ? AlphaKind::straight : AlphaKind::associated;
     const OIIO::TypeDesc type = sample_type(color);
     const bool integer = !type.is_floating_point();
     if (integer && type.size() <= 2) encoding.max_code = type.size() == 1 ? 255 : 65535;
@@ -93,7 +94,7 @@ class OiioFile : public PictureFile {
     if (use_profile(spec, encoding, diagnostics)) return encoding;
     if (container_.kind == ContainerFacts::Kind::png) {
       use_png_chunks(encoding, diagnostics);
-    } else if (integer) {
+    } else if (integer && format_ != "pnm") {  // whose files say nothing: "Rec709" is the library's guess
       use_color_space(spec.get_string_attribute("oiio:ColorSpace"), encoding, diagnostics);
     }
     return encoding;
@@ -213,6 +214,8 @@ class OiioFile : public PictureFile {
     if (space.empty() || space == "srgb") return;
     if (space == "linear" || space == "lin_srgb" || space == "lin_rec709" || space == "scene_linear") {
       encoding.curve = TransferCurve::linear;
+    } else if (space == "kodaklog") {
+      use_input_space(*find_input_space("cineon").value(), encoding);
     } else if (space == "rec709") {
       encoding.curve = TransferCurve::rec709;
     } else if (space.starts_with("gamma")) {

@@ -121,7 +121,9 @@ class Curves : public Clips {
 };
 
 TEST_F(Curves, AreUndoneToLight) {
-  const auto rec709 = [](double v) { return v < 0.081 ? v / 4.5 : std::pow((v + 0.099) / 1.099, 1 / 0.45); };
+  const auto rec709 = [](double v) {
+    return v < 0.081243 ? v / 4.5 : std::pow((v + 0.09929682680944) / 1.09929682680944, 1 / 0.45);
+  };
   const auto pq = [](double v) {  // ST 2084, in units of 203 cd/m²
     const double p = std::pow(v, 32.0 / 2523);
     return 10000.0 / 203 * std::pow(std::max(p - 107.0 / 128, 0.0) / (2413.0 / 128 - 2392.0 / 128 * p), 8192.0 / 1305);
