@@ -45,6 +45,18 @@ Result<void> check_sequences(const PlannedJob& planned) {
   return {};
 }
 
+/// Chunks have files of their own, and read files that all machines see.
+Result<void> check_files(const PlannedJob& planned) {
+  const auto& inputs = planned.files.inputs;
+  if (planned.files.output == "-" || std::ranges::count(inputs, "-") > 0)
+    return Error{ErrorKind::usage, "'-' is a stream of one machine", "afterglow farm", 0, "files"};
+  const auto& frames = planned.frames;
+  if (frames.size() > 1 && frames[0].output == frames[1].output)
+    return Error{ErrorKind::usage, fmt::format("{} is one file for all frames", frames[0].output.string()),
+                 "afterglow farm", 0, "pictures, like out.####.exr, which `afterglow run` makes a video of"};
+  return {};
+}
+
 Result<void> pack(const FarmArguments& arguments, const BatchRequest& request, const farm::LoadedLook& look,
                   farm::Job& job, Console& console) {
   AFTERGLOW_CHECK(farm::pack_look(look, job));
@@ -69,6 +81,7 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   AFTERGLOW_TRY(const BatchRequest request, arguments.run.request());
   PlannedJob out{.files = request.files};
   AFTERGLOW_TRY(out.frames, list_frames(request.files));
+  AFTERGLOW_CHECK(check_files(out));
   AFTERGLOW_TRY(const auto look, farm::load_look(request, out.frames, console.diagnostics()));
   farm::Job& job = out.job;
   std::error_code ec;
