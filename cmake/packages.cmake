@@ -16,7 +16,10 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-set(CPACK_COMPONENTS_ALL program library data development documents)
+set(CPACK_COMPONENTS_ALL library data development documents)
+if(AFTERGLOW_PROGRAM)
+  list(PREPEND CPACK_COMPONENTS_ALL program)
+endif()
 if(AFTERGLOW_HAS_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
@@ -68,9 +71,16 @@ install(FILES README.md CHANGELOG.md THIRD_PARTY.md DESTINATION ${doc} COMPONENT
 install(DIRECTORY docs examples DESTINATION ${doc} COMPONENT documents
   PATTERN "*.sh" EXCLUDE PATTERN "benchmarks/looks" EXCLUDE)
 
-# A changelog by Debian's rules, packed without a time.
+# A changelog by Debian's rules, of the commit's time and packed without one.
+if(NOT DEFINED ENV{SOURCE_DATE_EPOCH})
+  execute_process(COMMAND git -C ${PROJECT_SOURCE_DIR} log -1 --format=%ct OUTPUT_VARIABLE commit_time OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  if(NOT commit_time)
+    file(TIMESTAMP ${PROJECT_SOURCE_DIR}/CMakeLists.txt commit_time %s UTC)
+  endif()
+  set(ENV{SOURCE_DATE_EPOCH} ${commit_time})
+endif()
 set(changelog ${CMAKE_BINARY_DIR}/changelog.gz)
-string(TIMESTAMP release_date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # SOURCE_DATE_EPOCH where it is set
+string(TIMESTAMP release_date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 file(WRITE ${CMAKE_BINARY_DIR}/changelog
   "afterglow (${PROJECT_VERSION}) unstable; urgency=medium\n\n  * See CHANGELOG.md (afterglow-doc).\n\n -- ${CPACK_PACKAGE_CONTACT}  ${release_date}\n")
 execute_process(COMMAND gzip -9nc ${CMAKE_BINARY_DIR}/changelog OUTPUT_FILE ${changelog})

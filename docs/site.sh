@@ -22,6 +22,7 @@ pages=(
   "docs/ocio.md|OpenColorIO"
   "docs/embedding.md|Embedding"
   "docs/determinism.md|The same pixels"
+  "docs/building.md|Building and packaging"
   "docs/stability.md|What is stable"
   "docs/reliability.md|What one can rely on"
   "docs/math.md|The mathematics"

@@ -118,6 +118,18 @@ std::optional<int> parse(CLI::App& program, const std::vector<Command>& commands
   }
 }
 
+std::vector<Command> add_commands(CLI::App& program) {
+  return {
+      add_run_command(program),     add_check_command(program),      add_graph_command(program),
+      add_explain_command(program), add_effects_command(program),    add_new_command(program),
+      add_set_command(program),     add_devices_command(program),    add_play_command(program),
+#ifdef AFTERGLOW_BENCH
+      add_bench_command(program),   add_calibrate_command(program),  add_stress_command(program),
+#endif
+      add_bake_command(program),    add_completion_command(program), add_man_command(program),
+  };
+}
+
 enum class Work { all, parsing };
 
 int run(Console& console, int argc, char** argv, Work work) {
@@ -128,12 +140,7 @@ int run(Console& console, int argc, char** argv, Work work) {
   program.footer(kFooter);
   program.get_formatter()->column_width(34);
 
-  const std::vector<Command> commands{
-      add_run_command(program),       add_check_command(program),      add_graph_command(program),
-      add_explain_command(program),   add_effects_command(program),    add_new_command(program),
-      add_set_command(program),       add_devices_command(program),    add_bench_command(program),
-      add_calibrate_command(program), add_play_command(program),       add_stress_command(program),
-      add_bake_command(program),      add_completion_command(program), add_man_command(program)};
+  const std::vector<Command> commands = add_commands(program);
   MessageArguments messages;
   for (const auto& command : commands) messages.add(*command.options);
 

@@ -51,7 +51,7 @@ return fx.effect {
       local across, down = rays.size(g, source, 135)
       local small = pyramids.resized(g, bright, across, down, "small")
       local radius = math.max(s.iris * down, 0.5)
-      local iris = g:pass { shader = "lens_flare/iris", source = small, radius = radius, rings = math.min(math.ceil(radius), 16), blades = s.blades, turn = math.rad(s.rotation), name = "iris" }
+      local iris = g:pass { shader = "lens_flare/iris", source = small, radius = radius, rings = math.min(math.ceil(radius), 16), blades = s.blades, turn = s.rotation / 360, name = "iris" }
       iris = g:filter { source = iris, size = bright, filter = fx.filters.bspline(), name = "large" }
       sum = g:pass { shader = "lens_flare/ghosts", source = iris, size = bright, count = s.count, ghosts = math.min(s.ghosts, 1e6), halo = math.min(s.halo, 1e6), spacing = s.spacing,
                      ring = s.halo_radius, dispersion = s.dispersion, name = "ghosts" }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Share of the light that is left (r), and the distance along the viewing axis (a).
+#include "lib/angle.glsl"
 #include "lib/noise.glsl"
 
 uniform sampler2D source;  // direction of the surface, distance
@@ -27,8 +28,7 @@ vec4 sample_at(ivec2 pixel) {
   float sum = 0.0;
   for (int i = 0; i < samples; ++i) {
     float share = (float(i) + 0.25 + 0.5 * chance.y) / float(samples);
-    float angle = 6.28318530718 * (share * kTurns + chance.x);
-    ivec2 at = pixel + ivec2(floor(far * share * vec2(cos(angle), sin(angle)) + 0.5));
+    ivec2 at = pixel + ivec2(floor(far * share * direction_of(share * kTurns + chance.x) + 0.5));
     at = clamp(at, ivec2(0), ivec2(size) - 1);
     float there = fetch(source, at).a;
     vec3 way = place(vec2(at) + 0.5, size, there) - here;

@@ -301,6 +301,37 @@ vec4 sample_at(ivec2 pixel) {
   }
 }
 
+/// lib/angle.glsl against doubles: turns of both signs, fractions on and beside the quarters.
+TEST(KernelPixels, AnglesOfTheLibraryAreExact) {
+  ShaderFiles files;
+  std::filesystem::create_directories(files.path("lib"));
+  std::filesystem::copy_file(std::filesystem::path(AFTERGLOW_PROJECT_FOLDER) / "shaders/lib/angle.glsl",
+                             files.path("lib/angle.glsl"));
+  KernelDesc desc;
+  desc.sample = files.stage("s", R"(#include "lib/angle.glsl"
+uniform sampler2D image;
+vec4 sample_at(ivec2 pixel) {
+  float x = fetch(image, pixel).r;
+  return vec4(direction_of(x), tangent(abs(x)), arc_tangent(abs(x)));
+})");
+  const Size size{4001, 1};
+  TestImage source{size, std::vector<float>(4001 * 4)};
+  for (int x = 0; x < 4001; ++x) source.at(x, 0)[0] = static_cast<float>((x - 2000) / 160.0);
+  const auto kernel = KernelCompiler{std::filesystem::path()}.compile(desc);
+  ASSERT_TRUE(kernel.ok()) << kernel.error().text();
+  const auto out = runner().run(*kernel, {source}, size);
+  for (int x = 0; x < 4001; ++x) {
+    const double turns = source.at(x, 0)[0], angle = 2 * 3.14159265358979323846 * turns;
+    EXPECT_NEAR(out.at(x, 0)[0], std::cos(angle), 2e-7) << turns;
+    EXPECT_NEAR(out.at(x, 0)[1], std::sin(angle), 2e-7) << turns;
+    const double positive = std::abs(turns);
+    if (positive < 1.57) {
+      EXPECT_NEAR(out.at(x, 0)[2], std::tan(positive), 4e-7 * std::tan(positive)) << turns;
+    }
+    EXPECT_NEAR(out.at(x, 0)[3], std::atan(positive), 3e-7) << turns;
+  }
+}
+
 TEST(KernelPixels, ParametersAndInputsReachTheirStages) {
   ShaderFiles files;
   const std::string text =

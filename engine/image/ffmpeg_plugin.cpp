@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// The module's one symbol.
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+}
+
+#include <fmt/format.h>
+
+#include "image/ffmpeg_log.h"
+#include "image/ffmpeg_module.h"
+
+namespace afterglow {
+namespace {
+
+std::string number(unsigned version) {
+  return fmt::format("{}.{}.{}", AV_VERSION_MAJOR(version), AV_VERSION_MINOR(version), AV_VERSION_MICRO(version));
+}
+
+std::string ffmpeg_versions() {
+  return fmt::format("libavformat {}, libavcodec {}", number(avformat_version()), number(avcodec_version()));
+}
+
+}  // namespace
+}  // namespace afterglow
+
+extern "C" __attribute__((visibility("default"))) const afterglow::FfmpegModule* afterglow_ffmpeg_module() {
+  static constexpr afterglow::FfmpegModule module{&afterglow::ffmpeg_versions};
+  static const bool quiet = (afterglow::take_ffmpeg_log(), true);
+  static_cast<void>(quiet);
+  return &module;
+}
