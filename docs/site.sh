@@ -20,6 +20,7 @@ pages=(
   "docs/tone_mapping.md|Tone curves"
   "docs/alpha.md|Soft edges"
   "docs/ocio.md|OpenColorIO"
+  "docs/formats.md|Formats"
   "docs/embedding.md|Embedding"
   "docs/determinism.md|The same pixels"
   "docs/building.md|Building and packaging"

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "apps/options.h"
 #include "batch/run_report.h"
@@ -96,6 +97,13 @@ std::string play_report_json(const PlayReport& report, Player& player) {
                        {"fps", transport.fps()},
                        {"speed", transport.speed()},
                        {"loop", loop_mode_name(transport.loop())}}}};
+  if (footage.variable_rate()) {  // when each picture shows, in seconds
+    Json times = Json::array();
+    for (int position = 0, last = -1; position < footage.frames(); ++position)
+      if (const FootageFrame& frame = footage.frame(position); frame.picture != std::exchange(last, frame.picture))
+        times.push_back(frame.time.value_or(position / transport.fps()));
+    out["footage"]["times"] = std::move(times);
+  }
   out["frames"] = Json{{"shown", stats.shown},           {"dropped", stats.dropped}, {"late", stats.late},
                        {"unreadable", stats.unreadable}, {"kept", stats.kept},       {"rebuilding", stats.rebuilding},
                        {"last", player.shown().number}};

@@ -69,14 +69,21 @@ void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("--format", a.files.extension, "For outputs in a folder: png, exr, … (default: that of the input)")
       ->type_name("EXTENSION")
       ->group(output);
-  app.add_option("--type", a.type,
-                 "auto, half, float, uint8 or uint16 (auto: EXR half unless the input was float; else 8 bits, or 16 if "
-                 "the input had more)")
-      ->check(CLI::IsMember({"auto", "half", "float", "uint8", "uint16"}))
+  app.add_option(
+         "--type", a.type,
+         "auto, half, float, uint8, uint10, uint12 or uint16 (auto: EXR half unless the input was float; DPX and "
+         "Cineon 10 bits; else 8 bits, or 16 if the input had more)")
+      ->check(CLI::IsMember({"auto", "half", "float", "uint8", "uint10", "uint12", "uint16"}))
       ->type_name("TYPE")
       ->group(output);
+  app.add_option("--output-space", a.output_space,
+                 "Colour space of integer samples: a name of --input-space (default: cineon for DPX and Cineon, srgb "
+                 "for other pictures)")
+      ->type_name("NAME")
+      ->group(output);
   app.add_option("--compression", a.compression,
-                 "EXR: none, rle, zip (default), zips, piz, pxr24, b44, b44a, dwaa, dwab; TIFF: its own")
+                 "EXR: none, rle, zip (default), zips, piz, pxr24, b44, b44a, dwaa, dwab; TIFF: none, lzw, zip, "
+                 "packbits; WebP: lossless, lossy:QUALITY; Targa: none, rle")
       ->type_name("NAME[:LEVEL]")
       ->group(output);
   app.add_option("--png-level", a.png_level,
@@ -124,6 +131,8 @@ SampleType sample_type(const std::string& text) {
   if (text == "half") return SampleType::half;
   if (text == "float") return SampleType::float32;
   if (text == "uint8") return SampleType::uint8;
+  if (text == "uint10") return SampleType::uint10;
+  if (text == "uint12") return SampleType::uint12;
   if (text == "uint16") return SampleType::uint16;
   return SampleType::automatic;
 }
@@ -149,6 +158,7 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--fps", number(a.fps)},
           {"--pre-roll", a.pre_roll ? fmt::format("{}", *a.pre_roll) : ""},
           {"--type", a.type},
+          {"--output-space", a.output_space},
           {"--compression", a.compression},
           {"--png-level", fmt::format("{}", a.png_level)},
           {"--jpeg-quality", fmt::format("{}", a.jpeg_quality)},
@@ -166,8 +176,9 @@ Result<SessionOptions> session_options(const RunArguments& a) {
   return options;
 }
 
-WriteOptions write_options(const RunArguments& a) {
+Result<WriteOptions> write_options(const RunArguments& a) {
   WriteOptions options;
+  AFTERGLOW_TRY(options.space, find_output_space(a.output_space));
   options.type = sample_type(a.type);
   options.compression = a.compression;
   options.png_level = a.png_level;
@@ -180,7 +191,7 @@ WriteOptions write_options(const RunArguments& a) {
 /// What the options say of the frames themselves.
 Result<FrameLoopOptions> loop_options(const RunArguments& a, std::uint64_t max_memory) {
   FrameLoopOptions options;
-  options.write = write_options(a);
+  AFTERGLOW_TRY(options.write, write_options(a));
   options.nan_policy = nan_policy(a.nan_policy);
   options.fail_fast = a.fail_fast || options.nan_policy == NanPolicy::fail;
   options.fps = a.fps;

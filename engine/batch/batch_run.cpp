@@ -26,6 +26,7 @@ struct BatchRun {
   const RunEvents& events;
   RunReport& report;
   Clock::time_point start = Clock::now();
+  std::unique_ptr<FrameSink> sink{};
   std::unique_ptr<Session> session{};
   std::optional<Hash> record_look{};
   std::optional<Lock> lock{};  ///< of what runs, when one is to be written or held against
@@ -114,7 +115,8 @@ Result<void> check_outputs(const BatchRun& run) {
 Result<void> run_frames(BatchRun& run) {
   const BatchRequest& asked = run.request;
   auto& frames = run.report.frames;
-  AFTERGLOW_CHECK(check_outputs(run));
+  AFTERGLOW_TRY(run.sink, open_sink(asked.files, asked.loop.write, asked.loop.fps, run.events.diagnostics));
+  if (!run.sink->is_one()) AFTERGLOW_CHECK(check_outputs(run));
   SessionOptions opened = asked.session;
   opened.frames = frames.size() > 1 ? kFramesInFlight : 1;
   AFTERGLOW_TRY(run.session, Session::open(asked.preset, opened, run.events.diagnostics));
@@ -122,7 +124,7 @@ Result<void> run_frames(BatchRun& run) {
   options.read.auxiliary = run.session->preset().needs();
   options.read.input_space = asked.input_space.empty() ? run.session->preset().input_space() : asked.input_space;
   AFTERGLOW_CHECK(prepare_lock(run));
-  FrameLoop loop(*run.session, options, run.events);
+  FrameLoop loop(*run.session, *run.sink, options, run.events);
   AFTERGLOW_TRY(const std::optional<int> earlier, pre_roll_of(run, loop));
   if (earlier) loop.follow_histories();
   if (earlier && asked.resume) note_earlier_files(frames, asked.files, *earlier);
@@ -130,7 +132,7 @@ Result<void> run_frames(BatchRun& run) {
   Schedule schedule = earlier ? schedule_with_histories(frames, asked.files, *earlier) : plain_schedule(frames);
   run.report.pre_roll = schedule.earlier.size();
   run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
-  loop.record_look(run.record_look);
+  if (run.record_look) run.sink->record_look(*run.record_look);
   auto done = loop.run(schedule);
   run.report.memory_needed = loop.largest_need();
   return done;

@@ -8,11 +8,9 @@
 #include <utility>
 
 #include "batch/crop.h"
-#include "batch/resume.h"
 #include "batch/scale.h"
 #include "core/stopwatch.h"
 #include "core/text.h"
-#include "image/metadata.h"
 
 namespace afterglow {
 namespace {
@@ -22,15 +20,11 @@ bool ends_run(const Error& error) { return error.kind != ErrorKind::io && error.
 
 Error interruption() { return {ErrorKind::interrupted, "interrupted"}; }
 
-Error named(Error error, const FrameJob& job) {
-  if (error.file.empty()) error.file = job.input.string();
-  return error;
-}
-
 }  // namespace
 
 struct FrameLoop::Reading {
   FrameRecord* frame = nullptr;
+  std::size_t index = 0;  ///< among the frames that are written
   bool pre_roll = false, restart = false;
   std::optional<Error> refused;  ///< by the header; nothing was read
   std::optional<Scaling> scaling;
@@ -39,13 +33,13 @@ struct FrameLoop::Reading {
   std::future<Result<Picture>> picture;
 };
 
-struct FrameLoop::Writing {
-  FrameRecord* frame = nullptr;
-  std::future<Result<void>> written;
-};
-
-FrameLoop::FrameLoop(Session& session, FrameLoopOptions options, RunEvents events)
-    : session_(session), options_(std::move(options)), events_(std::move(events)) {}
+FrameLoop::FrameLoop(Session& session, FrameSink& sink, FrameLoopOptions options, RunEvents events)
+    : session_(session),
+      sink_(sink),
+      options_(std::move(options)),
+      events_(std::move(events)),
+      planner_(session, sink, options_),
+      writing_(sink) {}
 
 FrameLoop::~FrameLoop() = default;
 
@@ -72,16 +66,24 @@ Result<void> FrameLoop::run(Schedule& schedule) {
     if (overlap_ && i + 1 < frames.size()) next = begin_reading(frames[i + 1]);
     if (auto done = process(std::move(reading)); !done) return close(done.error());
     if (!overlap_)
-      if (auto done = finish_writing(); !done) return close(done.error());
+      if (auto done = finish_writing(0); !done) return close(done.error());
   }
   return close({});
+}
+
+/// What was written appears when the run has come to its end, failed frames or not; of an interrupted one if that is
+/// wished.
+Result<void> FrameLoop::finish_sink(const Result<void>& result) {
+  const bool interrupted = !result && result.error().kind == ErrorKind::interrupted;
+  return result || (interrupted && options_.keep_partial) ? sink_.finish() : Result<void>();
 }
 
 /// Waits for the last output and sums up.
 Result<void> FrameLoop::close(Result<void> result) {
   while (result && !running_.empty()) result = finish_running();
   running_.clear();
-  auto last = finish_writing();
+  auto last = finish_writing(0);
+  if (last) last = finish_sink(result);
   events_.end_progress();
   if (!result) {
     if (result.error().kind == ErrorKind::interrupted && total_ > 1) {
@@ -95,21 +97,6 @@ Result<void> FrameLoop::close(Result<void> result) {
   if (total_ > 1) non_finite_.sum_up(events_.diagnostics);
   if (failed_ > 0) return Error{ErrorKind::io, fmt::format("{} of {} frames failed", failed_, total_)};
   return {};
-}
-
-Result<FrameLoop::Need> FrameLoop::need_of(const PictureHeader& header, const Build& build, const FrameJob& job) {
-  const BuildContext& context = build.context;
-  Need need;
-  need.reading = header.host_bytes;
-  need.result = static_cast<std::uint64_t>(context.size.area()) * 4 * sizeof(float);
-  need.device = session_.stack().memory_needed(build);
-  largest_need_ = std::max(largest_need_, need.one_frame());
-  if (need.one_frame() > options_.max_memory)
-    return Error{ErrorKind::io,
-                 fmt::format("{}x{} pixels need about {} with this preset, above --max-memory {}", context.size.width,
-                             context.size.height, memory_text(need.one_frame()), memory_text(options_.max_memory)),
-                 job.input.string()};
-  return need;
 }
 
 /// Which frame this one follows: the last of its sequence that was made. It was evaluated as if none failed.
@@ -126,107 +113,49 @@ Result<void> FrameLoop::place_in_time(Reading& reading) {
   return {};
 }
 
-ReadOptions FrameLoop::read_options(const FrameJob& job) const {
-  ReadOptions options = options_.read;
-  options.depth = job.depth;
-  options.normal = job.normal;
-  options.motion = job.motion;
-  options.nan_policy = options_.nan_policy;
-  return options;
-}
-
-/// A preview of half the size or less is made at twice its size when a look depends on single pixels.
-std::optional<Scaling> FrameLoop::scaling_of(const PictureHeader& header) const {
-  if (!options_.size) return std::nullopt;
-  const Size whole = header.display_window.size(), size = options_.size->of(whole);
-  const bool half = 2 * size.width <= whole.width && 2 * size.height <= whole.height;
-  return Scaling{size, half && session_.preset().detailed() ? 2 : 1};
-}
-
-/// What is wanted of the picture with this header.
-
-Result<FrameRequest> FrameLoop::request_of(const FrameJob& job, const PictureHeader& header, double step,
-                                           bool restart) {
-  FrameRequest request;
-  BuildContext context;
-  Rect data = header.data_window, display = header.display_window;
-  int finer = 1;
-  if (const auto scaling = scaling_of(header)) {
-    finer = scaling->finer;
-    const Size whole = display.size(), size = scaling->display;
-    context.length_scale = finer * std::sqrt(static_cast<double>(size.area()) / static_cast<double>(whole.area()));
-    data = scaled_window(data, display, size);
-    display = {display.x, display.y, size.width, size.height};
-  }
-  context.size = {data.width * finer, data.height * finer};
-  if (options_.region) {
-    AFTERGLOW_TRY(const Rect part, part_of_region(*options_.region, data, display));
-    request.region = Rect{part.x * finer, part.y * finer, part.width * finer, part.height * finer};
-  }
-  const auto& wanted = options_.read.auxiliary;
-  for (const auto& name : header.auxiliary)
-    if (std::find(wanted.begin(), wanted.end(), name) != wanted.end()) context.auxiliary[name] = context.size;
-  context.layers = header.layers;
-  context.metadata = {header.facts, &header.facts->metadata};
-  context.frame = job.frame;
-  context.fps = options_.fps;
-  context.time = job.frame / options_.fps;
-  context.position = camera_position(header.facts->metadata);
-  context.step = request.step = step;
-  context.restart = request.restart = restart;
-  const auto codes = display_codes(job.output, options_.write, header.has_alpha, header.facts.get());
-  if (codes && finer == 1)  // codes of pixels that are still to be put together would be no colours
-    request.encoding = DisplayEncoding{codes->straight_alpha, codes->dither};
-  auto build = session_.evaluate(context);
-  if (!build) return std::move(build).error();
-  request.build = std::move(*build);
-  return request;
-}
-
-Result<FrameLoop::Planned> FrameLoop::plan(const FrameJob& job, double step, bool restart) {
-  Planned planned;
-  auto header = read_header(job.input, read_options(job));
-  if (!header) return named(std::move(header).error(), job);
-  planned.header = std::move(*header);
-  auto request = request_of(job, planned.header, step, restart);
-  if (!request) return named(std::move(request).error(), job);
-  planned.request = std::move(*request);
-  return planned;
-}
-
 Result<std::shared_ptr<const Build>> FrameLoop::inspect(const FrameJob& job) {
-  AFTERGLOW_TRY(Planned planned, plan(job, 1, true));
+  AFTERGLOW_TRY(PlannedFrame planned, planner_.plan(job, 1, true));
   planned.job = &job;
   planned_ = std::move(planned);
   return planned_->request.build;
+}
+
+/// Frames are read, processed and written beside each other as memory allows.
+void FrameLoop::choose_overlap(const FrameNeed& need) {
+  constexpr std::uint64_t kMostWritten = 3;
+  overlap_ = total_ + pre_roll_ > 1 && need.frames(1) <= options_.max_memory;
+  most_written_ = 1;
+  while (overlap_ && most_written_ < kMostWritten && need.frames(most_written_ + 1) <= options_.max_memory)
+    ++most_written_;
 }
 
 std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFrame& scheduled) {
   auto reading = std::make_unique<Reading>();
   FrameRecord& frame = *scheduled.record;
   reading->frame = &frame;
+  reading->index = scheduled.index;
   reading->pre_roll = scheduled.pre_roll;
   reading->restart = scheduled.restart;
-  reading->options = read_options(frame.job);
+  reading->options = planner_.read_options(frame.job);
   if (scheduled.restart) begun_.reset();
   const bool follows = options_.histories && begun_;
   const double step = follows ? frame.job.frame - *begun_ : 1;
   const bool known = planned_ && planned_->job == &frame.job && step == 1;
-  auto planned = known ? Result<Planned>(*std::exchange(planned_, std::nullopt))
-                       : plan(frame.job, step, options_.histories && !begun_);
+  auto planned = known ? Result<PlannedFrame>(*std::exchange(planned_, std::nullopt))
+                       : planner_.plan(frame.job, step, options_.histories && !begun_);
   if (!planned) {
     reading->refused = std::move(planned).error();
     return reading;
   }
   begun_ = frame.job.frame;
-  reading->scaling = scaling_of(planned->header);
+  reading->scaling = planner_.scaling_of(planned->header);
   reading->request = std::move(planned->request);
-  const auto need = need_of(planned->header, *reading->request.build, frame.job);
+  const auto need = planner_.need_of(planned->header, *reading->request.build, frame.job);
   if (!need) {
     reading->refused = need.error();
     return reading;
   }
-  overlap_ = total_ + pre_roll_ > 1 && need->three_frames() <= options_.max_memory;
+  choose_overlap(*need);
   reading->picture = std::async(std::launch::async,
                                 [this, &frame, options = reading->options, scaling = reading->scaling,
                                  header = std::move(planned->header)]() -> Result<Picture> {
@@ -309,8 +238,8 @@ Result<void> FrameLoop::finish_running() {
     crop_picture(picture, *options_.region,
                  {part->x / finer, part->y / finer, part->width / finer, part->height / finer});
   if (events_.interrupted()) return interruption();
-  AFTERGLOW_CHECK(finish_writing());
-  begin_writing(frame, std::move(picture));
+  AFTERGLOW_CHECK(finish_writing(most_written_ - 1));
+  writing_.add(frame, reading->index, std::move(picture));
   return {};
 }
 
@@ -353,25 +282,18 @@ Result<void> FrameLoop::mend(Reading& reading, Picture& picture) {
   return {};
 }
 
-void FrameLoop::begin_writing(FrameRecord& frame, Picture picture) {
-  writing_ = std::make_unique<Writing>();
-  writing_->frame = &frame;
-  writing_->written = std::async(std::launch::async, [this, &frame, picture = std::move(picture)]() -> Result<void> {
-    const auto start = Clock::now();
-    auto written = write_picture(picture, frame.job.output, options_.write, events_.diagnostics);
-    frame.write = milliseconds_since(start);
-    if (written && options_.record_look) return record_made(frame.job, *options_.record_look);
-    return written;
-  });
-}
-
-Result<void> FrameLoop::finish_writing() {
-  if (!writing_) return {};
-  const auto writing = std::move(writing_);
-  auto written = writing->written.get();
-  if (!written) return fail(*writing->frame, std::move(written).error());
-  writing->frame->state = FrameRecord::State::done;
-  ++done_;
+/// Waits until no more than `left` frames are being written.
+Result<void> FrameLoop::finish_writing(std::size_t left) {
+  while (writing_.size() > left) {
+    auto [frame, written] = *writing_.take();
+    if (!written && sink_.is_one()) return written;
+    if (!written) {
+      AFTERGLOW_CHECK(fail(*frame, std::move(written).error()));
+      continue;
+    }
+    frame->state = FrameRecord::State::done;
+    ++done_;
+  }
   return {};
 }
 

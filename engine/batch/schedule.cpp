@@ -74,18 +74,29 @@ void add_sequence(Schedule& out, const Frames& frames, const std::vector<FrameRe
 
 }  // namespace
 
+namespace {
+
+Schedule counted(Schedule schedule) {
+  std::size_t index = 0;
+  for (auto& frame : schedule.frames)
+    if (!frame.pre_roll) frame.index = index++;
+  return schedule;
+}
+
+}  // namespace
+
 Schedule plain_schedule(std::vector<FrameRecord>& frames) {
   Schedule out;
   for (auto& frame : frames)
     if (frame.state == FrameRecord::State::waiting) out.frames.push_back({&frame, false, false});
-  return out;
+  return counted(std::move(out));
 }
 
 Schedule schedule_with_histories(std::vector<FrameRecord>& frames, const FrameListRequest& request, int pre_roll) {
   Schedule out;
   for (const auto& sequence : sequences_of(frames))
     add_sequence(out, frames_of(sequence, frames, request), waiting_by_number(sequence, frames), pre_roll);
-  return out;
+  return counted(std::move(out));
 }
 
 void note_earlier_files(std::vector<FrameRecord>& frames, const FrameListRequest& request, int pre_roll) {

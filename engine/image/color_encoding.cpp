@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <mutex>
+#include <tuple>
 
 #include "core/parallel.h"
 #include "image/plain_values.h"
@@ -25,11 +28,43 @@ SanitizeCounts& operator+=(SanitizeCounts& a, const SanitizeCounts& b) {
   return a;
 }
 
+/// A curve at 65536 steps for each unit of stored values from −0.25 to 1.25, between which it is straight to 1e-7.
+class DenseCurve {
+ public:
+  static constexpr float kFirst = -0.25f, kLast = 1.25f, kSteps = 65536;
+  explicit DenseCurve(const std::function<float(double)>& curve) {
+    values_.resize(static_cast<std::size_t>((kLast - kFirst) * kSteps) + 2);
+    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = curve(kFirst + static_cast<double>(i) / kSteps);
+  }
+  static bool holds(float stored) { return stored >= kFirst && stored <= kLast; }
+  float operator()(float stored) const {
+    const float position = (stored - kFirst) * kSteps;
+    const auto index = static_cast<std::size_t>(position);
+    const float t = position - static_cast<float>(index);
+    return values_[index] + (values_[index + 1] - values_[index]) * t;
+  }
+
+ private:
+  std::vector<float> values_;
+};
+
+/// Made once for each curve: there are few.
+const DenseCurve& dense_curve(const ColorEncoding& encoding, const std::function<float(double)>& curve) {
+  using Key = std::tuple<TransferCurve, double, double (*)(double)>;
+  static std::mutex mutex;
+  static std::map<Key, DenseCurve> made;
+  const std::lock_guard lock(mutex);
+  const Key key{encoding.curve, encoding.exponent, encoding.formula};
+  return made.try_emplace(key, curve).first->second;
+}
+
 /// A decoder of single samples, by table where there are few codes.
 class CurveDecoder {
  public:
   explicit CurveDecoder(const ColorEncoding& encoding) : encoding_(encoding) {
     if (encoding.curve == TransferCurve::linear || encoding.transform) return;
+    if (encoding.dense && encoding.curve != TransferCurve::tables)
+      dense_ = &dense_curve(encoding, [this](double stored) { return formula(stored); });
     if (encoding.curve == TransferCurve::tables) {
       for (int c = 0; c < 3; ++c) tables_[c] = &encoding.tables[c];
     } else if (encoding.max_code > 0) {
@@ -42,6 +77,7 @@ class CurveDecoder {
   bool identity() const { return encoding_.curve == TransferCurve::linear || encoding_.transform; }
 
   float operator()(int channel, float stored) const {
+    if (dense_ && DenseCurve::holds(stored)) return (*dense_)(stored);
     const std::vector<float>* table = tables_[channel];
     if (!table) return formula(stored);
     const auto last = static_cast<float>(table->size() - 1);
@@ -72,6 +108,7 @@ class CurveDecoder {
   }
 
   const ColorEncoding& encoding_;
+  const DenseCurve* dense_ = nullptr;
   std::vector<float> shared_;
   std::array<const std::vector<float>*, 3> tables_{};
 };

@@ -35,6 +35,8 @@ struct ColorEncoding {
   std::shared_ptr<const ProfileTransform> transform;  ///< replaces curve and matrix
   AlphaKind alpha = AlphaKind::none;
   int max_code = 0;   ///< 255 or 65535 for integers of that many codes; 0: any value
+  /// Stored values lie anywhere between codes, most of them in −0.25…1.25: curves are taken from a fine table there.
+  bool dense = false;
   bool grey = false;  ///< only the first sample of a pixel was read; it stands for all three
 };
 

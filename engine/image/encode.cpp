@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <vector>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
 
 #include "core/processor.h"
-#include "image/encode.h"
 #include "image/srgb.h"
 
 namespace afterglow {
@@ -57,8 +57,31 @@ std::uint32_t linear_code(float value, int max_code) {
   return static_cast<std::uint32_t>(std::min(static_cast<double>(value), 1.0) * max_code + 0.5);
 }
 
+/// A stored value by its code: the nearest, or one of the two beside it as the noise says.
+std::uint32_t stored_code(float stored, float threshold, int max_code) {
+  return static_cast<std::uint32_t>(std::min(stored * static_cast<float>(max_code) + threshold, float(max_code)));
+}
+
+template <class Code>
+void encode_in_space(const CodeRules& rules, const float* rgba, int width, int x0, int y, Code* codes) {
+  std::vector<float> row(rgba, rgba + static_cast<std::size_t>(width) * 4);
+  if (rules.alpha)
+    for (std::size_t i = 0; i < row.size(); i += 4)
+      if (const float alpha = row[i + 3]; alpha > 0 && alpha != 1)
+        for (std::size_t c = 0; c < 3; ++c) row[i + c] /= alpha;
+  rules.space->encode(row.data(), static_cast<std::size_t>(width));
+  for (int x = 0; x < width; ++x) {
+    const float* pixel = &row[static_cast<std::size_t>(x) * 4];
+    for (int c = 0; c < 3; ++c)
+      *codes++ = static_cast<Code>(
+          stored_code(pixel[c], rules.dither ? 1 - blue_noise(x0 + x, y) : 0.5f, rules.max_code));
+    if (rules.alpha) *codes++ = static_cast<Code>(linear_code(pixel[3], rules.max_code));
+  }
+}
+
 template <class Code>
 void encode(const CodeRules& rules, const float* rgba, int width, int x0, int y, Code* codes) {
+  if (rules.space) return encode_in_space(rules, rgba, width, x0, y, codes);
   const CodeEncoder& encoder = CodeEncoder::srgb(rules.max_code);
   for (int x = 0; x < width; ++x, rgba += 4) {
     const float alpha = rgba[3];

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/image_data.h"
+#include "image/output_space.h"
 #include "image/picture.h"
 
 namespace afterglow {
@@ -23,14 +24,14 @@ void display_row(const Picture& picture, int y, std::uint8_t padding_alpha, std:
 
 /// How RGBA becomes code values.
 struct CodeRules {
-  int max_code = 255;   ///< 255 or 65535
+  int max_code = 255;   ///< 255, 1023, 4095 or 65535
   bool alpha = false;   ///< four codes a pixel: straight alpha, colour divided by it in linear light where it is above
                         ///< 0; else three
   bool dither = false;  ///< colour between two codes becomes one of them by blue noise; else the nearest
+  const OutputSpace* space = nullptr;  ///< null: sRGB
 };
 
-/// Codes of one row, sRGB-encoded. `x`, `y`: position of the first pixel, for
-/// the noise.
+/// Codes of one row. `x`, `y`: position of the first pixel, for the noise.
 void encode_row(const CodeRules& rules, const float* rgba, int width, int x, int y, std::uint8_t* codes);
 void encode_row(const CodeRules& rules, const float* rgba, int width, int x, int y, std::uint16_t* codes);
 

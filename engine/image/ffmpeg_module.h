@@ -3,15 +3,19 @@
 // A build without it (AFTERGLOW_FFMPEG=OFF) says so.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "core/result.h"
+#include "image/movie_source.h"
 
 namespace afterglow {
 
 struct FfmpegModule {
   /// "libavformat 59.27.100, libavcodec 59.37.100": what was loaded.
   std::string (*version)();
+  /// See movie_source.h.
+  Result<std::shared_ptr<MovieSource>> (*open)(const MovieRequest& request);
 };
 
 /// Loads it on the first call; thread-safe. Errors: io (not installed, built without it).

@@ -59,6 +59,20 @@ double hlg_scene(double v) {
 }
 double from_hlg(double v) { return hlg_scene(std::max(v, 0.0)) / hlg_scene(0.75); }
 
+// Kodak, "Conversion of 10-bit Log Film Data to 8-bit Linear or Video Data" (1995), as the field reads it: printing
+// density, 0.002 a code, gamma 0.6; code 95 is black, 685 is a white that diffuses.
+double from_cineon(double v) {
+  const double black = std::pow(10.0, (95.0 - 685.0) / 300);
+  return (std::pow(10.0, (std::min(v, 8.0) * 1023 - 685) / 300) - black) / (1 - black);
+}
+
+// ITU-R BT.709-6: the curve of cameras, undone; with the digits of BT.2020, so that its two pieces meet.
+double from_rec709(double v) {
+  constexpr double kAlpha = 1.09929682680944, kBeta = 0.018053968510807;
+  const double a = std::abs(v);
+  return std::copysign(a < 4.5 * kBeta ? a / 4.5 : std::pow((a + kAlpha - 1) / kAlpha, 1 / 0.45), v);
+}
+
 double mirrored_power(double v, double exponent) { return std::copysign(std::pow(std::abs(v), exponent), v); }
 double from_gamma22(double v) { return mirrored_power(v, 2.2); }
 double from_gamma24(double v) { return mirrored_power(v, 2.4); }
@@ -66,6 +80,7 @@ double as_it_is(double v) { return v; }
 
 constexpr std::array kSpaces{
     InputSpace{"acescct", "ACEScct (AMPAS S-2016-001), primaries AP1", from_acescct, kAp1},
+    InputSpace{"cineon", "Cineon printing density (black 95, white 685 of 1023), Rec.709", from_cineon, kRec709},
     InputSpace{"gamma22", "power 2.2, Rec.709", from_gamma22, kRec709},
     InputSpace{"gamma24", "power 2.4, Rec.709", from_gamma24, kRec709},
     InputSpace{"hlg", "HLG (ITU-R BT.2100), Rec.2020; the signal 0.75 is 1", from_hlg, kRec2020},
@@ -73,6 +88,7 @@ constexpr std::array kSpaces{
     InputSpace{"logc3", "ARRI LogC3 at EI 800, ALEXA Wide Gamut 3", from_logc3, kWideGamut3},
     InputSpace{"logc4", "ARRI LogC4, ARRI Wide Gamut 4", from_logc4, kWideGamut4},
     InputSpace{"pq", "PQ (SMPTE ST 2084), Rec.2020; 203 cd/m² is 1", from_pq, kRec2020},
+    InputSpace{"rec709", "BT.709, the curve of cameras", from_rec709, kRec709},
     InputSpace{"slog3", "Sony S-Log3, S-Gamut3.Cine", from_slog3, kSGamut3Cine},
     InputSpace{"srgb", "sRGB (IEC 61966-2-1)", srgb_to_linear, kRec709},
 };

@@ -3,126 +3,149 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cstring>
-#include <fstream>
-#include <string_view>
-#include <vector>
+#include <algorithm>
+#include <utility>
 
-#include "core/exception.h"
-#include "core/text.h"
-#include "image/metadata.h"
+#include "image/ffmpeg_module.h"
+#include "image/movie_color.h"
 
 namespace afterglow {
-namespace {
 
-struct Signature {
-  std::size_t at;
-  std::string_view bytes;
-  MovieContainer kind;
-  const char* name;
+/// One frame, as the reader sees files.
+class MovieFrameFile : public PictureFile {
+ public:
+  MovieFrameFile(std::shared_ptr<Movie> movie, int frame) : movie_(std::move(movie)), frame_(frame) {
+    path_ = movie_->file();
+    format_ = "ffmpeg";
+    const MovieFacts& facts = movie_->facts();
+    FilePart part;
+    part.data_window = part.display_window = {0, 0, facts.size.width, facts.size.height};
+    part.channels = {"R", "G", "B"};
+    if (facts.has_alpha) part.channels.emplace_back("A");
+    part.orientation = facts.orientation;
+    parts_.push_back(std::move(part));
+  }
+
+  std::uint64_t buffer_bytes(int) const override {
+    const MovieFacts& facts = movie_->facts();
+    constexpr std::uint64_t kSamples = 4, kPlanes = 2;  // as decoded, and as copied for zimg
+    return static_cast<std::uint64_t>(facts.stored.area()) * kSamples * kPlanes * sizeof(std::uint16_t);
+  }
+
+  Result<void> read(int, std::span<const ReadTarget> targets) override {
+    const Size size = parts_.front().data_window.size();
+    const std::size_t row = static_cast<std::size_t>(size.width) * 4;
+    // What the reader asks for as a rule: all channels of RGBA at once.
+    const bool together = !targets.empty() && std::ranges::all_of(targets, [&](const ReadTarget& target) {
+      return target.pixel_stride == 4 && target.row_stride == row &&
+             target.base - target.channel == targets[0].base - targets[0].channel;
+    });
+    if (together && targets[0].channel == 0 && targets.size() == parts_.front().channels.size())
+      return read_into(targets[0].base, row);
+    Image whole(size.width, size.height, 4);
+    AFTERGLOW_CHECK(read_into(whole.pixels.data(), row));
+    for (const ReadTarget& target : targets)
+      for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+          target.base[static_cast<std::size_t>(y) * target.row_stride +
+                      static_cast<std::size_t>(x) * target.pixel_stride] = whole.at(x, y)[target.channel];
+    return {};
+  }
+
+  ColorEncoding color_encoding(const ChannelChoice&, Diagnostics&) const override {
+    return movie_encoding(movie_->facts());
+  }
+
+  FileFacts facts(const ChannelChoice& color) const override {
+    const MovieFacts& movie = movie_->facts();
+    FileFacts facts;
+    facts.file = path_;
+    facts.format = format_;
+    facts.bits = movie.bits;
+    facts.floating = movie.floating;
+    facts.orientation = movie.orientation;
+    for (std::size_t i = 0; i < 4; ++i)
+      if (color.channels[i] >= 0)
+        facts.color_channels[i] = parts_.front().channels[static_cast<std::size_t>(color.channels[i])];
+    return facts;
+  }
+
+ private:
+  Result<void> read_into(float* rgba, std::size_t row) {
+    auto read = movie_->source_->read(frame_, rgba, row);
+    if (read) return read;
+    Error error = std::move(read).error();
+    error.message = fmt::format("frame {} {}", frame_ + 1, error.message);
+    error.file = path_.string();
+    return error;
+  }
+
+  std::shared_ptr<Movie> movie_;
+  int frame_;
 };
 
-using namespace std::string_view_literals;
-constexpr std::array<Signature, 13> kSignatures{{
-    {4, "ftyp"sv, MovieContainer::movie, "MP4"},
-    {4, "moov"sv, MovieContainer::movie, "QuickTime"},
-    {4, "mdat"sv, MovieContainer::movie, "QuickTime"},
-    {4, "wide"sv, MovieContainer::movie, "QuickTime"},
-    {8, "AVI "sv, MovieContainer::movie, "AVI"},
-    {0, "\x1a\x45\xdf\xa3"sv, MovieContainer::unreadable_movie, "Matroska or WebM"},
-    {0, "\0\0\1\xba"sv, MovieContainer::unreadable_movie, "MPEG program stream"},
-    {0, "\0\0\1\xb3"sv, MovieContainer::unreadable_movie, "MPEG video"},
-    {0, "OggS"sv, MovieContainer::unreadable_movie, "Ogg"},
-    {0, "FLV\1"sv, MovieContainer::unreadable_movie, "Flash video"},
-    {0, "\x30\x26\xb2\x75\x8e\x66\xcf\x11"sv, MovieContainer::unreadable_movie, "Windows Media"},
-    {0, "\x06\x0e\x2b\x34\x02\x05\x01\x01"sv, MovieContainer::unreadable_movie, "MXF"},
-    {0, "DKIF"sv, MovieContainer::unreadable_movie, "IVF"},
-}};
+namespace {
 
-/// Pictures whose files are boxes too.
-bool is_still(std::string_view brand) {
-  for (const std::string_view still : {"avif"sv, "heic"sv, "heix"sv, "mif1"sv, "jxl "sv, "jp2 "sv, "crx "sv})
-    if (brand == still) return true;
-  return false;
+double seconds(const MovieFacts& facts, long long units) {
+  const Rational base = facts.time_base;
+  return base.denominator > 0 ? static_cast<double>(units) * base.numerator / base.denominator : 0;
+}
+
+void tell(const Movie& movie, Diagnostics& diagnostics) {
+  const MovieFacts& facts = movie.facts();
+  const std::string name = movie.file().string();
+  for (const std::string& note : facts.notes) diagnostics.note(fmt::format("{}: {}", name, note));
+  if (facts.interlaced)
+    diagnostics.warn(fmt::format("{}: is interlaced; its frames are read with both fields in them", name));
+  if (facts.turned != 0)
+    diagnostics.warn(fmt::format("{}: asks to be turned by {:.4g} degrees, which is not done", name, facts.turned));
+  if (facts.missing > 0) {
+    const std::size_t whole = facts.pts.size() - facts.missing;
+    diagnostics.warn(facts.missing == 1 ? fmt::format("{}: is truncated: it ends after frame {}", name, whole)
+                                        : fmt::format("{}: is truncated: frames {}-{} are missing", name, whole + 1,
+                                                      facts.pts.size()));
+  }
 }
 
 }  // namespace
 
-MovieContainer movie_container(const std::filesystem::path& file, const char** name) {
-  std::array<char, 377> head{};
-  std::ifstream in(file, std::ios::binary);
-  in.read(head.data(), head.size());
-  const std::string_view bytes(head.data(), static_cast<std::size_t>(in.gcount()));
-  const auto found = [&](MovieContainer kind, const char* container) {
-    if (name) *name = container;
-    return kind;
-  };
-  for (const Signature& signature : kSignatures) {
-    if (bytes.size() < signature.at + signature.bytes.size() ||
-        bytes.substr(signature.at, signature.bytes.size()) != signature.bytes)
-      continue;
-    if (signature.bytes == "ftyp" && bytes.size() >= 12 && is_still(bytes.substr(8, 4))) return MovieContainer::none;
-    return found(signature.kind, signature.name);
-  }
-  // Transport streams have no name, but a mark at the start of every packet.
-  constexpr std::size_t kPacket = 188;
-  if (bytes.size() == head.size() && bytes[0] == 'G' && bytes[kPacket] == 'G' && bytes[2 * kPacket] == 'G')
-    return found(MovieContainer::unreadable_movie, "MPEG transport stream");
-  return MovieContainer::none;
-}
-
-Size Movie::size() const { return file_->parts()[static_cast<std::size_t>(color_.part)].data_window.size(); }
-
-Result<std::unique_ptr<Movie>> Movie::open(const std::filesystem::path& file, const SizeLimits& limits,
+Result<std::shared_ptr<Movie>> Movie::open(const std::filesystem::path& file, const SizeLimits& limits,
                                            Diagnostics& diagnostics) {
-  AFTERGLOW_TRY(std::unique_ptr<PictureFile> opened, open_picture(file, limits));
-  if (opened->frames() < 1)
-    return Error{ErrorKind::io, "is a video that says of no frame where it is; remultiplex it with ffmpeg -c copy",
-                 file.string()};
-  std::unique_ptr<Movie> movie(new Movie());
-  auto color = find_color(opened->parts(), "");
-  if (!color) return Error{ErrorKind::io, color.error().message, file.string()};
-  movie->color_ = std::move(color).value();
-  movie->encoding_ = opened->color_encoding(movie->color_, diagnostics);
-  movie->facts_ = std::make_shared<const FileFacts>(opened->facts(movie->color_));
-  movie->frames_ = opened->frames();
-  movie->fps_ = opened->frames_per_second();
-  movie->file_ = std::move(opened);
+  const auto module = ffmpeg_module();
+  if (!module) return Error{ErrorKind::io, module.error().message, file.string()};
+  std::shared_ptr<Movie> movie(new Movie());
+  movie->file_ = file;
+  AFTERGLOW_TRY(movie->source_, (*module)->open({file, movie_format(file), limits}));
+  tell(*movie, diagnostics);
   return movie;
 }
 
-Result<Picture> Movie::read(int frame) {
-  const std::string name = file_->path().string();
-  if (frame < 0 || frame >= frames_)
-    return Error{ErrorKind::io, fmt::format("has no frame {}; it has {}", frame + 1, frames_), name};
-  try {
-    Picture picture;
-    const FilePart& part = file_->parts()[static_cast<std::size_t>(color_.part)];
-    picture.color = Image(part.data_window.width, part.data_window.height, 4);
-    picture.data_window = part.data_window;
-    picture.display_window = part.display_window;
-    picture.has_alpha = color_.channels[3] >= 0;
-    picture.facts = facts_;
-    std::vector<ReadTarget> targets;
-    for (std::size_t c = 0; c < 4; ++c)
-      if (color_.channels[c] >= 0 && (c == 0 || color_.channels[c] != color_.channels[c - 1]))
-        targets.push_back({color_.channels[c], picture.color.pixels.data() + c, 4,
-                           static_cast<std::size_t>(picture.color.width) * 4});
-    {
-      const std::lock_guard lock(mutex_);
-      file_->select_frame(frame);
-      if (auto read = file_->read(color_.part, targets); !read) {
-        Error error = std::move(read).error();
-        error.message = fmt::format("frame {} {}", frame + 1, error.message);
-        return error;
-      }
-    }
-    decode_color(encoding_, picture.color, picture.sanitized);
-    return picture;
-  } catch (const std::exception& error) {
-    return Error{ErrorKind::io, "cannot be read: " + exception_text(error), name};
+double Movie::fps() const {
+  const Rational rate = facts().rate;
+  if (rate.numerator > 0 && rate.denominator > 0) return static_cast<double>(rate.numerator) / rate.denominator;
+  const double length = frames() > 1 ? time(frames() - 1) : 0;
+  return length > 0 ? (frames() - 1) / length : 0;
+}
+
+bool Movie::variable_rate() const {
+  const auto& pts = facts().pts;
+  long long least = 0, most = 0;
+  for (std::size_t i = 1; i + facts().missing < pts.size(); ++i) {
+    const long long step = pts[i] - pts[i - 1];
+    least = i == 1 ? step : std::min(least, step);
+    most = i == 1 ? step : std::max(most, step);
   }
+  constexpr long long kRounding = 2;  // of stamps in coarse units
+  return most - least > kRounding && static_cast<double>(most - least) > 0.01 * static_cast<double>(most);
+}
+
+double Movie::time(int frame) const {
+  const auto& pts = facts().pts;
+  return seconds(facts(), pts[static_cast<std::size_t>(frame)] - pts.front());
+}
+
+std::unique_ptr<PictureFile> Movie::frame(std::shared_ptr<Movie> movie, int frame) {
+  return std::make_unique<MovieFrameFile>(std::move(movie), frame);
 }
 
 }  // namespace afterglow

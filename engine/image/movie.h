@@ -1,48 +1,44 @@
 // SPDX-License-Identifier: MIT
-// A video file, frame by frame. What Debian's OpenImageIO reads through FFmpeg: MP4, QuickTime and AVI; Matroska and
-// WebM are refused by it, and MPEG streams would keep it busy for ever.
+// A video file, frame by frame: any frame by number is the one that a decode from the beginning shows.
 #pragma once
 
 #include <filesystem>
 #include <memory>
-#include <mutex>
 
 #include "core/diagnostics.h"
 #include "core/result.h"
-#include "image/color_encoding.h"
-#include "image/layers.h"
-#include "image/picture.h"
+#include "image/movie_container.h"
+#include "image/movie_source.h"
 #include "image/picture_file.h"
 
 namespace afterglow {
 
-/// What a file's first bytes say. `unreadable_movie`: a container that is known and that nobody here reads.
-enum class MovieContainer { none, movie, unreadable_movie };
-/// Files that cannot be opened are none. `name`, when given: what the container is called.
-MovieContainer movie_container(const std::filesystem::path& file, const char** name = nullptr);
-
-/// Thread-safe: one frame is read at a time. Frames in order are cheap; others make the decoder look for a key frame.
+/// Thread-safe. Frames in order are cheap; others are decoded from the key frame before them.
 class Movie {
  public:
-  /// Errors: io (no video that can be read, with what can be done about it; sides beyond the limits).
-  static Result<std::unique_ptr<Movie>> open(const std::filesystem::path& file, const SizeLimits& limits,
+  /// Reads the file once, for an index of its frames. Notes what is assumed where it says nothing, warns of what is
+  /// damaged or missing. Errors: io (no video that can be read, with what can be done about it; sides beyond the
+  /// limits).
+  static Result<std::shared_ptr<Movie>> open(const std::filesystem::path& file, const SizeLimits& limits,
                                              Diagnostics& diagnostics);
 
-  int frames() const { return frames_; }
-  double fps() const { return fps_; }  ///< frames a second; 0: the file does not say
-  Size size() const;
-  /// `frame` counts from 0. Errors: io (beyond the end, damaged).
-  Result<Picture> read(int frame);
+  const std::filesystem::path& file() const { return file_; }
+  const MovieFacts& facts() const { return source_->facts(); }
+  /// Those that are missing at the end of a truncated file too: reading them is an error.
+  int frames() const { return static_cast<int>(facts().pts.size()); }
+  double fps() const;  ///< frames a second, on the average; 0: the file does not say
+  /// Frames do not come at one rate.
+  bool variable_rate() const;
+  /// When the frame shows, in seconds from the first one.
+  double time(int frame) const;
+  /// The frame as a picture file, for the reader; it keeps the movie open.
+  static std::unique_ptr<PictureFile> frame(std::shared_ptr<Movie> movie, int frame);
 
  private:
   Movie() = default;
-  std::mutex mutex_;
-  std::unique_ptr<PictureFile> file_;
-  ChannelChoice color_;
-  ColorEncoding encoding_;
-  std::shared_ptr<const FileFacts> facts_;
-  int frames_ = 0;
-  double fps_ = 0;
+  std::filesystem::path file_;
+  std::shared_ptr<MovieSource> source_;
+  friend class MovieFrameFile;
 };
 
 }  // namespace afterglow

@@ -12,6 +12,7 @@
 #include "core/saturated.h"
 #include "core/text.h"
 #include "image/icc_profile.h"
+#include "image/input_space.h"
 #include "image/oiio_metadata.h"
 
 namespace afterglow {
@@ -45,16 +46,11 @@ class OiioFile : public PictureFile {
       AFTERGLOW_CHECK(open_input(format));
       format_ = input_->format_name();
       AFTERGLOW_CHECK(add_parts(limits));
-      if (specs_.front().get_int_attribute("oiio:Movie", 0) != 0) note_movie(specs_.front());
     } catch (const std::exception& error) {
       return failed("cannot be read: " + exception_text(error));
     }
     return {};
   }
-
-  int frames() const override { return frames_; }
-  double frames_per_second() const override { return frames_per_second_; }
-  void select_frame(int frame) override { frame_ = frame; }
 
   std::uint64_t buffer_bytes(int part) const override {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
@@ -88,9 +84,9 @@ class OiioFile : public PictureFile {
     const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(color.part)];
     ColorEncoding encoding;
     encoding.grey = color.channels[0] == color.channels[1];
-    if (color.channels[3] >= 0)
-      encoding.alpha =
-          spec.get_int_attribute("oiio:UnassociatedAlpha", 0) ? AlphaKind::straight : AlphaKind::associated;
+    // JPEG 2000 is left straight where that is asked for, without a word.
+    const bool straight = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || format_ == "jpeg2000";
+    if (color.channels[3] >= 0) encoding.alpha = straight ? AlphaKind::straight : AlphaKind::associated;
     const OIIO::TypeDesc type = sample_type(color);
     const bool integer = !type.is_floating_point();
     if (integer && type.size() <= 2) encoding.max_code = type.size() == 1 ? 255 : 65535;
@@ -98,7 +94,7 @@ class OiioFile : public PictureFile {
     if (use_profile(spec, encoding, diagnostics)) return encoding;
     if (container_.kind == ContainerFacts::Kind::png) {
       use_png_chunks(encoding, diagnostics);
-    } else if (integer) {
+    } else if (integer && format_ != "pnm") {  // whose files say nothing: "Rec709" is the library's guess
       use_color_space(spec.get_string_attribute("oiio:ColorSpace"), encoding, diagnostics);
     }
     return encoding;
@@ -160,13 +156,6 @@ class OiioFile : public PictureFile {
     return {};
   }
 
-  void note_movie(const OIIO::ImageSpec& spec) {
-    frames_ = spec.get_int_attribute("oiio:subimages", 0);
-    int rate[2] = {0, 1};
-    if (spec.getattribute("FramesPerSecond", OIIO::TypeRational, rate) && rate[1] != 0)
-      frames_per_second_ = static_cast<double>(rate[0]) / rate[1];
-  }
-
   OIIO::TypeDesc sample_type(const ChannelChoice& color) const {
     return specs_[static_cast<std::size_t>(color.part)].channelformat(color.channels[0]);
   }
@@ -178,7 +167,7 @@ class OiioFile : public PictureFile {
     // Looking for further pages of a TIFF leaves its reader in a state in which it keeps silent when a disk fails.
     if (format_ == "tiff" && !std::exchange(opened_for_pixels_, true)) AFTERGLOW_CHECK(open_input(format_));
     static_cast<void>(input_->geterror());  // of earlier calls that succeeded another way
-    const bool read = input_->read_image(part + frame_, 0, first.channel, first.channel + channels, OIIO::TypeFloat,
+    const bool read = input_->read_image(part, 0, first.channel, first.channel + channels, OIIO::TypeFloat,
                                          first.base, x_stride, y_stride, y_stride * spec.height);
     // OpenImageIO 2.4 returns true, and black, for strips of a TIFF that are damaged or missing; but it says so.
     const std::string why = input_->geterror();
@@ -225,6 +214,8 @@ class OiioFile : public PictureFile {
     if (space.empty() || space == "srgb") return;
     if (space == "linear" || space == "lin_srgb" || space == "lin_rec709" || space == "scene_linear") {
       encoding.curve = TransferCurve::linear;
+    } else if (space == "kodaklog") {
+      use_input_space(*find_input_space("cineon").value(), encoding);
     } else if (space == "rec709") {
       encoding.curve = TransferCurve::rec709;
     } else if (space.starts_with("gamma")) {
@@ -241,8 +232,6 @@ class OiioFile : public PictureFile {
   OIIO::ImageInput::unique_ptr input_;
   bool opened_for_pixels_ = false;
   std::vector<OIIO::ImageSpec> specs_;
-  int frames_ = 0, frame_ = 0;  ///< of a video; its frames are sub-images of one part
-  double frames_per_second_ = 0;
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ struct OiioModule {
   /// With the reader of that name alone: see picture_format.h.
   Result<std::unique_ptr<PictureFile>> (*open)(const std::filesystem::path& file, const std::string& format,
                                                const ContainerFacts& container, const SizeLimits& limits);
-  /// JPEG, TIFF, HDR; `name` is for messages.
+  /// See oiio_write.h; `name` is for messages.
   Result<void> (*write)(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                         const WriteOptions& options);
   /// See visible_difference.h.

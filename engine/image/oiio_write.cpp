@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <string_view>
 #include <vector>
 
 #include "core/exception.h"
@@ -15,7 +17,9 @@
 #include "image/metadata.h"
 #include "image/oiio_metadata.h"
 #include "image/output_metadata.h"
+#include "image/output_space.h"
 #include "image/strips.h"
+#include "image/write_webp.h"
 
 namespace afterglow {
 namespace {
@@ -43,12 +47,23 @@ class OiioOutput : public OIIO::Filesystem::IOProxy {
   OutputFile& file_;
 };
 
+/// Codes of 10 and 12 bits as OpenImageIO wants them: of 16, the upper bits once more below.
+void widen(SampleType type, std::uint8_t* bytes, std::size_t samples) {
+  const int bits = type == SampleType::uint10 ? 10 : type == SampleType::uint12 ? 12 : 16;
+  if (bits == 16 || type == SampleType::uint8) return;
+  auto* codes = reinterpret_cast<std::uint16_t*>(bytes);
+  for (std::size_t i = 0; i < samples; ++i)
+    codes[i] = static_cast<std::uint16_t>(codes[i] << (16 - bits) | codes[i] >> (2 * bits - 16));
+}
+
 OIIO::TypeDesc oiio_type(SampleType type) {
   switch (type) {
     case SampleType::half:
       return OIIO::TypeHalf;
     case SampleType::float32:
       return OIIO::TypeFloat;
+    case SampleType::uint10:
+    case SampleType::uint12:
     case SampleType::uint16:
       return OIIO::TypeUInt16;
     default:
@@ -56,13 +71,15 @@ OIIO::TypeDesc oiio_type(SampleType type) {
   }
 }
 
-bool is_integer(SampleType type) { return type == SampleType::uint8 || type == SampleType::uint16; }
-
-void describe_color(OIIO::ImageSpec& spec, SampleType type, const FileFacts* facts) {
-  if (!is_integer(type)) {
+/// What the file is to say of its colours. Spaces that it has no word for are not told.
+void describe_color(OIIO::ImageSpec& spec, const StripForm& form, const FileFacts* facts) {
+  const std::string_view space = form.space ? form.space->name() : "srgb";
+  if (!is_integer(form.type) || space == "linear") {
     spec.attribute("oiio:ColorSpace", "Linear");
     return;
   }
+  if (space == "cineon") spec.attribute("oiio:ColorSpace", "KodakLog");
+  if (space != "srgb") return;
   spec.attribute("oiio:ColorSpace", "sRGB");
   if (!facts || !facts->had_profile) return;
   const std::vector<std::uint8_t> profile = srgb_icc_profile();
@@ -71,16 +88,24 @@ void describe_color(OIIO::ImageSpec& spec, SampleType type, const FileFacts* fac
                    profile.data());
 }
 
-OIIO::ImageSpec spec_for(const Picture& picture, const OutputFormat& format, SampleType type, bool alpha,
-                         const WriteOptions& options) {
-  OIIO::ImageSpec spec(picture.display_window.width, picture.display_window.height, alpha ? 4 : 3, oiio_type(type));
+Result<OIIO::ImageSpec> spec_for(const Picture& picture, const OutputFormat& format, const StripForm& form,
+                                 const WriteOptions& options) {
+  OIIO::ImageSpec spec(picture.display_window.width, picture.display_window.height, form.alpha ? 4 : 3,
+                       oiio_type(form.type));
   if (picture.facts) spec.extra_attribs = param_list(kept_metadata(*picture.facts));
-  describe_color(spec, type, picture.facts.get());
-  if (alpha) {
+  describe_color(spec, form, picture.facts.get());
+  if (form.alpha) {
     spec.alpha_channel = 3;
-    if (is_integer(type)) spec.attribute("oiio:UnassociatedAlpha", 1);
+    if (is_integer(form.type)) spec.attribute("oiio:UnassociatedAlpha", 1);
   }
+  AFTERGLOW_TRY(const Compression compression, parse_compression(options.compression));
   switch (format.kind) {
+    case OutputKind::dpx:
+      spec.attribute("oiio:BitsPerSample", std::bit_width(static_cast<unsigned>(max_code(form.type))));
+      break;
+    case OutputKind::targa:
+      spec.attribute("compression", compression.name.empty() ? "rle" : compression.name);
+      break;
     case OutputKind::jpeg:
       spec.attribute("CompressionQuality", std::clamp(options.jpeg_quality, 1, 100));
       spec.attribute("jpeg:subsampling", "4:4:4");
@@ -116,13 +141,20 @@ Result<void> read_back(const std::string& name) {
   return {};
 }
 
+/// Five halvings of the sides are what OpenImageIO asks OpenJPEG for.
+Result<void> check_jpeg2000(Size size) {
+  constexpr int kLeast = 32;
+  if (size.width >= kLeast && size.height >= kLeast) return {};
+  return Error{ErrorKind::io,
+               fmt::format("cannot be written: JPEG 2000 files have sides of at least {} pixels, not {}x{}", kLeast,
+                           size.width, size.height)};
+}
+
 /// Writes to `name`, or to `proxy` where there is one.
 Result<void> write_rows(const Picture& picture, const OutputFormat& format, const std::string& name, OiioOutput* proxy,
                         const WriteOptions& options) {
-  const SampleType type = sample_type(format, options, picture.facts.get());
-  const StripForm form{type, picture.has_alpha && format.alpha, dithers(options, type), options.dither_x,
-                       options.dither_y};
-  const OIIO::ImageSpec spec = spec_for(picture, format, form.type, form.alpha, options);
+  const StripForm form = strip_form(picture, format, options);
+  AFTERGLOW_TRY(const OIIO::ImageSpec spec, spec_for(picture, format, form, options));
   const auto output = OIIO::ImageOutput::create(format.name);
   if (!output) return Error{ErrorKind::io, fmt::format("cannot be written: OpenImageIO has no {} writer", format.name)};
   if (proxy) output->set_ioproxy(proxy);
@@ -131,10 +163,23 @@ Result<void> write_rows(const Picture& picture, const OutputFormat& format, cons
   for (int y = 0; y < spec.height; y += kRows) {
     const int rows = std::min(kRows, spec.height - y);
     encode_strip(picture, form, y, rows, strip.data());
+    widen(form.type, strip.data(), form.row_bytes(picture) * static_cast<std::size_t>(rows) / form.sample_bytes());
     if (!output->write_scanlines(y, y + rows, 0, oiio_type(form.type), strip.data())) return library_failed(*output);
   }
-  if (!output->close()) return library_failed(*output);
+  const bool closed = output->close();
+  // A JPEG 2000 that fails here returns true; a TIFF that is well says that Exif data failed.
+  if (!closed || (format.kind == OutputKind::jpeg2000 && output->has_error())) return library_failed(*output);
   return {};
+}
+
+/// Lossless, or with the quality of "lossy:N".
+Result<void> write_webp(const Picture& picture, const OutputFormat& format, OutputFile& out,
+                        const WriteOptions& options) {
+  constexpr float kQuality = 90;
+  AFTERGLOW_TRY(const Compression compression, parse_compression(options.compression));
+  std::optional<float> quality;
+  if (compression.name == "lossy") quality = compression.level < 0 ? kQuality : std::min(compression.level, 100.0f);
+  return write_webp(picture, strip_form(picture, format, options), out, quality);
 }
 
 /// libtiff opens its file itself: OpenImageIO 2.4 cannot look back at a TIFF that goes through a proxy, and then
@@ -153,6 +198,8 @@ Result<void> write_with_oiio(const Picture& picture, const OutputFormat& format,
                              const std::string& name, const WriteOptions& options) {
   try {
     if (format.kind == OutputKind::tiff) return write_through_memory(picture, format, out, options);
+    if (format.kind == OutputKind::webp) return write_webp(picture, format, out, options);
+    if (format.kind == OutputKind::jpeg2000) AFTERGLOW_CHECK(check_jpeg2000(picture.display_window.size()));
     OiioOutput proxy(out, name);
     return write_rows(picture, format, name, &proxy, options);
   } catch (const std::exception& error) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes JPEG, TIFF and HDR through OpenImageIO.
+// Writes JPEG, TIFF, HDR, DPX, Targa, WebP and JPEG 2000 through OpenImageIO.
 #pragma once
 
 #include "image/output_file.h"

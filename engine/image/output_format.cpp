@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <string_view>
 
 #include "core/text.h"
 #include "image/metadata.h"
+#include "image/output_space.h"
 
 namespace afterglow {
 namespace {
@@ -30,6 +32,14 @@ const std::vector<OutputFormat>& formats() {
        {uint8, uint16, half, float32},
        {"none", "lzw", "zip", "packbits"},
        true},
+      {OutputKind::dpx, "dpx", {".dpx"}, {uint8, uint10, uint12, uint16}, {}, true, "cineon"},
+      {OutputKind::cineon, "", {".cin"}, {uint10}, {}, false, "cineon"},
+      {OutputKind::targa, "targa", {".tga"}, {uint8}, {"none", "rle"}, true},
+      {OutputKind::webp, "webp", {".webp"}, {uint8}, {"lossless", "lossy"}, true},
+      {OutputKind::jpeg2000, "jpeg2000", {".jp2", ".j2k"}, {uint8, uint16}, {}, true},
+      {OutputKind::ppm, "", {".ppm", ".pnm"}, {uint8, uint16}, {}, false},
+      {OutputKind::pam, "", {".pam"}, {uint8, uint16}, {}, true},
+      {OutputKind::pfm, "", {".pfm"}, {float32}, {}, false},
   };
   return all;
 }
@@ -42,6 +52,10 @@ const char* type_name(SampleType type) {
       return "float";
     case SampleType::uint8:
       return "uint8";
+    case SampleType::uint10:
+      return "uint10";
+    case SampleType::uint12:
+      return "uint12";
     case SampleType::uint16:
       return "uint16";
     default:
@@ -56,8 +70,9 @@ std::vector<std::string> all_extensions() {
   return names;
 }
 
-/// EXR methods that take a level: a zlib level, or the error that DWA allows.
+/// Methods that take a level: EXR's a zlib level, or the error that DWA allows; WebP's a quality.
 bool takes_level(const OutputFormat& format, const std::string& name) {
+  if (format.kind == OutputKind::webp) return name == "lossy";
   return format.kind == OutputKind::exr && (name == "zip" || name == "zips" || name == "dwaa" || name == "dwab");
 }
 
@@ -99,6 +114,11 @@ Result<const OutputFormat*> output_format(const std::filesystem::path& file, con
         fmt::format("{} files cannot hold samples of type {}", found->extensions[0].substr(1), type_name(options.type)),
         file.string(), 0, join(names)};
   }
+  if (options.space && !is_integer(sample_type(*found, options, nullptr)))
+    return Error{ErrorKind::usage,
+                 fmt::format("{} files hold scene-linear light; --output-space is for integer samples",
+                             found->extensions[0].substr(1)),
+                 file.string()};
   if (options.keep_layers && found->kind != OutputKind::exr)
     return Error{ErrorKind::usage, "only EXR files can keep layers", file.string(), 0, ".exr"};
   if (options.compression.empty()) return found;
@@ -120,12 +140,43 @@ SampleType sample_type(const OutputFormat& format, const WriteOptions& options, 
     case OutputKind::exr:
       return facts && facts->floating && facts->bits > 16 ? SampleType::float32 : SampleType::half;
     case OutputKind::hdr:
+    case OutputKind::pfm:
       return SampleType::float32;
+    case OutputKind::dpx:
+    case OutputKind::cineon:
+      return SampleType::uint10;
     case OutputKind::jpeg:
+    case OutputKind::targa:
+    case OutputKind::webp:
       return SampleType::uint8;
     default:
       return facts && !facts->floating && facts->bits > 8 ? SampleType::uint16 : SampleType::uint8;
   }
+}
+
+bool is_integer(SampleType type) {
+  using enum SampleType;
+  return type == uint8 || type == uint10 || type == uint12 || type == uint16;
+}
+
+int max_code(SampleType type) {
+  switch (type) {
+    case SampleType::uint8:
+      return 255;
+    case SampleType::uint10:
+      return 1023;
+    case SampleType::uint12:
+      return 4095;
+    default:
+      return 65535;
+  }
+}
+
+const OutputSpace* stored_space(const OutputFormat& format, const WriteOptions& options, SampleType type) {
+  if (!is_integer(type)) return nullptr;
+  const OutputSpace* space = options.space;
+  if (!space && format.space) space = find_output_space(format.space).value();
+  return space && std::string_view(space->name()) == "srgb" ? nullptr : space;
 }
 
 }  // namespace afterglow

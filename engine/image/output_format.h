@@ -13,22 +13,30 @@ namespace afterglow {
 
 struct FileFacts;
 
-enum class OutputKind { exr, hdr, png, jpeg, tiff };
+enum class OutputKind { exr, hdr, png, jpeg, tiff, dpx, cineon, targa, webp, jpeg2000, ppm, pam, pfm };
 
 struct OutputFormat {
   OutputKind kind;
-  const char* name;                     ///< OpenImageIO's
+  const char* name;                     ///< OpenImageIO's, where it writes them
   std::vector<std::string> extensions;  ///< with the dot, lower case
   std::vector<SampleType> types;
   std::vector<std::string> compressions;  ///< empty: no choice
   bool alpha;
+  const char* space = nullptr;  ///< of its integers, by the name of input_space.h; null: sRGB
 };
 
-/// Errors: usage (unknown extension; the sample type or compression is not one of the format's).
+/// Errors: usage (unknown extension; the sample type, the space or the compression is not one of the format's).
 Result<const OutputFormat*> output_format(const std::filesystem::path& file, const WriteOptions& options);
 
 /// The type that `options.type` comes to for this format; `facts` of the input may be null.
 SampleType sample_type(const OutputFormat& format, const WriteOptions& options, const FileFacts* facts);
+
+bool is_integer(SampleType type);
+/// The largest code of an integer type.
+int max_code(SampleType type);
+
+/// The space that samples of this type are stored in; null: sRGB for integers, scene-linear light for floats.
+const OutputSpace* stored_space(const OutputFormat& format, const WriteOptions& options, SampleType type);
 
 /// Is noise put between the codes of this type?
 inline bool dithers(const WriteOptions& options, SampleType type) {

@@ -53,15 +53,11 @@ Result<std::unique_ptr<PictureFile>> open_picture(const std::filesystem::path& f
     AFTERGLOW_CHECK(check_sides({0, 0, container.size->width, container.size->height}, "picture", limits, file));
   AFTERGLOW_CHECK(check_decoder(file, container.decoder_bytes, limits));
   AFTERGLOW_CHECK(check_room(file, container.least_file_bytes));
-  const char* container_name = nullptr;
-  if (container.kind == ContainerFacts::Kind::other &&
-      movie_container(file, &container_name) == MovieContainer::unreadable_movie)
-    return Error{ErrorKind::io,
-                 fmt::format("is a video in a container that is not read ({}); `ffmpeg -i {} -c copy {}` puts it into "
-                             "one that is",
-                             container_name, file.filename().string(),
-                             std::filesystem::path(file.filename()).replace_extension(".mp4").string()),
-                 file.string(), 0, "MP4, QuickTime, AVI"};
+  if (container.kind != ContainerFacts::Kind::jpeg && !movie_format(file).empty()) {
+    Diagnostics quiet;  // whoever wants to know opens the movie
+    AFTERGLOW_TRY(auto movie, Movie::open(file, limits, quiet));
+    return Movie::frame(std::move(movie), 0);
+  }
   const std::string format = picture_format(file);
   if (format.empty())
     return Error{ErrorKind::io, "is not a picture in a format that is known", file.string(), 0, kPictureFormats};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One open picture file, whatever its format: parts and channels by name, samples as stored. Behind it are OpenEXR for
-// .exr and OpenImageIO for everything else.
+// .exr, FFmpeg for frames of videos and OpenImageIO for everything else.
 #pragma once
 
 #include <cstdint>
@@ -35,12 +35,6 @@ class PictureFile {
   const std::filesystem::path& path() const { return path_; }
   const std::string& format() const { return format_; }  ///< OpenImageIO's name of it
   const std::vector<FilePart>& parts() const { return parts_; }
-
-  /// Of a video: how many frames it has and how many it shows a second (0: unknown); 0 frames of everything else.
-  virtual int frames() const { return 0; }
-  virtual double frames_per_second() const { return 0; }
-  /// Which frame of a video `read` reads, from 0; the first until then.
-  virtual void select_frame(int) {}
 
   /// Memory for decoding this part, besides the targets.
   virtual std::uint64_t buffer_bytes(int part) const = 0;

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "core/text.h"
-#include "image/movie.h"
 
 namespace afterglow {
 namespace {
@@ -71,7 +70,6 @@ std::string picture_format(const std::filesystem::path& file) {
   });
   if (found != kSignatures.end()) return found->format;
   if (is_pnm(head)) return "pnm";
-  if (movie_container(file) == MovieContainer::movie) return "ffmpeg";
   return is_targa(file, in) ? "targa" : "";
 }
 

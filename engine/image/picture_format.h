@@ -17,7 +17,7 @@ std::string picture_format(const std::filesystem::path& file);
 /// What messages say is allowed.
 inline constexpr const char* kPictureFormats =
     "EXR, PNG, JPEG, TIFF, Radiance HDR, PNM and PFM, DPX, Cineon, Targa, BMP, WebP, JPEG 2000, HEIF and AVIF, SGI, "
-    "GIF, "
-    "MP4, QuickTime, AVI";
+    "GIF; "
+    "videos: MP4, QuickTime, Matroska, WebM, AVI, MXF, MPEG streams, Y4M, animated GIF, PNG and WebP";
 
 }  // namespace afterglow

@@ -16,6 +16,7 @@
 #include "core/text.h"
 #include "image/color_encoding.h"
 #include "image/input_space.h"
+#include "image/movie.h"
 #include "image/orientation.h"
 #include "image/picture_file.h"
 
@@ -143,7 +144,11 @@ Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, c
 
 Result<Plan> make_plan(const fs::path& file, const ReadOptions& options, const std::vector<std::string>& auxiliary) {
   Plan plan;
-  AFTERGLOW_TRY(plan.file, open_picture(file, limits_of(options)));
+  if (options.movie) {
+    plan.file = Movie::frame(options.movie, options.movie_frame);
+  } else {
+    AFTERGLOW_TRY(plan.file, open_picture(file, limits_of(options)));
+  }
   auto color = find_color(plan.file->parts(), options.layer);
   if (!color) return in_file(std::move(color).error(), file);
   plan.color = std::move(color).value();

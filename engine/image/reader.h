@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@
 #include "image/picture.h"
 
 namespace afterglow {
+
+class Movie;
 
 /// `FILE[:NAME]` of --depth, --normal and --motion: another file and/or a channel or layer in it.
 struct LayerChoice {
@@ -30,6 +33,9 @@ struct ReadOptions {
   std::string layer;
   /// Name of the space that colours are stored in (image/input_space.h), whatever the file says; empty: what it says.
   std::string input_space;
+  /// A frame of a video: `file` of the functions below is only its name then.
+  std::shared_ptr<Movie> movie;
+  int movie_frame = 0;
   LayerChoice depth, normal, motion;
   std::vector<std::string>
       auxiliary;  ///< what the stack asks for: "depth", "normal", "motion", "layer:NAME"; only these are read

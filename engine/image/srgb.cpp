@@ -56,8 +56,9 @@ CodeEncoder::CodeEncoder(Curve curve, int max_code) : max_code_(static_cast<std:
 }
 
 const CodeEncoder& CodeEncoder::srgb(int max_code) {
-  static const CodeEncoder bytes(Curve::srgb, 255), words(Curve::srgb, 65535);
-  return max_code == 255 ? bytes : words;
+  static const CodeEncoder bytes(Curve::srgb, 255), words(Curve::srgb, 65535), ten(Curve::srgb, 1023),
+      twelve(Curve::srgb, 4095);
+  return max_code == 255 ? bytes : max_code == 1023 ? ten : max_code == 4095 ? twelve : words;
 }
 
 std::vector<float> srgb_decode_table(int max_code) {

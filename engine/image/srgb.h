@@ -17,7 +17,7 @@ double linear_to_srgb(double linear);
 class CodeEncoder {
  public:
   enum class Curve { srgb, linear };
-  /// `max_code` 255 or 65535.
+  /// `max_code` 255, 1023, 4095 or 65535.
   CodeEncoder(Curve curve, int max_code);
 
   std::uint32_t operator()(float linear) const {
@@ -33,7 +33,7 @@ class CodeEncoder {
     return code;
   }
 
-  /// The encoder for sRGB with 255 or 65535 as its largest code; made once, kept for the life of the process.
+  /// The encoder for sRGB with 255, 1023, 4095 or 65535 as its largest code; made once, kept for the life of the process.
   static const CodeEncoder& srgb(int max_code);
 
  private:

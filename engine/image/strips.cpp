@@ -6,14 +6,26 @@
 
 #include "core/parallel.h"
 #include "image/encode.h"
+#include "image/output_format.h"
 
 namespace afterglow {
+
+/// Alpha in three samples a word is what OpenImageIO 2.4 writes wrongly (DPX, 10 bits).
+StripForm strip_form(const Picture& picture, const OutputFormat& format, const WriteOptions& options) {
+  const SampleType type = sample_type(format, options, picture.facts.get());
+  return {type,
+          picture.has_alpha && format.alpha && !(type == SampleType::uint10),
+          dithers(options, type),
+          options.dither_x,
+          options.dither_y,
+          stored_space(format, options, type)};
+}
 
 void encode_rows(const Picture& picture, const StripForm& form, int first, int rows, std::uint8_t* bytes) {
   const auto width = static_cast<std::size_t>(picture.display_window.width),
              channels = std::size_t{form.alpha ? 4u : 3u};
   const float padding = picture.has_alpha ? 0.0f : 1.0f;
-  const CodeRules rules{form.type == SampleType::uint16 ? 65535 : 255, form.alpha, form.dither};
+  const CodeRules rules{max_code(form.type), form.alpha, form.dither, form.space};
   if (form.type == SampleType::uint8 && !picture.unorm8.empty()) {
     std::vector<std::uint8_t> row(width * 4);
     for (int i = 0; i < rows; ++i) {
@@ -22,13 +34,13 @@ void encode_rows(const Picture& picture, const StripForm& form, int first, int r
     }
     return;
   }
-  const bool integers = form.type == SampleType::uint8 || form.type == SampleType::uint16;
+  const bool integers = is_integer(form.type);
   std::vector<float> rgba(width * 4), packed(integers ? 0 : width * channels);
   for (int i = 0; i < rows; ++i, bytes += form.row_bytes(picture)) {
     display_row(picture, first + i, padding, rgba.data());
     if (form.type == SampleType::uint8) {
       encode_row(rules, rgba.data(), static_cast<int>(width), form.dither_x, form.dither_y + first + i, bytes);
-    } else if (form.type == SampleType::uint16) {
+    } else if (integers) {
       encode_row(rules, rgba.data(), static_cast<int>(width), form.dither_x, form.dither_y + first + i,
                  reinterpret_cast<std::uint16_t*>(bytes));
     } else {

@@ -116,17 +116,19 @@ void write_texts(OutputFile& out, const Metadata& metadata) {
   }
 }
 
-void write_header(const Picture& picture, SampleType type, bool alpha, OutputFile& out) {
+void write_header(const Picture& picture, const StripForm& form, OutputFile& out) {
   out.write("\x89PNG\r\n\x1a\n", 8);
   std::string head;
   put_number(head, static_cast<std::uint32_t>(picture.display_window.width));
   put_number(head, static_cast<std::uint32_t>(picture.display_window.height));
-  head += {static_cast<char>(type == SampleType::uint16 ? 16 : 8), static_cast<char>(alpha ? 6 : 2), 0, 0, 0};
+  head += {static_cast<char>(form.type == SampleType::uint16 ? 16 : 8), static_cast<char>(form.alpha ? 6 : 2), 0, 0, 0};
   write_chunk(out, "IHDR", head);
-  write_chunk(out, "sRGB", std::string(1, '\1'));  // relative colorimetric
-  std::string gamma;
-  put_number(gamma, 45455);
-  write_chunk(out, "gAMA", gamma);
+  if (!form.space) {
+    write_chunk(out, "sRGB", std::string(1, '\1'));  // relative colorimetric
+    std::string gamma;
+    put_number(gamma, 45455);
+    write_chunk(out, "gAMA", gamma);
+  }
   if (!picture.facts) return;
   const Metadata metadata = kept_metadata(*picture.facts);
   write_resolution(out, metadata);
@@ -207,10 +209,9 @@ void run_batch(const StripEncoder& encoder, std::vector<Strip>& batch) {
 
 }  // namespace
 
-Result<void> write_png(const Picture& picture, SampleType type, OutputFile& out, const WriteOptions& options) {
-  const StripForm form{type, picture.has_alpha, dithers(options, type), options.dither_x, options.dither_y};
-  write_header(picture, type, form.alpha, out);
-  const StripEncoder encoder(picture, form, std::clamp(options.png_level, 0, 9));
+Result<void> write_png(const Picture& picture, const StripForm& form, OutputFile& out, int level) {
+  write_header(picture, form, out);
+  const StripEncoder encoder(picture, form, std::clamp(level, 0, 9));
   const int height = picture.display_window.height, rows = encoder.rows_per_strip();
   const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 16u));
   uLong adler = adler32(0, nullptr, 0);

@@ -4,12 +4,12 @@
 #pragma once
 
 #include "image/output_file.h"
-#include "image/writer.h"
+#include "image/strips.h"
 
 namespace afterglow {
 
-/// The display window as 8- or 16-bit RGB or straight RGBA, sRGB. `type` uint8 or uint16. The bytes do not depend on
-/// the number of threads. Failures are found in `out`. Errors: io (zlib).
-Result<void> write_png(const Picture& picture, SampleType type, OutputFile& out, const WriteOptions& options);
+/// The display window as 8- or 16-bit RGB or straight RGBA. `level` of zlib. The bytes do not depend on the number of
+/// threads. Failures are found in `out`. Errors: io (zlib).
+Result<void> write_png(const Picture& picture, const StripForm& form, OutputFile& out, int level);
 
 }  // namespace afterglow

@@ -15,8 +15,11 @@
 #include "image/output_file.h"
 #include "image/output_format.h"
 #include "image/reader.h"
+#include "image/strips.h"
+#include "image/write_cineon.h"
 #include "image/write_exr.h"
 #include "image/write_png.h"
+#include "image/write_pnm.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -53,11 +56,20 @@ class Temporary {
 
 Result<void> write_format(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                           const WriteOptions& options, Diagnostics& diagnostics) {
-  if (format.kind == OutputKind::png)
-    return write_png(picture, sample_type(format, options, picture.facts.get()), out, options);
-  if (format.kind != OutputKind::exr) {
-    AFTERGLOW_TRY(const OiioModule* module, oiio_module());
-    return module->write(picture, format, out, name, options);
+  switch (format.kind) {
+    case OutputKind::exr:
+      break;
+    case OutputKind::png:
+      return write_png(picture, strip_form(picture, format, options), out, options.png_level);
+    case OutputKind::cineon:
+      return write_cineon(picture, strip_form(picture, format, options), out);
+    case OutputKind::ppm:
+    case OutputKind::pam:
+    case OutputKind::pfm:
+      return write_pnm(picture, format.kind, strip_form(picture, format, options), out);
+    default:
+      AFTERGLOW_TRY(const OiioModule* module, oiio_module());
+      return module->write(picture, format, out, name, options);
   }
   use_exr_threads();
   if (options.keep_layers) return write_exr_with_layers(picture, out, name, options, diagnostics);
@@ -93,12 +105,13 @@ Result<void> write_through(const Picture& picture, const OutputFormat& format, c
 /// Writes to `temporary` and makes sure that it is all there.
 Result<void> write_checked(const Picture& picture, const OutputFormat& format, const fs::path& temporary,
                            const WriteOptions& options, Diagnostics& diagnostics) {
-  if (picture.has_alpha && !format.alpha && has_transparency(picture))
-    diagnostics.warn(
-        fmt::format("{} files have no alpha; the picture is put on black", format.extensions[0].substr(1)));
+  if (picture.has_alpha && !strip_form(picture, format, options).alpha && has_transparency(picture))
+    diagnostics.warn(fmt::format("{} files have no alpha{}; the picture is put on black",
+                                 format.extensions[0].substr(1),
+                                 format.alpha ? " in 10 bits (--type uint16 has)" : ""));
   AFTERGLOW_CHECK(write_through(picture, format, temporary, options, diagnostics));
   // An OutputFile has seen every byte go out; what it cannot see is a library that stopped early without saying so.
-  if (format.kind == OutputKind::png || options.keep_layers) return {};
+  if (format.kind == OutputKind::png || format.kind == OutputKind::pam || options.keep_layers) return {};
   ReadOptions anything;
   anything.max_side = 1 << 30;
   anything.max_bytes = ~0ull;
@@ -123,6 +136,7 @@ std::optional<DisplayCodes> display_codes(const fs::path& file, const WriteOptio
                                           const FileFacts* facts) {
   const auto format = output_format(file, options);
   if (!format || sample_type(**format, options, facts) != SampleType::uint8) return std::nullopt;
+  if (stored_space(**format, options, SampleType::uint8)) return std::nullopt;
   return DisplayCodes{.straight_alpha = has_alpha && (*format)->alpha, .dither = options.dither.value_or(true)};
 }
 

@@ -9,18 +9,21 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
+#include "image/output_space.h"
 #include "image/picture.h"
 
 namespace afterglow {
 
-enum class SampleType { automatic, half, float32, uint8, uint16 };
+enum class SampleType { automatic, half, float32, uint8, uint10, uint12, uint16 };
 
 struct WriteOptions {
-  /// automatic: EXR half unless the input was float, HDR its own, display formats uint8 (uint16 when the input had
-  /// integers of more than 8 bits and the format can). Float TIFF is scene-linear.
+  /// automatic: EXR half unless the input was float, HDR and PFM float, DPX and Cineon uint10, display formats uint8
+  /// (uint16 when the input had integers of more than 8 bits and the format can). Float TIFF is scene-linear.
   SampleType type = SampleType::automatic;
+  /// Of integer samples; null: that of the format (DPX, Cineon: printing density, others sRGB).
+  const OutputSpace* space = nullptr;
   /// Empty: ZIP for EXR, the format's default elsewhere. EXR: none rle zip zips piz pxr24 b44 b44a dwaa dwab, some with
-  /// ":level"; TIFF: none lzw zip packbits.
+  /// ":level"; TIFF: none lzw zip packbits; WebP: lossless, lossy:quality; Targa: none rle.
   std::string compression;
   int png_level = 1;  ///< zlib level 0–9
   int jpeg_quality = 95;
@@ -30,9 +33,9 @@ struct WriteOptions {
   bool keep_layers = false;  ///< EXR → EXR: copy all other channels and parts of `picture.facts`' file unchanged
 };
 
-/// Scene formats (EXR, HDR) get scene-linear values and, for EXR, both windows; display formats (PNG, JPEG, TIFF) get
-/// the display window, clamped and sRGB-encoded. Alpha is written when the picture has it and the format can; straight
-/// where the format wants it.
+/// Scene formats (EXR, HDR, PFM) get scene-linear values and, for EXR, both windows; all others get the display window,
+/// clamped and encoded in their space. Alpha is written when the picture has it and the format can; straight where the
+/// format wants it.
 Result<void> write_picture(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options,
                            Diagnostics& diagnostics);
 

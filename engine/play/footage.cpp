@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 #include <system_error>
 #include <unordered_map>
 
@@ -71,24 +73,54 @@ Result<void> Footage::add_sequence(const std::string& input, const std::optional
     const bool held = found == picture_of.end();
     if (!held) last = found->second;
     if (held) missing_.push_back(number);
-    frames_.push_back({number, last, held});
+    frames_.push_back({.number = number, .picture = last, .held = held, .time = {}});
   }
   return {};
+}
+
+/// How many turns each frame of a video stays, so that turns at one rate show frames at their own times. Returns the
+/// rate.
+double Footage::pace(const Movie& movie, std::vector<int>& turns) const {
+  turns.assign(static_cast<std::size_t>(movie.frames()), 1);
+  if (!movie.variable_rate()) return movie.fps();
+  // A turn is as long as the shortest frame; more of them than this a second no screen shows.
+  constexpr double kMostTurns = 240;
+  double shortest = 0;
+  for (int i = 1; i < movie.frames(); ++i) {
+    const double length = movie.time(i) - movie.time(i - 1);
+    if (length > 0 && (shortest == 0 || length < shortest)) shortest = length;
+  }
+  if (shortest <= 0) return movie.fps();
+  const double rate = std::min(kMostTurns, 1 / shortest);
+  if (movie.time(movie.frames() - 1) * rate > static_cast<double>(kMostFrames)) return movie.fps();
+  long long at = 0;
+  for (int i = 0; i + 1 < movie.frames(); ++i) {
+    const long long next = std::max(at + 1, std::llround(movie.time(i + 1) * rate));
+    turns[static_cast<std::size_t>(i)] = static_cast<int>(next - at);
+    at = next;
+  }
+  return rate;
 }
 
 Result<void> Footage::add_movie(const fs::path& file, const std::optional<std::vector<int>>& wanted,
                                 Diagnostics& diagnostics) {
   AFTERGLOW_TRY(std::shared_ptr<Movie> movie, Movie::open(file, {read_.max_side, read_.max_bytes}, diagnostics));
+  std::optional<std::set<int>> chosen;
+  if (wanted) chosen.emplace(wanted->begin(), wanted->end());
+  std::vector<int> turns;
+  const double rate = pace(*movie, turns);
   const int first = pictures();
   for (int frame = 0; frame < movie->frames(); ++frame) {
-    if (wanted && std::ranges::find(*wanted, frame + 1) == wanted->end()) continue;
-    frames_.push_back({frame + 1, pictures(), false});
+    if (chosen && !chosen->contains(frame + 1)) continue;
+    for (int turn = 0; turn < turns[static_cast<std::size_t>(frame)]; ++turn)
+      frames_.push_back({.number = frame + 1, .picture = pictures(), .held = false, .time = movie->time(frame)});
     pictures_.push_back({.file = file, .number = frame + 1, .movie = movie, .movie_frame = frame});
   }
   if (pictures() == first)
     return Error{ErrorKind::io, fmt::format("has no frame that --frames asks for; it has {}", movie->frames()),
                  file.string()};
-  if (!fps_ && movie->fps() > 0) fps_ = movie->fps();
+  if (!fps_ && rate > 0) fps_ = rate;
+  variable_rate_ = variable_rate_ || movie->variable_rate();
   video_ = true;
   return {};
 }
@@ -97,7 +129,7 @@ Result<void> Footage::add(const std::string& input, const std::optional<std::vec
                           Diagnostics& diagnostics) {
   AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));
   if (pattern.numbered) return add_sequence(input, wanted);
-  if (movie_container(pattern.file(0)) != MovieContainer::none) return add_movie(pattern.file(0), wanted, diagnostics);
+  if (!movie_format(pattern.file(0)).empty()) return add_movie(pattern.file(0), wanted, diagnostics);
   if (wanted)
     return Error{ErrorKind::usage,
                  fmt::format("--frames needs a numbered input like shot.####.exr or a video, not {}", input),
@@ -140,7 +172,9 @@ Result<Picture> Footage::read(int picture, const std::vector<std::string>& auxil
   AFTERGLOW_TRY(options.depth, resolved(read_.depth, source.number));
   AFTERGLOW_TRY(options.normal, resolved(read_.normal, source.number));
   AFTERGLOW_TRY(options.motion, resolved(read_.motion, source.number));
-  auto read = source.movie ? source.movie->read(source.movie_frame) : read_picture(source.file, options, diagnostics);
+  options.movie = source.movie;
+  options.movie_frame = source.movie_frame;
+  auto read = read_picture(source.file, options, diagnostics);
   if (read) note_content(*read);
   if (!read && read.error().file.empty()) {
     Error error = std::move(read).error();

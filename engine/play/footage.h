@@ -29,6 +29,7 @@ struct FootageFrame {
   int number = 1;   ///< in its sequence: what presets see
   int picture = 0;  ///< which picture it shows: equal numbers, equal pixels
   bool held = false;
+  std::optional<double> time{};  ///< of a video's frame: seconds from the video's first one
 };
 
 /// Immutable once opened; thread-safe.
@@ -44,12 +45,14 @@ class Footage {
   /// For people: "shot.0007.exr", "clip.mp4, frame 7".
   std::string picture_name(int picture) const;
   const std::filesystem::path& file(int picture) const { return pictures_[static_cast<std::size_t>(picture)].file; }
-  /// Frames a second, where the footage says it (videos).
+  /// Turns a second, where the footage says it (videos). Of a video whose rate varies each frame stays for as many
+  /// turns as it shows.
   std::optional<double> fps() const { return fps_; }
   /// Numbers of the frames that are missing and held.
   const std::vector<int>& missing() const { return missing_; }
   /// Pictures in order are read much faster than others.
   bool is_video() const { return video_; }
+  bool variable_rate() const { return variable_rate_; }
 
   /// Reads a picture, with its content hashes noted. `auxiliary`: "depth", "normal", as the stack asks for them.
   /// Errors: io, naming the file.
@@ -66,6 +69,7 @@ class Footage {
   Result<void> add_sequence(const std::string& input, const std::optional<std::vector<int>>& wanted);
   Result<void> add_movie(const std::filesystem::path& file, const std::optional<std::vector<int>>& wanted,
                          Diagnostics& diagnostics);
+  double pace(const Movie& movie, std::vector<int>& turns) const;
   Result<void> add(const std::string& input, const std::optional<std::vector<int>>& wanted, Diagnostics& diagnostics);
 
   ReadOptions read_;
@@ -73,7 +77,7 @@ class Footage {
   std::vector<Source> pictures_;
   std::vector<int> missing_;
   std::optional<double> fps_;
-  bool video_ = false;
+  bool video_ = false, variable_rate_ = false;
 };
 
 /// "3, 7-9, 12".

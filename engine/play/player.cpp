@@ -126,7 +126,7 @@ BuildContext Player::State::context(const Transport::Due& due) const {
   BuildContext context;
   context.frame = frame.number;
   context.fps = transport.fps();
-  context.time = frame.number / context.fps;
+  context.time = frame.time.value_or(frame.number / context.fps);
   return context;
 }
 

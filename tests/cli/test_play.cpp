@@ -117,6 +117,8 @@ TEST_F(Play, WrongRequestsSayWhatIsWrong) {
       {{"look.lua", "in/shot.####.exr", "--headless", "--show", "tone_maping"},
        kUsage,
        "did you mean 'tone_mapping.aces'?"},
+      {{"look.lua", "in/shot.####.exr", "--headless", "--b", "none.lua"}, kScript, "none.lua: error: no such file"},
+      {{"look.lua", "in/shot.####.exr", "--headless", "--b", "broken.lua"}, kScript, "broken.lua"},
       {{"look.lua", "in/shot.####.exr", "--headless", "--screenshot", "a.xyz"}, kUsage, ".xyz"},
       {{"look.lua", "in/shot.####.exr", "--count", "3"}, kUsage, "go with --headless"},
       {{"broken.lua", "in/shot.####.exr", "--headless"}, kScript, "broken.lua"}};
@@ -143,6 +145,15 @@ TEST_F(Play, CtrlCEndsCleanly) {
   EXPECT_EQ(outcome.exit_code, kInterrupted);
   EXPECT_THAT(outcome.err, HasSubstr("interrupted"));
   EXPECT_TRUE(report().contains("error"));
+}
+
+/// Passes that work at a part of the picture's size are shown like others.
+TEST_F(Play, ShowsImagesOfAnySize) {
+  make_exr("a.exr", 64, 48);
+  const Outcome outcome = run({"play", preset("neon_night.lua").string(), "a.exr", "--headless", "--show",
+                               "bloom.prefilter", "--screenshot", "a.png"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_EQ(pixels_of("a.png").size(), (Size{32, 24}));
 }
 
 }  // namespace

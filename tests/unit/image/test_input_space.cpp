@@ -81,10 +81,10 @@ TEST(InputSpace, WhiteStaysGreyAndPrimariesAreTheMakers) {
 TEST(InputSpace, UnknownNamesAreTold) {
   const auto found = find_input_space("logc");
   ASSERT_FALSE(found);
-  EXPECT_EQ(
-      found.error().text(),
-      "error: 'logc' is no input space; allowed: acescct, gamma22, gamma24, hlg, linear, logc3, logc4, pq, slog3, srgb; did "
-      "you mean 'logc3'?");
+  EXPECT_EQ(found.error().text(),
+            "error: 'logc' is no input space; allowed: acescct, cineon, gamma22, gamma24, hlg, linear, logc3, logc4, "
+            "pq, rec709, slog3, srgb; did "
+            "you mean 'logc3'?");
 }
 
 TEST(InputSpace, XyzIsReadWithoutInventingAdaptation) {

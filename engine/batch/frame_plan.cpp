@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "batch/frame_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "batch/crop.h"
+#include "core/text.h"
+#include "image/metadata.h"
+
+namespace afterglow {
+
+Error named(Error error, const FrameJob& job) {
+  if (error.file.empty()) error.file = job.input.string();
+  return error;
+}
+
+Result<FrameNeed> FramePlanner::need_of(const PictureHeader& header, const Build& build, const FrameJob& job) {
+  const BuildContext& context = build.context;
+  FrameNeed need;
+  need.reading = header.host_bytes;
+  need.result = static_cast<std::uint64_t>(context.size.area()) * 4 * sizeof(float);
+  need.device = session_.stack().memory_needed(build);
+  largest_need_ = std::max(largest_need_, need.one_frame());
+  if (need.one_frame() > options_.max_memory)
+    return Error{ErrorKind::io,
+                 fmt::format("{}x{} pixels need about {} with this preset, above --max-memory {}", context.size.width,
+                             context.size.height, memory_text(need.one_frame()), memory_text(options_.max_memory)),
+                 job.input.string()};
+  return need;
+}
+
+ReadOptions FramePlanner::read_options(const FrameJob& job) const {
+  ReadOptions options = options_.read;
+  options.depth = job.depth;
+  options.normal = job.normal;
+  options.motion = job.motion;
+  options.nan_policy = options_.nan_policy;
+  return options;
+}
+
+/// A preview of half the size or less is made at twice its size when a look depends on single pixels.
+std::optional<Scaling> FramePlanner::scaling_of(const PictureHeader& header) const {
+  if (!options_.size) return std::nullopt;
+  const Size whole = header.display_window.size(), size = options_.size->of(whole);
+  const bool half = 2 * size.width <= whole.width && 2 * size.height <= whole.height;
+  return Scaling{size, half && session_.preset().detailed() ? 2 : 1};
+}
+
+/// What is wanted of the picture with this header.
+Result<FrameRequest> FramePlanner::request_of(const FrameJob& job, const PictureHeader& header, double step,
+                                              bool restart) {
+  FrameRequest request;
+  BuildContext context;
+  Rect data = header.data_window, display = header.display_window;
+  int finer = 1;
+  if (const auto scaling = scaling_of(header)) {
+    finer = scaling->finer;
+    const Size whole = display.size(), size = scaling->display;
+    context.length_scale = finer * std::sqrt(static_cast<double>(size.area()) / static_cast<double>(whole.area()));
+    data = scaled_window(data, display, size);
+    display = {display.x, display.y, size.width, size.height};
+  }
+  context.size = {data.width * finer, data.height * finer};
+  if (options_.region) {
+    AFTERGLOW_TRY(const Rect part, part_of_region(*options_.region, data, display));
+    request.region = Rect{part.x * finer, part.y * finer, part.width * finer, part.height * finer};
+  }
+  const auto& wanted = options_.read.auxiliary;
+  for (const auto& name : header.auxiliary)
+    if (std::find(wanted.begin(), wanted.end(), name) != wanted.end()) context.auxiliary[name] = context.size;
+  context.layers = header.layers;
+  context.metadata = {header.facts, &header.facts->metadata};
+  context.frame = job.frame;
+  context.fps = options_.fps;
+  context.time = job.frame / options_.fps;
+  context.position = camera_position(header.facts->metadata);
+  context.step = request.step = step;
+  context.restart = request.restart = restart;
+  const auto codes = sink_.codes(job, header.has_alpha, header.facts.get());
+  if (codes && finer == 1)  // codes of pixels that are still to be put together would be no colours
+    request.encoding = DisplayEncoding{codes->straight_alpha, codes->dither};
+  auto build = session_.evaluate(context);
+  if (!build) return std::move(build).error();
+  request.build = std::move(*build);
+  return request;
+}
+
+Result<PlannedFrame> FramePlanner::plan(const FrameJob& job, double step, bool restart) {
+  PlannedFrame planned;
+  auto header = read_header(job.input, read_options(job));
+  if (!header) return named(std::move(header).error(), job);
+  planned.header = std::move(*header);
+  auto request = request_of(job, planned.header, step, restart);
+  if (!request) return named(std::move(request).error(), job);
+  planned.request = std::move(*request);
+  return planned;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// What a run wants of a frame, from its header: how large it is made, what the preset says of it, what it takes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "batch/frame_sink.h"
+#include "batch/scale.h"
+#include "image/reader.h"
+#include "image/writer.h"
+#include "session/session.h"
+
+namespace afterglow {
+
+struct FrameLoopOptions {
+  ReadOptions read;  ///< depth, normal and motion are those of each frame
+  WriteOptions write;
+  bool keep_partial = false;     ///< an interrupted run leaves what the sink has
+  std::optional<SizeWish> size;  ///< of the display window; pictures are scaled to it before the stack
+  std::optional<Rect> region;    ///< part of the display window that is wanted
+  bool reuse = true;             ///< pictures that were just run are not run again
+  double fps = 24;
+  std::uint64_t max_memory = 6ull << 30;
+  bool fail_fast = false;
+  NanPolicy nan_policy = NanPolicy::zero;  ///< fail: every pass of every frame is looked at, and nothing mended
+  bool histories = false;                  ///< pictures depend on the frames before them
+};
+
+/// Bytes that a frame takes.
+struct FrameNeed {
+  std::uint64_t device = 0, reading = 0, result = 0;
+  std::uint64_t one_frame() const { return device + reading + result; }
+  /// One is read, one processed, `written` are being written.
+  std::uint64_t frames(std::uint64_t written) const { return device + 2 * reading + (1 + written) * result; }
+};
+
+/// Of a frame whose picture has not been read.
+struct PlannedFrame {
+  const FrameJob* job = nullptr;
+  PictureHeader header;
+  FrameRequest request;
+};
+
+/// Used from one thread. Errors name the frame's file.
+class FramePlanner {
+ public:
+  /// All of them outlive it.
+  FramePlanner(Session& session, const FrameSink& sink, const FrameLoopOptions& options)
+      : session_(session), sink_(sink), options_(options) {}
+
+  ReadOptions read_options(const FrameJob& job) const;
+  std::optional<Scaling> scaling_of(const PictureHeader& header) const;
+  /// Reads the header. `step`: frames since the one before; `restart`: there is none. Errors: io, script.
+  Result<PlannedFrame> plan(const FrameJob& job, double step, bool restart);
+  /// Errors: io (above --max-memory).
+  Result<FrameNeed> need_of(const PictureHeader& header, const Build& build, const FrameJob& job);
+  std::uint64_t largest_need() const { return largest_need_; }
+
+ private:
+  Result<FrameRequest> request_of(const FrameJob& job, const PictureHeader& header, double step, bool restart);
+
+  Session& session_;
+  const FrameSink& sink_;
+  const FrameLoopOptions& options_;
+  std::uint64_t largest_need_ = 0;
+};
+
+/// An error that names no file gets the frame's.
+Error named(Error error, const FrameJob& job);
+
+}  // namespace afterglow

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#include "batch/frame_sink.h"
+
+#include "batch/resume.h"
+
+namespace afterglow {
+namespace {
+
+/// A file a frame.
+class FileSink : public FrameSink {
+ public:
+  FileSink(const WriteOptions& options, Diagnostics& diagnostics) : options_(options), diagnostics_(diagnostics) {}
+
+  bool is_one() const override { return false; }
+  std::optional<DisplayCodes> codes(const FrameJob& job, bool has_alpha, const FileFacts* facts) const override {
+    return display_codes(job.output, options_, has_alpha, facts);
+  }
+  Result<void> write(const FrameJob& job, std::size_t, const Picture& picture) override {
+    AFTERGLOW_CHECK(write_picture(picture, job.output, options_, diagnostics_));
+    return look_ ? record_made(job, *look_) : Result<void>();
+  }
+  void record_look(const Hash& look) override { look_ = look; }
+
+ private:
+  WriteOptions options_;
+  Diagnostics& diagnostics_;
+  std::optional<Hash> look_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest&, const WriteOptions& options, double,
+                                             Diagnostics& diagnostics) {
+  return std::unique_ptr<FrameSink>(std::make_unique<FileSink>(options, diagnostics));
+}
+
+}  // namespace afterglow

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Where finished frames go: files of their own, one video, or standard output.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+#include "batch/frame_list.h"
+#include "core/diagnostics.h"
+#include "core/hash.h"
+#include "core/result.h"
+#include "image/picture.h"
+#include "image/writer.h"
+
+namespace afterglow {
+
+/// Not thread-safe but for `write` where frames need no order. Errors: io, usage.
+class FrameSink {
+ public:
+  virtual ~FrameSink() = default;
+
+  /// All frames go into one thing, in order: what cannot be written ends the run.
+  virtual bool is_one() const { return true; }
+  /// How it will make 8-bit display codes of a frame, so that the device can; nothing when it makes anything else.
+  virtual std::optional<DisplayCodes> codes(const FrameJob&, bool /*has_alpha*/, const FileFacts*) const {
+    return std::nullopt;
+  }
+  /// A frame; `index` is its place among those that the run was asked for, from 0. Where is_one(), one call at a time
+  /// and in order; the places of frames that failed are left out.
+  virtual Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture) = 0;
+  /// All that can come has come: what was written appears. Without this call it goes.
+  virtual Result<void> finish() { return {}; }
+  /// What the look is, for notes that --resume reads.
+  virtual void record_look(const Hash&) {}
+};
+
+/// For the output of `files`. Errors: usage (options that do not go with this output), io (it cannot be written; see
+/// check_output).
+Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const WriteOptions& options, double fps,
+                                             Diagnostics& diagnostics);
+
+}  // namespace afterglow

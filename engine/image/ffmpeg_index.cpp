@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "image/ffmpeg_index.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+#include "image/ffmpeg_log.h"
+
+namespace afterglow {
+namespace {
+
+constexpr std::size_t kMostPackets = 1'000'000;
+constexpr int kMostErrors = 64;  // in a row, before the rest of the file is given up
+constexpr int kIdr = 5, kSlice = 1;
+
+/// The first slice of an H.264 access unit is of an IDR picture: nothing reaches back over it. Other pictures that
+/// decoding can begin at may need what lies before them until they have recovered.
+class IdrFinder {
+ public:
+  explicit IdrFinder(const AVCodecParameters& parameters) {
+    // An avcC record begins with 1 and says how long lengths are; without one there are start codes.
+    if (parameters.extradata_size > 4 && parameters.extradata[0] == 1) length_ = (parameters.extradata[4] & 3) + 1;
+  }
+  bool operator()(const AVPacket& packet) const {
+    const std::uint8_t* at = packet.data;
+    const std::uint8_t* end = packet.data + packet.size;
+    if (length_ > 0) {
+      while (end - at > length_) {
+        std::int64_t size = 0;
+        for (int i = 0; i < length_; ++i) size = size << 8 | at[i];
+        at += length_;
+        if (const int type = at[0] & 31; type >= kSlice && type <= kIdr) return type == kIdr;
+        if (size > end - at) return false;
+        at += size;
+      }
+      return false;
+    }
+    for (; end - at > 3; ++at)
+      if (at[0] == 0 && at[1] == 0 && at[2] == 1)
+        if (const int type = at[3] & 31; type >= kSlice && type <= kIdr) return type == kIdr;
+    return false;
+  }
+
+ private:
+  int length_ = 0;
+};
+
+MoviePacket noted(const AVPacket& packet, AVCodecID codec, const IdrFinder& is_idr) {
+  MoviePacket out{.pts = packet.pts, .dts = packet.dts, .pos = packet.pos, .size = packet.size};
+  out.key = (packet.flags & AV_PKT_FLAG_KEY) != 0;
+  out.exact = out.key && (codec != AV_CODEC_ID_H264 || is_idr(packet));
+  out.shown = (packet.flags & AV_PKT_FLAG_DISCARD) == 0;
+  if (codec == AV_CODEC_ID_VP8 && (packet.data[0] & 0x10) == 0) out.shown = false;  // for other frames to look at
+  out.damaged = (packet.flags & AV_PKT_FLAG_CORRUPT) != 0;
+  out.needless = (packet.flags & AV_PKT_FLAG_DISPOSABLE) != 0;
+  return out;
+}
+
+/// A stream that was cut begins with pictures that nobody can decode.
+void hide_what_comes_before_the_first_key(std::vector<MoviePacket>& packets) {
+  const auto first = std::ranges::find(packets, true, &MoviePacket::key);
+  if (first == packets.end()) return;
+  for (auto packet = packets.begin(); packet != first; ++packet) packet->shown = false;
+  for (auto packet = first; packet != packets.end(); ++packet)
+    if (packet->pts < first->pts && packet->pts != AV_NOPTS_VALUE) packet->shown = false;
+}
+
+/// Frames that the container's own tables tell of, beyond the packets that are there.
+std::size_t missing_frames(FfmpegInput& input, const MovieIndex& index) {
+  AVStream& stream = input.stream();
+  const std::string format = input.container().iformat->name;
+  std::int64_t told = 0;
+  if (format.starts_with("mov")) told = avformat_index_get_entries_count(&stream);
+  if (format == "avi") told = stream.nb_frames;
+  const auto there = static_cast<std::int64_t>(index.packets.size());
+  return told > there && told < static_cast<std::int64_t>(kMostPackets) ? static_cast<std::size_t>(told - there) : 0;
+}
+
+}  // namespace
+
+void sort_by_time(MovieIndex& index) {
+  index.order.clear();
+  for (std::size_t i = 0; i < index.packets.size(); ++i)
+    if (index.packets[i].shown) index.order.push_back(static_cast<int>(i));
+  const auto pts = [&](int packet) { return index.packets[static_cast<std::size_t>(packet)].pts; };
+  std::ranges::stable_sort(index.order, {}, pts);
+  index.rank.assign(index.packets.size(), -1);
+  index.pts.clear();
+  for (std::size_t i = 0; i < index.order.size(); ++i) {
+    index.rank[static_cast<std::size_t>(index.order[i])] = static_cast<int>(i);
+    index.pts.push_back(pts(index.order[i]));
+  }
+}
+
+void add_missing(MovieIndex& index, std::size_t missing) {
+  index.missing = missing;
+  const std::size_t frames = index.pts.size();
+  const long long step =
+      frames > 1 ? std::max(1ll, (index.pts.back() - index.pts.front()) / static_cast<long long>(frames - 1)) : 1;
+  for (std::size_t i = 0; i < missing; ++i) index.pts.push_back((index.pts.empty() ? 0 : index.pts.back()) + step);
+}
+
+int MovieIndex::start_for(int packet) const {
+  const MoviePacket& wanted = packets[static_cast<std::size_t>(packet)];
+  bool one_more = false;
+  for (auto at = std::ranges::upper_bound(keys, packet); at != keys.begin();) {
+    const MoviePacket& key = packets[static_cast<std::size_t>(*--at)];
+    if (key.pts > wanted.pts && wanted.pts != AV_NOPTS_VALUE) continue;
+    if (key.exact || one_more) return *at;
+    one_more = true;
+  }
+  return 0;
+}
+
+Result<MovieIndex> index_movie(FfmpegInput& input) {
+  MovieIndex index;
+  const PacketHandle packet(av_packet_alloc());
+  const AVCodecParameters& parameters = *input.stream().codecpar;
+  const IdrFinder is_idr(parameters);
+  bool cut_short = false;
+  for (int errors = 0; errors < kMostErrors;) {
+    const int got = input.read(*packet);
+    if (got == AVERROR_EOF) break;
+    if (got < 0) {
+      ++errors;
+      cut_short = true;
+      continue;
+    }
+    errors = 0;
+    if (index.packets.size() == kMostPackets)
+      return Error{ErrorKind::io, fmt::format("has more than {} frames", kMostPackets)};
+    index.packets.push_back(noted(*packet, parameters.codec_id, is_idr));
+    if (index.packets.back().key) index.keys.push_back(static_cast<int>(index.packets.size()) - 1);
+    av_packet_unref(packet.get());
+  }
+  if (index.packets.empty()) return Error{ErrorKind::io, "has no frame (truncated?)"};
+  hide_what_comes_before_the_first_key(index.packets);
+  sort_by_time(index);
+  std::size_t missing = missing_frames(input, index);
+  // Matroska has no table of frames, but knows when it ends within something.
+  const std::string said = ffmpeg_said();
+  cut_short = cut_short || said.find("prematurely") != std::string::npos || said.find("partial") != std::string::npos;
+  if (cut_short && missing == 0) missing = 1;
+  if (index.order.empty() && missing == 0) return Error{ErrorKind::io, "has no frame that shows"};
+  add_missing(index, missing);
+  return index;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "image/ffmpeg_input.h"
+
+extern "C" {
+#include <libavutil/opt.h>
+}
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <thread>
+
+#include "image/ffmpeg_log.h"
+
+namespace afterglow {
+namespace {
+
+constexpr int kIoBuffer = 1 << 18;
+/// Decoders that strangers' files may reach: the ones people use, each fuzzed by FFmpeg's own project for years.
+constexpr const char* kCodecs =
+    "h264,hevc,vp8,vp9,libvpx,libvpx-vp9,libdav1d,libaom-av1,av1,prores,dnxhd,ffv1,mjpeg,gif,apng,png,mpeg1video,"
+    "mpeg2video,mpeg4,rawvideo,wrapped_avframe,v210,v410,r210,cfhd,huffyuv,ffvhuff,utvideo,qtrle,theora,dvvideo,"
+    "jpeg2000,tiff,bmp,ppm,pgm,pam,hap,magicyuv";
+
+int read_bytes(void* opaque, std::uint8_t* to, int size) {
+  const int descriptor = static_cast<const FileDescriptor*>(opaque)->get();
+  while (true) {
+    const ssize_t got = ::read(descriptor, to, static_cast<std::size_t>(size));
+    if (got > 0) return static_cast<int>(got);
+    if (got == 0) return AVERROR_EOF;
+    if (errno != EINTR) return AVERROR(errno);
+  }
+}
+
+std::int64_t seek_bytes(void* opaque, std::int64_t to, int whence) {
+  const int descriptor = static_cast<const FileDescriptor*>(opaque)->get();
+  if ((whence & AVSEEK_SIZE) != 0) {
+    struct stat status {};
+    return fstat(descriptor, &status) == 0 ? status.st_size : AVERROR(errno);
+  }
+  const off_t at = lseek(descriptor, to, whence & ~AVSEEK_FORCE);
+  return at < 0 ? AVERROR(errno) : at;
+}
+
+/// Playlists, external tracks and the like would read other files.
+int refuse_other_files(AVFormatContext*, AVIOContext**, const char*, int, AVDictionary**) { return AVERROR(EPERM); }
+
+/// Native decoders of FFmpeg know nothing of VP8's and VP9's second stream of alpha.
+const AVCodec* decoder_of(const AVStream& stream) {
+  const AVDictionaryEntry* alpha = av_dict_get(stream.metadata, "alpha_mode", nullptr, 0);
+  if (alpha && std::strcmp(alpha->value, "1") == 0) {
+    const char* name = stream.codecpar->codec_id == AV_CODEC_ID_VP9   ? "libvpx-vp9"
+                       : stream.codecpar->codec_id == AV_CODEC_ID_VP8 ? "libvpx"
+                                                                      : nullptr;
+    if (const AVCodec* found = name ? avcodec_find_decoder_by_name(name) : nullptr) return found;
+  }
+  return avcodec_find_decoder(stream.codecpar->codec_id);
+}
+
+bool is_allowed(const AVCodec& codec) {
+  const std::string list = std::string(",") + kCodecs + ",";
+  return list.find(std::string(",") + codec.name + ",") != std::string::npos;
+}
+
+}  // namespace
+
+FfmpegInput::~FfmpegInput() {
+  if (container_) avformat_close_input(&container_);
+  if (io_) av_freep(&io_->buffer);
+  avio_context_free(&io_);
+}
+
+Error FfmpegInput::failed(const std::string& why) const { return {ErrorKind::io, why, name_}; }
+
+Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(const std::filesystem::path& file, const std::string& format,
+                                                       const SizeLimits& limits, const std::string& options) {
+  auto descriptor = std::make_shared<FileDescriptor>(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (descriptor->get() < 0)
+    return Error{ErrorKind::io, fmt::format("cannot be opened: {}", std::strerror(errno)), file.string()};
+  return open(std::move(descriptor), file.string(), format, limits, options);
+}
+
+Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(std::shared_ptr<FileDescriptor> from, const std::string& name,
+                                                       const std::string& format, const SizeLimits& limits,
+                                                       const std::string& options) {
+  std::unique_ptr<FfmpegInput> input(new FfmpegInput());
+  input->name_ = name;
+  input->limits_ = limits;
+  input->descriptor_ = std::move(from);
+  struct stat status {};
+  input->seekable_ = fstat(input->descriptor_->get(), &status) == 0 && S_ISREG(status.st_mode);
+  static_cast<void>(ffmpeg_said());
+  AFTERGLOW_CHECK(input->open_container(format, options));
+  AFTERGLOW_CHECK(input->choose_stream());
+  return input;
+}
+
+Result<void> FfmpegInput::open_container(const std::string& format, const std::string& options) {
+  const AVInputFormat* demuxer = av_find_input_format(format.c_str());
+  if (!demuxer) return failed(fmt::format("FFmpeg was built without '{}'", format));
+  auto* buffer = static_cast<std::uint8_t*>(av_malloc(kIoBuffer));
+  io_ = avio_alloc_context(buffer, kIoBuffer, 0, descriptor_.get(), read_bytes, nullptr,
+                           seekable_ ? seek_bytes : nullptr);
+  container_ = avformat_alloc_context();
+  if (!buffer || !io_ || !container_) return failed("there is no memory to open it");
+  container_->pb = io_;
+  container_->io_open = refuse_other_files;
+  container_->flags |= AVFMT_FLAG_CUSTOM_IO;
+  container_->max_streams = 64;
+  container_->codec_whitelist = av_strdup(kCodecs);
+  AVDictionary* given = nullptr;
+  av_dict_parse_string(&given, options.c_str(), "=", ":", 0);
+  const int opened = avformat_open_input(&container_, "", demuxer, &given);  // frees the container when it fails
+  const bool unknown = opened >= 0 && av_dict_count(given) > 0;
+  av_dict_free(&given);
+  if (opened < 0) return failed("is no video that can be read: " + ffmpeg_error(opened));
+  if (unknown) return failed("is of a kind that has no such options: " + options);
+  return {};
+}
+
+Result<void> FfmpegInput::choose_stream() {
+  // The best is chosen twice: most containers name their streams first, others must be looked into.
+  for (unsigned i = 0; i < container_->nb_streams; ++i)
+    if (container_->streams[i]->codecpar->codec_type != AVMEDIA_TYPE_VIDEO)
+      container_->streams[i]->discard = AVDISCARD_ALL;
+  if (const int found = avformat_find_stream_info(container_, nullptr); found < 0)
+    return failed("is no video that can be read: " + ffmpeg_error(found));
+  stream_ = av_find_best_stream(container_, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  if (stream_ < 0) return failed("holds no video stream");
+  for (unsigned i = 0; i < container_->nb_streams; ++i)
+    container_->streams[i]->discard = static_cast<int>(i) == stream_ ? AVDISCARD_DEFAULT : AVDISCARD_ALL;
+  const AVCodecParameters& parameters = *stream().codecpar;
+  codec_ = decoder_of(stream());
+  if (!codec_ || !is_allowed(*codec_))
+    return failed(fmt::format("is a video whose codec is not read ({})", avcodec_get_name(parameters.codec_id)));
+  if (parameters.width < 1 || parameters.height < 1)
+    return failed("is a video that does not say how large it is (truncated?)");
+  return check_sides({0, 0, parameters.width, parameters.height}, "frame", limits_, name_);
+}
+
+Result<CodecHandle> FfmpegInput::open_decoder() const {
+  const AVStream& stream = *container_->streams[stream_];
+  CodecHandle codec(avcodec_alloc_context3(codec_));
+  if (!codec || avcodec_parameters_to_context(codec.get(), stream.codecpar) < 0)
+    return failed("there is no memory to decode it");
+  codec->pkt_timebase = stream.time_base;
+  constexpr unsigned kMostThreads = 4;  // each holds pictures of its own
+  codec->thread_count = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads));
+  codec->err_recognition = AV_EF_CRCCHECK;
+  const auto side = static_cast<std::int64_t>(limits_.max_side);
+  codec->max_pixels = std::min(side * side, static_cast<std::int64_t>(limits_.max_bytes / 4));
+  if (const int opened = avcodec_open2(codec.get(), codec_, nullptr); opened < 0)
+    return failed("cannot be decoded: " + ffmpeg_error(opened));
+  return codec;
+}
+
+int FfmpegInput::read(AVPacket& packet) {
+  while (true) {
+    const int got = av_read_frame(container_, &packet);
+    if (got < 0) return got;
+    // Empty packets are frames that an encoder left out; to a decoder they would be the end.
+    if (packet.stream_index == stream_ && packet.size > 0) return 0;
+    av_packet_unref(&packet);
+  }
+}
+
+}  // namespace afterglow

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// A container opened by FFmpeg: one file and nothing else, one demuxer and no other, one video stream.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/file_descriptor.h"
+#include "core/result.h"
+#include "image/ffmpeg_handles.h"
+#include "image/size_limits.h"
+
+namespace afterglow {
+
+/// Not thread-safe.
+class FfmpegInput {
+ public:
+  /// Reads the header and what is needed to know the stream. `format`: see MovieRequest. `options` are the demuxer's
+  /// own, as "name=value:name=value". Errors: io (no such file, malformed, no video stream, a codec that is not read,
+  /// sides beyond the limits).
+  static Result<std::unique_ptr<FfmpegInput>> open(const std::filesystem::path& file, const std::string& format,
+                                                   const SizeLimits& limits, const std::string& options = {});
+  /// The same from a descriptor that cannot seek; `name` is for messages.
+  static Result<std::unique_ptr<FfmpegInput>> open(std::shared_ptr<FileDescriptor> from, const std::string& name,
+                                                   const std::string& format, const SizeLimits& limits,
+                                                   const std::string& options = {});
+  ~FfmpegInput();
+
+  AVFormatContext& container() { return *container_; }
+  AVStream& stream() { return *container_->streams[stream_]; }
+  const AVCodec& codec() const { return *codec_; }
+  /// A decoder for the stream, opened. Errors: io.
+  Result<CodecHandle> open_decoder() const;
+  /// The next packet of the stream: 0, AVERROR_EOF, or another error of FFmpeg.
+  int read(AVPacket& packet);
+
+ private:
+  FfmpegInput() = default;
+  Result<void> open_container(const std::string& format, const std::string& options);
+  Result<void> choose_stream();
+  Error failed(const std::string& why) const;
+
+  std::string name_;
+  SizeLimits limits_;
+  std::shared_ptr<FileDescriptor> descriptor_;
+  bool seekable_ = true;
+  AVIOContext* io_ = nullptr;
+  AVFormatContext* container_ = nullptr;
+  int stream_ = 0;
+  const AVCodec* codec_ = nullptr;
+};
+
+}  // namespace afterglow

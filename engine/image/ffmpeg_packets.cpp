@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "image/ffmpeg_packets.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "image/ffmpeg_log.h"
+
+namespace afterglow {
+namespace {
+
+constexpr int kMostStrangers = 64;  // packets that begin in the middle, after a seek
+
+auto place_of(const MoviePacket& packet) { return std::tuple(packet.pos, packet.dts, packet.pts, packet.size); }
+
+}  // namespace
+
+FfmpegPackets::FfmpegPackets(std::unique_ptr<FfmpegInput> input, const MovieIndex& index, Reopen reopen)
+    : input_(std::move(input)), index_(index), reopen_(std::move(reopen)), held_(av_packet_alloc()) {
+  by_place_.resize(index.packets.size());
+  std::iota(by_place_.begin(), by_place_.end(), 0);
+  std::ranges::sort(by_place_, {}, [&](int i) { return place_of(index_.packets[static_cast<std::size_t>(i)]); });
+  next_ = static_cast<int>(index.packets.size());
+}
+
+/// −1: none, or more than one that looks like it.
+int FfmpegPackets::find(const AVPacket& packet) const {
+  const auto key = [&](int i) { return place_of(index_.packets[static_cast<std::size_t>(i)]); };
+  const auto wanted = std::tuple(packet.pos, packet.dts, packet.pts, packet.size);
+  const auto found = std::ranges::lower_bound(by_place_, wanted, {}, key);
+  if (found == by_place_.end() || key(*found) != wanted) return -1;
+  if (found + 1 != by_place_.end() && key(*(found + 1)) == wanted) return -1;
+  return *found;
+}
+
+bool FfmpegPackets::take(AVPacket& packet) {
+  if (holds_) {
+    av_packet_move_ref(&packet, held_.get());
+    holds_ = false;
+    return true;
+  }
+  for (int errors = 0; errors < kMostStrangers;) {
+    const int got = input_->read(packet);
+    if (got == 0) return true;
+    if (got == AVERROR_EOF) return false;
+    ++errors;
+  }
+  return false;
+}
+
+bool FfmpegPackets::try_seek(std::int64_t stamp, int packet) {
+  holds_ = false;
+  av_packet_unref(held_.get());
+  if (stamp == AV_NOPTS_VALUE ||
+      av_seek_frame(&input_->container(), input_->stream().index, stamp, AVSEEK_FLAG_BACKWARD) < 0)
+    return false;
+  for (int strangers = 0; strangers < kMostStrangers; ++strangers) {
+    av_packet_unref(held_.get());
+    if (!take(*held_)) return false;
+    next_ = find(*held_);
+    if (next_ < 0) continue;
+    if (next_ > packet) return false;
+    holds_ = true;
+    break;
+  }
+  while (holds_ && next_ < packet) {
+    av_packet_unref(held_.get());
+    holds_ = false;
+    if (!take(*held_)) return false;
+    ++next_;
+    holds_ = find(*held_) == next_;
+  }
+  return holds_;
+}
+
+Result<void> FfmpegPackets::begin_anew(int packet) {
+  holds_ = false;
+  av_packet_unref(held_.get());
+  AFTERGLOW_TRY(input_, reopen_());
+  for (next_ = 0; next_ < packet; ++next_) {
+    av_packet_unref(held_.get());
+    if (!take(*held_)) return Error{ErrorKind::io, "changed while it was read"};
+  }
+  av_packet_unref(held_.get());
+  return {};
+}
+
+Result<void> FfmpegPackets::seek(int packet) {
+  if (packet == next_) return {};
+  const MoviePacket& wanted = index_.packets[static_cast<std::size_t>(packet)];
+  const AVRational base = input_->stream().time_base;
+  const std::int64_t second = base.num > 0 ? base.den / base.num : 1;
+  const bool found = packet > 0 && (try_seek(wanted.pts, packet) || try_seek(wanted.dts, packet) ||
+                                    (wanted.dts != AV_NOPTS_VALUE && try_seek(wanted.dts - second, packet)));
+  static_cast<void>(ffmpeg_said());
+  return found ? Result<void>() : begin_anew(packet);
+}
+
+Result<void> FfmpegPackets::read(AVPacket& packet) {
+  const MoviePacket& expected = index_.packets[static_cast<std::size_t>(next_)];
+  if (!take(packet) || packet.size != expected.size) return Error{ErrorKind::io, "changed while it was read"};
+  packet.pts = packet.dts = next_;
+  ++next_;
+  return {};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// What the colour codes of a video mean (ITU-T H.273), and what is taken where it says nothing.
+#pragma once
+
+#include "image/color_encoding.h"
+#include "image/movie_source.h"
+
+namespace afterglow {
+
+/// Fills in the matrix, primaries and transfer that a video does not say, and notes what was taken: RGB and codecs of
+/// still pictures are sRGB; anything else is BT.709, or BT.601 when it is no larger than standard definition.
+void fill_in(MovieFacts& facts);
+
+/// From stored RGB to light of the scene: curves of cameras are undone (BT.709, BT.601, BT.2020: the camera's curve,
+/// not a display's), PQ and HLG as the input spaces "pq" and "hlg". `facts` are filled in.
+ColorEncoding movie_encoding(const MovieFacts& facts);
+
+}  // namespace afterglow

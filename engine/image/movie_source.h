@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// What a reader of videos tells of one, and how it hands out frames: between movie.h and the module that decodes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+#include "core/result.h"
+#include "image/metadata.h"
+#include "image/size_limits.h"
+
+namespace afterglow {
+
+/// Numbers as in ITU-T H.273; 2: the file does not say.
+struct MovieColor {
+  int primaries = 2, transfer = 2, matrix = 2;
+  bool full_range = false;
+  bool rgb = false;      ///< stored as RGB or as codes of a palette
+  bool picture = false;  ///< of a codec of still pictures: MJPEG, GIF, PNG
+};
+
+struct MovieFacts {
+  std::string container;     ///< "matroska", "mov", FFmpeg's names
+  std::string codec;         ///< "h264"
+  std::string pixel_format;  ///< "yuv420p10le"
+  Size stored;               ///< of the frames in the file
+  Size size;                 ///< of the frames that are handed out: square pixels, not turned yet
+  Rational pixel_aspect{1, 1};
+  int orientation = 1;  ///< 1…8 as in Exif: how to turn the frames
+  double turned = 0;    ///< degrees that no orientation can say; not applied
+  bool has_alpha = false;
+  bool grey = false;
+  bool floating = false;
+  int bits = 8;  ///< of a sample
+  bool interlaced = false;
+  MovieColor color;
+  Rational rate{0, 1};         ///< frames a second, on the average; 0: unknown
+  Rational time_base{1, 1};    ///< seconds of a time stamp's unit
+  std::vector<long long> pts;  ///< of each frame that the file has or ought to have, in the order in which they show
+  std::size_t missing = 0;     ///< so many at the end are not there: the file is shorter than it says
+  std::vector<std::string> notes;  ///< what people may want to know
+};
+
+/// Thread-safe.
+class MovieSource {
+ public:
+  virtual ~MovieSource() = default;
+  const MovieFacts& facts() const { return facts_; }
+  /// Stored values, integers scaled to 0…1 (and beyond, where the codes leave room): RGB, and A where there is alpha,
+  /// to rgba[y·row_stride + x·4 + channel]. Grey is written to all three. Errors: io (damaged; the message follows
+  /// "frame N").
+  virtual Result<void> read(int frame, float* rgba, std::size_t row_stride) = 0;
+
+ protected:
+  MovieFacts facts_;
+};
+
+/// What is to be opened. `format`: FFmpeg's name of the container; no other is tried.
+struct MovieRequest {
+  std::filesystem::path file;
+  std::string format;
+  SizeLimits limits;
+};
+
+}  // namespace afterglow

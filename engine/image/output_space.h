@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Scene-linear light to the values that a colour space stores: the way back of input_space.h.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "image/color_matrix.h"
+#include "image/input_space.h"
+
+namespace afterglow {
+
+/// Immutable, thread-safe. The curve is the inverse of InputSpace::to_linear, by a table over the floats whose lines
+/// are off by less than 2e-6 of the whole.
+class OutputSpace {
+ public:
+  /// Made at the first call for each space, kept for the life of the process.
+  static const OutputSpace& of(const InputSpace& space);
+
+  const char* name() const { return name_; }
+  /// Colours of RGBA pixels, linear Rec.709, become stored values 0…1; alpha stays. Light beyond what the space holds
+  /// is held at its ends, NaN at that of 0.
+  void encode(float* rgba, std::size_t pixels) const;
+
+ private:
+  explicit OutputSpace(const InputSpace& space);
+  float stored(float light) const;
+
+  const char* name_;
+  std::optional<Matrix3> matrix_;  ///< from Rec.709, when the primaries are others
+  float of_zero_ = 0;              ///< what light 0 is stored as
+  std::vector<float> table_;       ///< stored values at the ends of equal parts of octaves
+};
+
+/// The space of this name, for outputs. Empty: none is asked for, null. Errors (usage): unknown.
+Result<const OutputSpace*> find_output_space(const std::string& name);
+
+}  // namespace afterglow

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+// DPX, Cineon, PAM: codes as stored, and what the files say of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <webp/decode.h>
+
+#include <bit>
+#include <cmath>
+
+#include "core/file.h"
+#include "image/output_format.h"
+#include "image/output_space.h"
+#include "image/writer.h"
+#include "make_files.h"
+#include "temporary_folder.h"
+
+namespace afterglow {
+namespace {
+using testing::HasSubstr;
+
+/// Greys whose Cineon codes are 95, 95 + step, …; red, green and blue differ.
+Picture wedge(int width, int height, bool alpha) {
+  Picture picture;
+  picture.color = Image(width, height, 4);
+  const InputSpace& cineon = *find_input_space("cineon").value();
+  for (int i = 0; i < width * height; ++i) {
+    float* pixel = &picture.color.pixels[static_cast<std::size_t>(i) * 4];
+    pixel[3] = alpha ? static_cast<float>(i % 5) / 4 : 1;
+    for (int c = 0; c < 3; ++c)
+      pixel[c] = static_cast<float>(cineon.to_linear((95 + (i * 7 + c * 131) % 900) / 1023.0)) * pixel[3];
+  }
+  picture.has_alpha = alpha;
+  picture.data_window = picture.display_window = {0, 0, width, height};
+  return picture;
+}
+
+/// Rounded to the nearest code, in this type and space.
+WriteOptions with(SampleType type, const OutputSpace* space = nullptr) {
+  WriteOptions options;
+  options.type = type;
+  options.space = space;
+  options.dither = false;
+  return options;
+}
+WriteOptions compressed(const char* compression) {
+  WriteOptions options;
+  options.compression = compression;
+  return options;
+}
+
+Result<void> write(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options = {}) {
+  Diagnostics silent;
+  return write_picture(picture, file, options, silent);
+}
+
+TEST(Cineon, HoldsTheCodesWhereTheFormatSays) {
+  const TemporaryFolder folder;
+  const Picture picture = wedge(37, 5, false);
+  ASSERT_TRUE(write(picture, folder / "o.cin"));
+  const std::string bytes = read_file(folder / "o.cin").value();
+  ASSERT_EQ(bytes.size(), 2048u + 37 * 5 * 4);
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
+    return value;
+  };
+  EXPECT_EQ(number(0), 0x802a5fd7u);
+  EXPECT_EQ(number(4), 2048u);
+  EXPECT_EQ(number(20), bytes.size());
+  for (std::size_t i = 0; i < 37 * 5; ++i)
+    for (int c = 0; c < 3; ++c)
+      ASSERT_EQ(number(2048 + i * 4) >> (22 - 10 * c) & 1023, 95 + (i * 7 + static_cast<unsigned>(c) * 131) % 900);
+}
+
+/// As another library, and the reader, see them.
+TEST(Cineon, ComesBackAsLight) {
+  const TemporaryFolder folder;
+  for (const char* name : {"o.cin", "o.dpx"}) {
+    const Picture picture = wedge(37, 5, false);
+    ASSERT_TRUE(write(picture, folder / name));
+    const Picture back = read_or_fail(folder / name);
+    ASSERT_EQ(back.color.size(), (Size{37, 5}));
+    for (std::size_t i = 0; i < picture.color.pixels.size(); ++i)
+      ASSERT_NEAR(back.color.pixels[i], picture.color.pixels[i], 1e-4 * (1 + picture.color.pixels[i])) << name << i;
+  }
+}
+
+class Dpx : public testing::TestWithParam<std::tuple<SampleType, bool>> {};
+
+TEST_P(Dpx, HoldsTheCodes) {
+  const auto& [type, wanted_alpha] = GetParam();
+  const bool alpha = wanted_alpha && type != SampleType::uint10;  // which has none
+  const TemporaryFolder folder;
+  const Picture picture = wedge(37, 53, wanted_alpha);
+  ASSERT_TRUE(write(picture, folder / "o.dpx", with(type)));
+  const auto input = OIIO::ImageInput::open((folder / "o.dpx").string());
+  ASSERT_TRUE(input) << OIIO::geterror();
+  const OIIO::ImageSpec spec = input->spec();
+  EXPECT_EQ(spec.nchannels, alpha ? 4 : 3);
+  const int most = max_code(type);
+  const int bits = std::bit_width(static_cast<unsigned>(most));
+  EXPECT_EQ(spec.get_int_attribute("oiio:BitsPerSample", bits), bits);
+  std::vector<float> samples(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
+  ASSERT_TRUE(input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, samples.data())) << input->geterror();
+  const auto channels = static_cast<std::size_t>(spec.nchannels);
+  for (std::size_t i = 0; i < spec.image_pixels(); ++i) {
+    ASSERT_NEAR(alpha ? samples[i * channels + 3] : static_cast<float>(i % 5) / 4, static_cast<float>(i % 5) / 4,
+                0.55 / most);
+    if (wanted_alpha && (alpha ? i % 5 == 0 : i % 5 != 4)) continue;  // nothing is there, or less than all
+    for (std::size_t c = 0; c < 3; ++c)
+      ASSERT_NEAR(samples[i * channels + c] * static_cast<float>(most),
+                  static_cast<double>((95 + (i * 7 + c * 131) % 900)) / 1023 * most, 0.65)
+          << i << " " << c;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Dpx,
+                         testing::Combine(testing::Values(SampleType::uint8, SampleType::uint10, SampleType::uint12,
+                                                          SampleType::uint16),
+                                          testing::Bool()));
+
+TEST(MoreFormats, OtherSpaces) {
+  const TemporaryFolder folder;
+  const OutputSpace* gamma = find_output_space("gamma22").value();
+  Picture picture = wedge(4, 1, false);
+  picture.color.pixels = {1, 0.5f, 0, 1, 0.25f, 0.1f, 2, 1, 0, 0, 0, 1, 1, 1, 1, 1};
+  ASSERT_TRUE(write(picture, folder / "o.ppm", with(SampleType::uint16, gamma)));
+  const std::string bytes = read_file(folder / "o.ppm").value();
+  ASSERT_EQ(bytes.substr(0, 13), "P6\n4 1\n65535\n");
+  const auto code = [&](std::size_t i) {
+    return static_cast<std::uint8_t>(bytes[13 + 2 * i]) * 256 + static_cast<std::uint8_t>(bytes[14 + 2 * i]);
+  };
+  EXPECT_EQ(code(0), 65535);
+  EXPECT_NEAR(code(1), 65535 * std::pow(0.5, 1 / 2.2), 0.7);
+  EXPECT_EQ(code(2), 0);
+  EXPECT_NEAR(code(4), 65535 * std::pow(0.1, 1 / 2.2), 0.7);
+  EXPECT_EQ(code(5), 65535);
+  const auto refused = write(picture, folder / "o.exr", with(SampleType::automatic, gamma));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::usage);
+  EXPECT_THAT(refused.error().text(), HasSubstr("exr files hold scene-linear light; --output-space is for integer"));
+}
+
+TEST(MoreFormats, PamHasStraightAlpha) {
+  const TemporaryFolder folder;
+  Picture picture = wedge(2, 1, true);
+  picture.color.pixels = {0.5f, 0, 0, 0.5f, 0, 0, 0, 0};
+  ASSERT_TRUE(write(picture, folder / "o.pam", with(SampleType::automatic)));
+  EXPECT_EQ(read_file(folder / "o.pam").value(),
+            std::string("P7\nWIDTH 2\nHEIGHT 1\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\n") +
+                std::string("\xff\0\0\x80\0\0\0\0", 8));
+}
+
+TEST(MoreFormats, WhatAFormatCannotHold) {
+  const TemporaryFolder folder;
+  struct Case {
+    const char* file;
+    WriteOptions options;
+    const char* message;
+  };
+  for (const Case& c : {Case{"o.cin", with(SampleType::uint16), "cin files cannot hold samples of type uint16"},
+                        Case{"o.pfm", with(SampleType::uint8), "pfm files cannot hold samples of type uint8"},
+                        Case{"o.webp", with(SampleType::uint16), "webp files cannot hold samples of type uint16"},
+                        Case{"o.png", with(SampleType::uint10), "png files cannot hold samples of type uint10"},
+                        Case{"o.webp", compressed("lossles"), "did you mean 'lossless'?"},
+                        Case{"o.tga", compressed("rle:3"), "compression 'rle' takes no level"}}) {
+    const auto refused = write(wedge(4, 4, false), folder / c.file, c.options);
+    ASSERT_FALSE(refused) << c.message;
+    EXPECT_EQ(refused.error().kind, ErrorKind::usage);
+    EXPECT_THAT(refused.error().text(), HasSubstr(c.message));
+  }
+  EXPECT_EQ(folder.count(), 0);
+}
+
+TEST(MoreFormats, AlphaThatAFormatCannotHoldIsTold) {
+  const TemporaryFolder folder;
+  Messages messages;
+  for (const char* name : {"o.cin", "o.ppm", "o.pfm", "o.dpx"})
+    ASSERT_TRUE(write_picture(wedge(4, 4, true), folder / name, {}, messages.diagnostics));
+  ASSERT_EQ(messages.warnings.size(), 4u);
+  EXPECT_THAT(messages.warnings[0], HasSubstr("cin files have no alpha; the picture is put on black"));
+  EXPECT_THAT(messages.warnings[3], HasSubstr("dpx files have no alpha in 10 bits (--type uint16 has); the picture"));
+}
+
+TEST(MoreFormats, SmallJpeg2000) {
+  const TemporaryFolder folder;
+  const auto refused = write(wedge(31, 64, false), folder / "o.jp2");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::io);
+  EXPECT_THAT(refused.error().text(), HasSubstr("sides of at least 32 pixels, not 31x64"));
+  EXPECT_EQ(folder.count(), 0);
+}
+
+TEST(MoreFormats, WebpHoldsStraightCodes) {
+  const TemporaryFolder folder;
+  const Picture picture = wedge(37, 53, true);
+  for (const char* name : {"o.webp", "o.pam"}) ASSERT_TRUE(write(picture, folder / name, with(SampleType::automatic)));
+  const std::string webp = read_file(folder / "o.webp").value(), pam = read_file(folder / "o.pam").value();
+  int width = 0, height = 0;
+  std::uint8_t* pixels =
+      WebPDecodeRGBA(reinterpret_cast<const std::uint8_t*>(webp.data()), webp.size(), &width, &height);
+  ASSERT_TRUE(pixels);
+  EXPECT_EQ((Size{width, height}), (Size{37, 53}));
+  const std::string codes(reinterpret_cast<const char*>(pixels), 37 * 53 * 4);
+  WebPFree(pixels);
+  EXPECT_TRUE(pam.ends_with(codes));
+}
+
+TEST(MoreFormats, WebpLossy) {
+  const TemporaryFolder folder;
+  Picture picture = wedge(64, 64, false);
+  ASSERT_TRUE(write(picture, folder / "a.webp"));
+  ASSERT_TRUE(write(picture, folder / "b.webp", compressed("lossy:10")));
+  EXPECT_LT(std::filesystem::file_size(folder / "b.webp"), std::filesystem::file_size(folder / "a.webp"));
+  EXPECT_EQ(read_or_fail(folder / "b.webp").color.size(), (Size{64, 64}));
+}
+
+}  // namespace
+}  // namespace afterglow

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Light to stored values, against the curves in double precision.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "image/output_space.h"
+
+namespace afterglow {
+namespace {
+
+class Spaces : public testing::TestWithParam<InputSpace> {};
+
+TEST_P(Spaces, GoThereAndBack) {
+  const InputSpace& space = *find_input_space(GetParam().name).value();
+  const OutputSpace& out = OutputSpace::of(space);
+  const Matrix3 matrix = to_rec709(space.primaries);
+  for (int i = 0; i <= 4095; ++i) {
+    const double stored = i / 4095.0, other = (4095 - i) / 4095.0;
+    const double light[3] = {space.to_linear(stored), space.to_linear(other), space.to_linear(stored)};
+    if (light[0] < 0 || light[1] < 0) continue;  // darker than black: no light
+    float pixel[4] = {0, 0, 0, 0.25f};
+    for (std::size_t c = 0; c < 3; ++c)
+      pixel[c] = static_cast<float>(matrix[c][0] * light[0] + matrix[c][1] * light[1] + matrix[c][2] * light[2]);
+    // What a float of light cannot tell apart: the largest of the three, in the steepness of the curve.
+    const double step = 1e-5, most = std::max({light[0], light[1], 1e-6});
+    const auto off = [&](double v) {
+      const double slope = (space.to_linear(v + step) - space.to_linear(v)) / step;
+      return 3e-6 + most * 4e-7 / std::max(slope, 1e-9);
+    };
+    out.encode(pixel, 1);
+    ASSERT_NEAR(pixel[0], stored, off(stored)) << i;
+    ASSERT_NEAR(pixel[1], other, off(other)) << i;
+    ASSERT_EQ(pixel[3], 0.25f);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Spaces, testing::ValuesIn(input_spaces().begin(), input_spaces().end()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(OutputSpace, HoldsWhatIsBeyond) {
+  for (const InputSpace& space : input_spaces()) {
+    float pixels[8] = {1e30f, INFINITY, 1e30f, 1, NAN, -3, 0, 1};
+    OutputSpace::of(space).encode(pixels, 2);
+    for (const float value : pixels) EXPECT_TRUE(value >= 0 && value <= 1) << space.name << " " << value;
+    EXPECT_TRUE(space.primaries.red != kRec709.red || pixels[0] == 1) << space.name;
+  }
+}
+
+TEST(OutputSpace, CineonIsKodaks) {
+  const OutputSpace* cineon = find_output_space("cineon").value();
+  float pixels[8] = {0, 0.18f, 1, 1, 13.5f, 0, 0, 1};
+  cineon->encode(pixels, 2);
+  EXPECT_NEAR(pixels[0] * 1023, 95, 0.01);
+  EXPECT_NEAR(pixels[1] * 1023, 685 + 300 * std::log10(0.18 + 0.82 * std::pow(10, -590.0 / 300)), 0.01);
+  EXPECT_NEAR(pixels[2] * 1023, 685, 0.01);
+  EXPECT_EQ(find_output_space("").value(), nullptr);
+  EXPECT_EQ(find_output_space("logc").error().kind, ErrorKind::usage);
+  EXPECT_TRUE(
+      find_output_space("logc").error().text().starts_with("error: 'logc' is no output space; allowed: acescct"));
+}
+
+}  // namespace
+}  // namespace afterglow
