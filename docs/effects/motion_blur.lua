@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: MIT
--- input: tests/images/showcase/alley_move.exr --set color_adjustments.post_exposure=0.3
+-- input: tests/images/showcase/alley_move.exr --size 960x540 --set color_adjustments.post_exposure=0.3
 local fx = require "afterglow"
 
 return fx.stack {
