@@ -142,15 +142,24 @@ Result<void> FfmpegInput::choose_stream() {
   return check_sides({0, 0, parameters.width, parameters.height}, "frame", limits_, name_);
 }
 
-Result<CodecHandle> FfmpegInput::open_decoder() const {
+Result<CodecHandle> FfmpegInput::open_decoder(FfmpegErrors& errors, bool careful) const {
   const AVStream& stream = *container_->streams[stream_];
   CodecHandle codec(avcodec_alloc_context3(codec_));
   if (!codec || avcodec_parameters_to_context(codec.get(), stream.codecpar) < 0)
     return failed("there is no memory to decode it");
   codec->pkt_timebase = stream.time_base;
   constexpr unsigned kMostThreads = 4;  // each holds pictures of its own
-  codec->thread_count = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads));
+  codec->thread_count =
+      careful ? 1 : static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads));
+  // Decoders of single pictures tell of damage by messages and by checksums.
+  codec->opaque = &errors;
+  const AVCodecDescriptor* kind = avcodec_descriptor_get(codec->codec_id);
+  if (kind && (kind->props & AV_CODEC_PROP_INTRA_ONLY) != 0) codec->thread_type = FF_THREAD_SLICE;
   codec->err_recognition = AV_EF_CRCCHECK;
+  if (codec->codec_id == AV_CODEC_ID_FFV1 || codec->codec_id == AV_CODEC_ID_APNG || codec->codec_id == AV_CODEC_ID_PNG)
+    codec->err_recognition |= AV_EF_EXPLODE;
+  // Whether a frame has what it is built on is known from the index, not guessed from the stream.
+  codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
   const auto side = static_cast<std::int64_t>(limits_.max_side);
   codec->max_pixels = std::min(side * side, static_cast<std::int64_t>(limits_.max_bytes / 4));
   if (const int opened = avcodec_open2(codec.get(), codec_, nullptr); opened < 0)

@@ -9,6 +9,7 @@
 #include "core/file_descriptor.h"
 #include "core/result.h"
 #include "image/ffmpeg_handles.h"
+#include "image/ffmpeg_log.h"
 #include "image/size_limits.h"
 
 namespace afterglow {
@@ -30,8 +31,9 @@ class FfmpegInput {
   AVFormatContext& container() { return *container_; }
   AVStream& stream() { return *container_->streams[stream_]; }
   const AVCodec& codec() const { return *codec_; }
-  /// A decoder for the stream, opened. Errors: io.
-  Result<CodecHandle> open_decoder() const;
+  /// A decoder for the stream, opened. `errors` counts what it complains of and outlives it. `careful`: on one thread,
+  /// where it tells of each frame whether it is damaged; on several that gets lost. Errors: io.
+  Result<CodecHandle> open_decoder(FfmpegErrors& errors, bool careful) const;
   /// The next packet of the stream: 0, AVERROR_EOF, or another error of FFmpeg.
   int read(AVPacket& packet);
 
