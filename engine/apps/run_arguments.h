@@ -19,7 +19,7 @@ struct RunArguments {
   std::string input_space, output_space, size, region;
   std::string type = "auto", dither = "auto", compression, nan_policy = "zero";
   int png_level = 1, jpeg_quality = 95;
-  bool keep_layers = false, resume = false, fail_fast = false, sandbox = false;
+  bool keep_layers = false, resume = false, watch = false, fail_fast = false, sandbox = false;
   double fps = 24;
   std::optional<int> pre_roll;
   std::string stats, report, lock, locked;

@@ -10,6 +10,7 @@
 
 #include "batch/resume.h"
 #include "batch/schedule.h"
+#include "batch/watch_run.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "graph/history.h"
@@ -117,6 +118,9 @@ Result<void> run_frames(BatchRun& run) {
   auto& frames = run.report.frames;
   AFTERGLOW_TRY(run.sink, open_sink(asked.files, asked.loop.write, asked.loop.fps, run.events.diagnostics));
   if (!run.sink->is_one()) AFTERGLOW_CHECK(check_outputs(run));
+  if (run.sink->is_one() && asked.watch)
+    return Error{ErrorKind::usage, "--watch makes frames in the order in which they come; one file cannot take them",
+                 "afterglow run", 0, "pictures, like out.####.exr"};
   SessionOptions opened = asked.session;
   opened.frames = frames.size() > 1 ? kFramesInFlight : 1;
   AFTERGLOW_TRY(run.session, Session::open(asked.preset, opened, run.events.diagnostics));
@@ -129,11 +133,15 @@ Result<void> run_frames(BatchRun& run) {
   if (earlier) loop.follow_histories();
   if (earlier && asked.resume) note_earlier_files(frames, asked.files, *earlier);
   AFTERGLOW_CHECK(prepare_resume(run));
-  Schedule schedule = earlier ? schedule_with_histories(frames, asked.files, *earlier) : plain_schedule(frames);
-  run.report.pre_roll = schedule.earlier.size();
-  run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
   if (run.record_look) run.sink->record_look(*run.record_look);
-  auto done = loop.run(schedule);
+  const auto run_waiting = [&]() -> Result<void> {
+    Schedule schedule = earlier ? schedule_with_histories(frames, asked.files, *earlier) : plain_schedule(frames);
+    run.report.pre_roll += schedule.earlier.size();
+    return loop.run(schedule);
+  };
+  run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
+  auto done = asked.watch ? run_watching(frames, earlier.value_or(0), options.fail_fast, run.events, run_waiting)
+                          : run_waiting();
   run.report.memory_needed = loop.largest_need();
   return done;
 }

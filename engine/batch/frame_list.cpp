@@ -116,7 +116,8 @@ Result<std::vector<FrameJob>> list_frames(const FrameListRequest& request) {
   }
   AFTERGLOW_TRY(const OutputNames names, OutputNames::parse(request));
   std::vector<FrameJob> jobs;
-  for (const auto& input : request.inputs) {
+  AFTERGLOW_TRY(const auto inputs, with_sequences(request.inputs));
+  for (const auto& input : inputs) {
     AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));
     if (frames && !pattern.numbered)
       return usage(fmt::format("--frames needs a numbered input like shot.####.exr, not {}", input));

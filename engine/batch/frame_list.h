@@ -25,7 +25,7 @@ struct FrameJob {
 };
 
 struct FrameListRequest {
-  std::vector<std::string> inputs;  ///< files and patterns
+  std::vector<std::string> inputs;  ///< files, patterns, and folders that hold one sequence
   std::string output;               ///< file, pattern or folder
   std::string extension;            ///< --format, for outputs in a folder; empty: that of the input
   std::string frames;               ///< "1-24x2"; empty: all that exist
