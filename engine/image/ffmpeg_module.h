@@ -16,6 +16,7 @@ struct FfmpegModule {
   std::string (*version)();
   /// See movie_source.h.
   Result<std::shared_ptr<MovieSource>> (*open)(const MovieRequest& request);
+  Result<std::unique_ptr<MovieFrames>> (*stream)(const StreamRequest& request);
 };
 
 /// Loads it on the first call; thread-safe. Errors: io (not installed, built without it).
