@@ -9,6 +9,7 @@
 
 #include "core/text.h"
 #include "image/sequence.h"
+#include "image/video_output.h"
 
 namespace afterglow {
 namespace {
@@ -37,6 +38,7 @@ class OutputNames {
   static Result<OutputNames> parse(const FrameListRequest& request) {
     OutputNames names;
     std::error_code ec;
+    if (is_one_output(request.output)) return one_of(request);
     names.is_folder_ = request.output.ends_with('/') || fs::is_directory(request.output, ec);
     names.folder_ = request.output;
     names.extension_ = request.extension;
@@ -51,7 +53,8 @@ class OutputNames {
     return names;
   }
 
-  bool one_file() const { return !is_folder_ && !pattern_.numbered; }
+  bool takes_all() const { return takes_all_; }
+  bool one_file() const { return !is_folder_ && !takes_all_ && !pattern_.numbered; }
   fs::path name(const fs::path& input, int frame) const {
     if (!is_folder_) return pattern_.file(frame);
     fs::path name = input.filename();
@@ -60,7 +63,18 @@ class OutputNames {
   }
 
  private:
-  bool is_folder_ = false;
+  static Result<OutputNames> one_of(const FrameListRequest& request) {
+    OutputNames names;
+    AFTERGLOW_TRY(names.pattern_, parse_pattern(request.output));
+    if (names.pattern_.numbered)
+      return usage(fmt::format("a video takes all frames; {} would be one for each", request.output));
+    names.takes_all_ = true;
+    if (request.output != "-" && !request.extension.empty())
+      return usage("--format is for outputs in a folder and for standard output; a file name says its format itself");
+    return names;
+  }
+
+  bool is_folder_ = false, takes_all_ = false;
   fs::path folder_;
   std::string extension_;
   Pattern pattern_;
@@ -71,11 +85,11 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, ec);
 }
 
-Result<void> check_outputs(const std::vector<FrameJob>& jobs) {
+Result<void> check_outputs(const std::vector<FrameJob>& jobs, bool one) {
   std::map<fs::path, fs::path> made_from;
   for (const auto& job : jobs) {
     const auto [at, is_new] = made_from.emplace(job.output, job.input);
-    if (!is_new)
+    if (!is_new && !one)
       return usage(fmt::format("{} and {} would both be written to {}", at->second.string(), job.input.string(),
                                job.output.string()));
     for (const auto& source : job.sources())
@@ -86,6 +100,8 @@ Result<void> check_outputs(const std::vector<FrameJob>& jobs) {
 }
 
 }  // namespace
+
+bool is_one_output(const std::string& output) { return output == "-" || is_video_output(output); }
 
 Result<FrameJob> job_of(const FrameListRequest& request, const std::string& sequence, const FrameFile& file) {
   FrameJob job{.frame = file.frame,
@@ -130,7 +146,7 @@ Result<std::vector<FrameJob>> list_frames(const FrameListRequest& request) {
   if (jobs.size() > 1 && names.one_file())
     return usage(fmt::format("{} frames cannot go into the one file {}; give a pattern like out.####.png or a folder",
                              jobs.size(), request.output));
-  AFTERGLOW_CHECK(check_outputs(jobs));
+  AFTERGLOW_CHECK(check_outputs(jobs, names.takes_all()));
   return jobs;
 }
 

@@ -26,11 +26,14 @@ struct FrameJob {
 
 struct FrameListRequest {
   std::vector<std::string> inputs;  ///< files and patterns
-  std::string output;               ///< file, pattern or folder
+  std::string output;               ///< file, pattern or folder; a video; "-": standard output
   std::string extension;            ///< --format, for outputs in a folder; empty: that of the input
   std::string frames;               ///< "1-24x2"; empty: all that exist
   LayerChoice depth, normal, motion;
 };
+
+/// Whether all frames go into this one output, a video or standard output.
+bool is_one_output(const std::string& output);
 
 /// A frame of a sequence, without an output. Errors: usage (a pattern for depth or normal that is none).
 Result<FrameJob> job_of(const FrameListRequest& request, const std::string& sequence, const FrameFile& file);

@@ -2,6 +2,8 @@
 #include "batch/frame_sink.h"
 
 #include "batch/resume.h"
+#include "batch/video_sink.h"
+#include "image/video_output.h"
 
 namespace afterglow {
 namespace {
@@ -29,8 +31,9 @@ class FileSink : public FrameSink {
 
 }  // namespace
 
-Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest&, const WriteOptions& options, double,
+Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const WriteOptions& options, double fps,
                                              Diagnostics& diagnostics) {
+  if (is_video_output(files.output)) return open_video_sink(files.output, options, fps, diagnostics);
   return std::unique_ptr<FrameSink>(std::make_unique<FileSink>(options, diagnostics));
 }
 

@@ -141,8 +141,12 @@ std::optional<DisplayCodes> display_codes(const fs::path& file, const WriteOptio
 }
 
 Result<void> check_output(const fs::path& file, const WriteOptions& options) {
-  const auto refuse = [&](const std::string& why) { return Error{ErrorKind::io, why, file.string()}; };
   AFTERGLOW_TRY([[maybe_unused]] const OutputFormat* format, output_format(file, options));
+  return check_place(file);
+}
+
+Result<void> check_place(const fs::path& file) {
+  const auto refuse = [&](const std::string& why) { return Error{ErrorKind::io, why, file.string()}; };
   const fs::path target = resolved(file);
   std::error_code ec;
   const fs::file_status status = fs::status(target, ec);

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "batch/video_sink.h"
+
+#include <fmt/format.h>
+
+#include "image/metadata.h"
+#include "image/video_writer.h"
+
+namespace afterglow {
+namespace {
+
+/// More than 8 bits are worth keeping.
+bool is_deep(const FileFacts* facts) { return facts && (facts->floating || facts->bits > 8); }
+
+class VideoSink : public FrameSink {
+ public:
+  VideoSink(std::filesystem::path file, const WriteOptions& options, double fps, Diagnostics& diagnostics)
+      : file_(std::move(file)), options_(options), rate_(frame_rate(fps)), diagnostics_(diagnostics) {}
+
+  Result<void> check() const {
+    if (options_.keep_layers)
+      return Error{ErrorKind::usage, "only EXR files can keep layers", file_.string(), 0, ".exr"};
+    if (options_.type != SampleType::automatic)
+      return Error{ErrorKind::usage, "--type is for pictures; a video has --pix-fmt", file_.string()};
+    if (!options_.compression.empty())
+      return Error{ErrorKind::usage, "--compression is for pictures; a video has --codec and --crf", file_.string()};
+    AFTERGLOW_TRY(const VideoPlan plan, plan_video(file_, options_, false, false));
+    AFTERGLOW_CHECK(check_video_encoder(plan, file_));
+    return check_place(file_);
+  }
+
+  Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture) override {
+    if (!writer_) AFTERGLOW_CHECK(begin(job, picture));
+    if (picture.has_alpha && !writer_->plan().pack.layout->alpha)
+      diagnostics_.warn_once("no alpha",
+                             fmt::format("{}: {} as {} has no alpha; the pictures are put on black", file_.string(),
+                                         writer_->plan().codec, writer_->plan().pack.layout->name));
+    return writer_->write(picture, {static_cast<long long>(index), 1});
+  }
+
+  Result<void> finish() override { return writer_ ? writer_->finish() : Result<void>(); }
+
+ private:
+  Result<void> begin(const FrameJob&, const Picture& picture) {
+    AFTERGLOW_TRY(VideoPlan plan, plan_video(file_, options_, is_deep(picture.facts.get()), picture.has_alpha));
+    plan.size = picture.display_window.size();
+    plan.rate = rate_;
+    plan.time_base = {rate_.denominator, rate_.numerator};
+    AFTERGLOW_TRY(writer_, VideoWriter::open(file_, std::move(plan), diagnostics_));
+    return {};
+  }
+
+  std::filesystem::path file_;
+  WriteOptions options_;
+  Rational rate_;
+  Diagnostics& diagnostics_;
+  std::unique_ptr<VideoWriter> writer_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<FrameSink>> open_video_sink(const std::filesystem::path& file, const WriteOptions& options,
+                                                   double fps, Diagnostics& diagnostics) {
+  auto sink = std::make_unique<VideoSink>(file, options, fps, diagnostics);
+  AFTERGLOW_CHECK(sink->check());
+  return std::unique_ptr<FrameSink>(std::move(sink));
+}
+
+}  // namespace afterglow
