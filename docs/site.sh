@@ -16,6 +16,7 @@ pages=(
   "docs/gallery.md|Gallery"
   "docs/effects.md|Effects"
   "docs/composition.md|Composing looks"
+  "docs/video.md|Videos"
   "docs/writing_effects.md|Writing an effect"
   "docs/tone_mapping.md|Tone curves"
   "docs/alpha.md|Soft edges"

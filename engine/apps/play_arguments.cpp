@@ -91,6 +91,9 @@ Result<PlayerOptions> PlayArguments::player() const {
   AFTERGLOW_TRY(out.preset, preset.preset_file());
   if (!other.empty()) {
     AFTERGLOW_TRY(out.other_preset, find_preset_file(other, {preset.paths.begin(), preset.paths.end()}));
+    std::error_code none;
+    if (!std::filesystem::exists(out.other_preset, none))
+      return Error{ErrorKind::script, "no such file", out.other_preset.string(), 0, "a preset for --b"};
   }
   out.live.watch.poll = poll;
   out.footage.inputs = inputs;

@@ -23,6 +23,8 @@ Result<void> show_first(Player& player) {
   if (const auto first = player.step(); !first) return first.error();
   if (player.live().stack() == nullptr)
     return player.live().status().error.value_or(Error{ErrorKind::script, "the preset has no good build"});
+  if (LiveStack* other = player.other(); other && other->stack() == nullptr)
+    return other->status().error.value_or(Error{ErrorKind::script, "the second preset has no good build"});
   if (player.shown().failed) return *player.shown().failed;
   // Builds are complete from here on: that of the first frame has made what it needs.
   player.live().settle();

@@ -163,9 +163,6 @@ Result<void> validate(const Graph& graph) {
   }
   if (!made[graph.result])
     return Error{ErrorKind::script, fmt::format("no pass makes the result '{}'", graph.images[graph.result].name)};
-  if (graph.images[graph.result].size != graph.images[graph.source].size)
-    return Error{ErrorKind::script,
-                 fmt::format("the result '{}' has another size than the source", graph.images[graph.result].name)};
   if (is_computed(graph, graph.result))
     return pass_error(graph.passes[graph.images[graph.result].producer], "a compute pass cannot make the result");
   AFTERGLOW_CHECK(validate_conditions(graph));

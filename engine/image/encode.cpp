@@ -38,6 +38,14 @@ __attribute__((target("avx,f16c"))) std::size_t to_half_f16c(const float* values
   }
   return i;
 }
+
+__attribute__((target("avx,f16c"))) std::size_t from_half_f16c(const std::uint8_t* halves, float* values,
+                                                               std::size_t count) {
+  std::size_t i = 0;
+  for (; i + 8 <= count; i += 8)
+    _mm256_storeu_ps(values + i, _mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(halves + 2 * i))));
+  return i;
+}
 #endif
 
 /// The code below or above a value by the pixel's threshold, so that an area of them has the light that was meant.
@@ -73,8 +81,8 @@ void encode_in_space(const CodeRules& rules, const float* rgba, int width, int x
   for (int x = 0; x < width; ++x) {
     const float* pixel = &row[static_cast<std::size_t>(x) * 4];
     for (int c = 0; c < 3; ++c)
-      *codes++ = static_cast<Code>(
-          stored_code(pixel[c], rules.dither ? 1 - blue_noise(x0 + x, y) : 0.5f, rules.max_code));
+      *codes++ =
+          static_cast<Code>(stored_code(pixel[c], rules.dither ? 1 - blue_noise(x0 + x, y) : 0.5f, rules.max_code));
     if (rules.alpha) *codes++ = static_cast<Code>(linear_code(pixel[3], rules.max_code));
   }
 }
@@ -129,6 +137,20 @@ std::uint64_t to_half(const float* values, std::uint16_t* halves, std::size_t co
     halves[i] = Imath::half(held(values[i])).bits();
   }
   return overflows;
+}
+
+void from_half(const std::uint8_t* halves, float* values, std::size_t count) {
+  std::size_t i = 0;
+#if defined(__x86_64__)
+  if (has_f16c()) i = from_half_f16c(halves, values, count);
+#endif
+  for (; i < count; ++i) {
+    Imath::half value;
+    std::uint16_t bits = 0;
+    std::memcpy(&bits, halves + 2 * i, sizeof bits);
+    value.setBits(bits);
+    values[i] = value;
+  }
 }
 
 void display_row(const Picture& picture, int y, float padding_alpha, float* rgba) {

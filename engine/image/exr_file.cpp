@@ -22,6 +22,7 @@
 #include <thread>
 
 #include "core/exception.h"
+#include "image/exr_lines.h"
 #include "image/exr_metadata.h"
 
 namespace afterglow {
@@ -219,11 +220,27 @@ class ExrFile : public PictureFile {
     slots = std::move(sorted_slots);
   }
 
+  static std::vector<ExrLineTarget> line_targets(const ExrPart& part, const PartSlots& slots,
+                                                 std::span<const ReadTarget> targets) {
+    std::vector<ExrLineTarget> lines;
+    for (const ReadTarget& target : targets) {
+      const ChannelSlot& slot = slots.channels[static_cast<std::size_t>(target.channel)];
+      if (slot.chroma >= 0) continue;
+      const auto channel = std::ranges::find(part.channels, slot.stored, &ExrChannel::name);
+      lines.push_back({static_cast<std::size_t>(channel - part.channels.begin()), target.base, target.pixel_stride,
+                       target.row_stride});
+    }
+    return lines;
+  }
+
   void read_plain(int part, std::span<const ReadTarget> targets) {
     Imf::InputPart input(*file_, part);
+    const ExrPart& header = header_[static_cast<std::size_t>(part)];
+    const PartSlots& slots = slots_[static_cast<std::size_t>(part)];
+    if (const auto lines = line_targets(header, slots, targets); has_zipped_lines(header, lines))
+      return read_zipped_lines(input, header, lines);
     const Imath::Box2i window = input.header().dataWindow();
     Imf::FrameBuffer buffer;
-    const PartSlots& slots = slots_[static_cast<std::size_t>(part)];
     for (const ReadTarget& target : targets) {
       const ChannelSlot& slot = slots.channels[static_cast<std::size_t>(target.channel)];
       if (slot.chroma >= 0) continue;

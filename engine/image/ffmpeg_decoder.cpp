@@ -51,13 +51,34 @@ void FfmpegDecoder::keep(FrameHandle frame, int packet) {
   }
 }
 
-Result<void> FfmpegDecoder::begin_at(int packet) {
+void FfmpegDecoder::forget() {
+  cache_.clear();
+  held_bytes_ = 0;
+}
+
+Result<void> FfmpegDecoder::begin_at(int packet, bool careful) {
   AFTERGLOW_CHECK(packets_.seek(packet));
-  AFTERGLOW_TRY(codec_, packets_.input().open_decoder());
+  AFTERGLOW_TRY(codec_, packets_.input().open_decoder(*errors_, careful));
+  const AVCodecDescriptor* kind = avcodec_descriptor_get(codec_->codec_id);
+  intra_only_ = kind && (kind->props & AV_CODEC_PROP_INTRA_ONLY) != 0;
+  *errors_ = 0;
+  careful_ = careful;
   start_ = packet;
   emitted_ = came_last_ = -1;
   draining_ = ended_ = false;
   return {};
+}
+
+/// What most decoders tell of damage is a message while they decode the packet, as long as they use one thread.
+void FfmpegDecoder::note_complaints() {
+  const AVCodecID codec = codec_->codec_id;
+  const bool flags_tell = codec == AV_CODEC_ID_H264 || codec == AV_CODEC_ID_MPEG1VIDEO ||
+                          codec == AV_CODEC_ID_MPEG2VIDEO || codec == AV_CODEC_ID_MPEG4;
+  if (flags_tell || !(careful_ || intra_only_) || errors_->exchange(0) == 0) return;
+  const int packet = packets_.position() - 1;
+  if (index_.start_for(packet) < start_) return;
+  complained_.insert(packet);
+  damaged_.insert(packet);
 }
 
 /// Frames from..to−1 should have come out and have not.
@@ -82,7 +103,9 @@ Result<bool> FfmpegDecoder::step() {
       emitted_ = std::max(emitted_, rank);
       // What comes out before its own group has begun is built on frames that were not decoded.
       if (index_.start_for(came_last_) < start_) continue;
-      const bool bad = frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0;
+      note_complaints();
+      const bool bad = complained_.contains(came_last_) || frame->decode_error_flags != 0 ||
+                       (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0;
       if (bad || index_.packets[at(came_last_)].damaged)
         damaged_.insert(came_last_);
       else
@@ -98,6 +121,7 @@ Result<bool> FfmpegDecoder::step() {
         AFTERGLOW_CHECK(packets_.read(*packet_));
         avcodec_send_packet(codec_.get(), packet_.get());  // what it cannot take does not come out either
         av_packet_unref(packet_.get());
+        note_complaints();
       } else if (!std::exchange(draining_, true)) {
         avcodec_send_packet(codec_.get(), nullptr);
       }
@@ -130,8 +154,7 @@ Result<void> FfmpegDecoder::decode_until(int packet, int start) {
 /// Whether all that the frame may be built on came out whole.
 Result<void> FfmpegDecoder::check_whole(int packet, int start) const {
   if (damaged_.contains(packet) || !cached(packet)) return Error{ErrorKind::io, "is damaged"};
-  const AVCodecDescriptor* codec = avcodec_descriptor_get(codec_->codec_id);
-  if (codec && (codec->props & AV_CODEC_PROP_INTRA_ONLY) != 0) return {};
+  if (intra_only_) return {};
   for (auto bad = damaged_.lower_bound(start); bad != damaged_.end() && *bad < packet; ++bad)
     if (!index_.packets[at(*bad)].needless)
       return Error{ErrorKind::io, fmt::format("is built on frame {}, which is damaged", index_.rank[at(*bad)] + 1)};
@@ -142,9 +165,15 @@ Result<FrameHandle> FfmpegDecoder::frame(int number) {
   const int packet = index_.order[at(number)];
   const int start = index_.start_for(packet);
   if (!cached(packet) || !settled_[at(packet)]) {
-    const bool fits = start_ >= 0 && start_ <= start && !ended_ && packets_.position() >= start;
-    if (!fits || emitted_ >= number) AFTERGLOW_CHECK(begin_at(start));
+    const bool covers = start_ >= 0 && start_ <= start && packets_.position() >= start;
+    const bool comes = cached(packet) || (emitted_ < number && !ended_);
+    if (!covers || !comes) AFTERGLOW_CHECK(begin_at(start));
     AFTERGLOW_CHECK(decode_until(packet, start));
+    if (*errors_ > 0 && !careful_ && !intra_only_) {
+      forget();
+      AFTERGLOW_CHECK(begin_at(start, true));
+      AFTERGLOW_CHECK(decode_until(packet, start));
+    }
   }
   AFTERGLOW_CHECK(check_whole(packet, start));
   FrameHandle out(av_frame_clone(cached(packet)));
@@ -161,8 +190,7 @@ Result<std::vector<int>> FfmpegDecoder::order_by_decoding() {
     order.push_back(came_last_);
   }
   start_ = -1;
-  cache_.clear();
-  held_bytes_ = 0;
+  forget();
   return order;
 }
 

@@ -31,10 +31,12 @@ class FfmpegDecoder {
     FrameHandle frame;
   };
   const AVFrame* cached(int packet) const;
-  Result<void> begin_at(int packet);
+  Result<void> begin_at(int packet, bool careful = false);
+  void forget();
   Result<bool> step();
   Result<void> decode_until(int packet, int start);
   void keep(FrameHandle frame, int packet);
+  void note_complaints();
   void note_lost(int from, int to);
   Result<void> check_whole(int packet, int start) const;
   int last_needed(int packet, int start) const;
@@ -42,10 +44,14 @@ class FfmpegDecoder {
   FfmpegPackets packets_;
   const MovieIndex& index_;
   std::uint64_t cache_bytes_, held_bytes_ = 0;
+  std::unique_ptr<FfmpegErrors> errors_ = std::make_unique<FfmpegErrors>(0);
   CodecHandle codec_;
+  bool careful_ = false;     ///< decoding on one thread
+  bool intra_only_ = false;  ///< no frame is built on another
   PacketHandle packet_;
   std::deque<Cached> cache_;   ///< the newest at the back
   std::set<int> damaged_;      ///< packets, as far as it is known
+  std::set<int> complained_;   ///< packets of these that their decoder told of
   std::vector<bool> settled_;  ///< by packet: it is known what came of it and of all that it is built on
   int start_ = -1;             ///< packet at which decoding began; −1: it has not
   int emitted_ = -1;           ///< frame that came out last

@@ -14,44 +14,67 @@ namespace {
 
 constexpr std::size_t kMostPackets = 1'000'000;
 constexpr int kMostErrors = 64;  // in a row, before the rest of the file is given up
-constexpr int kIdr = 5, kSlice = 1;
+/// What an H.264 access unit begins with. `instant`: nothing reaches back over it (IDR). `intra`: a picture that
+/// decoding can begin at, though what shows before it, or its parameters, may need what lies before. `other`: no
+/// beginning at all, though streams that refresh themselves bit by bit mark it as one.
+enum class AccessPoint { other, intra, instant };
 
-/// The first slice of an H.264 access unit is of an IDR picture: nothing reaches back over it. Other pictures that
-/// decoding can begin at may need what lies before them until they have recovered.
-class IdrFinder {
+class AccessPointFinder {
  public:
-  explicit IdrFinder(const AVCodecParameters& parameters) {
+  explicit AccessPointFinder(const AVCodecParameters& parameters) {
     // An avcC record begins with 1 and says how long lengths are; without one there are start codes.
     if (parameters.extradata_size > 4 && parameters.extradata[0] == 1) length_ = (parameters.extradata[4] & 3) + 1;
   }
-  bool operator()(const AVPacket& packet) const {
+
+  AccessPoint operator()(const AVPacket& packet) const {
     const std::uint8_t* at = packet.data;
     const std::uint8_t* end = packet.data + packet.size;
-    if (length_ > 0) {
-      while (end - at > length_) {
-        std::int64_t size = 0;
-        for (int i = 0; i < length_; ++i) size = size << 8 | at[i];
-        at += length_;
-        if (const int type = at[0] & 31; type >= kSlice && type <= kIdr) return type == kIdr;
-        if (size > end - at) return false;
-        at += size;
-      }
-      return false;
+    while (length_ > 0 && end - at > length_) {
+      std::int64_t size = 0;
+      for (int i = 0; i < length_; ++i) size = size << 8 | at[i];
+      at += length_;
+      if (is_slice(*at)) return of_slice(at, end);
+      if (size > end - at) break;
+      at += size;
     }
-    for (; end - at > 3; ++at)
-      if (at[0] == 0 && at[1] == 0 && at[2] == 1)
-        if (const int type = at[3] & 31; type >= kSlice && type <= kIdr) return type == kIdr;
-    return false;
+    for (; length_ == 0 && end - at > 3; ++at)
+      if (at[0] == 0 && at[1] == 0 && at[2] == 1 && is_slice(at[3])) return of_slice(at + 3, end);
+    return AccessPoint::other;
   }
 
  private:
+  static bool is_slice(int header) { return (header & 31) == 1 || (header & 31) == 5; }
+
+  static AccessPoint of_slice(const std::uint8_t* at, const std::uint8_t* end) {
+    constexpr int kIdr = 5, kIntra = 2, kKinds = 5;  // slice_type 2 and 7
+    if ((*at & 31) == kIdr) return AccessPoint::instant;
+    int bit = 0;
+    const auto next = [&] {
+      const std::uint8_t* byte = at + 1 + bit / 8;
+      return byte < end ? *byte >> (7 - bit++ % 8) & 1 : 1;
+    };
+    const auto exp_golomb = [&] {
+      int zeros = 0, value = 0;
+      while (zeros < 24 && next() == 0) ++zeros;
+      for (int i = 0; i < zeros; ++i) value = value << 1 | next();
+      return (1 << zeros) - 1 + value;
+    };
+    exp_golomb();  // first_mb_in_slice
+    return exp_golomb() % kKinds == kIntra ? AccessPoint::intra : AccessPoint::other;
+  }
+
   int length_ = 0;
 };
 
-MoviePacket noted(const AVPacket& packet, AVCodecID codec, const IdrFinder& is_idr) {
+MoviePacket noted(const AVPacket& packet, AVCodecID codec, const AccessPointFinder& find) {
   MoviePacket out{.pts = packet.pts, .dts = packet.dts, .pos = packet.pos, .size = packet.size};
   out.key = (packet.flags & AV_PKT_FLAG_KEY) != 0;
-  out.exact = out.key && (codec != AV_CODEC_ID_H264 || is_idr(packet));
+  out.exact = out.key;
+  if (out.key && codec == AV_CODEC_ID_H264) {
+    const AccessPoint point = find(packet);
+    out.key = point != AccessPoint::other;
+    out.exact = point == AccessPoint::instant;
+  }
   out.shown = (packet.flags & AV_PKT_FLAG_DISCARD) == 0;
   if (codec == AV_CODEC_ID_VP8 && (packet.data[0] & 0x10) == 0) out.shown = false;  // for other frames to look at
   out.damaged = (packet.flags & AV_PKT_FLAG_CORRUPT) != 0;
@@ -119,7 +142,7 @@ Result<MovieIndex> index_movie(FfmpegInput& input) {
   MovieIndex index;
   const PacketHandle packet(av_packet_alloc());
   const AVCodecParameters& parameters = *input.stream().codecpar;
-  const IdrFinder is_idr(parameters);
+  const AccessPointFinder find(parameters);
   bool cut_short = false;
   for (int errors = 0; errors < kMostErrors;) {
     const int got = input.read(*packet);
@@ -132,7 +155,7 @@ Result<MovieIndex> index_movie(FfmpegInput& input) {
     errors = 0;
     if (index.packets.size() == kMostPackets)
       return Error{ErrorKind::io, fmt::format("has more than {} frames", kMostPackets)};
-    index.packets.push_back(noted(*packet, parameters.codec_id, is_idr));
+    index.packets.push_back(noted(*packet, parameters.codec_id, find));
     if (index.packets.back().key) index.keys.push_back(static_cast<int>(index.packets.size()) - 1);
     av_packet_unref(packet.get());
   }

@@ -2,6 +2,7 @@
 #include "image/ffmpeg_log.h"
 
 extern "C" {
+#include <libavcodec/avcodec.h>
 #include <libavutil/error.h>
 #include <libavutil/log.h>
 }
@@ -11,6 +12,7 @@ extern "C" {
 #include <array>
 #include <cstdarg>
 #include <cstdio>
+#include <cstring>
 #include <utility>
 
 #include "core/printable.h"
@@ -21,8 +23,16 @@ namespace {
 
 thread_local std::string said;
 
-void note_line(void*, int level, const char* format, va_list arguments) {
-  if (level > AV_LOG_ERROR || !said.empty()) return;
+void count(void* from) {
+  const AVClass* kind = from ? *static_cast<AVClass**>(from) : nullptr;
+  if (!kind || std::strcmp(kind->class_name, "AVCodecContext") != 0) return;
+  if (void* errors = static_cast<AVCodecContext*>(from)->opaque) ++*static_cast<FfmpegErrors*>(errors);
+}
+
+void note_line(void* from, int level, const char* format, va_list arguments) {
+  if (level > AV_LOG_ERROR) return;
+  count(from);
+  if (!said.empty()) return;
   std::array<char, 512> line{};
   std::vsnprintf(line.data(), line.size(), format, arguments);
   said = printable(trim(line.data()));

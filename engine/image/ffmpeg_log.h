@@ -2,9 +2,13 @@
 // What FFmpeg has to say, in one line, instead of on stderr.
 #pragma once
 
+#include <atomic>
 #include <string>
 
 namespace afterglow {
+
+/// How many errors a decoder has told of, on whatever thread: the `opaque` of its context.
+using FfmpegErrors = std::atomic<int>;
 
 /// From here on FFmpeg writes nothing to stderr: the errors of each thread are kept for whoever asks there.
 void take_ffmpeg_log();

@@ -17,6 +17,7 @@ struct FfmpegModule {
   std::string (*version)();
   /// See movie_source.h.
   Result<std::shared_ptr<MovieSource>> (*open)(const MovieRequest& request);
+  Result<std::unique_ptr<MovieFrames>> (*stream)(const StreamRequest& request);
   /// See ffmpeg_encoder.h.
   bool (*has_encoder)(const std::string& name);
   Result<std::unique_ptr<VideoEncoder>> (*encode)(const VideoPlan& plan, OutputFile& out,

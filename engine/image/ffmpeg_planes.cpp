@@ -231,8 +231,8 @@ struct Spread {
   }
 };
 
-static Result<void> process(const zimg_filter_graph& graph, const Planes& planes, int first_plane, int count, const Size& size,
-                     Spread spread) {
+static Result<void> process(const zimg_filter_graph& graph, const Planes& planes, int first_plane, int count,
+                            const Size& size, Spread spread) {
   std::size_t scratch = 0;
   unsigned lines = 0;
   zimg_filter_graph_get_tmp_size(&graph, &scratch);

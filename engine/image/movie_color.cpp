@@ -46,10 +46,6 @@ std::optional<Chromaticities> primaries_of(int code) {
 double from_240m(double v) { return v < 4 * 0.0228 ? v / 4 : std::pow((v + 0.1115) / 1.1115, 1 / 0.45); }
 double from_log100(double v) { return v <= 0 ? 0 : std::pow(10.0, 2 * (v - 1)); }
 double from_log316(double v) { return v <= 0 ? 0 : std::pow(10.0, 2.5 * (v - 1)); }
-double from_xvycc(double v) {
-  const double a = std::abs(v);
-  return std::copysign(a < 0.081 ? a / 4.5 : std::pow((a + 0.099) / 1.099, 1 / 0.45), v);
-}
 double from_428(double v) { return 52.37 / 48 * std::pow(std::max(v, 0.0), 2.6); }
 
 void use_formula(ColorEncoding& encoding, double (*formula)(double)) {
@@ -76,9 +72,6 @@ void use_transfer(ColorEncoding& encoding, int code) {
       return use_formula(encoding, from_log100);
     case 10:
       return use_formula(encoding, from_log316);
-    case 11:
-    case 12:
-      return use_formula(encoding, from_xvycc);
     case 13:
       encoding.curve = TransferCurve::srgb;
       return;
@@ -88,8 +81,8 @@ void use_transfer(ColorEncoding& encoding, int code) {
       return use_formula(encoding, from_428);
     case 18:
       return use_formula(encoding, find_input_space("hlg").value()->to_linear);
-    default:  // 1, 6, 14, 15: one curve
-      encoding.curve = TransferCurve::rec709;
+    default:  // 1, 6, 14, 15: one curve; 11 and 12 mirror it
+      return use_formula(encoding, find_input_space("rec709").value()->to_linear);
   }
 }
 
@@ -108,6 +101,7 @@ void fill_in(MovieFacts& facts) {
   const bool small = is_small(facts.stored), sixty = facts.stored.height == 480 || facts.stored.height == 486;
   std::vector<std::string> taken;
   const bool srgb = color.rgb || color.picture;
+  if (facts.floating && color.transfer == kUnsaid) color.transfer = 8;  // as in pictures: floats are light
   const auto take = [&](int& code, bool known, int value, const char* what) {
     if (known) return;
     if (code != kUnsaid && code != 0 && code != 3)

@@ -37,6 +37,18 @@ std::string compare_name(Compare compare) {
   return kNames[static_cast<std::size_t>(compare)];
 }
 
+std::string compare_by_name(CompareBy by) {
+  static constexpr std::array<const char*, 4> kNames{"wipe", "flip", "side by side", "difference"};
+  return kNames[static_cast<std::size_t>(by)];
+}
+
+bool wipes(const View& view) { return view.compare != Compare::none && view.by == CompareBy::wipe; }
+
+Size picture_window(const View& view, Size window) {
+  if (view.compare == Compare::none || view.by != CompareBy::side_by_side) return window;
+  return {std::max(window.width / 2, 1), window.height};
+}
+
 double fitting_zoom(Size picture, Size window) {
   if (picture.width < 1 || picture.height < 1 || window.width < 1 || window.height < 1) return 1;
   const double zoom =

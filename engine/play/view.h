@@ -20,13 +20,19 @@ struct Point {
 };
 
 enum class ViewChannel { color, red, green, blue, alpha, luminance };
-/// none: the result alone. source: what went in, left of the wipe. other: the result of the second preset, left of it.
+/// none: the result alone. source: with what went in. other: with the result of the second preset.
 enum class Compare { none, source, other };
+/// How. wipe: what it is compared with lies left of a border (above it). flip: it takes the result's place.
+/// side_by_side: it lies at the left, the result at the right, both placed alike. difference: how far they are apart,
+/// by channel.
+enum class CompareBy { wipe, flip, side_by_side, difference };
 
 /// "color", "red", …
 std::string view_channel_name(ViewChannel channel);
 /// "none", "source", "other".
 std::string compare_name(Compare compare);
+/// "wipe", "flip", "side by side", "difference".
+std::string compare_by_name(CompareBy by);
 
 struct View {
   bool fit = true;      ///< the whole picture, as large as the window allows; `zoom` and `center` rest meanwhile
@@ -36,10 +42,16 @@ struct View {
   ViewChannel channel = ViewChannel::color;
   bool false_color = false;  ///< marks values below 0, above 1, and what is not finite
   Compare compare = Compare::none;
+  CompareBy by = CompareBy::wipe;
   double wipe = 0.5;           ///< where the border lies, 0…1 over the picture's width (or height)
   bool wipe_vertical = false;  ///< the border is horizontal: the compared picture lies above it
   friend bool operator==(const View&, const View&) = default;
 };
+
+/// Whether the border of a wipe is shown.
+bool wipes(const View& view);
+/// The window that one picture has, of the whole one: its half where two lie side by side.
+Size picture_window(const View& view, Size window);
 
 inline constexpr double kLeastZoom = 1.0 / 64, kMostZoom = 128;
 

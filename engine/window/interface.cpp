@@ -83,7 +83,9 @@ void Interface::load_fonts() {
 
 void Interface::note_press(int key) { pressed_.push_back(key); }
 
-void Interface::begin(Size size, float seconds) {
+// From version 1.87 on Dear ImGui keeps presses in a queue of its own.
+#if IMGUI_VERSION_NUM < 18700
+void Interface::hold_pressed() {
   auto& down = ImGui::GetIO().KeysDown;
   for (const int key : pressed_) {
     if (key < 0 || key >= IM_ARRAYSIZE(ImGui::GetIO().KeysDown) || down[key]) continue;
@@ -91,6 +93,19 @@ void Interface::begin(Size size, float seconds) {
     held_.push_back(key);
   }
   pressed_.clear();
+}
+
+void Interface::release_held() {
+  for (const int key : held_) ImGui::GetIO().KeysDown[key] = false;
+  held_.clear();
+}
+#else
+void Interface::hold_pressed() { pressed_.clear(); }
+void Interface::release_held() {}
+#endif
+
+void Interface::begin(Size size, float seconds) {
+  hold_pressed();
   if (has_window_) {
     ImGui_ImplGlfw_NewFrame();
   } else {
@@ -104,8 +119,7 @@ void Interface::begin(Size size, float seconds) {
 
 const ImDrawData& Interface::end() {
   ImGui::Render();
-  for (const int key : held_) ImGui::GetIO().KeysDown[key] = false;
-  held_.clear();
+  release_held();
   return *ImGui::GetDrawData();
 }
 

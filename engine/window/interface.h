@@ -42,6 +42,8 @@ class Interface {
 
  private:
   void load_fonts();
+  void hold_pressed();
+  void release_held();
   ImGuiContext* context_ = nullptr;
   bool has_window_ = false;
   std::vector<int> pressed_, held_;  ///< since the last frame; only for this one

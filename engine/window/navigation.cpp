@@ -26,13 +26,18 @@ std::optional<Point> WindowApp::cursor() const {
   const Point point{static_cast<double>(at.x) - area_.x, static_cast<double>(at.y) - area_.y};
   const bool inside = point.x >= 0 && point.y >= 0 && point.x < area_.width && point.y < area_.height;
   if (!inside && drag_ == Drag::none) return std::nullopt;
+  const Size one = picture_window();
+  if (one.width < area_.width && point.x >= area_.width - one.width)
+    return Point{point.x - (area_.width - one.width), point.y};
   return point;
 }
+
+Size WindowApp::picture_window() const { return afterglow::picture_window(player_.view(), area_.size()); }
 
 bool WindowApp::over_wipe(Point at) const {
   const View& view = player_.view();
   const Size picture = player_.images().picture;
-  if (view.compare == Compare::none || picture.area() == 0) return false;
+  if (!wipes(view) || picture.area() == 0) return false;
   const auto place = placement(view, picture, area_.size());
   const Point border = to_screen(place, {view.wipe * picture.width, view.wipe * picture.height});
   const double distance = view.wipe_vertical ? at.y - border.y : at.x - border.x;
@@ -47,7 +52,7 @@ void WindowApp::navigate() {
   if (!held) drag_ = Drag::none;
   if (!at || picture.area() == 0) return;
   View& view = player_.view();
-  const Size window = area_.size();
+  const Size window = picture_window();
 
   const bool wipe = drag_ == Drag::wipe || (drag_ == Drag::none && over_wipe(*at));
   if (wipe) ImGui::SetMouseCursor(view.wipe_vertical ? ImGuiMouseCursor_ResizeNS : ImGuiMouseCursor_ResizeEW);

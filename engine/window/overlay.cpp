@@ -38,8 +38,9 @@ Message message_of(std::string headline, const Error& error, const std::string& 
   return out;
 }
 
-std::optional<Message> current(const Player& player) {
-  const LiveStatus status = const_cast<Player&>(player).live().status();
+std::optional<Message> current(const Player& constant) {
+  Player& player = const_cast<Player&>(constant);
+  const LiveStatus status = player.live().status();
   if (status.error) {
     return message_of(
         status.generation > 0 ? "The preset has an error; this is the last good version" : "The preset has an error",
@@ -49,11 +50,32 @@ std::optional<Message> current(const Player& player) {
   if (shown.unreadable) {
     return message_of("A picture cannot be read", *shown.unreadable, "", shown.unreadable->text());
   }
+  if (LiveStack* other = player.other()) {
+    const LiveStatus of_other = other->status();
+    if (of_other.error)
+      return message_of(of_other.generation > 0
+                            ? "The other preset has an error; its last good version is compared with"
+                            : "The other preset has an error; there is nothing of it to compare with",
+                        *of_other.error, of_other.source_line, of_other.error_text());
+  }
   if (shown.failed) return message_of("The stack cannot be run", *shown.failed, "", shown.failed->text());
   return std::nullopt;
 }
 
 }  // namespace
+
+std::string comparison_text(const View& view) {
+  if (view.compare == Compare::none) return "result";
+  const bool other = view.compare == Compare::other;
+  switch (view.by) {
+    case CompareBy::flip:
+      return other ? "the other preset" : "before";
+    case CompareBy::difference:
+      return other ? "difference from the other preset" : "difference from what went in";
+    default:
+      return other ? "other preset | this one" : "before | after";
+  }
+}
 
 std::string current_message(const Player& player) {
   const auto message = current(player);
@@ -106,8 +128,7 @@ void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area) {
   }
   if (view.channel != ViewChannel::color) lines.emplace_back(ui_color::kText, view_channel_name(view.channel));
   if (view.exposure != 0) lines.emplace_back(ui_color::kText, fmt::format("view {:+.2f} EV", view.exposure));
-  if (view.compare == Compare::source) lines.emplace_back(ui_color::kText, "before | after");
-  if (view.compare == Compare::other) lines.emplace_back(ui_color::kText, "other preset | this one");
+  if (view.compare != Compare::none) lines.emplace_back(ui_color::kText, comparison_text(view));
   const bool building = player.live().status().building;
   if (lines.empty() && !view.false_color && !building) return;
 

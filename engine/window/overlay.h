@@ -19,6 +19,9 @@ struct OverlayArea {
 /// What is wrong at the moment, as one would mail it to somebody; empty: nothing.
 std::string current_message(const Player& player);
 
+/// What is compared, in words: "before | after"; "result" when nothing is.
+std::string comparison_text(const View& view);
+
 /// The message of a preset, picture or frame that fails, over the last good picture, with a button that copies it.
 /// Returns its height, 0 without a message.
 float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area);

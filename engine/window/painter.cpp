@@ -45,8 +45,8 @@ Result<void> Painter::take_fonts() {
   return ui_->take_fonts();
 }
 
-Result<void> Painter::record(VkCommandBuffer commands, const PresentTarget& target,
-                             const std::optional<ViewFrame>& view, const ImDrawData& interface) {
+Result<void> Painter::record(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
+                             const ImDrawData& interface) {
   AFTERGLOW_CHECK(ui_->prepare(commands, target.slot, interface));
   const VkRenderingAttachmentInfo color{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                         .imageView = target.view,
@@ -62,7 +62,7 @@ Result<void> Painter::record(VkCommandBuffer commands, const PresentTarget& targ
       .colorAttachmentCount = 1,
       .pColorAttachments = &color};
   device_.vk().vkCmdBeginRendering(commands, &rendering);
-  if (view) view_pass_->record(commands, target.slot, *view);
+  view_pass_->record(commands, target.slot, views);
   ui_->record(commands, target.slot, interface);
   device_.vk().vkCmdEndRendering(commands);
   return {};
@@ -92,14 +92,13 @@ void Painter::record_copy(VkCommandBuffer commands, const PresentTarget& target,
   device_.vk().vkCmdPipelineBarrier2(commands, &dependency);
 }
 
-Result<Swapchain::Drawn> Painter::paint(Size window, const std::optional<ViewFrame>& view,
-                                        const ImDrawData& interface) {
+Result<Swapchain::Drawn> Painter::paint(Size window, std::span<const ViewFrame> views, const ImDrawData& interface) {
   const bool capture = !capture_.empty() && code_order(swapchain_->format()).has_value();
   Result<void> recorded;
   Buffer pixels;
   Size size;
   AFTERGLOW_TRY(const auto drawn, swapchain_->draw(window, [&](VkCommandBuffer commands, const PresentTarget& target) {
-    recorded = record(commands, target, view, interface);
+    recorded = record(commands, target, views, interface);
     if (!recorded || !capture || !swapchain_->readable()) return;
     auto buffer = Buffer::create(device_, static_cast<VkDeviceSize>(target.size.area()) * 4,
                                  VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::read, "capture");

@@ -37,6 +37,10 @@ constexpr Shortcut kShortcuts[] = {
     {Action::zoom_out, GLFW_KEY_KP_SUBTRACT, kNone, "-", "View", "Zoom out", true},
     {Action::compare, GLFW_KEY_W, kNone, "W", "View", "Wipe: off, before and after, other preset"},
     {Action::turn_wipe, GLFW_KEY_W, kShift, "Shift+W", "View", "Turn the wipe"},
+    {Action::flip, GLFW_KEY_E, kNone, "E", "View", "The other preset (else what went in) in its place, and back"},
+    {Action::side_by_side, GLFW_KEY_V, kNone, "V", "View", "Both side by side"},
+    {Action::difference, GLFW_KEY_D, kNone, "D", "View",
+     "Their difference (the exposure of the view makes it stronger)"},
 
     {Action::color, GLFW_KEY_C, kNone, "C", "Picture", "All channels"},
     {Action::red, GLFW_KEY_R, kNone, "R", "Picture", "Red alone"},

@@ -22,7 +22,7 @@ layout(push_constant) uniform Push {
 
 layout(location = 0) out vec4 result;
 
-const int kFalseColor = 1, kCompare = 2, kHorizontal = 4, kEncode = 8, kGray = 16, kChecker = 32;
+const int kFalseColor = 1, kCompare = 2, kHorizontal = 4, kEncode = 8, kGray = 16, kChecker = 32, kDifference = 64;
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
 const float kTolerance = 1e-4;  // rounding may carry what a display can just show over its ends
 const float kLargest = 1e30;
@@ -137,9 +137,16 @@ void main() {
   float along = has(kHorizontal) ? gl_FragCoord.y : gl_FragCoord.x;
   float distance = has(kCompare) ? along - push.above.w : 1e9;
   vec2 to_shown = vec2(push.shown_size) / picture, to_compared = vec2(push.compared_size) / picture;
-  vec3 color = distance < 0.0
-                   ? looked_at(sample_image(compared, push.compared_size, point * to_compared, to_compared / push.scale))
-                   : looked_at(sample_image(shown, push.shown_size, point * to_shown, to_shown / push.scale));
+  vec3 color;
+  if (has(kDifference)) {
+    Sample one = sample_image(shown, push.shown_size, point * to_shown, to_shown / push.scale);
+    Sample other = sample_image(compared, push.compared_size, point * to_compared, to_compared / push.scale);
+    color = looked_at(Sample(vec4(abs(one.color.rgb - other.color.rgb), 1.0), one.marks | other.marks));
+  } else if (distance < 0.0) {
+    color = looked_at(sample_image(compared, push.compared_size, point * to_compared, to_compared / push.scale));
+  } else {
+    color = looked_at(sample_image(shown, push.shown_size, point * to_shown, to_shown / push.scale));
+  }
   color = encoded(color);
   // A bright line between dark ones shows on any picture.
   float half_width = push.not_finite.w;

@@ -29,8 +29,15 @@ void draw_comparison(PanelPort& port) {
     }
     ImGui::EndCombo();
   }
-  Ui::help("Left of the border: what went in, or the other preset's result (W)");
+  Ui::help("With what went in, or the other preset's result");
   if (view.compare == Compare::none) return;
+  if (ImGui::BeginCombo("by", compare_by_name(view.by).c_str())) {
+    for (const CompareBy by : {CompareBy::wipe, CompareBy::flip, CompareBy::side_by_side, CompareBy::difference})
+      if (ImGui::Selectable(compare_by_name(by).c_str(), by == view.by)) view.by = by;
+    ImGui::EndCombo();
+  }
+  Ui::help("A border between both (W), one in the other's place (E), side by side (V), difference (D)");
+  if (!wipes(view)) return;
   float wipe = static_cast<float>(view.wipe);
   if (ImGui::SliderFloat("border", &wipe, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) view.wipe = wipe;
   ImGui::Checkbox("horizontal border", &view.wipe_vertical);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "window/view_pass.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -27,7 +28,7 @@ struct Push {
 };
 static_assert(sizeof(Push) == 112);
 
-enum Flag { kFalseColor = 1, kCompare = 2, kHorizontal = 4, kEncode = 8, kGray = 16, kChecker = 32 };
+enum Flag { kFalseColor = 1, kCompare = 2, kHorizontal = 4, kEncode = 8, kGray = 16, kChecker = 32, kDifference = 64 };
 
 float to_linear(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }
 
@@ -47,6 +48,7 @@ Push push_of(const ViewFrame& frame, bool encode) {
   const View& view = frame.view;
   const ViewPlacement place = placement(view, frame.picture, frame.area.size());
   const bool compare = view.compare != Compare::none && frame.compared.has_value();
+  const bool difference = compare && view.by == CompareBy::difference;
   Push push{};
   push.outside = color_and(frame.outside, 0);
   push.below = color_and(kMarkBelow, std::exp2(view.exposure));
@@ -59,8 +61,8 @@ Push push_of(const ViewFrame& frame, bool encode) {
   push.shown_size = pair_of(frame.shown.size);
   push.compared_size = pair_of(compare ? frame.compared->size : frame.shown.size);
   push.channel = static_cast<std::int32_t>(view.channel);
-  push.flags = (view.false_color ? kFalseColor : 0) | (compare ? kCompare : 0) |
-               (view.wipe_vertical ? kHorizontal : 0) | (encode ? kEncode : 0) |
+  push.flags = (view.false_color ? kFalseColor : 0) | (compare && !difference ? kCompare : 0) |
+               (difference ? kDifference : 0) | (view.wipe_vertical ? kHorizontal : 0) | (encode ? kEncode : 0) |
                (frame.background == ViewBackground::gray ? kGray : 0) |
                (frame.background == ViewBackground::checker ? kChecker : 0);
   return push;
@@ -75,14 +77,12 @@ struct ViewPass::State {
   PipelineHandle pipeline;
   SamplerHandle sampler;
   DescriptorPoolHandle pool;
-  struct Slot {
-    VkDescriptorSet set = VK_NULL_HANDLE;
-  };
-  std::vector<Slot> slots;
+  std::vector<VkDescriptorSet> sets;  // of each slot, kMostFrames in a row
 
   Result<void> make_pipeline(VkFormat target);
   Result<void> make_sets(std::size_t count);
-  void bind(Slot& slot, const std::array<ViewImage, kImages>& images) const;
+  void bind(VkDescriptorSet set, const std::array<ViewImage, kImages>& images) const;
+  void draw(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame) const;
 };
 
 Result<void> ViewPass::State::make_pipeline(VkFormat target) {
@@ -104,27 +104,27 @@ Result<void> ViewPass::State::make_sets(std::size_t count) {
   AFTERGLOW_VK(device.vk().vkCreateDescriptorPool(device.handle(), &info, nullptr, &made),
                "cannot create descriptors of the view");
   pool = DescriptorPoolHandle(device, made);
-  slots.resize(count);
-  for (Slot& slot : slots) {
+  this->sets.resize(count);
+  for (VkDescriptorSet& allocated : this->sets) {
     const VkDescriptorSetLayout set = layout.set.get();
     const VkDescriptorSetAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                                .descriptorPool = made,
                                                .descriptorSetCount = 1,
                                                .pSetLayouts = &set};
-    AFTERGLOW_VK(device.vk().vkAllocateDescriptorSets(device.handle(), &allocate, &slot.set),
+    AFTERGLOW_VK(device.vk().vkAllocateDescriptorSets(device.handle(), &allocate, &allocated),
                  "cannot create descriptors of the view");
   }
   return {};
 }
 
 /// Always written: an image that took the place of another may have got the same handle.
-void ViewPass::State::bind(Slot& slot, const std::array<ViewImage, kImages>& images) const {
+void ViewPass::State::bind(VkDescriptorSet set, const std::array<ViewImage, kImages>& images) const {
   std::array<VkDescriptorImageInfo, kImages> infos{};
   std::array<VkWriteDescriptorSet, kImages> writes{};
   for (std::uint32_t i = 0; i < kImages; ++i) {
     infos[i] = {sampler.get(), images[i].view, images[i].layout};
     writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                 .dstSet = slot.set,
+                 .dstSet = set,
                  .dstBinding = i + 1,
                  .descriptorCount = 1,
                  .descriptorType = kImageType,
@@ -133,36 +133,39 @@ void ViewPass::State::bind(Slot& slot, const std::array<ViewImage, kImages>& ima
   device.vk().vkUpdateDescriptorSets(device.handle(), kImages, writes.data(), 0, nullptr);
 }
 
+void ViewPass::State::draw(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame) const {
+  bind(set, {frame.shown, frame.compared.value_or(frame.shown)});
+  const auto x = static_cast<float>(frame.area.x), y = static_cast<float>(frame.area.y);
+  const auto width = static_cast<std::uint32_t>(frame.area.width);
+  const auto height = static_cast<std::uint32_t>(frame.area.height);
+  const VkViewport viewport{x, y, static_cast<float>(width), static_cast<float>(height), 0, 1};
+  const VkRect2D scissor{{frame.area.x, frame.area.y}, {width, height}};
+  device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
+  device.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
+  device.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.get());
+  device.vk().vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout.pipeline.get(), 0, 1, &set, 0,
+                                      nullptr);
+  const Push push = push_of(frame, encode);
+  device.vk().vkCmdPushConstants(commands, layout.pipeline.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push, &push);
+  device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
+}
+
 Result<std::unique_ptr<ViewPass>> ViewPass::create(const Device& device, VkFormat target, std::size_t slots) {
   std::unique_ptr<State> state(new State{.device = device});
   state->encode = !encodes_srgb(target);
   AFTERGLOW_CHECK(state->make_pipeline(target));
-  AFTERGLOW_CHECK(state->make_sets(slots));
+  AFTERGLOW_CHECK(state->make_sets(slots * kMostFrames));
   return std::unique_ptr<ViewPass>(new ViewPass(std::move(state)));
 }
 
 ViewPass::ViewPass(std::unique_ptr<State> state) : state_(std::move(state)) {}
 ViewPass::~ViewPass() = default;
 
-void ViewPass::record(VkCommandBuffer commands, std::size_t slot, const ViewFrame& frame) {
-  if (frame.area.width <= 0 || frame.area.height <= 0) return;
+void ViewPass::record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames) {
   State& s = *state_;
   s.device.begin_label(commands, "view");
-  s.bind(s.slots[slot], {frame.shown, frame.compared.value_or(frame.shown)});
-  const auto x = static_cast<float>(frame.area.x), y = static_cast<float>(frame.area.y);
-  const auto width = static_cast<std::uint32_t>(frame.area.width);
-  const auto height = static_cast<std::uint32_t>(frame.area.height);
-  const VkViewport viewport{x, y, static_cast<float>(width), static_cast<float>(height), 0, 1};
-  const VkRect2D scissor{{frame.area.x, frame.area.y}, {width, height}};
-  s.device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
-  s.device.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
-  s.device.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, s.pipeline.get());
-  s.device.vk().vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, s.layout.pipeline.get(), 0, 1,
-                                        &s.slots[slot].set, 0, nullptr);
-  const Push push = push_of(frame, s.encode);
-  s.device.vk().vkCmdPushConstants(commands, s.layout.pipeline.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
-                                   &push);
-  s.device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
+  for (std::size_t i = 0; i < std::min(frames.size(), kMostFrames); ++i)
+    if (frames[i].area.size().area() > 0) s.draw(commands, s.sets[slot * kMostFrames + i], frames[i]);
   s.device.end_label(commands);
 }
 

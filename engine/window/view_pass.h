@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "core/geometry.h"
 #include "gpu/device.h"
@@ -31,7 +32,9 @@ inline constexpr ViewColor kMarkNotFinite{1.0f, 0.0f, 1.0f}, kMarkBelow{0.15f, 0
 
 struct ViewFrame {
   ViewImage shown;
-  std::optional<ViewImage> compared;  ///< left of (above) the wipe when the view compares
+  /// Left of (above) the wipe, or what the difference is taken from, when the view compares so. Flips and what lies
+  /// side by side are `shown`.
+  std::optional<ViewImage> compared;
   /// What coordinates of the view count in. Images of other sizes (an image between passes) are stretched over it.
   Size picture;
   View view;
@@ -44,11 +47,12 @@ struct ViewFrame {
 /// What is done to each pixel, in this order:
 /// 1. Place (play/view.h). Magnified, the nearest pixel, exactly; minified, the mean in linear light over what a screen
 ///    pixel covers, by area. NaN counts as 0, infinities as ±1e30.
-/// 2. Exposure, c·2^EV; not on alpha.
-/// 3. Channel: one of them or luminance (Rec.709 weights) as grey; colour over the background.
-/// 4. False colour: pixels are marked of which anything under the screen pixel is not finite, below 0 or above 1 (after
+/// 2. A difference: by how much the two are apart, in red, green and blue; alpha is 1.
+/// 3. Exposure, c·2^EV; not on alpha.
+/// 4. Channel: one of them or luminance (Rec.709 weights) as grey; colour over the background.
+/// 5. False colour: pixels are marked of which anything under the screen pixel is not finite, below 0 or above 1 (after
 ///    exposure, by more than 1e-4), in what the channel view looks at; others are grey.
-/// 5. Clamped to 0…1 and sRGB-encoded, once: here, or by the target's format.
+/// 6. Clamped to 0…1 and sRGB-encoded, once: here, or by the target's format.
 /// Drawing thread alone.
 class ViewPass {
  public:
@@ -57,8 +61,10 @@ class ViewPass {
   static Result<std::unique_ptr<ViewPass>> create(const Device& device, VkFormat target, std::size_t slots);
   ~ViewPass();
 
+  /// Pictures that one call records at most: two lie side by side.
+  static constexpr std::size_t kMostFrames = 2;
   /// Within vkCmdBeginRendering on one colour target. What was recorded with `slot` before must be done.
-  void record(VkCommandBuffer commands, std::size_t slot, const ViewFrame& frame);
+  void record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames);
 
  private:
   struct State;

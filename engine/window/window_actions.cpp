@@ -92,7 +92,7 @@ bool WindowApp::act_on_transport(Action action) {
 
 bool WindowApp::act_on_view(Action action) {
   View& view = player_.view();
-  const Size picture = player_.images().picture, window = area_.size();
+  const Size picture = player_.images().picture, window = picture_window();
   const Point middle{window.width / 2.0, window.height / 2.0};
   Ui& ui = interface_->ui();
   switch (action) {
@@ -109,34 +109,50 @@ bool WindowApp::act_on_view(Action action) {
       zoom_at(view, picture, window, cursor().value_or(middle), 1 / 1.25);
       return true;
     case Action::compare:
-      next_compare();
+      next_wipe();
+      return true;
+    case Action::flip:
+      compare_by(CompareBy::flip);
+      return true;
+    case Action::side_by_side:
+      compare_by(CompareBy::side_by_side);
+      return true;
+    case Action::difference:
+      compare_by(CompareBy::difference);
       return true;
     case Action::turn_wipe:
       view.wipe_vertical = !view.wipe_vertical;
-      if (view.compare == Compare::none) ui.say("nothing is compared: W does");
+      if (!wipes(view)) ui.say("nothing is wiped: W does");
       return true;
     default:
       return false;
   }
 }
 
-void WindowApp::next_compare() {
+/// Off, what went in, the other preset. From another kind of comparison: the same by a wipe.
+void WindowApp::next_wipe() {
   View& view = player_.view();
-  const bool has_other = player_.images().other.has_value();
-  switch (view.compare) {
-    case Compare::none:
-      view.compare = Compare::source;
-      interface_->ui().say("before | after");
-      break;
-    case Compare::source:
-      view.compare = has_other ? Compare::other : Compare::none;
-      interface_->ui().say(has_other ? "other preset | this one" : "result");
-      break;
-    case Compare::other:
-      view.compare = Compare::none;
-      interface_->ui().say("result");
-      break;
+  if (view.compare != Compare::none && view.by != CompareBy::wipe) {
+    view.by = CompareBy::wipe;
+  } else {
+    view.by = CompareBy::wipe;
+    view.compare = view.compare == Compare::none                        ? Compare::source
+                   : view.compare == Compare::source && player_.other() ? Compare::other
+                                                                        : Compare::none;
   }
+  interface_->ui().say(comparison_text(view));
+}
+
+/// With the other preset where there is one, else with what went in; the key pressed again ends it.
+void WindowApp::compare_by(CompareBy by) {
+  View& view = player_.view();
+  if (view.compare != Compare::none && view.by == by) {
+    view.compare = Compare::none;
+  } else if (view.compare == Compare::none) {
+    view.compare = player_.other() ? Compare::other : Compare::source;
+  }
+  view.by = by;
+  interface_->ui().say(comparison_text(view));
 }
 
 bool WindowApp::act_on_picture(Action action) {

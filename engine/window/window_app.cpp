@@ -184,7 +184,7 @@ Result<void> WindowApp::draw() {
   AFTERGLOW_CHECK(draw_overlays());
   if (options_.help && ui.show_help) options_.help(player_, ui, {0, 0}, ImGui::GetIO().DisplaySize);
   const ImDrawData& data = interface_->end();
-  AFTERGLOW_TRY(const auto drawn, painter_->paint(window, view_frame(), data));
+  AFTERGLOW_TRY(const auto drawn, painter_->paint(window, view_frames(), data));
   last_draw_ = player_.now();
   if (drawn != Swapchain::Drawn::yes) {
     last_draw_ += kRetry;
@@ -222,19 +222,36 @@ void WindowApp::draw_parts(Size window) {
            std::max(window.height - static_cast<int>(std::lround(bar * sy)), 1)};
 }
 
-std::optional<ViewFrame> WindowApp::view_frame() const {
+std::vector<ViewFrame> WindowApp::view_frames() const {
   const PlayerImages images = player_.images();
-  if (images.result.binding.view == VK_NULL_HANDLE) return std::nullopt;
+  if (images.result.binding.view == VK_NULL_HANDLE) return {};
   ViewFrame frame;
   frame.shown = view_image(images.result);
   frame.view = player_.view();
-  if (frame.view.compare == Compare::source && images.source.binding.view) frame.compared = view_image(images.source);
-  if (frame.view.compare == Compare::other && images.other) frame.compared = view_image(*images.other);
+  std::optional<ViewImage> compared;
+  if (frame.view.compare == Compare::source && images.source.binding.view) compared = view_image(images.source);
+  if (frame.view.compare == Compare::other && images.other) compared = view_image(*images.other);
   frame.picture = images.picture;
   frame.area = area_;
   frame.background = background_;
   frame.pixel_scale = interface_->ui().scale;
-  return frame;
+  if (!compared) return {frame};
+  switch (frame.view.by) {
+    case CompareBy::flip:
+      frame.shown = *compared;
+      return {frame};
+    case CompareBy::side_by_side: {
+      const Size half = picture_window();
+      ViewFrame left = frame;
+      left.shown = *compared;
+      left.area = {area_.x, area_.y, half.width, half.height};
+      frame.area = {area_.x + area_.width - half.width, area_.y, half.width, half.height};
+      return {left, frame};
+    }
+    default:
+      frame.compared = compared;
+      return {frame};
+  }
 }
 
 Result<void> WindowApp::draw_overlays() {
@@ -256,7 +273,7 @@ Result<void> WindowApp::draw_overlays() {
 Result<void> WindowApp::look_under_cursor() {
   const auto at = cursor();
   const Size picture = player_.images().picture;
-  const auto pixel = at && picture.area() > 0 ? pixel_at(player_.view(), picture, area_.size(), *at) : std::nullopt;
+  const auto pixel = at && picture.area() > 0 ? pixel_at(player_.view(), picture, picture_window(), *at) : std::nullopt;
   if (pixel == under_cursor_.pixel && under_cursor_.turn == turn_) return {};
   under_cursor_ = {pixel, turn_, std::nullopt};
   if (!pixel) return {};

@@ -40,7 +40,7 @@ class WindowApp {
   Result<void> draw_overlays();
   Result<void> look_under_cursor();
   Result<void> look_at_histogram();
-  std::optional<ViewFrame> view_frame() const;
+  std::vector<ViewFrame> view_frames() const;
 
   // Keys. Each group returns whether the action was one of its own.
   void act(Action action);
@@ -50,7 +50,9 @@ class WindowApp {
   bool act_on_preset(Action action);
   bool act_on_window(Action action);
   void show_neighbour(int by);
-  void next_compare();
+  void next_wipe();
+  void compare_by(CompareBy by);
+  Size picture_window() const;  ///< what one picture has of `area_`
   void minimise_or_restore(bool minimised);
 
   // Mouse over the picture.

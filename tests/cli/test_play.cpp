@@ -80,7 +80,10 @@ TEST_F(Play, VideosAndMissingFrames) {
   ASSERT_EQ(play({clip + ".mp4", "--headless", "--fast", "--report", "play.json"}).exit_code, kDone);
   EXPECT_EQ(report().at("frames").at("shown"), 24);
   EXPECT_EQ(report().at("playing").at("fps"), 24);
-  const Outcome refused = play({clip + ".mkv", "--headless"});
+  ASSERT_EQ(play({clip + ".mkv", "--headless", "--fast", "--report", "play.json"}).exit_code, kDone);
+  EXPECT_EQ(report().at("frames").at("shown"), 24);
+  write("cut.mkv", read(clip + ".mkv").substr(0, 300));
+  const Outcome refused = play({"cut.mkv", "--headless"});
   EXPECT_EQ(refused.exit_code, kFiles);
   EXPECT_TRUE(is_one_error_line(refused.err)) << refused.err;
   fs::remove(path("in/shot.0002.exr"));
@@ -117,6 +120,8 @@ TEST_F(Play, WrongRequestsSayWhatIsWrong) {
       {{"look.lua", "in/shot.####.exr", "--headless", "--show", "tone_maping"},
        kUsage,
        "did you mean 'tone_mapping.aces'?"},
+      {{"look.lua", "in/shot.####.exr", "--headless", "--b", "none.lua"}, kScript, "none.lua: error: no such file"},
+      {{"look.lua", "in/shot.####.exr", "--headless", "--b", "broken.lua"}, kScript, "broken.lua"},
       {{"look.lua", "in/shot.####.exr", "--headless", "--screenshot", "a.xyz"}, kUsage, ".xyz"},
       {{"look.lua", "in/shot.####.exr", "--count", "3"}, kUsage, "go with --headless"},
       {{"broken.lua", "in/shot.####.exr", "--headless"}, kScript, "broken.lua"}};
@@ -143,6 +148,15 @@ TEST_F(Play, CtrlCEndsCleanly) {
   EXPECT_EQ(outcome.exit_code, kInterrupted);
   EXPECT_THAT(outcome.err, HasSubstr("interrupted"));
   EXPECT_TRUE(report().contains("error"));
+}
+
+/// Passes that work at a part of the picture's size are shown like others.
+TEST_F(Play, ShowsImagesOfAnySize) {
+  make_exr("a.exr", 64, 48);
+  const Outcome outcome = run({"play", preset("neon_night.lua").string(), "a.exr", "--headless", "--show",
+                               "bloom.prefilter", "--screenshot", "a.png"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_EQ(pixels_of("a.png").size(), 32u * 24 * 4);
 }
 
 }  // namespace

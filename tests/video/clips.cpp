@@ -98,6 +98,23 @@ Hash Clips::hash_of(const std::shared_ptr<Movie>& movie, int frame) {
   return picture->content.at("source");
 }
 
+std::vector<int> Clips::numbers_by_ffmpeg(const std::string& file) const {
+  const std::string raw = path("decoded.raw");
+  ffmpeg(fmt::format("-i '{}' -vsync passthrough -f rawvideo -pix_fmt rgb24 '{}'", file, raw));
+  std::ifstream in(raw, std::ios::binary);
+  std::vector<int> numbers;
+  std::vector<char> bytes(static_cast<std::size_t>(kClipWidth) * kClipHeight * 3);
+  while (in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
+    Picture picture;
+    picture.color = Image(kClipWidth, kClipHeight, 4);
+    for (std::size_t i = 0; i < bytes.size() / 3; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        picture.color.pixels[i * 4 + c] = static_cast<float>(static_cast<std::uint8_t>(bytes[i * 3 + c])) / 255;
+    numbers.push_back(number_of(picture));
+  }
+  return numbers;
+}
+
 int Clips::number_of(const Picture& picture) {
   const Image& image = picture.color;
   int number = 0;

@@ -37,6 +37,9 @@ class Clips : public testing::Test {
   /// The number that the picture's bars say.
   static int number_of(const Picture& picture);
 
+  /// The numbers of the frames that the program ffmpeg decodes from the beginning.
+  std::vector<int> numbers_by_ffmpeg(const std::string& file) const;
+
   std::vector<std::string> messages_;
 
  private:

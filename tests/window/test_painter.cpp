@@ -97,7 +97,7 @@ class PainterTest : public testing::Test {
     frame.view.fit = false;
     frame.view.zoom = 128;
     frame.view.center = {32, 20};
-    auto drawn = painter_->paint(size, frame, data);
+    auto drawn = painter_->paint(size, {&frame, 1}, data);
     EXPECT_TRUE(drawn) << drawn.error().text();
     return drawn ? *drawn : Swapchain::Drawn::later;
   }
@@ -169,7 +169,7 @@ TEST_F(PainterTest, NothingIsDrawnWithoutArea) {
   const auto before = painter_->swapchain().counters();
   interface_->begin();
   const ImDrawData& data = interface_->end();
-  const auto drawn = painter_->paint({0, 0}, std::nullopt, data);
+  const auto drawn = painter_->paint({0, 0}, {}, data);
   ASSERT_TRUE(drawn) << drawn.error().text();
   EXPECT_EQ(*drawn, Swapchain::Drawn::minimised);
   EXPECT_EQ(painter_->swapchain().counters().presented, before.presented);

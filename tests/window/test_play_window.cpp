@@ -163,6 +163,33 @@ TEST_F(PlayWindow, KeysStepPauseZoomAndWipe) {
   expect_clean_end();
 }
 
+/// B is blue: by a border, in place of A, beside it, and how far they are apart.
+TEST_F(PlayWindow, TwoPresetsAreComparedInFourWays) {
+  write_preset("{ 0, 0, 1 }", "other.lua");
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.0001.exr", "--b", "other.lua"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  ASSERT_TRUE(user("mousemove 400 300 key w key w"));
+  EXPECT_TRUE(until_color(0.1, kY, kBlue)) << "left of the border";
+  EXPECT_TRUE(until_color(0.6, kY, kRed));
+  ASSERT_TRUE(user("key e"));
+  EXPECT_TRUE(until_color(0.6, kY, kBlue)) << "in its place";
+  ASSERT_TRUE(user("key e"));
+  EXPECT_TRUE(until_color(0.1, kY, kRed)) << "and back";
+  ASSERT_TRUE(user("key v"));
+  EXPECT_TRUE(until_color(0.1, kY, kBlue)) << "at the left";
+  EXPECT_TRUE(until_color(0.6, kY, kRed)) << "at the right";
+  ASSERT_TRUE(user("key d"));
+  EXPECT_TRUE(until_color(0.1, kY, {188, 0, 188})) << "0.5 red against 0.5 blue";
+  ASSERT_TRUE(user("key d"));
+  EXPECT_TRUE(until_color(0.1, kY, kRed));
+  std::ofstream(folder_ / "other.lua") << "return 1";
+  EXPECT_TRUE(until([&] { return count_color(shot(), {255, 107, 97}) > 100; })) << "the edge of the error's sheet";
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
 TEST_F(PlayWindow, FollowsItsSizeAndTheDesktopsWishToClose) {
   write_preset("{ 1, 0, 0 }");
   play({"look.lua", "shot.0001.exr"});

@@ -51,7 +51,7 @@ TEST(Validate, RefusesWhatNoProgramCanRun) {
 
   Builder small;
   small.filter("down", small.graph.source, {8, 4});
-  EXPECT_NE(validate(small.graph).error().message.find("another size"), std::string::npos);
+  EXPECT_TRUE(validate(small.graph).ok()) << "images between passes are shown too";
 
   Builder lost;
   lost.pixel("a", lost.graph.source);

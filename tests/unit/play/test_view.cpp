@@ -85,5 +85,17 @@ TEST(View, WipeFollowsThePointOverThePicture) {
   EXPECT_NEAR(view.wipe, 0.5, 1e-9);
 }
 
+TEST(View, HalfOfTheWindowIsForEachOfTwoSideBySide) {
+  View view;
+  view.by = CompareBy::side_by_side;
+  EXPECT_EQ(picture_window(view, {901, 500}), (Size{901, 500})) << "nothing is compared";
+  view.compare = Compare::source;
+  EXPECT_EQ(picture_window(view, {901, 500}), (Size{450, 500}));
+  EXPECT_FALSE(wipes(view));
+  view.by = CompareBy::wipe;
+  EXPECT_TRUE(wipes(view));
+  EXPECT_EQ(picture_window(view, {901, 500}), (Size{901, 500}));
+}
+
 }  // namespace
 }  // namespace afterglow

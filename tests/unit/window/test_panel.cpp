@@ -86,6 +86,21 @@ class Port : public PanelPort {
   std::optional<Build> build_;
 };
 
+/// Dear ImGui is told of modifiers by events from version 1.89 on.
+#if IMGUI_VERSION_NUM >= 18900
+void hold_shift(bool down) { ImGui::GetIO().AddKeyEvent(ImGuiMod_Shift, down); }
+void hold_control(bool down) { ImGui::GetIO().AddKeyEvent(ImGuiMod_Ctrl, down); }
+#else
+void hold_shift(bool down) {
+  ImGui::GetIO().KeyShift = down;
+  ImGui::GetIO().KeyMods = down ? ImGuiKeyModFlags_Shift : 0;
+}
+void hold_control(bool down) {
+  ImGui::GetIO().KeyCtrl = down;
+  ImGui::GetIO().KeyMods = down ? ImGuiKeyModFlags_Ctrl : 0;
+}
+#endif
+
 class PanelTest : public ::testing::Test {
  protected:
   PanelTest()
@@ -187,15 +202,12 @@ TEST_F(PanelTest, SlidersSetWithinTheirRangeAsOneGesture) {
 
 TEST_F(PanelTest, ValuesAreTyped) {
   ASSERT_TRUE(find({"Settings", "bloom", "scatter", "##value"}));
-  ImGuiIO& io = ImGui::GetIO();
-  io.KeyCtrl = true;
-  io.KeyMods = ImGuiKeyModFlags_Ctrl;
+  hold_control(true);
   press(true);
   press(false);
-  io.KeyCtrl = false;
-  io.KeyMods = 0;
+  hold_control(false);
   frame();
-  io.AddInputCharactersUTF8("0.6251234");
+  ImGui::GetIO().AddInputCharactersUTF8("0.6251234");
   frame();
   frame();
   move(-100, -100);
@@ -453,8 +465,7 @@ TEST_F(TransportBar, Scrubs) {
 TEST_F(TransportBar, RangesWithShift) {
   ASSERT_TRUE(find({"Transport", "scrub"}));
   const float y = ImGui::GetIO().MousePos.y;
-  ImGui::GetIO().KeyShift = true;
-  ImGui::GetIO().KeyMods = ImGuiKeyModFlags_Shift;
+  hold_shift(true);
   move(x_of(20), y);
   frame();
   press(true);
@@ -465,8 +476,7 @@ TEST_F(TransportBar, RangesWithShift) {
   press(false);
   EXPECT_EQ(transport.first(), 20);
   EXPECT_EQ(transport.last(), 60);
-  ImGui::GetIO().KeyShift = false;
-  ImGui::GetIO().KeyMods = 0;
+  hold_shift(false);
   click(1);
   EXPECT_EQ(transport.first(), 0);
   EXPECT_EQ(transport.last(), 99);

@@ -116,7 +116,7 @@ class ViewPassTest : public testing::Test {
                                     .colorAttachmentCount = 1,
                                     .pColorAttachments = &color};
     device_->vk().vkCmdBeginRendering(commands, &rendering);
-    pass.record(commands, 0, frame);
+    pass.record(commands, 0, {&frame, 1});
     device_->vk().vkCmdEndRendering(commands);
     const auto into = image_barrier(target.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
@@ -259,6 +259,16 @@ TEST_F(ViewPassTest, WipesBetweenImagesOfAnySize) {
       expect_same(frame_of({4, 2, 48, 36}, view), small, &before, {56, 40}, "smaller result");
       expect_same(frame_of({4, 2, 48, 36}, view), after, nullptr, {56, 40}, "nothing to compare with");
     }
+  }
+}
+
+TEST_F(ViewPassTest, ShowsHowFarTwoImagesAreApart) {
+  const Image after = picture(kPicture, 4), before = picture(kPicture, 5);
+  for (const ViewChannel channel : {ViewChannel::color, ViewChannel::green, ViewChannel::luminance}) {
+    View view{.fit = false, .zoom = 3, .center = {11.213, 8.347}, .exposure = 1.5, .channel = channel};
+    view.compare = Compare::other;
+    view.by = CompareBy::difference;
+    expect_same(frame_of({4, 2, 48, 36}, view), after, &before, {56, 40}, "difference");
   }
 }
 

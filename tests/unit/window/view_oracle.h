@@ -29,6 +29,12 @@ class ViewOracle {
     if (p.x < 0 || p.y < 0 || p.x >= frame_.picture.width || p.y >= frame_.picture.height) return coded(frame_.outside);
     const View& view = frame_.view;
     const Image* image = &shown_;
+    if (view.compare != Compare::none && compared_ && view.by == CompareBy::difference) {
+      Image apart(shown_.width, shown_.height, 4);
+      for (std::size_t i = 0; i < apart.pixels.size(); ++i)
+        apart.pixels[i] = i % 4 == 3 ? 1 : std::abs(shown_.pixels[i] - compared_->pixels[i]);
+      return looked_at(apart, p, x, y);
+    }
     if (view.compare != Compare::none && compared_) {
       const Point border = to_screen(place_, {view.wipe * frame_.picture.width, view.wipe * frame_.picture.height});
       const double distance = view.wipe_vertical ? sy - border.y : sx - border.x;

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Lines of an EXR that is stored by ZIP or ZIPS, as most renderers' are: OpenEXR finds the chunks, their bytes are
+// unpacked here (exr_zip.h).
+#pragma once
+
+#include <OpenEXR/ImfInputPart.h>
+
+#include <span>
+#include <vector>
+
+#include "image/exr_header.h"
+
+namespace afterglow {
+
+/// A channel that is wanted: its place among the part's, and where its samples go (ReadTarget).
+struct ExrLineTarget {
+  std::size_t channel = 0;
+  float* base = nullptr;
+  std::size_t pixel_stride = 1, row_stride = 0;
+};
+
+/// Whether `read_zipped_lines` can: lines of ZIP or ZIPS, no channel sub-sampled, wanted ones half or float.
+bool has_zipped_lines(const ExrPart& part, std::span<const ExrLineTarget> targets);
+
+/// All lines of the part, on several threads; memory as ExrPart::buffer_bytes counts it. Throws what OpenEXR throws,
+/// and std::runtime_error when a chunk is damaged.
+void read_zipped_lines(Imf::InputPart& input, const ExrPart& part, std::span<const ExrLineTarget> targets);
+
+}  // namespace afterglow

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "image/exr_zip.h"
+
+#include <libdeflate.h>
+
+#include <new>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace afterglow {
+namespace {
+
+constexpr std::uint8_t kMiddle = 128;  // differences are stored around it
+
+/// Each byte plus all before it.
+void add_up(std::span<std::uint8_t> bytes) {
+  std::size_t i = 1;
+  std::uint8_t last = bytes.empty() ? std::uint8_t{0} : bytes[0];
+#if defined(__SSE2__)
+  const __m128i middle = _mm_set1_epi8(static_cast<char>(kMiddle));
+  for (; i + 16 <= bytes.size(); i += 16) {
+    auto* at = reinterpret_cast<__m128i*>(bytes.data() + i);
+    __m128i sum = _mm_sub_epi8(_mm_loadu_si128(at), middle);
+    sum = _mm_add_epi8(sum, _mm_slli_si128(sum, 1));
+    sum = _mm_add_epi8(sum, _mm_slli_si128(sum, 2));
+    sum = _mm_add_epi8(sum, _mm_slli_si128(sum, 4));
+    sum = _mm_add_epi8(sum, _mm_slli_si128(sum, 8));
+    sum = _mm_add_epi8(sum, _mm_set1_epi8(static_cast<char>(last)));
+    _mm_storeu_si128(at, sum);
+    last = bytes[i + 15];
+  }
+#endif
+  for (; i < bytes.size(); ++i) {
+    last = static_cast<std::uint8_t>(last + bytes[i] - kMiddle);
+    bytes[i] = last;
+  }
+}
+
+/// From behind, so that each difference is taken from what was there.
+void take_differences(std::span<std::uint8_t> bytes) {
+  for (std::size_t i = bytes.size(); i-- > 1;) bytes[i] = static_cast<std::uint8_t>(bytes[i] - bytes[i - 1] + kMiddle);
+}
+
+void put_together(std::span<const std::uint8_t> apart, std::span<std::uint8_t> bytes) {
+  const std::size_t pairs = bytes.size() / 2;
+  const std::uint8_t *even = apart.data(), *odd = apart.data() + (bytes.size() + 1) / 2;
+  std::uint8_t* out = bytes.data();
+  for (std::size_t i = 0; i < pairs; ++i) {
+    out[2 * i] = even[i];
+    out[2 * i + 1] = odd[i];
+  }
+  if (bytes.size() % 2 != 0) out[2 * pairs] = even[pairs];
+}
+
+void put_apart(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> apart) {
+  const std::size_t pairs = bytes.size() / 2;
+  std::uint8_t *even = apart.data(), *odd = apart.data() + (bytes.size() + 1) / 2;
+  const std::uint8_t* in = bytes.data();
+  for (std::size_t i = 0; i < pairs; ++i) {
+    even[i] = in[2 * i];
+    odd[i] = in[2 * i + 1];
+  }
+  if (bytes.size() % 2 != 0) even[pairs] = in[2 * pairs];
+}
+
+}  // namespace
+
+ExrUnzip::ExrUnzip() : inflate_(libdeflate_alloc_decompressor()) {
+  if (inflate_ == nullptr) throw std::bad_alloc();
+}
+
+ExrUnzip::~ExrUnzip() { libdeflate_free_decompressor(inflate_); }
+
+bool ExrUnzip::run(std::span<const std::uint8_t> packed, std::span<std::uint8_t> bytes) {
+  apart_.resize(bytes.size());
+  const auto done = libdeflate_zlib_decompress(inflate_, packed.data(), packed.size(), apart_.data(), apart_.size(),
+                                               nullptr);  // no length asked for: it must be exactly this
+  if (done != LIBDEFLATE_SUCCESS) return false;
+  add_up(apart_);
+  put_together(apart_, bytes);
+  return true;
+}
+
+ExrZip::ExrZip(int level) : deflate_(libdeflate_alloc_compressor(level)) {
+  if (deflate_ == nullptr) throw std::bad_alloc();
+}
+
+ExrZip::~ExrZip() { libdeflate_free_compressor(deflate_); }
+
+std::span<const std::uint8_t> ExrZip::run(std::span<const std::uint8_t> bytes) {
+  apart_.resize(bytes.size());
+  put_apart(bytes, apart_);
+  take_differences(apart_);
+  packed_.resize(bytes.size());
+  const std::size_t length =
+      libdeflate_zlib_compress(deflate_, apart_.data(), apart_.size(), packed_.data(), packed_.size());
+  if (length == 0 || length >= bytes.size()) return bytes;
+  return {packed_.data(), length};
+}
+
+}  // namespace afterglow

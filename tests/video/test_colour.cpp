@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+// From a video's samples to light: RGB against FFmpeg's zscale at the source's depth, curves against their formulas.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include "clips.h"
+#include "core/file.h"
+#include "image/picture_file.h"
+
+namespace afterglow {
+namespace {
+
+struct ColourCase {
+  const char* name;
+  const char* pixels;  ///< FFmpeg's pixel format of the clip
+  const char* matrix;  ///< FFmpeg's words
+  const char* range;
+  const char* rgb;  ///< format of the reference, of the same depth
+  int depth;
+  int width = 64, height = 48;
+  const char* place = "left";
+};
+void PrintTo(const ColourCase& one, std::ostream* out) { *out << one.name; }
+
+class Colour : public Clips, public testing::WithParamInterface<ColourCase> {};
+
+/// Smooth and rough content over the whole range of codes.
+std::string random_frame(const std::string& file, const ColourCase& c) {
+  std::mt19937 random(3);
+  std::ofstream out(file, std::ios::binary);
+  const unsigned most = (1u << c.depth) - 1;
+  for (int i = 0; i < c.width * c.height * 3; ++i) {
+    const unsigned value = (i / 7) % 3 == 0 ? random() % (most + 1) : static_cast<unsigned>(i) * 5 % (most + 1);
+    out.put(static_cast<char>(value & 255));
+    if (c.depth > 8) out.put(static_cast<char>(value >> 8));
+  }
+  return file;
+}
+
+TEST_P(Colour, RgbIsThatOfZscale) {
+  const ColourCase& c = GetParam();
+  random_frame(path("frame.raw"), c);
+  const std::string tags =
+      fmt::format("-colorspace {} -color_range {} -color_primaries bt709 -color_trc bt709 -chroma_sample_location {}",
+                  c.matrix, c.range, c.place);
+  ffmpeg(fmt::format("-f rawvideo -pix_fmt {} -s {}x{} {} -i '{}' -frames:v 1 -c:v ffv1 -level 3 -pix_fmt {} {} '{}'",
+                     c.pixels, c.width, c.height, fmt::format("-color_range {}", c.range), path("frame.raw"), c.pixels,
+                     tags, path("clip.mkv")));
+  const std::string transfer = std::string(c.matrix) == "bt2020nc" ? "2020_10" : "709";
+  ffmpeg(
+      fmt::format("-i '{}' -vf "
+                  "zscale=matrixin={}:rangein={}:transferin={}:primariesin=709:chromalin={}:matrix=gbr:range=full:"
+                  "transfer={}:primaries=709:dither=none,format={} -f rawvideo '{}'",
+                  path("clip.mkv"), c.matrix, std::string(c.range) == "pc" ? "full" : "limited", transfer, c.place,
+                  transfer, c.rgb, path("rgb.raw")));
+  const auto movie = open(path("clip.mkv"));
+  ASSERT_TRUE(movie);
+  EXPECT_EQ(movie->facts().pixel_format, c.pixels);
+  const auto frame = Movie::frame(movie, 0);
+  Image stored(c.width, c.height, 3);
+  std::vector<ReadTarget> targets;
+  for (int channel = 0; channel < 3; ++channel)
+    targets.push_back({channel, stored.pixels.data() + channel, 3, static_cast<std::size_t>(c.width) * 3});
+  const auto read = frame->read(0, targets);
+  ASSERT_TRUE(read) << read.error().text();
+  const std::string bytes = read_file(path("rgb.raw")).value();
+  const int bytes_each = c.depth > 8 ? 2 : 1;
+  const std::size_t plane = static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height);
+  ASSERT_EQ(bytes.size(), plane * 3 * static_cast<std::size_t>(bytes_each));
+  const double most = (1 << c.depth) - 1;
+  double worst = 0;
+  for (std::size_t i = 0; i < plane; ++i)
+    for (int channel = 0; channel < 3; ++channel) {
+      const std::size_t at =
+          (static_cast<std::size_t>((channel + 2) % 3) * plane + i) * static_cast<std::size_t>(bytes_each);
+      int code = static_cast<std::uint8_t>(bytes[at]);
+      if (bytes_each == 2) code |= static_cast<std::uint8_t>(bytes[at + 1]) << 8;
+      const double own = std::clamp<double>(stored.pixels[i * 3 + static_cast<std::size_t>(channel)], 0, 1) * most;
+      worst = std::max(worst, std::abs(own - code));
+    }
+  RecordProperty("worst_codes", fmt::format("{:.4f}", worst));
+  EXPECT_LE(worst, 1) << "codes of " << c.depth << " bits";
+}
+
+INSTANTIATE_TEST_SUITE_P(Video, Colour,
+                         testing::Values(ColourCase{"bt709_tv", "yuv420p", "bt709", "tv", "gbrp", 8},
+                                         ColourCase{"bt709_pc", "yuv420p", "bt709", "pc", "gbrp", 8},
+                                         ColourCase{"bt601_tv", "yuv422p", "smpte170m", "tv", "gbrp", 8},
+                                         ColourCase{"bt470bg_pc", "yuv444p", "bt470bg", "pc", "gbrp", 8},
+                                         ColourCase{"bt709_10", "yuv420p10le", "bt709", "tv", "gbrp10le", 10},
+                                         ColourCase{"bt2020_10", "yuv422p10le", "bt2020nc", "tv", "gbrp10le", 10},
+                                         ColourCase{"bt2020_12", "yuv444p12le", "bt2020nc", "pc", "gbrp12le", 12},
+                                         ColourCase{"centre", "yuv420p", "bt709", "tv", "gbrp", 8, 64, 48, "center"},
+                                         ColourCase{"topleft", "yuv420p10le", "bt2020nc", "tv", "gbrp10le", 10, 64, 48,
+                                                    "topleft"},
+                                         ColourCase{"ycgco", "yuv444p", "ycgco", "pc", "gbrp", 8}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+/// A frame of one grey code in 10 bits of full range, and the light that it is read as.
+class Curves : public Clips {
+ protected:
+  double light_of(const std::string& transfer, const std::string& primaries, int code) {
+    std::ofstream raw(path("grey.raw"), std::ios::binary);
+    for (int i = 0; i < 32 * 32; ++i) raw.put(static_cast<char>(code & 255)).put(static_cast<char>(code >> 8));
+    for (int i = 0; i < 2 * 32 * 32; ++i) raw.put(0).put(2);
+    raw.close();
+    const std::string file = path(fmt::format("{}{}.mkv", transfer, code));
+    ffmpeg(fmt::format(
+        "-f rawvideo -pix_fmt yuv444p10le -s 32x32 -color_range pc -i '{}' -c:v ffv1 -level 3 -color_range pc "
+        "-colorspace bt2020nc -color_primaries {} -color_trc {} '{}'",
+        path("grey.raw"), primaries, transfer, file));
+    const auto movie = open(file);
+    if (!movie) return -1;
+    const auto picture = read(movie, 0);
+    return picture ? picture->color.at(16, 16)[1] : -1;
+  }
+};
+
+TEST_F(Curves, AreUndoneToLight) {
+  const auto rec709 = [](double v) {
+    return v < 0.081243 ? v / 4.5 : std::pow((v + 0.09929682680944) / 1.09929682680944, 1 / 0.45);
+  };
+  const auto pq = [](double v) {  // ST 2084, in units of 203 cd/m²
+    const double p = std::pow(v, 32.0 / 2523);
+    return 10000.0 / 203 * std::pow(std::max(p - 107.0 / 128, 0.0) / (2413.0 / 128 - 2392.0 / 128 * p), 8192.0 / 1305);
+  };
+  const auto hlg = [](double v) {
+    const double a = 0.17883277, b = 1 - 4 * a, c = 0.5 - a * std::log(4 * a);
+    const auto scene = [&](double e) { return e <= 0.5 ? e * e / 3 : (std::exp((e - c) / a) + b) / 12; };
+    return scene(v) / scene(0.75);
+  };
+  const auto srgb = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+  const auto check = [&](const char* transfer, const char* primaries, const auto& curve) {
+    for (const int code : {40, 300, 512, 767, 1023}) {
+      const double expected = curve(code / 1023.0);
+      EXPECT_NEAR(light_of(transfer, primaries, code), expected, 2e-5 + 2e-5 * expected) << transfer << " " << code;
+    }
+  };
+  check("bt709", "bt709", rec709);
+  check("smpte170m", "smpte170m", rec709);
+  check("bt2020-10", "bt2020", rec709);
+  check("smpte2084", "bt2020", pq);
+  check("arib-std-b67", "bt2020", hlg);
+  check("iec61966-2-1", "bt709", srgb);
+}
+
+/// Saturated colours through matrix, PQ and primaries, against zscale's linear light.
+TEST_F(Curves, PqInRec2020IsTheLightOfZscale) {
+  constexpr ColourCase kCase{"pq", "yuv444p10le", "bt2020nc", "tv", "gbrpf32le", 10};
+  random_frame(path("frame.raw"), kCase);
+  ffmpeg(
+      fmt::format("-f rawvideo -pix_fmt yuv444p10le -s 64x48 -i '{}' -frames:v 1 -c:v ffv1 -level 3 -color_range tv "
+                  "-colorspace bt2020nc "
+                  "-color_primaries bt2020 -color_trc smpte2084 '{}'",
+                  path("frame.raw"), path("pq.mkv")));
+  ffmpeg(
+      fmt::format("-i '{}' -vf "
+                  "zscale=rangein=limited:matrixin=bt2020nc:transferin=smpte2084:primariesin=bt2020:matrix=gbr:range="
+                  "full:transfer=linear:npl=203:primaries=bt709,format=gbrpf32le -f rawvideo '{}'",
+                  path("pq.mkv"), path("linear.raw")));
+  const auto movie = open(path("pq.mkv"));
+  ASSERT_TRUE(movie);
+  const auto picture = read(movie, 0).value();
+  const std::string bytes = read_file(path("linear.raw")).value();
+  const auto* planes = reinterpret_cast<const float*>(bytes.data());
+  const auto code = [](double light) {  // PQ's code of 10 bits
+    const double y = std::pow(std::max(light, 0.0) * 203 / 10000, 1305.0 / 8192);
+    return 1023 * std::pow((107.0 / 128 + 2413.0 / 128 * y) / (1 + 2392.0 / 128 * y), 2523.0 / 32);
+  };
+  // Samples that are colours: many of the random ones lie outside of RGB's cube, where curves go on as they like.
+  Image stored(64, 48, 3);
+  std::vector<ReadTarget> targets;
+  for (int channel = 0; channel < 3; ++channel) targets.push_back({channel, stored.pixels.data() + channel, 3, 64 * 3});
+  ASSERT_TRUE(Movie::frame(movie, 0)->read(0, targets));
+  double worst = 0;
+  int compared = 0;
+  for (std::size_t i = 0; i < 64 * 48; ++i) {
+    const float* own = &stored.pixels[i * 3];
+    if (std::min({own[0], own[1], own[2]}) < 0 || std::max({own[0], own[1], own[2]}) > 1) continue;
+    ++compared;
+    const float* light = &picture.color.pixels[i * 4];
+    const float brightest = std::max({light[0], light[1], light[2]});
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float other = planes[(c + 2) % 3 * 64 * 48 + i];
+      // What is left where bright primaries cancel is the rounding of the matrix.
+      if (std::abs(light[c] - std::max(other, 0.0f)) < 1e-5f * brightest) continue;
+      worst = std::max(worst, std::abs(code(light[c]) - code(other)));
+    }
+  }
+  EXPECT_GT(compared, 300);
+  EXPECT_LE(worst, 1) << "codes of 10 bits";
+}
+
+/// Alpha is straight in videos, linear and of full range, and multiplied after decoding.
+TEST_F(Clips, AlphaIsMultipliedInLight) {
+  const auto movie = open(clip("alpha.mov", "-c:v qtrle -pix_fmt argb", 2, true));
+  ASSERT_TRUE(movie);
+  const auto picture = read(movie, 0).value();
+  ASSERT_TRUE(picture.has_alpha);
+  const int x = 100, y = 60;
+  const double alpha = std::round(255 * (x + 0.5) / kClipWidth) / 255;
+  EXPECT_NEAR(picture.color.at(x, y)[3], alpha, 1e-6);
+  const double u = (x + 3.0) / 40, v = (y - 1) / 23.0;
+  const double stored = std::round(255 * (0.5 + 0.4 * std::sin(u) * std::cos(v))) / 255;
+  EXPECT_NEAR(picture.color.at(x, y)[0], alpha * std::pow((stored + 0.055) / 1.055, 2.4), 1e-5);
+}
+
+/// zimg takes whole samples of chroma alone.
+TEST_F(Clips, OddSidesAreReadWhole) {
+  for (const char* pixels : {"yuv420p", "yuv422p10le", "yuv410p", "yuva420p"}) {
+    const std::string file = path(fmt::format("odd_{}.mkv", pixels));
+    ffmpeg(fmt::format(
+        "-f lavfi -i testsrc2=s=67x43:d=0.1 -vf format=rgb24,scale=67:43,setsar=1 -c:v ffv1 -level 3 -pix_fmt {} '{}'",
+        pixels, file));
+    const auto movie = open(file);
+    ASSERT_TRUE(movie);
+    const auto picture = read(movie, 0);
+    ASSERT_TRUE(picture) << picture.error().text();
+    EXPECT_EQ(picture->color.size(), (Size{67, 43}));
+    ffmpeg(
+        fmt::format("-i '{}' -frames:v 1 -vf "
+                    "scale=out_range=pc:flags=bilinear+accurate_rnd+full_chroma_int,format=gbrp -f rawvideo '{}'",
+                    file, path("odd.raw")));
+    const std::string bytes = read_file(path("odd.raw")).value();
+    // Luma alone: the corner pixel's green follows it within a few codes.
+    const auto green = static_cast<std::uint8_t>(bytes[67 * 43 - 1]) / 255.0;
+    const double light = green < 0.081 ? green / 4.5 : std::pow((green + 0.099) / 1.099, 1 / 0.45);
+    EXPECT_NEAR(picture->color.at(66, 42)[1], light, 0.08) << pixels;
+  }
+}
+
+}  // namespace
+}  // namespace afterglow

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// What containers say of frames: edit lists, time stamps, rotation, the shape of pixels, fields.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "clips.h"
+#include "core/file.h"
+#include "play/footage.h"
+
+namespace afterglow {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using Containers = Clips;
+
+constexpr const char* kPlainX264 = "-c:v libx264 -preset veryfast -crf 12 -g 12 -bf 3 -pix_fmt yuv420p";
+
+TEST_F(Containers, EditListsSayWhereAClipBegins) {
+  const std::string whole = clip("whole.mp4", kPlainX264);
+  ffmpeg(fmt::format("-ss 0.71 -i '{}' -c copy '{}'", whole, path("cut.mp4")));
+  const auto movie = open(path("cut.mp4"));
+  ASSERT_TRUE(movie);
+  const std::vector<int> shown = numbers_by_ffmpeg(path("cut.mp4"));
+  ASSERT_GT(shown.front(), 13) << "the clip is to begin within a group of pictures";
+  ASSERT_EQ(movie->frames(), static_cast<int>(shown.size()));
+  for (const int frame : {0, movie->frames() - 1, 1, 9, 0}) {
+    const auto picture = read(movie, frame);
+    ASSERT_TRUE(picture) << picture.error().text();
+    EXPECT_EQ(number_of(*picture), shown[static_cast<std::size_t>(frame)]);
+  }
+  EXPECT_EQ(movie->time(0), 0);
+}
+
+TEST_F(Containers, VariableRatesKeepTheirTimes) {
+  const auto movie =
+      open(clip("varies.mp4",
+                std::string(kPlainX264) + " -vf \"setpts='if(lt(N,10),N,10+(N-10)*3)/24/TB'\" -vsync passthrough "
+                                          "-video_track_timescale 24000",
+                30));
+  ASSERT_TRUE(movie);
+  ASSERT_EQ(movie->frames(), 30);
+  EXPECT_TRUE(movie->variable_rate());
+  for (int frame = 0; frame < 30; ++frame) {
+    EXPECT_NEAR(movie->time(frame), (frame < 10 ? frame : 10 + (frame - 10) * 3) / 24.0, 1e-4) << frame;
+    EXPECT_EQ(number_of(read(movie, frame).value()), frame + 1);
+  }
+  FootageOptions options;
+  options.inputs = {path("varies.mp4")};
+  Diagnostics quiet;
+  const auto footage = Footage::open(options, quiet);
+  ASSERT_TRUE(footage) << footage.error().text();
+  // Turns as long as the shortest frame; later frames stay for three.
+  EXPECT_NEAR((*footage)->fps().value(), 24, 1e-2);
+  EXPECT_EQ((*footage)->frames(), 10 + 19 * 3 + 1);
+  for (const auto& [position, number] : {std::pair{9, 10}, std::pair{10, 11}, std::pair{12, 11}, std::pair{13, 12}}) {
+    EXPECT_EQ((*footage)->frame(position).number, number) << position;
+    EXPECT_NEAR((*footage)->frame(position).time.value(), movie->time(number - 1), 1e-9);
+  }
+}
+
+/// A movie whose track says how it is to be turned: the matrix (a, b; c, d) of its header.
+std::string turned(const std::string& file, const std::array<int, 4>& axes) {
+  std::string bytes = read_file(file).value();
+  const std::size_t matrix = bytes.find("tkhd") + 4 + 40;
+  const auto put = [&](std::size_t place, int value) {
+    const auto fixed = static_cast<std::uint32_t>(value * 65536);
+    for (std::size_t i = 0; i < 4; ++i) bytes[matrix + 4 * place + i] = static_cast<char>(fixed >> (24 - 8 * i));
+  };
+  put(0, axes[0]), put(1, axes[1]), put(3, axes[2]), put(4, axes[3]);
+  const std::string out = file + fmt::format("{}{}{}{}.mov", axes[0], axes[1], axes[2], axes[3]);
+  std::ofstream(out, std::ios::binary) << bytes;
+  return out;
+}
+
+TEST_F(Containers, EveryRotationAndFlipIsApplied) {
+  const std::string plain = clip("plain.mov", "-c:v png -pix_fmt rgb24", 3);
+  for (const auto& axes :
+       {std::array{1, 0, 0, 1}, std::array{0, 1, -1, 0}, std::array{-1, 0, 0, -1}, std::array{0, -1, 1, 0},
+        std::array{-1, 0, 0, 1}, std::array{1, 0, 0, -1}, std::array{0, 1, 1, 0}, std::array{0, -1, -1, 0}}) {
+    const std::string file = turned(plain, axes);
+    const auto movie = open(file);
+    ASSERT_TRUE(movie);
+    const auto picture = read(movie, 1);
+    ASSERT_TRUE(picture) << picture.error().text();
+    const Size size = picture->color.size();
+    EXPECT_EQ(size.width, axes[0] == 0 ? kClipHeight : kClipWidth);
+    const std::string raw = path("turned.raw");
+    ffmpeg(fmt::format("-i '{}' -f rawvideo -pix_fmt rgb24 '{}'", file, raw));
+    const std::string bytes = read_file(raw).value();
+    const auto* codes = reinterpret_cast<const std::uint8_t*>(bytes.data()) + size.area() * 3;
+    int differ = 0;
+    for (long long i = 0; i < size.area(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const double v = codes[i * 3 + c] / 255.0;
+        const double light = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+        differ += std::abs(picture->color.pixels[static_cast<std::size_t>(i * 4 + c)] - light) > 1e-5;
+      }
+    EXPECT_EQ(differ, 0) << file;
+  }
+}
+
+TEST_F(Containers, PixelsAreMadeSquare) {
+  const auto wide = open(clip("wide.mp4", std::string(kPlainX264) + " -vf setsar=2/1", 3));
+  ASSERT_TRUE(wide);
+  EXPECT_EQ(wide->facts().size, (Size{2 * kClipWidth, kClipHeight}));
+  EXPECT_THAT(messages_, Contains(HasSubstr("its pixels are 2:1; 192x96 is scaled to 384x96 square ones")));
+  const auto picture = read(wide, 2).value();
+  EXPECT_EQ(picture.color.size(), (Size{2 * kClipWidth, kClipHeight}));
+  EXPECT_EQ(number_of(picture), 3);
+  const auto tall = open(clip("tall.mkv", std::string(kPlainX264) + " -vf setsar=1/2", 3));
+  ASSERT_TRUE(tall);
+  EXPECT_EQ(read(tall, 1).value().color.size(), (Size{kClipWidth, 2 * kClipHeight}));
+}
+
+TEST_F(Containers, InterlacedMaterialIsTold) {
+  ASSERT_TRUE(
+      open(clip("fields.ts", "-c:v mpeg2video -q:v 2 -flags +ilme+ildct -vf setfield=tff -pix_fmt yuv420p", 5)));
+  EXPECT_THAT(messages_, Contains(HasSubstr("is interlaced")));
+}
+
+TEST_F(Containers, WhatAVideoDoesNotSayIsNoted) {
+  ASSERT_TRUE(open(clip("untold.mkv", "-c:v ffv1 -pix_fmt yuv420p", 2)));
+  EXPECT_THAT(messages_, Contains(HasSubstr("does not say its matrix, primaries, transfer; BT.601")));
+}
+
+TEST_F(Containers, OtherFilesAreNeverOpened) {
+  const std::string whole = clip("whole.mov", "-c:v png -pix_fmt rgb24", 2);
+  // A QuickTime file whose samples lie in another one: its data reference is no longer its own.
+  std::string bytes = read_file(whole).value();
+  const std::size_t at = bytes.find("url \0\0\0\1", bytes.find("dref"), 8);
+  ASSERT_NE(at, std::string::npos);
+  bytes[at + 7] = 0;
+  std::ofstream(path("elsewhere.mov"), std::ios::binary) << bytes;
+  const auto movie = try_open(path("elsewhere.mov"));
+  if (movie) {  // its own samples, at the most
+    EXPECT_EQ(number_of(read(*movie, 0).value()), 1);
+  }
+  // Playlists are no containers that are read.
+  std::ofstream(path("list.m3u8")) << "#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\n" << whole << "\n";
+  EXPECT_EQ(movie_format(path("list.m3u8")), "");
+  std::ofstream(path("list.ffconcat")) << "ffconcat version 1.0\nfile " << whole << "\n";
+  EXPECT_EQ(movie_format(path("list.ffconcat")), "");
+}
+
+TEST_F(Containers, StillPicturesAreNoVideos) {
+  ffmpeg(
+      fmt::format("-f lavfi -i color=red:s=32x32 -frames:v 1 '{}' -frames:v 1 '{}'", path("one.gif"), path("one.png")));
+  EXPECT_EQ(movie_format(path("one.gif")), "");
+  EXPECT_EQ(movie_format(path("one.png")), "");
+  clip("moves.apng", "-f apng -c:v apng", 3);
+  EXPECT_EQ(movie_format(path("moves.apng")), "apng");
+}
+
+}  // namespace
+}  // namespace afterglow
