@@ -28,6 +28,8 @@ Result<void> run_run(const RunArguments& a, Console& console) {
     AFTERGLOW_TRY(const Confinement left, sandbox_of(a));
     AFTERGLOW_CHECK(confine(left));
   }
+  constexpr unsigned kSecondsToEndAVideo = 60;
+  if (a.keep_partial) allow_to_end(kSecondsToEndAVideo);
   RunReport report;
   auto done = run_batch(request, events_of(console), report);
   if (!a.stats.empty() && report.session) output("{}", report_text(report, a.stats == "passes"));

@@ -19,7 +19,8 @@ void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("INPUT", a.files.inputs, "Pictures: files, sequences like shot.####.exr and shot.%04d.exr, videos; - is standard input")
       ->required();
   app.add_option("-o,--output", a.files.output,
-                 "File, pattern (out.####.png), folder or video (mp4, mov, mkv, webm, gif, apng); the extension says "
+                 "File, pattern (out.####.png), folder, video (mp4, mov, mkv, webm, gif, apng) or - (standard output); "
+                 "the extension says "
                  "the format")
       ->type_name("OUTPUT")
       ->required();
@@ -72,7 +73,9 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->group(sequence);
   app.add_flag("--fail-fast", a.fail_fast, "Stop at the first frame that fails")->group(sequence);
 
-  app.add_option("--format", a.files.extension, "For outputs in a folder: png, exr, … (default: that of the input)")
+  app.add_option("--format", a.files.extension,
+                 "For outputs in a folder: png, exr, … (default: that of the input); for -o -: y4m (default), raw, "
+                 "ppm, pam, pfm, png, or one picture of any format")
       ->type_name("EXTENSION")
       ->group(output);
   app.add_option(

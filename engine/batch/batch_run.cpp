@@ -124,6 +124,9 @@ Result<FrameRecord*> next_record(BatchRun& run) {
 Result<void> run_frames(BatchRun& run) {
   const BatchRequest& asked = run.request;
   auto& frames = run.report.frames;
+  if (asked.resume && is_one_output(asked.files.output))
+    return Error{ErrorKind::usage, "--resume goes on with files of their own; a video or a stream is made whole",
+                 "afterglow run", 0, "a pattern like out.####.exr, which becomes a video afterwards"};
   AFTERGLOW_TRY(run.sink, open_sink(asked.files, asked.loop.write, asked.loop.fps, run.events.diagnostics));
   if (!run.sink->is_one()) AFTERGLOW_CHECK(check_outputs(run));
   SessionOptions opened = asked.session;

@@ -89,8 +89,8 @@ bool FrameLoop::fetch(Schedule& schedule, std::size_t place) {
 /// What was written appears when the run has come to its end, failed frames or not; of an interrupted one if that is
 /// wished.
 Result<void> FrameLoop::finish_sink(const Result<void>& result) {
-  const bool interrupted = !result && result.error().kind == ErrorKind::interrupted;
-  return result || (interrupted && options_.keep_partial) ? sink_.finish() : Result<void>();
+  const bool keeps = !result && result.error().kind == ErrorKind::interrupted && options_.keep_partial;
+  return result || keeps ? sink_.finish(keeps ? 0 : total_) : Result<void>();
 }
 
 /// Waits for the last output and sums up.

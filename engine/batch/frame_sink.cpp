@@ -2,6 +2,7 @@
 #include "batch/frame_sink.h"
 
 #include "batch/resume.h"
+#include "batch/stream_sink.h"
 #include "batch/video_sink.h"
 #include "image/video_output.h"
 
@@ -33,6 +34,7 @@ class FileSink : public FrameSink {
 
 Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const WriteOptions& options, double fps,
                                              Diagnostics& diagnostics) {
+  if (files.output == "-") return open_stream_sink(files.extension, options, fps, diagnostics);
   if (is_video_output(files.output)) return open_video_sink(files.output, options, fps, diagnostics);
   return std::unique_ptr<FrameSink>(std::make_unique<FileSink>(options, diagnostics));
 }

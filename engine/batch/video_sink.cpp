@@ -38,7 +38,7 @@ class VideoSink : public FrameSink {
     return writer_->write(picture, {static_cast<long long>(index), 1});
   }
 
-  Result<void> finish() override { return writer_ ? writer_->finish() : Result<void>(); }
+  Result<void> finish(std::size_t) override { return writer_ ? writer_->finish() : Result<void>(); }
 
  private:
   Result<void> begin(const FrameJob&, const Picture& picture) {

@@ -17,6 +17,7 @@ extern "C" {
 #include "image/ffmpeg_copy.h"
 #include "image/ffmpeg_log.h"
 #include "image/ffmpeg_output.h"
+#include "image/palette.h"
 
 namespace afterglow {
 namespace {
@@ -50,11 +51,10 @@ class FfmpegEncoder : public VideoEncoder {
     picture->width = codec_->width;
     picture->height = codec_->height;
     if (const int code = av_frame_get_buffer(picture.get(), 0); code < 0) return encoder_failed(code);
-    for (std::size_t plane = 0; plane < frame.planes.size(); ++plane) {
-      const auto& from = frame.planes[plane];
-      for (int y = 0; y < from.rows; ++y)
-        std::memcpy(picture->data[plane] + static_cast<std::ptrdiff_t>(picture->linesize[plane]) * y,
-                    frame.bytes.data() + from.offset + from.stride * static_cast<std::size_t>(y), from.stride);
+    if (is_palette()) {
+      copy_palette(palette_picture(frame), *picture);
+    } else {
+      copy_planes(frame, *picture);
     }
     picture->pts = time.pts;
     picture->colorspace = codec_->colorspace;
@@ -77,6 +77,23 @@ class FfmpegEncoder : public VideoEncoder {
   }
 
  private:
+  bool is_palette() const { return plan_.container == "gif"; }
+  static void copy_planes(const PackedFrame& frame, AVFrame& picture) {
+    for (std::size_t plane = 0; plane < frame.planes.size(); ++plane) {
+      const auto& from = frame.planes[plane];
+      for (int y = 0; y < from.rows; ++y)
+        std::memcpy(picture.data[plane] + static_cast<std::ptrdiff_t>(picture.linesize[plane]) * y,
+                    frame.bytes.data() + from.offset + from.stride * static_cast<std::size_t>(y), from.stride);
+    }
+  }
+  static void copy_palette(const PalettePicture& from, AVFrame& picture) {
+    const auto width = static_cast<std::size_t>(picture.width);
+    for (int y = 0; y < picture.height; ++y)
+      std::memcpy(picture.data[0] + static_cast<std::ptrdiff_t>(picture.linesize[0]) * y,
+                  from.indices.data() + width * static_cast<std::size_t>(y), width);
+    std::memcpy(picture.data[1], from.colors.data(), sizeof(from.colors));
+  }
+
   Result<void> open_codec(const std::string& name) {
     const AVCodec* codec = nullptr;
     for (const auto& one : plan_.encoders)
@@ -87,7 +104,7 @@ class FfmpegEncoder : public VideoEncoder {
     if (!codec_) return encoder_failed(AVERROR(ENOMEM));
     codec_->width = plan_.size.width;
     codec_->height = plan_.size.height;
-    codec_->pix_fmt = av_get_pix_fmt(plan_.pack.layout->name);
+    codec_->pix_fmt = is_palette() ? AV_PIX_FMT_PAL8 : av_get_pix_fmt(plan_.pack.layout->name);
     codec_->time_base = rational(plan_.time_base);
     codec_->framerate = rational(plan_.rate);
     codec_->sample_aspect_ratio = {1, 1};

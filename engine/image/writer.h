@@ -49,6 +49,10 @@ struct WriteOptions {
 Result<void> write_picture(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options,
                            Diagnostics& diagnostics);
 
+/// The bytes that a file of this extension ("png") would have. Errors: as write_picture.
+Result<std::string> picture_bytes(const Picture& picture, const std::string& extension, const WriteOptions& options,
+                                  Diagnostics& diagnostics);
+
 /// How `write_picture` will make 8-bit display codes for `file`, so that another can make them (Picture::unorm8).
 struct DisplayCodes {
   bool straight_alpha = false;
@@ -62,6 +66,8 @@ std::optional<DisplayCodes> display_codes(const std::filesystem::path& file, con
 /// Checks, without writing, that `file` has an extension we write and that its folder exists and can be written. For
 /// errors before the work.
 Result<void> check_output(const std::filesystem::path& file, const WriteOptions& options);
+/// The format alone. Errors: usage.
+Result<void> check_format(const std::filesystem::path& file, const WriteOptions& options);
 /// The same of the folder alone.
 Result<void> check_place(const std::filesystem::path& file);
 
