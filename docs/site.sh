@@ -23,6 +23,7 @@ pages=(
   "docs/ocio.md|OpenColorIO"
   "docs/formats.md|Formats"
   "docs/embedding.md|Embedding"
+  "docs/farms.md|Farms"
   "docs/determinism.md|The same pixels"
   "docs/building.md|Building and packaging"
   "docs/stability.md|What is stable"

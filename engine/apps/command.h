@@ -14,6 +14,7 @@ namespace afterglow {
 struct Command {
   CLI::App* options = nullptr;  ///< owned by the program's CLI::App
   std::function<Result<void>(Console&)> run;
+  std::vector<std::string>* behind = nullptr;  ///< where words behind `--` go, of a command that hands them on
 };
 
 // Each adds itself to the program; one file a command.
@@ -30,6 +31,7 @@ Command add_calibrate_command(CLI::App& program);
 Command add_play_command(CLI::App& program);
 Command add_stress_command(CLI::App& program);
 Command add_bake_command(CLI::App& program);
+Command add_farm_command(CLI::App& program);
 Command add_completion_command(CLI::App& program);
 Command add_man_command(CLI::App& program);
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/command.h"
@@ -72,6 +73,13 @@ const Command* parsed_command(const std::vector<Command>& commands) {
   return nullptr;
 }
 
+/// The command that the first word names, or null.
+const Command* named_command(const std::vector<Command>& commands, int argc, char** argv) {
+  for (const auto& command : commands)
+    if (argc > 1 && command.options->get_name() == argv[1]) return &command;
+  return nullptr;
+}
+
 int fail(Console& console, const Error& error) {
   console.end_progress();
   console.error(error);
@@ -81,9 +89,14 @@ int fail(Console& console, const Error& error) {
 /// Parses into the commands' options. Returns an exit code when there is nothing more to do.
 std::optional<int> parse(CLI::App& program, const std::vector<Command>& commands, int argc, char** argv,
                          Console& console) {
-  const auto is_named = [&](const Command& command) { return command.options->get_name() == argv[1]; };
-  if (argc > 1 && argv[1][0] != '-' && std::ranges::none_of(commands, is_named))
+  if (argc > 1 && argv[1][0] != '-' && !named_command(commands, argc, argv))
     return fail(console, unknown_command(argv[1], commands));
+  if (const Command* command = named_command(commands, argc, argv); command && command->behind)
+    for (int i = 2; i < argc; ++i)
+      if (std::string_view(argv[i]) == "--") {
+        command->behind->assign(argv + i + 1, argv + argc);
+        argc = i;
+      }
   try {
     program.parse(argc, argv);
     return std::nullopt;
@@ -120,13 +133,14 @@ std::optional<int> parse(CLI::App& program, const std::vector<Command>& commands
 
 std::vector<Command> add_commands(CLI::App& program) {
   return {
-      add_run_command(program),     add_check_command(program),      add_graph_command(program),
-      add_explain_command(program), add_effects_command(program),    add_new_command(program),
-      add_set_command(program),     add_devices_command(program),    add_play_command(program),
+      add_run_command(program),     add_check_command(program),     add_graph_command(program),
+      add_explain_command(program), add_effects_command(program),   add_new_command(program),
+      add_set_command(program),     add_devices_command(program),   add_play_command(program),
 #ifdef AFTERGLOW_BENCH
-      add_bench_command(program),   add_calibrate_command(program),  add_stress_command(program),
+      add_bench_command(program),   add_calibrate_command(program), add_stress_command(program),
 #endif
-      add_bake_command(program),    add_completion_command(program), add_man_command(program),
+      add_bake_command(program),    add_farm_command(program),      add_completion_command(program),
+      add_man_command(program),
   };
 }
 

@@ -5,22 +5,13 @@
 #include "apps/command.h"
 #include "apps/output.h"
 #include "apps/run_arguments.h"
+#include "apps/run_events.h"
 #include "apps/sandbox.h"
 #include "batch/run_report.h"
 #include "core/file.h"
 
 namespace afterglow {
 namespace {
-
-RunEvents events_of(Console& console) {
-  return {.diagnostics = console.diagnostics(),
-          .progress = [&console](std::size_t done, std::size_t total, const std::string& label,
-                                 double seconds) { console.progress(done, total, label, seconds); },
-          .end_progress = [&console] { console.end_progress(); },
-          .failed = [&console](const Error& error) { console.error(error); },
-          .note = [&console](const std::string& text) { console.note(text); },
-          .interrupted = interrupted};
-}
 
 Result<void> run_run(const RunArguments& a, Console& console) {
   AFTERGLOW_TRY(const BatchRequest request, a.request());
@@ -31,7 +22,7 @@ Result<void> run_run(const RunArguments& a, Console& console) {
   constexpr unsigned kSecondsToEndAVideo = 60;
   if (a.keep_partial) allow_to_end(kSecondsToEndAVideo);
   RunReport report;
-  auto done = run_batch(request, events_of(console), report);
+  auto done = run_batch(request, run_events(console), report);
   if (!a.stats.empty() && report.session) output("{}", report_text(report, a.stats == "passes"));
   if (!a.report.empty()) {
     auto written = write_file_atomically(a.report, report_json(report));

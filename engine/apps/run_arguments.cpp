@@ -16,7 +16,7 @@ std::string space_list() {
 }
 
 void add_files(CLI::App& app, RunArguments& a) {
-  app.add_option("INPUT", a.files.inputs, "Pictures: files, or sequences like shot.####.exr and shot.%04d.exr")
+  app.add_option("INPUT", a.files.inputs, "Pictures: files, sequences like shot.####.exr and shot.%04d.exr, videos; - is standard input")
       ->required();
   app.add_option("-o,--output", a.files.output,
                  "File, pattern (out.####.png), folder, video (mp4, mov, mkv, webm, gif, apng) or - (standard output); "
@@ -51,6 +51,10 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->type_name("X,Y,W,H")
       ->group(input);
 
+  app.add_option("--raw", a.files.raw,
+                 "How raw frames on standard input (-) lie: 1920x1080:rgb48le[:24], pixels by FFmpeg's names")
+      ->type_name("WxH:PIXELS[:FPS]")
+      ->group(input);
   app.add_option("--frames", a.files.frames, "Frames to run: 1-24, 1-24x2, 1,5,10-12 (default: all there are)")
       ->type_name("LIST")
       ->group(sequence);
@@ -275,6 +279,7 @@ Result<BatchRequest> RunArguments::request() const {
   AFTERGLOW_TRY(out.session, session_options(*this));
   AFTERGLOW_TRY(out.loop, loop_options(*this, out.session.stack.max_memory));
   AFTERGLOW_TRY(out.preset, preset.preset_file());
+  out.files.limits = {out.loop.read.max_side, out.loop.read.max_bytes};
   return out;
 }
 

@@ -28,6 +28,7 @@ struct BatchRun {
   Clock::time_point start = Clock::now();
   std::unique_ptr<FrameSink> sink{};
   std::unique_ptr<Session> session{};
+  FrameList list{};
   std::optional<Hash> record_look{};
   std::optional<Lock> lock{};  ///< of what runs, when one is to be written or held against
 
@@ -112,6 +113,14 @@ Result<void> check_outputs(const BatchRun& run) {
   return {};
 }
 
+/// The next frame of standard input.
+Result<FrameRecord*> next_record(BatchRun& run) {
+  AFTERGLOW_TRY(std::optional<FrameJob> job, run.list.more());
+  if (!job) return static_cast<FrameRecord*>(nullptr);
+  run.report.frames.push_back({.job = std::move(*job)});
+  return &run.report.frames.back();
+}
+
 Result<void> run_frames(BatchRun& run) {
   const BatchRequest& asked = run.request;
   auto& frames = run.report.frames;
@@ -122,7 +131,7 @@ Result<void> run_frames(BatchRun& run) {
                 open_sink(asked.files, asked.loop.write, asked.loop.fps, frames.size(), run.events.diagnostics));
   if (!run.sink->is_one()) AFTERGLOW_CHECK(check_outputs(run));
   SessionOptions opened = asked.session;
-  opened.frames = frames.size() > 1 ? kFramesInFlight : 1;
+  opened.frames = frames.size() > 1 || run.list.more ? kFramesInFlight : 1;
   AFTERGLOW_TRY(run.session, Session::open(asked.preset, opened, run.events.diagnostics));
   FrameLoopOptions options = asked.loop;
   options.read.auxiliary = run.session->preset().needs();
@@ -134,6 +143,7 @@ Result<void> run_frames(BatchRun& run) {
   if (earlier && asked.resume) note_earlier_files(frames, asked.files, *earlier);
   AFTERGLOW_CHECK(prepare_resume(run));
   Schedule schedule = earlier ? schedule_with_histories(frames, asked.files, *earlier) : plain_schedule(frames);
+  if (run.list.more) schedule.more = [&run] { return next_record(run); };
   run.report.pre_roll = schedule.earlier.size();
   run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
   if (run.record_look) run.sink->record_look(*run.record_look);
@@ -146,8 +156,9 @@ Result<void> run_frames(BatchRun& run) {
 
 Result<void> run_batch(const BatchRequest& request, const RunEvents& events, RunReport& report) {
   BatchRun run{request, events, report};
-  AFTERGLOW_TRY(const auto jobs, list_frames(request.files));
-  for (const auto& job : jobs) report.frames.push_back({.job = job});
+  AFTERGLOW_TRY(run.list, list_frames(request.files, events.diagnostics));
+  for (const auto& job : run.list.jobs) report.frames.push_back({.job = job});
+  run.list.jobs.clear();
   auto done = run_frames(run);
   if (done && !request.lock.empty()) done = write_file_atomically(request.lock, lock_text(*run.lock));
   if (run.session) report.session = run.session->report();

@@ -81,11 +81,10 @@ Error not_a_lock(const fs::path& file, const std::string& why) {
 
 }  // namespace
 
-Result<Lock> lock_of(Session& session, const Graph& graph, const PixelOptions& options) {
-  const Preset& preset = session.preset();
+Result<Lock> look_lock(const Preset& preset, const fs::path& file_of_preset, const Graph& graph,
+                       const PixelOptions& options) {
   Lock lock;
-  const SessionReport report = session.report();
-  lock.preset = fs::path(report.preset).filename().string();
+  lock.preset = file_of_preset.filename().string();
   AFTERGLOW_TRY(const auto files, files_of(preset, graph));
   for (const auto& file : files) {
     AFTERGLOW_TRY(const std::string text, read_file(file));
@@ -93,11 +92,16 @@ Result<Lock> lock_of(Session& session, const Graph& graph, const PixelOptions& o
   }
   for (const auto& [name, value] : options)
     if (!value.empty()) lock.options[name] = value;
-  lock.made_with = {{"afterglow", version()},
-                    {"device", report.device},
-                    {"driver", report.driver},
-                    {"execution", execution_name(report.choice.execution)},
-                    {"shader compiler", glsl_compiler_version()}};
+  lock.made_with = {{"afterglow", version()}, {"shader compiler", glsl_compiler_version()}};
+  return lock;
+}
+
+Result<Lock> lock_of(Session& session, const Graph& graph, const PixelOptions& options) {
+  const SessionReport report = session.report();
+  AFTERGLOW_TRY(Lock lock, look_lock(session.preset(), report.preset, graph, options));
+  lock.made_with["device"] = report.device;
+  lock.made_with["driver"] = report.driver;
+  lock.made_with["execution"] = execution_name(report.choice.execution);
   return lock;
 }
 
@@ -127,7 +131,10 @@ Result<Lock> read_lock(const fs::path& file) {
 }
 
 Result<void> hold_against(const Lock& locked, const Lock& now, const fs::path& file, Diagnostics& diagnostics) {
-  for (const auto& difference : differences(locked.made_with, now.made_with, true))
+  std::map<std::string, std::string> made_with;  // that the lock knows
+  for (const auto& [name, value] : now.made_with)
+    if (locked.made_with.contains(name)) made_with.emplace(name, value);
+  for (const auto& difference : differences(locked.made_with, made_with, true))
     diagnostics.warn(fmt::format("{}: {}: pixels may differ within the documented bounds", file.string(), difference));
   std::vector<std::string> found;
   if (locked.preset != now.preset) found.push_back(fmt::format("the preset is {}, was {}", now.preset, locked.preset));

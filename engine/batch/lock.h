@@ -32,13 +32,16 @@ struct Lock {
 
 /// Of a session and the graph of its frames. Errors: script, io.
 Result<Lock> lock_of(Session& session, const Graph& graph, const PixelOptions& options);
+/// The same without a device: `made_with` says nothing of it. `file` is the preset's.
+Result<Lock> look_lock(const Preset& preset, const std::filesystem::path& file, const Graph& graph,
+                       const PixelOptions& options);
 
 std::string lock_text(const Lock& lock);
 /// Errors: io (no such file, no lock, a lock of a later version).
 Result<Lock> read_lock(const std::filesystem::path& file);
 
 /// What `now` has otherwise than `locked`. Errors: script, naming every file and option of the look that differs.
-/// Differences of what it was made with are warnings.
+/// Differences of what it was made with are warnings, as far as `locked` says what that was.
 Result<void> hold_against(const Lock& locked, const Lock& now, const std::filesystem::path& file,
                           Diagnostics& diagnostics);
 

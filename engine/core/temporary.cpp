@@ -76,7 +76,7 @@ fs::path temporary_beside(const fs::path& path) {
   static std::atomic<unsigned> counter{0};
   const unsigned count = counter++;
   const auto name =
-      fmt::format(".{}.{}-{}-{}.tmp{}", path.stem().string(), machine(), getpid(), count, path.extension().string());
+      fmt::format(".{}.{}-{}.tmp{}", path.stem().string(), temporary_mark(), count, path.extension().string());
   fs::path temporary = path.parent_path() / name;
   remember(count, temporary.string());
   return temporary;
@@ -94,6 +94,20 @@ int remove_abandoned_temporaries(const fs::path& folder) {
        it.increment(ec)) {
     const pid_t process = process_of(it->path().filename().string());
     if (process > 0 && !lives(process) && it->is_regular_file(ignored) && fs::remove(it->path(), ignored)) ++removed;
+  }
+  return removed;
+}
+
+std::string temporary_mark() { return fmt::format("{}-{}", machine(), getpid()); }
+
+int remove_temporaries_of(const std::string& mark, const fs::path& folder) {
+  int removed = 0;
+  std::error_code ec, ignored;
+  for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+    const std::string name = it->path().filename().string();
+    const bool theirs = name.starts_with('.') && name.find("." + mark + "-") != std::string::npos &&
+                        name.find(".tmp") != std::string::npos;
+    if (theirs && it->is_regular_file(ignored) && fs::remove(it->path(), ignored)) ++removed;
   }
   return removed;
 }

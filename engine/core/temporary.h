@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace afterglow {
 
@@ -17,5 +18,12 @@ void remove_own_temporaries() noexcept;
 /// Removes files with such names from `folder` whose processes ran on this machine and live no more: they were killed.
 /// Returns how many.
 int remove_abandoned_temporaries(const std::filesystem::path& folder);
+
+/// What the names of this process's temporary files have in common: MACHINE-PROCESS.
+std::string temporary_mark();
+
+/// Removes the files of the process with that mark from `folder`, whichever machine it ran on. It must be known to live
+/// no more. Returns how many.
+int remove_temporaries_of(const std::string& mark, const std::filesystem::path& folder);
 
 }  // namespace afterglow

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Every JSON file that the program reads: calibrations, locks, goals, earlier reports of bench.
+// Every JSON file that the program reads: calibrations, locks, goals, earlier reports of bench, farm jobs and what
+// their chunks leave.
 #include <cmath>
 
 #include "batch/lock.h"
 #include "bench/goals.h"
 #include "bench/report.h"
 #include "exec/calibration.h"
+#include "farm/slurm.h"
+#include "farm/status.h"
 #include "fuzz.h"
 
 using namespace afterglow;
@@ -15,6 +18,28 @@ namespace {
 template <class T>
 void check(const Result<T>& read) {
   if (!read) fuzz::check_error(read.error(), {ErrorKind::io, ErrorKind::usage});
+}
+
+/// A job with this description, submissions or report of a chunk.
+void check_farm(const std::string& text) {
+  fuzz::write("job.json", text);
+  if (auto job = farm::read_job(fuzz::scratch())) {
+    FUZZ_CLAIM(farm::write_job(*job).ok(), text);
+    const auto again = farm::read_job(fuzz::scratch());
+    FUZZ_CLAIM(again.ok() && again->run == job->run && again->chunks.size() == job->chunks.size(), text);
+  } else {
+    check(job);
+  }
+  farm::Job job;
+  job.folder = fuzz::scratch();
+  job.chunks = {{{"a.####.exr"}, "1-2", 2}};
+  fuzz::write("slurm.json", text);
+  check(farm::read_submissions(job));
+  std::filesystem::remove(fuzz::scratch() / "slurm.json");
+  std::filesystem::create_directory(fuzz::scratch() / "attempts");
+  fuzz::write("attempts/0.1.exit-4", text);
+  const auto status = farm::status_of(job);
+  FUZZ_CLAIM(status.ok() && farm::merged_report(job, *status).ok(), text);
 }
 
 }  // namespace
@@ -39,6 +64,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } else {
     check(lock);
   }
+  check_farm(text);
   check(bench::load_goals(file));
   check(bench::compare_reports(text, file.string(), {}));
   return 0;

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// `afterglow farm`: thousands of frames over a cluster.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/command.h"
+#include "apps/farm_arguments.h"
+#include "apps/farm_chunk.h"
+#include "apps/farm_submit.h"
+#include "apps/farm_wait.h"
+#include "apps/output.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "farm/slurm.h"
+#include "farm/status.h"
+
+namespace afterglow {
+namespace {
+
+Result<void> report_on(const farm::Job& job, const FarmArguments& a) {
+  AFTERGLOW_TRY(const auto status, farm::status_of(job));
+  AFTERGLOW_TRY(const auto report, farm::merged_report(job, status));
+  if (!a.run.report.empty()) return write_file_atomically(a.run.report, report.json);
+  output("{}", report.text);
+  return {};
+}
+
+/// What follows a submission.
+Result<void> go_on(const farm::Job& job, const FarmArguments& a, Console& console) {
+  if (!a.wait) return {};
+  const auto done = wait_for_job(job, console);
+  if (!a.run.report.empty() && (done || done.error().kind != ErrorKind::interrupted))
+    AFTERGLOW_CHECK(report_on(job, a));
+  return done;
+}
+
+void tell_submission(const farm::Job& job, const farm::Submissions& submitted, std::size_t chunks) {
+  std::vector<std::string> ids;
+  for (const auto& array : submitted.arrays) ids.push_back(array.id);
+  output("{}\nslurm {}: {} chunks\n", job.folder.string(), join(ids), chunks);
+}
+
+Result<void> run_submit(const FarmArguments& a, Console& console) {
+  AFTERGLOW_TRY(const PlannedJob planned, plan_job(a, !a.dry_run, console));
+  const farm::Job& job = planned.job;
+  if (a.dry_run) {
+    output("{}", farm::plan_text(job));
+    return {};
+  }
+  if (!a.jobs.empty()) {
+    AFTERGLOW_TRY(const std::string text, farm::jobs_text(job, planned.files, planned.frames));
+    AFTERGLOW_CHECK(write_file_atomically(a.jobs, text));
+    output("{}\n{}: {} chunks\n", job.folder.string(), a.jobs, job.chunks.size());
+    return {};
+  }
+  auto submitted = farm::submit(job, farm::every_chunk(job));
+  if (!submitted) {
+    if (!is_file(job.folder / "slurm.json")) farm::discard_job(job);
+    return std::move(submitted).error();
+  }
+  tell_submission(job, *submitted, job.chunks.size());
+  return go_on(job, a, console);
+}
+
+Result<void> run_retry(farm::Job job, const FarmArguments& a, Console& console) {
+  AFTERGLOW_TRY(const auto status, farm::status_of(job));
+  const auto chunks = farm::chunks_to_retry(status);
+  if (!chunks.empty()) {
+    for (const auto& [given, kept] :
+         {std::pair(&a.needs.partition, &job.needs.partition), std::pair(&a.needs.time, &job.needs.time),
+          std::pair(&a.needs.memory, &job.needs.memory)})
+      if (!given->empty()) *kept = *given;
+    if (!a.needs.more.empty()) job.needs.more = a.needs.more;
+    AFTERGLOW_TRY(const auto submitted, farm::submit(job, chunks));
+    tell_submission(job, submitted, chunks.size());
+  } else {
+    output("nothing to retry: {}\n", farm::status_line(status));
+  }
+  return go_on(job, a, console);
+}
+
+Result<void> run_farm(const FarmArguments& a, Console& console) {
+  AFTERGLOW_CHECK(a.check_word());
+  const std::string word = a.word();
+  const auto& given = a.run.files.inputs;
+  if (word.empty()) return run_submit(a, console);
+  if (word == "chunk") {
+    if (given.size() == 2) return run_chunk(given[0], given[1], console);
+    return Error{ErrorKind::usage, "chunk needs a job's folder and a number", "afterglow farm"};
+  }
+  AFTERGLOW_TRY(farm::Job job, farm::find_job(given.empty() ? "." : given.front()));
+  if (word == "report") return report_on(job, a);
+  if (word == "retry") return run_retry(std::move(job), a, console);
+  if (word == "cancel") return farm::cancel(job);
+  AFTERGLOW_TRY(const auto status, farm::status_of(job));
+  output("{}", farm::status_text(job, status, a.all));
+  return go_on(job, a, console);
+}
+
+}  // namespace
+
+Command add_farm_command(CLI::App& program) {
+  auto* app = program.add_subcommand("farm", "Apply a preset to sequences on the machines of a Slurm cluster");
+  auto arguments = std::make_shared<FarmArguments>();
+  arguments->add(*app);
+  app->footer(
+      "Examples:\n"
+      "  afterglow farm look.lua shot.####.exr -o graded/shot.####.exr --chunk 20 --wait\n"
+      "  afterglow farm look.lua shot.####.exr -o graded/ --partition night --mem 8G -- --exclude=n13 --nice\n"
+      "  afterglow farm status graded/         where the job is; also report, cancel and retry\n"
+      "  afterglow farm look.lua shot.####.exr -o graded/ --jobs jobs.json\n"
+      "Words behind -- go to sbatch. The look is packed when it is submitted; what is edited later changes nothing.");
+  return {app, [arguments](Console& console) { return run_farm(*arguments, console); }, &arguments->needs.more};
+}
+
+}  // namespace afterglow

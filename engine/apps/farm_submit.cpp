@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "apps/farm_submit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <system_error>
+
+#include "core/file.h"
+#include "core/own_file.h"
+#include "core/version.h"
+#include "farm/look.h"
+#include "farm/slurm.h"
+
+namespace afterglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kUsualChunk = 24;
+constexpr int kChunksToPreRoll = 4;  // at most a fifth of the work is done twice
+
+/// The folder of the outputs, beside which the job lies.
+fs::path folder_of_outputs(const std::string& output) {
+  std::error_code ec;
+  if (output.ends_with('/') || fs::is_directory(output, ec)) return output;
+  return fs::path(output).parent_path();
+}
+
+int frames_a_chunk(const FarmArguments& arguments, const farm::LoadedLook& look) {
+  if (arguments.chunk > 0) return arguments.chunk;
+  return std::max(kUsualChunk, kChunksToPreRoll * look.pre_roll.value_or(0));
+}
+
+/// Effects that look back find the frames before a chunk by the pattern alone.
+Result<void> check_sequences(const PlannedJob& planned) {
+  if (!planned.job.pre_roll) return {};
+  for (const auto& chunk : planned.job.chunks)
+    if (chunk.frames.empty())
+      return Error{ErrorKind::usage,
+                   fmt::format("{} is no sequence, and the look has effects that look back at other frames",
+                               chunk.inputs.front()),
+                   "afterglow farm", 0, "sequences like shot.####.exr"};
+  return {};
+}
+
+/// Chunks have files of their own, and read files that all machines see.
+Result<void> check_files(const PlannedJob& planned) {
+  const auto& inputs = planned.files.inputs;
+  if (planned.files.output == "-" || std::ranges::count(inputs, "-") > 0)
+    return Error{ErrorKind::usage, "'-' is a stream of one machine", "afterglow farm", 0, "files"};
+  const auto& frames = planned.frames;
+  if (frames.size() > 1 && frames[0].output == frames[1].output)
+    return Error{ErrorKind::usage, fmt::format("{} is one file for all frames", frames[0].output.string()),
+                 "afterglow farm", 0, "pictures, like out.####.exr, which `afterglow run` makes a video of"};
+  return {};
+}
+
+Result<void> pack(const FarmArguments& arguments, const BatchRequest& request, const farm::LoadedLook& look,
+                  farm::Job& job, Console& console) {
+  AFTERGLOW_CHECK(farm::pack_look(look, job));
+  const fs::path shipped = find_installation() / "calibration" / "devices.json";
+  const std::string& given = arguments.run.execution.calibration;
+  if (!given.empty() || is_file(shipped))
+    AFTERGLOW_CHECK(farm::pack_file(given.empty() ? shipped : fs::path(given), "look/calibration.json", job));
+  job.run = arguments.packed_words(request.preset, job.folder);
+  job.environment["AFTERGLOW_PATH"] = "";
+  if (const char* config = std::getenv("OCIO"); config && is_file(farm::packed_place(job.folder, config)))
+    job.environment["OCIO"] = farm::packed_place(job.folder, config).string();
+  unsetenv("AFTERGLOW_PATH");  // its folders are among the words
+  AFTERGLOW_TRY(const BatchRequest packed, request_of_words(job.run));
+  AFTERGLOW_CHECK(farm::lock_packed_look(packed, arguments.run.locked, job, console.diagnostics()));
+  AFTERGLOW_CHECK(write_file_atomically(job.folder / "task.sh", farm::task_script(job)));
+  return farm::write_job(job);
+}
+
+}  // namespace
+
+Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console& console) {
+  AFTERGLOW_TRY(const BatchRequest request, arguments.run.request());
+  PlannedJob out{.files = request.files};
+  AFTERGLOW_TRY(out.frames, list_frames(request.files));
+  AFTERGLOW_CHECK(check_files(out));
+  AFTERGLOW_TRY(const auto look, farm::load_look(request, out.frames, console.diagnostics()));
+  farm::Job& job = out.job;
+  std::error_code ec;
+  job.program = own_file().string();
+  job.version = version();
+  job.at = fs::current_path(ec);
+  job.look = arguments.run.preset.file;
+  job.pre_roll = look.pre_roll;
+  job.needs = arguments.needs;
+  job.chunks = farm::chunks_of(request.files, out.frames, frames_a_chunk(arguments, look));
+  AFTERGLOW_CHECK(check_sequences(out));
+  const fs::path outputs = folder_of_outputs(request.files.output);
+  if (!write) {
+    job.folder = (job.at / outputs / farm::kFolder / farm::new_job_id()).lexically_normal();
+    job.id = job.folder.filename().string();
+    return out;
+  }
+  AFTERGLOW_TRY(job.folder, farm::make_job_folder(outputs));
+  job.id = job.folder.filename().string();
+  const auto packed = pack(arguments, request, look, job, console);
+  if (packed) return out;
+  farm::discard_job(job);
+  return packed.error();
+}
+
+}  // namespace afterglow

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// From a look and frames to a job of chunks.
+#pragma once
+
+#include "apps/console.h"
+#include "apps/farm_arguments.h"
+
+namespace afterglow {
+
+/// A job that is planned, and what it was planned from.
+struct PlannedJob {
+  farm::Job job;
+  FrameListRequest files;
+  std::vector<FrameJob> frames;
+};
+
+/// Lists the frames, loads the look, cuts the chunks. With `write` its folder is made and everything is packed into
+/// it; without, nothing is written and the folder is the one that it could have. Errors: usage, script, io.
+Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console& console);
+
+}  // namespace afterglow

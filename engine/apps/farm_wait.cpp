@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "apps/farm_wait.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <thread>
+
+#include "apps/interrupt.h"
+#include "core/stopwatch.h"
+#include "core/text.h"
+#include "farm/status.h"
+
+namespace afterglow {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kFirstPause{100}, kLongestPause{5000};  // Slurm is asked once a pause
+constexpr milliseconds kStep{50};                              // until a signal is heard
+constexpr double kReportsBy = 90'000;  // ms that network file systems may keep a new file to themselves
+
+/// False when it was interrupted.
+bool pause(milliseconds length) {
+  for (milliseconds waited{0}; waited < length && !interrupted(); waited += kStep) std::this_thread::sleep_for(kStep);
+  return !interrupted();
+}
+
+std::string label(const farm::JobStatus& status) {
+  std::set<std::string> nodes;
+  for (const auto& chunk : status.chunks)
+    if (chunk.state == farm::ChunkStatus::State::running && !chunk.node.empty()) nodes.insert(chunk.node);
+  constexpr std::size_t kMostNamed = 4;
+  std::string out = farm::status_line(status);
+  if (nodes.size() > kMostNamed) return fmt::format("{} on {} nodes", out, nodes.size());
+  if (!nodes.empty()) out += " on " + join(std::vector<std::string>(nodes.begin(), nodes.end()), " ");
+  return out;
+}
+
+}  // namespace
+
+Result<void> wait_for_job(const farm::Job& job, Console& console) {
+  const auto start = Clock::now();
+  Clock::time_point other_than_ending = start;  // when a chunk was last seen to wait or run
+  for (milliseconds length = kFirstPause;; length = std::min(length * 3 / 2, kLongestPause)) {
+    AFTERGLOW_TRY(const farm::JobStatus status, farm::status_of(job));
+    console.progress(status.frames_done, status.frames, label(status), milliseconds_since(start) / 1000);
+    const bool ending = status.count(farm::ChunkStatus::State::ending) > 0 &&
+                        status.count(farm::ChunkStatus::State::running) == 0 &&
+                        status.count(farm::ChunkStatus::State::waiting) == 0;
+    if (!ending) other_than_ending = Clock::now();
+    const bool given_up = milliseconds_since(other_than_ending) > kReportsBy;
+    if (!status.live() || given_up) {
+      console.end_progress();
+      return farm::outcome_of(job, status);
+    }
+    if (!pause(length)) {
+      console.end_progress();
+      return Error{ErrorKind::interrupted, "waited no longer; the job goes on", job.folder.string(), 0,
+                   "`afterglow farm cancel` to end it"};
+    }
+  }
+}
+
+}  // namespace afterglow

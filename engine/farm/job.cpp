@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "farm/job.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "core/file.h"
+#include "core/hash.h"
+
+namespace afterglow::farm {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int kVersion = 1;
+constexpr std::size_t kLargest = 512u << 20;  // a million single files are named one by one
+
+Json chunk_json(const Chunk& chunk) {
+  return Json{{"inputs", chunk.inputs}, {"frames", chunk.frames}, {"count", chunk.count}};
+}
+
+Chunk chunk_of(const Json& json) {
+  return {json.at("inputs").get<std::vector<std::string>>(), json.at("frames").get<std::string>(),
+          json.at("count").get<int>()};
+}
+
+Json needs_json(const Needs& needs) {
+  return Json{{"partition", needs.partition},
+              {"time", needs.time},
+              {"memory", needs.memory},
+              {"retries", needs.retries},
+              {"more", needs.more}};
+}
+
+Needs needs_of(const Json& json) {
+  return {json.at("partition").get<std::string>(), json.at("time").get<std::string>(),
+          json.at("memory").get<std::string>(), json.at("retries").get<int>(),
+          json.at("more").get<std::vector<std::string>>()};
+}
+
+Json job_json(const Job& job) {
+  Json out{{"afterglow_farm", kVersion},
+           {"id", job.id},
+           {"afterglow", job.version},
+           {"program", job.program},
+           {"at", job.at.string()},
+           {"look", job.look},
+           {"run", job.run},
+           {"environment", job.environment},
+           {"files", job.files},
+           {"pre_roll", job.pre_roll ? Json(*job.pre_roll) : Json(nullptr)},
+           {"needs", needs_json(job.needs)},
+           {"chunks", Json::array()}};
+  for (const auto& chunk : job.chunks) out["chunks"].push_back(chunk_json(chunk));
+  return out;
+}
+
+Job job_of_json(const Json& json) {
+  Job job;
+  job.id = json.at("id").get<std::string>();
+  job.version = json.at("afterglow").get<std::string>();
+  job.program = json.at("program").get<std::string>();
+  job.at = json.at("at").get<std::string>();
+  job.look = json.at("look").get<std::string>();
+  job.run = json.at("run").get<std::vector<std::string>>();
+  job.environment = json.at("environment").get<std::map<std::string, std::string>>();
+  job.files = json.at("files").get<std::map<std::string, std::string>>();
+  if (!json.at("pre_roll").is_null()) job.pre_roll = json.at("pre_roll").get<int>();
+  job.needs = needs_of(json.at("needs"));
+  for (const auto& chunk : json.at("chunks")) job.chunks.push_back(chunk_of(chunk));
+  for (const auto& chunk : job.chunks)
+    if (chunk.count < 1) throw std::invalid_argument("a chunk without frames");
+  return job;
+}
+
+Error not_a_job(const fs::path& file, const std::string& why) {
+  return {ErrorKind::io, fmt::format("this is no farm job: {}", why), file.string(), 0,
+          "a folder that `afterglow farm` made"};
+}
+
+/// "1", "1-24" or "1-47x2".
+std::string range_text(int first, int last, int step) {
+  if (first == last) return fmt::format("{}", first);
+  return step == 1 ? fmt::format("{}-{}", first, last) : fmt::format("{}-{}x{}", first, last, step);
+}
+
+/// The newest job of a folder of outputs; empty: there is none.
+fs::path latest_job(const fs::path& outputs) {
+  fs::path latest;
+  std::error_code ec;
+  for (fs::directory_iterator it(outputs / kFolder, ec), end; !ec && it != end; it.increment(ec))
+    if (is_file(it->path() / "job.json") && it->path().filename() > latest.filename()) latest = it->path();
+  return latest;
+}
+
+}  // namespace
+
+std::size_t Job::frames() const {
+  std::size_t sum = 0;
+  for (const auto& chunk : chunks) sum += static_cast<std::size_t>(chunk.count);
+  return sum;
+}
+
+std::vector<std::string> Job::command(std::size_t chunk) const {
+  return {program, "farm", "chunk", folder.string(), fmt::format("{}", chunk)};
+}
+
+std::string frames_text(const std::vector<int>& frames) {
+  std::string out;
+  for (std::size_t i = 0; i < frames.size();) {
+    const int step = i + 1 < frames.size() ? frames[i + 1] - frames[i] : 1;
+    std::size_t last = i;
+    while (step > 0 && last + 1 < frames.size() && frames[last + 1] - frames[last] == step) ++last;
+    if (step != 1 && last < i + 2) last = i;  // two frames that are far apart are no range
+    out += (out.empty() ? "" : ",") + range_text(frames[i], frames[last], step);
+    i = last + 1;
+  }
+  return out;
+}
+
+std::vector<Chunk> chunks_of(const FrameListRequest& request, const std::vector<FrameJob>& jobs, int most) {
+  std::vector<Chunk> chunks;
+  const auto is_sequence = [&](const FrameJob& job) { return std::ranges::count(request.inputs, job.sequence) > 0; };
+  const auto size = static_cast<std::size_t>(most);
+  for (std::size_t i = 0; i < jobs.size();) {
+    const bool numbered = is_sequence(jobs[i]);
+    Chunk chunk;
+    std::vector<int> frames;
+    std::size_t end = i;
+    for (; end < jobs.size() && end - i < size; ++end) {
+      if (is_sequence(jobs[end]) != numbered || (numbered && jobs[end].sequence != jobs[i].sequence)) break;
+      if (numbered)
+        frames.push_back(jobs[end].frame);
+      else
+        chunk.inputs.push_back(jobs[end].input.string());
+    }
+    if (numbered) chunk.inputs.push_back(jobs[i].sequence);
+    chunk.frames = frames_text(frames);
+    chunk.count = static_cast<int>(end - i);
+    chunks.push_back(std::move(chunk));
+    i = end;
+  }
+  return chunks;
+}
+
+std::string new_job_id() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  const auto ticks = static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
+  const std::string mark = Hasher().add(ticks).add(static_cast<std::uint64_t>(getpid())).finish().hex().substr(0, 4);
+  return fmt::format("{:04}{:02}{:02}-{:02}{:02}{:02}-{}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday, utc.tm_hour,
+                     utc.tm_min, utc.tm_sec, mark);
+}
+
+Result<fs::path> make_job_folder(const fs::path& outputs) {
+  std::error_code ec;
+  const fs::path above = fs::absolute(outputs.empty() ? "." : outputs, ec).lexically_normal() / kFolder;
+  fs::create_directory(above, ec);
+  while (!ec) {
+    const fs::path folder = above / new_job_id();
+    if (!fs::create_directory(folder, ec)) continue;  // somebody else's, made in the same moment
+    for (const char* name : {"look", "attempts", "logs"})
+      if (!ec) fs::create_directory(folder / name, ec);
+    if (!ec) return folder;
+  }
+  return Error{ErrorKind::io, fmt::format("cannot be made: {}", ec.message()), above.string()};
+}
+
+Result<void> write_job(const Job& job) {
+  try {
+    return write_file_atomically(job.folder / "job.json", job_json(job).dump(1) + "\n");
+  } catch (const nlohmann::json::exception&) {
+    return Error{ErrorKind::usage, "names of files must be UTF-8 for a farm", job.look};
+  }
+}
+
+Result<Job> read_job(const fs::path& folder) {
+  const fs::path file = folder / "job.json";
+  AFTERGLOW_TRY(const std::string text, read_file(file, kLargest));
+  try {
+    const Json json = Json::parse(text);
+    const int version = json.at("afterglow_farm").get<int>();
+    if (version != kVersion)
+      return not_a_job(file, fmt::format("it has version {}, this program reads version {}", version, kVersion));
+    Job job = job_of_json(json);
+    std::error_code ec;
+    job.folder = fs::absolute(folder, ec).lexically_normal();
+    return job;
+  } catch (const std::exception& error) {
+    return not_a_job(file, error.what());
+  }
+}
+
+Result<Job> find_job(const std::string& given) {
+  const fs::path path = given.empty() ? "." : given;
+  for (const fs::path& folder : {path, fs::path(kFolder) / path, latest_job(path)})
+    if (!folder.empty() && is_file(folder / "job.json"))
+      return read_job(folder.has_filename() ? folder : folder.parent_path());
+  return Error{ErrorKind::io, "there is no farm job", path.string(), 0,
+               "a job's folder as `afterglow farm` printed it, or the folder of its outputs"};
+}
+
+void discard_job(const Job& job) {
+  std::error_code ec;
+  fs::remove_all(job.folder, ec);
+  fs::remove(job.folder.parent_path(), ec);  // unless another job lies there
+}
+
+Result<void> check_packed(const Job& job) {
+  for (const auto& [name, hash] : job.files) {
+    const fs::path file = job.folder / name;
+    AFTERGLOW_TRY(const std::string content, read_file(file, kLargest));
+    if (hash_text(content).hex() != hash)
+      return Error{ErrorKind::io, "has changed since the job was submitted; submit it again", file.string()};
+  }
+  return {};
+}
+
+}  // namespace afterglow::farm

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+
+#include "farm/job.h"
+#include "farm/process.h"
+
+namespace afterglow::farm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kJobsVersion = 1;
+
+/// Whole, since other schedulers may start anywhere.
+std::string whole_name(const Job& job, const std::filesystem::path& file) {
+  return (job.at / file).lexically_normal().string();
+}
+
+/// What frames read and write, by name.
+Json files_json(const Job& job, std::span<const FrameRecord> frames) {
+  std::set<std::string> inputs;
+  Json outputs = Json::array();
+  for (const auto& frame : frames) {
+    for (const auto& file : frame.job.earlier) inputs.insert(whole_name(job, file));
+    for (const auto& file : frame.job.sources()) inputs.insert(whole_name(job, file));
+    outputs.push_back(whole_name(job, frame.job.output));
+  }
+  return Json{{"inputs", inputs}, {"outputs", std::move(outputs)}};
+}
+
+}  // namespace
+
+Result<std::string> jobs_text(const Job& job, const FrameListRequest& request, const std::vector<FrameJob>& frames) {
+  Json out{{"afterglow_jobs", kJobsVersion},
+           {"job", job.folder.string()},
+           {"needs", Json{{"partition", job.needs.partition}, {"time", job.needs.time}, {"memory", job.needs.memory}}},
+           {"chunks", Json::array()}};
+  std::vector<FrameRecord> records;
+  for (const auto& frame : frames) records.push_back({.job = frame});
+  if (job.pre_roll) note_earlier_files(records, request, *job.pre_roll);
+  std::span<const FrameRecord> left = records;
+  for (std::size_t i = 0; i < job.chunks.size(); ++i) {
+    const auto count = static_cast<std::size_t>(job.chunks[i].count);
+    const auto command = job.command(i);
+    Json chunk{{"chunk", i},
+               {"frames", job.chunks[i].frames},
+               {"count", job.chunks[i].count},
+               {"command", command},
+               {"shell", shell_line(command)}};
+    chunk.update(files_json(job, left.first(count)));
+    left = left.subspan(count);
+    out["chunks"].push_back(std::move(chunk));
+  }
+  try {
+    return out.dump(1) + "\n";
+  } catch (const nlohmann::json::exception&) {
+    return Error{ErrorKind::usage, "names of files must be UTF-8 for a farm", job.look};
+  }
+}
+
+}  // namespace afterglow::farm

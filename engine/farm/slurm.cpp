@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: MIT
+#include "farm/slurm.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
+
+#include "core/file.h"
+#include "core/json_text.h"
+#include "core/text.h"
+#include "farm/process.h"
+
+namespace afterglow::farm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kSlurmVersion = 1;
+
+/// The last line of what a program said, for messages.
+std::string last_words(const ProcessEnd& end) {
+  const std::string said = trim(end.err.empty() ? end.out : end.err);
+  return said.substr(said.rfind('\n') + 1);
+}
+
+/// Runs a program of Slurm's that is to succeed; what it prints.
+Result<std::string> output_of(const std::vector<std::string>& words) {
+  auto ended = run_process(words);
+  if (!ended) {
+    Error error = std::move(ended).error();
+    error.allowed =
+        "a machine that can submit to Slurm (Debian: slurm-client), or --jobs FILE.json for other schedulers";
+    return error;
+  }
+  if (ended->code != 0)
+    return Error{ErrorKind::io,
+                 fmt::format("{} ended with code {}: {}", words.front(), ended->code, last_words(*ended))};
+  return ended->out;
+}
+
+std::optional<std::size_t> number_in(std::string_view text) {
+  std::size_t out = 0;
+  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
+  if (ec != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
+  return out;
+}
+
+/// Words that are for one cluster, where there are several.
+void add_cluster(std::vector<std::string>& words, const SlurmArray& array) {
+  if (!array.cluster.empty()) words.push_back("--clusters=" + array.cluster);
+}
+
+/// Position of an array among those submitted; none: it is not of this job.
+std::optional<std::size_t> place_of(const Submissions& submissions, const std::string& id) {
+  for (std::size_t i = 0; i < submissions.arrays.size(); ++i)
+    if (submissions.arrays[i].id == id) return i;
+  return std::nullopt;
+}
+
+/// States of tasks, of which the array that was submitted last counts.
+class Latest {
+ public:
+  explicit Latest(const Submissions& submissions) : submissions_(submissions) {}
+  void add(const std::string& array, std::string_view task, TaskState state) {
+    const auto place = place_of(submissions_, array);
+    const auto index = number_in(task);
+    if (!place || !index) return;
+    const std::size_t chunk = submissions_.arrays[*place].base + *index;
+    const auto [at, fresh] = from_.emplace(chunk, *place);
+    if (!fresh && at->second > *place) return;
+    at->second = *place;
+    states_[chunk] = std::move(state);
+  }
+  std::map<std::size_t, TaskState> take() { return std::move(states_); }
+
+ private:
+  const Submissions& submissions_;
+  std::map<std::size_t, std::size_t> from_;
+  std::map<std::size_t, TaskState> states_;
+};
+
+/// "12_3" as array and task.
+std::pair<std::string, std::string> parts_of(const std::string& job_id) {
+  const std::size_t at = job_id.find('_');
+  return at == std::string::npos ? std::pair(job_id, std::string())
+                                 : std::pair(job_id.substr(0, at), job_id.substr(at + 1));
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  auto lines = split(text, '\n');
+  std::erase(lines, "");
+  return lines;
+}
+
+/// Of arrays of one cluster, by comma.
+std::map<std::string, std::string> ids_by_cluster(const Submissions& submissions) {
+  std::map<std::string, std::string> out;
+  for (const auto& array : submissions.arrays) {
+    auto& ids = out[array.cluster];
+    ids += (ids.empty() ? "" : ",") + array.id;
+  }
+  return out;
+}
+
+}  // namespace
+
+bool TaskState::ended() const {
+  constexpr std::array kEnds{"COMPLETED", "FAILED",        "CANCELLED", "TIMEOUT",   "NODE_FAIL",
+                             "DEADLINE",  "OUT_OF_MEMORY", "BOOT_FAIL", "PREEMPTED", "REVOKED"};
+  return std::ranges::any_of(kEnds, [&](const char* end) { return state == end; });
+}
+
+Result<Submissions> read_submissions(const Job& job) {
+  const auto file = job.folder / "slurm.json";
+  if (!is_file(file)) return Submissions{};
+  AFTERGLOW_TRY(const std::string text, read_file(file));
+  try {
+    const Json json = Json::parse(text);
+    Submissions out;
+    out.cancelled = json.at("cancelled").get<bool>();
+    for (const auto& one : json.at("arrays"))
+      out.arrays.push_back(
+          {one.at("id").get<std::string>(), one.at("cluster").get<std::string>(), one.at("base").get<std::size_t>()});
+    return out;
+  } catch (const nlohmann::json::exception& error) {
+    return Error{ErrorKind::io, fmt::format("is no list of submissions: {}", error.what()), file.string()};
+  }
+}
+
+Result<void> write_submissions(const Job& job, const Submissions& submissions) {
+  Json json{{"afterglow_slurm", kSlurmVersion}, {"cancelled", submissions.cancelled}, {"arrays", Json::array()}};
+  for (const auto& array : submissions.arrays)
+    json["arrays"].push_back(Json{{"id", array.id}, {"cluster", array.cluster}, {"base", array.base}});
+  return write_file_atomically(job.folder / "slurm.json", json_text(json));
+}
+
+std::string task_script(const Job& job) {
+  return fmt::format(R"(#!/bin/sh
+# Made by `afterglow farm`. A task of the array makes one chunk of frames; that of task 0 is the first argument.
+job={}
+chunk=$(($1 + SLURM_ARRAY_TASK_ID))
+exec >>"$job/logs/$chunk.log" 2>&1
+{} farm chunk "$job" "$chunk"
+code=$?
+# What no other try mends: a look or options that are wrong. What was told to stop: 130, 143.
+case $code in 0 | 2 | 3 | 130 | 143) exit $code ;; esac
+if [ "${{SLURM_RESTART_COUNT:-0}}" -lt {} ]; then
+  echo "exit code $code on ${{SLURMD_NODENAME:-this machine}}; once more, for what is missing"
+  scontrol requeue "$SLURM_JOB_ID"
+fi
+exit $code
+)",
+                     shell_word(job.folder.string()), shell_word(job.program), job.needs.retries);
+}
+
+std::vector<ArrayPlan> array_plans(const std::vector<std::size_t>& chunks, std::size_t most) {
+  std::vector<ArrayPlan> plans;
+  for (std::size_t i = 0; i < chunks.size();) {
+    const std::size_t base = chunks[i] / most * most;
+    std::vector<int> tasks;
+    for (; i < chunks.size() && chunks[i] < base + most; ++i) tasks.push_back(static_cast<int>(chunks[i] - base));
+    std::string text = frames_text(tasks);
+    std::ranges::replace(text, 'x', ':');
+    plans.push_back({base, std::move(text)});
+  }
+  return plans;
+}
+
+std::vector<std::string> sbatch_words(const Job& job, const ArrayPlan& plan) {
+  std::vector<std::string> words{"sbatch",
+                                 "--parsable",
+                                 "--job-name=afterglow-" + job.id,
+                                 "--requeue",
+                                 "--output=/dev/null",
+                                 "--chdir=" + job.at.string(),
+                                 "--array=" + plan.tasks};
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) words.push_back(option + value);
+  };
+  add("--partition=", job.needs.partition);
+  add("--time=", job.needs.time);
+  add("--mem=", job.needs.memory);
+  words.insert(words.end(), job.needs.more.begin(), job.needs.more.end());
+  words.push_back((job.folder / "task.sh").string());
+  words.push_back(fmt::format("{}", plan.base));
+  return words;
+}
+
+std::vector<std::size_t> every_chunk(const Job& job) {
+  std::vector<std::size_t> out(job.chunks.size());
+  std::iota(out.begin(), out.end(), 0);
+  return out;
+}
+
+std::string plan_text(const Job& job) {
+  const auto most = largest_array();
+  std::string out = fmt::format("# {} frames in {} chunks{}\n", job.frames(), job.chunks.size(),
+                                job.pre_roll ? fmt::format(", each behind {} frames of pre-roll", *job.pre_roll) : "");
+  for (const auto& plan : array_plans(every_chunk(job), most ? *most : job.chunks.size()))
+    out += shell_line(sbatch_words(job, plan)) + "\n";
+  return out + fmt::format("\n# {}\n{}", (job.folder / "task.sh").string(), task_script(job));
+}
+
+Result<std::size_t> largest_array() {
+  AFTERGLOW_TRY(const std::string text, output_of({"scontrol", "show", "config"}));
+  for (const auto& line : lines_of(text)) {
+    const std::size_t at = line.find('=');
+    if (at == std::string::npos || trim(line.substr(0, at)) != "MaxArraySize") continue;
+    if (const auto size = number_in(trim(line.substr(at + 1))); size && *size > 0) return *size;
+  }
+  return Error{ErrorKind::io, "scontrol does not say MaxArraySize; are job arrays switched off?"};
+}
+
+Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& chunks) {
+  AFTERGLOW_TRY(const std::size_t most, largest_array());
+  AFTERGLOW_TRY(Submissions all, read_submissions(job));
+  const std::size_t before = all.arrays.size();
+  all.cancelled = false;
+  for (const auto& plan : array_plans(chunks, most)) {
+    auto printed = output_of(sbatch_words(job, plan));
+    Result<void> noted;
+    if (printed) {
+      const auto parts = split(trim(*printed), ';');
+      all.arrays.push_back({parts[0], parts.size() > 1 ? parts[1] : "", plan.base});
+      noted = write_submissions(job, all);
+    }
+    if (printed && noted) continue;
+    for (std::size_t i = before; i < all.arrays.size(); ++i) {
+      std::vector<std::string> words{"scancel", all.arrays[i].id};
+      add_cluster(words, all.arrays[i]);
+      static_cast<void>(run_process(words));
+    }
+    return printed ? std::move(noted).error() : std::move(printed).error();
+  }
+  return all;
+}
+
+Result<void> cancel(const Job& job) {
+  AFTERGLOW_TRY(Submissions all, read_submissions(job));
+  if (all.arrays.empty())
+    return Error{ErrorKind::io, "was not submitted to Slurm; cancel it where it was", job.folder.string()};
+  all.cancelled = true;
+  AFTERGLOW_CHECK(write_submissions(job, all));
+  for (const auto& array : all.arrays) {
+    std::vector<std::string> words{"scancel", "--quiet", array.id};
+    add_cluster(words, array);
+    AFTERGLOW_TRY(const ProcessEnd ended, run_process(words));
+    // An array that Slurm has forgotten has ended.
+    if (ended.code != 0 && ended.err.find("Invalid job id") == std::string::npos)
+      return Error{ErrorKind::io, fmt::format("scancel ended with code {}: {}", ended.code, last_words(ended))};
+  }
+  return {};
+}
+
+std::map<std::size_t, TaskState> states_of_queue(const std::string& squeue, const Submissions& submissions) {
+  Latest states(submissions);
+  for (const auto& line : lines_of(squeue)) {
+    const auto parts = split(line, '|');
+    if (parts.size() >= 5) states.add(parts[0], parts[1], {parts[2], parts[3], parts[4] == "None" ? "" : parts[4]});
+  }
+  return states.take();
+}
+
+std::map<std::size_t, TaskState> states_of_accounting(const std::string& sacct, const Submissions& submissions) {
+  Latest states(submissions);
+  for (const auto& line : lines_of(sacct)) {
+    const auto parts = split(line, '|');
+    if (parts.size() < 3) continue;
+    const auto [array, task] = parts_of(parts[0]);
+    // "CANCELLED by 1000"
+    states.add(array, task, {parts[1].substr(0, parts[1].find(' ')), parts[2] == "None assigned" ? "" : parts[2], ""});
+  }
+  return states.take();
+}
+
+Result<std::map<std::size_t, TaskState>> task_states(const Submissions& submissions) {
+  std::map<std::size_t, TaskState> states;
+  for (const auto& [cluster, ids] : ids_by_cluster(submissions)) {
+    std::vector<std::string> words{"squeue", "--noheader", "--array", "--states=all", "--format=%F|%K|%T|%N|%r"};
+    // A single array that Slurm has forgotten is an error, a list of them is not.
+    words.push_back("--jobs=" + ids + "," + ids);
+    if (!cluster.empty()) words.push_back("--clusters=" + cluster);
+    AFTERGLOW_TRY(const std::string text, output_of(words));
+    states.merge(states_of_queue(text, submissions));
+    const auto accounted = run_process(
+        {"sacct", "--noheader", "--parsable2", "--allocations", "--format=JobID,State,NodeList", "--jobs=" + ids});
+    if (accounted && accounted->code == 0) states.merge(states_of_accounting(accounted->out, submissions));
+  }
+  return states;
+}
+
+}  // namespace afterglow::farm

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+// Jobs without a cluster: what is written, what other schedulers get, what is refused.
+#include <algorithm>
+#include <fstream>
+
+#include "farm/attempt.h"
+#include "farm/process.h"
+#include "farm/slurm.h"
+#include "farm/status.h"
+#include "farm_test.h"
+
+namespace afterglow::test {
+namespace {
+
+class FarmFiles : public FarmTest {
+ protected:
+  void SetUp() override {
+    FarmTest::SetUp();
+    make_frames("in", 1, 10);
+    make_look_back();
+    fs::create_directory(path("out"));
+    fs::create_directory(path("one"));
+  }
+  Outcome write_jobs(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"look.lua", "in/shot.####.exr", "-o", "out/", "--jobs", "jobs.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return farm(words);
+  }
+  /// A job's chunk by the line for shells that jobs.json has for it.
+  Outcome run_line(const nlohmann::json& chunk) const {
+    RunOptions options;
+    options.program = "/bin/sh";
+    options.folder = "/";  // as other schedulers may
+    return run({"-c", chunk["shell"].get<std::string>()}, options);
+  }
+};
+
+TEST_F(FarmFiles, JobsHaveCommandsNeedsAndOutputsThatAnySchedulerCanRun) {
+  ASSERT_EQ(run({"run", "look.lua", "in/shot.####.exr", "-o", "one/"}).exit_code, kDone);
+  const Outcome outcome = write_jobs({"--chunk", "4", "--mem", "2G"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  const auto jobs = nlohmann::json::parse(read("jobs.json"));
+  EXPECT_EQ(jobs["afterglow_jobs"], 1);
+  EXPECT_EQ(jobs["needs"]["memory"], "2G");
+  ASSERT_EQ(jobs["chunks"].size(), 3u);
+  const auto& second = jobs["chunks"][1];
+  EXPECT_EQ(second["frames"], "5-8");
+  EXPECT_EQ(second["outputs"].size(), 4u);
+  EXPECT_EQ(second["outputs"][0], text("out/shot.0005.exr"));
+  EXPECT_EQ(second["inputs"].size(), 7u) << "its own, and three that it looks back at";
+  EXPECT_EQ(second["inputs"][0], text("in/shot.0002.exr"));
+  EXPECT_THAT(farm({"status", "out"}).out, HasSubstr("0 of 10 frames, 3 chunks: 3 not begun"));
+  for (auto chunk = jobs["chunks"].rbegin(); chunk != jobs["chunks"].rend(); ++chunk) {
+    const Outcome made = run_line(*chunk);
+    EXPECT_EQ(made.exit_code, kDone) << made.err;
+  }
+  expect_as_one_run("out", "one");
+  EXPECT_THAT(farm({"status", "out"}).out, HasSubstr("10 of 10 frames, 3 chunks: 3 done"));
+  EXPECT_EQ(report_of("out")["frames"].size(), 10u);
+}
+
+TEST_F(FarmFiles, ADryRunWritesNothing) {
+  const auto before = files();
+  const Outcome outcome = farm({"look.lua", "in/shot.####.exr", "-o", "out/", "--chunk", "4", "--time", "10",
+                                "--dry-run", "--", "--comment=a b"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_EQ(files(), before);
+  EXPECT_THAT(outcome.out, HasSubstr("# 10 frames in 3 chunks, each behind 3 frames of pre-roll"));
+  EXPECT_THAT(outcome.out, HasSubstr("--array=0-2 --time=10 '--comment=a b'"));
+  EXPECT_THAT(outcome.out, HasSubstr("farm chunk \"$job\" \"$chunk\""));
+}
+
+TEST_F(FarmFiles, WithoutSlurmNothingIsLeft) {
+  RunOptions options;
+  options.environment["PATH"] = path("").string();
+  const Outcome outcome = farm({"look.lua", "in/shot.####.exr", "-o", "out/"}, options);
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_TRUE(is_one_error_line(outcome.err));
+  EXPECT_THAT(outcome.err, HasSubstr("'scontrol' cannot be started: No such file or directory"));
+  EXPECT_THAT(outcome.err, HasSubstr("--jobs FILE.json"));
+  EXPECT_FALSE(fs::exists(path("out/.afterglow-farm")));
+}
+
+TEST_F(FarmFiles, WhatIsWrongIsOneLine) {
+  const auto refused = [&](const std::vector<std::string>& words, int exit_code, const std::string& part) {
+    const Outcome outcome = farm(words);
+    EXPECT_EQ(outcome.exit_code, exit_code) << part;
+    EXPECT_TRUE(is_one_error_line(outcome.err));
+    EXPECT_THAT(outcome.err, HasSubstr(part));
+  };
+  refused({"look.lua"}, kUsage, "INPUT is required");
+  refused({"look.lua", "in/shot.####.exr"}, kUsage, "--output is required");
+  refused({"status", "out", "one"}, kUsage, "'status' is for one job");
+  refused({"status", "out"}, kFiles, "there is no farm job");
+  refused({"cancel", "nowhere"}, kFiles, "nowhere: error: there is no farm job");
+  refused({"chunk", "out"}, kUsage, "chunk needs a job's folder and a number");
+  refused({"look.lua", "in/shot.####.exr", "-o", "out/", "--resume"}, kUsage, "unknown option '--resume'");
+  refused({"look.lua", "in/shot.####.exr", "-o", "out/", "--", "--array=1-3"}, kUsage,
+          "the array is that of the chunks");
+  refused({"look.lua", "in/shot.####.exr", "-o", "out/", "--jobs", "j.json", "--wait"}, kUsage,
+          "--jobs submits nothing");
+  refused({"look.lua", "in/none.####.exr", "-o", "out/", "--jobs", "j.json"}, kFiles, "no file matches");
+  refused({"none.lua", "in/shot.####.exr", "-o", "out/", "--jobs", "j.json"}, kScript, "none.lua: error: ");
+  refused({"look.lua", "in/shot.####.exr", "-o", "out/shot.exr", "--jobs", "j.json"}, kUsage,
+          "cannot go into the one file");
+  refused({"look.lua", "in/shot.0001.exr", "in/shot.0002.exr", "-o", "out/", "--jobs", "j.json"}, kUsage,
+          "is no sequence, and the look has effects that look back");
+  EXPECT_FALSE(fs::exists(path("out/.afterglow-farm")));
+}
+
+TEST_F(FarmFiles, WhatWasPackedMustStayAsItIs) {
+  ASSERT_EQ(write_jobs().exit_code, kDone);
+  const auto jobs = nlohmann::json::parse(read("jobs.json"));
+  const fs::path job = jobs["job"].get<std::string>();
+  ASSERT_EQ(jobs["chunks"].size(), 1u);
+  for (const auto& entry : fs::recursive_directory_iterator(job / "look"))
+    if (entry.path().filename() == "look.lua") std::ofstream(entry.path(), std::ios::app) << "-- changed\n";
+  const Outcome outcome = run_line(jobs["chunks"][0]);
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_THAT(outcome.err, HasSubstr("look.lua: error: has changed since the job was submitted; submit it again"));
+  EXPECT_THAT(farm({"status", "out"}).out, HasSubstr("1 failed"));
+}
+
+TEST_F(FarmFiles, WhatAMachineThatDiedHasLeftGoes) {
+  ASSERT_EQ(write_jobs({"--chunk", "5"}).exit_code, kDone);
+  const auto jobs = nlohmann::json::parse(read("jobs.json"));
+  const auto job = farm::read_job(job_of("out"));
+  ASSERT_TRUE(job);
+  // Tries on another machine: nobody here knows its processes.
+  write(fs::relative(job->folder / "attempts" / "0.1.begun", path("")).string(), R"({"temporaries": "0badcafe-77"})");
+  write("out/.shot.0002.0badcafe-77-3.tmp.exr", "half");
+  write("out/.afterglow/.shot.0002.exr.0badcafe-77-4.tmp.made", "half");
+  write("out/.shot.0002.0badcafe-771-3.tmp.exr", "somebody else's");
+  EXPECT_EQ(run_line(jobs["chunks"][1]).exit_code, kDone);
+  EXPECT_TRUE(fs::exists(path("out/.shot.0002.0badcafe-77-3.tmp.exr"))) << "another chunk's";
+  const Outcome made = run_line(jobs["chunks"][0]);
+  EXPECT_EQ(made.exit_code, kDone) << made.err;
+  EXPECT_FALSE(fs::exists(path("out/.shot.0002.0badcafe-77-3.tmp.exr")));
+  EXPECT_FALSE(fs::exists(path("out/.afterglow/.shot.0002.exr.0badcafe-77-4.tmp.made")));
+  EXPECT_TRUE(fs::exists(path("out/.shot.0002.0badcafe-771-3.tmp.exr")));
+  const auto tries = farm::attempts_of(*job);
+  ASSERT_TRUE(tries);
+  ASSERT_EQ(tries->size(), 3u);
+  EXPECT_EQ((*tries)[1].number, 2) << "of the first chunk the second";
+  EXPECT_EQ((*tries)[1].exit_code, 0);
+}
+
+TEST_F(FarmFiles, DescriptionsThatAreNoneAreRefused) {
+  ASSERT_EQ(write_jobs().exit_code, kDone);
+  const fs::path job = job_of("out");
+  const std::string good = read(fs::relative(job / "job.json", path("")).string());
+  const auto with = [&](const std::string& content) {
+    std::ofstream(job / "job.json") << content;
+    const Outcome outcome = farm({"status", "out"});
+    EXPECT_EQ(outcome.exit_code, kFiles) << content.substr(0, 40);
+    EXPECT_TRUE(is_one_error_line(outcome.err));
+    EXPECT_THAT(outcome.err, HasSubstr("job.json: error: this is no farm job"));
+    return outcome.err;
+  };
+  with("");
+  with("{}");
+  with(good.substr(0, good.size() / 2));
+  auto later = nlohmann::json::parse(good);
+  later["afterglow_farm"] = 2;
+  EXPECT_THAT(with(later.dump()), HasSubstr("it has version 2, this program reads version 1"));
+}
+
+TEST(FarmText, FramesAreReadBackAsTheyWere) {
+  for (const std::vector<int>& frames : {std::vector<int>{},
+                                         {7},
+                                         {1, 2, 3},
+                                         {1, 3, 5, 7},
+                                         {1, 5},
+                                         {1, 2, 9, 12, 15, 16},
+                                         {-3, -2, -1, 0},
+                                         {5, 4, 3},
+                                         {10, 20, 30, 31, 32, 2}}) {
+    const std::string text = farm::frames_text(frames);
+    EXPECT_EQ(frames.empty() ? std::vector<int>{} : parse_frames(text).value(), frames) << text;
+  }
+  EXPECT_EQ(farm::frames_text({1, 2, 3, 4}), "1-4");
+  EXPECT_EQ(farm::frames_text({1, 3, 5}), "1-5x2");
+}
+
+TEST(FarmText, ArraysStayBelowTheLargest) {
+  const auto plans = farm::array_plans({0, 1, 2, 3, 4, 5, 6, 7, 9, 14}, 4);
+  ASSERT_EQ(plans.size(), 4u);
+  EXPECT_EQ(plans[0].tasks, "0-3");
+  EXPECT_EQ(plans[2].base, 8u);
+  EXPECT_EQ(plans[2].tasks, "1");
+  EXPECT_EQ(plans[3].base, 12u);
+  EXPECT_EQ(plans[3].tasks, "2");
+  EXPECT_EQ(farm::array_plans({0, 2, 4}, 100)[0].tasks, "0-4:2") << "as sbatch writes steps";
+}
+
+TEST(FarmText, ShellsReadWordsBack) {
+  const std::vector<std::string> words{"plain", "two words", "it's", "a\nb", "$HOME `x` \"q\" \\", "", "*"};
+  std::vector<std::string> line{"printf", "%s|"};
+  line.insert(line.end(), words.begin(), words.end());
+  const auto ended = farm::run_process({"/bin/sh", "-c", farm::shell_line(line)});
+  ASSERT_TRUE(ended);
+  std::string expected;
+  for (const auto& word : words) expected += word + "|";
+  EXPECT_EQ(ended->out, expected);
+}
+
+TEST(FarmText, OfAChunkTheLastArrayCounts) {
+  const farm::Submissions submissions{{{"12", "", 0}, {"13", "", 16}, {"20", "", 0}}, false};
+  const auto queue = farm::states_of_queue(
+      "12|0|COMPLETED|n1|None\n12|3|FAILED|n2|NonZeroExitCode\n13|1|PENDING||Priority\n20|3|RUNNING|n4|None\n99|3|"
+      "FAILED|n1|None\n",
+      submissions);
+  EXPECT_EQ(queue.size(), 3u);
+  EXPECT_TRUE(queue.at(0).ended());
+  EXPECT_EQ(queue.at(3).state, "RUNNING");
+  EXPECT_EQ(queue.at(3).node, "n4");
+  EXPECT_EQ(queue.at(17).reason, "Priority");
+  const auto accounting = farm::states_of_accounting(
+      "12_0|COMPLETED|n1\n12_3|CANCELLED by 1000|n2\n20_[3-5]|PENDING|None assigned\n", submissions);
+  EXPECT_EQ(accounting.size(), 2u);
+  EXPECT_EQ(accounting.at(3).state, "CANCELLED");
+  EXPECT_TRUE(accounting.at(3).ended());
+}
+
+}  // namespace
+}  // namespace afterglow::test
