@@ -67,7 +67,7 @@ class StandardOutput {
 class FrameBytes {
  public:
   virtual ~FrameBytes() = default;
-  virtual Result<std::string> begin(const Picture&) { return std::string(); }
+  virtual Result<std::string> begin(const Picture&, double /*fps*/) { return std::string(); }
   virtual Result<std::string> frame(const Picture& picture) = 0;
   /// More than one frame can stand behind each other.
   virtual bool many() const { return true; }
@@ -111,7 +111,8 @@ class VideoBytes : public FrameBytes {
                         nearest_name(wanted, names));
   }
 
-  Result<std::string> begin(const Picture& picture) override {
+  Result<std::string> begin(const Picture& picture, double fps) override {
+    if (fps > 0) rate_ = frame_rate(fps);
     AFTERGLOW_TRY(const PixelLayout* layout, asked());
     const bool deep = picture.facts && (picture.facts->floating || picture.facts->bits > 8);
     size_ = picture.display_window.size();
@@ -167,9 +168,9 @@ class StreamSink : public FrameSink {
   Result<void> open() { return out_.take(); }
 
   /// A stream has no times: the place of a frame that failed is held by the one before, or by the first one.
-  Result<void> write(const FrameJob&, std::size_t index, const Picture& picture) override {
+  Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture) override {
     if (next_ == 0) {
-      AFTERGLOW_TRY(last_, bytes_->begin(picture));
+      AFTERGLOW_TRY(last_, bytes_->begin(picture, job.fps));
       AFTERGLOW_CHECK(out_.write(last_.data(), last_.size()));
       last_.clear();
     }

@@ -126,7 +126,7 @@ constexpr Kind kKinds[] = {
     {"mkv", "h264", "", "yuv420p", "h264", 4},
     {"mkv", "h265", "yuv420p12", "yuv420p12le", "hevc", 4.5},
     {"mkv", "ffv1", "", "bgr0", "ffv1", 0},
-    {"mkv", "ffv1", "gbrp16", "gbrp16le", "ffv1", 0},
+    {"mkv", "ffv1", "gbrp16", "gbrp16le", "ffv1", 0.8},  // ffmpeg cuts the lower 8 bits off
     {"mkv", "ffv1", "yuv444p16", "yuv444p16le", "ffv1", 0.8},
     {"mkv", "prores", "", "yuv422p10le", "prores", 2.5},
     {"mkv", "prores4444", "", "yuv444p12le", "prores", 1.5},
@@ -237,7 +237,7 @@ TEST_F(VideoOut, OptionsThatDoNotGoTogether) {
 
 TEST_F(VideoOut, FramesOfTwoSizes) {
   make_frames(2);
-  make_exr("in/1003.ppm");  // another size; known by its content
+  write("in/1003.ppm", "P6\n64 36\n255\n" + codes_of(3, 64, 36));
   const Outcome outcome = make_video("a.mp4");
   EXPECT_EQ(outcome.exit_code, kUsage);
   EXPECT_THAT(outcome.err, HasSubstr("a frame has 64x36 pixels, the first had 96x64; a video has one size"));
@@ -377,6 +377,64 @@ TEST_F(VideoOut, AlphaWhereTheCodecCan) {
   EXPECT_THAT(opaque.err, HasSubstr("b.mp4: h264 as yuv420p has no alpha; the pictures are put on black"));
 }
 
+/// Times, sound, subtitles and chapters of a video stay with it.
+TEST_F(VideoOut, VideoToVideo) {
+  make_frames(40);
+  write("chapters.txt",
+        ";FFMETADATA1\ntitle=A "
+        "shot\n[CHAPTER]\nTIMEBASE=1/1000\nSTART=0\nEND=700\ntitle=one\n[CHAPTER]\nTIMEBASE=1/1000\n"
+        "START=700\nEND=1600\ntitle=two\n");
+  write("text.srt", "1\n00:00:00,200 --> 00:00:00,900\nhello\n");
+  // Every third frame is gone: the rate varies.
+  ASSERT_EQ(
+      shell(
+          "ffmpeg -v error -framerate 25 -start_number 1001 -i in/%04d.ppm -f lavfi -i sine=frequency=440:duration=1.6 "
+          "-i text.srt -i chapters.txt -map 0 -map 1 -map 2 -map_metadata 3 -map_chapters 3 -vf "
+          "\"select='mod(n,3)'\" -vsync vfr -c:v libx264 -bf 2 -g 10 -pix_fmt yuv444p -crf 5 -c:a aac -c:s srt in.mkv")
+          .exit_code,
+      0);
+  const Outcome outcome = run({"run", "look.lua", "in.mkv", "-o", "out.mkv", "--codec", "ffv1"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  const auto texts = [&](const std::string& name, const std::string& what, const char* list, const char* key) {
+    std::vector<std::string> all;
+    const auto probed = probe(name, what);
+    for (const auto& one : probed.at(list)) all.push_back(one.at(key).get<std::string>());
+    return all;
+  };
+  const std::string times = "-select_streams v -show_frames -show_entries frame=pts_time";
+  EXPECT_EQ(texts("in.mkv", times, "frames", "pts_time"), texts("out.mkv", times, "frames", "pts_time"));
+  for (const char* stream : {"a", "s"}) {
+    const std::string what = std::string("-show_packets -show_data_hash md5 -select_streams ") + stream;
+    EXPECT_EQ(texts("in.mkv", what, "packets", "data_hash"), texts("out.mkv", what, "packets", "data_hash")) << stream;
+    EXPECT_EQ(texts("in.mkv", what, "packets", "pts_time"), texts("out.mkv", what, "packets", "pts_time")) << stream;
+  }
+  EXPECT_EQ(texts("out.mkv", "-show_chapters", "chapters", "start_time"),
+            texts("in.mkv", "-show_chapters", "chapters", "start_time"));
+  const auto frames = frames_of("out.mkv"), before = frames_of("in.mkv");
+  ASSERT_EQ(frames.size(), before.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_EQ(number_of(frames[i]), number_of(before[i])) << i;
+
+  const Outcome mp4 = run({"run", "look.lua", "in.mkv", "-o", "out.mp4"});
+  EXPECT_EQ(mp4.exit_code, kDone) << mp4.err;
+  EXPECT_THAT(mp4.err, HasSubstr("out.mp4: subtitle 3 (subrip) of in.mkv cannot be held by mp4 and is left out"));
+
+  // A part begins at 0, with the sound beside it.
+  const Outcome part = run({"run", "look.lua", "in.mkv", "-o", "part.mkv", "--codec", "ffv1", "--frames", "11-20"});
+  ASSERT_EQ(part.exit_code, kDone) << part.err;
+  const auto some = frames_of("part.mkv");
+  ASSERT_EQ(some.size(), 10u);
+  EXPECT_EQ(number_of(some[0]), number_of(before[10]));
+  const auto all = texts("in.mkv", times, "frames", "pts_time"), ten = texts("part.mkv", times, "frames", "pts_time");
+  for (std::size_t i = 0; i < 10; ++i)
+    EXPECT_NEAR(std::stod(ten[i]), std::stod(all[10 + i]) - std::stod(all[10]), 0.0011) << i;
+  const auto sound = texts("part.mkv", "-show_packets -select_streams a", "packets", "pts_time");
+  ASSERT_FALSE(sound.empty());
+  EXPECT_GE(std::stod(sound.front()), 0);
+  EXPECT_LT(std::stod(sound.front()), 0.03);
+  EXPECT_LT(std::stod(sound.back()), std::stod(ten.back()) + 0.09);
+}
+
 class StreamOut : public VideoOut {};
 
 TEST_F(StreamOut, FramesGoThroughPipes) {
@@ -393,6 +451,22 @@ TEST_F(StreamOut, FramesGoThroughPipes) {
     EXPECT_EQ(number_of(frames[i]), static_cast<int>(i) + 1);
     EXPECT_LE(difference(frames[i], codes_of(static_cast<int>(i) + 1)), 1.2);
   }
+}
+
+TEST_F(StreamOut, BetweenTwoFfmpegs) {
+  make_frames(8);
+  const Outcome outcome = shell(
+      "ffmpeg -v error -framerate 25 -start_number 1001 -i in/%04d.ppm -pix_fmt yuv444p -f yuv4mpegpipe - | "
+      "\"$AFTERGLOW\" run look.lua - -o - | ffmpeg -v error -i - -c:v ffv1 -y a.mkv");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  const auto frames = frames_of("a.mkv");
+  ASSERT_EQ(frames.size(), 8u);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(number_of(frames[i]), static_cast<int>(i) + 1);
+    EXPECT_LE(difference(frames[i], codes_of(static_cast<int>(i) + 1)), 2);
+  }
+  EXPECT_EQ(stream_of("a.mkv").at("r_frame_rate"), "25/1");
 }
 
 TEST_F(StreamOut, RawAndPicturesAreExact) {
