@@ -25,6 +25,7 @@ before() { # FILE …
   local name options=
   name=before_$(basename "${1%.*}")
   [[ $1 == tests/images/showcase/* ]] && options=$exposure
+  [[ $* =~ --size\ [0-9x]+ ]] && options+=" ${BASH_REMATCH[0]}"
   # shellcheck disable=SC2086 # words of the options
   [[ $pictures/$name.jpg -nt $started ]] ||
     "$program" run docs/effects/before.lua "$1" $options -o "$pictures/$name.jpg" --jpeg-quality 82 -q >&2

@@ -16,7 +16,8 @@ std::string space_list() {
 }
 
 void add_files(CLI::App& app, RunArguments& a) {
-  app.add_option("INPUT", a.files.inputs, "Pictures: files, sequences like shot.####.exr and shot.%04d.exr, videos; - is standard input")
+  app.add_option("INPUT", a.files.inputs,
+                 "Pictures: files, sequences like shot.####.exr and shot.%04d.exr, videos; - is standard input")
       ->required();
   app.add_option("-o,--output", a.files.output,
                  "File, pattern (out.####.png), folder, video (mp4, mov, mkv, webm, gif, apng) or - (standard output); "

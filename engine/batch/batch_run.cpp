@@ -157,6 +157,8 @@ Result<void> run_frames(BatchRun& run) {
 Result<void> run_batch(const BatchRequest& request, const RunEvents& events, RunReport& report) {
   BatchRun run{request, events, report};
   AFTERGLOW_TRY(run.list, list_frames(request.files, events.diagnostics));
+  if (run.list.more && request.resume)
+    return Error{ErrorKind::usage, "--resume needs inputs that are files, not standard input", "afterglow run"};
   for (const auto& job : run.list.jobs) report.frames.push_back({.job = job});
   run.list.jobs.clear();
   auto done = run_frames(run);

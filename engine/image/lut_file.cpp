@@ -16,7 +16,7 @@ constexpr std::size_t kMaxFile = 128u << 20;  // 129³ lines of 50 letters
 
 }  // namespace
 
-Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record) {
+Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record, const std::string& correction) {
   const auto fail = [&](std::string what) { return Error{ErrorKind::script, std::move(what), file.string()}; };
   std::string extension = lower(file.extension().string());
   if (!extension.empty()) extension.erase(0, 1);
@@ -35,7 +35,7 @@ Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record) {
   // OpenColorIO puts variables of the environment into paths.
   if (file.string().find_first_of("$%") != std::string::npos)
     return fail("a path with '$' or '%' cannot be handed to OpenColorIO; rename the file or its folder");
-  return module->read(file);
+  return module->read(file, correction);
 }
 
 }  // namespace afterglow

@@ -44,8 +44,10 @@ inline constexpr int kLutRow = 256;  ///< colours a row of one-dimensional table
 
 /// Thread-safe. Errors (script, with the file and, for .cube, the line): missing, unknown format, what the file holds
 /// is wrong or has no place in steps; io: the module with OpenColorIO is not installed.
-/// `record`: see read_file (core/file.h).
-Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record = nullptr);
+/// `record`: see read_file (core/file.h). `correction`: of a file with several (.ccc, .cdl) the one with this id, or by
+/// number from 0; empty: the first.
+Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record = nullptr,
+                     const std::string& correction = {});
 
 /// Looks a .cube through before OpenColorIO reads it, which says less about what is wrong and takes memory for whatever
 /// size a file claims. Errors: script, at the line.

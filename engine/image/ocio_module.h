@@ -19,7 +19,7 @@ struct Unsupported {
 };
 
 struct OcioModule {
-  Result<Lut> (*read)(const std::filesystem::path& file);
+  Result<Lut> (*read)(const std::filesystem::path& file, const std::string& correction);
   /// Of the formats of tables that it knows, without the point, sorted.
   std::vector<std::string> (*extensions)();
   Result<OcioSurvey> (*survey)(const OcioRequest& request);

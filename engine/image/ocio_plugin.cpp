@@ -34,7 +34,7 @@ Error error_of(const std::string& file, std::string message) {
 
 std::mutex mutex;  // OpenColorIO's cache of files is one for all
 
-Result<Lut> read(const std::filesystem::path& file) {
+Result<Lut> read(const std::filesystem::path& file, const std::string& correction) {
   const std::lock_guard lock(mutex);
   OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);  // what it says comes back as an error
   try {
@@ -43,7 +43,7 @@ Result<Lut> read(const std::filesystem::path& file) {
     const auto transform = OCIO::FileTransform::Create();
     transform->setSrc(std::filesystem::absolute(file).c_str());
     transform->setInterpolation(OCIO::INTERP_TETRAHEDRAL);
-    transform->setCCCId("0");  // of a list of corrections, the first
+    transform->setCCCId(correction.empty() ? "0" : correction.c_str());  // of a list, the first
     return LutTaker(config).take(*config->getProcessor(transform)->createGroupTransform());
   } catch (const Unsupported& why) {
     return Error{ErrorKind::script, why.what, file.string()};
@@ -103,7 +103,7 @@ Result<OcioShader> shader(const OcioRequest& request) {
 
 std::vector<std::string> extensions() {
   // No tables: profiles of devices, and collections that name further files.
-  static constexpr std::array kOthers{"icc", "icm", "pf", "ctf", "ccc", "look"};
+  static constexpr std::array kOthers{"icc", "icm", "pf", "ctf", "look"};
   std::vector<std::string> all;
   for (int i = 0; i < OCIO::FileTransform::GetNumFormats(); ++i) {
     const std::string extension = OCIO::FileTransform::GetFormatExtensionByIndex(i);

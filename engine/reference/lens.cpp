@@ -30,21 +30,53 @@ DoubleImage vignette(const DoubleImage& source, const Vignette& s) {
   });
 }
 
+namespace {
+
+/// Integrals of (a + bt)(c + dt), exact for Simpson's rule, over [from, to].
+template <class F>
+double simpson(const F& f, double from, double to) {
+  return (to - from) / 6 * (f(from) + 4 * f(0.5 * (from + to)) + f(to));
+}
+
+/// Integral of spectrum · tent over the tent around pixel i of a way of `length`: pieces between the kinks of both.
+Rgb weight_of(int i, double length) {
+  Rgb sum(0);
+  double ends[] = {i - 1.0, double(i), i + 1.0, 0.0, 0.5 * length, length};
+  std::sort(std::begin(ends), std::end(ends));
+  for (int k = 0; k + 1 < 6; ++k) {
+    const double from = std::clamp(ends[k], std::max(i - 1.0, 0.0), std::max(0.0, std::min(i + 1.0, length)));
+    const double to = std::clamp(ends[k + 1], from, std::max(from, std::min(i + 1.0, length)));
+    for (int c = 0; c < 3; ++c)
+      sum[c] += simpson(
+          [&](double s) {
+            const double t = s / length;
+            const double light = c == 0   ? std::max(0.0, 1 - 2 * t)
+                                 : c == 1 ? 1 - std::abs(2 * t - 1)
+                                          : std::max(0.0, 2 * t - 1);
+            return light * (1 - std::abs(s - i));
+          },
+          from, to);
+  }
+  return sum;
+}
+
+}  // namespace
+
 DoubleImage chromatic_aberration(const DoubleImage& source, double intensity, int samples) {
   return generate(source.size(), [&](int x, int y) {
     const Point uv = uv_of(x, y, source.size()), coords = 2.0 * uv - 1.0;
-    const Point end = uv - coords * glm::dot(coords, coords) * intensity * 0.05;
-    const double reach = glm::length((end - uv) * (2.0 / 3) * Point(source.width, source.height));
-    const auto whole = [](double pixels) { return static_cast<int>(std::floor(pixels + 0.7)); };
-    const int steps = samples == 3 ? 2 : std::max({2, whole(reach * 2 / 3), std::min(samples - 1, whole(reach))});
+    const Point end = uv - coords * glm::dot(coords, coords) * (intensity * 0.05 * 2 / 3);
+    const Rgba color = source.at(x, y);
+    if (samples == 3) return Rgba(color.r, read(source, 0.5 * (uv + end)).g, read(source, end).b, color.a);
+    const Point way = (end - uv) * Point(source.width, source.height);
+    const double length = std::max({std::abs(way.x), std::abs(way.y), 1e-6});
     Rgb sum(0), weights(0);
-    for (int i = 0; i <= steps; ++i) {
-      const double t = static_cast<double>(i) / steps;
-      const Rgb weight(glm::max(0.0, 1 - 2 * t), 1 - std::abs(2 * t - 1), glm::max(0.0, 2 * t - 1));
-      sum += weight * Rgb(read(source, uv + (end - uv) * (t * 2 / 3)));
+    for (int i = 0; i <= static_cast<int>(std::ceil(length)); ++i) {
+      const Rgb weight = weight_of(i, length);
+      sum += weight * Rgb(read(source, uv + (end - uv) * (i / length)));
       weights += weight;
     }
-    return Rgba(sum / weights, source.at(x, y).a);
+    return Rgba(sum / weights, color.a);
   });
 }
 

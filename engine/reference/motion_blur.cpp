@@ -5,8 +5,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "reference/grain.h"
-
 namespace afterglow::reference {
 namespace {
 
@@ -34,17 +32,70 @@ Rgba longest_in(const DoubleImage& ways, int x0, int y0, int x1, int y1) {
   return most;
 }
 
-double cone(double away, double way) { return glm::clamp(1 - away / way, 0.0, 1.0); }
-double cylinder(double away, double way) {
-  const double t = glm::clamp((away - 0.95 * way) / (0.1 * way), 0.0, 1.0);
-  return 1 - t * t * (3 - 2 * t);
+double longer(const Way& way) { return glm::max(std::abs(way.x), std::abs(way.y)); }
+
+/// How much of the read `i` steps away a way of `steps` covers.
+double covered_by(double i, double steps) { return glm::clamp(steps + 0.5 - i, 0.0, 1.0); }
+
+/// Square of the difference of two ways, whichever end of them comes first.
+double unlike(const Way& a, const Way& b) {
+  return glm::max(glm::min(glm::dot(a - b, a - b), glm::dot(a + b, a + b)), 1e-6);
 }
+
+/// What crosses one pixel.
+struct Crossing {
+  const DoubleImage &source, &ways, &nearness;
+  double softness = 1;
+  int samples = 0;
+  int x = 0, y = 0;
+  Way own{}, around{};  // the pixel's way, and the longest around
+  bool two = false;     // they differ
+  Rgb behind{0}, front{0};
+  double behind_weight = 0, front_share = 0;
+
+  void count(int px, int py, double share, double i, const Way& step, bool first, double steps) {
+    const Way read = way_of(ways.clamped(px, py));
+    const double in_front = glm::clamp((nearness.clamped(px, py).r - nearness.at(x, y).r) / softness, 0.0, 1.0);
+    const double along = std::abs(glm::dot(read, step)) / glm::dot(step, step);
+    double passes = share * in_front * covered_by(i, along) / (2 * glm::max(along, 0.5));
+    if (two) {
+      const double to_own = unlike(read, own), to_around = unlike(read, around);
+      passes *= (first ? to_around : to_own) / (to_own + to_around);
+    }
+    const double stays = first ? share * covered_by(i, steps) * (1 - in_front) : 0;
+    const Rgb color(source.clamped(px, py));
+    front += passes * color;
+    front_share += passes;
+    behind += stays * color;
+    behind_weight += stays;
+  }
+
+  void follow(const Way& way, bool first) {
+    const double length = longer(way), apart = glm::max(1.0, std::ceil((2 * length - 0.3) / samples));
+    const Way step = way * (apart / length);
+    const bool flat = std::abs(way.x) >= std::abs(way.y);
+    for (int i = 1; i <= static_cast<int>(std::floor(length / apart + 0.5)); ++i)
+      for (const int side : {-1, 1}) {
+        const Way at = step * double(side * i);
+        const int along = static_cast<int>(std::lround(flat ? at.x : at.y));
+        const double aside = flat ? at.y : at.x;
+        const int low = static_cast<int>(std::floor(aside));
+        for (const int by : {0, 1}) {
+          const double share = by == 1 ? aside - low : 1 - (aside - low);
+          count(x + (flat ? along : low + by), y + (flat ? low + by : along), share, i, step, first, length / apart);
+        }
+      }
+  }
+};
 
 }  // namespace
 
 DoubleImage motion_blur(const DoubleImage& source, const DoubleImage& motion, const DoubleImage* depth,
                         const MotionBlur& s) {
   const DoubleImage ways = half_ways(motion, s);
+  const DoubleImage nearness = generate(source.size(), [&](int x, int y) {
+    return Rgba(depth ? -depth->at(x, y).r : glm::length(way_of(ways.at(x, y))));
+  });
   const int tile = static_cast<int>(std::ceil(s.max_radius));
   const Size tiles{(source.width + tile - 1) / tile, (source.height + tile - 1) / tile};
   const DoubleImage by_tile = generate(tiles, [&](int x, int y) {
@@ -53,33 +104,19 @@ DoubleImage motion_blur(const DoubleImage& source, const DoubleImage& motion, co
   });
   return generate(source.size(), [&](int x, int y) {
     const int tx = x / tile, ty = y / tile;
-    const Way along = way_of(longest_in(by_tile, tx - 1, ty - 1, tx + 2, ty + 2));
+    const Way around = way_of(longest_in(by_tile, tx - 1, ty - 1, tx + 2, ty + 2));
     const Rgba color = source.at(x, y);
-    if (glm::dot(along, along) <= 0.25) return color;
-    const double own = glm::max(glm::length(way_of(ways.at(x, y))), 0.5);
-    const auto in_front = [&](int ax, int ay, int bx, int by) {
-      if (!depth) return 1.0;
-      const double a = depth->clamped(ax, ay).r, b = depth->clamped(bx, by).r;
-      return glm::clamp(1 - (a - b) / s.depth_softness, 0.0, 1.0);
-    };
-    const double offset =
-        (pcg3d({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0})[0] >> 8) / 16777216.0 - 0.5;
-    const int count = glm::min(s.samples, static_cast<int>(std::floor(2 * glm::length(along) + 0.7)) + 1);
-    double weight = count / (s.samples * own);
-    Rgb sum = Rgb(color) * weight;
-    for (int i = 0; i < count; ++i) {
-      const double t = 2 * (i + offset + 1) / (count + 1) - 1;
-      const int px = x + static_cast<int>(std::floor(along.x * t + 0.5));
-      const int py = y + static_cast<int>(std::floor(along.y * t + 0.5));
-      if (px == x && py == y) continue;
-      const double away = std::hypot(px - x, py - y);
-      const double read = glm::max(glm::length(way_of(ways.clamped(px, py))), 0.5);
-      const double counts = in_front(px, py, x, y) * cone(away, read) + in_front(x, y, px, py) * cone(away, own) +
-                            2 * cylinder(away, read) * cylinder(away, own);
-      weight += counts;
-      sum += counts * Rgb(source.clamped(px, py));
-    }
-    return Rgba(sum / weight, color.a);
+    if (longer(around) <= 0.5) return color;
+    Crossing pixel{source, ways, nearness, depth ? s.depth_softness : 1, s.samples, x, y, way_of(ways.at(x, y)),
+                   around};
+    pixel.two = unlike(pixel.around, pixel.own) > 0.25;
+    pixel.behind = Rgb(color);
+    pixel.behind_weight = 1;
+    if (longer(pixel.own) > 0.5) pixel.follow(pixel.own, true);
+    if (pixel.two) pixel.follow(around, false);
+    return Rgba(pixel.behind * (glm::max(1 - pixel.front_share, 0.0) / pixel.behind_weight) +
+                    pixel.front / glm::max(pixel.front_share, 1.0),
+                color.a);
   });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Motion blur by motion vectors: the reconstruction filter of McGuire et al. (I3D 2012), see math.md §16.
+// Motion blur by motion vectors along each pixel's own way and the longest around it, see math.md §16.
 #pragma once
 
 #include "reference/double_image.h"
@@ -8,7 +8,7 @@ namespace afterglow::reference {
 
 struct MotionBlur {
   double shutter_angle = 180;
-  int samples = 24;
+  int samples = 64;
   double max_radius = 32;
   double scale_x = 1, scale_y = 1;
   double depth_softness = 0.1;

@@ -135,21 +135,39 @@ double gamma22_light(double v) { return powered(v, 2.2); }
 double gamma24(double x) { return powered(x, 1 / 2.4); }
 double gamma24_light(double v) { return powered(v, 2.4); }
 
+// Codes of 1023 count 0.002 of printing density; 95 is black, 685 white, and film's gamma is 0.6.
+double cineon_light(double v) {
+  const double exposure = std::pow(10.0, 0.002 * (1023 * v - 685) / 0.6),
+               base = std::pow(10.0, 0.002 * (95 - 685) / 0.6);
+  return (exposure - base) / (1 - base);
+}
+double cineon(double x) {
+  const double base = std::pow(10.0, 0.002 * (95 - 685) / 0.6);
+  return (685 + 0.6 / 0.002 * std::log10(std::max(x * (1 - base) + base, 1e-12))) / 1023;
+}
+
+// BT.709's camera curve with the digits of BT.2020, odd around 0.
+constexpr double kCameraAlpha = 1.09929682680944, kCameraBeta = 0.018053968510807;
+double rec709(double x) {
+  const double a = std::abs(x);
+  return std::copysign(a < kCameraBeta ? 4.5 * a : kCameraAlpha * std::pow(a, 0.45) - (kCameraAlpha - 1), x);
+}
+double rec709_light(double v) {
+  const double a = std::abs(v);
+  const double x = a < 4.5 * kCameraBeta ? a / 4.5 : std::pow((a + (kCameraAlpha - 1)) / kCameraAlpha, 1 / 0.45);
+  return std::copysign(x, v);
+}
+
 struct Transfer {
   const char* name;
   double (*to_light)(double);
   double (*from_light)(double);
 };
-constexpr Transfer kTransfers[] = {{"acescct", acescct_light, acescct},
-                                   {"gamma22", gamma22_light, gamma22},
-                                   {"gamma24", gamma24_light, gamma24},
-                                   {"hlg", hlg_light, hlg},
-                                   {"linear", as_is, as_is},
-                                   {"logc3", logc3_light, logc3},
-                                   {"logc4", logc4_light, logc4},
-                                   {"pq", pq_light, pq},
-                                   {"slog3", slog3_light, slog3},
-                                   {"srgb", srgb_to_linear, linear_to_srgb}};
+constexpr Transfer kTransfers[] = {
+    {"acescct", acescct_light, acescct}, {"cineon", cineon_light, cineon}, {"gamma22", gamma22_light, gamma22},
+    {"gamma24", gamma24_light, gamma24}, {"hlg", hlg_light, hlg},          {"linear", as_is, as_is},
+    {"logc3", logc3_light, logc3},       {"logc4", logc4_light, logc4},    {"pq", pq_light, pq},
+    {"rec709", rec709_light, rec709},    {"slog3", slog3_light, slog3},    {"srgb", srgb_to_linear, linear_to_srgb}};
 
 const Transfer& transfer(const std::string& name) {
   for (const auto& one : kTransfers)

@@ -138,16 +138,16 @@ fs::path find_asset(lua_State* lua, const std::string& what, const std::string& 
   fail_at(lua, what, {"file", name, "there is no such file", kAllowed, nearest_file(roots, name)});
 }
 
-const LoadedLut& load_lut(lua_State* lua, const fs::path& file) {
+const LoadedLut& load_lut(lua_State* lua, const fs::path& file, const std::string& correction) {
   Runtime& runtime = Runtime::of(lua);
-  const auto known = runtime.assets.luts.find(file);
+  const auto known = runtime.assets.luts.find({file, correction});
   if (known != runtime.assets.luts.end()) return known->second;
   runtime.box->charge(kFileCost);
   const Sandbox::Pause pause(*runtime.box);
-  auto read = read_lut(file, runtime.path.record.get());
+  auto read = read_lut(file, runtime.path.record.get(), correction);
   if (!read) throw ScriptError{std::move(read).error()};
   LoadedLut loaded{std::move(read->steps), make_data(runtime, read->size, std::move(read->table), file)};
-  return runtime.assets.luts.emplace(file, std::move(loaded)).first->second;
+  return runtime.assets.luts.emplace(std::pair(file, correction), std::move(loaded)).first->second;
 }
 
 std::shared_ptr<const ImageData> load_picture(lua_State* lua, const fs::path& file) {

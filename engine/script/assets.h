@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "core/image_data.h"
 #include "image/ocio.h"
@@ -33,8 +34,8 @@ struct LoadedOcio {
 
 /// What one state has read: a file is read once, so that every build of a preset sees the same.
 struct Assets {
-  std::map<std::filesystem::path, LoadedLut> luts;
-  std::map<std::string, LoadedOcio> ocio;  ///< by request
+  std::map<std::pair<std::filesystem::path, std::string>, LoadedLut> luts;  ///< by file and correction
+  std::map<std::string, LoadedOcio> ocio;                                   ///< by request
   std::map<std::filesystem::path, std::shared_ptr<const ImageData>> pictures;
   std::size_t bytes = 0;
 };
@@ -45,7 +46,7 @@ struct Assets {
 std::filesystem::path find_asset(lua_State* lua, const std::string& what, const std::string& name);
 
 /// Errors: throw ScriptError (see read_lut, read_picture; too much in all).
-const LoadedLut& load_lut(lua_State* lua, const std::filesystem::path& file);
+const LoadedLut& load_lut(lua_State* lua, const std::filesystem::path& file, const std::string& correction);
 std::shared_ptr<const ImageData> load_picture(lua_State* lua, const std::filesystem::path& file);
 
 // ---- what those need who read files of other kinds

@@ -182,7 +182,6 @@ int graph_input(lua_State* lua) {
 
 // The file that g:lookup and g:image are given; a failure at the key of the call.
 std::filesystem::path read_file_key(lua_State* lua, TableReader& table, const char* function) {
-  table.allow({"file"}, false);
   const auto name = table.text("file");
   if ((!name || name->empty()) && !table.failed())
     table.fail(failure(fmt::format("{} needs 'file', the name of a file", table.what()), {"file"}));
@@ -193,8 +192,10 @@ std::filesystem::path read_file_key(lua_State* lua, TableReader& table, const ch
 int graph_lookup(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:lookup { file = … }");
   TableReader table(lua, 2, fmt::format("effect '{}': g:lookup", graph.entry().effect));
+  table.allow({"correction", "file"}, false);
+  const auto correction = table.text("correction");
   const auto file = read_file_key(lua, table, "lookup");
-  const LoadedLut& loaded = load_lut(lua, file);
+  const LoadedLut& loaded = load_lut(lua, file, correction.value_or(""));
   lua_createtable(lua, 0, 2);
   push_image(lua, graph.data(file.filename().string(), loaded.table));
   lua_setfield(lua, -2, "table");
@@ -245,6 +246,7 @@ int graph_ocio(lua_State* lua) {
 int graph_image(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:image { file = … }");
   TableReader table(lua, 2, fmt::format("effect '{}': g:image", graph.entry().effect));
+  table.allow({"file"}, false);
   const auto file = read_file_key(lua, table, "image");
   push_image(lua, graph.data(file.filename().string(), load_picture(lua, file)));
   return 1;

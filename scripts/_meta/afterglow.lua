@@ -67,6 +67,8 @@
 
 ---Slope, offset, power and saturation of an ASC CDL.
 ---@class afterglow.settings.cdl : afterglow.EntryKeys
+---@field file? string|afterglow.OfTime  A correction in a file, beside the preset or on the search path. None: the settings alone. default ""
+---@field correction? string|afterglow.OfTime  Of a file with several corrections (.ccc, .cdl) the id of the one, or its number from 0; empty: the first. default ""
 ---@field slope? number[]|afterglow.Moving  Light times this; shows most in the brights. {x, y, z}, each 0…16, default {1, 1, 1}
 ---@field offset? number[]|afterglow.Moving  Added behind it; shows most in the darks. {x, y, z}, each -4…4, default {0, 0, 0}
 ---@field power? number[]|afterglow.Moving  The power taken of the sum: above 1 darkens what is below 1. {x, y, z}, each 0.1…10, default {1, 1, 1}
@@ -87,7 +89,7 @@
 ---Colour fringes that grow towards the corners.
 ---@class afterglow.settings.chromatic_aberration : afterglow.EntryKeys
 ---@field intensity? number|afterglow.Moving  Length of the fringes; 1 is a thirtieth of the picture at the middle of its sides. 0: none. 0…1, default 0.3
----@field samples? integer|afterglow.Moving  3: three sharp pictures. More: a spectrum, of at least so many reads where a fringe has as many pixels, and of as many as it needs to be even. integer 3…24, default 6
+---@field samples? integer|afterglow.Moving  3: three sharp pictures. More: a spectrum, even however long the fringes are. integer 3…24, default 6
 
 ---Exposure, contrast, colour filter, hue and saturation.
 ---@class afterglow.settings.color_adjustments : afterglow.EntryKeys
@@ -307,10 +309,10 @@
 ---Blurs what moves, by motion vectors.
 ---@class afterglow.settings.motion_blur : afterglow.EntryKeys
 ---@field shutter_angle? number|afterglow.Moving  How long the shutter is open: 360 is the whole frame. 0: no blur. 0…720 degrees, default 180
----@field samples? integer|afterglow.Moving  Most reads for each pixel that moves, of as many as it passes pixels: more are smoother, and dearer. integer 3…128, default 24
+---@field samples? integer|afterglow.Moving  Most reads along a way. A way is read once a pixel; a longer one than this shows stripes, and is cheaper. integer 3…512, default 64
 ---@field max_radius? number|afterglow.Moving  No blur reaches further each way. 1…128 px, default 32
 ---@field motion_scale? number[]|afterglow.Moving  Factor of the motion vectors: {1, -1} for files with y downwards, {width, height} for motion in pictures. {x, y}, each -16384…16384, default {1, 1}
----@field depth_softness? number|afterglow.Moving  Difference of depth over which one thing is in front of another. 0.0001…1000000 m, default 0.1
+---@field depth_softness? number|afterglow.Moving  Difference of depth over which one thing is in front of another. Without depth, what moves farther is in front. 0.0001…1000000 m, default 0.1
 
 ---The view of an OpenColorIO configuration, in place of a tone curve.
 ---@class afterglow.settings.ocio_display : afterglow.EntryKeys

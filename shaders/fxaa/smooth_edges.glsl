@@ -3,27 +3,39 @@
 layout(constant_id = 0) const int quality = 2;
 
 uniform sampler2D source;
-uniform sampler2D luma;
+uniform sampler2D luma;  // by pixel, and means with the next ones: see luma.glsl
 uniform float fixed_threshold;
 uniform float relative_threshold;
 uniform float subpixel_blending;
 
-// How far each step goes along the edge, in pixels. Behind the last step the end is guessed to be 8 further.
-const int kCounts[3] = int[](3, 8, 10);
-const float kSteps[30] = float[](1.5, 2.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,  //
-                                 1.5, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 4.0, 0.0, 0.0,  //
-                                 1.0, 1.0, 1.0, 1.0, 1.5, 2.0, 2.0, 2.0, 2.0, 4.0);
+// Behind the last step the end is guessed to be so much further.
 const float kGuess = 8.0;
+const int kSteps = quality == 0 ? 3 : quality == 1 ? 8 : 10;
+
+// How far a step goes along the edge, in pixels: at high quality a few of one first, then one of a half more, twos, and a last of 4.
+float step_of(int i) {
+  const int fine = quality == 2 ? 4 : 0;
+  return i < fine ? 1.0 : i == fine ? 1.5 : i < kSteps - 1 || quality == 0 ? 2.0 : 4.0;
+}
 
 float at(ivec2 pixel) { return fetch(luma, pixel).r; }
 
+/// Luma on the line between two rows or columns, `way` pixels along it from `pixel`; both are whole or halves.
+float beside(vec2 pixel, float way, vec2 direction, bool horizontal) {
+  vec2 to = floor(pixel + way * direction);
+  vec4 means = fetch(luma, ivec2(to));
+  // Before the picture is its first pixel, not the mean of the first two.
+  bool whole = way == floor(way) || (horizontal ? to.x : to.y) < 0.0;
+  return whole ? (horizontal ? means.b : means.g) : means.a;
+}
+
 /// Way along `direction` until luma leaves that of the edge by `enough`; `change` is by how much it did.
-float way_to_end(vec2 position, vec2 direction, float edge, float enough, out float change) {
+float way_to_end(vec2 pixel, vec2 direction, bool horizontal, float edge, float enough, out float change) {
   float way = 1.0;
-  change = fetch_linear(luma, position + direction).r - edge;
-  for (int i = 0; i < kCounts[quality] && abs(change) < enough; ++i) {
-    way += kSteps[10 * quality + i];
-    change = fetch_linear(luma, position + way * direction).r - edge;
+  change = beside(pixel, way, direction, horizontal) - edge;
+  for (int i = 0; i < kSteps && abs(change) < enough; ++i) {
+    way += step_of(i);
+    change = beside(pixel, way, direction, horizontal) - edge;
   }
   return abs(change) < enough ? way + kGuess : way;
 }
@@ -53,8 +65,9 @@ vec4 sample_at(ivec2 pixel) {
 
   vec2 centre = vec2(pixel) + 0.5;
   float edge = 0.5 * (m + other), enough = 0.25 * abs(other - m), change_p, change_n;
-  float way_p = way_to_end(centre + 0.5 * across, along, edge, enough, change_p);
-  float way_n = way_to_end(centre + 0.5 * across, -along, edge, enough, change_n);
+  vec2 from = vec2(pixel) + min(across, 0.0);  // the upper or left one of the two sides
+  float way_p = way_to_end(from, along, horizontal, edge, enough, change_p);
+  float way_n = way_to_end(from, -along, horizontal, edge, enough, change_n);
   bool rising = (way_p <= way_n ? change_p : change_n) >= 0.0;
   float slant = rising == (m >= edge) ? 0.0 : 0.5 - min(way_p, way_n) / (way_p + way_n);
 

@@ -1,49 +1,75 @@
 // SPDX-License-Identifier: MIT
-// Mean along the longest motion around, over whole pixels. Each read counts for what it covers of the pixel while the shutter is open.
+// What crosses a pixel while the shutter is open. Along its own way lies what it is blurred with; what is in front of it and moves
+// otherwise comes along the longest way around. A way is read once for each pixel of its longer axis, between the two pixels there, and each
+// read counts for the part of its length that the way covers: so a way of half a pixel more blurs by half a pixel more.
 #include "lib/color.glsl"
-#include "lib/noise.glsl"
 
-layout(constant_id = 0) const bool has_depth = false;
-
-uniform sampler2D source;   // half ways and depths
+uniform sampler2D source;   // half ways and nearness
 uniform sampler2D picture;
 uniform sampler2D longest;  // half ways, by tile
 uniform int block;
 uniform int samples;
 uniform float softness;
 
-/// How much of the way's length reaches as far as `away`: falls to 0 at its end.
-float cone(float away, float way) { return clamp(1.0 - away / way, 0.0, 1.0); }
+float longer(vec2 way) { return max(abs(way.x), abs(way.y)); }
 
-/// 1 within the way, 0 beyond.
-float cylinder(float away, float way) { return 1.0 - smoothstep(0.95 * way, 1.05 * way, away); }
+/// How much of the read `i` steps away a way of `steps` covers.
+float covered(float i, float steps) { return clamp(steps + 0.5 - i, 0.0, 1.0); }
 
-/// 1 when a is in front of b, or not much behind it.
-float in_front(float a, float b) { return has_depth ? clamp(1.0 - (a - b) / softness, 0.0, 1.0) : 1.0; }
+/// Square of the difference of two ways; which end of a way comes first decides nothing.
+float unlike(vec2 a, vec2 b) { return max(dot(a, a) + dot(b, b) - 2.0 * abs(dot(a, b)), 1e-6); }
+
+/// Adds one pixel, `i` steps along the way, to what is not in front (colour and weight) and to what is (colour and share of the time).
+/// `share`: how much of it lies on the way; `inside`: how much of its step the way covers.
+void count(inout vec4 behind, inout vec4 front, ivec2 at, float share, float i, float inside, vec2 step, vec4 own, vec2 other, bool two) {
+  vec4 read = fetch(source, at);
+  float in_front = clamp((read.z - own.z) / softness, 0.0, 1.0);
+  // What is in front passes over this pixel for as long as its own motion along this way says.
+  float steps = abs(dot(read.xy, step)) / dot(step, step);
+  float passes = share * in_front * covered(i, steps) / (2.0 * max(steps, 0.5));
+  if (two) {
+    // It belongs to the way that it is more like.
+    float to_own = unlike(read.xy, own.xy), to_other = unlike(read.xy, other);
+    passes *= (inside < 0.0 ? to_own : to_other) / (to_own + to_other);
+  }
+  float stays = share * max(inside, 0.0) * (1.0 - in_front);
+  if (passes + stays <= 0.0) return;
+  vec3 color = fetch(picture, at).rgb;
+  front += passes * vec4(color, 1.0);
+  behind += stays * vec4(color, 1.0);
+}
+
+/// Adds what lies along a way, to both sides. `first`: it is the pixel's own way, and what is not in front counts too.
+void follow(inout vec4 behind, inout vec4 front, ivec2 pixel, vec2 way, vec4 own, vec2 other, bool two, bool first) {
+  float length_of_way = longer(way);
+  // No more reads than there may be: each then stands for several pixels.
+  float apart = max(1.0, ceil((2.0 * length_of_way - 0.3) / float(samples)));
+  vec2 step = way * (apart / length_of_way);
+  bool flat_way = abs(way.x) >= abs(way.y);
+  ivec2 across = flat_way ? ivec2(0, 1) : ivec2(1, 0);
+  ivec2 along = (1 - across) * (int(apart) * ((flat_way ? way.x : way.y) < 0.0 ? -1 : 1));
+  float slope = flat_way ? step.y : step.x, steps = length_of_way / apart;
+  int reads = int(floor(steps + 0.5));
+  for (int i = 1; i <= reads; ++i) {
+    float inside = first ? covered(float(i), steps) : -1.0;
+    float aside = float(i) * slope, whole = floor(aside), rest = aside - whole;
+    ivec2 to = i * along + int(whole) * across;
+    count(behind, front, pixel + to, 1.0 - rest, float(i), inside, step, own, other, two);
+    count(behind, front, pixel + to + across, rest, float(i), inside, step, own, other, two);
+    count(behind, front, pixel - to, 1.0 - rest, float(i), inside, step, own, other, two);
+    count(behind, front, pixel - to - across, rest, float(i), inside, step, own, other, two);
+  }
+}
 
 vec4 sample_at(ivec2 pixel) {
   vec4 color = fetch(picture, pixel);
   vec2 way = fetch(longest, pixel / block).xy;
-  if (dot(way, way) <= 0.25) return color;  // nothing around moves by a pixel
+  if (longer(way) <= 0.5) return color;  // nothing around moves by a pixel
   vec4 own = fetch(source, pixel);
-  float own_way = max(length(own.xy), 0.5);
-  // Another offset for each pixel turns steps into fine grain.
-  float offset = unit_of(pcg3d(uvec3(pixel, 0))).x - 0.5;
-  vec3 mean = color.rgb;
-  // No more reads than there are pixels on the way. (0.7: what is rounded decides nothing where motion is in whole or half pixels.)
-  int count = min(samples, int(floor(2.0 * length(way) + 0.7)) + 1);
-  float weight = float(count) / (float(samples) * own_way);
-  for (int i = 0; i < count; ++i) {
-    float t = (float(i) + offset + 1.0) / float(count + 1) * 2.0 - 1.0;
-    ivec2 at = pixel + ivec2(floor(way * t + 0.5));
-    if (at == pixel) continue;
-    vec4 read = fetch(source, at);
-    float away = length(vec2(at - pixel)), read_way = max(length(read.xy), 0.5);
-    float counts = in_front(read.z, own.z) * cone(away, read_way) + in_front(own.z, read.z) * cone(away, own_way) +
-                   2.0 * cylinder(away, read_way) * cylinder(away, own_way);
-    if (counts <= 0.0) continue;
-    weight += counts;
-    mean = lerp(mean, fetch(picture, at).rgb, counts / weight);
-  }
-  return vec4(mean, color.a);
+  vec4 behind = vec4(color.rgb, 1.0), front = vec4(0.0);
+  bool two = unlike(way, own.xy) > 0.25;
+  if (longer(own.xy) > 0.5) follow(behind, front, pixel, own.xy, own, way, two, true);
+  if (two) follow(behind, front, pixel, way, own, way, true, false);
+  vec3 result = behind.rgb * (max(1.0 - front.a, 0.0) / behind.a) + front.rgb / max(front.a, 1.0);
+  return vec4(result, color.a);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Half the way that a pixel moves while the shutter is open, held to max_radius (xy), its depth (z), and the way's length before it was held (w).
+// Half the way that a pixel moves while the shutter is open, held to max_radius (xy), how near it is (z), and the way's length before it was
+// held (w). Without depth, what moves farther is nearer.
 layout(constant_id = 0) const bool has_depth = false;
 
 uniform vec2 scale;
@@ -9,5 +10,5 @@ vec4 apply(vec4 color, vec4 motion, vec4 depth) {
   vec2 way = clamp(motion.xy * scale, -1e9, 1e9);
   float length_of_way = length(way);
   if (length_of_way > max_radius) way *= max_radius / length_of_way;
-  return vec4(way, has_depth ? depth.r : 0.0, length_of_way);
+  return vec4(way, has_depth ? -depth.r : min(length_of_way, max_radius), length_of_way);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cases.h"
+#include "files.h"
 #include "reference/color.h"
 #include "reference/grading.h"
 #include "reference/tone_mapping.h"
@@ -114,6 +115,37 @@ TEST_F(Effects, CdlAgrees) {
        listed({.slope = {1, 2, 0}, .offset = {-0.02, -0.2, 0}, .power = {1.5, 1, 2}}), listed({.saturation = 0})},
       kSteep);
   expect_skipped("fx.cdl {}", "all settings are neutral");
+}
+
+/// Two corrections in one file.
+constexpr const char* kCorrections = R"(<?xml version="1.0" encoding="UTF-8"?>
+<ColorCorrectionCollection xmlns="urn:ASC:CDL:v1.2">
+  <ColorCorrection id="day">
+    <SOPNode><Slope>1.2 1 0.75</Slope><Offset>0.125 0 0.25</Offset><Power>1 1.5 1</Power></SOPNode>
+    <SatNode><Saturation>1.5</Saturation></SatNode>
+  </ColorCorrection>
+  <ColorCorrection id="night">
+    <SOPNode><Slope>0.5 0.625 1</Slope><Offset>0 0 0.03125</Offset><Power>1 1 1.25</Power></SOPNode>
+  </ColorCorrection>
+</ColorCorrectionCollection>
+)";
+
+TEST_F(Effects, CdlReadsFiles) {
+  write_test_file("grade.ccc", kCorrections);
+  const Cdl day{.slope = {1.2, 1, 0.75}, .offset = {0.125, 0, 0.25}, .power = {1, 1.5, 1}, .saturation = 1.5};
+  const Cdl night{.slope = {0.5, 0.625, 1}, .offset = {0, 0, 0.03125}, .power = {1, 1, 1.25}};
+  const auto scene = random_scene({40, 30}, 94);
+  const auto made = [&](const std::string& entry) { return run_stack(entry, scene, Way::fused).result; };
+  EXPECT_TRUE(agrees(made("fx.cdl { file = \"grade.ccc\" }"), cdl(scene.source, day), kSteep.full, kRgb));
+  for (const char* id : {"night", "1"})
+    EXPECT_TRUE(agrees(made(fmt::format("fx.cdl {{ file = \"grade.ccc\", correction = \"{}\" }}", id)),
+                       cdl(scene.source, night), kSteep.full, kRgb))
+        << id;
+  EXPECT_THAT(build_error("fx.cdl { file = \"grade.ccc\", correction = \"dusk\" }", scene), testing::HasSubstr("dusk"));
+  const Cdl behind{.slope = {1, 2, 1}, .saturation = 0.5};
+  EXPECT_TRUE(
+      agrees(made("fx.cdl { file = \"grade.ccc\", correction = \"night\", slope = { 1, 2, 1 }, saturation = 0.5 }"),
+             cdl(cdl(scene.source, night), behind), kSteep.full, kRgb));
 }
 
 EffectCase curved(const Curves& v) {

@@ -82,8 +82,8 @@ TEST(Cube, NothingCrashes) {
 
 TEST(Cube, EveryFormatRefusesRubbish) {
   const TemporaryFolder folder;
-  for (const char* name :
-       {"a.3dl", "a.csp", "a.spi1d", "a.spi3d", "a.clf", "a.cub", "a.hdl", "a.itx", "a.m3d", "a.vf", "a.cc", "a.cdl"}) {
+  for (const char* name : {"a.3dl", "a.csp", "a.spi1d", "a.spi3d", "a.clf", "a.cub", "a.hdl", "a.itx", "a.m3d", "a.vf",
+                           "a.cc", "a.ccc", "a.cdl"}) {
     for (const char* text : {"", "rubbish\n", "\x01\x02\x03", "LUT_3D_SIZE 1000000\n", "<ProcessList>"}) {
       std::ofstream(folder / name) << text;
       const auto read = read_lut(folder / name);
