@@ -68,7 +68,9 @@ class VideoSink : public FrameSink {
   void follow(const FrameJob& job, VideoPlan& plan) {
     const MovieFacts& facts = job.movie->facts();
     movie_ = job.movie;
-    start_ = facts.pts[static_cast<std::size_t>(job.movie_frame)];
+    // Clocks of MPEG streams run from anywhere; those of other containers begin with the shot.
+    const bool running = facts.container.starts_with("mpeg");
+    if (running || job.movie_frame > 0) start_ = facts.pts[static_cast<std::size_t>(job.movie_frame)];
     plan.time_base = facts.time_base;
     if (facts.rate.numerator > 0) plan.rate = facts.rate;
     plan.source = movie_->file();

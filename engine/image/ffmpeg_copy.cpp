@@ -101,7 +101,7 @@ void FfmpegCopy::add_chapters() {
   for (unsigned i = 0; i < input_->nb_chapters; ++i) {
     const AVChapter& from = *input_->chapters[i];
     const auto at = [&](std::int64_t time) { return av_rescale_q(time, from.time_base, kMicroseconds); };
-    const std::int64_t begin = std::max<std::int64_t>(at(from.start), range_.begin),
+    const std::int64_t begin = std::max<std::int64_t>({at(from.start), range_.begin, range_.shift}),
                        end = std::min<std::int64_t>(at(from.end), range_.end);
     auto* to = begin < end ? static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter))) : nullptr;
     if (!to) continue;
