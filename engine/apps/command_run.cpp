@@ -19,6 +19,8 @@ Result<void> run_run(const RunArguments& a, Console& console) {
     AFTERGLOW_TRY(const Confinement left, sandbox_of(a));
     AFTERGLOW_CHECK(confine(left));
   }
+  constexpr unsigned kSecondsToEndAVideo = 60;
+  if (a.keep_partial) allow_to_end(kSecondsToEndAVideo);
   RunReport report;
   auto done = run_batch(request, run_events(console), report);
   if (!a.stats.empty() && report.session) output("{}", report_text(report, a.stats == "passes"));
@@ -40,6 +42,8 @@ Command add_run_command(CLI::App& program) {
       "  afterglow run presets/neon_night.lua render.exr -o render.png\n"
       "  afterglow run look.lua shot.####.exr -o graded/shot.####.exr --frames 1-240 --resume\n"
       "  afterglow run look.lua *.exr -o graded/ --format png --set glow.strength=0.4 --stats\n"
+      "  afterglow run look.lua clip.mov -o graded.mp4 --crf 16\n"
+      "  ffmpeg -i clip.mp4 -f yuv4mpegpipe - | afterglow run look.lua - -o - | ffmpeg -i - graded.mp4\n"
       "Outputs appear whole or not at all. Notes for --resume lie in the output's folder, in .afterglow/.");
   return {app, [arguments](Console& console) { return run_run(*arguments, console); }};
 }

@@ -46,10 +46,13 @@ Result<void> check_sequences(const PlannedJob& planned) {
 }
 
 /// Chunks have files of their own, and read files that all machines see.
-Result<void> check_files(const PlannedJob& planned) {
-  const auto& inputs = planned.files.inputs;
-  if (planned.files.output == "-" || std::ranges::count(inputs, "-") > 0)
+Result<void> check_streams(const FrameListRequest& files) {
+  if (files.output == "-" || std::ranges::count(files.inputs, "-") > 0)
     return Error{ErrorKind::usage, "'-' is a stream of one machine", "afterglow farm", 0, "files"};
+  return {};
+}
+
+Result<void> check_files(const PlannedJob& planned) {
   const auto& frames = planned.frames;
   if (frames.size() > 1 && frames[0].output == frames[1].output)
     return Error{ErrorKind::usage, fmt::format("{} is one file for all frames", frames[0].output.string()),
@@ -80,7 +83,9 @@ Result<void> pack(const FarmArguments& arguments, const BatchRequest& request, c
 Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console& console) {
   AFTERGLOW_TRY(const BatchRequest request, arguments.run.request());
   PlannedJob out{.files = request.files};
-  AFTERGLOW_TRY(out.frames, list_frames(request.files));
+  AFTERGLOW_CHECK(check_streams(request.files));
+  AFTERGLOW_TRY(FrameList list, list_frames(request.files, console.diagnostics()));
+  out.frames = std::move(list.jobs);
   AFTERGLOW_CHECK(check_files(out));
   AFTERGLOW_TRY(const auto look, farm::load_look(request, out.frames, console.diagnostics()));
   farm::Job& job = out.job;

@@ -11,9 +11,9 @@
 namespace afterglow {
 namespace {
 
-constexpr unsigned kGrace = 1;  // seconds between being asked to stop and being stopped
-
-volatile std::sig_atomic_t g_interrupted = 0;  // the one global: signal handlers can reach nothing else
+// Globals: signal handlers can reach nothing else.
+volatile std::sig_atomic_t g_interrupted = 0;
+volatile std::sig_atomic_t g_grace = 1;  // seconds between being asked to stop and being stopped
 
 /// A driver may compile or draw for minutes and hears nothing meanwhile. What is half-written goes.
 [[noreturn]] void end_at_once(int) {
@@ -27,7 +27,7 @@ volatile std::sig_atomic_t g_interrupted = 0;  // the one global: signal handler
 void on_signal(int signal) {
   if (g_interrupted != 0) end_at_once(signal);
   g_interrupted = 1;
-  alarm(kGrace);
+  alarm(static_cast<unsigned>(g_grace));
 }
 
 void handle(int signal, void (*handler)(int)) {
@@ -53,6 +53,8 @@ void install_interrupt_handler() {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is a write that fails, with a message
   std::signal(SIGPIPE, SIG_IGN);  // so is one into a pipe that nobody reads
 }
+
+void allow_to_end(unsigned seconds) { g_grace = static_cast<std::sig_atomic_t>(seconds); }
 
 bool interrupted() { return g_interrupted != 0; }
 

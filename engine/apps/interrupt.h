@@ -11,6 +11,9 @@ namespace afterglow {
 /// of the process (SIGXFSZ) and a pipe that nobody reads (SIGPIPE) are errors of whoever writes instead of the end of
 /// the process.
 void install_interrupt_handler();
+/// How many seconds the work has to end, once it was asked to, before the process is ended: 1 unless it is said.
+void allow_to_end(unsigned seconds);
+
 bool interrupted();
 /// What commands return once `interrupted()` is true; exit code 130.
 Error interrupt_error();

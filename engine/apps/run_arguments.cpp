@@ -17,9 +17,13 @@ std::string space_list() {
 
 void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("INPUT", a.files.inputs,
-                 "Pictures: files, sequences like shot.####.exr and shot.%04d.exr, folders that hold one")
+                 "Pictures: files, sequences like shot.####.exr and shot.%04d.exr, folders that hold one, videos; - is "
+                 "standard input")
       ->required();
-  app.add_option("-o,--output", a.files.output, "File, pattern (out.####.png) or folder; the extension says the format")
+  app.add_option("-o,--output", a.files.output,
+                 "File, pattern (out.####.png), folder, video (mp4, mov, mkv, webm, gif, apng) or - (standard output); "
+                 "the extension says "
+                 "the format")
       ->type_name("OUTPUT")
       ->required();
   const std::string input = "Input", sequence = "Sequences", output = "Output";
@@ -49,6 +53,10 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->type_name("X,Y,W,H")
       ->group(input);
 
+  app.add_option("--raw", a.files.raw,
+                 "How raw frames on standard input (-) lie: 1920x1080:rgb48le[:24], pixels by FFmpeg's names")
+      ->type_name("WxH:PIXELS[:FPS]")
+      ->group(input);
   app.add_option("--frames", a.files.frames, "Frames to run: 1-24, 1-24x2, 1,5,10-12 (default: all there are)")
       ->type_name("LIST")
       ->group(sequence);
@@ -71,7 +79,9 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->group(sequence);
   app.add_flag("--fail-fast", a.fail_fast, "Stop at the first frame that fails")->group(sequence);
 
-  app.add_option("--format", a.files.extension, "For outputs in a folder: png, exr, … (default: that of the input)")
+  app.add_option("--format", a.files.extension,
+                 "For outputs in a folder: png, exr, … (default: that of the input); for -o -: y4m (default), raw, "
+                 "ppm, pam, pfm, png, or one picture of any format")
       ->type_name("EXTENSION")
       ->group(output);
   app.add_option(
@@ -107,6 +117,31 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->check(CLI::IsMember({"auto", "blue", "none"}))
       ->type_name("NOISE")
       ->group(output);
+  const std::string video = "Video";
+  app.add_option("--codec", a.codec,
+                 "mp4: h264 (default), h265, av1, vp9; mov: prores (default; prores4444 for alpha), prores4444, dnxhr, "
+                 "h264, h265; mkv: h264 (default), h265, ffv1, prores, prores4444, vp9, av1; webm: vp9 (default), av1")
+      ->type_name("NAME")
+      ->group(video);
+  app.add_option("--crf", a.crf,
+                 "Quality, 0 is best (default: h264 18, h265 20, vp9 24, av1 26); prores, dnxhr and ffv1 take none")
+      ->type_name("N")
+      ->group(video);
+  app.add_option("--bitrate", a.bitrate, "In place of a quality: 8M, 500k bits a second")
+      ->excludes("--crf")
+      ->type_name("RATE")
+      ->group(video);
+  app.add_option(
+         "--pix-fmt", a.pixel_format,
+         "Pixel format by FFmpeg's name: yuv420p, yuv422p10, yuva444p10, gbrp16, rgb48le, … (default: what suits "
+         "the codec and the pictures' depth)")
+      ->type_name("NAME")
+      ->group(video);
+  app.add_option("--audio", a.audio, "Sound from this file, copied as it is (default: that of a video input)")
+      ->type_name("FILE")
+      ->group(video);
+  app.add_flag("--keep-partial", a.keep_partial, "An interrupted video is ended as a shorter one that is whole")
+      ->group(video);
   app.add_flag("--keep-layers", a.keep_layers, "EXR to EXR: copy all other channels and parts unchanged")
       ->group(output);
 }
@@ -164,6 +199,11 @@ PixelOptions pixel_options(const RunArguments& a) {
           {"--pre-roll", a.pre_roll ? fmt::format("{}", *a.pre_roll) : ""},
           {"--type", a.type},
           {"--output-space", a.output_space},
+          {"--codec", a.codec},
+          {"--crf", a.crf ? fmt::format("{}", *a.crf) : ""},
+          {"--bitrate", a.bitrate},
+          {"--pix-fmt", a.pixel_format},
+          {"--audio", a.audio},
           {"--compression", a.compression},
           {"--png-level", fmt::format("{}", a.png_level)},
           {"--jpeg-quality", fmt::format("{}", a.jpeg_quality)},
@@ -186,6 +226,7 @@ Result<WriteOptions> write_options(const RunArguments& a) {
   AFTERGLOW_TRY(options.space, find_output_space(a.output_space));
   options.type = sample_type(a.type);
   options.compression = a.compression;
+  options.video = {a.codec, a.pixel_format, a.bitrate, a.crf, a.audio};
   options.png_level = a.png_level;
   options.jpeg_quality = a.jpeg_quality;
   if (a.dither != "auto") options.dither = a.dither == "blue";
@@ -198,6 +239,7 @@ Result<FrameLoopOptions> loop_options(const RunArguments& a, std::uint64_t max_m
   FrameLoopOptions options;
   AFTERGLOW_TRY(options.write, write_options(a));
   options.nan_policy = nan_policy(a.nan_policy);
+  options.keep_partial = a.keep_partial;
   options.fail_fast = a.fail_fast || options.nan_policy == NanPolicy::fail;
   options.fps = a.fps;
   options.max_memory = max_memory;
@@ -246,6 +288,7 @@ Result<BatchRequest> RunArguments::request() const {
   AFTERGLOW_TRY(out.session, session_options(*this));
   AFTERGLOW_TRY(out.loop, loop_options(*this, out.session.stack.max_memory));
   AFTERGLOW_TRY(out.preset, preset.preset_file());
+  out.files.limits = {out.loop.read.max_side, out.loop.read.max_bytes};
   return out;
 }
 

@@ -19,7 +19,9 @@ struct RunArguments {
   std::string input_space, output_space, size, region;
   std::string type = "auto", dither = "auto", compression, nan_policy = "zero";
   int png_level = 1, jpeg_quality = 95;
-  bool keep_layers = false, resume = false, watch = false, fail_fast = false, sandbox = false;
+  std::string codec, bitrate, pixel_format, audio;
+  std::optional<int> crf;
+  bool keep_partial = false, keep_layers = false, resume = false, watch = false, fail_fast = false, sandbox = false;
   double fps = 24;
   std::optional<int> pre_roll;
   std::string stats, report, lock, locked;

@@ -52,7 +52,7 @@ Result<Confinement> sandbox_of(const RunArguments& a) {
   // A picture is read alone; of a sequence the folder, whose other files are its frames.
   const auto picture = [&left](const std::string& given) {
     std::error_code ignored;
-    if (given.empty()) return;
+    if (given.empty() || given == "-") return;
     left.list.push_back(folder_of(given));
     left.read.push_back(fs::exists(given, ignored) ? fs::path(given) : folder_of(given));
   };

@@ -29,6 +29,7 @@ struct BatchRun {
   Clock::time_point start = Clock::now();
   std::unique_ptr<FrameSink> sink{};
   std::unique_ptr<Session> session{};
+  FrameList list{};
   std::optional<Hash> record_look{};
   std::optional<Lock> lock{};  ///< of what runs, when one is to be written or held against
 
@@ -113,16 +114,30 @@ Result<void> check_outputs(const BatchRun& run) {
   return {};
 }
 
+/// The next frame of standard input.
+Result<FrameRecord*> next_record(BatchRun& run) {
+  AFTERGLOW_TRY(std::optional<FrameJob> job, run.list.more());
+  if (!job) return static_cast<FrameRecord*>(nullptr);
+  run.report.frames.push_back({.job = std::move(*job)});
+  return &run.report.frames.back();
+}
+
 Result<void> run_frames(BatchRun& run) {
   const BatchRequest& asked = run.request;
   auto& frames = run.report.frames;
-  AFTERGLOW_TRY(run.sink, open_sink(asked.files, asked.loop.write, asked.loop.fps, run.events.diagnostics));
+  if (asked.resume && is_one_output(asked.files.output))
+    return Error{ErrorKind::usage, "--resume goes on with files of their own; a video or a stream is made whole",
+                 "afterglow run", 0, "a pattern like out.####.exr, which becomes a video afterwards"};
+  AFTERGLOW_TRY(run.sink,
+                open_sink(asked.files, asked.loop.write, asked.loop.fps, frames.size(), run.events.diagnostics));
   if (!run.sink->is_one()) AFTERGLOW_CHECK(check_outputs(run));
   if (run.sink->is_one() && asked.watch)
     return Error{ErrorKind::usage, "--watch makes frames in the order in which they come; one file cannot take them",
                  "afterglow run", 0, "pictures, like out.####.exr"};
+  if (run.list.more && asked.watch)
+    return Error{ErrorKind::usage, "--watch is for files; frames on standard input are run as they come", "afterglow run"};
   SessionOptions opened = asked.session;
-  opened.frames = frames.size() > 1 ? kFramesInFlight : 1;
+  opened.frames = frames.size() > 1 || run.list.more ? kFramesInFlight : 1;
   AFTERGLOW_TRY(run.session, Session::open(asked.preset, opened, run.events.diagnostics));
   FrameLoopOptions options = asked.loop;
   options.read.auxiliary = run.session->preset().needs();
@@ -136,6 +151,7 @@ Result<void> run_frames(BatchRun& run) {
   if (run.record_look) run.sink->record_look(*run.record_look);
   const auto run_waiting = [&]() -> Result<void> {
     Schedule schedule = earlier ? schedule_with_histories(frames, asked.files, *earlier) : plain_schedule(frames);
+    if (run.list.more) schedule.more = [&run] { return next_record(run); };
     run.report.pre_roll += schedule.earlier.size();
     return loop.run(schedule);
   };
@@ -150,8 +166,11 @@ Result<void> run_frames(BatchRun& run) {
 
 Result<void> run_batch(const BatchRequest& request, const RunEvents& events, RunReport& report) {
   BatchRun run{request, events, report};
-  AFTERGLOW_TRY(const auto jobs, list_frames(request.files));
-  for (const auto& job : jobs) report.frames.push_back({.job = job});
+  AFTERGLOW_TRY(run.list, list_frames(request.files, events.diagnostics));
+  if (run.list.more && request.resume)
+    return Error{ErrorKind::usage, "--resume needs inputs that are files, not standard input", "afterglow run"};
+  for (const auto& job : run.list.jobs) report.frames.push_back({.job = job});
+  run.list.jobs.clear();
   auto done = run_frames(run);
   if (done && !request.lock.empty()) done = write_file_atomically(request.lock, lock_text(*run.lock));
   if (run.session) report.session = run.session->report();

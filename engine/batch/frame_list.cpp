@@ -9,6 +9,7 @@
 
 #include "core/text.h"
 #include "image/sequence.h"
+#include "image/video_output.h"
 
 namespace afterglow {
 namespace {
@@ -37,6 +38,7 @@ class OutputNames {
   static Result<OutputNames> parse(const FrameListRequest& request) {
     OutputNames names;
     std::error_code ec;
+    if (is_one_output(request.output)) return one_of(request);
     names.is_folder_ = request.output.ends_with('/') || fs::is_directory(request.output, ec);
     names.folder_ = request.output;
     names.extension_ = request.extension;
@@ -51,16 +53,35 @@ class OutputNames {
     return names;
   }
 
-  bool one_file() const { return !is_folder_ && !pattern_.numbered; }
+  bool takes_all() const { return takes_all_; }
+  bool one_file() const { return !is_folder_ && !takes_all_ && !pattern_.numbered; }
   fs::path name(const fs::path& input, int frame) const {
     if (!is_folder_) return pattern_.file(frame);
     fs::path name = input.filename();
     if (!extension_.empty()) name.replace_extension(extension_);
     return folder_ / name;
   }
+  /// Of a frame of a video or of standard input.
+  Result<fs::path> numbered(const fs::path& input, int frame) const {
+    if (!is_folder_) return pattern_.file(frame);
+    if (extension_.empty()) return usage("frames of a video in a folder need --format, as in --format exr");
+    const std::string stem = input == "-" ? "frame" : input.stem().string();
+    return folder_ / fmt::format("{}.{:04}{}", stem, frame, extension_);
+  }
 
  private:
-  bool is_folder_ = false;
+  static Result<OutputNames> one_of(const FrameListRequest& request) {
+    OutputNames names;
+    AFTERGLOW_TRY(names.pattern_, parse_pattern(request.output));
+    if (names.pattern_.numbered)
+      return usage(fmt::format("a video takes all frames; {} would be one for each", request.output));
+    names.takes_all_ = true;
+    if (request.output != "-" && !request.extension.empty())
+      return usage("--format is for outputs in a folder and for standard output; a file name says its format itself");
+    return names;
+  }
+
+  bool is_folder_ = false, takes_all_ = false;
   fs::path folder_;
   std::string extension_;
   Pattern pattern_;
@@ -71,11 +92,11 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, ec);
 }
 
-Result<void> check_outputs(const std::vector<FrameJob>& jobs) {
+Result<void> check_outputs(const std::vector<FrameJob>& jobs, bool one) {
   std::map<fs::path, fs::path> made_from;
   for (const auto& job : jobs) {
     const auto [at, is_new] = made_from.emplace(job.output, job.input);
-    if (!is_new)
+    if (!is_new && !one)
       return usage(fmt::format("{} and {} would both be written to {}", at->second.string(), job.input.string(),
                                job.output.string()));
     for (const auto& source : job.sources())
@@ -86,6 +107,8 @@ Result<void> check_outputs(const std::vector<FrameJob>& jobs) {
 }
 
 }  // namespace
+
+bool is_one_output(const std::string& output) { return output == "-" || is_video_output(output); }
 
 Result<FrameJob> job_of(const FrameListRequest& request, const std::string& sequence, const FrameFile& file) {
   FrameJob job{.frame = file.frame,
@@ -109,30 +132,131 @@ std::vector<fs::path> FrameJob::sources() const {
   return files;
 }
 
-Result<std::vector<FrameJob>> list_frames(const FrameListRequest& request) {
+Result<FrameJob> job_of(const FrameListRequest& request, const std::shared_ptr<Movie>& movie, int frame) {
+  AFTERGLOW_TRY(FrameJob job, job_of(request, movie->file().string(), {frame + 1, movie->file()}));
+  job.movie = movie;
+  job.movie_frame = frame;
+  job.time = movie->time(frame);
+  job.fps = movie->fps();
+  return job;
+}
+
+namespace {
+
+/// Frames of a stream become jobs one by one.
+class StreamJobs {
+ public:
+  StreamJobs(const FrameListRequest& request, OutputNames names, std::unique_ptr<MovieStream> stream)
+      : request_(request), names_(std::move(names)), stream_(std::move(stream)) {}
+
+  Result<std::optional<FrameJob>> next() {
+    AFTERGLOW_TRY(const MovieStream::Frame frame, stream_->next());
+    if (!frame.movie) return std::optional<FrameJob>();
+    if (++count_ > 1 && names_.one_file())
+      return usage(
+          fmt::format("more than one frame comes on standard input; {} takes one: give a pattern like "
+                      "out.####.png or a folder",
+                      request_.output));
+    AFTERGLOW_TRY(FrameJob job, job_of(request_, frame.movie, 0));
+    job.frame = count_;
+    job.time = frame.time;
+    job.fps = stream_->fps();
+    job.passing = true;
+    AFTERGLOW_TRY(job.output, names_.numbered("-", count_));
+    return std::optional<FrameJob>(std::move(job));
+  }
+
+ private:
+  FrameListRequest request_;
+  OutputNames names_;
+  std::shared_ptr<MovieStream> stream_;
+  int count_ = 0;
+};
+
+Result<void> add_movie(const FrameListRequest& request, const OutputNames& names, const fs::path& file,
+                       const std::optional<std::vector<int>>& frames, FrameList& list, Diagnostics& diagnostics) {
+  AFTERGLOW_TRY(const std::shared_ptr<Movie> movie, Movie::open(file, request.limits, diagnostics));
+  const auto add = [&](int frame) -> Result<void> {
+    AFTERGLOW_TRY(FrameJob job, job_of(request, movie, frame));
+    AFTERGLOW_TRY(job.output, names.numbered(file, frame + 1));
+    list.jobs.push_back(std::move(job));
+    return {};
+  };
+  if (!frames) {
+    for (int frame = 0; frame < movie->frames(); ++frame) AFTERGLOW_CHECK(add(frame));
+    return {};
+  }
+  for (const int number : *frames) {
+    if (number < 1 || number > movie->frames())
+      return Error{ErrorKind::io, fmt::format("has no frame {}; it has {}", number, movie->frames()), file.string()};
+    AFTERGLOW_CHECK(add(number - 1));
+  }
+  return {};
+}
+
+Result<void> add_files(const FrameListRequest& request, const OutputNames& names, const std::string& input,
+                       const std::optional<std::vector<int>>& frames, FrameList& list, Diagnostics& diagnostics) {
+  AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));
+  if (!pattern.numbered && !movie_format(pattern.file(0)).empty())
+    return add_movie(request, names, pattern.file(0), frames, list, diagnostics);
+  if (frames && !pattern.numbered)
+    return usage(fmt::format("--frames needs a numbered input like shot.####.exr or a video, not {}", input));
+  AFTERGLOW_TRY(const auto files, find_frames(pattern, frames));
+  for (const auto& [frame, file] : files) {
+    AFTERGLOW_TRY(FrameJob job, job_of(request, pattern.numbered ? input : name_without_number(file), {frame, file}));
+    job.output = names.name(file, frame);
+    list.jobs.push_back(std::move(job));
+  }
+  return {};
+}
+
+Result<void> add_standard_input(const FrameListRequest& request, const OutputNames& names,
+                                const std::optional<std::vector<int>>& frames, FrameList& list,
+                                Diagnostics& diagnostics) {
+  if (request.inputs.size() > 1) return usage("standard input goes with no other input");
+  AFTERGLOW_TRY(StandardInput input, open_standard_input(request.raw, request.limits, diagnostics));
+  list.file = input.file;
+  if (input.file && !movie_format(input.file->name()).empty())
+    return add_movie(request, names, input.file->name(), frames, list, diagnostics);
+  if (frames) return usage("--frames needs frames that can be sought in, not those of standard input");
+  if (input.file) {
+    AFTERGLOW_TRY(FrameJob job, job_of(request, "-", {1, input.file->name()}));
+    AFTERGLOW_TRY(job.output, names.numbered("-", 1));
+    list.jobs.push_back(std::move(job));
+    return {};
+  }
+  const auto jobs = std::make_shared<StreamJobs>(request, names, std::move(input.stream));
+  AFTERGLOW_TRY(std::optional<FrameJob> first, jobs->next());
+  if (first) list.jobs.push_back(std::move(*first));
+  list.more = [jobs] { return jobs->next(); };
+  return {};
+}
+
+}  // namespace
+
+Result<FrameList> list_frames(const FrameListRequest& request, Diagnostics& diagnostics) {
   std::optional<std::vector<int>> frames;
   if (!request.frames.empty()) {
     AFTERGLOW_TRY(frames, parse_frames(request.frames));
   }
   AFTERGLOW_TRY(const OutputNames names, OutputNames::parse(request));
-  std::vector<FrameJob> jobs;
+  FrameList list;
+  bool standard = false;
   AFTERGLOW_TRY(const auto inputs, with_sequences(request.inputs));
   for (const auto& input : inputs) {
-    AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));
-    if (frames && !pattern.numbered)
-      return usage(fmt::format("--frames needs a numbered input like shot.####.exr, not {}", input));
-    AFTERGLOW_TRY(const auto files, find_frames(pattern, frames));
-    for (const auto& [frame, file] : files) {
-      AFTERGLOW_TRY(FrameJob job, job_of(request, pattern.numbered ? input : name_without_number(file), {frame, file}));
-      job.output = names.name(file, frame);
-      jobs.push_back(std::move(job));
+    if (input == "-") {
+      standard = true;
+      AFTERGLOW_CHECK(add_standard_input(request, names, frames, list, diagnostics));
+    } else {
+      AFTERGLOW_CHECK(add_files(request, names, input, frames, list, diagnostics));
     }
   }
-  if (jobs.size() > 1 && names.one_file())
+  if (!request.raw.empty() && !standard) return usage("--raw is for frames on standard input: give - as the input");
+  if (list.jobs.size() > 1 && names.one_file())
     return usage(fmt::format("{} frames cannot go into the one file {}; give a pattern like out.####.png or a folder",
-                             jobs.size(), request.output));
-  AFTERGLOW_CHECK(check_outputs(jobs));
-  return jobs;
+                             list.jobs.size(), request.output));
+  AFTERGLOW_CHECK(check_outputs(list.jobs, names.takes_all()));
+  return list;
 }
 
 }  // namespace afterglow

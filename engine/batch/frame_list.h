@@ -3,10 +3,15 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/diagnostics.h"
 #include "core/result.h"
+#include "image/movie_stream.h"
 #include "image/reader.h"
 #include "image/sequence.h"
 
@@ -18,6 +23,11 @@ struct FrameJob {
   LayerChoice depth, normal, motion;  ///< patterns resolved for this frame
   /// Frames of one sequence have the same: the pattern, or a file's name without its number.
   std::string sequence{};
+  std::shared_ptr<Movie> movie{};                ///< of a video's frame; `input` is the video
+  int movie_frame = 0;                           ///< in it, from 0
+  std::optional<double> time{};                  ///< of a video's frame, in seconds from the first
+  double fps = 0;                                ///< of the video; 0: unknown
+  bool passing = false;                          ///< from a stream: its pixels go when it is done
   std::vector<std::filesystem::path> earlier{};  ///< files of earlier frames that the output depends on
 
   /// Every file that the output is made from.
@@ -25,18 +35,33 @@ struct FrameJob {
 };
 
 struct FrameListRequest {
-  std::vector<std::string> inputs;  ///< files, patterns, and folders that hold one sequence
-  std::string output;               ///< file, pattern or folder
+  std::vector<std::string> inputs;  ///< files, patterns, folders that hold one sequence, videos; "-" alone: standard input
+  std::string output;               ///< file, pattern or folder; a video; "-": standard output
   std::string extension;            ///< --format, for outputs in a folder; empty: that of the input
+  std::string raw;                  ///< --raw: how frames on standard input lie
+  SizeLimits limits{};              ///< of videos and of what comes on standard input
   std::string frames;               ///< "1-24x2"; empty: all that exist
   LayerChoice depth, normal, motion;
 };
 
+/// Whether all frames go into this one output, a video or standard output.
+bool is_one_output(const std::string& output);
+
 /// A frame of a sequence, without an output. Errors: usage (a pattern for depth or normal that is none).
 Result<FrameJob> job_of(const FrameListRequest& request, const std::string& sequence, const FrameFile& file);
 
-/// Errors: usage (a plain output for several frames, two inputs for one output, an output that is an input), io
-/// (nothing matches).
-Result<std::vector<FrameJob>> list_frames(const FrameListRequest& request);
+/// A frame of a video, without an output.
+Result<FrameJob> job_of(const FrameListRequest& request, const std::shared_ptr<Movie>& movie, int frame);
+
+struct FrameList {
+  std::vector<FrameJob> jobs;
+  /// When not empty, standard input goes on behind them: the next frame, or none at its end.
+  std::function<Result<std::optional<FrameJob>>()> more;
+  std::shared_ptr<const MemoryFile> file;  ///< what came on standard input, when it is a job's file
+};
+
+/// Opens videos and standard input. Errors: usage (a plain output for several frames, two inputs for one output, an
+/// output that is an input), io (nothing matches).
+Result<FrameList> list_frames(const FrameListRequest& request, Diagnostics& diagnostics);
 
 }  // namespace afterglow

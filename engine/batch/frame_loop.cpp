@@ -47,9 +47,10 @@ Result<void> FrameLoop::run(Schedule& schedule) {
   const auto& frames = schedule.frames;
   pre_roll_ = schedule.earlier.size();
   total_ = frames.size() - pre_roll_;
+  endless_ = static_cast<bool>(schedule.more);
   const auto start = Clock::now();
   std::unique_ptr<Reading> next;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
+  for (std::size_t i = 0; i < frames.size() || fetch(schedule, i); ++i) {
     if (events_.interrupted()) return close(interruption());
     if (frames.size() > 1)
       events_.progress(i, frames.size(),
@@ -63,7 +64,7 @@ Result<void> FrameLoop::run(Schedule& schedule) {
         return close(fail(*reading->frame, std::move(prepared).error()));
     }
     if (reading->picture.valid()) reading->picture.wait();
-    if (overlap_ && i + 1 < frames.size()) next = begin_reading(frames[i + 1]);
+    if (overlap_ && (i + 1 < frames.size() || fetch(schedule, i + 1))) next = begin_reading(frames[i + 1]);
     if (auto done = process(std::move(reading)); !done) return close(done.error());
     if (!overlap_)
       if (auto done = finish_writing(0); !done) return close(done.error());
@@ -71,11 +72,25 @@ Result<void> FrameLoop::run(Schedule& schedule) {
   return close({});
 }
 
+/// Frames of a stream come one by one. False: there is none of that place.
+bool FrameLoop::fetch(Schedule& schedule, std::size_t place) {
+  if (!schedule.more || place != schedule.frames.size()) return false;
+  auto record = schedule.more();
+  if (!record) stream_error_ = std::move(record).error();
+  if (!record || !*record) {
+    schedule.more = {};
+    return false;
+  }
+  schedule.frames.push_back({*record, false, false, place - pre_roll_});
+  total_ = schedule.frames.size() - pre_roll_;
+  return true;
+}
+
 /// What was written appears when the run has come to its end, failed frames or not; of an interrupted one if that is
 /// wished.
 Result<void> FrameLoop::finish_sink(const Result<void>& result) {
-  const bool interrupted = !result && result.error().kind == ErrorKind::interrupted;
-  return result || (interrupted && options_.keep_partial) ? sink_.finish() : Result<void>();
+  const bool keeps = !result && result.error().kind == ErrorKind::interrupted && options_.keep_partial;
+  return result || keeps ? sink_.finish(keeps ? 0 : total_) : Result<void>();
 }
 
 /// Waits for the last output and sums up.
@@ -94,6 +109,7 @@ Result<void> FrameLoop::close(Result<void> result) {
     return result;
   }
   if (!last) return last;
+  if (stream_error_) return *stream_error_;
   if (total_ > 1) non_finite_.sum_up(events_.diagnostics);
   if (failed_ > 0) return Error{ErrorKind::io, fmt::format("{} of {} frames failed", failed_, total_)};
   return {};
@@ -123,7 +139,7 @@ Result<std::shared_ptr<const Build>> FrameLoop::inspect(const FrameJob& job) {
 /// Frames are read, processed and written beside each other as memory allows.
 void FrameLoop::choose_overlap(const FrameNeed& need) {
   constexpr std::uint64_t kMostWritten = 3;
-  overlap_ = total_ + pre_roll_ > 1 && need.frames(1) <= options_.max_memory;
+  overlap_ = several() && need.frames(1) <= options_.max_memory;
   most_written_ = 1;
   while (overlap_ && most_written_ < kMostWritten && need.frames(most_written_ + 1) <= options_.max_memory)
     ++most_written_;
@@ -162,7 +178,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
                                   const auto start = Clock::now();
                                   auto picture = read_picture(header, options, events_.diagnostics);
                                   if (picture && scaling) scale_picture(*picture, *scaling);
-                                  if (picture && options_.reuse && total_ + pre_roll_ > 1) note_content(*picture);
+                                  if (picture && options_.reuse && several()) note_content(*picture);
                                   frame.read = milliseconds_since(start);
                                   return picture;
                                 });
@@ -292,6 +308,7 @@ Result<void> FrameLoop::finish_writing(std::size_t left) {
       continue;
     }
     frame->state = FrameRecord::State::done;
+    if (frame->job.passing) frame->job.movie.reset();
     ++done_;
   }
   return {};
@@ -300,12 +317,13 @@ Result<void> FrameLoop::finish_writing(std::size_t left) {
 /// Notes the failure; returns it when the run ends with it.
 Result<void> FrameLoop::fail(FrameRecord& frame, Error error, bool pre_roll) {
   frame.state = FrameRecord::State::failed;
+  if (frame.job.passing) frame.job.movie.reset();
   frame.error = error;
   if (pre_roll && !ends_run(error)) {
     events_.diagnostics.warn("left out of the pre-roll: " + error.text());
     return {};
   }
-  if (total_ == 1 || options_.fail_fast || ends_run(error)) return error;
+  if ((total_ == 1 && !endless_) || options_.fail_fast || ends_run(error)) return error;
   ++failed_;
   events_.failed(error);
   return {};

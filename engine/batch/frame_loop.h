@@ -43,6 +43,8 @@ class FrameLoop {
 
  private:
   struct Reading;
+  bool fetch(Schedule& schedule, std::size_t place);
+  bool several() const { return endless_ || total_ + pre_roll_ > 1; }
   void choose_overlap(const FrameNeed& need);
   std::unique_ptr<Reading> begin_reading(const ScheduledFrame& scheduled);
   Result<void> place_in_time(Reading& reading);
@@ -69,6 +71,8 @@ class FrameLoop {
   WriteQueue writing_;
   NonFiniteRecord non_finite_;
   std::size_t total_ = 0, pre_roll_ = 0, done_ = 0, failed_ = 0;
+  bool endless_ = false;  ///< nobody knows how many frames will come
+  std::optional<Error> stream_error_;
   bool overlap_ = false;
   std::size_t most_written_ = 1;  ///< frames that are being written at a time
   std::optional<int> last_;       ///< number of the frame that the next one follows

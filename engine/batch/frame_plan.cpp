@@ -37,6 +37,8 @@ ReadOptions FramePlanner::read_options(const FrameJob& job) const {
   options.depth = job.depth;
   options.normal = job.normal;
   options.motion = job.motion;
+  options.movie = job.movie;
+  options.movie_frame = job.movie_frame;
   options.nan_policy = options_.nan_policy;
   return options;
 }
@@ -74,8 +76,8 @@ Result<FrameRequest> FramePlanner::request_of(const FrameJob& job, const Picture
   context.layers = header.layers;
   context.metadata = {header.facts, &header.facts->metadata};
   context.frame = job.frame;
-  context.fps = options_.fps;
-  context.time = job.frame / options_.fps;
+  context.fps = job.fps > 0 ? job.fps : options_.fps;
+  context.time = job.time.value_or(job.frame / options_.fps);
   context.position = camera_position(header.facts->metadata);
   context.step = request.step = step;
   context.restart = request.restart = restart;

@@ -2,6 +2,9 @@
 #include "batch/frame_sink.h"
 
 #include "batch/resume.h"
+#include "batch/stream_sink.h"
+#include "batch/video_sink.h"
+#include "image/video_output.h"
 
 namespace afterglow {
 namespace {
@@ -29,8 +32,10 @@ class FileSink : public FrameSink {
 
 }  // namespace
 
-Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest&, const WriteOptions& options, double,
-                                             Diagnostics& diagnostics) {
+Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const WriteOptions& options, double fps,
+                                             std::size_t frames, Diagnostics& diagnostics) {
+  if (files.output == "-") return open_stream_sink(files.extension, options, fps, frames, diagnostics);
+  if (is_video_output(files.output)) return open_video_sink(files.output, options, fps, diagnostics);
   return std::unique_ptr<FrameSink>(std::make_unique<FileSink>(options, diagnostics));
 }
 

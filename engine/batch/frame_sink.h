@@ -29,15 +29,16 @@ class FrameSink {
   /// A frame; `index` is its place among those that the run was asked for, from 0. Where is_one(), one call at a time
   /// and in order; the places of frames that failed are left out.
   virtual Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture) = 0;
-  /// All that can come has come: what was written appears. Without this call it goes.
-  virtual Result<void> finish() { return {}; }
+  /// All that can come has come, of so many frames that were asked for: what was written appears. Without this call it
+  /// goes.
+  virtual Result<void> finish(std::size_t /*frames*/) { return {}; }
   /// What the look is, for notes that --resume reads.
   virtual void record_look(const Hash&) {}
 };
 
-/// For the output of `files`. Errors: usage (options that do not go with this output), io (it cannot be written; see
-/// check_output).
+/// For the output of `files`, into which so many frames are known to go. Errors: usage (options that do not go with
+/// this output), io (it cannot be written; see check_output).
 Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const WriteOptions& options, double fps,
-                                             Diagnostics& diagnostics);
+                                             std::size_t frames, Diagnostics& diagnostics);
 
 }  // namespace afterglow

@@ -56,7 +56,7 @@ bool is_up_to_date(const FrameJob& job, const Hash& look) {
   return record && trim(*record) == look.hex();
 }
 
-int remove_leftovers(const std::vector<FrameRecord>& frames) {
+int remove_leftovers(const FrameRecords& frames) {
   std::set<fs::path> folders;
   for (const auto& frame : frames) folders.insert(frame.job.output.parent_path());
   int removed = 0;

@@ -27,7 +27,7 @@ Result<Hash> look_hash(const Preset& preset, const Graph& graph, const std::stri
 bool is_up_to_date(const FrameJob& job, const Hash& look);
 /// Removes what killed runs on this machine have left half-written in the folders of these outputs; returns how many
 /// files.
-int remove_leftovers(const std::vector<FrameRecord>& frames);
+int remove_leftovers(const FrameRecords& frames);
 /// Notes that the output was made by this look. Errors: io.
 Result<void> record_made(const FrameJob& job, const Hash& look);
 

@@ -2,6 +2,7 @@
 // What a run has to say for itself: --stats as text, --report as JSON.
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,9 +25,12 @@ struct FrameRecord {
   std::vector<Skipped> skipped;  ///< what this frame did not run because of its content
 };
 
+/// Those of standard input grow in number, and others point at them.
+using FrameRecords = std::deque<FrameRecord>;
+
 struct RunReport {
   std::optional<SessionReport> session;  ///< empty when it could not be opened
-  std::vector<FrameRecord> frames;
+  FrameRecords frames;
   std::size_t pre_roll = 0;  ///< earlier frames that were run besides, for what they hand on
   double startup = 0;        ///< from the start of the program until the first frame can begin; script not included
   double wall = 0;           ///< from the start of the program to now

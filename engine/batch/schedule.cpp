@@ -13,27 +13,31 @@ namespace {
 using Frames = std::map<int, FrameJob>;
 
 /// Asked for, and on disk.
-Frames frames_of(const std::string& sequence, const std::vector<FrameRecord>& records,
-                 const FrameListRequest& request) {
+Frames frames_of(const std::string& sequence, const FrameRecords& records, const FrameListRequest& request) {
   Frames frames;
   if (const auto pattern = parse_pattern(sequence); pattern && pattern->numbered)
     if (const auto files = find_frames(*pattern, std::nullopt))
       for (const auto& file : *files)
         if (auto job = job_of(request, sequence, file)) frames.emplace(file.frame, std::move(job).value());
+  // Those of a video are all there; of a stream, only what comes.
+  const auto own = std::ranges::find(records, sequence, [](const FrameRecord& r) { return r.job.sequence; });
+  if (own != records.end() && own->job.movie && !own->job.passing)
+    for (int frame = 0; frame < own->job.movie->frames(); ++frame)
+      if (auto job = job_of(request, own->job.movie, frame)) frames.emplace(frame + 1, std::move(job).value());
   for (const auto& record : records)
     if (record.job.sequence == sequence) frames.insert_or_assign(record.job.frame, record.job);
   return frames;
 }
 
 /// Sequences in the order in which they were given.
-std::vector<std::string> sequences_of(const std::vector<FrameRecord>& records) {
+std::vector<std::string> sequences_of(const FrameRecords& records) {
   std::vector<std::string> out;
   for (const auto& record : records)
     if (std::ranges::find(out, record.job.sequence) == out.end()) out.push_back(record.job.sequence);
   return out;
 }
 
-std::vector<FrameRecord*> waiting_by_number(const std::string& sequence, std::vector<FrameRecord>& records) {
+std::vector<FrameRecord*> waiting_by_number(const std::string& sequence, FrameRecords& records) {
   std::vector<FrameRecord*> out;
   for (auto& record : records)
     if (record.job.sequence == sequence && record.state == FrameRecord::State::waiting) out.push_back(&record);
@@ -85,21 +89,21 @@ Schedule counted(Schedule schedule) {
 
 }  // namespace
 
-Schedule plain_schedule(std::vector<FrameRecord>& frames) {
+Schedule plain_schedule(FrameRecords& frames) {
   Schedule out;
   for (auto& frame : frames)
     if (frame.state == FrameRecord::State::waiting) out.frames.push_back({&frame, false, false});
   return counted(std::move(out));
 }
 
-Schedule schedule_with_histories(std::vector<FrameRecord>& frames, const FrameListRequest& request, int pre_roll) {
+Schedule schedule_with_histories(FrameRecords& frames, const FrameListRequest& request, int pre_roll) {
   Schedule out;
   for (const auto& sequence : sequences_of(frames))
     add_sequence(out, frames_of(sequence, frames, request), waiting_by_number(sequence, frames), pre_roll);
   return counted(std::move(out));
 }
 
-void note_earlier_files(std::vector<FrameRecord>& frames, const FrameListRequest& request, int pre_roll) {
+void note_earlier_files(FrameRecords& frames, const FrameListRequest& request, int pre_roll) {
   for (const auto& sequence : sequences_of(frames)) {
     const Frames there = frames_of(sequence, frames, request);
     for (auto& record : frames) {

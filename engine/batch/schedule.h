@@ -3,7 +3,7 @@
 // number, and as many earlier ones as the histories of the stack need (their results are not written).
 #pragma once
 
-#include <deque>
+#include <functional>
 #include <vector>
 
 #include "batch/run_report.h"
@@ -19,19 +19,21 @@ struct ScheduledFrame {
 
 struct Schedule {
   std::vector<ScheduledFrame> frames;
-  std::deque<FrameRecord> earlier;  ///< records of the pre-roll
+  FrameRecords earlier;  ///< records of the pre-roll
+  /// When not empty, there may be more: the record of the next frame behind these, null at the end. Errors: io.
+  std::function<Result<FrameRecord*>()> more;
 };
 
 /// For a stack without histories: the frames that wait, in their order.
-Schedule plain_schedule(std::vector<FrameRecord>& frames);
+Schedule plain_schedule(FrameRecords& frames);
 
 /// Each sequence by ascending numbers, whatever order was asked for. The frame before a frame is the one with the next
 /// lower number that there is: among those asked for, and for numbered inputs on disk. So many frames before each frame
 /// run first (`pre_roll`, as far as there are any), unless they run anyway; where the frames between two that are asked
 /// for are more than that, the second begins anew. Frames that are up to date run as pre-roll where they are needed.
-Schedule schedule_with_histories(std::vector<FrameRecord>& frames, const FrameListRequest& request, int pre_roll);
+Schedule schedule_with_histories(FrameRecords& frames, const FrameListRequest& request, int pre_roll);
 
 /// Adds to each job what its output depends on besides its own files: those of so many earlier frames.
-void note_earlier_files(std::vector<FrameRecord>& frames, const FrameListRequest& request, int pre_roll);
+void note_earlier_files(FrameRecords& frames, const FrameListRequest& request, int pre_roll);
 
 }  // namespace afterglow

@@ -39,10 +39,11 @@ Result<std::string> jobs_text(const Job& job, const FrameListRequest& request, c
            {"job", job.folder.string()},
            {"needs", Json{{"partition", job.needs.partition}, {"time", job.needs.time}, {"memory", job.needs.memory}}},
            {"chunks", Json::array()}};
-  std::vector<FrameRecord> records;
+  FrameRecords records;
   for (const auto& frame : frames) records.push_back({.job = frame});
   if (job.pre_roll) note_earlier_files(records, request, *job.pre_roll);
-  std::span<const FrameRecord> left = records;
+  const std::vector<FrameRecord> listed(records.begin(), records.end());
+  std::span<const FrameRecord> left = listed;
   for (std::size_t i = 0; i < job.chunks.size(); ++i) {
     const auto count = static_cast<std::size_t>(job.chunks[i].count);
     const auto command = job.command(i);

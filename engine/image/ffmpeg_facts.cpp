@@ -91,11 +91,12 @@ MovieColor color_of(const AVFrame& frame, AVCodecID codec) {
   color.matrix = frame.colorspace;
   const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
   color.rgb = format && (format->flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL)) != 0;
-  color.picture = codec == AV_CODEC_ID_MJPEG || codec == AV_CODEC_ID_GIF || codec == AV_CODEC_ID_APNG ||
-                  codec == AV_CODEC_ID_PNG || codec == AV_CODEC_ID_BMP || codec == AV_CODEC_ID_WEBP;
+  for (const AVCodecID still : {AV_CODEC_ID_MJPEG, AV_CODEC_ID_GIF, AV_CODEC_ID_APNG, AV_CODEC_ID_PNG, AV_CODEC_ID_BMP,
+                                AV_CODEC_ID_WEBP, AV_CODEC_ID_PPM, AV_CODEC_ID_PGM, AV_CODEC_ID_PAM, AV_CODEC_ID_PFM})
+    color.picture = color.picture || codec == still;
   const bool full_format = format && std::strncmp(format->name, "yuvj", 4) == 0;
   color.full_range = frame.color_range == AVCOL_RANGE_JPEG || full_format ||
-                     (frame.color_range == AVCOL_RANGE_UNSPECIFIED && color.rgb);
+                     (frame.color_range == AVCOL_RANGE_UNSPECIFIED && (color.rgb || color.picture));
   return color;
 }
 

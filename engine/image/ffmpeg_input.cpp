@@ -7,7 +7,9 @@ extern "C" {
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -24,27 +26,7 @@ constexpr int kIoBuffer = 1 << 18;
 constexpr const char* kCodecs =
     "h264,hevc,vp8,vp9,libvpx,libvpx-vp9,libdav1d,libaom-av1,av1,prores,dnxhd,ffv1,mjpeg,gif,apng,png,mpeg1video,"
     "mpeg2video,mpeg4,rawvideo,wrapped_avframe,v210,v410,r210,cfhd,huffyuv,ffvhuff,utvideo,qtrle,theora,dvvideo,"
-    "jpeg2000,tiff,bmp,ppm,pgm,pam,hap,magicyuv";
-
-int read_bytes(void* opaque, std::uint8_t* to, int size) {
-  const int descriptor = static_cast<const FileDescriptor*>(opaque)->get();
-  while (true) {
-    const ssize_t got = ::read(descriptor, to, static_cast<std::size_t>(size));
-    if (got > 0) return static_cast<int>(got);
-    if (got == 0) return AVERROR_EOF;
-    if (errno != EINTR) return AVERROR(errno);
-  }
-}
-
-std::int64_t seek_bytes(void* opaque, std::int64_t to, int whence) {
-  const int descriptor = static_cast<const FileDescriptor*>(opaque)->get();
-  if ((whence & AVSEEK_SIZE) != 0) {
-    struct stat status {};
-    return fstat(descriptor, &status) == 0 ? status.st_size : AVERROR(errno);
-  }
-  const off_t at = lseek(descriptor, to, whence & ~AVSEEK_FORCE);
-  return at < 0 ? AVERROR(errno) : at;
-}
+    "jpeg2000,tiff,bmp,ppm,pgm,pam,pfm,hap,magicyuv";
 
 /// Playlists, external tracks and the like would read other files.
 int refuse_other_files(AVFormatContext*, AVIOContext**, const char*, int, AVDictionary**) { return AVERROR(EPERM); }
@@ -68,6 +50,40 @@ bool is_allowed(const AVCodec& codec) {
 
 }  // namespace
 
+int FfmpegInput::read_bytes(void* opaque, std::uint8_t* to, int size) {
+  Bytes& bytes = *static_cast<Bytes*>(opaque);
+  if (bytes.given < bytes.head.size()) {
+    const std::size_t count = std::min(bytes.head.size() - bytes.given, static_cast<std::size_t>(size));
+    std::memcpy(to, bytes.head.data() + bytes.given, count);
+    bytes.given += count;
+    return static_cast<int>(count);
+  }
+  const int descriptor = bytes.from->get();
+  while (true) {
+    if (bytes.cancelled) {
+      constexpr int kLook = 50;  // milliseconds, after which it is seen that nobody waits any more
+      pollfd waiting{.fd = descriptor, .events = POLLIN, .revents = 0};
+      const int ready = poll(&waiting, 1, kLook);
+      if (*bytes.cancelled) return AVERROR_EXIT;
+      if (ready == 0) continue;
+    }
+    const ssize_t got = ::read(descriptor, to, static_cast<std::size_t>(size));
+    if (got > 0) return static_cast<int>(got);
+    if (got == 0) return AVERROR_EOF;
+    if (errno != EINTR && errno != EAGAIN) return AVERROR(errno);
+  }
+}
+
+std::int64_t FfmpegInput::seek_bytes(void* opaque, std::int64_t to, int whence) {
+  const int descriptor = static_cast<const Bytes*>(opaque)->from->get();
+  if ((whence & AVSEEK_SIZE) != 0) {
+    struct stat status {};
+    return fstat(descriptor, &status) == 0 ? status.st_size : AVERROR(errno);
+  }
+  const off_t at = lseek(descriptor, to, whence & ~AVSEEK_FORCE);
+  return at < 0 ? AVERROR(errno) : at;
+}
+
 FfmpegInput::~FfmpegInput() {
   if (container_) avformat_close_input(&container_);
   if (io_) av_freep(&io_->buffer);
@@ -86,13 +102,13 @@ Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(const std::filesystem::pa
 
 Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(std::shared_ptr<FileDescriptor> from, const std::string& name,
                                                        const std::string& format, const SizeLimits& limits,
-                                                       const std::string& options) {
+                                                       const std::string& options, const std::string& head,
+                                                       const std::atomic<bool>* cancelled) {
   std::unique_ptr<FfmpegInput> input(new FfmpegInput());
   input->name_ = name;
   input->limits_ = limits;
-  input->descriptor_ = std::move(from);
-  struct stat status {};
-  input->seekable_ = fstat(input->descriptor_->get(), &status) == 0 && S_ISREG(status.st_mode);
+  input->bytes_ = {std::move(from), head, 0, cancelled};
+  input->seekable_ = cancelled == nullptr;
   static_cast<void>(ffmpeg_said());
   AFTERGLOW_CHECK(input->open_container(format, options));
   AFTERGLOW_CHECK(input->choose_stream());
@@ -103,8 +119,7 @@ Result<void> FfmpegInput::open_container(const std::string& format, const std::s
   const AVInputFormat* demuxer = av_find_input_format(format.c_str());
   if (!demuxer) return failed(fmt::format("FFmpeg was built without '{}'", format));
   auto* buffer = static_cast<std::uint8_t*>(av_malloc(kIoBuffer));
-  io_ = avio_alloc_context(buffer, kIoBuffer, 0, descriptor_.get(), read_bytes, nullptr,
-                           seekable_ ? seek_bytes : nullptr);
+  io_ = avio_alloc_context(buffer, kIoBuffer, 0, &bytes_, read_bytes, nullptr, seekable_ ? seek_bytes : nullptr);
   container_ = avformat_alloc_context();
   if (!buffer || !io_ || !container_) return failed("there is no memory to open it");
   container_->pb = io_;

@@ -22,10 +22,11 @@ class FfmpegInput {
   /// sides beyond the limits).
   static Result<std::unique_ptr<FfmpegInput>> open(const std::filesystem::path& file, const std::string& format,
                                                    const SizeLimits& limits, const std::string& options = {});
-  /// The same from a descriptor that cannot seek; `name` is for messages.
+  /// The same from a descriptor that cannot seek; see StreamRequest.
   static Result<std::unique_ptr<FfmpegInput>> open(std::shared_ptr<FileDescriptor> from, const std::string& name,
                                                    const std::string& format, const SizeLimits& limits,
-                                                   const std::string& options = {});
+                                                   const std::string& options = {}, const std::string& head = {},
+                                                   const std::atomic<bool>* cancelled = nullptr);
   ~FfmpegInput();
 
   AVFormatContext& container() { return *container_; }
@@ -45,7 +46,14 @@ class FfmpegInput {
 
   std::string name_;
   SizeLimits limits_;
-  std::shared_ptr<FileDescriptor> descriptor_;
+  struct Bytes {
+    std::shared_ptr<FileDescriptor> from;
+    std::string head;       ///< comes first
+    std::size_t given = 0;  ///< of it
+    const std::atomic<bool>* cancelled = nullptr;
+  } bytes_;
+  static int read_bytes(void* opaque, std::uint8_t* to, int size);
+  static std::int64_t seek_bytes(void* opaque, std::int64_t to, int whence);
   bool seekable_ = true;
   AVIOContext* io_ = nullptr;
   AVFormatContext* container_ = nullptr;

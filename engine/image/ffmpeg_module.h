@@ -8,6 +8,7 @@
 
 #include "core/result.h"
 #include "image/movie_source.h"
+#include "image/video_writer.h"
 
 namespace afterglow {
 
@@ -16,6 +17,12 @@ struct FfmpegModule {
   std::string (*version)();
   /// See movie_source.h.
   Result<std::shared_ptr<MovieSource>> (*open)(const MovieRequest& request);
+  Result<std::unique_ptr<MovieFrames>> (*stream)(const StreamRequest& request);
+  /// See ffmpeg_encoder.h.
+  bool (*has_encoder)(const std::string& name);
+  Result<std::unique_ptr<VideoEncoder>> (*encode)(const VideoPlan& plan, OutputFile& out,
+                                                  const std::filesystem::path& path, const std::string& name,
+                                                  Diagnostics& diagnostics);
 };
 
 /// Loads it on the first call; thread-safe. Errors: io (not installed, built without it).

@@ -120,6 +120,13 @@ Result<std::shared_ptr<Movie>> Movie::open(const std::filesystem::path& file, co
   return movie;
 }
 
+std::shared_ptr<Movie> Movie::of(const std::filesystem::path& name, std::shared_ptr<MovieSource> source) {
+  std::shared_ptr<Movie> movie(new Movie());
+  movie->file_ = name;
+  movie->source_ = std::move(source);
+  return movie;
+}
+
 double Movie::fps() const {
   const Rational rate = facts().rate;
   if (rate.numerator > 0 && rate.denominator > 0) return static_cast<double>(rate.numerator) / rate.denominator;

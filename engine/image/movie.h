@@ -22,6 +22,9 @@ class Movie {
   static Result<std::shared_ptr<Movie>> open(const std::filesystem::path& file, const SizeLimits& limits,
                                              Diagnostics& diagnostics);
 
+  /// Of frames that somebody has already; `name` stands for a file.
+  static std::shared_ptr<Movie> of(const std::filesystem::path& name, std::shared_ptr<MovieSource> source);
+
   const std::filesystem::path& file() const { return file_; }
   const MovieFacts& facts() const { return source_->facts(); }
   /// Those that are missing at the end of a truncated file too: reading them is an error.

@@ -101,6 +101,7 @@ void fill_in(MovieFacts& facts) {
   const bool small = is_small(facts.stored), sixty = facts.stored.height == 480 || facts.stored.height == 486;
   std::vector<std::string> taken;
   const bool srgb = color.rgb || color.picture;
+  if (facts.floating && color.transfer == kUnsaid) color.transfer = 8;  // as in pictures: floats are light
   const auto take = [&](int& code, bool known, int value, const char* what) {
     if (known) return;
     if (code != kUnsaid && code != 0 && code != 3)

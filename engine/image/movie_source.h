@@ -2,12 +2,14 @@
 // What a reader of videos tells of one, and how it hands out frames: between movie.h and the module that decodes.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "core/file_descriptor.h"
 #include "core/geometry.h"
 #include "core/result.h"
 #include "image/metadata.h"
@@ -64,6 +66,26 @@ struct MovieRequest {
   std::filesystem::path file;
   std::string format;
   SizeLimits limits;
+};
+
+/// Frames as they come; from one thread at a time.
+class MovieFrames {
+ public:
+  virtual ~MovieFrames() = default;
+  /// The next frame, as a source of that frame alone; null at the end. Errors: io (damaged, cut off).
+  virtual Result<std::shared_ptr<MovieSource>> next() = 0;
+};
+
+/// What cannot be sought in. `head`: bytes that were read from it already; `options`: the demuxer's own, as
+/// "name=value:name=value"; `cancelled`: waiting for bytes ends when it is true. It outlives the stream.
+struct StreamRequest {
+  std::shared_ptr<FileDescriptor> from;
+  std::string head;
+  std::string name;  ///< for messages
+  std::string format;
+  std::string options;
+  SizeLimits limits;
+  const std::atomic<bool>* cancelled = nullptr;
 };
 
 }  // namespace afterglow

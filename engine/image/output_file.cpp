@@ -22,6 +22,11 @@ OutputFile::OutputFile(const std::filesystem::path& path) {
   buffer_.reserve(kBufferSize);
 }
 
+OutputFile::OutputFile(int descriptor) : descriptor_(descriptor) {
+  if (descriptor_ < 0) fail(errno);
+  buffer_.reserve(kBufferSize);
+}
+
 OutputFile::~OutputFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }

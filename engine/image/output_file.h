@@ -19,6 +19,8 @@ class OutputFile {
  public:
   /// Creates `path`, which must not exist. Look at failure() before use.
   explicit OutputFile(const std::filesystem::path& path);
+  /// Takes an open file, which can seek.
+  explicit OutputFile(int descriptor);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

@@ -2,6 +2,7 @@
 #include "image/writer.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -141,8 +142,17 @@ std::optional<DisplayCodes> display_codes(const fs::path& file, const WriteOptio
 }
 
 Result<void> check_output(const fs::path& file, const WriteOptions& options) {
-  const auto refuse = [&](const std::string& why) { return Error{ErrorKind::io, why, file.string()}; };
+  AFTERGLOW_CHECK(check_format(file, options));
+  return check_place(file);
+}
+
+Result<void> check_format(const fs::path& file, const WriteOptions& options) {
   AFTERGLOW_TRY([[maybe_unused]] const OutputFormat* format, output_format(file, options));
+  return {};
+}
+
+Result<void> check_place(const fs::path& file) {
+  const auto refuse = [&](const std::string& why) { return Error{ErrorKind::io, why, file.string()}; };
   const fs::path target = resolved(file);
   std::error_code ec;
   const fs::file_status status = fs::status(target, ec);
@@ -155,6 +165,23 @@ Result<void> check_output(const fs::path& file, const WriteOptions& options) {
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
     return refuse(fmt::format("its folder '{}' cannot be written to: {}", folder.string(), std::strerror(errno)));
   return {};
+}
+
+Result<std::string> picture_bytes(const Picture& picture, const std::string& extension, const WriteOptions& options,
+                                  Diagnostics& diagnostics) {
+  AFTERGLOW_TRY(const OutputFormat* format, output_format("-." + extension, options));
+  AFTERGLOW_CHECK(check_picture(picture));
+  try {
+    OutputFile out(::memfd_create("afterglow", MFD_CLOEXEC));
+    if (!out.failure()) AFTERGLOW_CHECK(write_format(picture, *format, out, "-." + extension, options, diagnostics));
+    std::string bytes(out.size(), '\0');
+    out.seek(0);
+    if (out.read(bytes.data(), bytes.size())) return bytes;
+    AFTERGLOW_CHECK(out.close());
+    return Error{ErrorKind::io, "cannot be written: a file in memory failed"};
+  } catch (const std::exception& error) {
+    return Error{ErrorKind::io, "cannot be written: " + exception_text(error)};
+  }
 }
 
 Result<void> write_picture(const Picture& picture, const fs::path& file, const WriteOptions& options,

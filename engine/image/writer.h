@@ -16,6 +16,15 @@ namespace afterglow {
 
 enum class SampleType { automatic, half, float32, uint8, uint10, uint12, uint16 };
 
+/// Of videos and streams; empty: what suits the output (video_output.h).
+struct VideoOptions {
+  std::string codec;            ///< "h264", …
+  std::string pixel_format;     ///< "yuv420p10le", …
+  std::string bitrate;          ///< "8M"
+  std::optional<int> crf;       ///< quality, 0 is best
+  std::filesystem::path audio;  ///< sound of another file
+};
+
 struct WriteOptions {
   /// automatic: EXR half unless the input was float, HDR and PFM float, DPX and Cineon uint10, display formats uint8
   /// (uint16 when the input had integers of more than 8 bits and the format can). Float TIFF is scene-linear.
@@ -30,6 +39,7 @@ struct WriteOptions {
   /// Blue noise between two integer codes; deterministic. Empty: into 8 bits, not into 16.
   std::optional<bool> dither = {};
   int dither_x = 0, dither_y = 0;  ///< where the picture's upper left pixel lies in the noise (≥ 0)
+  VideoOptions video{};
   bool keep_layers = false;  ///< EXR → EXR: copy all other channels and parts of `picture.facts`' file unchanged
 };
 
@@ -38,6 +48,10 @@ struct WriteOptions {
 /// format wants it.
 Result<void> write_picture(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options,
                            Diagnostics& diagnostics);
+
+/// The bytes that a file of this extension ("png") would have. Errors: as write_picture.
+Result<std::string> picture_bytes(const Picture& picture, const std::string& extension, const WriteOptions& options,
+                                  Diagnostics& diagnostics);
 
 /// How `write_picture` will make 8-bit display codes for `file`, so that another can make them (Picture::unorm8).
 struct DisplayCodes {
@@ -52,5 +66,9 @@ std::optional<DisplayCodes> display_codes(const std::filesystem::path& file, con
 /// Checks, without writing, that `file` has an extension we write and that its folder exists and can be written. For
 /// errors before the work.
 Result<void> check_output(const std::filesystem::path& file, const WriteOptions& options);
+/// The format alone. Errors: usage.
+Result<void> check_format(const std::filesystem::path& file, const WriteOptions& options);
+/// The same of the folder alone.
+Result<void> check_place(const std::filesystem::path& file);
 
 }  // namespace afterglow

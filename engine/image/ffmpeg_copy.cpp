@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "image/ffmpeg_copy.h"
+
+extern "C" {
+#include <libavutil/avutil.h>
+#include <libavutil/dict.h>
+#include <libavutil/mathematics.h>
+}
+
+#include <fmt/format.h>
+
+#include "core/text.h"
+#include "image/ffmpeg_log.h"
+
+namespace afterglow {
+namespace {
+
+/// Containers with sound and subtitles. Playlists and the like would read other files.
+constexpr const char* kFormats =
+    "mov,mp4,matroska,webm,avi,mpegts,mpeg,ogg,flac,wav,w64,mp3,aac,ac3,eac3,aiff,caf,flv,mxf,opus,srt,ass,webvtt,gif,"
+    "apng,yuv4mpegpipe,asf";
+
+int refuse_other_file(AVFormatContext*, AVIOContext**, const char*, int, AVDictionary**) { return AVERROR(EPERM); }
+
+constexpr AVRational kMicroseconds{1, AV_TIME_BASE};
+
+std::string stream_name(const AVStream& stream, unsigned index) {
+  const char* kind = av_get_media_type_string(stream.codecpar->codec_type);
+  return fmt::format("{} {} ({})", kind ? kind : "data", index + 1, avcodec_get_name(stream.codecpar->codec_id));
+}
+
+bool can_hold(const AVOutputFormat& format, AVCodecID codec) {
+  const int held = avformat_query_codec(&format, codec, FF_COMPLIANCE_NORMAL);
+  return held == 1;
+}
+
+}  // namespace
+
+FfmpegCopy::~FfmpegCopy() {
+  if (input_) avformat_close_input(&input_);
+}
+
+Result<std::unique_ptr<FfmpegCopy>> FfmpegCopy::open(const std::filesystem::path& file, bool sound_only,
+                                                     FfmpegOutput& output, const CopyRange& range,
+                                                     const std::string& name, Diagnostics& diagnostics) {
+  std::unique_ptr<FfmpegCopy> copy(new FfmpegCopy(output));
+  copy->file_ = file;
+  copy->range_ = range;
+  AVDictionary* options = nullptr;
+  av_dict_set(&options, "protocol_whitelist", "file", 0);
+  av_dict_set(&options, "format_whitelist", kFormats, 0);
+  int code = avformat_open_input(&copy->input_, ("file:" + file.string()).c_str(), nullptr, &options);
+  av_dict_free(&options);
+  if (code < 0) return Error{ErrorKind::io, "cannot be read: " + ffmpeg_error(code), file.string()};
+  copy->input_->io_open = refuse_other_file;
+  code = avformat_find_stream_info(copy->input_, nullptr);
+  if (code < 0) return Error{ErrorKind::io, "cannot be read: " + ffmpeg_error(code), file.string()};
+  AFTERGLOW_CHECK(copy->add_streams(sound_only, name, diagnostics));
+  if (!sound_only) copy->add_chapters();
+  return copy;
+}
+
+Result<void> FfmpegCopy::add_streams(bool sound_only, const std::string& name, Diagnostics& diagnostics) {
+  AVFormatContext& out = output_.container();
+  std::vector<std::string> left;
+  bool sound = false;
+  target_.assign(input_->nb_streams, -1);
+  for (unsigned i = 0; i < input_->nb_streams; ++i) {
+    const AVStream& from = *input_->streams[i];
+    const AVMediaType kind = from.codecpar->codec_type;
+    sound = sound || kind == AVMEDIA_TYPE_AUDIO;
+    if (kind == AVMEDIA_TYPE_VIDEO || (sound_only && kind != AVMEDIA_TYPE_AUDIO)) continue;
+    const bool known = kind == AVMEDIA_TYPE_AUDIO || kind == AVMEDIA_TYPE_SUBTITLE;
+    if (!known || !can_hold(*out.oformat, from.codecpar->codec_id)) {
+      left.push_back(stream_name(from, i));
+      continue;
+    }
+    AVStream* to = avformat_new_stream(&out, nullptr);
+    if (!to || avcodec_parameters_copy(to->codecpar, from.codecpar) < 0)
+      return Error{ErrorKind::io, "cannot be written: no memory"};
+    to->codecpar->codec_tag = 0;
+    to->time_base = from.time_base;
+    to->disposition = from.disposition;
+    av_dict_copy(&to->metadata, from.metadata, 0);
+    target_[i] = to->index;
+  }
+  if (sound_only && !sound) return Error{ErrorKind::io, "has no sound", file_.string()};
+  if (!sound_only) av_dict_copy(&out.metadata, input_->metadata, AV_DICT_DONT_OVERWRITE);
+  if (!left.empty())
+    diagnostics.warn(fmt::format("{}: {} of {} cannot be held by {} and {} left out", name, join(left), file_.string(),
+                                 out.oformat->name, left.size() == 1 ? "is" : "are"));
+  return {};
+}
+
+/// As far as they lie in the range.
+void FfmpegCopy::add_chapters() {
+  AVFormatContext& out = output_.container();
+  if (input_->nb_chapters == 0 || out.nb_chapters != 0) return;
+  out.chapters = static_cast<AVChapter**>(av_calloc(input_->nb_chapters, sizeof(AVChapter*)));
+  if (!out.chapters) return;
+  for (unsigned i = 0; i < input_->nb_chapters; ++i) {
+    const AVChapter& from = *input_->chapters[i];
+    const auto at = [&](std::int64_t time) { return av_rescale_q(time, from.time_base, kMicroseconds); };
+    const std::int64_t begin = std::max<std::int64_t>({at(from.start), range_.begin, range_.shift}),
+                       end = std::min<std::int64_t>(at(from.end), range_.end);
+    auto* to = begin < end ? static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter))) : nullptr;
+    if (!to) continue;
+    to->id = from.id;
+    to->time_base = kMicroseconds;
+    to->start = begin - range_.shift;
+    to->end = end - range_.shift;
+    av_dict_copy(&to->metadata, from.metadata, 0);
+    out.chapters[out.nb_chapters++] = to;
+  }
+}
+
+Result<void> FfmpegCopy::put(AVPacket& packet) {
+  const AVStream& from = *input_->streams[packet.stream_index];
+  const int target = target_[static_cast<std::size_t>(packet.stream_index)];
+  AVStream& to = *output_.container().streams[target];
+  const std::int64_t shift = av_rescale_q(range_.shift, kMicroseconds, from.time_base);
+  if (packet.pts != AV_NOPTS_VALUE) packet.pts -= shift;
+  if (packet.dts != AV_NOPTS_VALUE) packet.dts -= shift;
+  av_packet_rescale_ts(&packet, from.time_base, to.time_base);
+  packet.stream_index = target;
+  packet.pos = -1;
+  return output_.write(packet);
+}
+
+Result<void> FfmpegCopy::copy(std::int64_t until) {
+  while (!ended_) {
+    if (!waiting_) {
+      waiting_.reset(av_packet_alloc());
+      if (!waiting_) return Error{ErrorKind::io, "cannot be written: no memory"};
+      const int code = av_read_frame(input_, waiting_.get());
+      if (code < 0) {
+        ended_ = true;
+        if (code == AVERROR_EOF) return {};
+        return Error{ErrorKind::io, "cannot be read: " + ffmpeg_error(code), file_.string()};
+      }
+    }
+    const auto stream = static_cast<std::size_t>(waiting_->stream_index);
+    const std::int64_t stamp = waiting_->dts != AV_NOPTS_VALUE ? waiting_->dts : waiting_->pts;
+    const bool wanted = stream < target_.size() && target_[stream] >= 0;
+    if (wanted && stamp != AV_NOPTS_VALUE) {
+      const std::int64_t time = av_rescale_q(stamp, input_->streams[stream]->time_base, kMicroseconds);
+      if (time >= range_.begin && time < range_.end) {
+        if (time - range_.shift >= until) return {};  // later
+        AFTERGLOW_CHECK(put(*waiting_));
+      }
+    }
+    waiting_.reset();
+  }
+  return {};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include "image/movie_stream.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include "core/text.h"
+#include "image/ffmpeg_module.h"
+
+namespace afterglow {
+namespace {
+
+using namespace std::string_view_literals;
+constexpr const char* kName = "-";
+
+Error in_stream(std::string why, ErrorKind kind = ErrorKind::io) { return {kind, std::move(why), kName}; }
+
+/// What can be read as it comes, by its first bytes: FFmpeg's name of it.
+std::string stream_format(std::string_view head) {
+  if (head.starts_with("YUV4MPEG2"sv)) return "yuv4mpegpipe";
+  if (head.starts_with("nut/multimedia container\0"sv)) return "nut";
+  if (head.starts_with("\x1a\x45\xdf\xa3"sv)) return "matroska";
+  constexpr std::size_t kPacket = 188;
+  if (head.size() > kPacket && head[0] == 'G' && head[kPacket] == 'G') return "mpegts";
+  if (head.size() < 3 || head[0] != 'P' || " \t\r\n#"sv.find(head[2]) == std::string_view::npos) return "";
+  switch (head[1]) {
+    case '2':
+    case '5':
+      return "pgm_pipe";
+    case '3':
+    case '6':
+      return "ppm_pipe";
+    case '7':
+      return "pam_pipe";
+    case 'F':
+    case 'f':
+      return "pfm_pipe";
+    default:
+      return "";
+  }
+}
+
+/// "1920x1080:rgb48le:24" as options of FFmpeg's demuxer.
+Result<std::string> raw_options(const std::string& raw) {
+  const std::vector<std::string> parts = split(raw, ':');
+  const auto wrong = [&] {
+    return Error{ErrorKind::usage, fmt::format("'{}' is no format of raw frames", raw), "--raw", 0,
+                 "WIDTHxHEIGHT:PIXELS[:FPS], as 1920x1080:rgb48le:24; pixels by FFmpeg's names"};
+  };
+  if (parts.size() < 2 || parts.size() > 3) return wrong();
+  const auto digits = [](const std::string& text, const char* allowed) {
+    return !text.empty() && text.find_first_not_of(allowed) == std::string::npos;
+  };
+  if (!digits(parts[0], "0123456789x") || !digits(parts[1], "abcdefghijklmnopqrstuvwxyz0123456789_")) return wrong();
+  if (parts.size() == 3 && !digits(parts[2], "0123456789./")) return wrong();
+  return fmt::format("video_size={}:pixel_format={}:framerate={}", parts[0], parts[1],
+                     parts.size() == 3 ? parts[2] : "24");
+}
+
+ssize_t read_some(int descriptor, char* to, std::size_t size) {
+  ssize_t got = 0;
+  do got = ::read(descriptor, to, size);
+  while (got < 0 && errno == EINTR);
+  return got;
+}
+
+/// As many bytes as tell what it is, or all that there are.
+Result<std::string> first_bytes(int descriptor) {
+  std::array<char, 400> bytes{};
+  std::size_t have = 0;
+  while (have < bytes.size()) {
+    const ssize_t got = read_some(descriptor, bytes.data() + have, bytes.size() - have);
+    if (got < 0) return in_stream(fmt::format("cannot be read: {}", std::strerror(errno)));
+    if (got == 0) break;
+    have += static_cast<std::size_t>(got);
+  }
+  if (have == 0) return in_stream("nothing comes on standard input");
+  return std::string(bytes.data(), have);
+}
+
+Result<std::shared_ptr<const MemoryFile>> whole_file(int descriptor, const std::string& head,
+                                                     const SizeLimits& limits) {
+  AFTERGLOW_TRY(MemoryFile file, MemoryFile::create());
+  const FileDescriptor out(::open(file.name().c_str(), O_WRONLY | O_CLOEXEC));
+  std::uint64_t size = 0;
+  const auto put = [&](const char* bytes, std::size_t count) -> Result<void> {
+    size += count;
+    if (size > limits.max_bytes) return in_stream("is larger than --max-memory allows");
+    while (count > 0) {
+      const ssize_t written = ::write(out.get(), bytes, count);
+      if (written < 0 && errno == EINTR) continue;
+      if (written <= 0) return in_stream("there is no memory for what comes on standard input");
+      bytes += written;
+      count -= static_cast<std::size_t>(written);
+    }
+    return {};
+  };
+  AFTERGLOW_CHECK(put(head.data(), head.size()));
+  std::vector<char> buffer(1 << 16);
+  while (true) {
+    const ssize_t got = read_some(descriptor, buffer.data(), buffer.size());
+    if (got < 0) return in_stream(fmt::format("cannot be read: {}", std::strerror(errno)));
+    if (got == 0) break;
+    AFTERGLOW_CHECK(put(buffer.data(), static_cast<std::size_t>(got)));
+  }
+  return std::make_shared<const MemoryFile>(std::move(file));
+}
+
+}  // namespace
+
+struct MovieStream::State {
+  std::unique_ptr<MovieFrames> frames;
+  std::atomic<bool> cancelled = false;
+  std::optional<long long> first;  ///< time stamp
+  double fps = 0;
+  std::future<Result<std::shared_ptr<MovieSource>>> coming;
+};
+
+Result<std::unique_ptr<MovieStream>> MovieStream::open(std::shared_ptr<FileDescriptor> from, std::string head,
+                                                       const std::string& raw, const SizeLimits& limits,
+                                                       Diagnostics& diagnostics) {
+  std::unique_ptr<MovieStream> stream(new MovieStream());
+  stream->state_ = std::make_unique<State>();
+  StreamRequest request{.from = std::move(from),
+                        .head = std::move(head),
+                        .name = kName,
+                        .format = "rawvideo",
+                        .options = {},
+                        .limits = limits,
+                        .cancelled = &stream->state_->cancelled};
+  if (!raw.empty()) {
+    AFTERGLOW_TRY(request.options, raw_options(raw));
+  } else {
+    request.format = stream_format(request.head);
+  }
+  const auto module = ffmpeg_module();
+  if (!module) return in_stream(module.error().message);
+  AFTERGLOW_TRY(stream->state_->frames, (*module)->stream(request));
+  stream->begin_next();
+  const auto first = stream->state_->coming.get();
+  if (!first) return first.error();
+  if (!*first) return in_stream("holds no frame");
+  const MovieFacts& facts = (*first)->facts();
+  if (facts.rate.denominator > 0)
+    stream->state_->fps = static_cast<double>(facts.rate.numerator) / facts.rate.denominator;
+  for (const std::string& note : facts.notes) diagnostics.note(fmt::format("{}: {}", kName, note));
+  std::promise<Result<std::shared_ptr<MovieSource>>> there;
+  there.set_value(*first);
+  stream->state_->coming = there.get_future();
+  return stream;
+}
+
+MovieStream::~MovieStream() {
+  if (state_) state_->cancelled = true;
+}
+
+void MovieStream::begin_next() {
+  state_->coming = std::async(std::launch::async, [frames = state_->frames.get()] { return frames->next(); });
+}
+
+double MovieStream::fps() const { return state_->fps; }
+
+Result<MovieStream::Frame> MovieStream::next() {
+  if (!state_->coming.valid()) return Frame{};
+  AFTERGLOW_TRY(std::shared_ptr<MovieSource> source, state_->coming.get());
+  if (!source) return Frame{};
+  begin_next();
+  const MovieFacts& facts = source->facts();
+  if (!state_->first) state_->first = facts.pts.front();
+  Frame frame;
+  if (facts.time_base.denominator > 0)
+    frame.time = static_cast<double>(facts.pts.front() - *state_->first) * facts.time_base.numerator /
+                 facts.time_base.denominator;
+  frame.movie = Movie::of(kName, std::move(source));
+  return frame;
+}
+
+Result<StandardInput> open_standard_input(const std::string& raw, const SizeLimits& limits, Diagnostics& diagnostics) {
+  auto descriptor = std::make_shared<FileDescriptor>(fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3));
+  if (descriptor->get() < 0) return in_stream("standard input is closed");
+  StandardInput input;
+  std::string head;
+  if (raw.empty()) {
+    AFTERGLOW_TRY(head, first_bytes(descriptor->get()));
+  }
+  if (!raw.empty() || !stream_format(head).empty()) {
+    AFTERGLOW_TRY(input.stream, MovieStream::open(std::move(descriptor), std::move(head), raw, limits, diagnostics));
+  } else {
+    AFTERGLOW_TRY(input.file, whole_file(descriptor->get(), head, limits));
+  }
+  return input;
+}
+
+}  // namespace afterglow

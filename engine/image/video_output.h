@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Videos that are written: which codec, pixel format and colours go into which container, and what is taken where
+// nobody says.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/result.h"
+#include "image/metadata.h"
+#include "image/output_space.h"
+#include "image/pack_frame.h"
+#include "image/writer.h"
+
+namespace afterglow {
+
+/// Whether the extension is that of a video that is written: mp4, mov, mkv, webm, gif, apng.
+bool is_video_output(const std::filesystem::path& file);
+
+/// Part of the source that is copied beside the frames. Times in microseconds of its clock.
+struct CopyRange {
+  long long begin = std::numeric_limits<long long>::min(), end = std::numeric_limits<long long>::max();
+  long long shift = 0;  ///< goes off every time stamp
+};
+
+/// Everything that a module needs to write one.
+struct VideoPlan {
+  std::string container;                                      ///< FFmpeg's muxer
+  std::string codec;                                          ///< as --codec has it
+  std::vector<std::string> encoders;                          ///< FFmpeg's, the first that is there is taken
+  std::vector<std::pair<std::string, std::string>> settings;  ///< of the encoder, FFmpeg's names
+  long long bitrate = 0;                                      ///< bits a second; 0: the encoder's quality
+  PackRules pack;
+  int primaries = 2, transfer = 2, matrix = 2;  ///< of ITU-T H.273; 2: not said
+  bool exact = false;                           ///< what goes in comes out
+  Size size;
+  Rational rate{24, 1};          ///< frames a second, on the average
+  Rational time_base{1, 24};     ///< seconds of a time stamp's unit
+  std::filesystem::path audio;   ///< sound from here: --audio
+  CopyRange range;               ///< of both
+  std::filesystem::path source;  ///< the video that is worked on: its other streams are copied; empty: none
+};
+
+/// Codec, pixel format and settings for this output. `deep`: the picture had more than 8 bits; `has_alpha`: it has
+/// alpha. Errors (usage), each naming what is allowed and the nearest: no such codec or not in this container, a pixel
+/// format that the codec does not have, options that it does not take.
+Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptions& options, bool deep, bool has_alpha);
+
+/// Sides that the pixel format cannot hold. Errors (usage).
+Result<void> check_video_size(const VideoPlan& plan, Size size, const std::filesystem::path& file);
+
+/// Primaries, transfer and matrix of a space, by ITU-T H.273; 2 where there is no number.
+void describe_space(const OutputSpace& space, const PixelLayout& layout, VideoPlan& plan);
+
+/// 23.976 is 24000/1001.
+Rational frame_rate(double fps);
+
+/// "8M", "500k", "2500000". Errors: usage.
+Result<long long> parse_bitrate(const std::string& text);
+
+}  // namespace afterglow

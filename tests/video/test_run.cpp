@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// `afterglow run` over videos and pipes, as users run it.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <fstream>
+
+#include "clips.h"
+#include "core/file.h"
+
+namespace afterglow {
+namespace {
+
+using testing::HasSubstr;
+
+class RunVideos : public Clips {
+ protected:
+  void SetUp() override {
+    Clips::SetUp();
+    std::ofstream(path("look.lua")) << "local fx = require 'afterglow'\nreturn fx.stack { fx.exposure { ev = 0 } }\n";
+  }
+  /// A line of the shell in the test's folder, in which AFTERGLOW is the program; its messages are in `said_`.
+  int shell(std::string line) {
+    const std::string program =
+        fmt::format("AFTERGLOW_CACHE='{}' '{}'", AFTERGLOW_BUILD_FOLDER "/test-cache", AFTERGLOW_PROGRAM);
+    for (std::size_t at = 0; (at = line.find("AFTERGLOW ", at)) != std::string::npos; at += program.size())
+      line.replace(at, 9, program);
+    std::ofstream(path("line.sh")) << "set -o pipefail\n" << line << "\n";
+    const int status = std::system(fmt::format("cd '{}' && bash line.sh 2>messages", path("")).c_str());
+    said_ = read_file(path("messages")).value();
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  int number_in(const std::string& file) const {
+    Diagnostics quiet;
+    const auto picture = read_picture(path(file), {}, quiet);
+    return picture ? number_of(*picture) : -1;
+  }
+  std::string said_;
+};
+
+constexpr const char* kCodec = "-c:v libx264 -preset veryfast -crf 12 -g 12 -bf 3 -pix_fmt yuv420p";
+
+TEST_F(RunVideos, FramesByNumberBecomeFiles) {
+  clip("clip.mp4", kCodec, 30);
+  ASSERT_EQ(shell("AFTERGLOW run look.lua clip.mp4 -o out.####.png --frames 28-30,5"), 0) << said_;
+  for (const int frame : {5, 28, 29, 30}) EXPECT_EQ(number_in(fmt::format("out.{:04}.png", frame)), frame);
+  EXPECT_FALSE(std::filesystem::exists(path("out.0006.png")));
+  EXPECT_EQ(shell("mkdir many && AFTERGLOW run look.lua clip.mp4 -o many --frames 7 --format exr"), 0) << said_;
+  EXPECT_EQ(number_in("many/clip.0007.exr"), 7);
+  EXPECT_EQ(shell("AFTERGLOW run look.lua clip.mp4 -o out.####.png --frames 31"), 4);
+  EXPECT_THAT(said_, HasSubstr("clip.mp4: error: has no frame 31; it has 30"));
+  EXPECT_EQ(shell("AFTERGLOW run look.lua clip.mp4 -o one.png"), 2);
+  EXPECT_THAT(said_, HasSubstr("30 frames cannot go into the one file one.png"));
+  EXPECT_EQ(shell("AFTERGLOW run look.lua clip.mp4 -o many --frames 7"), 2);
+  EXPECT_THAT(said_, HasSubstr("need --format"));
+  EXPECT_EQ(shell("AFTERGLOW run look.lua clip.mp4 -o sandbox.png --frames 30 --sandbox"), 0) << said_;
+  EXPECT_EQ(number_in("sandbox.png"), 30);
+}
+
+/// Settings that are animated by time see the clip's stamps.
+TEST_F(RunVideos, TimesAreTheClips) {
+  clip("varies.mp4", std::string(kCodec) + " -vf \"setpts='if(lt(N,2),N,2+(N-2)*12)/24/TB'\" -vsync passthrough", 4);
+  std::ofstream(path("time.lua")) << "local fx = require 'afterglow'\n"
+                                     "return fx.stack { fx.exposure { ev = function(t) return t.time end } }\n";
+  ASSERT_EQ(shell("AFTERGLOW run time.lua varies.mp4 -o t.####.exr --type float && "
+                  "AFTERGLOW run look.lua varies.mp4 -o p.####.exr --type float"),
+            0)
+      << said_;
+  const double times[] = {0, 1 / 24.0, 2 / 24.0, 14 / 24.0};
+  for (int frame = 1; frame <= 4; ++frame) {
+    Diagnostics quiet;
+    const auto plain = read_picture(path(fmt::format("p.{:04}.exr", frame)), {}, quiet).value();
+    const auto timed = read_picture(path(fmt::format("t.{:04}.exr", frame)), {}, quiet).value();
+    EXPECT_NEAR(std::log2(timed.color.at(50, 60)[1] / plain.color.at(50, 60)[1]), times[frame - 1], 2e-3) << frame;
+  }
+}
+
+TEST_F(RunVideos, ATruncatedClipEndsWithExitCode4AndWhatIsWhole) {
+  const std::string file = clip("whole.mp4", std::string(kCodec) + " -movflags +faststart");
+  const std::string bytes = read_file(file).value();
+  std::ofstream(path("cut.mp4"), std::ios::binary) << bytes.substr(0, bytes.size() * 6 / 10);
+  EXPECT_EQ(shell("AFTERGLOW run look.lua cut.mp4 -o cut.####.png"), 4);
+  EXPECT_THAT(said_, HasSubstr("is truncated: frames "));
+  EXPECT_THAT(said_, HasSubstr("of 48 frames failed"));
+  EXPECT_EQ(number_in("cut.0012.png"), 12);
+  EXPECT_FALSE(std::filesystem::exists(path("cut.0048.png")));
+}
+
+TEST_F(RunVideos, FramesComeThroughPipes) {
+  const std::string file = clip("clip.mkv", "-c:v ffv1 -level 3 -pix_fmt gbrp", 7);
+  ASSERT_EQ(shell("AFTERGLOW run look.lua clip.mkv -o file.####.png"), 0) << said_;
+  const struct {
+    const char* name;
+    const char* output;  ///< of ffmpeg
+    const char* more;
+  } kPipes[] = {{"y4m", "-pix_fmt yuv444p -f yuv4mpegpipe", ""},
+                {"raw", "-pix_fmt rgb48le -f rawvideo", "--raw 192x96:rgb48le:24"},
+                {"nut", "-c:v rawvideo -pix_fmt rgb24 -f nut", ""},
+                {"mkv", "-c:v libx264 -crf 5 -f matroska", ""},
+                {"ts", "-c:v libx264 -crf 5 -pix_fmt yuv420p -f mpegts", ""},
+                {"ppm", "-f image2pipe -c:v ppm", ""},
+                {"pam", "-f image2pipe -c:v pam -pix_fmt rgba", ""}};
+  for (const auto& pipe : kPipes) {
+    EXPECT_EQ(shell(fmt::format(
+                  "ffmpeg -nostdin -loglevel error -i clip.mkv {} - | AFTERGLOW run look.lua - {} -o {}.####.png",
+                  pipe.output, pipe.more, pipe.name)),
+              0)
+        << said_;
+    for (int frame = 1; frame <= 7; ++frame)
+      EXPECT_EQ(number_in(fmt::format("{}.{:04}.png", pipe.name, frame)), frame) << pipe.name;
+    EXPECT_FALSE(std::filesystem::exists(path(fmt::format("{}.0008.png", pipe.name))));
+  }
+  // Without loss they are the pixels of the file.
+  for (const char* name : {"nut", "ppm"})
+    EXPECT_TRUE(read_file(path(fmt::format("{}.0004.png", name))).value() == read_file(path("file.0004.png")).value())
+        << name;
+}
+
+/// PFM holds light; one picture may come too, of any format.
+TEST_F(RunVideos, SinglePicturesComeThroughPipes) {
+  clip("clip.mkv", "-c:v ffv1 -level 3 -pix_fmt gbrp", 2);
+  ASSERT_EQ(shell("AFTERGLOW run look.lua clip.mkv -o a.exr --frames 2 --type float && "
+                  "AFTERGLOW run look.lua a.exr -o b.exr --type float && AFTERGLOW run look.lua - -o c.exr --type "
+                  "float <a.exr"),
+            0)
+      << said_;
+  EXPECT_EQ(number_in("c.exr"), 2);
+  Diagnostics quiet;
+  EXPECT_EQ(read_picture(path("b.exr"), {}, quiet).value().color.pixels,
+            read_picture(path("c.exr"), {}, quiet).value().color.pixels);
+  ASSERT_EQ(shell("AFTERGLOW run look.lua a.exr -o a.png && AFTERGLOW run look.lua - -o d.png <a.png"), 0) << said_;
+  EXPECT_EQ(number_in("d.png"), 2);
+  // A video that has to be sought in is one too.
+  clip("clip.mp4", kCodec, 5);
+  ASSERT_EQ(shell("cat clip.mp4 | AFTERGLOW run look.lua - -o m.png --frames 4"), 0) << said_;
+  EXPECT_EQ(number_in("m.png"), 4);
+}
+
+TEST_F(RunVideos, APipeThatEndsWithinAFrameEndsWithExitCode4) {
+  const std::string raw = numbered_frames(3);
+  EXPECT_EQ(shell(fmt::format("head -c 130000 '{}' | AFTERGLOW run look.lua - --raw 192x96:rgb24 -o r.####.png", raw)),
+            4);
+  EXPECT_THAT(said_, HasSubstr("-: error: frame 3 is cut off"));
+  EXPECT_EQ(number_in("r.0002.png"), 2);
+  EXPECT_FALSE(std::filesystem::exists(path("r.0003.png")));
+  EXPECT_EQ(shell("AFTERGLOW run look.lua - -o r.png </dev/null"), 4);
+  EXPECT_THAT(said_, HasSubstr("-: error: nothing comes on standard input"));
+  EXPECT_EQ(shell("echo nonsense | AFTERGLOW run look.lua - -o r.png"), 4);
+  EXPECT_EQ(shell("AFTERGLOW run look.lua - --raw 192:rgb24 -o r.png </dev/null"), 2);
+  EXPECT_THAT(said_, HasSubstr("--raw: error: '192:rgb24' is no format of raw frames; allowed: WIDTHxHEIGHT:PIXELS"));
+  EXPECT_EQ(shell("AFTERGLOW run look.lua clip.exr --raw 4x4:rgb24 -o r.png"), 4);
+  EXPECT_EQ(shell(fmt::format("AFTERGLOW run look.lua - --raw 192x96:rgb24 -o one.png <'{}'", raw)), 2);
+  EXPECT_THAT(said_, HasSubstr("more than one frame comes on standard input"));
+}
+
+}  // namespace
+}  // namespace afterglow
