@@ -38,11 +38,6 @@ void add_up(std::span<std::uint8_t> bytes) {
   }
 }
 
-/// From behind, so that each difference is taken from what was there.
-void take_differences(std::span<std::uint8_t> bytes) {
-  for (std::size_t i = bytes.size(); i-- > 1;) bytes[i] = static_cast<std::uint8_t>(bytes[i] - bytes[i - 1] + kMiddle);
-}
-
 void put_together(std::span<const std::uint8_t> apart, std::span<std::uint8_t> bytes) {
   const std::size_t pairs = bytes.size() / 2;
   const std::uint8_t *even = apart.data(), *odd = apart.data() + (bytes.size() + 1) / 2;
@@ -52,17 +47,6 @@ void put_together(std::span<const std::uint8_t> apart, std::span<std::uint8_t> b
     out[2 * i + 1] = odd[i];
   }
   if (bytes.size() % 2 != 0) out[2 * pairs] = even[pairs];
-}
-
-void put_apart(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> apart) {
-  const std::size_t pairs = bytes.size() / 2;
-  std::uint8_t *even = apart.data(), *odd = apart.data() + (bytes.size() + 1) / 2;
-  const std::uint8_t* in = bytes.data();
-  for (std::size_t i = 0; i < pairs; ++i) {
-    even[i] = in[2 * i];
-    odd[i] = in[2 * i + 1];
-  }
-  if (bytes.size() % 2 != 0) even[pairs] = in[2 * pairs];
 }
 
 }  // namespace
@@ -81,23 +65,6 @@ bool ExrUnzip::run(std::span<const std::uint8_t> packed, std::span<std::uint8_t>
   add_up(apart_);
   put_together(apart_, bytes);
   return true;
-}
-
-ExrZip::ExrZip(int level) : deflate_(libdeflate_alloc_compressor(level)) {
-  if (deflate_ == nullptr) throw std::bad_alloc();
-}
-
-ExrZip::~ExrZip() { libdeflate_free_compressor(deflate_); }
-
-std::span<const std::uint8_t> ExrZip::run(std::span<const std::uint8_t> bytes) {
-  apart_.resize(bytes.size());
-  put_apart(bytes, apart_);
-  take_differences(apart_);
-  packed_.resize(bytes.size());
-  const std::size_t length =
-      libdeflate_zlib_compress(deflate_, apart_.data(), apart_.size(), packed_.data(), packed_.size());
-  if (length == 0 || length >= bytes.size()) return bytes;
-  return {packed_.data(), length};
 }
 
 }  // namespace afterglow

@@ -9,7 +9,6 @@
 #include <vector>
 
 struct libdeflate_decompressor;
-struct libdeflate_compressor;
 
 namespace afterglow {
 
@@ -27,22 +26,6 @@ class ExrUnzip {
  private:
   libdeflate_decompressor* inflate_;
   std::vector<std::uint8_t> apart_;
-};
-
-/// The same, the other way.
-class ExrZip {
- public:
-  explicit ExrZip(int level);  ///< 0…9
-  ~ExrZip();
-  ExrZip(const ExrZip&) = delete;
-  ExrZip& operator=(const ExrZip&) = delete;
-
-  /// What to store: shorter than `bytes`, or these as they are. Valid until the next call.
-  std::span<const std::uint8_t> run(std::span<const std::uint8_t> bytes);
-
- private:
-  libdeflate_compressor* deflate_;
-  std::vector<std::uint8_t> apart_, packed_;
 };
 
 }  // namespace afterglow
