@@ -127,7 +127,8 @@ Result<void> run_frames(BatchRun& run) {
   if (asked.resume && is_one_output(asked.files.output))
     return Error{ErrorKind::usage, "--resume goes on with files of their own; a video or a stream is made whole",
                  "afterglow run", 0, "a pattern like out.####.exr, which becomes a video afterwards"};
-  AFTERGLOW_TRY(run.sink, open_sink(asked.files, asked.loop.write, asked.loop.fps, run.events.diagnostics));
+  AFTERGLOW_TRY(run.sink,
+                open_sink(asked.files, asked.loop.write, asked.loop.fps, frames.size(), run.events.diagnostics));
   if (!run.sink->is_one()) AFTERGLOW_CHECK(check_outputs(run));
   SessionOptions opened = asked.session;
   opened.frames = frames.size() > 1 || run.list.more ? kFramesInFlight : 1;

@@ -33,8 +33,8 @@ class FileSink : public FrameSink {
 }  // namespace
 
 Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const WriteOptions& options, double fps,
-                                             Diagnostics& diagnostics) {
-  if (files.output == "-") return open_stream_sink(files.extension, options, fps, diagnostics);
+                                             std::size_t frames, Diagnostics& diagnostics) {
+  if (files.output == "-") return open_stream_sink(files.extension, options, fps, frames, diagnostics);
   if (is_video_output(files.output)) return open_video_sink(files.output, options, fps, diagnostics);
   return std::unique_ptr<FrameSink>(std::make_unique<FileSink>(options, diagnostics));
 }

@@ -36,9 +36,9 @@ class FrameSink {
   virtual void record_look(const Hash&) {}
 };
 
-/// For the output of `files`. Errors: usage (options that do not go with this output), io (it cannot be written; see
-/// check_output).
+/// For the output of `files`, into which so many frames are known to go. Errors: usage (options that do not go with
+/// this output), io (it cannot be written; see check_output).
 Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const WriteOptions& options, double fps,
-                                             Diagnostics& diagnostics);
+                                             std::size_t frames, Diagnostics& diagnostics);
 
 }  // namespace afterglow

@@ -22,6 +22,10 @@ Error stream_usage(std::string message, std::string allowed = {}, std::string ne
   return {ErrorKind::usage, std::move(message), kName, 0, std::move(allowed), std::move(nearest)};
 }
 
+Error too_many() {
+  return stream_usage("takes one picture of this format", "y4m, raw, png, ppm, pam, pfm for several");
+}
+
 /// Owns a copy of standard output; standard output itself becomes standard error.
 class StandardOutput {
  public:
@@ -63,7 +67,7 @@ class StandardOutput {
 class FrameBytes {
  public:
   virtual ~FrameBytes() = default;
-  virtual Result<std::string> begin(const Picture&) { return std::string(); }
+  virtual Result<std::string> begin(const Picture&, double /*fps*/) { return std::string(); }
   virtual Result<std::string> frame(const Picture& picture) = 0;
   /// More than one frame can stand behind each other.
   virtual bool many() const { return true; }
@@ -107,7 +111,8 @@ class VideoBytes : public FrameBytes {
                         nearest_name(wanted, names));
   }
 
-  Result<std::string> begin(const Picture& picture) override {
+  Result<std::string> begin(const Picture& picture, double fps) override {
+    if (fps > 0) rate_ = frame_rate(fps);
     AFTERGLOW_TRY(const PixelLayout* layout, asked());
     const bool deep = picture.facts && (picture.facts->floating || picture.facts->bits > 8);
     size_ = picture.display_window.size();
@@ -163,14 +168,13 @@ class StreamSink : public FrameSink {
   Result<void> open() { return out_.take(); }
 
   /// A stream has no times: the place of a frame that failed is held by the one before, or by the first one.
-  Result<void> write(const FrameJob&, std::size_t index, const Picture& picture) override {
+  Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture) override {
     if (next_ == 0) {
-      AFTERGLOW_TRY(last_, bytes_->begin(picture));
+      AFTERGLOW_TRY(last_, bytes_->begin(picture, job.fps));
       AFTERGLOW_CHECK(out_.write(last_.data(), last_.size()));
       last_.clear();
     }
-    if (index > 0 && !bytes_->many())
-      return stream_usage("takes one picture of this format", "y4m, raw, png, ppm, pam, pfm for several");
+    if (index > 0 && !bytes_->many()) return too_many();
     AFTERGLOW_TRY(std::string bytes, bytes_->frame(picture));
     if (next_ > 0) AFTERGLOW_CHECK(hold(index));
     last_ = std::move(bytes);
@@ -198,7 +202,7 @@ class StreamSink : public FrameSink {
 }  // namespace
 
 Result<std::unique_ptr<FrameSink>> open_stream_sink(const std::string& format, const WriteOptions& options, double fps,
-                                                    Diagnostics& diagnostics) {
+                                                    std::size_t frames, Diagnostics& diagnostics) {
   std::string name = lower(format.empty() ? "y4m" : format.starts_with('.') ? format.substr(1) : format);
   std::unique_ptr<FrameBytes> bytes;
   if (name == "y4m" || name == "raw") {
@@ -214,6 +218,7 @@ Result<std::unique_ptr<FrameSink>> open_stream_sink(const std::string& format, c
     }
     bytes = std::make_unique<PictureBytes>(name, options, diagnostics);
   }
+  if (frames > 1 && !bytes->many()) return too_many();
   auto sink = std::make_unique<StreamSink>(std::move(bytes));
   AFTERGLOW_CHECK(sink->open());
   return std::unique_ptr<FrameSink>(std::move(sink));

@@ -145,7 +145,7 @@ Result<void> FfmpegCopy::copy(std::int64_t until) {
     if (wanted && stamp != AV_NOPTS_VALUE) {
       const std::int64_t time = av_rescale_q(stamp, input_->streams[stream]->time_base, kMicroseconds);
       if (time >= range_.begin && time < range_.end) {
-        if (time - range_.shift > until) return {};  // later
+        if (time - range_.shift >= until) return {};  // later
         AFTERGLOW_CHECK(put(*waiting_));
       }
     }

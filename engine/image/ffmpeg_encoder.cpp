@@ -11,6 +11,7 @@ extern "C" {
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <map>
 
 #include "core/text.h"
@@ -36,10 +37,10 @@ class FfmpegEncoder : public VideoEncoder {
     AFTERGLOW_TRY(output_, FfmpegOutput::open(plan_.container.c_str(), out, path));
     AFTERGLOW_CHECK(open_codec(name));
     AFTERGLOW_CHECK(add_stream());
-    if (!plan_.source.empty() && plan_.audio.empty()) {
-      AFTERGLOW_CHECK(add_copy(plan_.source, false, name, diagnostics));
-    } else if (!plan_.source.empty() || !plan_.audio.empty()) {
+    if (!plan_.audio.empty()) {
       AFTERGLOW_CHECK(add_copy(plan_.audio, true, name, diagnostics));
+    } else if (!plan_.source.empty()) {
+      AFTERGLOW_CHECK(add_copy(plan_.source, false, name, diagnostics));
     }
     return begin();
   }
@@ -69,10 +70,11 @@ class FfmpegEncoder : public VideoEncoder {
     return drain();
   }
 
-  Result<void> finish() override {
+  Result<void> finish(bool whole) override {
     if (const int code = avcodec_send_frame(codec_.get(), nullptr); code < 0) return encoder_failed(code);
     AFTERGLOW_CHECK(drain());
-    if (copy_) AFTERGLOW_CHECK(copy_->copy(av_rescale_q(end_, rational(plan_.time_base), kMicrosecond)));
+    const std::int64_t end = av_rescale_q(end_, rational(plan_.time_base), kMicrosecond);
+    if (copy_) AFTERGLOW_CHECK(copy_->copy(whole ? std::numeric_limits<std::int64_t>::max() : end));
     return output_->finish();
   }
 

@@ -70,8 +70,8 @@ Result<void> VideoWriter::write(const Picture& picture, VideoTime time) {
   return {};
 }
 
-Result<void> VideoWriter::finish() {
-  if (auto finished = encoder_->finish(); !finished) return named(std::move(finished).error());
+Result<void> VideoWriter::finish(bool whole) {
+  if (auto finished = encoder_->finish(whole); !finished) return named(std::move(finished).error());
   if (auto closed = out_->close(); !closed) return named(std::move(closed).error());
   std::error_code ec;
   if (fs::file_size(temporary_, ec) != out_->size() || ec)

@@ -19,8 +19,9 @@ class VideoEncoder {
  public:
   virtual ~VideoEncoder() = default;
   virtual Result<void> write(const PackedFrame& frame, VideoTime time) = 0;
-  /// The last packets, and what else the file needs.
-  virtual Result<void> finish() = 0;
+  /// The last packets, and what else the file needs. `whole`: all that is left of the source's other streams, too;
+  /// else what lies beside the frames.
+  virtual Result<void> finish(bool whole) = 0;
 };
 
 /// Not thread-safe.
@@ -35,7 +36,7 @@ class VideoWriter {
   /// Frames come by rising times. Errors: io (disk full, …), usage (a frame of another size).
   Result<void> write(const Picture& picture, VideoTime time);
   /// Ends the file and gives it its name.
-  Result<void> finish();
+  Result<void> finish(bool whole);
 
  private:
   VideoWriter() = default;
