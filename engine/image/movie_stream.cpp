@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include "image/movie_stream.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <future>
+#include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/text.h"
 #include "image/ffmpeg_module.h"
+#include "image/movie.h"
 
 namespace afterglow {
 namespace {
