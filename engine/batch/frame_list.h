@@ -11,7 +11,7 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
-#include "image/movie_stream.h"
+#include "image/movie.h"
 #include "image/reader.h"
 #include "image/sequence.h"
 
