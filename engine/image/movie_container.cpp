@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <fstream>
 #include <string_view>
+#include <system_error>
 
 namespace afterglow {
 namespace {
@@ -109,6 +110,8 @@ bool png_moves(std::ifstream& in) {
 }  // namespace
 
 std::string movie_format(const std::filesystem::path& file) {
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(file, ec)) return "";  // a pipe would be waited for
   std::array<char, 400> bytes{};
   std::ifstream in(file, std::ios::binary);
   in.read(bytes.data(), bytes.size());
