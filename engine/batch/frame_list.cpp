@@ -9,7 +9,7 @@
 
 #include "core/text.h"
 #include "image/sequence.h"
-#include "image/video_output.h"
+#include "image/video_writer.h"
 
 namespace afterglow {
 namespace {

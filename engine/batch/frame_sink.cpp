@@ -4,7 +4,7 @@
 #include "batch/resume.h"
 #include "batch/stream_sink.h"
 #include "batch/video_sink.h"
-#include "image/video_output.h"
+#include "image/video_writer.h"
 
 namespace afterglow {
 namespace {

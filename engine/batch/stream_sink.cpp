@@ -11,7 +11,7 @@
 
 #include "core/text.h"
 #include "image/metadata.h"
-#include "image/video_output.h"
+#include "image/video_writer.h"
 
 namespace afterglow {
 namespace {
