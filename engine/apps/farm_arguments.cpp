@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array kWords{"status", "report", "cancel", "retry", "chunk"};
 /// Of `run`, what chunks decide themselves.
-constexpr std::array kNotForFarms{"--resume", "--fail-fast", "--sandbox", "--lock", "--stats", "--report"};
+constexpr std::array kNotForFarms{"--resume", "--watch", "--fail-fast", "--sandbox", "--lock", "--stats", "--report"};
 /// Named files of the look, which are packed.
 constexpr std::array kPacked{"--path", "--calibration", "--locked", "--set"};
 

@@ -96,7 +96,7 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   job.look = arguments.run.preset.file;
   job.pre_roll = look.pre_roll;
   job.needs = arguments.needs;
-  job.chunks = farm::chunks_of(request.files, out.frames, frames_a_chunk(arguments, look));
+  job.chunks = farm::chunks_of(out.frames, frames_a_chunk(arguments, look));
   AFTERGLOW_CHECK(check_sequences(out));
   const fs::path outputs = folder_of_outputs(request.files.output);
   if (!write) {

@@ -17,7 +17,8 @@ std::string space_list() {
 
 void add_files(CLI::App& app, RunArguments& a) {
   app.add_option("INPUT", a.files.inputs,
-                 "Pictures: files, sequences like shot.####.exr and shot.%04d.exr, videos; - is standard input")
+                 "Pictures: files, sequences like shot.####.exr and shot.%04d.exr, folders that hold one, videos; - is "
+                 "standard input")
       ->required();
   app.add_option("-o,--output", a.files.output,
                  "File, pattern (out.####.png), folder, video (mp4, mov, mkv, webm, gif, apng) or - (standard output); "
@@ -71,6 +72,10 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->type_name("N")
       ->group(sequence);
   app.add_flag("--resume", a.resume, "Skip outputs that are newer than their inputs and made by the same look")
+      ->group(sequence);
+  app.add_flag("--watch", a.watch,
+               "Inputs may still be written: run frames as they appear whole, again when they change, until all of "
+               "--frames are done")
       ->group(sequence);
   app.add_flag("--fail-fast", a.fail_fast, "Stop at the first frame that fails")->group(sequence);
 
@@ -276,6 +281,9 @@ Result<BatchRequest> RunArguments::request() const {
                    .pixel_options = pixel_options(*this),
                    .lock = lock,
                    .locked = locked};
+  if (watch && files.frames.empty())
+    return Error{ErrorKind::usage, "--watch needs --frames: it ends when they are done", "afterglow run"};
+  out.watch = watch;
   layers.choose(out.files);
   AFTERGLOW_TRY(out.session, session_options(*this));
   AFTERGLOW_TRY(out.loop, loop_options(*this, out.session.stack.max_memory));

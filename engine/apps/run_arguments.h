@@ -21,7 +21,7 @@ struct RunArguments {
   int png_level = 1, jpeg_quality = 95;
   std::string codec, bitrate, pixel_format, audio;
   std::optional<int> crf;
-  bool keep_partial = false, keep_layers = false, resume = false, fail_fast = false, sandbox = false;
+  bool keep_partial = false, keep_layers = false, resume = false, watch = false, fail_fast = false, sandbox = false;
   double fps = 24;
   std::optional<int> pre_roll;
   std::string stats, report, lock, locked;

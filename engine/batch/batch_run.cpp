@@ -10,6 +10,7 @@
 
 #include "batch/resume.h"
 #include "batch/schedule.h"
+#include "batch/watch_run.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "graph/history.h"
@@ -130,6 +131,11 @@ Result<void> run_frames(BatchRun& run) {
   AFTERGLOW_TRY(run.sink,
                 open_sink(asked.files, asked.loop.write, asked.loop.fps, frames.size(), run.events.diagnostics));
   if (!run.sink->is_one()) AFTERGLOW_CHECK(check_outputs(run));
+  if (run.sink->is_one() && asked.watch)
+    return Error{ErrorKind::usage, "--watch makes frames in the order in which they come; one file cannot take them",
+                 "afterglow run", 0, "pictures, like out.####.exr"};
+  if (run.list.more && asked.watch)
+    return Error{ErrorKind::usage, "--watch is for files; frames on standard input are run as they come", "afterglow run"};
   SessionOptions opened = asked.session;
   opened.frames = frames.size() > 1 || run.list.more ? kFramesInFlight : 1;
   AFTERGLOW_TRY(run.session, Session::open(asked.preset, opened, run.events.diagnostics));
@@ -142,12 +148,16 @@ Result<void> run_frames(BatchRun& run) {
   if (earlier) loop.follow_histories();
   if (earlier && asked.resume) note_earlier_files(frames, asked.files, *earlier);
   AFTERGLOW_CHECK(prepare_resume(run));
-  Schedule schedule = earlier ? schedule_with_histories(frames, asked.files, *earlier) : plain_schedule(frames);
-  if (run.list.more) schedule.more = [&run] { return next_record(run); };
-  run.report.pre_roll = schedule.earlier.size();
-  run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
   if (run.record_look) run.sink->record_look(*run.record_look);
-  auto done = loop.run(schedule);
+  const auto run_waiting = [&]() -> Result<void> {
+    Schedule schedule = earlier ? schedule_with_histories(frames, asked.files, *earlier) : plain_schedule(frames);
+    if (run.list.more) schedule.more = [&run] { return next_record(run); };
+    run.report.pre_roll += schedule.earlier.size();
+    return loop.run(schedule);
+  };
+  run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
+  auto done = asked.watch ? run_watching(frames, earlier.value_or(0), options.fail_fast, run.events, run_waiting)
+                          : run_waiting();
   run.report.memory_needed = loop.largest_need();
   return done;
 }

@@ -242,7 +242,8 @@ Result<FrameList> list_frames(const FrameListRequest& request, Diagnostics& diag
   AFTERGLOW_TRY(const OutputNames names, OutputNames::parse(request));
   FrameList list;
   bool standard = false;
-  for (const auto& input : request.inputs) {
+  AFTERGLOW_TRY(const auto inputs, with_sequences(request.inputs));
+  for (const auto& input : inputs) {
     if (input == "-") {
       standard = true;
       AFTERGLOW_CHECK(add_standard_input(request, names, frames, list, diagnostics));

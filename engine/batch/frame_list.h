@@ -11,7 +11,7 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
-#include "image/movie_stream.h"
+#include "image/movie.h"
 #include "image/reader.h"
 #include "image/sequence.h"
 
@@ -35,7 +35,7 @@ struct FrameJob {
 };
 
 struct FrameListRequest {
-  std::vector<std::string> inputs;  ///< files, patterns, videos; "-" alone: standard input
+  std::vector<std::string> inputs;  ///< files, patterns, folders that hold one sequence, videos; "-" alone: standard input
   std::string output;               ///< file, pattern or folder; a video; "-": standard output
   std::string extension;            ///< --format, for outputs in a folder; empty: that of the input
   std::string raw;                  ///< --raw: how frames on standard input lie

@@ -127,9 +127,12 @@ std::string frames_text(const std::vector<int>& frames) {
   return out;
 }
 
-std::vector<Chunk> chunks_of(const FrameListRequest& request, const std::vector<FrameJob>& jobs, int most) {
+std::vector<Chunk> chunks_of(const std::vector<FrameJob>& jobs, int most) {
   std::vector<Chunk> chunks;
-  const auto is_sequence = [&](const FrameJob& job) { return std::ranges::count(request.inputs, job.sequence) > 0; };
+  const auto is_sequence = [](const FrameJob& job) {
+    const auto pattern = parse_pattern(job.sequence);
+    return pattern && pattern->numbered;
+  };
   const auto size = static_cast<std::size_t>(most);
   for (std::size_t i = 0; i < jobs.size();) {
     const bool numbered = is_sequence(jobs[i]);

@@ -55,9 +55,8 @@ struct Job {
   std::vector<std::string> command(std::size_t chunk) const;
 };
 
-/// Chunks of at most so many frames, by sequence, in the order of `frames`. `jobs` is what `list_frames` made of the
-/// request.
-std::vector<Chunk> chunks_of(const FrameListRequest& request, const std::vector<FrameJob>& jobs, int most);
+/// Chunks of at most so many frames, by sequence, in the order of `jobs`, which list_frames made.
+std::vector<Chunk> chunks_of(const std::vector<FrameJob>& jobs, int most);
 
 /// "1-24,30,32-40x2": what parse_frames makes the same frames of. Frames in their order, each once.
 std::string frames_text(const std::vector<int>& frames);

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include "image/movie_stream.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <future>
+#include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/text.h"
 #include "image/ffmpeg_module.h"
+#include "image/movie.h"
 
 namespace afterglow {
 namespace {
@@ -58,7 +61,9 @@ Result<std::string> raw_options(const std::string& raw) {
   const auto digits = [](const std::string& text, const char* allowed) {
     return !text.empty() && text.find_first_not_of(allowed) == std::string::npos;
   };
-  if (!digits(parts[0], "0123456789x") || !digits(parts[1], "abcdefghijklmnopqrstuvwxyz0123456789_")) return wrong();
+  const std::vector<std::string> sides = split(parts[0], 'x');
+  if (sides.size() != 2 || !digits(sides[0], "0123456789") || !digits(sides[1], "0123456789")) return wrong();
+  if (!digits(parts[1], "abcdefghijklmnopqrstuvwxyz0123456789_")) return wrong();
   if (parts.size() == 3 && !digits(parts[2], "0123456789./")) return wrong();
   return fmt::format("video_size={}:pixel_format={}:framerate={}", parts[0], parts[1],
                      parts.size() == 3 ? parts[2] : "24");

@@ -32,4 +32,9 @@ struct FrameFile {
 /// reports them). A plain file is one frame, 1 unless its name ends in a number. Errors: io (no file matches).
 Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::optional<std::vector<int>>& frames);
 
+/// The pattern of the one sequence of pictures in a folder: "shots/shot.####.exr". Errors: io (none, several: named).
+Result<std::string> sequence_in(const std::filesystem::path& folder);
+/// Inputs with the sequences of the folders among them.
+Result<std::vector<std::string>> with_sequences(std::vector<std::string> inputs);
+
 }  // namespace afterglow

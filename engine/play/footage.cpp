@@ -144,7 +144,8 @@ Result<std::shared_ptr<const Footage>> Footage::open(const FootageOptions& optio
   if (!options.frames.empty()) {
     AFTERGLOW_TRY(wanted, parse_frames(options.frames));
   }
-  for (const std::string& input : options.inputs) {
+  AFTERGLOW_TRY(const auto inputs, with_sequences(options.inputs));
+  for (const std::string& input : inputs) {
     const std::size_t before = footage->missing_.size();
     AFTERGLOW_CHECK(footage->add(input, wanted, diagnostics));
     const std::vector<int> missing(footage->missing_.begin() + static_cast<std::ptrdiff_t>(before),

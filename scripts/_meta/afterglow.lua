@@ -437,7 +437,7 @@
 ---@class afterglow.settings.transition : afterglow.EntryKeys
 ---@field progress? number|afterglow.Moving  0: this picture. 1: the other. 0…1, default 0
 ---@field kind? "dissolve"|"fade"|"wipe"|"iris"|"clock"|"blinds"|"scatter"|"push"|afterglow.OfTime  dissolve: both at once. fade: through `color`. wipe: a line moves over. iris: a circle opens. clock: a hand goes round. blinds: strips. scatter: grains. push: one moves the other out. default "dissolve"
----@field to? string|afterglow.OfTime  The other picture; none: `color`. default ""
+---@field to? string|afterglow.OfTime  The other picture, or one for each frame by a function; none: `color`. default ""
 ---@field layer? string|afterglow.OfTime  In place of `to`: a layer of the picture's own file, by name. default ""
 ---@field color? number[]|string|afterglow.Moving  The other picture where none is given, and what `fade` goes through. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
 ---@field angle? number|afterglow.Moving  wipe, push, blinds: where it moves to; 0 right, 90 up (push: the nearest of the four sides). clock: where the hand starts. -360…360 degrees, default 0

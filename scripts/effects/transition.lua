@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 -- Transition: from this picture to another, by `progress`. The other is a file (scaled to cover the picture), a layer of the picture's own file, or a plain colour. `progress` moves
--- with the frames, as in progress = fx.curve { { 48, 0 }, { 60, 1 } }, or is an argument of the look (docs/composition.md). Formulas: docs/math.md §34.
+-- with the frames, as in progress = fx.curve { { 48, 0 }, { 60, 1 } }, or is an argument of the look (docs/composition.md). Another shot:
+-- to = function(t) return string.format("next.%04d.exr", t.frame - 40) end, beside the preset; what a look reads may be 512 MiB in all, the length of a cut. Formulas: docs/math.md §34.
 local fx = require "afterglow"
 
 local kKinds = { dissolve = 0, fade = 1, wipe = 2, iris = 3, clock = 4, blinds = 5, scatter = 6, push = 7 }
@@ -13,7 +14,7 @@ return fx.effect {
     progress = fx.float { min = 0, max = 1, default = 0, doc = "0: this picture. 1: the other." },
     kind = fx.enum { "dissolve", "fade", "wipe", "iris", "clock", "blinds", "scatter", "push", default = "dissolve",
       doc = "dissolve: both at once. fade: through `color`. wipe: a line moves over. iris: a circle opens. clock: a hand goes round. blinds: strips. scatter: grains. push: one moves the other out." },
-    to = fx.file { extensions = { "png", "jpg", "jpeg", "exr", "tif", "tiff", "hdr" }, doc = "The other picture; none: `color`." },
+    to = fx.file { extensions = { "png", "jpg", "jpeg", "exr", "tif", "tiff", "hdr" }, doc = "The other picture, or one for each frame by a function; none: `color`." },
     layer = fx.text { default = "", doc = "In place of `to`: a layer of the picture's own file, by name." },
     color = fx.color { default = { 0, 0, 0 }, doc = "The other picture where none is given, and what `fade` goes through." },
     angle = fx.float { min = -360, max = 360, default = 0, unit = "degrees", doc = "wipe, push, blinds: where it moves to; 0 right, 90 up (push: the nearest of the four sides). clock: where the hand starts." },

@@ -3,12 +3,10 @@
 // 2^-11 within a turn and anything beyond, and some take them. Polynomials of
 // M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 4.3.101 and 4.4.49.
 
-/// tan x for 0 ≤ x; angles from a right one on give 1e6.
+/// tan x for 0 ≤ x, of an angle that is exact to 1e-7; angles from a right one on give 1e6.
 float tangent(float x) {
   const float kHalfPi = 1.57079632679;
-  precise float left = kHalfPi - x;
-  precise float exact = left - 4.371139e-8;  // the constant's rounding
-  float rest = max(exact, 1e-6);
+  float rest = max((kHalfPi - x) - 4.371139e-8, 1e-6);  // the constant's rounding
   bool steep = x > 0.5 * kHalfPi;
   float a = steep ? rest : x, z = a * a;
   float t = a + a * z * (0.3333314036 + z * (0.1333923995 + z * (0.0533740603 + z * (0.0245650893 + z * (0.0029005250 + z * 0.0095168091)))));

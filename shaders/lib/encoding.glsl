@@ -5,7 +5,7 @@
 #include "lib/near_one.glsl"
 
 const int kEncodingLinear = 0, kEncodingSrgb = 1, kEncodingAcescct = 2, kEncodingLogC3 = 3, kEncodingLogC4 = 4, kEncodingSlog3 = 5, kEncodingPq = 6,
-          kEncodingHlg = 7, kEncodingGamma22 = 8, kEncodingGamma24 = 9;
+          kEncodingHlg = 7, kEncodingGamma22 = 8, kEncodingGamma24 = 9, kEncodingCineon = 10, kEncodingRec709 = 11;
 
 vec3 srgb_from_linear(vec3 c) {
   c = max(c, vec3(0.0));
@@ -118,6 +118,26 @@ vec3 linear_from_hlg(vec3 v) {
 vec3 power_from_linear(vec3 c, float gamma) { return sign(c) * pow(abs(c), vec3(1.0 / gamma)); }
 vec3 linear_from_power(vec3 v, float gamma) { return sign(v) * pow(min(abs(v), vec3(1e12)), vec3(gamma)); }
 
+// Cineon printing density: codes of 1023 count 0.002, 95 is black, 685 white, film's gamma 0.6.
+const float kCineonBlack = 0.0107977516;  // 10^(0.002·(95 − 685)/0.6)
+vec3 cineon_from_linear(vec3 x) {
+  return (685.0 + (300.0 / kLog2Of10) * log2(max(x * (1.0 - kCineonBlack) + kCineonBlack, vec3(1e-10)))) / 1023.0;
+}
+vec3 linear_from_cineon(vec3 v) {
+  return (exp2((min(v, vec3(8.0)) * 1023.0 - 685.0) * (kLog2Of10 / 300.0)) - kCineonBlack) / (1.0 - kCineonBlack);
+}
+
+// The curve of cameras (ITU-R BT.709, digits of BT.2020), odd around 0.
+const float kCameraAlpha = 1.09929682680944, kCameraBeta = 0.018053968510807;
+vec3 rec709_from_linear(vec3 c) {
+  vec3 a = abs(c);
+  return sign(c) * mix(kCameraAlpha * pow(a, vec3(0.45)) - (kCameraAlpha - 1.0), 4.5 * a, lessThan(a, vec3(kCameraBeta)));
+}
+vec3 linear_from_rec709(vec3 v) {
+  vec3 a = min(abs(v), vec3(1e12));
+  return sign(v) * mix(pow((a + (kCameraAlpha - 1.0)) / kCameraAlpha, vec3(1.0 / 0.45)), a / 4.5, lessThan(a, vec3(4.5 * kCameraBeta)));
+}
+
 vec3 encoded(vec3 c, int encoding) {
   if (encoding == kEncodingSrgb) return srgb_from_linear(c);
   if (encoding == kEncodingAcescct) return acescct_from_linear(c);
@@ -128,6 +148,8 @@ vec3 encoded(vec3 c, int encoding) {
   if (encoding == kEncodingHlg) return hlg_from_linear(c);
   if (encoding == kEncodingGamma22) return power_from_linear(c, 2.2);
   if (encoding == kEncodingGamma24) return power_from_linear(c, 2.4);
+  if (encoding == kEncodingCineon) return cineon_from_linear(c);
+  if (encoding == kEncodingRec709) return rec709_from_linear(c);
   return c;
 }
 
@@ -141,5 +163,7 @@ vec3 decoded(vec3 c, int encoding) {
   if (encoding == kEncodingHlg) return linear_from_hlg(c);
   if (encoding == kEncodingGamma22) return linear_from_power(c, 2.2);
   if (encoding == kEncodingGamma24) return linear_from_power(c, 2.4);
+  if (encoding == kEncodingCineon) return linear_from_cineon(c);
+  if (encoding == kEncodingRec709) return linear_from_rec709(c);
   return c;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cases.h"
+#include "files.h"
 #include "reference/air.h"
 #include "reference/cut.h"
 #include "reference/glow.h"
@@ -291,6 +292,21 @@ TEST_F(Effects, TransitionsEndAtTheOtherPicture) {
     const Made made = run_stack(fmt::format("fx.transition {{ kind = \"{}\", layer = \"next\", progress = 1 }}", kind),
                                 scene, Way::plain);
     EXPECT_TRUE(agrees(made.result, scene.layers["next"], 1e-6, kRgb)) << kind;
+  }
+}
+
+TEST_F(Effects, TransitionsGoOverToTheFrameThatIsNamed) {
+  // Pictures of one colour, 2^(e - 128) / 2 of red: the other side is a sequence when `to` depends on the frame.
+  for (const auto& [frame, exponent] : {std::pair{7, 129}, std::pair{8, 131}})
+    write_test_file(fmt::format("next.{:04}.hdr", frame), "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" +
+                                                              std::string{'\x80', '\x00', '\x00', char(exponent)});
+  Scene scene = random_scene({20, 12}, 75);
+  for (const auto& [frame, red] : {std::pair{2, 1.0}, std::pair{3, 4.0}}) {
+    scene.frame = frame;
+    const Made made = run_stack(
+        "fx.transition { progress = 1, to = function(t) return string.format('next.%04d.hdr', t.frame + 5) end }",
+        scene, Way::plain);
+    EXPECT_TRUE(agrees(made.result, DoubleImage(20, 12, Rgba(red, 0, 0, 1)), 0.02, kRgb)) << frame;
   }
 }
 

@@ -149,7 +149,8 @@ TEST_F(RunVideos, APipeThatEndsWithinAFrameEndsWithExitCode4) {
   EXPECT_EQ(shell("echo nonsense | AFTERGLOW run look.lua - -o r.png"), 4);
   EXPECT_EQ(shell("AFTERGLOW run look.lua - --raw 192:rgb24 -o r.png </dev/null"), 2);
   EXPECT_THAT(said_, HasSubstr("--raw: error: '192:rgb24' is no format of raw frames; allowed: WIDTHxHEIGHT:PIXELS"));
-  EXPECT_EQ(shell("AFTERGLOW run look.lua clip.exr --raw 4x4:rgb24 -o r.png"), 4);
+  EXPECT_EQ(shell("AFTERGLOW run look.lua clip.exr --raw 4x4:rgb24 -o r.png"), 2);
+  EXPECT_THAT(said_, HasSubstr("--raw is for frames on standard input: give - as the input"));
   EXPECT_EQ(shell(fmt::format("AFTERGLOW run look.lua - --raw 192x96:rgb24 -o one.png <'{}'", raw)), 2);
   EXPECT_THAT(said_, HasSubstr("more than one frame comes on standard input"));
 }

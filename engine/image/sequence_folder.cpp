@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <system_error>
+
+#include "core/text.h"
+#include "image/picture_format.h"
+#include "image/sequence.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kMostFrameDigits = 9;
+
+/// Files that differ in a number alone.
+struct Numbered {
+  std::size_t digits = kMostFrameDigits, files = 0;
+  fs::path example;
+};
+/// By what stands before and behind the number.
+using NumberedGroups = std::map<std::pair<std::string, std::string>, Numbered>;
+
+bool is_number(char c) { return c >= '0' && c <= '9'; }
+
+/// Notes a file by the last number in its name, the extension left out.
+void note_name(NumberedGroups& groups, const fs::path& file) {
+  const std::string name = file.filename().string(), stem = file.stem().string();
+  if (name.starts_with('.') || name.find('#') != std::string::npos) return;
+  std::size_t end = stem.size();
+  while (end > 0 && !is_number(stem[end - 1])) --end;
+  std::size_t begin = end;
+  while (begin > 0 && is_number(stem[begin - 1])) --begin;
+  if (begin == end || end - begin > kMostFrameDigits) return;
+  Numbered& group = groups[{name.substr(0, begin), name.substr(end)}];
+  group.digits = std::min(group.digits, end - begin);
+  ++group.files;
+  group.example = file;
+}
+
+/// As a pattern writes it.
+std::string with_percents(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '%' ? std::string("%%") : std::string(1, c);
+  return out;
+}
+
+bool is_picture(const fs::path& file) {
+  return !picture_format(file).empty() || lower(file.extension().string()) == ".exr";
+}
+
+}  // namespace
+
+Result<std::string> sequence_in(const fs::path& folder) {
+  NumberedGroups groups;
+  std::error_code ec, ignored;
+  fs::directory_iterator it(folder, ec);
+  for (const fs::directory_iterator end; !ec && it != end; it.increment(ec))
+    if (it->is_regular_file(ignored)) note_name(groups, it->path());
+  if (ec) return Error{ErrorKind::io, fmt::format("cannot be read: {}", ec.message()), folder.string()};
+  std::vector<std::string> found;
+  for (const auto& [name, group] : groups)
+    if (is_picture(group.example))
+      found.push_back(with_percents((folder / name.first).string()) + std::string(group.digits, '#') +
+                      with_percents(name.second));
+  if (found.size() == 1) return found.front();
+  constexpr std::size_t kMostNamed = 4;
+  Error error{ErrorKind::io,
+              found.empty() ? "the folder holds no numbered pictures" : "the folder holds several sequences",
+              folder.string()};
+  if (found.size() > kMostNamed) found.resize(kMostNamed), found.emplace_back("…");
+  error.allowed = found.empty() ? "a folder with files like shot.0001.exr" : join(found);
+  return error;
+}
+
+Result<std::vector<std::string>> with_sequences(std::vector<std::string> inputs) {
+  for (auto& input : inputs) {
+    std::error_code ec;
+    if (!fs::is_directory(input, ec)) continue;
+    AFTERGLOW_TRY(input, sequence_in(input));
+  }
+  return inputs;
+}
+
+}  // namespace afterglow
