@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "image/metadata.h"
-#include "image/movie_stream.h"
+#include "image/movie.h"
 #include "image/video_writer.h"
 
 namespace afterglow {
