@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/command.h"
+#include "apps/options.h"
 #include "apps/output.h"
 #include "core/json_text.h"
 #include "core/table.h"

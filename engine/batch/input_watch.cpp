@@ -21,7 +21,7 @@ Hash stamp_now(const std::filesystem::path& file) { return inspect(file, FilePro
 
 }  // namespace
 
-InputWatch::InputWatch(const std::vector<FrameRecord>& frames) : events_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
+InputWatch::InputWatch(const FrameRecords& frames) : events_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
   std::set<std::filesystem::path> seen;
   for (const auto& frame : frames)
     for (const auto& file : frame.job.sources()) {

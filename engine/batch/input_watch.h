@@ -18,7 +18,7 @@ namespace afterglow {
 /// touched for two seconds (network file systems tell of nothing). Not thread-safe.
 class InputWatch {
  public:
-  explicit InputWatch(const std::vector<FrameRecord>& frames);
+  explicit InputWatch(const FrameRecords& frames);
 
   /// Waits a tenth of a second, or less where something happens.
   void wait();

@@ -22,7 +22,7 @@ struct Watched {
 };
 
 /// By number within each sequence.
-std::vector<Watched> watched_frames(std::vector<FrameRecord>& frames, int earlier) {
+std::vector<Watched> watched_frames(FrameRecords& frames, int earlier) {
   std::vector<Watched> out;
   for (auto& frame : frames) out.push_back({.record = &frame, .due = frame.state == State::waiting});
   std::ranges::stable_sort(
@@ -54,7 +54,7 @@ bool can_be_made(const std::vector<Watched>& frames, const Watched& one) {
 
 }  // namespace
 
-Result<void> run_watching(std::vector<FrameRecord>& frames, int earlier, bool fail_fast, const RunEvents& events,
+Result<void> run_watching(FrameRecords& frames, int earlier, bool fail_fast, const RunEvents& events,
                           const std::function<Result<void>()>& run) {
   InputWatch watch(frames);
   std::vector<Watched> watched = watched_frames(frames, earlier);

@@ -15,7 +15,7 @@ namespace afterglow {
 /// change, until each of `frames` is done. `earlier`: so many frames before a frame reach its pixels; they must be
 /// whole too, and when one changes the frame is made again. Errors: interrupted, and those of `run` but for frames that
 /// failed: these are told, and made again when they change (`fail_fast`: they end it too).
-Result<void> run_watching(std::vector<FrameRecord>& frames, int earlier, bool fail_fast, const RunEvents& events,
+Result<void> run_watching(FrameRecords& frames, int earlier, bool fail_fast, const RunEvents& events,
                           const std::function<Result<void>()>& run);
 
 }  // namespace afterglow
