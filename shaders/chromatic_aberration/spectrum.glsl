@@ -32,7 +32,8 @@ vec4 sample_at(ivec2 pixel) {
   int last = int(ceil(longer));
   vec3 here = spectrum(step), change = here, sum = change * color.rgb;
   for (int i = 1; i <= last; ++i) {
-    vec3 next = spectrum(float(i + 1) * step), weight = (next - here) - change;
+    vec3 next = spectrum(float(i + 1) * step), weight = max((next - here) - change, vec3(0.0));
+    if (float(i - 1) * step >= 0.5) weight.r = 0.0;  // red has ended: no rounding of it, which bright pixels would show
     float aside = float(i) * slope, whole = floor(aside), rest = aside - whole;
     ivec2 at = pixel + i * along + int(whole) * across;
     sum += weight * ((1.0 - rest) * fetch(source, at).rgb + rest * fetch(source, at + across).rgb);
