@@ -59,7 +59,7 @@ TEST_F(BadInput, NoPicture) {
 
 TEST_F(BadInput, Folder) {
   fs::create_directory(path("folder.exr"));
-  expect_refusal("folder.exr", "is a folder");
+  expect_refusal("folder.exr", "the folder holds no numbered pictures");
 }
 
 TEST_F(BadInput, UnknownLayer) {
