@@ -117,7 +117,7 @@ Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(std::shared_ptr<FileDescr
 
 Result<void> FfmpegInput::open_container(const std::string& format, const std::string& options) {
   const AVInputFormat* demuxer = av_find_input_format(format.c_str());
-  if (!demuxer) return failed(fmt::format("FFmpeg was built without '{}'", format));
+  if (!demuxer) return failed(fmt::format("FFmpeg {} cannot read '{}' files", av_version_info(), format));
   auto* buffer = static_cast<std::uint8_t*>(av_malloc(kIoBuffer));
   io_ = avio_alloc_context(buffer, kIoBuffer, 0, &bytes_, read_bytes, nullptr, seekable_ ? seek_bytes : nullptr);
   container_ = avformat_alloc_context();
