@@ -116,6 +116,7 @@ void LiveBuilder::run() {
     dead_.clear();
     const Wanted why = std::exchange(wanted_, {});
     busy_ = true;
+    builds_ = why.any();
     const LiveRequest request = request_;
     if (why.any()) request_.for_frame = false;
     lock.unlock();
@@ -126,7 +127,7 @@ void LiveBuilder::run() {
     }
     dead.clear();
     lock.lock();
-    busy_ = false;
+    busy_ = builds_ = false;
     const bool was = std::exchange(status_.building, wanted_.request);
     changed_.notify_all();
     if (was != status_.building) {
@@ -378,7 +379,7 @@ LiveStatus LiveBuilder::status() const {
 
 bool LiveBuilder::building() const {
   const std::lock_guard lock(mutex_);
-  return busy_ || wanted_.any() || parts_.any();
+  return builds_ || wanted_.any() || parts_.any();
 }
 
 LiveStack::Counters LiveBuilder::counters() const {

@@ -127,6 +127,7 @@ class LiveBuilder {
   LiveRequest request_;
   Wanted wanted_;
   bool busy_ = false, ends_ = false;
+  bool builds_ = false;  ///< busy with a build, not only with letting go of what is dead
   FileProbes new_probes_;         ///< of frames
   std::shared_ptr<Until> until_;  ///< when the script that is running ends at the latest
   Clock::time_point script_began_{};

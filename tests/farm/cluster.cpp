@@ -179,6 +179,8 @@ void Cluster::kill_node(const std::string& node) const {
         doomed.push_back(one);
       }
   }
+  // All stand still first: slurmstepd must not tell of the task's end, as a machine without power would not.
+  for (const int process : doomed) kill(process, SIGSTOP);
   for (const int process : doomed) kill(process, SIGKILL);
 }
 
