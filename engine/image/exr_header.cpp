@@ -223,8 +223,15 @@ std::optional<ExrPart> read_part(Bytes& bytes, std::uint32_t flags) {
   return part;
 }
 
-/// Scan lines that one chunk holds, by the number of the compression method.
-int lines_per_chunk(int compression) {
+}  // namespace
+
+std::uint64_t ExrPart::pixel_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const ExrChannel& channel : channels) bytes += channel.sample_bytes();
+  return bytes;
+}
+
+int ExrPart::chunk_lines() const {
   switch (compression) {
     case 3:
     case 5:
@@ -241,20 +248,12 @@ int lines_per_chunk(int compression) {
   }
 }
 
-}  // namespace
-
-std::uint64_t ExrPart::pixel_bytes() const {
-  std::uint64_t bytes = 0;
-  for (const ExrChannel& channel : channels) bytes += channel.type == ExrChannelType::half ? 2 : 4;
-  return bytes;
-}
-
 std::uint64_t ExrPart::chunks() const {
   const auto pieces = [](int side, int piece) {
     return (std::uint64_t(side) + std::uint64_t(piece) - 1) / std::uint64_t(piece);
   };
   if (tiled) return pieces(data_window.width, tile.width) * pieces(data_window.height, tile.height);
-  return pieces(data_window.height, lines_per_chunk(compression));
+  return pieces(data_window.height, chunk_lines());
 }
 
 std::uint64_t ExrPart::least_file_bytes() const {
@@ -264,7 +263,7 @@ std::uint64_t ExrPart::least_file_bytes() const {
   for (const ExrChannel& channel : channels) {
     const auto columns = static_cast<std::uint64_t>(data_window.width / channel.x_sampling);
     const auto lines = static_cast<std::uint64_t>(data_window.height / channel.y_sampling);
-    raw = saturated_sum({raw, saturated_product({columns, lines, channel.type == ExrChannelType::half ? 2u : 4u})});
+    raw = saturated_sum({raw, saturated_product({columns, lines, channel.sample_bytes()})});
   }
   switch (compression) {
     case 0:
@@ -286,7 +285,7 @@ std::uint64_t ExrPart::buffer_bytes(int threads) const {
       4 * static_cast<std::uint64_t>(std::max(threads, 1));  // two a thread, packed and unpacked
   const auto width = static_cast<std::uint64_t>(data_window.width);
   if (!tiled) {
-    const int lines = std::min(lines_per_chunk(compression), data_window.height);
+    const int lines = std::min(chunk_lines(), data_window.height);
     return saturated_product({width, static_cast<std::uint64_t>(lines), pixel_bytes(), buffers});
   }
   const auto tile_width = static_cast<std::uint64_t>(tile.width), tile_height = static_cast<std::uint64_t>(tile.height);

@@ -19,6 +19,8 @@ struct ExrChannel {
   std::string name;
   ExrChannelType type = ExrChannelType::half;
   int x_sampling = 1, y_sampling = 1;
+
+  std::uint64_t sample_bytes() const { return type == ExrChannelType::half ? 2 : 4; }
 };
 
 struct ExrPart {
@@ -31,6 +33,7 @@ struct ExrPart {
   int orientation = 1;
 
   std::uint64_t pixel_bytes() const;
+  int chunk_lines() const;  ///< lines that one chunk holds, unless it is tiled
   /// Tiles or groups of lines at full resolution. The file holds the place of each, and OpenEXR takes memory for all of
   /// these when it opens the file, whichever part is wanted.
   std::uint64_t chunks() const;

@@ -16,8 +16,6 @@
 namespace afterglow {
 namespace {
 
-std::size_t bytes_of(ExrChannelType type) { return type == ExrChannelType::half ? 2 : 4; }
-
 /// The samples of one channel in one line.
 void take_samples(const std::uint8_t* stored, ExrChannelType type, std::size_t width, std::vector<float>& line,
                   float* base, std::size_t stride) {
@@ -38,16 +36,16 @@ class LineReader {
         part_(part),
         targets_(targets),
         width_(static_cast<std::size_t>(part.data_window.width)),
-        lines_(part.compression == Imf::ZIP_COMPRESSION ? 16 : 1) {
+        lines_(part.chunk_lines()) {
     for (const ExrChannel& channel : part.channels) {
       offsets_.push_back(line_bytes_);
-      line_bytes_ += width_ * bytes_of(channel.type);
+      line_bytes_ += width_ * channel.sample_bytes();
     }
   }
 
   /// Chunks are fetched one by one, as files are read best, and unpacked side by side.
   void run() {
-    const int chunks = (part_.data_window.height + lines_ - 1) / lines_;
+    const int chunks = static_cast<int>(part_.chunks());
     const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 16u));
     const int most = std::min(chunks, std::max(2 * threads, 32 / lines_));
     std::vector<std::vector<std::uint8_t>> packed(static_cast<std::size_t>(most));

@@ -22,8 +22,8 @@ struct ExrLineTarget {
 /// Whether `read_zipped_lines` can: lines of ZIP or ZIPS, no channel sub-sampled, wanted ones half or float.
 bool has_zipped_lines(const ExrPart& part, std::span<const ExrLineTarget> targets);
 
-/// All lines of the part, on several threads; memory as ExrPart::buffer_bytes counts it. Throws what OpenEXR throws,
-/// and std::runtime_error when a chunk is damaged.
+/// All lines of the part, on several threads. Besides what ExrPart::buffer_bytes counts it holds up to 32 packed lines
+/// of ZIPS. Throws what OpenEXR throws, and std::runtime_error when a chunk is damaged.
 void read_zipped_lines(Imf::InputPart& input, const ExrPart& part, std::span<const ExrLineTarget> targets);
 
 }  // namespace afterglow
