@@ -71,14 +71,16 @@ install(FILES README.md CHANGELOG.md THIRD_PARTY.md DESTINATION ${doc} COMPONENT
 install(DIRECTORY docs examples DESTINATION ${doc} COMPONENT documents
   PATTERN "*.sh" EXCLUDE PATTERN "benchmarks/looks" EXCLUDE)
 
-# A changelog by Debian's rules, of the commit's time and packed without one.
-if(NOT DEFINED ENV{SOURCE_DATE_EPOCH})
+# A changelog by Debian's rules, of the commit's time and packed without one. tools/package.sh reads that time from the cache.
+set(commit_time $ENV{SOURCE_DATE_EPOCH})
+if(NOT commit_time)
   execute_process(COMMAND git -C ${PROJECT_SOURCE_DIR} log -1 --format=%ct OUTPUT_VARIABLE commit_time OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-  if(NOT commit_time)
-    file(TIMESTAMP ${PROJECT_SOURCE_DIR}/CMakeLists.txt commit_time %s UTC)
-  endif()
-  set(ENV{SOURCE_DATE_EPOCH} ${commit_time})
 endif()
+if(NOT commit_time)
+  file(TIMESTAMP ${PROJECT_SOURCE_DIR}/CMakeLists.txt commit_time %s UTC)
+endif()
+set(AFTERGLOW_COMMIT_TIME ${commit_time} CACHE INTERNAL "Seconds since 1970 of the commit that is built")
+set(ENV{SOURCE_DATE_EPOCH} ${commit_time})
 set(changelog ${CMAKE_BINARY_DIR}/changelog.gz)
 string(TIMESTAMP release_date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 file(WRITE ${CMAKE_BINARY_DIR}/changelog

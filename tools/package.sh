@@ -7,9 +7,10 @@ build=$(cd "$1" && pwd)
 mkdir -p "$2"
 out=$(cd "$2" && pwd)
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-version=$(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$build/CMakeCache.txt")
+cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
+version=$(cached CMAKE_PROJECT_VERSION)
 name=afterglow-$version-linux-$(uname -m)
-SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git -C "$root" log -1 --format=%ct 2>/dev/null || stat -c %Y "$root/CMakeLists.txt")}
+SOURCE_DATE_EPOCH=$(cached AFTERGLOW_COMMIT_TIME)
 export SOURCE_DATE_EPOCH
 
 # Packages. Files get the time of the commit, so that packing them twice gives the same archive.
@@ -31,7 +32,8 @@ for deb in "$out"/pack/*.deb; do
 done
 rm -rf "$out/pack"
 
-# The archive: the program and the library with every library that they need, but for those of the C library and of drivers.
+# The archive: the program and the library with every library that they need, but for those of the C library, of the compiler
+# (drivers need the system's own, which may be newer) and of drivers.
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
 top=$tree/$name
@@ -43,7 +45,7 @@ lib=$(dirname "$(find "$top" -name 'libafterglow.so.?' | head -n 1)")
 wanted() {
   # shellcheck disable=SC2086 # a list
   ldd "$top/bin/afterglow" $libraries 2>/dev/null | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
-    grep -vE '/(lib(c|m|dl|rt|pthread|resolv|util)\.so|libafterglow|ld-linux)'
+    grep -vE '/(lib(c|m|dl|rt|pthread|resolv|util|stdc\+\+|gcc_s)\.so|libafterglow|ld-linux)'
 }
 mkdir -p "$top/licences"
 { wanted; ls /usr/lib/"$(uname -m)"-linux-gnu/libvulkan.so.1; } | while read -r file; do

@@ -22,17 +22,18 @@ vec4 lut_tetrahedron(vec3 f, out ivec3 a, out ivec3 b) {
   return vec4(1.0 - most, most - middle, middle - least, least);
 }
 
-/// Half floats on both sides of v as entries of a table by their bits, and how far v is from the first to the second.
+/// The half floats on both sides of v as entries of a table by their bits, and how far v is from the first to the second. By v's own
+/// bits: a compiler may take packHalf2x16 and unpackHalf2x16 behind each other for nothing.
 void lut_half(float v, out int low, out int high, out float t) {
-  v = clamp(v, -65504.0, 65504.0);
-  int nearest = int(packHalf2x16(vec2(v, 0.0)) & 0xffffu);
-  float at = unpackHalf2x16(uint(nearest)).x;
-  int away = nearest + (abs(v) >= abs(at) ? 1 : -1);  // the neighbour on v's other side
-  away = (away & 0x7fff) > 0x7bff || (nearest & 0x7fff) == 0 && away < nearest ? nearest : away;
-  float other = unpackHalf2x16(uint(away)).x;
-  low = nearest;
-  high = away;
-  t = other == at ? 0.0 : clamp((v - at) / (other - at), 0.0, 1.0);
+  const uint most = 0x7bffu;  // 65504
+  uint bits = floatBitsToUint(clamp(v, -65504.0, 65504.0)), size = bits & 0x7fffffffu;
+  float steps = min(uintBitsToFloat(size) * 16777216.0, 1024.0);  // subnormal halves are steps of 2^-24
+  bool normal = size >= 0x38800000u;                              // 2^-14
+  uint code = min(normal ? (size - 0x38000000u) >> 13 : uint(steps), most);
+  t = normal ? float(size & 0x1fffu) / 8192.0 : steps - float(code);
+  int sign_bit = int(bits >> 31) << 15;
+  low = sign_bit | int(code);
+  high = sign_bit | int(min(code + 1u, most));
 }
 
 /// ASC CDL: slope, offset, power, saturation with Rec.709's luma; `extra` is (saturation, 1 to hold to 0…1).
