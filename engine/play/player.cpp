@@ -46,6 +46,7 @@ LiveOptions Player::State::live_options(const std::vector<Override>& overrides) 
 void Player::State::begin_reading() {
   ahead.reset();  // waits for what is being read of the footage before
   wanted_for.clear();
+  unreadable.clear();
   ahead = std::make_unique<ReadAhead>(
       [this, footage = footage](int key) {
         std::vector<std::string> needs;
@@ -53,7 +54,14 @@ void Player::State::begin_reading() {
           const std::lock_guard lock(mutex);
           needs = auxiliary;
         }
-        return footage->read(key, needs, diagnostics);
+        auto read = footage->read(key, needs, diagnostics);
+        const std::lock_guard lock(mutex);
+        if (read) {
+          unreadable.erase(key);
+        } else {
+          unreadable.insert(key);
+        }
+        return read;
       },
       options.read_ahead, [this] { wake(); });
 }
@@ -237,8 +245,14 @@ Result<bool> Player::State::time_a_kernel(bool changed, Step& step) {
   return timed;
 }
 
-bool Player::in_memory(int position) const {
-  return state_->ahead->find(state_->footage->frame(position).picture) != nullptr;
+FrameState Player::frame_state(int position) const {
+  const FootageFrame& frame = state_->footage->frame(position);
+  {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->unreadable.contains(frame.picture)) return FrameState::unreadable;
+  }
+  if (frame.held) return FrameState::missing;
+  return state_->ahead->find(frame.picture) ? FrameState::cached : FrameState::unread;
 }
 
 Result<Step> Player::step() {
