@@ -253,7 +253,9 @@ TEST_F(VideoOut, AlphaWhereTheCodecCan) {
     for (std::size_t i = 0; i < raw.size(); i += 4) {
       const int alpha = static_cast<int>(i / 4 % kWidth * 255 / (kWidth - 1));
       ASSERT_NEAR(static_cast<std::uint8_t>(raw[i + 3]), alpha, c.off) << c.name << " " << i;
-      if (alpha > 30) ASSERT_NEAR(static_cast<std::uint8_t>(raw[i]), 200, c.off + 2) << c.name << " " << i;
+      if (alpha > 30) {
+        ASSERT_NEAR(static_cast<std::uint8_t>(raw[i]), 200, c.off + 2) << c.name << " " << i;
+      }
     }
   }
   const Outcome opaque = run({"run", "look.lua", "a#.png", "-o", "b.mp4"});
