@@ -135,7 +135,8 @@ Result<void> run_frames(BatchRun& run) {
     return Error{ErrorKind::usage, "--watch makes frames in the order in which they come; one file cannot take them",
                  "afterglow run", 0, "pictures, like out.####.exr"};
   if (run.list.more && asked.watch)
-    return Error{ErrorKind::usage, "--watch is for files; frames on standard input are run as they come", "afterglow run"};
+    return Error{ErrorKind::usage, "--watch is for files; frames on standard input are run as they come",
+                 "afterglow run"};
   SessionOptions opened = asked.session;
   opened.frames = frames.size() > 1 || run.list.more ? kFramesInFlight : 1;
   AFTERGLOW_TRY(run.session, Session::open(asked.preset, opened, run.events.diagnostics));
