@@ -134,6 +134,8 @@ Result<void> Footage::add(const std::string& input, const std::optional<std::vec
     return Error{ErrorKind::usage,
                  fmt::format("--frames needs a numbered input like shot.####.exr or a video, not {}", input),
                  "afterglow play"};
+  std::error_code none;
+  if (!fs::exists(pattern.file(0), none)) return Error{ErrorKind::io, "no such file", pattern.file(0).string()};
   return add_sequence(input, {});
 }
 

@@ -123,13 +123,13 @@ TEST_F(PlayerTest, TellsWhichPicturesAreInMemory) {
   write_sequence(8);
   Player& all = open();
   turn();
-  for (int i = 0; i < 8; ++i) EXPECT_TRUE(all.in_memory(i)) << i;
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(all.frame_state(i), FrameState::cached) << i;
   PlayerOptions options;
   options.read_ahead.max_bytes = 1;
   Player& one = open(options);
   turn();
-  EXPECT_TRUE(one.in_memory(0)) << "what is on screen is kept whatever it takes";
-  EXPECT_FALSE(one.in_memory(7));
+  EXPECT_EQ(one.frame_state(0), FrameState::cached) << "what is on screen is kept whatever it takes";
+  EXPECT_EQ(one.frame_state(7), FrameState::unread);
 }
 
 TEST_F(PlayerTest, DropsWhatIsLate) {
