@@ -1,4 +1,5 @@
 -- SPDX-License-Identifier: MIT
+-- zoom: 160,120,640,360
 local fx = require "afterglow"
 
 return fx.stack {

@@ -1,4 +1,6 @@
 -- SPDX-License-Identifier: MIT
+-- input: tests/images/blender/fireflies.####.exr --frames 6
+-- zoom: 0,0,192,108
 local fx = require "afterglow"
 
 return fx.stack {

@@ -332,6 +332,7 @@ Result<void> FrameLoop::fail(FrameRecord& frame, Error error, bool pre_roll) {
   frame.state = FrameRecord::State::failed;
   if (frame.job.passing) frame.job.movie.reset();
   frame.error = error;
+  if (pre_roll && options_.whole_pre_roll) return error;
   if (pre_roll && !ends_run(error)) {
     events_.diagnostics.warn("left out of the pre-roll: " + error.text());
     return {};

@@ -23,6 +23,7 @@ struct FrameLoopOptions {
   double fps = 24;
   std::uint64_t max_memory = 6ull << 30;
   bool fail_fast = false;
+  bool whole_pre_roll = false;  ///< an earlier frame that cannot be read ends the run: what follows would be another
   NanPolicy nan_policy = NanPolicy::zero;  ///< fail: every pass of every frame is looked at, and nothing mended
   bool histories = false;                  ///< pictures depend on the frames before them
 };

@@ -23,6 +23,7 @@ struct VideoOptions {
   std::string bitrate;          ///< "8M"
   std::optional<int> crf;       ///< quality, 0 is best
   std::filesystem::path audio;  ///< sound of another file
+  bool piece = false;           ///< frames alone, without what other files have: for join_video
 };
 
 struct WriteOptions {

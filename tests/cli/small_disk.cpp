@@ -20,7 +20,9 @@ bool enter_namespace() {
     std::ofstream("/proc/self/uid_map") << fmt::format("0 {} 1", user);
     std::ofstream("/proc/self/gid_map") << fmt::format("0 {} 1", group);
   }
-  return mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;
+  // What is mounted stays in here. In a chroot, whose root is no mount, it is seen outside until it is taken away again.
+  mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr);
+  return true;
 }
 
 bool mount_tmpfs(const std::filesystem::path& folder, const std::string& size, unsigned long flags) {

@@ -59,6 +59,25 @@ TEST_F(FarmFiles, JobsHaveCommandsNeedsAndOutputsThatAnySchedulerCanRun) {
   EXPECT_EQ(report_of("out")["frames"].size(), 10u);
 }
 
+/// As docs/farms.md says, on this machine alone.
+TEST_F(FarmFiles, GnuParallelRunsTheLines) {
+  if (std::system("command -v parallel >/dev/null") != 0) GTEST_SKIP() << "GNU parallel is not installed";
+  ASSERT_EQ(run({"run", "look.lua", "in/shot.####.exr", "-o", "one/"}).exit_code, kDone);
+  ASSERT_EQ(write_jobs({"--chunk", "3"}).exit_code, kDone);
+  RunOptions options;
+  options.program = "/bin/sh";
+  const Outcome ended = run({"-c",
+                             "python3 -c 'import json; print(\"\\n\".join(c[\"shell\"] for c in "
+                             "json.load(open(\"jobs.json\"))[\"chunks\"]))' "
+                             "> lines && parallel --jobs 2 --joblog log --retries 3 < lines"},
+                            options);
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  expect_as_one_run("out", "one");
+  const std::string log = read("log");
+  EXPECT_EQ(std::ranges::count(log, '\n'), 5) << log;
+  EXPECT_EQ(report_of("out")["frames_done"], 10);
+}
+
 TEST_F(FarmFiles, ADryRunWritesNothing) {
   const auto before = files();
   const Outcome outcome = farm({"look.lua", "in/shot.####.exr", "-o", "out/", "--chunk", "4", "--time", "10",
@@ -161,8 +180,8 @@ TEST_F(FarmFiles, DescriptionsThatAreNoneAreRefused) {
   with("{}");
   with(good.substr(0, good.size() / 2));
   auto later = nlohmann::json::parse(good);
-  later["afterglow_farm"] = 2;
-  EXPECT_THAT(with(later.dump()), HasSubstr("it has version 2, this program reads version 1"));
+  later["afterglow_farm"] = 3;
+  EXPECT_THAT(with(later.dump()), HasSubstr("it has version 3, this program reads version 2"));
 }
 
 TEST(FarmText, FramesAreReadBackAsTheyWere) {
