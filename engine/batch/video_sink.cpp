@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 #include "batch/video_times.h"
 #include "image/metadata.h"
 
@@ -37,6 +41,18 @@ class VideoSink : public FrameSink {
                                          writer_->plan().codec, writer_->plan().pack.layout->name));
     AFTERGLOW_TRY(const VideoTime time, times_.of(job, index));
     return writer_->write(picture, time);
+  }
+
+  /// By what the encoders of Debian 12 were seen to take: those that look ahead keep some forty frames, in several
+  /// sizes.
+  std::uint64_t bytes_held(Size size) const override {
+    const auto plan = plan_video(file_, options_, true, false);
+    if (!plan) return 0;
+    constexpr std::array<std::string_view, 4> kLookAhead{"h264", "h265", "vp9", "av1"};
+    constexpr std::uint64_t kBase = 48u << 20, kAhead = 240, kOthers = 160;  // bytes a pixel, at 8 bits
+    const bool ahead = std::ranges::find(kLookAhead, plan->codec) != kLookAhead.end();
+    const std::uint64_t sample = plan->pack.layout->bits > 8 ? 2 : 1;
+    return kBase + static_cast<std::uint64_t>(size.area()) * (ahead ? kAhead : kOthers) * sample;
   }
 
   Result<void> finish(std::size_t) override { return writer_ ? writer_->finish(times_.whole()) : Result<void>(); }
