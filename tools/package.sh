@@ -32,7 +32,8 @@ for deb in "$out"/pack/*.deb; do
 done
 rm -rf "$out/pack"
 
-# The archive: the program and the library with every library that they need, but for those of the C library and of drivers.
+# The archive: the program and the library with every library that they need, but for those of the C library, of the compiler
+# (drivers need the system's own, which may be newer) and of drivers.
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
 top=$tree/$name
@@ -44,7 +45,7 @@ lib=$(dirname "$(find "$top" -name 'libafterglow.so.?' | head -n 1)")
 wanted() {
   # shellcheck disable=SC2086 # a list
   ldd "$top/bin/afterglow" $libraries 2>/dev/null | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
-    grep -vE '/(lib(c|m|dl|rt|pthread|resolv|util)\.so|libafterglow|ld-linux)'
+    grep -vE '/(lib(c|m|dl|rt|pthread|resolv|util|stdc\+\+|gcc_s)\.so|libafterglow|ld-linux)'
 }
 mkdir -p "$top/licences"
 { wanted; ls /usr/lib/"$(uname -m)"-linux-gnu/libvulkan.so.1; } | while read -r file; do

@@ -55,11 +55,13 @@ Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& optio
   const PlayWindowOptions window{
       .scale = a.ui_scale, .full_screen = a.full_screen, .paused = a.paused, .stats = a.stats, .speed = a.speed};
   Result<void> reported;
-  const auto report = [&](const Device& device, Player& player, const Result<void>& done) {
+  const auto report = [&](const Device& device, Player& player, const PlayedTimes& times, const Result<void>& done) {
     PlayReport figures{.preset = options.preset.string(),
                        .device = device.info().name,
                        .driver = device.info().driver,
                        .mode = "window",
+                       .startup = times.startup,
+                       .wall = times.wall,
                        .error = {}};
     if (!done) figures.error = done.error();
     if (a.stats) output("{}", play_report_text(figures, player));

@@ -4,8 +4,9 @@
 
 namespace afterglow {
 
-Result<void> play_in_window(PlayerOptions, DeviceOptions, const PlayWindowOptions&, Console&,
-                            const std::function<void(const Device&, Player&, const Result<void>&)>&) {
+Result<void> play_in_window(
+    PlayerOptions, DeviceOptions, const PlayWindowOptions&, Console&,
+    const std::function<void(const Device&, Player&, const PlayedTimes&, const Result<void>&)>&) {
   return Error{ErrorKind::usage, "this program is built without a window", "afterglow play", 0, "--headless"};
 }
 

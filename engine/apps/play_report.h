@@ -11,10 +11,9 @@ namespace afterglow {
 
 struct PlayReport {
   std::string preset, device, driver;
-  std::string mode;    ///< "real time" or "fast"
-  double startup = 0;  ///< milliseconds until playing began
-  double wall = 0;     ///< milliseconds of playing
-  double seconds_played = 0;
+  std::string mode;            ///< "real time" or "fast"
+  double startup = 0;          ///< milliseconds until playing began
+  double wall = 0;             ///< milliseconds of playing
   std::optional<Error> error;  ///< that playing ended with
 };
 

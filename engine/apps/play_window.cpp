@@ -2,6 +2,7 @@
 #include "apps/play_window.h"
 
 #include "apps/interrupt.h"
+#include "core/stopwatch.h"
 #include "window/play_parts.h"
 #include "window/run_window.h"
 
@@ -20,9 +21,10 @@ WindowOptions window_options(const PlayWindowOptions& options) {
 
 }  // namespace
 
-Result<void> play_in_window(PlayerOptions player_options, DeviceOptions device_options,
-                            const PlayWindowOptions& options, Console& console,
-                            const std::function<void(const Device&, Player&, const Result<void>& done)>& at_end) {
+Result<void> play_in_window(
+    PlayerOptions player_options, DeviceOptions device_options, const PlayWindowOptions& options, Console& console,
+    const std::function<void(const Device&, Player&, const PlayedTimes&, const Result<void>& done)>& at_end) {
+  const auto start = Clock::now();
   install_interrupt_handler();
   AFTERGLOW_TRY(const auto window, DesktopWindow::create("Afterglow", options.size));
   device_options.presentation = window->presentation();
@@ -36,12 +38,16 @@ Result<void> play_in_window(PlayerOptions player_options, DeviceOptions device_o
     WindowOptions shown = window_options(options);
     PlayParts parts(*player, player_options.preset, player_options.live.stack.preset);
     parts.add_to(shown);
-    window->set_last_words([&] {
-      at_end(*device, *player, Error{ErrorKind::device, "the connection to the display was lost"});
-    });
+    PlayedTimes times{.startup = milliseconds_since(start)};
+    const auto began = Clock::now();
+    const auto tell = [&](const Result<void>& outcome) {
+      times.wall = milliseconds_since(began);
+      at_end(*device, *player, times, outcome);
+    };
+    window->set_last_words([&] { tell(Error{ErrorKind::device, "the connection to the display was lost"}); });
     done = run_window(*window, *device, *player, shown, console.diagnostics());
     window->set_last_words(nullptr);
-    at_end(*device, *player, done);
+    tell(done);
   }
   // Validation goes first: it says what a failure comes from.
   if (device->validation_errors() > 0) {

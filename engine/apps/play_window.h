@@ -21,11 +21,17 @@ struct PlayWindowOptions {
   double speed = 1;
 };
 
+/// In milliseconds.
+struct PlayedTimes {
+  double startup = 0;  ///< until the window's loop began
+  double wall = 0;     ///< from there
+};
+
 /// Until the window is closed. `at_end` sees the player before it goes, and what came of it, also when that is a
 /// display that is lost, with which the process ends. Errors: usage, io (footage), device (no display, none that can
 /// show pictures in it, lost), interrupted.
-Result<void> play_in_window(PlayerOptions player, DeviceOptions device, const PlayWindowOptions& options,
-                            Console& console,
-                            const std::function<void(const Device&, Player&, const Result<void>& done)>& at_end);
+Result<void> play_in_window(
+    PlayerOptions player, DeviceOptions device, const PlayWindowOptions& options, Console& console,
+    const std::function<void(const Device&, Player&, const PlayedTimes&, const Result<void>& done)>& at_end);
 
 }  // namespace afterglow

@@ -102,7 +102,7 @@ void add_files(CLI::App& app, RunArguments& a) {
       ->type_name("NAME[:LEVEL]")
       ->group(output);
   app.add_option("--png-level", a.png_level,
-                 "PNG effort, 0 to 9 (default 1: six times faster than 6, files a little larger)")
+                 "PNG effort, 0 to 9 (default 1: five times faster than 6, files up to a tenth larger)")
       ->check(CLI::Range(0, 9))
       ->type_name("N")
       ->group(output);

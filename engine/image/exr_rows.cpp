@@ -4,12 +4,26 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <fmt/format.h>
 
-#include <atomic>
+#include <algorithm>
+#include <array>
+#include <cstring>
 
 #include "core/parallel.h"
 #include "image/encode.h"
+#include "image/exr_line_writer.h"
 
 namespace afterglow {
+namespace {
+
+constexpr int kZipLevel = 1;
+
+/// Every fourth sample, from the first on.
+template <class Sample>
+void put_channel(const Sample* rgba, std::size_t width, std::uint8_t* to) {
+  for (std::size_t x = 0; x < width; ++x) std::memcpy(to + x * sizeof(Sample), rgba + 4 * x, sizeof(Sample));
+}
+
+}  // namespace
 
 ExrColorRows::ExrColorRows(const Picture& picture, std::array<std::string, 4> names, SampleType type)
     : picture_(picture), names_(std::move(names)), type_(type) {}
@@ -26,12 +40,10 @@ void ExrColorRows::add_slices(int first, int rows, Imf::FrameBuffer& buffer) {
   const std::size_t row_samples = static_cast<std::size_t>(color.width) * 4;
   if (half) {
     halves_.resize(row_samples * static_cast<std::size_t>(rows));
-    std::atomic<std::uint64_t> overflows{0};
     parallel_rows(rows, static_cast<long long>(halves_.size()), [&](int begin, int end) {
-      overflows += to_half(color.at(0, first + begin), halves_.data() + row_samples * static_cast<std::size_t>(begin),
-                           row_samples * static_cast<std::size_t>(end - begin));
+      overflows_ += to_half(color.at(0, first + begin), halves_.data() + row_samples * static_cast<std::size_t>(begin),
+                            row_samples * static_cast<std::size_t>(end - begin));
     });
-    overflows_ += overflows;
   }
   const std::size_t sample = half ? sizeof(std::uint16_t) : sizeof(float);
   for (std::size_t c = 0; c < 4; ++c) {
@@ -43,9 +55,33 @@ void ExrColorRows::add_slices(int first, int rows, Imf::FrameBuffer& buffer) {
   }
 }
 
+void ExrColorRows::find_places(const Imf::Header& header) {
+  for (std::size_t c = 0; c < 4; ++c)
+    if (!names_[c].empty()) places_[c] = channel_place(header, names_[c]);
+}
+
+void ExrColorRows::put_row(int row, std::uint8_t* line) {
+  const auto width = static_cast<std::size_t>(picture_.color.width);
+  const float* rgba = picture_.color.at(0, row);
+  const bool half = type_ == SampleType::half;
+  thread_local std::vector<std::uint16_t> halves;
+  if (half) {
+    halves.resize(width * 4);
+    overflows_ += to_half(rgba, halves.data(), width * 4);
+  }
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (names_[c].empty()) continue;
+    if (half) {
+      put_channel(halves.data() + c, width, line + places_[c]);
+    } else {
+      put_channel(rgba + c, width, line + places_[c]);
+    }
+  }
+}
+
 void ExrColorRows::warn_of_overflow(Diagnostics& diagnostics) const {
   if (overflows_)
-    diagnostics.warn(fmt::format("{} samples beyond the range of half floats are held at ±65504", overflows_));
+    diagnostics.warn(fmt::format("{} samples beyond the range of half floats are held at ±65504", overflows_.load()));
 }
 
 Result<void> set_compression(Imf::Header& header, const std::string& text) {
@@ -54,6 +90,7 @@ Result<void> set_compression(Imf::Header& header, const std::string& text) {
                               "pxr24", "b44", "b44a", "dwaa", "dwab"};  // in OpenEXR's numbering
   for (std::size_t i = 0; i < kNames.size(); ++i)
     if (wanted.name == kNames[i]) header.compression() = static_cast<Imf::Compression>(i);
+  header.zipCompressionLevel() = kZipLevel;
   if (wanted.level < 0) return {};
   if (wanted.name == "dwaa" || wanted.name == "dwab") {
     header.dwaCompressionLevel() = wanted.level;

@@ -49,7 +49,43 @@ void put_together(std::span<const std::uint8_t> apart, std::span<std::uint8_t> b
   if (bytes.size() % 2 != 0) out[2 * pairs] = even[pairs];
 }
 
+void put_apart(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> apart) {
+  const std::size_t pairs = bytes.size() / 2;
+  std::uint8_t *even = apart.data(), *odd = apart.data() + (bytes.size() + 1) / 2;
+  const std::uint8_t* from = bytes.data();
+  for (std::size_t i = 0; i < pairs; ++i) {
+    even[i] = from[2 * i];
+    odd[i] = from[2 * i + 1];
+  }
+  if (bytes.size() % 2 != 0) even[pairs] = from[2 * pairs];
+}
+
+void take_differences(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> out) {
+  const std::uint8_t* from = bytes.data();
+  std::uint8_t* to = out.data();
+  if (!bytes.empty()) to[0] = from[0];
+  for (std::size_t i = 1; i < bytes.size(); ++i) to[i] = static_cast<std::uint8_t>(from[i] - from[i - 1] + kMiddle);
+}
+
 }  // namespace
+
+ExrZip::ExrZip(int level) : deflate_(libdeflate_alloc_compressor(level)) {
+  if (deflate_ == nullptr) throw std::bad_alloc();
+}
+
+ExrZip::~ExrZip() { libdeflate_free_compressor(deflate_); }
+
+std::span<const std::uint8_t> ExrZip::run(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed) {
+  apart_.resize(bytes.size());
+  differences_.resize(bytes.size());
+  put_apart(bytes, apart_);
+  take_differences(apart_, differences_);
+  packed.resize(bytes.size());  // what needs more is not taken
+  packed.resize(
+      libdeflate_zlib_compress(deflate_, differences_.data(), differences_.size(), packed.data(), packed.size()));
+  if (packed.empty() || packed.size() >= bytes.size()) return bytes;
+  return packed;
+}
 
 ExrUnzip::ExrUnzip() : inflate_(libdeflate_alloc_decompressor()) {
   if (inflate_ == nullptr) throw std::bad_alloc();

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+struct libdeflate_compressor;
 struct libdeflate_decompressor;
 
 namespace afterglow {
@@ -26,6 +27,23 @@ class ExrUnzip {
  private:
   libdeflate_decompressor* inflate_;
   std::vector<std::uint8_t> apart_;
+};
+
+/// The other way. One thread's.
+class ExrZip {
+ public:
+  explicit ExrZip(int level);  ///< 0 to 9, as zlib's
+  ~ExrZip();
+  ExrZip(const ExrZip&) = delete;
+  ExrZip& operator=(const ExrZip&) = delete;
+
+  /// What a file stores for a chunk of these bytes: `packed`, which is made as long as that is, or the bytes themselves
+  /// where packing makes them no shorter.
+  std::span<const std::uint8_t> run(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed);
+
+ private:
+  libdeflate_compressor* deflate_;
+  std::vector<std::uint8_t> apart_, differences_;
 };
 
 }  // namespace afterglow

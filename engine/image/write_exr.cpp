@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "image/exr_line_writer.h"
 #include "image/exr_rows.h"
 #include "image/metadata.h"
 #include "image/output_metadata.h"
@@ -28,7 +29,12 @@ Result<void> write_exr(const Picture& picture, OutputFile& out, const std::strin
   ExrColorRows rows(picture, {"R", "G", "B", picture.has_alpha ? "A" : ""},
                     sample_type(*format, options, picture.facts.get()));
   rows.add_channels(header);
-  {
+  if (has_zipped_lines(header)) {
+    rows.find_places(header);
+    ExrLineWriter file(header, out);
+    file.write(picture.color.height, [&](int y, std::uint8_t* line) { rows.put_row(y, line); });
+    file.finish();
+  } else {
     ExrOutput stream(out, name.c_str());
     Imf::OutputFile file(stream, header);
     for (int y = 0; y < picture.color.height; y += ExrColorRows::kRows) {

@@ -17,10 +17,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "image/exr_line_writer.h"
 #include "image/exr_rows.h"
 #include "image/metadata.h"
 #include "image/write_exr.h"
@@ -55,6 +57,15 @@ class OtherChannels {
       other.samples.resize(width * static_cast<std::size_t>(rows) * sample);
       buffer.insert(other.name, Imf::Slice::Make(other.channel.type, other.samples.data(), Imath::V2i(window.min.x, y),
                                                  static_cast<int64_t>(width), rows, sample, sample * width));
+    }
+  }
+  /// Row `row` of those slices, into a line of a file with this header: see ExrLineWriter.
+  void put_row(const Imf::Header& header, int row, std::uint8_t* line) const {
+    const auto width = static_cast<std::size_t>(header.dataWindow().max.x - header.dataWindow().min.x + 1);
+    for (const Other& other : channels_) {
+      const std::size_t bytes = width * (other.channel.type == Imf::HALF ? 2 : 4);
+      std::memcpy(line + channel_place(header, other.name),
+                  other.samples.data() + bytes * static_cast<std::size_t>(row), bytes);
     }
   }
   bool empty() const { return channels_.empty(); }
@@ -119,24 +130,49 @@ Imf::Header color_header(const Imf::Header& old, const FileFacts& facts, const E
   return header;
 }
 
-void write_color_part(Imf::MultiPartInputFile& input, Imf::MultiPartOutputFile& output, int part, ExrColorRows& color,
-                      OtherChannels& others) {
+/// Calls `write(first, rows)` for strips of rows, counted from the top of the data window, once `others` holds theirs.
+template <class Write>
+void over_strips(Imf::MultiPartInputFile& input, int part, OtherChannels& others, const Write& write) {
   Imf::InputPart source(input, part);
-  Imf::OutputPart target(output, part);
   const Imath::Box2i window = source.header().dataWindow();
   const int height = window.max.y - window.min.y + 1;
   for (int row = 0; row < height; row += ExrColorRows::kRows) {
     const int rows = std::min(ExrColorRows::kRows, height - row), y = window.min.y + row;
-    Imf::FrameBuffer buffer;
-    others.add_slices(window, y, rows, buffer);
     if (!others.empty()) {
+      Imf::FrameBuffer buffer;
+      others.add_slices(window, y, rows, buffer);
       source.setFrameBuffer(buffer);
       source.readPixels(y, y + rows - 1);
     }
+    write(row, rows);
+  }
+}
+
+void write_color_part(Imf::MultiPartInputFile& input, Imf::MultiPartOutputFile& output, int part, ExrColorRows& color,
+                      OtherChannels& others) {
+  Imf::OutputPart target(output, part);
+  const Imath::Box2i window = target.header().dataWindow();
+  over_strips(input, part, others, [&](int row, int rows) {
+    Imf::FrameBuffer buffer;
+    if (!others.empty()) others.add_slices(window, window.min.y + row, rows, buffer);
     color.add_slices(row, rows, buffer);
     target.setFrameBuffer(buffer);
     target.writePixels(rows);
-  }
+  });
+}
+
+/// The only part of a file, where it has zipped lines.
+void write_only_part(Imf::MultiPartInputFile& input, OutputFile& out, const Imf::Header& header, ExrColorRows& color,
+                     OtherChannels& others) {
+  color.find_places(header);
+  ExrLineWriter file(header, out);
+  over_strips(input, 0, others, [&](int first, int rows) {
+    file.write(rows, [&](int y, std::uint8_t* line) {
+      color.put_row(y, line);
+      others.put_row(header, y - first, line);
+    });
+  });
+  file.finish();
 }
 
 /// Copies a part's compressed chunks as they are.
@@ -181,7 +217,9 @@ Result<void> write_exr_with_layers(const Picture& picture, OutputFile& out, cons
   for (int part = 0; part < input.parts(); ++part) headers.push_back(input.header(part));
   headers[static_cast<std::size_t>(facts->part)] = color_header(input.header(facts->part), *facts, color, others);
   AFTERGLOW_CHECK(set_compression(headers[static_cast<std::size_t>(facts->part)], options.compression));
-  {
+  if (headers.size() == 1 && has_zipped_lines(headers[0])) {
+    write_only_part(input, out, headers[0], color, others);
+  } else {
     ExrOutput stream(out, name.c_str());
     Imf::MultiPartOutputFile output(stream, headers.data(), static_cast<int>(headers.size()));
     for (int part = 0; part < input.parts(); ++part) {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "image/write_png.h"
 
-#include <fmt/format.h>
-#include <zlib.h>
+#include <libdeflate.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <new>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "core/parallel.h"
@@ -21,8 +21,7 @@
 namespace afterglow {
 namespace {
 
-constexpr std::size_t kStripBytes =
-    1 << 19;  // of samples: long enough that the seams cost nothing, short enough to share out
+constexpr std::size_t kChunkBytes = 1 << 20;  // readers check the sum of a chunk once they have all of it
 
 void put_number(std::string& bytes, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
@@ -32,10 +31,8 @@ void write_chunk(OutputFile& out, const char* type, const void* data, std::size_
   std::string head;
   put_number(head, static_cast<std::uint32_t>(size));
   head += type;
-  uLong sum = crc32(0, reinterpret_cast<const Bytef*>(type), 4);
-  if (size > 0) sum = crc32(sum, static_cast<const Bytef*>(data), static_cast<uInt>(size));
   std::string tail;
-  put_number(tail, static_cast<std::uint32_t>(sum));
+  put_number(tail, libdeflate_crc32(libdeflate_crc32(0, type, 4), data, size));
   out.write(head.data(), head.size());
   if (size > 0) out.write(data, size);
   out.write(tail.data(), tail.size());
@@ -135,104 +132,51 @@ void write_header(const Picture& picture, const StripForm& form, OutputFile& out
   write_texts(out, metadata);
 }
 
-/// One strip of rows: filtered, and compressed as a piece of a deflate stream that ends on a byte.
-struct Strip {
-  int first = 0, rows = 0;
-  bool last = false;
-  std::vector<std::uint8_t> compressed;
-  uLong adler = 0;
-  std::size_t filtered = 0;
-  int failure = Z_OK;
-};
-
-class StripEncoder {
- public:
-  StripEncoder(const Picture& picture, StripForm form, int level)
-      : picture_(picture),
-        form_(form),
-        row_bytes_(form.row_bytes(picture)),
-        pixel_((form.alpha ? 4 : 3) * form.sample_bytes()),
-        level_(level) {}
-
-  int rows_per_strip() const { return static_cast<int>(std::clamp<std::size_t>(kStripBytes / row_bytes_, 1, 4096)); }
-
-  void run(Strip& strip) const {
-    // The row above is needed to filter the first one.
-    const int lead = strip.first > 0 ? 1 : 0;
-    std::vector<std::uint8_t> samples(row_bytes_ * static_cast<std::size_t>(strip.rows + lead)),
-        scratch(4 * row_bytes_);
-    encode_rows(picture_, form_, strip.first - lead, strip.rows + lead, samples.data());
-    if (form_.type == SampleType::uint16)
-      for (std::size_t i = 0; i + 1 < samples.size(); i += 2)
+/// All rows, each behind the number of its filter.
+std::unique_ptr<std::uint8_t[]> filtered_rows(const Picture& picture, const StripForm& form) {
+  const int height = picture.display_window.height;
+  const std::size_t row_bytes = form.row_bytes(picture), pixel = (form.alpha ? 4 : 3) * form.sample_bytes();
+  auto filtered = std::make_unique_for_overwrite<std::uint8_t[]>((row_bytes + 1) * static_cast<std::size_t>(height));
+  const auto encode = [&](int y, int rows, std::uint8_t* samples) {
+    encode_rows(picture, form, y, rows, samples);
+    if (form.type == SampleType::uint16)
+      for (std::size_t i = 0; i + 1 < row_bytes * static_cast<std::size_t>(rows); i += 2)
         std::swap(samples[i], samples[i + 1]);  // PNG is big-endian
-    std::vector<std::uint8_t> filtered((row_bytes_ + 1) * static_cast<std::size_t>(strip.rows));
-    for (int i = 0; i < strip.rows; ++i) {
-      const std::uint8_t* row = samples.data() + row_bytes_ * static_cast<std::size_t>(i + lead);
-      png_filter_row(row, i + lead > 0 ? row - row_bytes_ : nullptr, row_bytes_, pixel_, scratch.data(),
-                     filtered.data() + (row_bytes_ + 1) * static_cast<std::size_t>(i));
+  };
+  constexpr int kRows = 16;  // that are encoded at a time
+  parallel_rows(height, static_cast<long long>(row_bytes) * height, [&](int begin, int end) {
+    std::vector<std::uint8_t> rows((1 + kRows) * row_bytes), scratch(4 * row_bytes);  // the first: above the others
+    if (begin > 0) encode(begin - 1, 1, rows.data());
+    for (int y = begin; y < end;) {
+      const int count = std::min(kRows, end - y);
+      encode(y, count, &rows[row_bytes]);
+      const std::uint8_t* row = rows.data();
+      for (int i = 0; i < count; ++i, ++y) {
+        row += row_bytes;
+        png_filter_row(row, y > 0 ? row - row_bytes : nullptr, row_bytes, pixel, scratch.data(),
+                       &filtered[(row_bytes + 1) * static_cast<std::size_t>(y)]);
+      }
+      std::copy_n(row, row_bytes, rows.data());
     }
-    strip.filtered = filtered.size();
-    strip.adler = adler32(adler32(0, nullptr, 0), filtered.data(), static_cast<uInt>(filtered.size()));
-    deflate_strip(filtered, strip);
-  }
-
- private:
-  void deflate_strip(std::vector<std::uint8_t>& filtered, Strip& strip) const {
-    z_stream stream{};
-    constexpr int kRaw = -15, kMemory = 9;
-    strip.failure = deflateInit2(&stream, level_, Z_DEFLATED, kRaw, kMemory, Z_FILTERED);
-    if (strip.failure != Z_OK) return;
-    strip.compressed.resize(deflateBound(&stream, static_cast<uLong>(filtered.size())) + 16);
-    stream.next_in = filtered.data();
-    stream.avail_in = static_cast<uInt>(filtered.size());
-    stream.next_out = strip.compressed.data();
-    stream.avail_out = static_cast<uInt>(strip.compressed.size());
-    const int ended = deflate(&stream, strip.last ? Z_FINISH : Z_FULL_FLUSH);
-    if (ended != (strip.last ? Z_STREAM_END : Z_OK) || stream.avail_in != 0) strip.failure = Z_BUF_ERROR;
-    strip.compressed.resize(strip.compressed.size() - stream.avail_out);
-    deflateEnd(&stream);
-  }
-
-  const Picture& picture_;
-  StripForm form_;
-  std::size_t row_bytes_, pixel_;
-  int level_;
-};
-
-/// Works on all strips of a batch, on as many threads.
-void run_batch(const StripEncoder& encoder, std::vector<Strip>& batch) {
-  constexpr long long kWorthAThread = 1ll << 32;
-  parallel_rows(static_cast<int>(batch.size()), kWorthAThread, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) encoder.run(batch[static_cast<std::size_t>(i)]);
   });
+  return filtered;
 }
 
 }  // namespace
 
 Result<void> write_png(const Picture& picture, const StripForm& form, OutputFile& out, int level) {
   write_header(picture, form, out);
-  const StripEncoder encoder(picture, form, std::clamp(level, 0, 9));
-  const int height = picture.display_window.height, rows = encoder.rows_per_strip();
-  const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 16u));
-  uLong adler = adler32(0, nullptr, 0);
-  for (int y = 0; y < height && !out.failure();) {
-    std::vector<Strip> batch;
-    for (; y < height && static_cast<int>(batch.size()) < threads; y += rows) {
-      const int count = std::min(rows, height - y);
-      batch.push_back({y, count, y + count == height, {}, 0, 0, Z_OK});
-    }
-    run_batch(encoder, batch);
-    for (const Strip& strip : batch) {
-      if (strip.failure != Z_OK)
-        return Error{ErrorKind::io, fmt::format("cannot be written: compression failed ({})", zError(strip.failure))};
-      adler = adler32_combine(adler, strip.adler, static_cast<z_off_t>(strip.filtered));
-      std::string data;
-      if (strip.first == 0) data += "\x78\x01";  // a zlib stream with a window of 32 KiB
-      data.append(reinterpret_cast<const char*>(strip.compressed.data()), strip.compressed.size());
-      if (strip.last) put_number(data, static_cast<std::uint32_t>(adler));
-      write_chunk(out, "IDAT", data);
-    }
-  }
+  const std::size_t size = (form.row_bytes(picture) + 1) * static_cast<std::size_t>(picture.display_window.height);
+  auto filtered = filtered_rows(picture, form);
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> deflate(
+      libdeflate_alloc_compressor(std::clamp(level, 0, 9)), &libdeflate_free_compressor);
+  if (!deflate) throw std::bad_alloc();
+  const std::size_t room = libdeflate_zlib_compress_bound(deflate.get(), size);
+  const auto packed = std::make_unique_for_overwrite<std::uint8_t[]>(room);
+  const std::size_t length = libdeflate_zlib_compress(deflate.get(), filtered.get(), size, packed.get(), room);
+  filtered.reset();
+  for (std::size_t i = 0; i < length && !out.failure(); i += kChunkBytes)
+    write_chunk(out, "IDAT", &packed[i], std::min(kChunkBytes, length - i));
   write_chunk(out, "IEND", "");
   return {};
 }

@@ -23,6 +23,7 @@ struct VideoOptions {
   std::string bitrate;          ///< "8M"
   std::optional<int> crf;       ///< quality, 0 is best
   std::filesystem::path audio;  ///< sound of another file
+  bool piece = false;           ///< frames alone, without what other files have: for join_video
 };
 
 struct WriteOptions {
@@ -34,7 +35,7 @@ struct WriteOptions {
   /// Empty: ZIP for EXR, the format's default elsewhere. EXR: none rle zip zips piz pxr24 b44 b44a dwaa dwab, some with
   /// ":level"; TIFF: none lzw zip packbits; WebP: lossless, lossy:quality; Targa: none rle.
   std::string compression;
-  int png_level = 1;  ///< zlib level 0–9
+  int png_level = 1;  ///< libdeflate's level, 0–9
   int jpeg_quality = 95;
   /// Blue noise between two integer codes; deterministic. Empty: into 8 bits, not into 16.
   std::optional<bool> dither = {};
@@ -48,6 +49,11 @@ struct WriteOptions {
 /// format wants it.
 Result<void> write_picture(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options,
                            Diagnostics& diagnostics);
+
+/// Memory that `write_picture` takes besides a picture of this size, at most. 0 where it is a few rows,
+/// or not known. `facts` may be null.
+std::uint64_t write_bytes(const std::filesystem::path& file, const WriteOptions& options, Size size, bool has_alpha,
+                          const FileFacts* facts);
 
 /// The bytes that a file of this extension ("png") would have. Errors: as write_picture.
 Result<std::string> picture_bytes(const Picture& picture, const std::string& extension, const WriteOptions& options,

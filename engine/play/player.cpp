@@ -44,18 +44,30 @@ LiveOptions Player::State::live_options(const std::vector<Override>& overrides) 
 }
 
 void Player::State::begin_reading() {
+  rendering.reset();
   ahead.reset();  // waits for what is being read of the footage before
+  read_footage = footage;
   wanted_for.clear();
+  unreadable.clear();
   ahead = std::make_unique<ReadAhead>(
-      [this, footage = footage](int key) {
+      [this](int key) {
+        const auto read_from = readable();
         std::vector<std::string> needs;
         {
           const std::lock_guard lock(mutex);
           needs = auxiliary;
         }
-        return footage->read(key, needs, diagnostics);
+        auto read = read_from->read(key, needs, diagnostics);
+        const std::lock_guard lock(mutex);
+        if (read) {
+          unreadable.erase(key);
+        } else {
+          unreadable.insert(key);
+        }
+        return read;
       },
       options.read_ahead, [this] { wake(); });
+  if (options.live.follow) rendering = std::make_unique<FootageWatch>(options.footage, footage, [this] { wake(); });
 }
 
 /// The due picture, then those that will be, as many as may fit.
@@ -237,8 +249,14 @@ Result<bool> Player::State::time_a_kernel(bool changed, Step& step) {
   return timed;
 }
 
-bool Player::in_memory(int position) const {
-  return state_->ahead->find(state_->footage->frame(position).picture) != nullptr;
+FrameState Player::frame_state(int position) const {
+  const FootageFrame& frame = state_->footage->frame(position);
+  {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->unreadable.contains(frame.picture)) return FrameState::unreadable;
+  }
+  if (frame.held) return FrameState::missing;
+  return state_->ahead->find(frame.picture) ? FrameState::cached : FrameState::unread;
 }
 
 Result<Step> Player::step() {
@@ -250,6 +268,7 @@ Result<Step> Player::step() {
   }
   Step step;
   s.take_builds();
+  s.take_footage();
   s.tell_errors();
   step.reloaded = std::exchange(s.reloaded, false);
   if (!s.transport.playing()) s.figures.stop();

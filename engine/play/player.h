@@ -58,6 +58,9 @@ struct ShownFrame {
   std::optional<Error> failed;      ///< why the stack could not be run on it: the picture before stays
 };
 
+/// What is known of a frame. Later ones are worse.
+enum class FrameState { unread, cached, missing, unreadable };
+
 /// For shaders that show them; see DeviceImages. Null images until there is a picture.
 struct PlayerImages {
   DeviceImage source, result;
@@ -93,8 +96,7 @@ class Player {
   Transport& transport();
   View& view();
   const Footage& footage() const;
-  /// Whether the picture at this position has been read and is kept.
-  bool in_memory(int position) const;
+  FrameState frame_state(int position) const;
   LiveStack& live();
   LiveStack* other();  ///< null without a second preset
   const ShownFrame& shown() const;
@@ -111,8 +113,8 @@ class Player {
   bool redo();
   const SettingEdits& edits() const;
   void end_gesture();
-  /// Forgets the edits and their history: they have been written into the preset.
-  void edits_saved();
+  /// See SettingEdits::rebase.
+  void rebase(const std::vector<BaseChange>& changes);
 
   /// See LiveStack::show.
   void show(const std::string& image);

@@ -138,8 +138,8 @@ bool Player::redo() {
 const SettingEdits& Player::edits() const { return state_->edits; }
 void Player::end_gesture() { state_->edits.end_gesture(); }
 
-void Player::edits_saved() {
-  state_->edits = {};
+void Player::rebase(const std::vector<BaseChange>& changes) {
+  state_->edits.rebase(changes);
   state_->apply_edits();
 }
 

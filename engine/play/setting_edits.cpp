@@ -68,6 +68,19 @@ bool SettingEdits::redo() {
   return true;
 }
 
+void SettingEdits::rebase(const std::vector<BaseChange>& changes) {
+  open_.clear();
+  for (auto& step : history_)
+    for (const BaseChange& change : changes) {
+      const auto found = std::ranges::find_if(step, is(change.entry, change.setting));
+      if (found == step.end()) {
+        if (!(change.before == change.after)) step.push_back({change.entry, change.setting, change.before});
+      } else if (found->value == change.after) {
+        step.erase(found);
+      }
+    }
+}
+
 std::optional<SettingValue> SettingEdits::value(const std::string& entry, const std::string& setting) const {
   const auto found = std::ranges::find_if(edits(), is(entry, setting));
   return found == edits().end() ? std::nullopt : std::optional(found->value);

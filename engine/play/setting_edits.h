@@ -18,6 +18,12 @@ struct SettingEdit {
   friend bool operator==(const SettingEdit&, const SettingEdit&) = default;
 };
 
+/// The preset itself says another value for a setting than before.
+struct BaseChange {
+  std::string entry, setting;
+  SettingValue before, after;
+};
+
 /// Not thread-safe.
 class SettingEdits {
  public:
@@ -34,6 +40,10 @@ class SettingEdits {
   bool can_redo() const { return at_ + 1 < history_.size(); }
   bool undo();  ///< false: there is nothing to undo
   bool redo();
+
+  /// The preset was saved with edits in it, or a save was taken back: every step of the history stays what it was on
+  /// screen. Steps that had the value from before get it as an edit; those that say what the preset says now need none.
+  void rebase(const std::vector<BaseChange>& changes);
 
   /// In the order in which they were first made.
   const std::vector<SettingEdit>& edits() const { return history_[at_]; }

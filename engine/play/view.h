@@ -40,6 +40,7 @@ struct View {
   Point center;         ///< of the picture, in the middle of the window
   double exposure = 0;  ///< EV, in scene-linear light before encoding for the screen
   ViewChannel channel = ViewChannel::color;
+  bool smooth = false;       ///< magnified, pixels go over into each other; else each is a square
   bool false_color = false;  ///< marks values below 0, above 1, and what is not finite
   Compare compare = Compare::none;
   CompareBy by = CompareBy::wipe;

@@ -19,6 +19,7 @@ struct Header {
 struct Fixed {
   std::uint64_t text_high, text_low;
   std::uint32_t block_size, offsets, unset, loops, words;
+  std::uint32_t zero = 0;  ///< no byte of a file is left to chance
 };
 
 /// Takes `count` words off the front, which are known to be there.

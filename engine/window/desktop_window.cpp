@@ -121,19 +121,59 @@ void DesktopWindow::listen() {
   glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { self(w).events_.any = true; });
   glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { self(w).events_.any = true; });
   glfwSetWindowIconifyCallback(window_, [](GLFWwindow* w, int) { self(w).events_.any = true; });
-  glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int) { self(w).events_.any = true; });
   glfwSetWindowContentScaleCallback(window_, [](GLFWwindow* w, float, float) { self(w).events_.any = true; });
-  glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double, double) { self(w).events_.any = true; });
-  glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int) { self(w).events_.any = true; });
-  glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int, int, int) { self(w).events_.any = true; });
-  glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double) { self(w).events_.any = true; });
-  glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned) { self(w).events_.any = true; });
+  glfwSetWindowFocusCallback(window_, &on_focus);
+  glfwSetCursorPosCallback(window_, &on_move);
+  glfwSetCursorEnterCallback(window_, &on_enter);
+  glfwSetMouseButtonCallback(window_, &on_button);
+  glfwSetScrollCallback(window_, &on_wheel);
+  glfwSetCharCallback(window_, &on_text);
 }
 
-void DesktopWindow::on_key(GLFWwindow* window, int key, int, int action, int mods) {
+void DesktopWindow::take(GLFWwindow* window, const InputEvent& event) {
   WindowEvents& events = self(window).events_;
   events.any = true;
-  if (action != GLFW_RELEASE) events.keys.push_back({key, mods & 0xf, action == GLFW_REPEAT});
+  // Where the pointer has been between two places that follow each other tells nobody anything.
+  const bool follows = !events.input.empty() && events.input.back().kind == InputEvent::Kind::move;
+  if (event.kind == InputEvent::Kind::move && follows) events.input.pop_back();
+  events.input.push_back(event);
+  events.input.back().time = glfwGetTime();
+}
+
+void DesktopWindow::on_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
+  take(window, {.kind = InputEvent::Kind::key,
+                .code = key,
+                .scancode = scancode,
+                .down = action != GLFW_RELEASE,
+                .repeat = action == GLFW_REPEAT,
+                .mods = mods & 0xf});
+}
+
+void DesktopWindow::on_text(GLFWwindow* window, unsigned character) {
+  take(window, {.kind = InputEvent::Kind::text, .text = character});
+}
+
+void DesktopWindow::on_move(GLFWwindow* window, double x, double y) {
+  take(window, {.kind = InputEvent::Kind::move, .x = x, .y = y});
+}
+
+void DesktopWindow::on_enter(GLFWwindow* window, int entered) {
+  if (!entered) return take(window, {.kind = InputEvent::Kind::leave});
+  double x = 0, y = 0;
+  glfwGetCursorPos(window, &x, &y);
+  on_move(window, x, y);
+}
+
+void DesktopWindow::on_button(GLFWwindow* window, int button, int action, int mods) {
+  take(window, {.kind = InputEvent::Kind::button, .code = button, .down = action == GLFW_PRESS, .mods = mods & 0xf});
+}
+
+void DesktopWindow::on_wheel(GLFWwindow* window, double x, double y) {
+  take(window, {.kind = InputEvent::Kind::wheel, .x = x, .y = y});
+}
+
+void DesktopWindow::on_focus(GLFWwindow* window, int focused) {
+  take(window, {.kind = InputEvent::Kind::focus, .down = focused == GLFW_TRUE});
 }
 
 void DesktopWindow::on_drop(GLFWwindow* window, int count, const char** paths) {

@@ -11,22 +11,17 @@
 #include "core/geometry.h"
 #include "core/result.h"
 #include "gpu/device.h"
+#include "window/input_event.h"
 
 struct GLFWwindow;
 
 namespace afterglow {
 
-struct KeyPress {
-  int key = 0;   ///< GLFW_KEY_…
-  int mods = 0;  ///< of GLFW_MOD_SHIFT, GLFW_MOD_CONTROL, GLFW_MOD_ALT, GLFW_MOD_SUPER
-  bool repeat = false;
-};
-
 /// What has happened since the events were taken last.
 struct WindowEvents {
   bool any = false;    ///< anything at all: something may look different
   bool close = false;  ///< the desktop asks the window to close
-  std::vector<KeyPress> keys;
+  std::vector<InputEvent> input;
   std::vector<std::filesystem::path> dropped;
 };
 
@@ -63,15 +58,20 @@ class DesktopWindow {
   WindowEvents take_events();
   /// Ends a `wait` that runs or comes next. Any thread, as long as a window exists.
   static void wake();
-  /// An event as if it had come from the desktop, for tests.
-  WindowEvents& pending() { return events_; }
 
  private:
   DesktopWindow() = default;
   static void on_key(GLFWwindow* window, int key, int scancode, int action, int mods);
+  static void on_text(GLFWwindow* window, unsigned character);
+  static void on_move(GLFWwindow* window, double x, double y);
+  static void on_enter(GLFWwindow* window, int entered);
+  static void on_button(GLFWwindow* window, int button, int action, int mods);
+  static void on_wheel(GLFWwindow* window, double x, double y);
+  static void on_focus(GLFWwindow* window, int focused);
   static void on_drop(GLFWwindow* window, int count, const char** paths);
   static void on_close(GLFWwindow* window);
   void listen();
+  static void take(GLFWwindow* window, const InputEvent& event);
 
   GLFWwindow* window_ = nullptr;
   WindowEvents events_;

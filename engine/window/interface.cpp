@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "window/interface.h"
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
+#include <imgui_internal.h>
 
+#include <cfloat>
 #include <cmath>
 #include <filesystem>
 
@@ -13,6 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+const ImVec2 kElsewhere(-FLT_MAX, -FLT_MAX);  // as Dear ImGui has it
 constexpr float kBodySize = 15, kMonoSize = 13.5f;
 
 /// Debian's, Fedora's and Arch's places. Without any of them ImGui's own bitmap font serves.
@@ -45,7 +50,7 @@ ImFont* add_font(const char* name, float size) {
 
 }  // namespace
 
-Interface::Interface(GLFWwindow* window) {
+Interface::Interface(GLFWwindow* window) : pointer_(kElsewhere) {
   IMGUI_CHECKVERSION();
   context_ = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -54,12 +59,12 @@ Interface::Interface(GLFWwindow* window) {
   io.ConfigWindowsMoveFromTitleBarOnly = true;
   io.ConfigWindowsResizeFromEdges = false;
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-  if (window) has_window_ = ImGui_ImplGlfw_InitForVulkan(window, true);
+  if (window && ImGui_ImplGlfw_InitForVulkan(window, false)) window_ = window;
   set_scale(1);
 }
 
 Interface::~Interface() {
-  if (has_window_) ImGui_ImplGlfw_Shutdown();
+  if (window_) ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext(context_);
 }
 
@@ -81,33 +86,67 @@ void Interface::load_fonts() {
   io.Fonts->Build();
 }
 
-void Interface::note_press(int key) { pressed_.push_back(key); }
-
-// From version 1.87 on Dear ImGui keeps presses in a queue of its own.
-#if IMGUI_VERSION_NUM < 18700
-void Interface::hold_pressed() {
-  auto& down = ImGui::GetIO().KeysDown;
-  for (const int key : pressed_) {
-    if (key < 0 || key >= IM_ARRAYSIZE(ImGui::GetIO().KeysDown) || down[key]) continue;
-    down[key] = true;
-    held_.push_back(key);
+void Interface::feed(const InputEvent& event) {
+  using Kind = InputEvent::Kind;
+  switch (event.kind) {
+    case Kind::move:
+      pointer_ = {static_cast<float>(event.x), static_cast<float>(event.y)};
+      break;
+    case Kind::leave:
+      pointer_ = kElsewhere;
+      break;
+    case Kind::button:
+      if (event.code >= 0 && event.code < static_cast<int>(buttons_.size()))
+        buttons_[static_cast<std::size_t>(event.code)] = event.down;
+      if (event.down) note_press(event);
+      break;
+    case Kind::wheel:
+      ImGui_ImplGlfw_ScrollCallback(window_, event.x, event.y);
+      break;
+    case Kind::key:
+      ImGui_ImplGlfw_KeyCallback(window_, event.code, event.scancode,
+                                 event.repeat ? GLFW_REPEAT
+                                 : event.down ? GLFW_PRESS
+                                              : GLFW_RELEASE,
+                                 event.mods);
+      break;
+    case Kind::text:
+      ImGui_ImplGlfw_CharCallback(window_, event.text);
+      break;
+    case Kind::focus:
+      if (!event.down) buttons_.fill(false);
+      ImGui_ImplGlfw_WindowFocusCallback(window_, event.down ? GLFW_TRUE : GLFW_FALSE);
+      break;
   }
-  pressed_.clear();
 }
 
-void Interface::release_held() {
-  for (const int key : held_) ImGui::GetIO().KeysDown[key] = false;
-  held_.clear();
+/// Two presses are one double click by their own times: frames may be further apart than they are.
+void Interface::note_press(const InputEvent& event) {
+  constexpr double kApart = 0.4;  // seconds
+  constexpr float kAside = 6;     // pixels of a plain display
+  const bool here = std::abs(pointer_.x - pressed_at_.x) + std::abs(pointer_.y - pressed_at_.y) < ui_.px(kAside);
+  twice_ = !twice_ && here && pressed_.down && pressed_.code == event.code && event.time - pressed_.time < kApart;
+  pressed_ = event;
+  pressed_at_ = pointer_;
 }
+
+/// In place of what the backend asks the window, which is what holds now and not when it happened.
+void Interface::show_pointer() {
+  ImGuiIO& io = ImGui::GetIO();
+  io.MouseDoubleClickTime = twice_ ? FLT_MAX : 0;
+#if IMGUI_VERSION_NUM >= 18700
+  io.AddMousePosEvent(pointer_.x, pointer_.y);
+  for (std::size_t i = 0; i < buttons_.size(); ++i) io.AddMouseButtonEvent(static_cast<int>(i), buttons_[i]);
 #else
-void Interface::hold_pressed() { pressed_.clear(); }
-void Interface::release_held() {}
+  io.MousePos = pointer_;
+  for (std::size_t i = 0; i < buttons_.size(); ++i) io.MouseDown[i] = buttons_[i];
 #endif
+}
 
 void Interface::begin(Size size, float seconds) {
-  hold_pressed();
-  if (has_window_) {
+  if (window_) {
     ImGui_ImplGlfw_NewFrame();
+    show_pointer();
   } else {
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = {static_cast<float>(size.width), static_cast<float>(size.height)};
@@ -119,11 +158,12 @@ void Interface::begin(Size size, float seconds) {
 
 const ImDrawData& Interface::end() {
   ImGui::Render();
-  release_held();
   return *ImGui::GetDrawData();
 }
 
-bool Interface::wants_keyboard() const { return ImGui::GetIO().WantTextInput; }
+bool Interface::wants_keyboard() const {
+  return ImGui::GetIO().WantTextInput || ImGui::GetCurrentContext()->WantTextInputNextFrame == 1;
+}
 bool Interface::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
 
 }  // namespace afterglow

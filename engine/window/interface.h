@@ -4,11 +4,12 @@
 
 #include <imgui.h>
 
+#include <array>
 #include <memory>
-#include <vector>
 
 #include "core/geometry.h"
 #include "core/result.h"
+#include "window/input_event.h"
 #include "window/ui.h"
 
 struct GLFWwindow;
@@ -32,21 +33,24 @@ class Interface {
   void begin(Size size = {}, float seconds = 1.0f / 60);
   const ImDrawData& end();
 
-  /// A key (GLFW_KEY_…) went down: the next frame sees it so, though it may be up again by then. Dear ImGui looks at
-  /// keys once a frame, and a frame may take longer than a press.
-  void note_press(int key);
+  /// For the next frame; with a window alone. Events of one frame are those of InputQueue.
+  void feed(const InputEvent& event);
 
   Ui& ui() { return ui_; }
-  bool wants_keyboard() const;  ///< a text is being typed: keys are no shortcuts
+  bool wants_keyboard() const;  ///< a text is being typed, or is from the next frame on: keys are no shortcuts
   bool wants_mouse() const;     ///< the pointer is on the interface, or holds a part of it
 
  private:
   void load_fonts();
-  void hold_pressed();
-  void release_held();
+  void show_pointer();
+  void note_press(const InputEvent& event);
   ImGuiContext* context_ = nullptr;
-  bool has_window_ = false;
-  std::vector<int> pressed_, held_;  ///< since the last frame; only for this one
+  GLFWwindow* window_ = nullptr;
+  ImVec2 pointer_;                 ///< in the window; off-screen: it is elsewhere
+  std::array<bool, 5> buttons_{};  ///< that are down
+  InputEvent pressed_;             ///< the last press of a button
+  ImVec2 pressed_at_;
+  bool twice_ = false;  ///< that press follows another one at once, at the same place
   Ui ui_;
 };
 

@@ -16,6 +16,14 @@ struct OverlayArea {
   ImVec2 at, size;
 };
 
+/// Where pixels of the picture lie on the screen.
+struct OverlayPicture {
+  ViewPlacement place;
+  Size picture, window;  ///< of what one picture has of the window, in pixels of the frame buffer
+  int right = 0;         ///< how far the result is from there, where two lie side by side
+  ImVec2 pixel{1, 1};    ///< of the frame buffer, in ImGui's coordinates
+};
+
 /// What is wrong at the moment, as one would mail it to somebody; empty: nothing.
 std::string current_message(const Player& player);
 
@@ -31,6 +39,10 @@ void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area);
 void draw_stats_overlay(const Player& player, const Ui& ui, const OverlayArea& area);
 /// Lower right: red, green and blue by display code, and what does not fit.
 void draw_histogram_overlay(const Histogram& histogram, const Ui& ui, const OverlayArea& area);
+/// A frame around the pixel whose values are told.
+void draw_pixel_mark(Pixel pixel, const Ui& ui, const OverlayPicture& place);
+/// Around the picture and above it: that it is not the frame that is asked for, because that is missing or unreadable.
+void draw_frame_mark(const Player& player, const Ui& ui, const OverlayPicture& place, const OverlayArea& area);
 /// Lower left: values of source and result. `above`: free this much below it.
 void draw_probe_overlay(const Probe& probe, const Ui& ui, const OverlayArea& area, float above);
 /// Ui::message, while it lasts.

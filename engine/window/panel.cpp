@@ -50,9 +50,19 @@ bool Panel::found(const std::string& text) const {
   return search_[0] == '\0' || lower(text).find(lower(search_.data())) != std::string::npos;
 }
 
+std::string Panel::unsaved(PanelPort& port) const {
+  if (save_.settling()) return {};
+  const auto& edits = port.edits().edits();
+  const auto count = std::ranges::count_if(edits, [](const SettingEdit& edit) { return !edit.entry.empty(); });
+  if (count == 0) return {};
+  return fmt::format("{} of {}", count == 1 ? "1 setting" : fmt::format("{} settings", count),
+                     save_.file().filename().string());
+}
+
 void Panel::turn(Ui& ui, PanelPort& port) {
-  if (save_.poll(port)) ui.say(save_.message());
+  if (save_.poll(port, bases_)) ui.say(save_.message());
   if (save_.busy()) ui.again();
+  if (!save_.settling()) bases_.follow(port);
 }
 
 void Panel::draw(Ui& ui, PanelPort& port, ImVec2 place, ImVec2 size) {
@@ -63,12 +73,27 @@ void Panel::draw(Ui& ui, PanelPort& port, ImVec2 place, ImVec2 size) {
                          ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
   if (ImGui::Begin("Settings", nullptr, kFlags)) {
     draw_head(ui, port);
-    draw_outcome(ui);
     if (ImGui::CollapsingHeader("View")) draw_view_controls(ui, port);
-    draw_arguments(ui, port);
-    draw_entries(ui, port);
+    draw_settings(ui, port);
+    draw_outcome(ui);
   }
   ImGui::End();
+}
+
+/// While the file has an error the picture is that of the last good one: settings of a file that cannot be run are
+/// shown, and rest.
+void Panel::draw_settings(Ui& ui, PanelPort& port) {
+  const bool broken = port.status().error.has_value();
+  if (broken && port.build()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kWarning);
+    ImGui::TextWrapped("The preset has an error. Settings rest until it is mended.");
+    ImGui::PopStyleColor();
+  }
+  ui.values_apply = !broken;
+  ImGui::BeginDisabled(broken);
+  draw_arguments(ui, port);
+  draw_entries(ui, port);
+  ImGui::EndDisabled();
 }
 
 void Panel::draw_head(Ui& ui, PanelPort& port) {
@@ -76,7 +101,7 @@ void Panel::draw_head(Ui& ui, PanelPort& port) {
   ImGui::PushFont(ui.bold);
   ImGui::TextUnformatted(preset ? preset->name().c_str() : "No preset yet");
   ImGui::PopFont();
-  tooltip(ui, save_.file().string());
+  ui.help(save_.file().string());
   const SettingEdits& edits = port.edits();
   const bool changed = !edits.edits().empty();
   if (small_button(ui, save_.busy() ? "Saving…" : "Save preset", "Write the changes into the preset's file (Ctrl+S)",
@@ -92,34 +117,50 @@ void Panel::draw_head(Ui& ui, PanelPort& port) {
     port.end_gesture();
     port.reset_all();
   }
-  if (focus_search_) ImGui::SetKeyboardFocusHere();
+  if (focus_search_) {
+    ImGui::SetWindowFocus();  // Dear ImGui 1.90.1 gives the keyboard to items of the focused window alone
+    ImGui::SetKeyboardFocusHere();
+  }
   focus_search_ = false;
   ImGui::SetNextItemWidth(-1);
   ImGui::InputTextWithHint("##search", "Search settings", search_.data(), search_.size(),
                            ImGuiInputTextFlags_AutoSelectAll);
 }
 
-// What came of the last save, with all that was left out and why.
+// What the last save left out and why, or why it failed, over the end of the panel: nothing moves for it. What went
+// well is said over the picture for a moment.
 void Panel::draw_outcome(Ui& ui) {
-  if (save_.message().empty()) return;
-  const auto line = [](ImU32 color, const std::string& text) {
-    ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
-  };
-  line(save_.failed() ? ui_color::kError : ui_color::kGood, save_.message());
-  std::string all = save_.message();
-  for (const auto& refused : save_.refused()) {
-    line(ui_color::kWarning, refused.reason.text());
-    all += "\n" + refused.reason.text();
+  if (!save_.failed() && save_.refused().empty() && save_.notes().empty()) return;
+  std::vector<std::pair<ImU32, std::string>> lines{
+      {save_.failed() ? ui_color::kError : ui_color::kGood, save_.message()}};
+  for (const auto& refused : save_.refused()) lines.emplace_back(ui_color::kWarning, refused.reason.text());
+  for (const auto& note : save_.notes()) lines.emplace_back(ui_color::kDim, note);
+
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float width = ImGui::GetWindowContentRegionMax().x - ImGui::GetWindowContentRegionMin().x;
+  const float wrap = width - 2 * style.WindowPadding.x;
+  float height = 2 * style.WindowPadding.y + ImGui::GetFrameHeightWithSpacing();
+  std::string all;
+  for (const auto& [color, text] : lines) {
+    height += ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap).y + style.ItemSpacing.y;
+    all += (all.empty() ? "" : "\n") + text;
   }
-  for (const auto& note : save_.notes()) line(ui_color::kDim, note);
-  if (small_button(ui, "Copy", "The messages, to the clipboard")) ui.copy(all);
-  ImGui::SameLine();
-  if (small_button(ui, "Dismiss", "Hide the messages")) save_.dismiss();
-  ImGui::Separator();
+  const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  height = std::min(height, size.y * 0.6f);
+  ImGui::SetCursorScreenPos({at.x + style.WindowPadding.x, at.y + size.y - style.WindowPadding.y - height});
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, ui_color::kOverlay);
+  if (ImGui::BeginChild("outcome", {width, height}, true)) {
+    for (const auto& [color, text] : lines) {
+      ImGui::PushStyleColor(ImGuiCol_Text, color);
+      ImGui::TextWrapped("%s", text.c_str());
+      ImGui::PopStyleColor();
+    }
+    if (small_button(ui, "Copy", "The messages, to the clipboard")) ui.copy(all);
+    ImGui::SameLine();
+    if (small_button(ui, "Dismiss", "Hide the messages")) save_.dismiss();
+  }
+  ImGui::EndChild();
+  ImGui::PopStyleColor();
 }
 
 // What the preset asks of whoever runs it. The preset's text stays: arguments are given with the command.
@@ -135,7 +176,8 @@ void Panel::draw_arguments(Ui& ui, PanelPort& port) {
   if (ImGui::CollapsingHeader("Arguments", ImGuiTreeNodeFlags_DefaultOpen)) {
     for (const auto& argument : arguments)
       if (shows(argument))
-        draw_row(ui, port, {"", argument.schema.name, argument.schema, argument.value, nullptr, argument.given});
+        draw_row(ui, port, bases_,
+                 {"", argument.schema.name, argument.schema, argument.value, nullptr, argument.given});
     const std::string words = argument_words(port.edits());
     if (small_button(ui, "Copy --arg", ("To the clipboard: " + words).c_str(), !words.empty())) ui.copy(words);
     ImGui::Spacing();
@@ -169,10 +211,10 @@ void Panel::draw_entry(Ui& ui, PanelPort& port, std::size_t index) {
     if (skipped) ImGui::TextWrapped("skipped: %s", skipped->c_str());
     for (std::size_t i = 0; i < schema.settings.size() && i < entry.settings.size(); ++i)
       if (shows(schema.settings[i]))
-        draw_row(ui, port, row_of(entry, history.settings[i], schema.settings[i], entry.settings[i].second));
+        draw_row(ui, port, bases_, row_of(entry, history.settings[i], schema.settings[i], entry.settings[i].second));
     for (const auto& setting : history.composition)
       if (const auto of = matches(setting) ? preset.setting_schema(entry, setting.name) : std::nullopt)
-        draw_row(ui, port, row_of(entry, setting, *of, setting.value));
+        draw_row(ui, port, bases_, row_of(entry, setting, *of, setting.value));
     if (entry.mask && (whole || found("mask"))) ImGui::TextDisabled("mask: %s", entry.mask->text().c_str());
     if (skipped) ImGui::PopStyleColor();
     ImGui::Spacing();
@@ -189,7 +231,7 @@ bool Panel::draw_entry_head(Ui& ui, PanelPort& port, const StackEntry& entry, co
     port.set(entry.name, "enabled", boolean(on));
     port.end_gesture();
   }
-  tooltip(ui, "Run this effect");
+  ui.help("Run this effect");
   ImGui::SameLine();
   const bool dim = skipped || !on, changed = is_edited(port.edits(), entry.name);
   if (dim || changed) ImGui::PushStyleColor(ImGuiCol_Text, dim ? ui_color::kDim : ui_color::kAccent);
@@ -197,8 +239,8 @@ bool Panel::draw_entry_head(Ui& ui, PanelPort& port, const StackEntry& entry, co
   const bool open =
       ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_AllowItemOverlap);
   if (dim || changed) ImGui::PopStyleColor();
-  tooltip(ui, fmt::format("{}\n{}, order {}\n{}:{}{}", port.preset()->schema(entry.effect).doc, entry.at, entry.order,
-                          entry.file, entry.line, skipped ? "\nskipped: " + *skipped : ""));
+  ui.help(fmt::format("{}\n{}, order {}\n{}:{}{}", port.preset()->schema(entry.effect).doc, entry.at, entry.order,
+                      entry.file, entry.line, skipped ? "\nskipped: " + *skipped : ""));
   const double cost = cost_of(entry.name, port.times());
   const std::string label = cost >= 0 ? fmt::format("{:.2f} ms", cost) : "";
   float right = ImGui::GetWindowContentRegionMax().x;

@@ -23,16 +23,19 @@ class Panel {
   void turn(Ui& ui, PanelPort& port);
 
   // What keys do too.
-  void save(PanelPort& port) { save_.save(port); }
-  void undo_save(PanelPort& port) { save_.undo(port); }
+  void save(PanelPort& port) { save_.save(port, bases_); }
+  void undo_save(PanelPort& port) { save_.undo(port, bases_); }
   /// The cursor goes into the search field with the next draw.
   void search() { focus_search_ = true; }
 
+  /// What has been changed and is not in the file: "2 settings of look.lua". Empty: nothing.
+  std::string unsaved(PanelPort& port) const;
   const PanelSave& saving() const { return save_; }
 
  private:
   void draw_head(Ui& ui, PanelPort& port);
   void draw_outcome(Ui& ui);
+  void draw_settings(Ui& ui, PanelPort& port);
   void draw_arguments(Ui& ui, PanelPort& port);
   void draw_entries(Ui& ui, PanelPort& port);
   void draw_entry(Ui& ui, PanelPort& port, std::size_t index);
@@ -40,6 +43,7 @@ class Panel {
   bool found(const std::string& text) const;
 
   PanelSave save_;
+  EditBases bases_;
   std::array<char, 64> search_{};
   bool focus_search_ = false;
 };

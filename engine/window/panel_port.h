@@ -33,7 +33,7 @@ class PanelPort {
   virtual bool undo() = 0;
   virtual bool redo() = 0;
   virtual void end_gesture() = 0;
-  virtual void edits_saved() = 0;
+  virtual void rebase(const std::vector<BaseChange>& changes) = 0;  ///< see SettingEdits::rebase
 
   virtual View& view() = 0;
   virtual std::vector<std::string> images() = 0;  ///< that can be shown, see LiveStack::images

@@ -42,24 +42,36 @@ std::string setting_help(const SettingSchema& schema, const SettingHistory* hist
 
 }  // namespace
 
-void tooltip(const Ui& ui, const std::string& text) {
-  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(ui.px(360));
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
-}
-
 bool small_button(const Ui& ui, const char* label, const char* help, bool enabled) {
   ImGui::BeginDisabled(!enabled);
   const bool pressed = ImGui::SmallButton(label);
   ImGui::EndDisabled();
-  tooltip(ui, help);
+  ui.help(help);
   return pressed && enabled;
 }
 
-void draw_row(const Ui& ui, PanelPort& port, const PanelRow& row) {
+namespace {
+
+/// The file has another value than the one that was changed: both, and a way to each.
+void draw_conflict(const Ui& ui, PanelPort& port, EditBases& bases, const EditConflict& conflict) {
+  const std::string entry = conflict.entry, setting = conflict.setting;
+  ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kWarning);
+  ImGui::TextWrapped("The file says %s now (it was %s)", conflict.now.text().c_str(), conflict.was.text().c_str());
+  ImGui::PopStyleColor();
+  const bool mine = small_button(ui, "Keep mine", "The value above stays, and is written over the file's by Save");
+  ImGui::SameLine();
+  const bool theirs = small_button(ui, "Take the file's", "The value that the file has now");
+  if (mine) bases.keep(entry, setting);
+  if (theirs) {
+    port.end_gesture();
+    port.reset(entry, setting);
+    port.end_gesture();
+  }
+}
+
+}  // namespace
+
+void draw_row(Ui& ui, PanelPort& port, EditBases& bases, const PanelRow& row) {
   const SettingSchema& schema = row.schema;
   const SettingHistory* history = row.history;
   const auto edit = port.edits().value(row.entry, row.name);
@@ -67,7 +79,9 @@ void draw_row(const Ui& ui, PanelPort& port, const PanelRow& row) {
 
   ImGui::PushID(row.name.c_str());
   const float width = std::max(ui.px(120), ImGui::GetContentRegionAvail().x * 0.52f);
-  if (const auto changed = setting_widget(ui, "##value", schema, value, width)) port.set(row.entry, row.name, *changed);
+  const auto changed = setting_widget(ui, "##value", schema, value, width);
+  if (ui.typed.take_back()) port.undo();
+  if (changed) port.set(row.entry, row.name, *changed);
   if (ImGui::IsItemDeactivated()) port.end_gesture();
   if (ImGui::BeginPopupContextItem("more")) {
     if (ImGui::MenuItem("As in the file", nullptr, false, edit.has_value())) port.reset(row.entry, row.name);
@@ -76,7 +90,7 @@ void draw_row(const Ui& ui, PanelPort& port, const PanelRow& row) {
     port.end_gesture();
     ImGui::EndPopup();
   }
-  tooltip(ui, setting_help(schema, history, edit.has_value()));
+  ui.help(setting_help(schema, history, edit.has_value()));
   ImGui::SameLine(schema.type == SettingType::boolean
                       ? width + ImGui::GetStyle().WindowPadding.x + ImGui::GetStyle().ItemSpacing.x
                       : 0);
@@ -84,7 +98,7 @@ void draw_row(const Ui& ui, PanelPort& port, const PanelRow& row) {
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::TextUnformatted(row.name.c_str());
   ImGui::PopStyleColor();
-  tooltip(ui, setting_help(schema, history, edit.has_value()));
+  ui.help(setting_help(schema, history, edit.has_value()));
   if (const std::string origin = history ? origin_of(*history) : ""; !origin.empty()) {
     ImGui::SameLine();
     ImGui::TextDisabled("%s%s", edit ? "over " : "", origin.c_str());
@@ -97,6 +111,7 @@ void draw_row(const Ui& ui, PanelPort& port, const PanelRow& row) {
       port.end_gesture();
     }
   }
+  if (const EditConflict* conflict = bases.find(row.entry, row.name)) draw_conflict(ui, port, bases, *conflict);
   ImGui::PopID();
 }
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "window/panel_port.h"
+#include "window/panel_base.h"
 #include "window/ui.h"
 
 namespace afterglow {
@@ -19,10 +19,8 @@ struct PanelRow {
 };
 
 /// Within the panel's window.
-void draw_row(const Ui& ui, PanelPort& port, const PanelRow& row);
+void draw_row(Ui& ui, PanelPort& port, EditBases& bases, const PanelRow& row);
 
-/// What the last item is about, while the pointer is over it.
-void tooltip(const Ui& ui, const std::string& text);
 bool small_button(const Ui& ui, const char* label, const char* help, bool enabled = true);
 
 }  // namespace afterglow

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "script/explanation.h"
 
@@ -18,17 +19,27 @@ std::string in_quotes(const std::string& text) {
   return out + "'";
 }
 
-// Does the preset itself say this, without the edit over it?
-bool says(const Build& build, const SettingEdit& edit) {
-  for (const auto& entry : build.explanation->entries) {
-    const SettingHistory* setting = entry.name == edit.entry ? entry.find(edit.setting) : nullptr;
-    if (!setting) continue;
-    const SettingValue& value = setting->preset ? *setting->preset : setting->default_value;
-    for (std::size_t i = 0; i < value.number.size(); ++i)
-      if (static_cast<float>(value.number[i]) != static_cast<float>(edit.value.number[i])) return false;
-    return value.choice == edit.value.choice;
-  }
-  return true;  // enabled, at, order: nothing of them is kept of before an override
+// Does the preset itself say this, without the edit over it? Of what nobody knows, yes.
+bool says(const Build& build, const BaseChange& change) {
+  const auto value = base_value(build, change.entry, change.setting);
+  return !value || same_value(*value, change.after);
+}
+
+// The value of an entry's own switch before the save, by the text that stood there.
+std::optional<SettingValue> switched_before(const Rewrite& rewrite, const BaseChange& change) {
+  const std::string name = PresetEdit{change.entry, change.setting}.name();
+  const auto found = std::ranges::find_if(rewrite.written, [&](const WrittenSetting& w) { return w.name == name; });
+  if (change.setting != "enabled" || found == rewrite.written.end()) return std::nullopt;
+  return SettingValue{SettingType::boolean, {found->before == "false" ? 0.0 : 1.0}, ""};
+}
+
+Error conflict_error(const std::filesystem::path& file, const EditConflict& conflict, const SettingEdit& edit) {
+  Error error{ErrorKind::script,
+              fmt::format("{}.{} was changed in the file too: it says {} now, the panel {}", edit.entry, edit.setting,
+                          conflict.now.text(), edit.value.text()),
+              file.string()};
+  error.allowed = "Keep mine or Take the file's, below the setting";
+  return error;
 }
 
 }  // namespace
@@ -57,15 +68,32 @@ void PanelSave::dismiss() {
   notes_.clear();
 }
 
-void PanelSave::save(PanelPort& port) {
+void PanelSave::save(PanelPort& port, const EditBases& bases) {
   if (busy()) return;
   dismiss();
-  saving_ = port.edits().edits();
-  if (std::erase_if(saving_, [](const SettingEdit& edit) { return edit.entry.empty(); }) > 0)
+  saving_.clear();
+  held_back_.clear();
+  const Build* build = port.build();
+  bool arguments = false;
+  for (const SettingEdit& edit : port.edits().edits()) {
+    if (edit.entry.empty()) {
+      arguments = true;
+    } else if (const EditConflict* conflict = bases.find(edit.entry, edit.setting)) {
+      held_back_.push_back(
+          {{edit.entry, edit.setting, edit.value, ""}, conflict_error(writer_.file(), *conflict, edit)});
+    } else {
+      const auto before = build ? base_value(*build, edit.entry, edit.setting) : std::nullopt;
+      saving_.push_back({edit.entry, edit.setting, before.value_or(edit.value), edit.value});
+    }
+  }
+  if (arguments)
     notes_.push_back("Arguments are not part of the preset: they are given by " + argument_words(port.edits()));
-  if (saving_.empty()) return tell("No setting was changed", false);
+  if (saving_.empty()) {
+    refused_ = held_back_;
+    return tell(refused_.empty() ? "No setting was changed" : "Nothing was written: the file was changed too", false);
+  }
   std::vector<PresetEdit> edits;
-  for (const auto& edit : saving_) edits.push_back({edit.entry, edit.setting, edit.value, ""});
+  for (const auto& change : saving_) edits.push_back({change.entry, change.setting, change.after, ""});
   running_ = std::async(std::launch::async, [this, edits] {
     Outcome outcome;
     auto plan = writer_.plan(edits);
@@ -79,8 +107,8 @@ void PanelSave::save(PanelPort& port) {
   });
 }
 
-bool PanelSave::poll(PanelPort& port) {
-  forget_what_is_in_the_file(port);
+bool PanelSave::poll(PanelPort& port, EditBases& bases) {
+  forget_what_is_in_the_file(port, bases);
   if (!busy() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
   Outcome outcome = running_.get();
   if (outcome.error) {
@@ -89,11 +117,13 @@ bool PanelSave::poll(PanelPort& port) {
   }
   refused_ = std::move(outcome.rewrite.refused);
   std::ranges::move(outcome.rewrite.notes, std::back_inserter(notes_));
-  std::erase_if(saving_, [&](const SettingEdit& edit) {
+  std::erase_if(saving_, [&](const BaseChange& change) {
     return std::any_of(refused_.begin(), refused_.end(), [&](const RefusedSetting& refused) {
-      return refused.edit.entry == edit.entry && refused.edit.setting == edit.setting;
+      return refused.edit.entry == change.entry && refused.edit.setting == change.setting;
     });
   });
+  for (BaseChange& change : saving_) change.before = switched_before(outcome.rewrite, change).value_or(change.before);
+  std::ranges::move(held_back_, std::back_inserter(refused_));
   settling_ = saving_;
   if (outcome.rewrite.text != outcome.rewrite.before) written_.push_back(saving_);
   if (written_.size() > writer_.saves()) written_.erase(written_.begin());
@@ -110,38 +140,31 @@ bool PanelSave::poll(PanelPort& port) {
 }
 
 // The edits go when the preset on screen says the same: dropping them before would show the old values for a moment.
-void PanelSave::forget_what_is_in_the_file(PanelPort& port) {
+void PanelSave::forget_what_is_in_the_file(PanelPort& port, EditBases& bases) {
   if (settling_.empty() || busy()) return;
   const Build* build = port.build();
-  if (!build) return;
-  const bool all = std::all_of(settling_.begin(), settling_.end(), [&](const SettingEdit& edit) {
+  if (!build || port.status().building) return;
+  const bool all = std::all_of(settling_.begin(), settling_.end(), [&](const BaseChange& change) {
     // Edited again since: the edit stays, and there is nothing to wait for.
-    return port.edits().value(edit.entry, edit.setting) != edit.value || says(*build, edit);
+    return port.edits().value(change.entry, change.setting) != change.after || says(*build, change);
   });
-  if (!all || port.status().building) return;
-  std::vector<SettingEdit> left = port.edits().edits();
-  std::erase_if(left, [&](const SettingEdit& edit) {
-    return std::find(settling_.begin(), settling_.end(), edit) != settling_.end();
-  });
-  settling_.clear();
-  port.edits_saved();
-  for (const auto& edit : left) {
-    port.set(edit.entry, edit.setting, edit.value);
-    port.end_gesture();
-  }
+  if (!all) return;
+  for (const BaseChange& change : settling_) bases.expect(change.entry, change.setting, change.after);
+  port.rebase(std::exchange(settling_, {}));
 }
 
-void PanelSave::undo(PanelPort& port) {
+void PanelSave::undo(PanelPort& port, EditBases& bases) {
   if (!can_undo()) return tell("Nothing was saved that could be taken back", true);
   dismiss();
   if (const auto undone = writer_.undo(); !undone) return tell(undone.error().text(), true);
-  settling_.clear();
-  for (const auto& edit : written_.back())
-    if (!port.edits().value(edit.entry, edit.setting)) {
-      port.set(edit.entry, edit.setting, edit.value);
-      port.end_gesture();
-    }
+  std::vector<BaseChange> back = std::move(written_.back());
   written_.pop_back();
+  for (BaseChange& change : back) {
+    bases.expect(change.entry, change.setting, change.before);
+    std::swap(change.before, change.after);
+  }
+  // What was still settling has not become part of the preset: its edits are there.
+  if (std::exchange(settling_, {}).empty()) port.rebase(back);
   tell(fmt::format("{} is as it was before", writer_.file().filename().string()), false);
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "edit/write_back.h"
-#include "window/panel_port.h"
+#include "window/panel_base.h"
 
 namespace afterglow {
 
@@ -23,14 +23,16 @@ class PanelSave {
   ~PanelSave() = default;
 
   const std::filesystem::path& file() const { return writer_.file(); }
-  /// Begins to write all edits. Nothing happens while another save runs.
-  void save(PanelPort& port);
+  /// Begins to write all edits but those in conflict with the file. Nothing happens while another save runs.
+  void save(PanelPort& port, const EditBases& bases);
   /// The file as it was before the last save; what was written then stands over it as edits again.
-  void undo(PanelPort& port);
+  void undo(PanelPort& port, EditBases& bases);
   bool can_undo() const { return !busy() && writer_.saves() > 0; }
   bool busy() const { return running_.valid(); }
+  /// Written, and not on screen yet.
+  bool settling() const { return !settling_.empty(); }
   /// Takes what has come of a save; to be called in every turn. True when there is something new to tell.
-  bool poll(PanelPort& port);
+  bool poll(PanelPort& port, EditBases& bases);
   /// Blocks until `poll` has something to take. For tests.
   void wait() const {
     if (running_.valid()) running_.wait();
@@ -50,12 +52,13 @@ class PanelSave {
     Rewrite rewrite;
   };
   void tell(std::string message, bool failed);
-  void forget_what_is_in_the_file(PanelPort& port);
+  void forget_what_is_in_the_file(PanelPort& port, EditBases& bases);
 
   PresetWriter writer_;
-  std::vector<SettingEdit> saving_;                // what the running save writes
-  std::vector<std::vector<SettingEdit>> written_;  // by each save that can be taken back
-  std::vector<SettingEdit> settling_;              // written, and still edits until the new file is shown
+  std::vector<BaseChange> saving_;                // what the running save writes
+  std::vector<RefusedSetting> held_back_;         // in conflict with the file
+  std::vector<std::vector<BaseChange>> written_;  // by each save that can be taken back
+  std::vector<BaseChange> settling_;              // written, and still edits until the new file is shown
   std::string message_;
   bool failed_ = false;
   std::vector<RefusedSetting> refused_;

@@ -12,14 +12,17 @@ PlayParts::PlayParts(Player& player, const std::filesystem::path& preset, const 
 }
 
 void PlayParts::draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) const {
-  TransportBarState state{.transport = player.transport(),
-                          .now = player.now(),
-                          .shown = player.shown().position,
-                          .number = [&player](int position) { return player.footage().frame(position).number; },
-                          .cached = [&player](int position) { return player.in_memory(position); },
+  TransportBarState state{.timeline = {.transport = player.transport(),
+                                       .now = player.now(),
+                                       .shown = player.shown().position,
+                                       .number = [&player](int at) { return player.footage().frame(at).number; },
+                                       .state = [&player](int at) { return player.frame_state(at); }},
+                          .view = player.view(),
+                          .picture = player.images().picture,
+                          .window = ui.picture_window,
                           .fps = player.fps(),
                           .late = player.late(),
-                          .picture = player.shown().name};
+                          .name = player.shown().name};
   draw_transport_bar(ui, state, place, size);
 }
 
@@ -29,9 +32,15 @@ void PlayParts::add_to(WindowOptions& options) {
   options.transport = [this](Player& player, Ui& ui, ImVec2 place, ImVec2 size) {
     draw_transport(player, ui, place, size);
   };
-  options.transport_height = [](const Ui& ui) { return transport_bar_height(ui); };
+  options.transport_height = [](const Ui& ui, float width) { return transport_bar_height(ui, width); };
   options.help = [](Player&, Ui& ui, ImVec2, ImVec2 size) { draw_help_sheet(ui, size); };
   options.save = [this](Player&, Ui&) { panel_->save(port_); };
+  options.unsaved = [this](Player&) { return panel_->unsaved(port_); };
+  options.saving = [this] {
+    const PanelSave& save = panel_->saving();
+    if (save.busy()) return WindowOptions::Saving::busy;
+    return save.failed() || !save.refused().empty() ? WindowOptions::Saving::failed : WindowOptions::Saving::done;
+  };
   options.undo_save = [this](Player&, Ui& ui) {
     if (!panel_->saving().can_undo()) return ui.say("nothing was saved");
     panel_->undo_save(port_);

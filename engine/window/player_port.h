@@ -27,7 +27,7 @@ class PlayerPort final : public PanelPort {
   bool undo() override { return player_.undo(); }
   bool redo() override { return player_.redo(); }
   void end_gesture() override { player_.end_gesture(); }
-  void edits_saved() override { player_.edits_saved(); }
+  void rebase(const std::vector<BaseChange>& changes) override { player_.rebase(changes); }
 
   View& view() override { return player_.view(); }
   std::vector<std::string> images() override { return player_.live().images(); }

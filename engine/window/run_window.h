@@ -24,14 +24,18 @@ struct WindowOptions {
   std::filesystem::path captures = ".";  ///< folder for screenshots by key
   /// A part of the interface, drawn as an ImGui window at `place`. Without one, its place is the picture's.
   using Part = std::function<void(Player&, Ui&, ImVec2 place, ImVec2 size)>;
-  Part panel;                                        ///< at the right
-  Part transport;                                    ///< at the bottom
-  std::function<float(const Ui&)> transport_height;  ///< that it wants
-  Part help;                                         ///< over everything
-  std::function<void(Player&, Ui&)> save;            ///< Ctrl+S; empty: there is no such thing
-  std::function<void(Player&, Ui&)> undo_save;       ///< takes back the last `save`
-  std::function<void(Player&, Ui&)> search;          ///< the keyboard goes to the panel's search
-  std::function<void(Player&, Ui&)> hidden_panel;    ///< called in place of `panel` while that is hidden
+  Part panel;                                                     ///< at the right
+  Part transport;                                                 ///< at the bottom
+  std::function<float(const Ui&, float width)> transport_height;  ///< that it wants
+  Part help;                                                      ///< over everything
+  std::function<void(Player&, Ui&)> save;                         ///< Ctrl+S; empty: there is no such thing
+  /// What the window would forget when it is closed, for people: "2 settings of look.lua". Empty: nothing.
+  std::function<std::string(Player&)> unsaved;
+  enum class Saving { busy, done, failed };
+  std::function<Saving()> saving;                  ///< what has become of the last `save`
+  std::function<void(Player&, Ui&)> undo_save;     ///< takes back the last `save`
+  std::function<void(Player&, Ui&)> search;        ///< the keyboard goes to the panel's search
+  std::function<void(Player&, Ui&)> hidden_panel;  ///< called in place of `panel` while that is hidden
   /// Another preset is being played from here on.
   std::function<void(const std::filesystem::path&)> preset_opened;
   std::function<bool()> interrupted = [] { return false; };  ///< true: close as by key

@@ -122,8 +122,11 @@ bool is_logarithmic(const SettingSchema& schema) {
   return *schema.max > 100 && (*schema.min == 0 || *schema.max / *schema.min > 100);
 }
 
-std::optional<SettingValue> setting_widget(const Ui& ui, const char* name, const SettingSchema& schema,
+std::optional<SettingValue> setting_widget(Ui& ui, const char* name, const SettingSchema& schema,
                                            const SettingValue& value, float width) {
+  const ImGuiID item = ImGui::GetID(name);
+  if (ui.typed.typing(item) || (ui.values_apply && ui.typed.opened(item, schema, value, width)))
+    return ui.typed.draw(ui, name, schema, value, width);
   SettingValue out = value;
   bool changed = false;
   ImGui::SetNextItemWidth(width);
@@ -161,7 +164,8 @@ std::optional<SettingValue> setting_widget(const Ui& ui, const char* name, const
       changed = vector_row(name, schema, out.number, schema.type == SettingType::vec2 ? 2 : 3);
       break;
   }
-  // A typed value may lie anywhere, and be no number at all.
+  ui.typed.note_press(item, value);
+  // What is dragged beyond the ends stays within them.
   const bool ranged =
       schema.type == SettingType::number || schema.type == SettingType::vec2 || schema.type == SettingType::vec3;
   if (ranged)

@@ -10,8 +10,9 @@
 namespace afterglow {
 
 /// Draws the control at the cursor, `width` wide; the new value when it was changed in this frame. `name` is unique
-/// among those drawn in the same ID scope. Ctrl+click types a value; values stay in the setting's range.
-std::optional<SettingValue> setting_widget(const Ui& ui, const char* name, const SettingSchema& schema,
+/// among those drawn in the same ID scope. A double click types a value (typed_value.h); values stay in the setting's
+/// range.
+std::optional<SettingValue> setting_widget(Ui& ui, const char* name, const SettingSchema& schema,
                                            const SettingValue& value, float width);
 
 /// Does a slider over the setting's range move by factors? Where it spans more than two decades above 0.

@@ -4,8 +4,6 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include "window/desktop_window.h"
-
 namespace afterglow {
 
 namespace {
@@ -21,7 +19,7 @@ constexpr Shortcut kShortcuts[] = {
     {Action::jump_back, GLFW_KEY_LEFT, kShift, "Shift+Left", "Play", "Ten frames back", true},
     {Action::go_to_first, GLFW_KEY_HOME, kNone, "Home", "Play", "To the first frame of the range"},
     {Action::go_to_last, GLFW_KEY_END, kNone, "End", "Play", "To the last frame of the range"},
-    {Action::loop_mode, GLFW_KEY_L, kNone, "L", "Play", "Once, loop, ping-pong"},
+    {Action::loop_mode, GLFW_KEY_L, kShift, "Shift+L", "Play", "Once, loop, ping-pong"},
     {Action::range_begin, GLFW_KEY_I, kNone, "I", "Play", "The range begins here"},
     {Action::range_end, GLFW_KEY_O, kNone, "O", "Play", "The range ends here"},
     {Action::range_clear, GLFW_KEY_P, kNone, "P", "Play", "Play the whole sequence again"},
@@ -35,6 +33,7 @@ constexpr Shortcut kShortcuts[] = {
     {Action::zoom_in, GLFW_KEY_KP_ADD, kNone, "+", "View", "Zoom in", true},
     {Action::zoom_out, GLFW_KEY_MINUS, kNone, "-", "View", "Zoom out", true},
     {Action::zoom_out, GLFW_KEY_KP_SUBTRACT, kNone, "-", "View", "Zoom out", true},
+    {Action::smooth, GLFW_KEY_M, kNone, "M", "View", "Magnified: squares, or a linear way from pixel to pixel"},
     {Action::compare, GLFW_KEY_W, kNone, "W", "View", "Wipe: off, before and after, other preset"},
     {Action::turn_wipe, GLFW_KEY_W, kShift, "Shift+W", "View", "Turn the wipe"},
     {Action::flip, GLFW_KEY_E, kNone, "E", "View", "The other preset (else what went in) in its place, and back"},
@@ -62,6 +61,7 @@ constexpr Shortcut kShortcuts[] = {
     {Action::copy_message, GLFW_KEY_C, kControl, "Ctrl+C", "Preset", "Copy the error message"},
     {Action::undo, GLFW_KEY_Z, kControl, "Ctrl+Z", "Preset", "Undo", true},
     {Action::redo, GLFW_KEY_Z, kBoth, "Ctrl+Shift+Z", "Preset", "Redo", true},
+    {Action::redo, GLFW_KEY_Y, kControl, "Ctrl+Y", "Preset", "Redo", true},
     {Action::save, GLFW_KEY_S, kControl, "Ctrl+S", "Preset", "Write the changed settings into the preset"},
 
     {Action::undo_save, GLFW_KEY_S, kBoth, "Ctrl+Shift+S", "Preset",

@@ -8,7 +8,11 @@
 
 namespace afterglow {
 
-struct KeyPress;
+struct KeyPress {
+  int key = 0;   ///< GLFW_KEY_…
+  int mods = 0;  ///< of GLFW_MOD_SHIFT, GLFW_MOD_CONTROL, GLFW_MOD_ALT, GLFW_MOD_SUPER
+  bool repeat = false;
+};
 
 enum class Action {
   play,
@@ -28,6 +32,7 @@ enum class Action {
   one_to_one,
   zoom_in,
   zoom_out,
+  smooth,
   compare,
   turn_wipe,
   flip,

@@ -39,7 +39,7 @@ void apply_theme(float scale) {
 
   ImVec4* c = style.Colors;
   c[ImGuiCol_Text] = {0.87f, 0.875f, 0.885f, 1};
-  c[ImGuiCol_TextDisabled] = {0.52f, 0.53f, 0.56f, 1};
+  c[ImGuiCol_TextDisabled] = {0.59f, 0.60f, 0.635f, 1};
   c[ImGuiCol_WindowBg] = gray(30);
   c[ImGuiCol_ChildBg] = gray(30, 0);
   c[ImGuiCol_PopupBg] = gray(36, 0.98f);

@@ -4,133 +4,156 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "window/flow.h"
+#include "window/icons.h"
 
 namespace afterglow {
 namespace {
 
-// One control; true when pressed.
-bool button(const Ui& ui, const char* label, const char* text) {
-  const bool pressed = ImGui::Button(label, {ui.px(34), 0});
-  Ui::help(text);
-  ImGui::SameLine(0, ui.px(2));
-  return pressed;
-}
+/// From left to right. What does not fit goes to the next row, whole.
+enum Piece { kButtons, kLoop, kSpeed, kRate, kEvery, kZoom, kFilter, kCounter, kPace, kPieces };
 
-void draw_buttons(const Ui& ui, TransportBarState& state) {
-  Transport& transport = state.transport;
-  if (button(ui, "|<##first", "To the first frame of the range (Home)")) transport.go_to_first(state.now);
-  if (button(ui, "<##back", "One frame back (Left)")) transport.step(-1, state.now);
-  if (button(ui, transport.playing() ? "||###play" : ">###play", "Play or pause (Space)")) transport.toggle(state.now);
-  if (button(ui, ">>##on", "One frame on (Right)")) transport.step(1, state.now);
-  if (button(ui, ">|##last", "To the last frame of the range (End)")) transport.go_to_last(state.now);
-  ImGui::SameLine(0, ui.px(10));
-  if (ImGui::Button(fmt::format("{}###loop", loop_mode_name(transport.loop())).c_str(), {ui.px(84), 0})) {
-    const auto next = static_cast<LoopMode>((static_cast<int>(transport.loop()) + 1) % 3);
-    transport.set_loop(next, state.now);
-  }
-  Ui::help("What happens at the ends of the range (L)");
-  ImGui::SameLine(0, ui.px(10));
-  float speed = static_cast<float>(transport.speed());
-  ImGui::SetNextItemWidth(ui.px(84));
-  if (ImGui::DragFloat("##speed", &speed, 0.02f, -8, 8, "%.2fx") && std::abs(speed) >= Transport::kSlowest)
-    transport.set_speed(speed, state.now);
-  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) transport.set_speed(1, state.now);
-  Ui::help("Speed; negative is backwards (, and .); right-click for 1");
-  ImGui::SameLine(0, ui.px(4));
-  float fps = static_cast<float>(transport.fps());
-  ImGui::SetNextItemWidth(ui.px(84));
-  if (ImGui::DragFloat("##fps", &fps, 0.1f, 1, 240, "%.3g fps", ImGuiSliderFlags_AlwaysClamp))
-    transport.set_fps(fps, state.now);
-  Ui::help("Frames a second at speed 1");
-  ImGui::SameLine(0, ui.px(4));
-  bool every = transport.pacing() == Pacing::every_frame;
-  if (ImGui::Checkbox("every frame", &every))
-    transport.set_pacing(every ? Pacing::every_frame : Pacing::real_time, state.now);
-  Ui::help("As fast as it goes, without dropping frames, instead of by the clock");
-}
+float gap(const Ui& ui) { return ui.px(8); }
 
-void draw_figures(const Ui& ui, const TransportBarState& state) {
-  const Transport& transport = state.transport;
-  std::string text = state.shown >= 0
-                         ? fmt::format("{}  {}/{}", state.number(state.shown), state.shown + 1, transport.frames())
-                         : fmt::format("-/{}", transport.frames());
-  if (transport.playing()) text += fmt::format("   {:.1f} fps", state.fps);
-  if (transport.dropped() > 0) text += fmt::format("   {} dropped", transport.dropped());
-  if (state.late > 0) text += fmt::format("   {} late", state.late);
+/// Of figures that keep their width while their digits change.
+float mono_width(const Ui& ui, int characters) {
   ImGui::PushFont(ui.mono);
-  ImGui::SameLine(
-      std::max(ImGui::GetCursorPosX(), ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text.c_str()).x));
-  ImGui::TextUnformatted(text.c_str());
+  const float one = ImGui::CalcTextSize("0").x;
   ImGui::PopFont();
-  if (!state.picture.empty()) Ui::help(state.picture.c_str());
+  return one * static_cast<float>(characters);
 }
 
-struct Bar {
-  ImVec2 begin, end;
-  int frames;
-  float width() const { return end.x - begin.x; }
-  float left(int position) const {
-    return begin.x + width() * static_cast<float>(position) / static_cast<float>(frames);
-  }
-};
+std::array<float, kPieces> widths_of(const Ui& ui) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float frame = 2 * style.FramePadding.x;
+  const auto text = [&](const char* longest) { return ImGui::CalcTextSize(longest).x + frame; };
+  std::array<float, kPieces> widths{};
+  widths[kButtons] = 5 * icon_button_width(ui) + 4 * ui.px(2);
+  widths[kLoop] = text("ping-pong");
+  widths[kSpeed] = text("-8.00x");
+  widths[kRate] = text("23.976 fps");
+  widths[kEvery] = ImGui::GetFrameHeight() + style.ItemInnerSpacing.x + ImGui::CalcTextSize("every frame").x;
+  widths[kZoom] = text("fit 1600%");
+  widths[kFilter] = text("nearest");
+  widths[kCounter] = mono_width(ui, 19);
+  widths[kPace] = mono_width(ui, 20);
+  return widths;
+}
 
-// Runs of cached frames: one rectangle each, and no more than the bar has pixels.
-void draw_cached(ImDrawList& list, const Ui& ui, const Bar& bar, const TransportBarState& state) {
-  const int step = std::max(1, bar.frames / std::max(1, static_cast<int>(bar.width())));
-  int from = -1;
-  for (int i = 0; i <= bar.frames; i += step) {
-    const bool in = i < bar.frames && state.cached(i);
-    if (in && from < 0) from = i;
-    if (!in && from >= 0) {
-      list.AddRectFilled({bar.left(from), bar.end.y - ui.px(3)}, {bar.left(i), bar.end.y}, ui_color::kGood);
-      from = -1;
+void draw_buttons(const Ui& ui, Transport& transport, double now) {
+  const auto beside = [&] { ImGui::SameLine(0, ui.px(2)); };
+  if (icon_button(ui, "##first", Icon::first, "To the first frame of the range (Home)")) transport.go_to_first(now);
+  beside();
+  if (icon_button(ui, "##back", Icon::back, "One frame back (Left)")) transport.step(-1, now);
+  beside();
+  if (icon_button(ui, "##play", transport.playing() ? Icon::pause : Icon::play, "Play or pause (Space)"))
+    transport.toggle(now);
+  beside();
+  if (icon_button(ui, "##on", Icon::on, "One frame on (Right)")) transport.step(1, now);
+  beside();
+  if (icon_button(ui, "##last", Icon::last, "To the last frame of the range (End)")) transport.go_to_last(now);
+}
+
+void draw_speed(const Ui& ui, Transport& transport, double now) {
+  float speed = static_cast<float>(transport.speed());
+  if (ImGui::DragFloat("##speed", &speed, 0.02f, -8, 8, "%.2fx") && std::abs(speed) >= Transport::kSlowest)
+    transport.set_speed(speed, now);
+  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) transport.set_speed(1, now);
+  ui.help("Speed; negative is backwards (, and .); right-click for 1");
+}
+
+void draw_rate(const Ui& ui, Transport& transport, double now) {
+  float fps = static_cast<float>(transport.fps());
+  if (ImGui::DragFloat("##fps", &fps, 0.1f, 1, 240, "%.5g fps", ImGuiSliderFlags_AlwaysClamp))
+    transport.set_fps(fps, now);
+  ui.help("Frames a second at speed 1");
+}
+
+void draw_zoom(const Ui& ui, TransportBarState& state, float width) {
+  View& view = state.view;
+  const double zoom = view.fit ? fitting_zoom(state.picture, state.window) : view.zoom;
+  const double percent = zoom * 100;
+  const std::string figure = percent < 9.95 ? fmt::format("{:.1f}", percent) : fmt::format("{:.0f}", percent);
+  if (ImGui::Button(fmt::format("{}{}%###zoom", view.fit ? "fit " : "", figure).c_str(), {width, 0})) {
+    if (view.fit) {
+      one_to_one(view, state.picture, state.window);
+    } else {
+      fit(view);
     }
   }
-  if (from >= 0) list.AddRectFilled({bar.left(from), bar.end.y - ui.px(3)}, bar.end, ui_color::kGood);
+  ui.help("Zoom; between the whole picture (F) and one pixel for one pixel (1)");
 }
 
-void draw_scrub_bar(const Ui& ui, TransportBarState& state) {
-  Transport& transport = state.transport;
-  const float height = ui.px(22);
-  const ImVec2 begin = ImGui::GetCursorScreenPos();
-  ImGui::InvisibleButton("scrub", {std::max(ImGui::GetContentRegionAvail().x, 1.0f), height},
-                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
-  const Bar bar{begin, ImGui::GetItemRectMax(), transport.frames()};
-  const int under = position_in_bar(ImGui::GetIO().MousePos.x, begin.x, bar.width(), bar.frames);
-  if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    // Shift sets the range, from the nearer end.
-    if (!ImGui::GetIO().KeyShift)
-      transport.go_to(under, state.now);
-    else if (std::abs(under - transport.first()) < std::abs(under - transport.last()))
-      transport.set_range(under, transport.last(), state.now);
-    else
-      transport.set_range(transport.first(), under, state.now);
-  }
-  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) transport.clear_range(state.now);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("frame %d\nShift+drag: range (I, O); right-click: all of it (P)", state.number(under));
+void draw_counter(const Ui& ui, const TransportBarState& state) {
+  const TimelineState& line = state.timeline;
+  const int frames = line.transport.frames();
+  ImGui::PushFont(ui.mono);
+  ImGui::TextUnformatted((line.shown >= 0 ? fmt::format("{}  {}/{}", line.number(line.shown), line.shown + 1, frames)
+                                          : fmt::format("-/{}", frames))
+                             .c_str());
+  ImGui::PopFont();
+  ui.help(state.name);
+}
 
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(bar.begin, bar.end, ImGui::GetColorU32(ImGuiCol_FrameBg), ui.px(3));
-  list.AddRectFilled({bar.left(transport.first()), bar.begin.y}, {bar.left(transport.last() + 1), bar.end.y},
-                     ImGui::GetColorU32(ImGuiCol_FrameBgActive), ui.px(3));
-  draw_cached(list, ui, bar, state);
-  const int at = state.shown >= 0 ? state.shown : transport.position();
-  const float left = bar.left(at), right = std::max(bar.left(at + 1), left + ui.px(2));
-  list.AddRectFilled({left, bar.begin.y}, {right, bar.end.y}, ui_color::kAccent, ui.px(1));
+void draw_pace(const Ui& ui, const TransportBarState& state) {
+  const Transport& transport = state.timeline.transport;
+  std::string text = transport.playing() ? fmt::format("{:.1f} fps", state.fps) : "";
+  if (transport.dropped() > 0) text += fmt::format("{}{} dropped", text.empty() ? "" : "  ", transport.dropped());
+  ImGui::PushFont(ui.mono);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopFont();
+  ui.help(fmt::format("{} frames were not shown in time, {} of them because they had not been read",
+                      transport.dropped(), state.late));
+}
+
+void draw_piece(const Ui& ui, TransportBarState& state, int piece, float width) {
+  Transport& transport = state.timeline.transport;
+  const double now = state.timeline.now;
+  ImGui::SetNextItemWidth(width);
+  switch (piece) {
+    case kButtons:
+      return draw_buttons(ui, transport, now);
+    case kLoop:
+      if (ImGui::Button(fmt::format("{}###loop", loop_mode_name(transport.loop())).c_str(), {width, 0}))
+        transport.set_loop(static_cast<LoopMode>((static_cast<int>(transport.loop()) + 1) % 3), now);
+      return ui.help("What happens at the ends of the range (Shift+L)");
+    case kSpeed:
+      return draw_speed(ui, transport, now);
+    case kRate:
+      return draw_rate(ui, transport, now);
+    case kEvery: {
+      bool every = transport.pacing() == Pacing::every_frame;
+      if (ImGui::Checkbox("every frame", &every))
+        transport.set_pacing(every ? Pacing::every_frame : Pacing::real_time, now);
+      return ui.help("As fast as it goes, without dropping frames, instead of by the clock");
+    }
+    case kZoom:
+      return draw_zoom(ui, state, width);
+    case kFilter:
+      if (ImGui::Button(state.view.smooth ? "linear###filter" : "nearest###filter", {width, 0}))
+        state.view.smooth = !state.view.smooth;
+      return ui.help(
+          "Between pixels of a picture that is magnified: the nearest, or a linear way from one to the next (M)");
+    case kCounter:
+      return draw_counter(ui, state);
+    default:
+      return draw_pace(ui, state);
+  }
+}
+
+std::vector<int> rows_for(const std::array<float, kPieces>& widths, const Ui& ui, float width) {
+  return rows_of(widths, gap(ui), width - 2 * ImGui::GetStyle().WindowPadding.x);
 }
 
 }  // namespace
 
-int position_in_bar(float x, float left, float width, int frames) {
-  if (!(width > 0) || frames <= 1) return 0;
-  const double place = std::floor(static_cast<double>(x - left) / width * frames);
-  return static_cast<int>(std::clamp(place, 0.0, static_cast<double>(frames - 1)));
-}
-
-float transport_bar_height(const Ui& ui) {
-  return ui.px(22) + ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.y + 2 * ImGui::GetStyle().WindowPadding.y;
+float transport_bar_height(const Ui& ui, float width) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const auto rows = static_cast<float>(rows_for(widths_of(ui), ui, width).back() + 1);
+  return timeline_height(ui) + rows * (ImGui::GetFrameHeight() + style.ItemSpacing.y) + 2 * style.WindowPadding.y;
 }
 
 void draw_transport_bar(Ui& ui, TransportBarState& state, ImVec2 place, ImVec2 size) {
@@ -140,9 +163,23 @@ void draw_transport_bar(Ui& ui, TransportBarState& state, ImVec2 place, ImVec2 s
                          ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoSavedSettings |
                          ImGuiWindowFlags_NoBringToFrontOnFocus;
   if (ImGui::Begin("Transport", nullptr, kFlags)) {
-    draw_scrub_bar(ui, state);
-    draw_buttons(ui, state);
-    draw_figures(ui, state);
+    draw_timeline(ui, state.timeline);
+    const auto widths = widths_of(ui);
+    const auto rows = rows_for(widths, ui, size.x);
+    float x = ImGui::GetCursorPosX();
+    const float left = x;
+    float y = ImGui::GetCursorPosY();
+    for (int piece = 0; piece < kPieces; ++piece) {
+      const auto i = static_cast<std::size_t>(piece);
+      if (piece > 0 && rows[i] != rows[i - 1]) {
+        x = left;
+        y += ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.y;
+      }
+      ImGui::SetCursorPos({x, y});
+      if (piece >= kCounter) ImGui::AlignTextToFramePadding();
+      draw_piece(ui, state, piece, widths[i]);
+      x += widths[i] + gap(ui);
+    }
   }
   ImGui::End();
 }

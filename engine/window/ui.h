@@ -8,6 +8,10 @@
 #include <functional>
 #include <string>
 
+#include "core/geometry.h"
+#include "window/hover_help.h"
+#include "window/typed_value.h"
+
 namespace afterglow {
 
 class Player;
@@ -26,7 +30,8 @@ struct Ui {
   bool show_stats = false;
   bool show_histogram = false;
 
-  double now = 0;  ///< seconds of a clock that never goes backwards
+  Size picture_window;  ///< what one picture has of the window, in pixels of the frame buffer
+  double now = 0;       ///< seconds of a clock that never goes backwards
   /// Puts text on the clipboard.
   std::function<void(const std::string&)> copy = [](const std::string&) {};
   /// Opens a preset, a picture or a sequence, as if it had been dropped on the window.
@@ -39,19 +44,20 @@ struct Ui {
     message = text;
     message_until = now + 3;
   }
-  /// Tells about the item that was drawn last, while the pointer is over it.
-  static void help(const char* text) {
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
-  }
+  /// Tells about the item that was drawn last, while the pointer rests on it.
+  void help(const std::string& text) const;
   std::string message;
   double message_until = 0;
+  mutable HoverHelp hover;   ///< what `help` remembers
+  bool values_apply = true;  ///< false: settings are shown and cannot be changed
+  TypedValue typed;          ///< the setting that is being typed
 
   float px(float size) const { return size * scale; }
 };
 
 /// The colours of the interface.
 namespace ui_color {
-inline constexpr ImU32 kText = IM_COL32(222, 224, 228, 255), kDim = IM_COL32(138, 142, 150, 255),
+inline constexpr ImU32 kText = IM_COL32(222, 224, 228, 255), kDim = IM_COL32(150, 154, 162, 255),
                        kAccent = IM_COL32(255, 158, 60, 255), kError = IM_COL32(255, 107, 97, 255),
                        kWarning = IM_COL32(240, 196, 84, 255), kGood = IM_COL32(120, 200, 130, 255),
                        kOverlay = IM_COL32(16, 17, 19, 238), kLine = IM_COL32(58, 61, 67, 255);

@@ -22,7 +22,7 @@ layout(push_constant) uniform Push {
 
 layout(location = 0) out vec4 result;
 
-const int kFalseColor = 1, kCompare = 2, kHorizontal = 4, kEncode = 8, kGray = 16, kChecker = 32, kDifference = 64;
+const int kFalseColor = 1, kCompare = 2, kHorizontal = 4, kEncode = 8, kGray = 16, kChecker = 32, kDifference = 64, kSmooth = 128;
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
 const float kTolerance = 1e-4;  // rounding may carry what a display can just show over its ends
 const float kLargest = 1e30;
@@ -62,11 +62,27 @@ struct Sample {
   int marks;
 };
 
+// From the middle of a pixel to that of the next in a straight line. `at`: 0 is the middle of the first.
+Sample between_pixels(sampler2D image, ivec2 last, vec2 at) {
+  ivec2 low = ivec2(floor(at));
+  vec2 part = at - vec2(low);
+  Sample mean = Sample(vec4(0.0), 0);
+  for (int i = 0; i < 4; ++i) {
+    ivec2 corner = ivec2(i & 1, i >> 1);
+    vec4 c = texelFetch(image, clamp(low + corner, ivec2(0), last), 0);
+    vec2 near = mix(1.0 - part, part, vec2(corner));
+    if (near.x * near.y > 0.0) mean.marks |= marks(c);
+    mean.color += near.x * near.y * tamed(c);
+  }
+  return mean;
+}
+
 // The image pixels that lie under this pixel of the target: the nearest one when it is not smaller than that, else the mean
 // of all it covers, each by the area that is covered. `at` is a point of the image, `reach` the side lengths of the target's
 // pixel there.
 Sample sample_image(sampler2D image, ivec2 size, vec2 at, vec2 reach) {
   ivec2 last = size - 1;
+  if (reach.x <= 1.0 && reach.y <= 1.0 && has(kSmooth)) return between_pixels(image, last, at - 0.5);
   if (reach.x <= 1.0 && reach.y <= 1.0) {
     vec4 c = texelFetch(image, clamp(ivec2(floor(at)), ivec2(0), last), 0);
     return Sample(tamed(c), marks(c));

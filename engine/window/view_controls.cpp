@@ -9,7 +9,7 @@ namespace {
 constexpr ViewChannel kChannels[] = {ViewChannel::color, ViewChannel::red,   ViewChannel::green,
                                      ViewChannel::blue,  ViewChannel::alpha, ViewChannel::luminance};
 
-void draw_image_picker(PanelPort& port) {
+void draw_image_picker(const Ui& ui, PanelPort& port) {
   const std::string shown = port.shown_image();
   if (ImGui::BeginCombo("image", shown.empty() ? "result" : shown.c_str(), ImGuiComboFlags_HeightLarge)) {
     if (ImGui::Selectable("result", shown.empty())) port.show("");
@@ -17,10 +17,10 @@ void draw_image_picker(PanelPort& port) {
       if (ImGui::Selectable(name.c_str(), name == shown)) port.show(name);
     ImGui::EndCombo();
   }
-  Ui::help("The result, or any image between passes (N, Shift+N, Backspace)");
+  ui.help("The result, or any image between passes (N, Shift+N, Backspace)");
 }
 
-void draw_comparison(PanelPort& port) {
+void draw_comparison(const Ui& ui, PanelPort& port) {
   View& view = port.view();
   if (ImGui::BeginCombo("compare", compare_name(view.compare).c_str())) {
     for (const Compare compare : {Compare::none, Compare::source, Compare::other}) {
@@ -29,19 +29,19 @@ void draw_comparison(PanelPort& port) {
     }
     ImGui::EndCombo();
   }
-  Ui::help("With what went in, or the other preset's result");
+  ui.help("With what went in, or the other preset's result");
   if (view.compare == Compare::none) return;
   if (ImGui::BeginCombo("by", compare_by_name(view.by).c_str())) {
     for (const CompareBy by : {CompareBy::wipe, CompareBy::flip, CompareBy::side_by_side, CompareBy::difference})
       if (ImGui::Selectable(compare_by_name(by).c_str(), by == view.by)) view.by = by;
     ImGui::EndCombo();
   }
-  Ui::help("A border between both (W), one in the other's place (E), side by side (V), difference (D)");
+  ui.help("A border between both (W), one in the other's place (E), side by side (V), difference (D)");
   if (!wipes(view)) return;
   float wipe = static_cast<float>(view.wipe);
   if (ImGui::SliderFloat("border", &wipe, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) view.wipe = wipe;
   ImGui::Checkbox("horizontal border", &view.wipe_vertical);
-  Ui::help("Shift+W");
+  ui.help("Shift+W");
 }
 
 }  // namespace
@@ -49,27 +49,27 @@ void draw_comparison(PanelPort& port) {
 void draw_view_controls(Ui& ui, PanelPort& port) {
   View& view = port.view();
   ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * 0.6f);
-  draw_image_picker(port);
+  draw_image_picker(ui, port);
   float exposure = static_cast<float>(view.exposure);
   if (ImGui::SliderFloat("exposure", &exposure, -10, 10, "%+.2f EV")) view.exposure = exposure;
   if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) view.exposure = 0;
-  Ui::help("Of the view alone, before encoding for the screen (Up, Down, 0); right-click for 0");
+  ui.help("Of the view alone, before encoding for the screen (Up, Down, 0); right-click for 0");
   if (ImGui::BeginCombo("channel", view_channel_name(view.channel).c_str())) {
     for (const ViewChannel channel : kChannels)
       if (ImGui::Selectable(view_channel_name(channel).c_str(), channel == view.channel)) view.channel = channel;
     ImGui::EndCombo();
   }
-  Ui::help("C, R, G, B, A, Y");
-  draw_comparison(port);
+  ui.help("C, R, G, B, A, Y");
+  draw_comparison(ui, port);
   ImGui::PopItemWidth();
   ImGui::Checkbox("false colour", &view.false_color);
-  Ui::help("Marks values below 0, above 1, and what is not finite (X)");
+  ui.help("Marks values below 0, above 1, and what is not finite (X)");
   ImGui::SameLine();
   ImGui::Checkbox("histogram", &ui.show_histogram);
-  Ui::help("H");
+  ui.help("H");
   ImGui::SameLine();
   ImGui::Checkbox("figures", &ui.show_stats);
-  Ui::help("Frame times and reload latency (S)");
+  ui.help("Frame times and reload latency (S)");
 }
 
 }  // namespace afterglow

@@ -28,7 +28,16 @@ struct Push {
 };
 static_assert(sizeof(Push) == 112);
 
-enum Flag { kFalseColor = 1, kCompare = 2, kHorizontal = 4, kEncode = 8, kGray = 16, kChecker = 32, kDifference = 64 };
+enum Flag {
+  kFalseColor = 1,
+  kCompare = 2,
+  kHorizontal = 4,
+  kEncode = 8,
+  kGray = 16,
+  kChecker = 32,
+  kDifference = 64,
+  kSmooth = 128
+};
 
 float to_linear(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }
 
@@ -61,8 +70,9 @@ Push push_of(const ViewFrame& frame, bool encode) {
   push.shown_size = pair_of(frame.shown.size);
   push.compared_size = pair_of(compare ? frame.compared->size : frame.shown.size);
   push.channel = static_cast<std::int32_t>(view.channel);
-  push.flags = (view.false_color ? kFalseColor : 0) | (compare && !difference ? kCompare : 0) |
-               (difference ? kDifference : 0) | (view.wipe_vertical ? kHorizontal : 0) | (encode ? kEncode : 0) |
+  push.flags = (view.smooth ? kSmooth : 0) | (view.false_color ? kFalseColor : 0) |
+               (compare && !difference ? kCompare : 0) | (difference ? kDifference : 0) |
+               (view.wipe_vertical ? kHorizontal : 0) | (encode ? kEncode : 0) |
                (frame.background == ViewBackground::gray ? kGray : 0) |
                (frame.background == ViewBackground::checker ? kChecker : 0);
   return push;

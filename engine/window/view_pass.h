@@ -45,7 +45,8 @@ struct ViewFrame {
 };
 
 /// What is done to each pixel, in this order:
-/// 1. Place (play/view.h). Magnified, the nearest pixel, exactly; minified, the mean in linear light over what a screen
+/// 1. Place (play/view.h). Magnified, the nearest pixel, exactly, or (View::smooth) bilinear in linear light; minified,
+/// the mean in linear light over what a screen
 ///    pixel covers, by area. NaN counts as 0, infinities as ±1e30.
 /// 2. A difference: by how much the two are apart, in red, green and blue; alpha is 1.
 /// 3. Exposure, c·2^EV; not on alpha.

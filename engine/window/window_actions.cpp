@@ -108,6 +108,10 @@ bool WindowApp::act_on_view(Action action) {
     case Action::zoom_out:
       zoom_at(view, picture, window, cursor().value_or(middle), 1 / 1.25);
       return true;
+    case Action::smooth:
+      view.smooth = !view.smooth;
+      ui.say(view.smooth ? "magnified: linear" : "magnified: nearest pixel");
+      return true;
     case Action::compare:
       next_wipe();
       return true;
@@ -257,7 +261,10 @@ bool WindowApp::act_on_preset(Action action) {
     }
     case Action::search:
       ui.show_panel = true;
-      if (options_.search) options_.search(player_, ui);
+      if (options_.search) {
+        options_.search(player_, ui);
+        await_field();
+      }
       return true;
     default:
       return false;
@@ -297,7 +304,7 @@ bool WindowApp::act_on_window(Action action) {
       }
       return true;
     case Action::quit:
-      quit_ = true;
+      ask_to_quit();
       return true;
     default:
       return false;

@@ -12,6 +12,7 @@ namespace afterglow {
 namespace {
 
 constexpr float kPanelWidth = 376, kTransportHeight = 78;
+constexpr int kFramesToField = 6;          // that a field may need to get the keyboard
 constexpr int kSettle = 3;                 // ImGui needs a frame to see an event and one to answer it
 constexpr double kLeastPause = 1.0 / 120;  // between frames that show no new picture
 constexpr double kBlink = 0.5, kHistogramPause = 0.1;
@@ -96,6 +97,7 @@ void WindowApp::wait(const Step& turn) {
   } else {
     const Ui& ui = interface_->ui();
     if (ui.message_until > now) until = std::min(until, ui.message_until);
+    until = std::min(until, ui.hover.wake());
     if (interface_->wants_keyboard()) until = std::min(until, now + kBlink);
     if (ui.show_histogram && spread_.turn != turn_) until = std::min(until, spread_.when + kHistogramPause);
   }
@@ -103,7 +105,8 @@ void WindowApp::wait(const Step& turn) {
   const double later = player_.now();
   const Ui& ui = interface_->ui();
   const bool faded = !ui.message.empty() && ui.message_until <= later;
-  if (faded || interface_->wants_keyboard() || (ui.show_histogram && spread_.turn != turn_)) {
+  const bool rested = ui.hover.wake() <= later;
+  if (faded || rested || interface_->wants_keyboard() || (ui.show_histogram && spread_.turn != turn_)) {
     redraw_ = std::max(redraw_, 1);
   }
 }
@@ -111,13 +114,69 @@ void WindowApp::wait(const Step& turn) {
 void WindowApp::take_events() {
   const WindowEvents events = window_.take_events();
   if (events.any) redraw_ = kSettle;
-  if (events.close) quit_ = true;
-  for (const KeyPress& press : events.keys) {
-    interface_->note_press(press.key);
-    if (interface_->wants_keyboard()) continue;
-    if (const auto action = action_of(press)) act(*action);
-  }
+  if (events.close) ask_to_quit();
+  for (const InputEvent& event : events.input) input_.push(event);
+  deliver_input();
   for (const auto& path : events.dropped) open_dropped(path);
+}
+
+/// As much as the next frame can tell apart. Keys act at once where no text is typed.
+void WindowApp::deliver_input() {
+  while (!field_awaited_) {
+    const bool typing = interface_->wants_keyboard();
+    const auto event = input_.next(typing);
+    if (!event) break;
+    const bool key = event->kind == InputEvent::Kind::key && event->down;
+    if (key && quitting_ == Quitting::asked) {
+      if (const auto answer = quit_answer_of(event->code)) answer_quit(*answer);
+      continue;
+    }
+    interface_->feed(*event);
+    if (!key || typing) continue;
+    if (const auto action = action_of({event->code, event->mods, event->repeat})) act(*action);
+  }
+  if (field_awaited_ || !input_.empty()) redraw_ = std::max(redraw_, 1);
+}
+
+/// What is typed from here on is for the field that is about to get the keyboard.
+void WindowApp::await_field() { field_awaited_ = kFramesToField; }
+
+/// What is not in the preset's file is asked about first.
+void WindowApp::ask_to_quit() {
+  redraw_ = kSettle;
+  if (quitting_ != Quitting::no) return;
+  const bool unsaved = options_.unsaved && !options_.unsaved(player_).empty();
+  quitting_ = unsaved ? Quitting::asked : Quitting::no;
+  if (unsaved) diagnostics_.note("asked whether to save");
+  quit_ = quit_ || !unsaved;
+}
+
+void WindowApp::answer_quit(QuitAnswer answer) {
+  redraw_ = kSettle;
+  quitting_ = Quitting::no;
+  if (answer == QuitAnswer::discard) quit_ = true;
+  if (answer != QuitAnswer::save || !options_.save) return;
+  options_.save(player_, interface_->ui());
+  quitting_ = Quitting::saving;
+}
+
+/// A save that fails, or leaves something out, keeps the window open: it says why.
+void WindowApp::quit_when_saved() {
+  if (quitting_ != Quitting::saving) return;
+  const auto state = options_.saving ? options_.saving() : WindowOptions::Saving::done;
+  redraw_ = std::max(redraw_, 1);
+  if (state == WindowOptions::Saving::busy) return;
+  quitting_ = Quitting::no;
+  quit_ = state == WindowOptions::Saving::done;
+}
+
+/// The frame has seen what it was given. A field that gets the keyboard has it within a few frames: what is typed
+/// meanwhile is the field's.
+void WindowApp::input_seen() {
+  input_.frame_done();
+  if (field_awaited_ == 0 && interface_->ui().typed.opening()) await_field();
+  if (field_awaited_ > 0) field_awaited_ = interface_->wants_keyboard() ? 0 : field_awaited_ - 1;
+  deliver_input();
 }
 
 /// A preset takes the preset's place, anything else the footage's.
@@ -178,26 +237,38 @@ Result<void> WindowApp::draw() {
   if (window.area() == 0) return {};
   Ui& ui = interface_->ui();
   ui.now = player_.now();
+  ui.hover.begin_frame();
   interface_->begin();
   draw_parts(window);
   navigate();
   AFTERGLOW_CHECK(draw_overlays());
+  quit_when_saved();
+  if (quitting_ == Quitting::asked) {
+    const std::string changes = options_.unsaved(player_) + " would be lost.";
+    if (const auto answer = draw_quit_dialog(ui, changes, ImGui::GetIO().DisplaySize)) answer_quit(*answer);
+  }
   if (options_.help && ui.show_help) options_.help(player_, ui, {0, 0}, ImGui::GetIO().DisplaySize);
   const ImDrawData& data = interface_->end();
   AFTERGLOW_TRY(const auto drawn, painter_->paint(window, view_frames(), data));
   last_draw_ = player_.now();
+  if (drawn == Swapchain::Drawn::yes && redraw_ > 0) --redraw_;
+  input_seen();
   if (drawn != Swapchain::Drawn::yes) {
     last_draw_ += kRetry;
     return {};
   }
-  if (redraw_ > 0) --redraw_;
   if (!step_shown_) {
     step_shown_ = true;
     player_.presented();
     const ShownFrame& shown = player_.shown();
-    diagnostics_.note(fmt::format("shown {}: position {}, generation {}, window {}x{}",
-                                  shown.name.empty() ? "nothing" : shown.name, shown.position, noted_generation_,
-                                  window.width, window.height));
+    const std::string name = shown.name.empty() ? "nothing" : shown.name;
+    if (shown.unreadable) {
+      diagnostics_.note(fmt::format("unreadable {}: position {}: {}", name, shown.position, shown.unreadable->text()));
+    } else {
+      diagnostics_.note(fmt::format("shown {}: position {}, generation {}, window {}x{}{}", name, shown.position,
+                                    noted_generation_, window.width, window.height,
+                                    shown.held ? fmt::format(", in place of frame {}", shown.number) : ""));
+    }
   }
   return {};
 }
@@ -208,7 +279,8 @@ void WindowApp::draw_parts(Size window) {
   const ImGuiIO& io = ImGui::GetIO();
   const float width = io.DisplaySize.x, height = io.DisplaySize.y;
   const float panel = options_.panel && ui.show_panel ? std::min(ui.px(kPanelWidth), width * 0.6f) : 0;
-  const float wanted = options_.transport_height ? options_.transport_height(ui) : ui.px(kTransportHeight);
+  const float wanted =
+      options_.transport_height ? options_.transport_height(ui, width - panel) : ui.px(kTransportHeight);
   const float bar = options_.transport && ui.show_transport ? std::min(wanted, height * 0.5f) : 0;
   player_.time_kernels(panel > 0);  // it shows what effects cost
   if (panel > 0) {
@@ -220,6 +292,7 @@ void WindowApp::draw_parts(Size window) {
   const float sx = io.DisplayFramebufferScale.x, sy = io.DisplayFramebufferScale.y;
   area_ = {0, 0, std::max(window.width - static_cast<int>(std::lround(panel * sx)), 1),
            std::max(window.height - static_cast<int>(std::lround(bar * sy)), 1)};
+  ui.picture_window = picture_window();
 }
 
 std::vector<ViewFrame> WindowApp::view_frames() const {
@@ -261,6 +334,9 @@ Result<void> WindowApp::draw_overlays() {
   const OverlayArea area{ImVec2(0, 0),
                          ImVec2(static_cast<float>(area_.width) / ImGui::GetIO().DisplayFramebufferScale.x,
                                 static_cast<float>(area_.height) / ImGui::GetIO().DisplayFramebufferScale.y)};
+  const OverlayPicture place = overlay_picture();
+  draw_frame_mark(player_, ui, place, area);
+  if (under_cursor_.probe) draw_pixel_mark(under_cursor_.probe->pixel, ui, place);
   draw_state_overlay(player_, ui, area);
   if (ui.show_stats) draw_stats_overlay(player_, ui, area);
   if (ui.show_histogram && spread_.histogram) draw_histogram_overlay(*spread_.histogram, ui, area);
@@ -268,6 +344,15 @@ Result<void> WindowApp::draw_overlays() {
   if (under_cursor_.probe) draw_probe_overlay(*under_cursor_.probe, ui, area, below);
   draw_message_overlay(ui, area);
   return {};
+}
+
+OverlayPicture WindowApp::overlay_picture() const {
+  const Size picture = player_.images().picture, window = picture_window();
+  OverlayPicture out{.place = placement(player_.view(), picture, window), .picture = picture, .window = window};
+  out.right = area_.width - window.width;
+  const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+  out.pixel = {1 / scale.x, 1 / scale.y};
+  return out;
 }
 
 Result<void> WindowApp::look_under_cursor() {

@@ -7,9 +7,11 @@
 #include <optional>
 #include <string>
 
+#include "window/input_queue.h"
 #include "window/interface.h"
 #include "window/overlay.h"
 #include "window/painter.h"
+#include "window/quit_dialog.h"
 #include "window/run_window.h"
 #include "window/shortcuts.h"
 
@@ -30,6 +32,12 @@ class WindowApp {
   Result<void> draw();
   void wait(const Step& step);
   void take_events();
+  void deliver_input();
+  void ask_to_quit();
+  void answer_quit(QuitAnswer answer);
+  void quit_when_saved();
+  void input_seen();
+  void await_field();
   void open_dropped(const std::filesystem::path& path);
   void note_step(const Step& step);
   void update_title();
@@ -41,6 +49,7 @@ class WindowApp {
   Result<void> look_under_cursor();
   Result<void> look_at_histogram();
   std::vector<ViewFrame> view_frames() const;
+  OverlayPicture overlay_picture() const;
 
   // Keys. Each group returns whether the action was one of its own.
   void act(Action action);
@@ -67,11 +76,15 @@ class WindowApp {
   std::unique_ptr<Interface> interface_;
   std::unique_ptr<Painter> painter_;
 
+  InputQueue input_;
+  int field_awaited_ = 0;  ///< frames that a field has to get the keyboard; what is typed waits for it
+
   Rect area_;  ///< of the frame buffer that the picture has
   ViewBackground background_ = ViewBackground::none;
   enum class Drag { none, pan, wipe } drag_ = Drag::none;
   int redraw_ = 3;  ///< frames to draw though nothing new is there: interfaces settle in a few
   double last_draw_ = -1;
+  enum class Quitting { no, asked, saving } quitting_ = Quitting::no;
   bool quit_ = false, minimised_ = false, resume_ = false;
   bool step_shown_ = true;  ///< the last changed turn was presented
   std::uint64_t noted_generation_ = 0;

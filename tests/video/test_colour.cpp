@@ -41,14 +41,18 @@ std::string random_frame(const std::string& file, const ColourCase& c) {
   return file;
 }
 
+/// FFmpeg's options for a clip of these tags: on the frames too, so that it has nothing to convert.
+std::string tags_of(const std::string& matrix, const std::string& range, const std::string& primaries,
+                    const std::string& transfer) {
+  return fmt::format(
+      "-vf setparams=colorspace={0}:range={1}:color_primaries={2}:color_trc={3} -colorspace {0} "
+      "-color_range {1} -color_primaries {2} -color_trc {3}",
+      matrix, range, primaries, transfer);
+}
+
 TEST_P(Colour, RgbIsThatOfZscale) {
   const ColourCase& c = GetParam();
   random_frame(path("frame.raw"), c);
-  // Tags on the frame, so that FFmpeg has nothing to convert; places of chroma by H.264's own words.
-  const std::string tags = fmt::format(
-      "-vf setparams=colorspace={0}:range={1}:color_primaries=bt709:color_trc=bt709 -colorspace {0} "
-      "-color_range {1} -color_primaries bt709 -color_trc bt709",
-      c.matrix, c.range);
   const std::string place = c.place;
   const std::string codec =
       place == "left"
@@ -57,7 +61,8 @@ TEST_P(Colour, RgbIsThatOfZscale) {
   ffmpeg(
       fmt::format("-f rawvideo -pix_fmt {0} -s {1}x{2} -color_range {3} -i '{4}' -frames:v 1 {5} -c:v {6} "
                   "-pix_fmt {0} '{7}'",
-                  c.pixels, c.width, c.height, c.range, path("frame.raw"), tags, codec, path("clip.mkv")));
+                  c.pixels, c.width, c.height, c.range, path("frame.raw"), tags_of(c.matrix, c.range, "bt709", "bt709"),
+                  codec, path("clip.mkv")));
   const std::string transfer = std::string(c.matrix) == "bt2020nc" ? "2020_10" : "709";
   ffmpeg(
       fmt::format("-i '{}' -vf "
@@ -117,10 +122,8 @@ class Curves : public Clips {
     for (int i = 0; i < 2 * 32 * 32; ++i) raw.put(0).put(2);
     raw.close();
     const std::string file = path(fmt::format("{}{}.mkv", transfer, code));
-    ffmpeg(fmt::format(
-        "-f rawvideo -pix_fmt yuv444p10le -s 32x32 -color_range pc -i '{}' -c:v ffv1 -level 3 -color_range pc "
-        "-colorspace bt2020nc -color_primaries {} -color_trc {} '{}'",
-        path("grey.raw"), primaries, transfer, file));
+    ffmpeg(fmt::format("-f rawvideo -pix_fmt yuv444p10le -s 32x32 -color_range pc -i '{}' {} -c:v ffv1 -level 3 '{}'",
+                       path("grey.raw"), tags_of("bt2020nc", "pc", primaries, transfer), file));
     const auto movie = open(file);
     if (!movie) return -1;
     const auto picture = read(movie, 0);
@@ -160,11 +163,8 @@ TEST_F(Curves, AreUndoneToLight) {
 TEST_F(Curves, PqInRec2020IsTheLightOfZscale) {
   constexpr ColourCase kCase{"pq", "yuv444p10le", "bt2020nc", "tv", "gbrpf32le", 10};
   random_frame(path("frame.raw"), kCase);
-  ffmpeg(
-      fmt::format("-f rawvideo -pix_fmt yuv444p10le -s 64x48 -i '{}' -frames:v 1 -c:v ffv1 -level 3 -color_range tv "
-                  "-colorspace bt2020nc "
-                  "-color_primaries bt2020 -color_trc smpte2084 '{}'",
-                  path("frame.raw"), path("pq.mkv")));
+  ffmpeg(fmt::format("-f rawvideo -pix_fmt yuv444p10le -s 64x48 -i '{}' -frames:v 1 {} -c:v ffv1 -level 3 '{}'",
+                     path("frame.raw"), tags_of("bt2020nc", "tv", "bt2020", "smpte2084"), path("pq.mkv")));
   ffmpeg(
       fmt::format("-i '{}' -vf "
                   "zscale=rangein=limited:matrixin=bt2020nc:transferin=smpte2084:primariesin=bt2020:matrix=gbr:range="

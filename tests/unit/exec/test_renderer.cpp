@@ -9,7 +9,6 @@
 
 #include "exec/calibration.h"
 #include "exec/renderer.h"
-#include "exec/submit.h"
 #include "workshop.h"
 
 namespace afterglow {
@@ -85,43 +84,98 @@ TEST_F(RendererTest, FramesInFlightAreThoseOfOneAtATime) {
   }
 }
 
+/// A device with timeline semaphores, on which a queue may wait for the host.
+class TimedDevice {
+ public:
+  explicit TimedDevice(const Device& like) : vk_(like.vk()) {
+    const float priority = 1;
+    const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                        .queueFamilyIndex = like.queue_family(),
+                                        .queueCount = 1,
+                                        .pQueuePriorities = &priority};
+    VkPhysicalDeviceVulkan13Features newest{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+                                            .synchronization2 = VK_TRUE,
+                                            .dynamicRendering = VK_TRUE};
+    const VkPhysicalDeviceTimelineSemaphoreFeatures timeline{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES,
+        .pNext = &newest,
+        .timelineSemaphore = VK_TRUE};
+    const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                  .pNext = &timeline,
+                                  .queueCreateInfoCount = 1,
+                                  .pQueueCreateInfos = &queue};
+    EXPECT_EQ(vk_.vkCreateDevice(like.physical(), &info, nullptr, &handle_), VK_SUCCESS);
+    VkQueue made = VK_NULL_HANDLE;
+    function<PFN_vkGetDeviceQueue>("vkGetDeviceQueue")(handle_, like.queue_family(), 0, &made);
+    Diagnostics quiet;
+    device_ = Device::adopt({like.instance(), like.physical(), handle_, made, like.queue_family()}, quiet).value();
+  }
+  ~TimedDevice() {
+    device_.reset();
+    function<PFN_vkDestroyDevice>("vkDestroyDevice")(handle_, nullptr);
+  }
+  TimedDevice(const TimedDevice&) = delete;
+  TimedDevice& operator=(const TimedDevice&) = delete;
+
+  Device& device() const { return *device_; }
+  template <class Function>
+  Function function(const char* name) const {
+    return reinterpret_cast<Function>(vk_.vkGetDeviceProcAddr(handle_, name));
+  }
+
+ private:
+  const VulkanFunctions& vk_;
+  VkDevice handle_ = VK_NULL_HANDLE;
+  std::unique_ptr<Device> device_;
+};
+
 /// Holds what is submitted behind it back until it is opened.
 class Gate {
  public:
-  explicit Gate(const Device& device) : device_(device) {
-    load(create_, "vkCreateEvent");
-    load(destroy_, "vkDestroyEvent");
-    load(set_, "vkSetEvent");
-    load(wait_, "vkCmdWaitEvents");
-    const VkEventCreateInfo info{.sType = VK_STRUCTURE_TYPE_EVENT_CREATE_INFO};
-    EXPECT_EQ(create_(device.handle(), &info, nullptr, &event_), VK_SUCCESS);
-    submitter_ = Submitter::create(device).value();
+  explicit Gate(const TimedDevice& timed) : timed_(timed), handle_(timed.device().handle()) {
+    const VkSemaphoreTypeCreateInfo type{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+                                         .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
+    const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
+    const auto create = timed_.function<PFN_vkCreateSemaphore>("vkCreateSemaphore");
+    EXPECT_EQ(create(handle_, &info, nullptr, &opened_), VK_SUCCESS);
   }
   ~Gate() {
     open();
-    EXPECT_TRUE(submitter_.wait());
-    destroy_(device_.handle(), event_, nullptr);
+    const auto lock = timed_.device().lock_queue();
+    timed_.function<PFN_vkQueueWaitIdle>("vkQueueWaitIdle")(timed_.device().queue());
+    timed_.function<PFN_vkDestroySemaphore>("vkDestroySemaphore")(handle_, opened_, nullptr);
   }
+  Gate(const Gate&) = delete;
+  Gate& operator=(const Gate&) = delete;
+
   void close() {
-    EXPECT_TRUE(submitter_.submit([&](VkCommandBuffer commands) {
-      wait_(commands, 1, &event_, VK_PIPELINE_STAGE_HOST_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, nullptr, 0,
-            nullptr, 0, nullptr);
-    }));
+    const std::uint64_t value = 1;
+    const VkTimelineSemaphoreSubmitInfo values{.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
+                                               .waitSemaphoreValueCount = 1,
+                                               .pWaitSemaphoreValues = &value};
+    const VkPipelineStageFlags everything = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
+    const VkSubmitInfo wait{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                            .pNext = &values,
+                            .waitSemaphoreCount = 1,
+                            .pWaitSemaphores = &opened_,
+                            .pWaitDstStageMask = &everything};
+    const auto lock = timed_.device().lock_queue();
+    const auto submit = timed_.function<PFN_vkQueueSubmit>("vkQueueSubmit");
+    EXPECT_EQ(submit(timed_.device().queue(), 1, &wait, VK_NULL_HANDLE), VK_SUCCESS);
   }
-  void open() { set_(device_.handle(), event_); }
+  void open() {
+    const std::lock_guard lock(mutex_);
+    const VkSemaphoreSignalInfo signal{
+        .sType = VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO, .semaphore = opened_, .value = 1};
+    if (!std::exchange(open_, true)) timed_.function<PFN_vkSignalSemaphore>("vkSignalSemaphore")(handle_, &signal);
+  }
 
  private:
-  template <class Function>
-  void load(Function& function, const char* name) {
-    function = reinterpret_cast<Function>(device_.vk().vkGetDeviceProcAddr(device_.handle(), name));
-  }
-  const Device& device_;
-  PFN_vkCreateEvent create_ = nullptr;
-  PFN_vkDestroyEvent destroy_ = nullptr;
-  PFN_vkSetEvent set_ = nullptr;
-  PFN_vkCmdWaitEvents wait_ = nullptr;
-  VkEvent event_ = VK_NULL_HANDLE;
-  Submitter submitter_;
+  const TimedDevice& timed_;
+  VkDevice handle_;
+  VkSemaphore opened_ = VK_NULL_HANDLE;
+  std::mutex mutex_;
+  bool open_ = false;
 };
 
 /// While frame 1 is on the device and cannot be done, frame 0 is read back and frame 2 is packed. Nothing here takes
@@ -133,8 +187,10 @@ TEST_F(RendererTest, ReadBackExecutionAndUploadOverlap) {
     const std::lock_guard lock(mutex);
     order.emplace_back(what);
   };
-  const auto programs = cache();
-  const auto ring = renderer(3);
+  const TimedDevice timed(device());
+  const auto programs = std::make_unique<ProgramCache>(
+      timed.device(), std::make_shared<SharedKernels>(std::filesystem::path()), ProgramCacheOptions{});
+  const auto ring = Renderer::create(timed.device(), {.direct = false, .frames = 3}).value();
   const auto pixels = noise(kSize, 1);
   // Everything that is made once is made, so that frames 0 to 2 wait for nothing else.
   for (int i = 0; i < 6; ++i) {
@@ -147,7 +203,7 @@ TEST_F(RendererTest, ReadBackExecutionAndUploadOverlap) {
   HostResult out;
   while (ring->in_flight() > 0) ASSERT_TRUE(ring->collect(out));
 
-  Gate gate(device());
+  Gate gate(timed);
   std::promise<void> finished;
   std::thread watch([&, done = finished.get_future()] {
     if (done.wait_for(std::chrono::seconds(60)) == std::future_status::ready) return;

@@ -58,5 +58,34 @@ TEST(ExrUnzip, RefusesOtherLengthsAndDamage) {
   EXPECT_TRUE(unzip.run(whole, out));
 }
 
+TEST(ExrZip, IsUnpackedToTheSameBytes) {
+  ExrUnzip unzip;
+  for (const int level : {1, 4, 9}) {
+    ExrZip zip(level);
+    for (const std::size_t count : {1, 2, 3, 15, 16, 17, 33, 1000, 4097, 100001}) {
+      Bytes bytes = random_bytes(count);
+      for (auto& byte : bytes) byte &= 3;
+      Bytes packed, out(count);
+      const auto stored = zip.run(bytes, packed);
+      ASSERT_LE(stored.size(), count);
+      if (count > 1000) {
+        ASSERT_LT(stored.size(), count / 2);
+      }
+      if (stored.size() == count) continue;
+      ASSERT_TRUE(unzip.run(stored, out)) << count;
+      EXPECT_EQ(out, bytes) << count;
+    }
+  }
+}
+
+TEST(ExrZip, StoresNoiseAsItIs) {
+  ExrZip zip(1);
+  Bytes packed;
+  const Bytes bytes = random_bytes(5000);
+  const auto stored = zip.run(bytes, packed);
+  EXPECT_EQ(stored.data(), bytes.data());
+  EXPECT_EQ(stored.size(), bytes.size());
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -81,5 +81,34 @@ TEST(SettingEdits, ArgumentsAreNoSettings) {
   EXPECT_EQ(arguments[1].value, "0.25");
 }
 
+/// Saving moves edits into the preset; every step of the history still shows what it showed.
+TEST(SettingEdits, SavingKeepsTheHistory) {
+  const auto number = [](double value) { return SettingValue{SettingType::number, {value}, ""}; };
+  SettingEdits edits;
+  edits.set("glow", "knee", number(0.3));
+  edits.end_gesture();
+  edits.set("glow", "intensity", number(1));
+  edits.end_gesture();
+  edits.set("glow", "knee", number(0.7));
+  edits.rebase({{"glow", "knee", number(0.5), number(0.7)}, {"glow", "intensity", number(0), number(1)}});
+  EXPECT_TRUE(edits.edits().empty()) << "the preset says it all";
+  ASSERT_TRUE(edits.undo());
+  EXPECT_EQ(edits.value("glow", "knee"), number(0.3));
+  EXPECT_FALSE(edits.value("glow", "intensity")) << "1, as the preset says now";
+  ASSERT_TRUE(edits.undo());
+  EXPECT_EQ(edits.value("glow", "knee"), number(0.3));
+  EXPECT_EQ(edits.value("glow", "intensity"), number(0)) << "as the preset said before";
+  ASSERT_TRUE(edits.undo());
+  EXPECT_EQ(edits.value("glow", "knee"), number(0.5));
+  EXPECT_FALSE(edits.can_undo());
+  // The save is taken back: the other way round.
+  edits.rebase({{"glow", "knee", number(0.7), number(0.5)}, {"glow", "intensity", number(1), number(0)}});
+  EXPECT_TRUE(edits.edits().empty());
+  while (edits.redo()) {
+  }
+  EXPECT_EQ(edits.value("glow", "knee"), number(0.7));
+  EXPECT_EQ(edits.value("glow", "intensity"), number(1));
+}
+
 }  // namespace
 }  // namespace afterglow

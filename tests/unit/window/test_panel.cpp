@@ -51,7 +51,7 @@ class Port : public PanelPort {
 
   const Preset* preset() override { return preset_.get(); }
   const Build* build() override { return build_ ? &*build_ : nullptr; }
-  LiveStatus status() override { return {}; }
+  LiveStatus status() override { return now; }
   const std::vector<Skipped>& skipped() override { return skips; }
   std::vector<KernelTime> times() override { return frame_times.kernels; }
   const SettingEdits& edits() override { return changes; }
@@ -64,7 +64,7 @@ class Port : public PanelPort {
   bool undo() override { return changes.undo(); }
   bool redo() override { return changes.redo(); }
   void end_gesture() override { changes.end_gesture(); }
-  void edits_saved() override { changes = {}; }
+  void rebase(const std::vector<BaseChange>& base) override { changes.rebase(base); }
   View& view() override { return look; }
   std::vector<std::string> images() override { return {"source", "bloom.down[1]", "bloom.up[1]"}; }
   std::string shown_image() override { return image; }
@@ -72,6 +72,7 @@ class Port : public PanelPort {
   bool has_other() override { return false; }
 
   SettingEdits changes;
+  LiveStatus now;
   std::vector<Skipped> skips;
   FrameTimes frame_times;
   View look;
@@ -217,6 +218,119 @@ TEST_F(PanelTest, ValuesAreTyped) {
   EXPECT_EQ(edited("bloom", "scatter").number[0], 0.6251234);
 }
 
+/// A double click opens a field; Enter and Tab take what was typed, Escape does not, and the click before it is undone.
+TEST_F(PanelTest, ADoubleClickTypes) {
+  const auto open = [&] {
+    ASSERT_TRUE(find({"Settings", "bloom", "scatter", "##value"}));
+    for (int i = 0; i < 2; ++i) {
+      press(true);
+      press(false);
+    }
+    frame();
+    frame();
+  };
+  const auto key = [&](int code) {
+#if IMGUI_VERSION_NUM >= 18700
+    ImGui::GetIO().AddKeyEvent(static_cast<ImGuiKey>(code), true);
+    frame();
+    ImGui::GetIO().AddKeyEvent(static_cast<ImGuiKey>(code), false);
+    frame();
+#else
+    ImGui::GetIO().KeyMap[code] = code;
+    ImGui::GetIO().KeysDown[code] = true;
+    frame();
+    ImGui::GetIO().KeysDown[code] = false;
+    frame();
+#endif
+  };
+  open();
+  ImGui::GetIO().AddInputCharactersUTF8("0.123456789");
+  frame();
+  frame();
+  EXPECT_FALSE(port->changes.value("bloom", "scatter")) << "not before Enter, and the click has changed nothing";
+  key(ImGuiKey_Enter);
+  EXPECT_EQ(edited("bloom", "scatter").number[0], 0.123456789);
+  EXPECT_TRUE(port->changes.undo());
+  EXPECT_FALSE(port->changes.can_undo()) << "one step";
+  open();
+  ImGui::GetIO().AddInputCharactersUTF8("0.25");
+  frame();
+  key(ImGuiKey_Escape);
+  EXPECT_FALSE(port->changes.value("bloom", "scatter"));
+  open();
+  ImGui::GetIO().AddInputCharactersUTF8("0.5");
+  frame();
+  key(ImGuiKey_Tab);
+  EXPECT_EQ(edited("bloom", "scatter").number[0], 0.5);
+}
+
+TEST(TypedValue, TakesAsManyNumbersAsTheTypeHas) {
+  SettingSchema schema;
+  schema.type = SettingType::vec3;
+  EXPECT_EQ(parse_typed(schema, "1, 2.5 -3e-2")->number, (std::array<double, 3>{1, 2.5, -0.03}));
+  EXPECT_EQ(parse_typed(schema, "0.5")->number, (std::array<double, 3>{0.5, 0.5, 0.5}));
+  EXPECT_FALSE(parse_typed(schema, "1 2"));
+  EXPECT_FALSE(parse_typed(schema, "1 2 x"));
+  EXPECT_FALSE(parse_typed(schema, "1 2 nan"));
+  schema.type = SettingType::integer;
+  schema.max = 7;
+  EXPECT_EQ(parse_typed(schema, "99")->number[0], 7);
+  EXPECT_EQ(parse_typed(schema, "2.6")->number[0], 3);
+  EXPECT_FALSE(parse_typed(schema, ""));
+}
+
+TEST_F(PanelTest, WhileTheFileHasAnErrorSettingsRest) {
+  port->now.error = Error{ErrorKind::script, "broken"};
+  EXPECT_THAT(words(), HasSubstr("Settings rest until it is mended"));
+  const auto drag = [&] {
+    ASSERT_TRUE(find({"Settings", "bloom", "scatter", "##value"}));
+    const ImVec2 at = ImGui::GetIO().MousePos;
+    press(true);
+    move(5000, at.y);
+    frame();
+    press(false);
+  };
+  drag();
+  EXPECT_TRUE(port->changes.edits().empty());
+  port->now.error.reset();
+  drag();
+  EXPECT_FALSE(port->changes.edits().empty());
+}
+
+/// The file changes what the panel has changed: both values are told, and Save writes neither over the other.
+TEST_F(PanelTest, ConflictsAreToldAndDecided) {
+  port->changes.set("bloom", "intensity", {SettingType::number, {0.5}, ""});
+  frame();
+  std::string text = kPreset;
+  text.replace(text.find("0.2"), 3, "0.9");
+  std::ofstream(file) << text;
+  port->reload();
+  EXPECT_THAT(words(), HasSubstr("The file says 0.9 now (it was 0.2)"));
+  panel->save(*port);
+  EXPECT_THAT(words(), HasSubstr("bloom.intensity was changed in the file too: it says 0.9 now, the panel 0.5"));
+  EXPECT_EQ(*read_file(file), text);
+  ASSERT_TRUE(find({"Settings", "Dismiss"}) || find({"Settings", "bloom", "intensity", "Keep mine"}));
+  ASSERT_TRUE(find({"Settings", "bloom", "intensity", "Keep mine"}));
+  click();
+  EXPECT_THAT(words(), Not(HasSubstr("The file says 0.9 now")));
+  panel->save(*port);
+  panel->saving().wait();
+  frame();
+  EXPECT_THAT(*read_file(file), HasSubstr("fx.bloom { intensity = 0.5 },  -- glow"));
+}
+
+TEST_F(PanelTest, TheFilesValueIsTaken) {
+  port->changes.set("bloom", "intensity", {SettingType::number, {0.5}, ""});
+  frame();
+  std::string text = kPreset;
+  text.replace(text.find("0.2"), 3, "0.9");
+  std::ofstream(file) << text;
+  port->reload();
+  ASSERT_TRUE(find({"Settings", "bloom", "intensity", "Take the file's"}));
+  click();
+  EXPECT_FALSE(port->changes.value("bloom", "intensity"));
+}
+
 TEST_F(PanelTest, SwitchesAndChoices) {
   ASSERT_TRUE(find({"Settings", "bloom", "fade_fireflies", "##value"}));
   click();
@@ -303,7 +417,8 @@ TEST_F(PanelTest, SavesAndListsWhatIsLeftOut) {
   click();
   EXPECT_EQ(*read_file(file), kPreset);
   EXPECT_EQ(edited("bloom", "intensity").number[0], 0.5);  // the picture stays as it was
-  EXPECT_THAT(words(), HasSubstr("look.lua is as it was before"));
+  EXPECT_TRUE(port->changes.can_undo()) << "saving has kept the history";
+  EXPECT_EQ(panel->saving().message(), "look.lua is as it was before");
 }
 
 TEST_F(PanelTest, SavesThatFailSayWhy) {
@@ -414,9 +529,12 @@ class TransportBar : public PanelTest {
  protected:
   TransportBar() : transport(100) {
     what_ = [this] {
-      TransportBarState state{transport, now, transport.position(), [](int at) { return at + 1001; },
-                              [](int at) { return at < 50; }};
-      draw_transport_bar(interface.ui(), state, {0, 0}, {kWidth * 2, transport_bar_height(interface.ui())});
+      TransportBarState state{.timeline = {transport, now, transport.position(), [](int at) { return at + 1001; },
+                                           [](int at) { return at < 50 ? FrameState::cached : FrameState::unread; }},
+                              .view = look,
+                              .picture = {640, 360},
+                              .window = {640, 180}};
+      draw_transport_bar(interface.ui(), state, {0, 0}, {wide, transport_bar_height(interface.ui(), wide)});
     };
     frame();
   }
@@ -426,23 +544,59 @@ class TransportBar : public PanelTest {
     return padding + (static_cast<float>(position) + 0.5f) * (kWidth * 2 - 2 * padding) / 100;
   }
   Transport transport;
+  View look;
+  float wide = kWidth * 2;
   double now = 0;
 };
 
 TEST_F(TransportBar, PlaysAndSteps) {
-  ASSERT_TRUE(find({"Transport", "###play"}));
+  ASSERT_TRUE(find({"Transport", "##play"}));
   click();
   EXPECT_TRUE(transport.playing());
-  ASSERT_TRUE(find({"Transport", "###play"}));
+  ASSERT_TRUE(find({"Transport", "##play"}));
   click();
   EXPECT_FALSE(transport.playing());
-  ASSERT_TRUE(find({"Transport", ">>##on"}));
+  ASSERT_TRUE(find({"Transport", "##on"}));
   click();
   EXPECT_EQ(transport.position(), 1);
-  ASSERT_TRUE(find({"Transport", ">|##last"}));
+  ASSERT_TRUE(find({"Transport", "##last"}));
   click();
   EXPECT_EQ(transport.position(), 99);
   EXPECT_THAT(words(), HasSubstr("1100  100/100"));
+}
+
+/// At any width nothing is drawn over anything else, and all of it within the bar.
+TEST_F(TransportBar, PiecesNeverLieOnEachOther) {
+  for (const float scale : {1.0f, 2.0f}) {
+    interface.set_scale(scale);
+    for (const float width : {500.0f, 524.0f, 724.0f, 880.0f}) {
+      wide = width;
+      frame();
+      std::vector<ImGuiID> ids;
+      const float height = transport_bar_height(interface.ui(), wide);
+      for (float y = 2; y < height; y += 3)
+        for (float x = 2; x < width; x += 3) {
+          move(x, y);
+          frame();
+          const ImGuiID id = ImGui::GetCurrentContext()->HoveredId;
+          if (id != 0 && std::ranges::find(ids, id) == ids.end()) ids.push_back(id);
+        }
+      EXPECT_EQ(ids.size(), 12u) << "timeline, five buttons, six others; width " << width << ", scale " << scale;
+    }
+  }
+}
+
+TEST_F(TransportBar, ZoomAndFilter) {
+  EXPECT_THAT(words(), HasSubstr("fit 50%"));
+  ASSERT_TRUE(find({"Transport", "###zoom"}));
+  click();
+  EXPECT_FALSE(look.fit);
+  EXPECT_EQ(look.zoom, 1);
+  EXPECT_THAT(words(), HasSubstr("100%"));
+  ASSERT_TRUE(find({"Transport", "###filter"}));
+  click();
+  EXPECT_TRUE(look.smooth);
+  EXPECT_THAT(words(), HasSubstr("linear"));
 }
 
 TEST_F(TransportBar, Scrubs) {

@@ -199,6 +199,14 @@ TEST_F(ViewPassTest, PlacesMagnifiesAndMinifies) {
   }
 }
 
+TEST_F(ViewPassTest, MagnifiesSmoothly) {
+  const Image image = picture(kPicture, 1);
+  for (const double zoom : {0.5, 1.0, 1.37, 7.7, 16.0}) {
+    const View view{.fit = false, .zoom = zoom, .center = {11.213, 8.347}, .smooth = true};
+    expect_same(frame_of({5, 3, 61, 47}, view), image, nullptr, {70, 55}, std::to_string(zoom).c_str());
+  }
+}
+
 TEST_F(ViewPassTest, AtOneToOneEveryPixelIsThePictures) {
   const Image image = picture(kPicture, 2);
   View view;

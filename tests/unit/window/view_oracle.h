@@ -92,7 +92,12 @@ class ViewOracle {
       total += weight;
       worst = std::max(worst, mark_of(c));
     };
-    if (w <= 1 && h <= 1) {
+    if (w <= 1 && h <= 1 && frame_.view.smooth) {
+      const double ax = p.x * kx - 0.5, ay = p.y * ky - 0.5;
+      for (int iy = static_cast<int>(std::floor(ay)); iy <= std::floor(ay) + 1; ++iy)
+        for (int ix = static_cast<int>(std::floor(ax)); ix <= std::floor(ax) + 1; ++ix)
+          add(ix, iy, (1 - std::abs(ax - ix)) * (1 - std::abs(ay - iy)));
+    } else if (w <= 1 && h <= 1) {
       add(static_cast<int>(std::floor(p.x * kx)), static_cast<int>(std::floor(p.y * ky)), 1);
     } else {
       const double rw = std::max(w, 1.0), rh = std::max(h, 1.0);

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "window/typed_value.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "core/text.h"
+#include "window/ui.h"
+
+namespace afterglow {
+namespace {
+
+std::size_t count_of(SettingType type) {
+  switch (type) {
+    case SettingType::number:
+    case SettingType::integer:
+      return 1;
+    case SettingType::vec2:
+      return 2;
+    case SettingType::vec3:
+    case SettingType::color:
+      return 3;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+std::optional<SettingValue> parse_typed(const SettingSchema& schema, const std::string& text) {
+  std::string spaced = text;
+  std::ranges::replace(spaced, ',', ' ');
+  std::vector<double> numbers;
+  for (const auto& word : split(spaced, ' ')) {
+    if (word.empty()) continue;
+    double number = 0;
+    const char* const end = word.data() + word.size();
+    const auto read = std::from_chars(word.data() + (word[0] == '+' ? 1 : 0), end, number);
+    if (read.ec != std::errc() || read.ptr != end || !std::isfinite(number)) return std::nullopt;
+    numbers.push_back(number);
+  }
+  const std::size_t count = count_of(schema.type);
+  // One number for all of them: grey.
+  if (numbers.size() == 1 && count > 1) numbers.assign(count, numbers[0]);
+  if (numbers.size() != count || count == 0) return std::nullopt;
+  SettingValue out{schema.type, {}, ""};
+  for (std::size_t i = 0; i < count; ++i) {
+    double value = numbers[i];
+    if (schema.min) value = std::max(value, *schema.min);
+    if (schema.max) value = std::min(value, *schema.max);
+    out.number[i] = schema.type == SettingType::integer ? std::round(value) : value;
+  }
+  return out;
+}
+
+std::string typed_text(const SettingSchema& schema, const SettingValue& value) {
+  std::string out;
+  for (std::size_t i = 0; i < count_of(schema.type); ++i) out += (i > 0 ? " " : "") + number_text(value.number[i]);
+  return out;
+}
+
+bool TypedValue::opened(ImGuiID item, const SettingSchema& schema, const SettingValue& value, float width) {
+  if (count_of(schema.type) == 0 || !ImGui::IsWindowHovered()) return false;
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float swatch = schema.type == SettingType::color ? ImGui::GetFrameHeight() : 0;
+  if (!ImGui::IsMouseHoveringRect({from.x + swatch, from.y}, {from.x + width, from.y + ImGui::GetFrameHeight()}))
+    return false;
+  const bool twice = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+  const bool control = ImGui::IsMouseClicked(ImGuiMouseButton_Left) && ImGui::GetIO().KeyCtrl;
+  if (!twice && !control) return false;
+  take_back_ = twice && pressed_ == item && !(before_ == value);
+  const std::string text = typed_text(schema, take_back_ ? before_ : value);
+  text_.fill(0);
+  text.copy(text_.data(), text_.size() - 1);
+  item_ = item;
+  begin_ = true;
+  active_ = false;
+  idle_ = 0;
+  return true;
+}
+
+std::optional<SettingValue> TypedValue::draw(Ui& ui, const char* name, const SettingSchema& schema,
+                                             const SettingValue& value, float width) {
+  constexpr int kPatience = 4;
+  if (std::exchange(begin_, false)) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(width);
+  const bool entered = ImGui::InputText(name, text_.data(), text_.size(),
+                                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  const bool left = ImGui::IsItemDeactivated();
+  idle_ = ImGui::IsItemActive() ? 0 : idle_ + 1;
+  active_ = active_ || ImGui::IsItemActive();
+  if (!entered && !left && idle_ < kPatience) return std::nullopt;
+  item_ = 0;
+  if (!entered && !left) return std::nullopt;
+  const auto typed = parse_typed(schema, text_.data());
+  if (!typed) {
+    ui.say(std::string("'") + text_.data() + "' is no value of this setting");
+    return std::nullopt;
+  }
+  return typed_text(schema, *typed) == typed_text(schema, value) ? std::nullopt : typed;
+}
+
+void TypedValue::note_press(ImGuiID item, const SettingValue& value) {
+  if (!ImGui::IsItemActivated()) return;
+  pressed_ = item;
+  before_ = value;
+}
+
+}  // namespace afterglow

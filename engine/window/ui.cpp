@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#include "window/ui.h"
+
+namespace afterglow {
+
+void Ui::help(const std::string& text) const {
+  if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool held = io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2];
+  if (!hover.due(ImGui::GetItemRectMin(), io.MousePos, held, now)) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(px(360));
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+}  // namespace afterglow

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// What one frame of the interface is given: never a press whose place has moved on, never a press with its release.
+#include <gtest/gtest.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include "window/flow.h"
+#include "window/hover_help.h"
+#include "window/input_queue.h"
+
+namespace afterglow {
+namespace {
+
+using Kind = InputEvent::Kind;
+
+InputEvent move(double x) { return {.kind = Kind::move, .x = x}; }
+InputEvent button(bool down) { return {.kind = Kind::button, .down = down}; }
+InputEvent key(int code, bool down, int mods = 0) {
+  return {.kind = Kind::key, .code = code, .down = down, .mods = mods};
+}
+InputEvent text(unsigned c) { return {.kind = Kind::text, .text = c}; }
+
+/// How many events each frame gets.
+std::vector<int> frames(const std::vector<InputEvent>& events, bool typing) {
+  InputQueue queue;
+  for (const InputEvent& event : events) queue.push(event);
+  std::vector<int> out;
+  while (!queue.empty()) {
+    out.push_back(0);
+    while (queue.next(typing)) ++out.back();
+    if (out.back() == 0) return {-1};
+    queue.frame_done();
+  }
+  return out;
+}
+
+TEST(InputQueue, APressIsSeenWhereItHappened) {
+  EXPECT_EQ(frames({move(1), button(true), move(2), move(3), button(false), move(4)}, false),
+            (std::vector<int>{2, 3, 1}));
+  EXPECT_EQ(frames({button(true), button(false), button(true), button(false)}, false), (std::vector<int>{1, 1, 1, 1}));
+}
+
+TEST(InputQueue, ShortcutsNeedNoFramesOfTheirOwn) {
+  EXPECT_EQ(frames({key(GLFW_KEY_RIGHT, true), key(GLFW_KEY_RIGHT, false), key(GLFW_KEY_RIGHT, true)}, false),
+            (std::vector<int>{3}));
+}
+
+TEST(InputQueue, AFieldGetsKeysAndTextInTheirOrder) {
+  EXPECT_EQ(frames({key(GLFW_KEY_G, true), text('g'), key(GLFW_KEY_G, false), key(GLFW_KEY_Y, true), text('y')}, true),
+            (std::vector<int>{5}));
+  EXPECT_EQ(frames({text('g'), key(GLFW_KEY_BACKSPACE, true), text('y')}, true), (std::vector<int>{1, 1, 1}));
+  EXPECT_EQ(frames({text('g'), key(GLFW_KEY_V, true, GLFW_MOD_CONTROL)}, true), (std::vector<int>{1, 1}));
+  EXPECT_EQ(frames({key(GLFW_KEY_ESCAPE, true), key(GLFW_KEY_1, true)}, true), (std::vector<int>{1, 1}));
+  EXPECT_EQ(frames({key(GLFW_KEY_ENTER, true), key(GLFW_KEY_ENTER, false)}, true), (std::vector<int>{1, 1}));
+}
+
+TEST(Flow, WhatFindsNoRoomBeginsTheNextRow) {
+  const std::vector<float> widths{100, 50, 50, 200, 10};
+  EXPECT_EQ(rows_of(widths, 10, 220), (std::vector<int>{0, 0, 0, 1, 1}));
+  EXPECT_EQ(rows_of(widths, 10, 1000), (std::vector<int>{0, 0, 0, 0, 0}));
+  EXPECT_EQ(rows_of(widths, 10, 1), (std::vector<int>{0, 1, 2, 3, 4}));
+}
+
+TEST(HoverHelp, ComesWhenThePointerRestsAndNeverWhileItDrags) {
+  HoverHelp help;
+  const ImVec2 item(10, 10), other(50, 10);
+  const auto due = [&](ImVec2 at, float x, bool held, double now) {
+    help.begin_frame();
+    return help.due(at, {x, 12}, held, now);
+  };
+  EXPECT_FALSE(due(item, 11, false, 0));
+  EXPECT_EQ(help.wake(), HoverHelp::kRest);
+  EXPECT_FALSE(due(item, 12, false, 0.4)) << "it moves";
+  EXPECT_FALSE(due(item, 12, false, 0.8));
+  EXPECT_TRUE(due(item, 12, false, 0.9));
+  EXPECT_TRUE(due(item, 13, false, 1.0)) << "it stays";
+  EXPECT_FALSE(due(item, 13, true, 1.1));
+  EXPECT_FALSE(due(item, 13, true, 9.0));
+  EXPECT_FALSE(due(other, 51, false, 9.1));
+  EXPECT_TRUE(due(other, 51, false, 9.6));
+  help.begin_frame();
+  help.begin_frame();
+  EXPECT_FALSE(due(other, 51, false, 9.7)) << "it was away";
+}
+
+}  // namespace
+}  // namespace afterglow
