@@ -267,6 +267,48 @@ Result<std::string> free_anchor(const Filter& filter, AxisRatio ratio_x, AxisRat
   return out + weighted_sum("ag_color", reads);
 }
 
+/// Free taps, several rows of the target at once: each texel is read once and added to all rows that it is part of.
+Result<std::string> free_rows(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, int rows) {
+  Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation, rows);
+  std::map<std::pair<TexelKey, TexelKey>, std::map<int, Weight>> texels;  // y, then x → row → weight
+  for (const auto& tap : filter.taps) {
+    const auto across = x.read(tap.dx);
+    for (int row = 0; row < rows; ++row)
+      for (const auto& down : y.read(tap.dy, row))
+        for (const auto& term : across)
+          texels[{down.texel, term.texel}][row][term.variable] += tap.weight * term.constant * down.constant;
+    if (texels.size() > kMaxReads) return too_many(texels.size(), kMaxReads);
+  }
+  std::string out = x.setup() + y.setup() + kLast;
+  for (int row = 0; row < rows; ++row) out += fmt::format("  vec4 ag_color{} = vec4(0.0);\n", row);
+  out += "  vec4 ag_read;\n  int ag_row;\n";
+  std::map<TexelKey, std::string> columns;
+  const TexelKey* line = nullptr;
+  for (const auto& [key, weights] : texels) {
+    if (auto [column, fresh] = columns.try_emplace(key.second); fresh) {
+      column->second = fmt::format("ag_col{}", columns.size() - 1);
+      out += fmt::format("  int {} = {};\n", column->second, x.index(key.second));
+    }
+    if (!line || *line != key.first) out += fmt::format("  ag_row = {};\n", y.index(key.first));
+    line = &key.first;
+    out += fmt::format("  ag_read = {};\n", texel(columns[key.second], "ag_row"));
+    for (const auto& [row, weight] : weights)
+      if (weight.size() > 1 || weight.begin()->second != 0)
+        out += fmt::format("  ag_color{} += {} * ag_read;\n", row, expression(weight));
+  }
+  return out;
+}
+
+/// What `rows` rows of the target read of a free filter's texels: line → columns.
+std::map<TexelKey, std::set<TexelKey>> texels_of_rows(const Filter& filter, Axis& x, Axis& y, int first, int rows) {
+  std::map<TexelKey, std::set<TexelKey>> lines;
+  for (const auto& tap : filter.taps)
+    for (int row = first; row < first + rows; ++row)
+      for (const auto& down : y.read(tap.dy, row))
+        for (const auto& term : x.read(tap.dx)) lines[down.texel].insert(term.texel);
+  return lines;
+}
+
 /// Free taps through the sampler: one filtered fetch a tap.
 Result<std::string> free_sampler_anchor(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y) {
   Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation);
@@ -284,27 +326,41 @@ Result<std::string> free_sampler_anchor(const Filter& filter, AxisRatio ratio_x,
 }  // namespace
 
 bool shares_rows(const Filter& filter, AxisRatio ratio_y, int rows) {
-  return rows > 1 && filter.separable() && Axis('y', ratio_y, filter.interpolation, rows).fixed();
+  return rows > 1 && Axis('y', ratio_y, filter.interpolation, rows).fixed();
 }
 
-std::optional<LinesRead> lines_shared(const Filter& filter, AxisRatio ratio_y, int rows) {
+std::optional<RowsRead> rows_shared(const Filter& filter, AxisRatio ratio_y, int rows) {
   if (!shares_rows(filter, ratio_y, rows)) return std::nullopt;
   Axis axis('y', ratio_y, filter.interpolation, rows);
+  RowsRead read;
+  if (!filter.separable()) {
+    Axis x('x', AxisRatio::same, filter.interpolation);
+    const auto reads = [](const auto& lines) {
+      int sum = 0;
+      for (const auto& [line, columns] : lines) sum += static_cast<int>(columns.size());
+      return sum;
+    };
+    const auto together = texels_of_rows(filter, x, axis, 0, rows);
+    for (int row = 0; row < rows; ++row) read.apart += reads(texels_of_rows(filter, x, axis, row, 1));
+    read.together = reads(together);
+    read.lines = static_cast<int>(together.size());
+    return read;
+  }
   std::set<TexelKey> together;
-  LinesRead lines;
   for (int row = 0; row < rows; ++row) {
     std::set<TexelKey> one;
     for (const auto& tap : filter.y)
       for (const auto& term : axis.read(tap.offset, row)) one.insert(term.texel);
-    lines.apart += static_cast<int>(one.size());
+    read.apart += static_cast<int>(one.size());
     together.insert(one.begin(), one.end());
   }
-  lines.together = static_cast<int>(together.size());
-  return lines;
+  read.lines = read.together = static_cast<int>(together.size());
+  return read;
 }
 
 Result<std::string> filter_rows(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, int rows) {
   AFTERGLOW_CHECK(check(filter));
+  if (!filter.separable()) return free_rows(filter, ratio_x, ratio_y, rows);
   Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation, rows);
   auto columns = axis_reads(x, filter.x);
   if (columns.size() > kMaxAxisReads || filter.y.size() > kMaxAxisReads)

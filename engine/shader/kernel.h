@@ -154,12 +154,14 @@ struct CompiledKernel {
 /// Turns that the loops of one invocation may make together, where they are guarded.
 extern const std::uint32_t kMaxLoopTurns;
 
-/// Lines of texels that neighbouring rows of the target read: all `together`, and each by itself, summed.
-struct LinesRead {
+/// What neighbouring rows of the target read: all `together`, and each by itself, summed. Counted in lines of a
+/// separable filter, in texels of a free one.
+struct RowsRead {
   int together = 0, apart = 0;
+  int lines = 0;  ///< of texels, all together
 };
 /// For a kernel with this filter as its anchor; nothing where each row is made by itself.
-std::optional<LinesRead> lines_shared(const Filter& filter, AxisRatio ratio_y, int rows);
+std::optional<RowsRead> rows_shared(const Filter& filter, AxisRatio ratio_y, int rows);
 
 /// Pure text. Errors: script, only for what ShaderLibrary could not see.
 Result<AssembledKernel> assemble(const KernelDesc& kernel);

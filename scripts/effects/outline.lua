@@ -79,7 +79,7 @@ return fx.effect {
       reach = s.difference == "derivative" and 1 or math.min(2 * (s.width + math.max(1, g.length_scale)), 16384),
       derivative = s.difference == "derivative", fade = use.fade and depth ~= nil,
       device_input = s.depth_space == "device", reversed_z = s.reversed_z, raw_depth = s.source == "device_depth",
-      combine_max = s.combine == "max", level_slopes = s.level_slopes and s.difference == "offset",
+      combine_max = s.combine == "max", level_slopes = s.level_slopes and s.difference == "offset", preview = g.length_scale < 1,
       inverse_clip = { 1 / s.near, 1 / s.far },
       width = math.min(s.width / g.length_scale, 16384), scale = g.length_scale, fade_distance = s.fade_distance,
       depth_scale = bounded(s.depth_scale), normal_scale = bounded(s.normal_scale), normal_factor = s.normal_factor,

@@ -3,6 +3,7 @@
 #include "lib/color.glsl"
 
 layout(constant_id = 0) const int operator = 0;  // Sobel, Scharr, Roberts
+layout(constant_id = 1) const int apart = 1;     // pixels between those that are compared
 
 uniform sampler2D source;
 uniform float intensity;
@@ -11,17 +12,18 @@ uniform vec3 ink;
 uniform vec3 paper;
 uniform float opacity;
 uniform float finer;  // below 1 in a preview: how much a line of one pixel covers of its own
-uniform int apart;  // pixels between those that are compared
+
+float at(ivec2 pixel) { return perceived(fetch(source, pixel).rgb); }
 
 vec2 gradient(ivec2 pixel) {
-  float y[9];
-  for (int i = 0; i < 9; ++i) y[i] = perceived(fetch(source, pixel + apart * (ivec2(i % 3, i / 3) - 1)).rgb);
+  float own = at(pixel), e = at(pixel + ivec2(apart, 0)), s = at(pixel + ivec2(0, apart)), se = at(pixel + ivec2(apart, apart));
   // Roberts' cross: the diagonals of the pixel and its neighbours to the right and below. A straight step shows in both.
-  if (operator == 2) return vec2(y[4] - y[8], y[5] - y[7]) * 0.70710678;
-  float side = operator == 1 ? 3.0 : 1.0, middle = operator == 1 ? 10.0 : 2.0;
+  if (operator == 2) return vec2(own - se, e - s) * 0.70710678;
+  float nw = at(pixel + ivec2(-apart, -apart)), n = at(pixel + ivec2(0, -apart)), ne = at(pixel + ivec2(apart, -apart));
+  float w = at(pixel + ivec2(-apart, 0)), sw = at(pixel + ivec2(-apart, apart));
+  const float side = operator == 1 ? 3.0 : 1.0, middle = operator == 1 ? 10.0 : 2.0;
   // Differences first: a mirrored picture then gives the same bits.
-  return vec2(side * ((y[2] - y[0]) + (y[8] - y[6])) + middle * (y[5] - y[3]), side * ((y[6] - y[0]) + (y[8] - y[2])) + middle * (y[7] - y[1])) /
-         (2.0 * side + middle);
+  return vec2(side * ((ne - nw) + (se - sw)) + middle * (e - w), side * ((sw - nw) + (se - ne)) + middle * (s - n)) * (1.0 / (2.0 * side + middle));
 }
 
 vec4 sample_at(ivec2 pixel) {

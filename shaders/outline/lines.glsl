@@ -13,6 +13,7 @@ layout(constant_id = 5) const bool reversed_z = true;    // device depth 1 is th
 layout(constant_id = 6) const bool raw_depth = false;    // compare device depth as it is, not made linear
 layout(constant_id = 7) const bool combine_max = false;  // the stronger of the two; else weighted
 layout(constant_id = 8) const bool level_slopes = false; // planes draw no line, however steep
+layout(constant_id = 9) const bool preview = false;      // `scale` is below 1
 
 uniform sampler2D depth;   // what is not used may be any image: it is never read
 uniform sampler2D normal;
@@ -41,10 +42,6 @@ float depth_change(float a, float b) {
 
 // The bound keeps the squares finite; unit normals differ by at most 2.
 float normal_change(vec3 a, vec3 b) { return min(length(clamp(a - b, -1e15, 1e15)) * normal_scale, kMaxEdge); }
-
-// What a difference ahead would be between pixels of the delivered picture. A slope goes on behind, an edge does not: where a preview's
-// pixels lie farther apart, the part that goes on shrinks with them.
-float step_of(float ahead, float behind) { return scale < 1.0 ? ahead - (1.0 - scale) * min(ahead, behind) : ahead; }
 
 // How much farther or nearer the pixel ahead is than the plane through the pixel and the one behind it. Along a line on the screen the inverse
 // distance of a plane is linear, so its change ahead is that behind; in distances: |z − z₋|·z₊/z₋. Where nothing lies behind, the plane is that
@@ -80,18 +77,27 @@ vec4 sample_at(ivec2 pixel) {
   float covered = min(thick, 1.0);
   ivec2 right = centre + ivec2(apart, 0), below = centre + ivec2(0, apart);
 
+  // Where a preview's pixels lie farther apart than those of the picture, a slope, which goes on behind, counts as far as it reaches between
+  // these; an edge does not go on and counts whole.
   float depth_edge = 0.0, normal_edge = 0.0;
   if (use_depth && level_slopes) {
     depth_edge = change_from_plane(centre, right) + change_from_plane(centre, below);
   } else if (use_depth) {
-    float z = depth_at(centre);
-    depth_edge = step_of(depth_change(z, depth_at(right)), depth_change(z, depth_at(2 * centre - right))) +
-                 step_of(depth_change(z, depth_at(below)), depth_change(z, depth_at(2 * centre - below)));
+    float z = depth_at(centre), across = depth_change(z, depth_at(right)), down = depth_change(z, depth_at(below));
+    if (preview) {
+      across -= (1.0 - scale) * min(across, depth_change(z, depth_at(2 * centre - right)));
+      down -= (1.0 - scale) * min(down, depth_change(z, depth_at(2 * centre - below)));
+    }
+    depth_edge = across + down;
   }
   if (use_normal) {
     vec3 n = fetch(normal, centre).xyz;
-    normal_edge = step_of(normal_change(n, fetch(normal, right).xyz), normal_change(n, fetch(normal, 2 * centre - right).xyz)) +
-                  step_of(normal_change(n, fetch(normal, below).xyz), normal_change(n, fetch(normal, 2 * centre - below).xyz));
+    float across = normal_change(n, fetch(normal, right).xyz), down = normal_change(n, fetch(normal, below).xyz);
+    if (preview) {
+      across -= (1.0 - scale) * min(across, normal_change(n, fetch(normal, 2 * centre - right).xyz));
+      down -= (1.0 - scale) * min(down, normal_change(n, fetch(normal, 2 * centre - below).xyz));
+    }
+    normal_edge = across + down;
   }
 
   float edge = use_depth ? depth_edge : normal_edge;
@@ -99,5 +105,5 @@ vec4 sample_at(ivec2 pixel) {
     edge = combine_max ? max(depth_edge, normal_edge) : normal_factor * normal_edge + (1.0 - normal_factor) * depth_edge;
   edge = min(edge / divide_factor, kMaxEdge);
   float line = clamp((edge - 0.5) * contrast + 0.5, 0.0, 1.0);
-  return vec4(scale < 1.0 ? line * covered : line);
+  return vec4(preview ? line * covered : line);
 }

@@ -61,13 +61,33 @@ struct Preview : Effects {
 
 TEST_F(Preview, ShowTheWholeLook) {
   const double alone = difference("");
-  for (const char* entry :
-       {"fx.bloom { intensity = 0.5 },", "fx.bloom { mode = \"scattering\", threshold = 0.5, intensity = 0.4 },",
-        "fx.box_bloom { threshold = 1.5 },", "fx.anamorphic_streaks {},", "fx.lens_dirt { intensity = 0.3 },",
-        "fx.dual_kawase { iterations = 4 },", "fx.bokeh_blur { radius = 9 },", "fx.directional_blur { distance = 30 },",
-        "fx.radial_blur {},", "fx.depth_of_field { focus_distance = 6, aperture = 1.4 },",
-        "fx.chromatic_aberration {},", "fx.vignette {},", "fx.fxaa {},", "fx.sharpen {},", "fx.pixelate { size = 16 },",
-        "fx.color_adjustments { contrast = 20 },"})
+  for (const char* entry : {"fx.bloom { intensity = 0.5 },",
+                            "fx.bloom { mode = \"scattering\", threshold = 0.5, intensity = 0.4 },",
+                            "fx.box_bloom { threshold = 1.5 },",
+                            "fx.anamorphic_streaks {},",
+                            "fx.lens_dirt { intensity = 0.3 },",
+                            "fx.dual_kawase { iterations = 4 },",
+                            "fx.bokeh_blur { radius = 9 },",
+                            "fx.directional_blur { distance = 30 },",
+                            "fx.radial_blur {},",
+                            "fx.depth_of_field { focus_distance = 6, aperture = 1.4 },",
+                            "fx.chromatic_aberration {},",
+                            "fx.vignette {},",
+                            "fx.fxaa {},",
+                            "fx.sharpen {},",
+                            "fx.pixelate { size = 16 },",
+                            "fx.color_adjustments { contrast = 20 },",
+                            "fx.glare {},",
+                            "fx.halation {},",
+                            "fx.lens_flare {},",
+                            "fx.depth_fog {},",
+                            "fx.ssao {},",
+                            "fx.crt {},",
+                            "fx.letterbox {},",
+                            "fx.smaa {},",
+                            "fx.posterize {},",
+                            "fx.curves { shadows = -0.3, highlights = 0.8 },",
+                            "fx.cdl { slope = { 1.2, 1, 0.9 } },"})
     EXPECT_LE(difference(entry), 1.2 * alone) << entry << " " << alone;
   // Reads between coarse pixels are softer, and which lines there are is decided from fewer pixels.
   for (const char* entry : {"fx.lens_distortion { intensity = 0.3 },", "fx.edge_detection {},",

@@ -76,6 +76,21 @@ TEST(FilterAnchor, ADoublingHasTwoPhasesAndNoDivision) {
   EXPECT_THAT(main_of(kernel({kLinear}, any, same)), HasSubstr("ag_phase(ag_pixel.x"));
 }
 
+TEST(FilterAnchor, RowsOfFreeTapsReadEachTexelOnce) {
+  KernelDesc desc = kernel(kPlus, same, same);
+  desc.config.rows = 4;
+  EXPECT_EQ(texels(desc), 14) << "4 + 4 beside the rows, 6 above, in and below them";
+  const auto shared = rows_shared(kPlus, same, 4);
+  ASSERT_TRUE(shared);
+  EXPECT_EQ(shared->together, 14);
+  EXPECT_EQ(shared->apart, 16);
+  EXPECT_EQ(shared->lines, 6);
+  desc = kernel(kPlus, twice, twice);
+  desc.config.rows = 4;
+  EXPECT_LT(texels(desc), 4 * texels(kernel(kPlus, twice, twice)));
+  EXPECT_FALSE(rows_shared(kPlus, any, 4)) << "weights differ from row to row";
+}
+
 TEST(FilterAnchor, CoordinatesAreClampedOnceAndOnlyWhereTheyCanLeave) {
   const auto text = main_of(kernel({kLinear}, half, half));
   EXPECT_EQ(count(text, "clamp("), 0);
