@@ -8,6 +8,6 @@ return fx.stack {
   name = "Additive neon",
   requires = "0.2",
   fx.bloom { mode = "additive", threshold = 1.2, knee = 0.3, intensity = 0.08, max_iterations = 5, fade_fireflies = true },
-  fx.color_adjustments { post_exposure = 0.15, contrast = 4, saturation = 24 },
+  fx.color_adjustments { post_exposure = 0.1, contrast = 3, saturation = 24 },
   fx.tone_mapping { mode = "agx", look = "punchy" },
 }

@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: MIT
--- zoom: 160,120,640,360
+-- zoom: 440,200,480,270
 local fx = require "afterglow"
 
 return fx.stack {

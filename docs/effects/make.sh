@@ -30,7 +30,7 @@ picture() { # OUT ZOOM PRESET INPUT OPTION…
     "$program" run "$@" -o "$out" --jpeg-quality 82 -q
   else
     "$program" run "$@" --region "$zoom" -o "$work/part.png" -q
-    oiiotool --nosoftwareattrib "$work/part.png" --resize:filter=box 960x540 --compression jpeg:88 -o "$out"
+    oiiotool --nosoftwareattrib "$work/part.png" --ch R,G,B --resize:filter=box 960x540 --compression jpeg:88 -o "$out"
   fi
 }
 
@@ -41,6 +41,7 @@ before() { # ZOOM FILE …
   name=$(basename "${1%.*}")
   name=before_${name%.*}${zoom:+_${zoom//,/_}}
   [[ $1 == tests/images/showcase/* ]] && options=$exposure
+  [[ $* =~ --set\ color_adjustments.post_exposure=[0-9.-]+ ]] && options=${BASH_REMATCH[0]}
   [[ $* =~ --size\ [0-9x]+ ]] && options+=" ${BASH_REMATCH[0]}"
   [[ $* =~ --frames\ [0-9]+ ]] && options+=" ${BASH_REMATCH[0]}"
   # shellcheck disable=SC2086 # words of the options

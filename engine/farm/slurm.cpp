@@ -221,11 +221,12 @@ std::vector<std::string> sbatch_words(const Job& job, const ArrayPlan& plan) {
   const auto add = [&](const char* option, const std::string& value) {
     if (!value.empty()) words.push_back(option + value);
   };
-  if (!plan.after.empty()) words.push_back("--dependency=afterany:" + join(plan.after, ":"));
   add("--partition=", job.needs.partition);
   add("--time=", job.needs.time);
   add("--mem=", job.needs.memory);
   words.insert(words.end(), job.needs.more.begin(), job.needs.more.end());
+  // Last, so that it counts: what the job's own words wait for, the chunks have waited for.
+  if (!plan.after.empty()) words.push_back("--dependency=afterany:" + join(plan.after, ":"));
   words.push_back((job.folder / "task.sh").string());
   words.push_back(fmt::format("{}", plan.base));
   return words;

@@ -212,6 +212,31 @@ TEST(FarmText, ArraysStayBelowTheLargest) {
   EXPECT_EQ(farm::array_plans({0, 2, 4}, 100)[0].tasks, "0-4:2") << "as sbatch writes steps";
 }
 
+TEST(FarmText, AJoinWaitsForTheChunksThatAreTriedAgain) {
+  using farm::ChunkStatus;
+  farm::Job job;
+  job.folder = "/shots/job";
+  job.chunks.resize(3);
+  job.video = "/shots/a.mov";
+  EXPECT_EQ(farm::every_task(job).size(), 4u);
+  const auto retried = [&](std::vector<ChunkStatus::State> states) {
+    farm::JobStatus status;
+    for (const auto state : states) status.chunks.push_back({.state = state, .exit_code = {}, .node = {}, .why = {}});
+    return farm::tasks_to_retry(job, status);
+  };
+  using enum ChunkStatus::State;
+  EXPECT_EQ(retried({done, failed, done, waiting}), (std::vector<std::size_t>{1, 3}));
+  EXPECT_EQ(retried({done, running, done, waiting}), (std::vector<std::size_t>{}));
+  EXPECT_EQ(retried({done, done, done, failed}), (std::vector<std::size_t>{3}));
+  EXPECT_EQ(retried({lost, done, done, failed}), (std::vector<std::size_t>{0, 3}));
+  EXPECT_EQ(retried({done, done, done, done}), (std::vector<std::size_t>{}));
+  job.needs.more = {"--dependency=afterok:7"};
+  const auto words = farm::sbatch_words(job, {.base = 0, .tasks = "3", .after = {"12", "14"}});
+  const auto own = std::ranges::find(words, "--dependency=afterany:12:14");
+  EXPECT_NE(own, words.end());
+  EXPECT_GT(own, std::ranges::find(words, "--dependency=afterok:7")) << "of two options the last one counts";
+}
+
 TEST(FarmText, ShellsReadWordsBack) {
   const std::vector<std::string> words{"plain", "two words", "it's", "a\nb", "$HOME `x` \"q\" \\", "", "*"};
   std::vector<std::string> line{"printf", "%s|"};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Videos in and out of a farm: frames by number, and one file that chunks have made.
 #include <csignal>
+#include <set>
+#include <sstream>
 
 #include "farm_test.h"
 
@@ -327,6 +329,38 @@ TEST_F(FarmVideo, ABadFrameLeavesNoVideoUntilItIsMended) {
   EXPECT_TRUE(read("out/a.mov") == read("one/a.mov"));
   EXPECT_EQ(attempts("out", ".exit-0").size(), 4u) << "three chunks and the join";
   EXPECT_EQ(attempts("out", ".exit-4").size(), 3u);
+}
+
+TEST_F(FarmVideo, ARetryMakesTheJoinWaitForItToo) {
+  AFTERGLOW_NEEDS_CLUSTER();
+  make_frames("in", 1, 8, 64, 48);
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.tone_mapping {} }\n");
+  const std::string good = read("in/shot.0002.exr");
+  ASSERT_EQ(run({"run", "look.lua", "in/shot.####.exr", "-o", "one/a.mov"}).exit_code, kDone);
+  write("in/shot.0002.exr", good.substr(0, good.size() / 2));
+  const Outcome submitted =
+      farm({"look.lua", "in/shot.####.exr", "-o", "out/a.mov", "--chunk", "4", "--retries", "0", "--", "--hold"});
+  ASSERT_EQ(submitted.exit_code, kDone) << submitted.err;
+  // The first chunk fails while the second one and the join wait.
+  const std::size_t id = submitted.out.find("slurm ") + 6;
+  const std::string array = submitted.out.substr(id, submitted.out.find(',', id) - id);
+  ASSERT_EQ(slurm("scontrol", {"release", array + "_0"}).exit_code, 0) << submitted.out;
+  ASSERT_TRUE(wait_until([&] { return attempts("out", "0.1.exit-4").size() == 1; }));
+  write("in/shot.0002.exr", good);
+  ASSERT_TRUE(wait_until([&] { return farm({"status", "out"}).out.find("2 waiting, 1 failed") != std::string::npos; }));
+  const Outcome retried = farm({"retry", "out"});
+  ASSERT_EQ(retried.exit_code, kDone) << retried.err;
+  EXPECT_THAT(retried.out, HasSubstr(": 1 chunks and the join"));
+  std::istringstream waiting(slurm("squeue", {"--noheader", "--states=PENDING", "--format=%F"}).out);
+  std::set<std::string> held;
+  for (std::string line; std::getline(waiting, line);) held.insert(line);
+  EXPECT_EQ(held.size(), 3u) << "what is left of the first array, the chunk that is tried again, and one join";
+  for (const auto& id_of_array : held) slurm("scontrol", {"release", id_of_array});  // complains of the task that ended
+  const Outcome waited = farm({"status", "out", "--wait"});
+  EXPECT_EQ(waited.exit_code, kDone) << waited.err;
+  EXPECT_TRUE(read("out/a.mov") == read("one/a.mov"));
+  EXPECT_EQ(attempts("out", ".exit-0").size(), 3u) << "the join was tried once";
+  EXPECT_EQ(attempts("out", ".exit-4").size(), 1u);
 }
 
 }  // namespace
