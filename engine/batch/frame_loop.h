@@ -16,7 +16,6 @@
 #include "batch/run_report.h"
 #include "batch/schedule.h"
 #include "batch/write_queue.h"
-#include "image/pixel_memory.h"
 #include "image/reader.h"
 #include "image/writer.h"
 #include "session/session.h"

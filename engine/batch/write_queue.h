@@ -8,7 +8,7 @@
 
 #include "batch/frame_sink.h"
 #include "batch/run_report.h"
-#include "image/pixel_memory.h"
+#include "image/reader.h"
 
 namespace afterglow {
 

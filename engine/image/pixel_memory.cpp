@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "image/pixel_memory.h"
-
 #include <utility>
+
+#include "image/reader.h"
 
 namespace afterglow {
 

@@ -19,7 +19,6 @@
 #include "image/movie.h"
 #include "image/orientation.h"
 #include "image/picture_file.h"
-#include "image/pixel_memory.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include "image/pixel_memory.h"
 #include "make_files.h"
 #include "temporary_folder.h"
 
