@@ -85,7 +85,7 @@ TEST_F(PlayEditing, SavingKeepsTheHistoryAndQuittingAsks) {
   type("-100", "Return");
   expect_color(kDull, "typed");
   ASSERT_TRUE(user("key ctrl+s"));
-  EXPECT_TRUE(until([&] { return preset().find("{ saturation = -100 },  -- mine") != std::string::npos; }));
+  EXPECT_TRUE(until([&] { return preset().find("saturation = -100 },  -- mine") != std::string::npos; }));
   expect_color(kDull, "as the file has it now");
   // Nothing is unsaved once the new file is on screen; from then on undo goes back over the save.
   ASSERT_TRUE(program_->wait_for("reload"));
@@ -101,7 +101,7 @@ TEST_F(PlayEditing, SavingKeepsTheHistoryAndQuittingAsks) {
   ASSERT_TRUE(program_->wait_for("asked whether to save"));
   ASSERT_TRUE(user("key s"));
   expect_clean_end();
-  EXPECT_NE(preset().find("{ saturation = 0 },  -- mine"), std::string::npos) << preset();
+  EXPECT_NE(preset().find("saturation = 0 },  -- mine"), std::string::npos) << preset();
   const auto report = nlohmann::json::parse(text_of("play.json"));
   EXPECT_GT(report.at("milliseconds").at("startup"), 0);
   EXPECT_GT(report.at("milliseconds").at("wall"), 0);
