@@ -587,6 +587,7 @@ TEST_F(TransportBar, PiecesNeverLieOnEachOther) {
 }
 
 TEST_F(TransportBar, ZoomAndFilter) {
+  wide = kWidth;  // `find` looks no farther
   EXPECT_THAT(words(), HasSubstr("fit 50%"));
   ASSERT_TRUE(find({"Transport", "###zoom"}));
   click();
