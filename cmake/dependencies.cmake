@@ -24,7 +24,7 @@ pkg_check_modules(MINIZIP REQUIRED IMPORTED_TARGET minizip)
 find_package(OpenEXR REQUIRED)
 find_package(ZLIB REQUIRED)
 pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO)
-pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
+pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp libwebpdemux)
 pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(LCMS2 REQUIRED IMPORTED_TARGET lcms2)
 # Videos: 5.1 (Debian 12) to 7.1 (Debian 13).

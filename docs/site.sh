@@ -14,6 +14,7 @@ command -v cmark-gfm >/dev/null || { echo "docs/site.sh: error: cmark-gfm is not
 pages=(
   "README.md|Afterglow"
   "docs/gallery.md|Gallery"
+  "docs/looks.md|Looks"
   "docs/effects.md|Effects"
   "docs/composition.md|Composing looks"
   "docs/video.md|Videos"
@@ -87,9 +88,9 @@ finish() {
     }'
 }
 
-# A picture whose title is "before: FILE" becomes two, one over the other, with a slider between them.
+# A picture whose title is "before: FILE" becomes two, one over the other, with a slider between them; where FILE stands above it alone, it goes.
 compare() {
-  sed -E 's|<p><img src="([^"]*/)([^"/]*)" alt="([^"]*)" title="before: ([^"]*)" /></p>|<figure class="compare"><img src="\1\2" alt="\3"><img src="\1\4" alt="before"><input type="range" value="50" aria-label="how much of the picture is before \3" oninput="this.parentNode.style.setProperty(\x27--at\x27, this.value + \x27%\x27)"></figure>|'
+  sed -zE 's|<p><img src="([^"]*/)([^"/]*)"[^>]*/></p>\n(<p><img src="[^"]*" alt="[^"]*" title="before: \2" /></p>)|\3|g' | sed -E 's|<p><img src="([^"]*/)([^"/]*)" alt="([^"]*)" title="before: ([^"]*)" /></p>|<figure class="compare"><img src="\1\2" alt="\3"><img src="\1\4" alt="before"><input type="range" value="50" aria-label="how much of the picture is before \3" oninput="this.parentNode.style.setProperty(\x27--at\x27, this.value + \x27%\x27)"></figure>|'
 }
 
 page() { # FILE TITLE

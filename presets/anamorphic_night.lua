@@ -11,7 +11,7 @@ return fx.stack {
   fx.chromatic_aberration { intensity = 0.2, samples = 8 },
   fx.vignette { intensity = 0.25, smoothness = 0.5 },
   fx.split_toning { shadows = "#5a7f8c", highlights = "#94826c", balance = 10 },
-  fx.color_adjustments { post_exposure = 1.1, contrast = 8, saturation = -8 },
+  fx.color_adjustments { post_exposure = 0.75, contrast = 10, saturation = -4 },
   fx.tone_mapping { mode = "aces" },
   fx.film_grain { intensity = 0.3, size = 1.3, colored = 0.3 },
 }

@@ -12,6 +12,6 @@ return fx.stack {
   fx.lens_flare { threshold = 20, clamp = 80, ghosts = 0.06, halo = 0.02, starburst = 0, count = 5 },
   fx.curves { shadows = 0.3, midtones = 0.1, blue = { 0.4, 0.12, 0 }, red = { -0.1, 0, 0.05 }, green = { -0.04, 0, 0 }, blues = { 0, 25, 12 }, magentas = { 6, 18, 0 },
               yellows = { -10, 18, 6 }, cyans = { 10, 20, 8 } },
-  fx.color_adjustments { post_exposure = 0.45, contrast = 4, saturation = 14 },
-  fx.tone_mapping { mode = "khronos_neutral" },
+  fx.color_adjustments { post_exposure = 0.3, contrast = 2, saturation = 18 },
+  fx.tone_mapping { mode = "agx", look = "punchy" },
 }

@@ -12,7 +12,7 @@ return fx.stack {
   fx.channel_mixer { red_out_red_in = 90, red_out_green_in = 10, green_out_green_in = 92, green_out_red_in = 8,
                      blue_out_blue_in = 80, blue_out_green_in = 20 },
   fx.lift_gamma_gain { lift = { 0.96, 1, 1.05 }, lift_offset = 0.004, gamma_offset = 0.04, gain = { 1.08, 1, 0.88 } },
-  fx.color_adjustments { post_exposure = 0.9, contrast = 2, saturation = -14 },
+  fx.color_adjustments { post_exposure = 0.65, contrast = 6, saturation = -14 },
   fx.tone_mapping { mode = "neutral" },
   fx.film_grain { intensity = 0.22, response = 0.7, size = 2 },
 }

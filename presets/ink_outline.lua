@@ -7,7 +7,7 @@ return fx.stack {
   name = "Ink outline",
   requires = "0.2",
   fx.outline { source = "mixed", combine = "max", width = 1.6, fade_distance = 40, depth_scale = 4, normal_scale = 0.7, contrast = 5,
-               color = { 0.01, 0.008, 0.02 } },
-  fx.color_adjustments { post_exposure = 1.6, contrast = 12, saturation = 10 },
+               color = { 0.01, 0.008, 0.02 }, mask = fx.mask.luma { from = 1.5, invert = true } },
+  fx.color_adjustments { post_exposure = 1.15, contrast = 16, saturation = 14 },
   fx.tone_mapping { mode = "reinhard" },
 }

@@ -1,13 +1,13 @@
 -- SPDX-License-Identifier: MIT
 -- Title cards and arcade looks: glow that is added on top, loud and saturated. Every level of the pyramid adds its own halo, so few
--- iterations keep it tight around the tubes. Khronos' neutral curve keeps hues that ACES would
--- bleach, and lets the hearts of tubes go white.
+-- iterations keep it tight around the tubes. AgX lets the hearts of tubes
+-- go white by way of paler colour, so that bright skies stay without contours.
 local fx = require "afterglow"
 
 return fx.stack {
   name = "Additive neon",
   requires = "0.2",
   fx.bloom { mode = "additive", threshold = 1.2, knee = 0.3, intensity = 0.08, max_iterations = 5, fade_fireflies = true },
-  fx.color_adjustments { post_exposure = 0.3, contrast = 8, saturation = 12 },
-  fx.tone_mapping { mode = "khronos_neutral" },
+  fx.color_adjustments { post_exposure = 0.1, contrast = 3, saturation = 24 },
+  fx.tone_mapping { mode = "agx", look = "punchy" },
 }

@@ -12,7 +12,7 @@ return fx.stack {
   fx.halation { intensity = 0.1, radius = 10, threshold = 1.5, clamp = 12, color = { 1, 0.16, 0.08 } },
   fx.anamorphic_streaks { threshold = 14, stretch = 0.72, intensity = 0.08, tint = { 0.3, 0.55, 1 } },
   fx.split_toning { shadows = "#3f7a86", highlights = "#9c7a74", balance = 15 },
-  fx.curves { by = "luminance", blacks = -0.7, shadows = -0.35, midtones = 0.1, highlights = 0.05 },
+  fx.curves { by = "luminance", blacks = -0.45, shadows = -0.2, midtones = 0.1, highlights = 0.05 },
   fx.color_adjustments { post_exposure = 0.55, contrast = 10, saturation = 6 },
   fx.vignette { intensity = 0.32, smoothness = 0.5 },
   fx.tone_mapping { mode = "aces" },

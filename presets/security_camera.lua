@@ -10,7 +10,7 @@ return fx.stack {
   fx.lens_distortion { intensity = 0.3, scale = 1.08 },
   fx.channel_mixer { red_out_red_in = 30, red_out_green_in = 60, red_out_blue_in = 10, green_out_red_in = 30, green_out_green_in = 60, green_out_blue_in = 10,
                      blue_out_red_in = 30, blue_out_green_in = 60, blue_out_blue_in = 10 },
-  fx.color_adjustments { post_exposure = 0.8, contrast = 14, color_filter = { 0.86, 1.02, 0.9 } },
+  fx.color_adjustments { post_exposure = 0.7, contrast = 24, color_filter = { 0.86, 1.02, 0.9 } },
   fx.vignette { intensity = 0.35, smoothness = 0.4 },
   fx.tone_mapping { mode = "reinhard" },
   fx.film_grain { intensity = 0.5, size = 2.2, response = 0.5 },

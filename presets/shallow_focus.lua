@@ -6,7 +6,8 @@ local fx = require "afterglow"
 return fx.stack {
   name = "Shallow focus",
   requires = "0.2",
-  fx.depth_of_field { focus_distance = 5, aperture = 1.2, focal_length = 85, max_radius = 12 },
+  reference_height = 1080,
+  fx.depth_of_field { focus_distance = 7, aperture = 1.4, focal_length = 85, max_radius = 24 },
   fx.bloom { mode = "scattering", threshold = 0.8, knee = 0.8, intensity = 0.14, scatter = 0.6, fade_fireflies = true },
   fx.lens_dirt { threshold = 2, intensity = 0.1, density = 0.35, size = 0.09 },
   fx.vignette { intensity = 0.25, smoothness = 0.5 },

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: MIT
 """How much of a picture each preset clips, beside its tone curve alone: shares of pixels with a channel at 255, as a Markdown table.
 
-    tools/clipping.py PROGRAM PICTURE ... [--presets FILE ...] [--size 960] [--keep FOLDER] [--limit 5]
+    tools/clipping.py PROGRAM PICTURE ... [--presets FILE ...] [--size 960] [--keep FOLDER] [--sheet FILE] [--limit 5]
 
-Exit code 1 when a preset clips more than LIMIT points above its tone curve. Needs oiiotool. --keep saves the pictures.
+Exit code 1 when a preset clips more than LIMIT points above its tone curve. --keep saves the pictures, --sheet puts them all on one: a row for
+each preset, a column for each picture. Needs oiiotool, and ImageMagick for the sheet.
 """
 import argparse
 import glob
@@ -24,6 +25,16 @@ def clipped(picture):
     return 100 * above / (below + above + within)
 
 
+def contact_sheet(rows, out):
+    """A row of pictures for each (name, pictures), with the name above it."""
+    command = ["montage"]
+    for name, pictures in rows:
+        for column, picture in enumerate(pictures):
+            command += ["-label", name if column == 0 else " ", picture]
+    subprocess.run([*command, "-geometry", "320x192+3+2", "-tile", f"{len(rows[0][1])}x", "-background", "#303030", "-fill", "white",
+                    "-pointsize", "15", "-quality", "84", "-sampling-factor", "4:2:0", out], check=True)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("program")
@@ -31,6 +42,7 @@ def main():
     parser.add_argument("--presets", nargs="*")
     parser.add_argument("--size")
     parser.add_argument("--keep")
+    parser.add_argument("--sheet")
     parser.add_argument("--limit", type=float, default=5)
     a = parser.parse_args()
     root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
@@ -48,19 +60,23 @@ def main():
     plain = f"{folder}/curve.lua"
     with open(plain, "w") as file:
         file.write('local fx = require "afterglow"\nreturn fx.stack { fx.tone_mapping {} }\n')
-    alone, worst = {}, 0
+    alone, worst, rows = {}, 0, []
     print("| preset | curve | " + " | ".join(names) + " |\n|---|---|" + "---|" * len(names))
     for preset in presets:
         check = json.loads(subprocess.run([a.program, "check", preset, "--json"], capture_output=True, text=True, check=True).stdout)
         curve = next((e["settings"]["mode"] for e in check["entries"] if e["effect"] == "tone_mapping"), "none")
         cells = []
+        rows.append((os.path.basename(preset)[:-4], []))
         for picture, name in zip(a.pictures, names):
             if (curve, name) not in alone:
                 alone[curve, name] = render(plain, picture, f"{name}.{curve}", "--set", f"tone_mapping.mode={curve}")
-            share = render(preset, picture, f"{name}.{os.path.basename(preset)[:-4]}")
+            share = render(preset, picture, f"{name}.{rows[-1][0]}")
+            rows[-1][1].append(f"{folder}/{name}.{rows[-1][0]}.png")
             worst = max(worst, share - alone[curve, name])
             cells.append(f"{share:.2f} ({share - alone[curve, name]:+.2f})")
-        print(f"| {os.path.basename(preset)[:-4]} | {curve} | " + " | ".join(cells) + " |", flush=True)
+        print(f"| {rows[-1][0]} | {curve} | " + " | ".join(cells) + " |", flush=True)
+    if a.sheet:
+        contact_sheet(rows, a.sheet)
     print(f"\nWorst: {worst:+.2f} points above the curve alone.")
     return 1 if worst > a.limit else 0
 

@@ -1,4 +1,5 @@
 -- SPDX-License-Identifier: MIT
+-- zoom: 560,0,400,225
 local fx = require "afterglow"
 
 return fx.stack {

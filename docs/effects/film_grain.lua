@@ -1,4 +1,5 @@
 -- SPDX-License-Identifier: MIT
+-- zoom: 300,90,240,135
 local fx = require "afterglow"
 
 return fx.stack {

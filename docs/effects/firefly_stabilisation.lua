@@ -1,4 +1,6 @@
 -- SPDX-License-Identifier: MIT
+-- input: tests/images/blender/fireflies.####.exr --frames 6 --set color_adjustments.post_exposure=-1
+-- zoom: 96,54,96,54
 local fx = require "afterglow"
 
 return fx.stack {

@@ -1,8 +1,9 @@
 -- SPDX-License-Identifier: MIT
+-- input: tests/images/showcase/alley_shot.####.exr --frames 8 --set color_adjustments.post_exposure=0.3
+-- zoom: 0,0,240,135
 local fx = require "afterglow"
 
 return fx.stack {
-  reference_height = 180,  -- lengths are those of a picture of this height
   fx.fxaa {},
   fx.color_adjustments { post_exposure = 1.5 },
   fx.tone_mapping { mode = "neutral" },

@@ -1,4 +1,5 @@
 -- SPDX-License-Identifier: MIT
+-- zoom: 240,40,480,270
 local fx = require "afterglow"
 
 return fx.stack {

@@ -1,4 +1,6 @@
 -- SPDX-License-Identifier: MIT
+-- input: tests/images/showcase/alley_shot.####.exr --frames 8 --set color_adjustments.post_exposure=0.3
+-- zoom: 0,0,240,135
 local fx = require "afterglow"
 
 return fx.stack {

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Renders every preset for the README, and docs/gallery.md: all presets and effects, small. docs/effects/make.sh renders the effects: run
-# it first. Needs jq.
+# Renders every preset for the README, docs/looks.md (presets large, beside what went in, and on four pictures) and docs/gallery.md (presets
+# and effects, small). docs/effects/make.sh renders the effects: run it first. Needs jq, oiiotool and ImageMagick.
 #   docs/images/make.sh [PROGRAM]     PROGRAM: ./dev unless given
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 program=${1:-./dev}
-alley=tests/images/showcase/alley.exr sea=tests/images/showcase/sea.exr photo=tests/images/ldr/rocket.jpg
+alley=tests/images/showcase/alley.exr sea=tests/images/showcase/sea.exr photo=tests/images/ldr/rocket.jpg hdri=tests/images/hdri/sunset.exr
 
 render() { # NAME PRESET INPUT OPTION…
   "$program" run "$2" "$3" -o "docs/images/$1.jpg" --jpeg-quality 82 -q "${@:4}"
@@ -20,6 +20,9 @@ scene() { # NAME
     *) printf %s "$alley" ;;
   esac
 }
+
+# The name of that scene's picture as it is.
+before() { basename "$(scene "$1")" | sed 's/^/before_/; s/\..*//'; } # NAME
 
 # What it is for: the first sentence of the comment that it begins with.
 story() { # FILE
@@ -50,7 +53,7 @@ done
   cat <<'INTRO'
 # Gallery
 
-Made by docs/images/make.sh. A picture leads to the preset, or to what [effects.md](effects.md) says of the effect.
+Made by docs/images/make.sh. A picture leads to the preset in [looks.md](looks.md), or to what [effects.md](effects.md) says of the effect.
 
 ## Presets
 
@@ -58,7 +61,7 @@ Made by docs/images/make.sh. A picture leads to the preset, or to what [effects.
 INTRO
   for file in "${presets[@]}"; do
     name=$(basename "$file" .lua)
-    cell "images/$name.jpg" "../$file" "$name" "$(story "$file")"
+    cell "images/$name.jpg" "looks.md#$name" "$name" "$(story "$file")"
   done | rows
   printf '</table>\n\n## Effects\n\n<table>\n'
   "$program" effects --json | jq -r '.[] | .name + "\t" + (.doc | split("\n")[0])' | while IFS=$'\t' read -r name doc; do
@@ -66,3 +69,43 @@ INTRO
   done | rows
   printf '</table>\n'
 } >docs/gallery.md
+
+clipping="tools/clipping.py $program $alley $sea $hdri $photo --sheet docs/images/looks.jpg"
+{
+  cat <<'INTRO'
+# Looks
+
+Made by docs/images/make.sh. Each preset on the scene that shows it best; on the site a slider shows what went in. `afterglow run presets/NAME.lua PICTURE -o out.png` makes one.
+
+INTRO
+  for file in "${presets[@]}"; do
+    name=$(basename "$file" .lua)
+    printf '## %s\n\n%s. [%s](../%s)\n\n![%s](images/%s.jpg "before: %s.jpg")\n\n' "$name" "$(story "$file")" "$file" "$file" "$name" "$name" "$(before "$name")"
+  done
+  cat <<'TEXT'
+## All on four pictures
+
+A street at night and a terrace at sunset (Blender), an HDR photograph (a whole surrounding, by Greg Zaal) and a photograph of 8 bits (SpaceX), without any change to the presets.
+
+![every preset on four pictures](images/looks.jpg)
+
+## What they clip
+
+The share of pixels with a channel at 255, in percent, and in brackets how many points that is more than the preset's tone curve alone. 5 are allowed.
+
+TEXT
+  printf '`%s`\n\n' "${clipping/$program/PROGRAM}"
+  $clipping
+  cat <<'TEXT'
+
+## More figures
+
+| | |
+|---|---|
+| how close a small preview comes to the whole picture, by effect | [math.md §23](math.md#23-lengths) |
+| colours at soft edges, by effect | [alpha.md](alpha.md) |
+| what each effect costs, in copy passes | [benchmarks](benchmarks/README.md) |
+| `depth_of_field` and `bokeh_blur`, before and now | [picture](images/blurs_before_after.jpg) |
+| what tone curves do to greys and colours | [tone_mapping.md](tone_mapping.md) |
+TEXT
+} >docs/looks.md

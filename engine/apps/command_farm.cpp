@@ -35,10 +35,12 @@ Result<void> go_on(const farm::Job& job, const FarmArguments& a, Console& consol
   return done;
 }
 
-void tell_submission(const farm::Job& job, const farm::Submissions& submitted, std::size_t chunks) {
+void tell_submission(const farm::Job& job, const farm::Submissions& submitted, const std::vector<std::size_t>& tasks) {
   std::vector<std::string> ids;
   for (const auto& array : submitted.arrays) ids.push_back(array.id);
-  output("{}\nslurm {}: {} chunks\n", job.folder.string(), join(ids), chunks);
+  const bool joins = job.is_join(tasks.back());
+  output("{}\nslurm {}: {} chunks{}\n", job.folder.string(), join(ids), tasks.size() - (joins ? 1 : 0),
+         joins ? " and the join" : "");
 }
 
 Result<void> run_submit(const FarmArguments& a, Console& console) {
@@ -54,26 +56,26 @@ Result<void> run_submit(const FarmArguments& a, Console& console) {
     output("{}\n{}: {} chunks\n", job.folder.string(), a.jobs, job.chunks.size());
     return {};
   }
-  auto submitted = farm::submit(job, farm::every_chunk(job));
+  auto submitted = farm::submit(job, farm::every_task(job));
   if (!submitted) {
     if (!is_file(job.folder / "slurm.json")) farm::discard_job(job);
     return std::move(submitted).error();
   }
-  tell_submission(job, *submitted, job.chunks.size());
+  tell_submission(job, *submitted, farm::every_task(job));
   return go_on(job, a, console);
 }
 
 Result<void> run_retry(farm::Job job, const FarmArguments& a, Console& console) {
   AFTERGLOW_TRY(const auto status, farm::status_of(job));
-  const auto chunks = farm::chunks_to_retry(status);
-  if (!chunks.empty()) {
+  const auto tasks = farm::tasks_to_retry(job, status);
+  if (!tasks.empty()) {
     for (const auto& [given, kept] :
          {std::pair(&a.needs.partition, &job.needs.partition), std::pair(&a.needs.time, &job.needs.time),
           std::pair(&a.needs.memory, &job.needs.memory)})
       if (!given->empty()) *kept = *given;
     if (!a.needs.more.empty()) job.needs.more = a.needs.more;
-    AFTERGLOW_TRY(const auto submitted, farm::submit(job, chunks));
-    tell_submission(job, submitted, chunks.size());
+    AFTERGLOW_TRY(const auto submitted, farm::submit(job, tasks));
+    tell_submission(job, submitted, tasks);
   } else {
     output("nothing to retry: {}\n", farm::status_line(status));
   }
@@ -90,6 +92,7 @@ Result<void> run_farm(const FarmArguments& a, Console& console) {
     return Error{ErrorKind::usage, "chunk needs a job's folder and a number", "afterglow farm"};
   }
   AFTERGLOW_TRY(farm::Job job, farm::find_job(given.empty() ? "." : given.front()));
+  if (word == "join") return run_join(job, console);
   if (word == "report") return report_on(job, a);
   if (word == "retry") return run_retry(std::move(job), a, console);
   if (word == "cancel") return farm::cancel(job);
@@ -108,6 +111,7 @@ Command add_farm_command(CLI::App& program) {
       "Examples:\n"
       "  afterglow farm look.lua shot.####.exr -o graded/shot.####.exr --chunk 20 --wait\n"
       "  afterglow farm look.lua shot.####.exr -o graded/ --partition night --mem 8G -- --exclude=n13 --nice\n"
+      "  afterglow farm look.lua clip.mov -o graded.mov --codec prores --wait\n"
       "  afterglow farm status graded/         where the job is; also report, cancel and retry\n"
       "  afterglow farm look.lua shot.####.exr -o graded/ --jobs jobs.json\n"
       "Words behind -- go to sbatch. The look is packed when it is submitted; what is edited later changes nothing.");

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kWords{"status", "report", "cancel", "retry", "chunk"};
+constexpr std::array kWords{"status", "report", "cancel", "retry", "chunk", "join"};
 /// Of `run`, what chunks decide themselves.
 constexpr std::array kNotForFarms{"--resume", "--watch", "--fail-fast", "--sandbox", "--lock", "--stats", "--report"};
 /// Named files of the look, which are packed.

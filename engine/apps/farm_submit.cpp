@@ -52,14 +52,6 @@ Result<void> check_streams(const FrameListRequest& files) {
   return {};
 }
 
-Result<void> check_files(const PlannedJob& planned) {
-  const auto& frames = planned.frames;
-  if (frames.size() > 1 && frames[0].output == frames[1].output)
-    return Error{ErrorKind::usage, fmt::format("{} is one file for all frames", frames[0].output.string()),
-                 "afterglow farm", 0, "pictures, like out.####.exr, which `afterglow run` makes a video of"};
-  return {};
-}
-
 Result<void> pack(const FarmArguments& arguments, const BatchRequest& request, const farm::LoadedLook& look,
                   farm::Job& job, Console& console) {
   AFTERGLOW_CHECK(farm::pack_look(look, job));
@@ -86,7 +78,8 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   AFTERGLOW_CHECK(check_streams(request.files));
   AFTERGLOW_TRY(FrameList list, list_frames(request.files, console.diagnostics()));
   out.frames = std::move(list.jobs);
-  AFTERGLOW_CHECK(check_files(out));
+  const bool video = is_one_output(request.files.output);
+  if (video) AFTERGLOW_CHECK(check_one_video(request, out.frames, console.diagnostics()));
   AFTERGLOW_TRY(const auto look, farm::load_look(request, out.frames, console.diagnostics()));
   farm::Job& job = out.job;
   std::error_code ec;
@@ -94,6 +87,7 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   job.version = version();
   job.at = fs::current_path(ec);
   job.look = arguments.run.preset.file;
+  if (video) job.video = (job.at / request.files.output).lexically_normal().string();
   job.pre_roll = look.pre_roll;
   job.needs = arguments.needs;
   job.chunks = farm::chunks_of(out.frames, frames_a_chunk(arguments, look));

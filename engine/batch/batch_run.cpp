@@ -135,7 +135,8 @@ Result<void> run_frames(BatchRun& run) {
     return Error{ErrorKind::usage, "--watch makes frames in the order in which they come; one file cannot take them",
                  "afterglow run", 0, "pictures, like out.####.exr"};
   if (run.list.more && asked.watch)
-    return Error{ErrorKind::usage, "--watch is for files; frames on standard input are run as they come", "afterglow run"};
+    return Error{ErrorKind::usage, "--watch is for files; frames on standard input are run as they come",
+                 "afterglow run"};
   SessionOptions opened = asked.session;
   opened.frames = frames.size() > 1 || run.list.more ? kFramesInFlight : 1;
   AFTERGLOW_TRY(run.session, Session::open(asked.preset, opened, run.events.diagnostics));
@@ -153,7 +154,12 @@ Result<void> run_frames(BatchRun& run) {
     Schedule schedule = earlier ? schedule_with_histories(frames, asked.files, *earlier) : plain_schedule(frames);
     if (run.list.more) schedule.more = [&run] { return next_record(run); };
     run.report.pre_roll += schedule.earlier.size();
-    return loop.run(schedule);
+    const auto begun = Clock::now();
+    const double used = processor_milliseconds();
+    auto done = loop.run(schedule);
+    run.report.frames_wall += milliseconds_since(begun);
+    run.report.processors += processor_milliseconds() - used;
+    return done;
   };
   run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
   auto done = asked.watch ? run_watching(frames, earlier.value_or(0), options.fail_fast, run.events, run_waiting)

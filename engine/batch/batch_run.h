@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "batch/frame_list.h"
 #include "batch/frame_loop.h"
@@ -34,5 +35,19 @@ struct BatchRequest {
 /// Runs it. `report` holds what is known when it returns, also after an error. Errors: usage, script, io, device,
 /// interrupted, as FrameLoop::run, Session::open, list_frames and the functions of lock.h and resume.h say.
 Result<void> run_batch(const BatchRequest& request, const RunEvents& events, RunReport& report);
+
+/// A part of a video that was written by a run with VideoOptions::piece, and how many frames it has.
+struct VideoPart {
+  std::filesystem::path file;
+  std::size_t frames = 0;
+};
+/// Whether these frames can go into the one video that the request's output is; for errors before any work. Errors:
+/// usage, io.
+Result<void> check_one_video(const BatchRequest& request, const std::vector<FrameJob>& frames,
+                             Diagnostics& diagnostics);
+/// That video of its parts, without a second encode: times, sound, subtitles, chapters and texts as in one run over all
+/// `frames`. Errors: usage, io (a part is missing or is none of this video), interrupted.
+Result<void> join_parts(const BatchRequest& request, const std::vector<FrameJob>& frames,
+                        const std::vector<VideoPart>& parts, const RunEvents& events);
 
 }  // namespace afterglow

@@ -9,6 +9,7 @@
 
 #include "batch/crop.h"
 #include "batch/scale.h"
+#include "core/file_time.h"
 #include "core/stopwatch.h"
 #include "core/text.h"
 
@@ -39,7 +40,7 @@ FrameLoop::FrameLoop(Session& session, FrameSink& sink, FrameLoopOptions options
       options_(std::move(options)),
       events_(std::move(events)),
       planner_(session, sink, options_),
-      writing_(sink) {}
+      writing_(sink, memory_) {}
 
 FrameLoop::~FrameLoop() = default;
 
@@ -63,7 +64,11 @@ Result<void> FrameLoop::run(Schedule& schedule) {
       if (auto prepared = session_.prepare(reading->request); !prepared && ends_run(prepared.error()))
         return close(fail(*reading->frame, std::move(prepared).error()));
     }
-    if (reading->picture.valid()) reading->picture.wait();
+    if (reading->picture.valid()) {
+      const auto waiting = Clock::now();
+      reading->picture.wait();
+      reading->frame->steps.waited_read = milliseconds_since(waiting);
+    }
     if (overlap_ && (i + 1 < frames.size() || fetch(schedule, i + 1))) next = begin_reading(frames[i + 1]);
     if (auto done = process(std::move(reading)); !done) return close(done.error());
     if (!overlap_)
@@ -153,12 +158,15 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
   reading->pre_roll = scheduled.pre_roll;
   reading->restart = scheduled.restart;
   reading->options = planner_.read_options(frame.job);
+  reading->options.memory = &memory_;
   if (scheduled.restart) begun_.reset();
   const bool follows = options_.histories && begun_;
   const double step = follows ? frame.job.frame - *begun_ : 1;
+  const auto planning = Clock::now();
   const bool known = planned_ && planned_->job == &frame.job && step == 1;
   auto planned = known ? Result<PlannedFrame>(*std::exchange(planned_, std::nullopt))
                        : planner_.plan(frame.job, step, options_.histories && !begun_);
+  frame.steps.plan = milliseconds_since(planning);
   if (!planned) {
     reading->refused = std::move(planned).error();
     return reading;
@@ -176,10 +184,13 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
                                 [this, &frame, options = reading->options, scaling = reading->scaling,
                                  header = std::move(planned->header)]() -> Result<Picture> {
                                   const auto start = Clock::now();
+                                  const double files = FileTime::of_thread();
                                   auto picture = read_picture(header, options, events_.diagnostics);
                                   if (picture && scaling) scale_picture(*picture, *scaling);
                                   if (picture && options_.reuse && several()) note_content(*picture);
-                                  frame.read = milliseconds_since(start);
+                                  frame.steps.read = milliseconds_since(start);
+                                  frame.steps.decode =
+                                      std::max(0.0, frame.steps.read - (FileTime::of_thread() - files));
                                   return picture;
                                 });
   return reading;
@@ -254,7 +265,9 @@ Result<void> FrameLoop::finish_running() {
     crop_picture(picture, *options_.region,
                  {part->x / finer, part->y / finer, part->width / finer, part->height / finer});
   if (events_.interrupted()) return interruption();
+  const auto waiting = Clock::now();
   AFTERGLOW_CHECK(finish_writing(most_written_ - 1));
+  frame.steps.waited_write = milliseconds_since(waiting);
   writing_.add(frame, reading->index, std::move(picture));
   return {};
 }
@@ -319,6 +332,7 @@ Result<void> FrameLoop::fail(FrameRecord& frame, Error error, bool pre_roll) {
   frame.state = FrameRecord::State::failed;
   if (frame.job.passing) frame.job.movie.reset();
   frame.error = error;
+  if (pre_roll && options_.whole_pre_roll) return error;
   if (pre_roll && !ends_run(error)) {
     events_.diagnostics.warn("left out of the pre-roll: " + error.text());
     return {};

@@ -16,6 +16,7 @@
 #include "batch/run_report.h"
 #include "batch/schedule.h"
 #include "batch/write_queue.h"
+#include "image/pixel_memory.h"
 #include "image/reader.h"
 #include "image/writer.h"
 #include "session/session.h"
@@ -66,6 +67,7 @@ class FrameLoop {
   FrameLoopOptions options_;
   RunEvents events_;
   FramePlanner planner_;
+  PixelMemory memory_;                            ///< of pictures that are read; before what uses it
   std::deque<std::unique_ptr<Reading>> running_;  ///< whose frames are in flight, the oldest first
   std::optional<PlannedFrame> planned_;
   WriteQueue writing_;

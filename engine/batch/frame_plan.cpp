@@ -9,6 +9,7 @@
 #include "batch/crop.h"
 #include "core/text.h"
 #include "image/metadata.h"
+#include "image/movie.h"
 
 namespace afterglow {
 
@@ -17,11 +18,27 @@ Error named(Error error, const FrameJob& job) {
   return error;
 }
 
+namespace {
+
+/// Frames that a video's decoder keeps: those of its cache, and those that others refer to.
+std::uint64_t decoder_bytes(const FrameJob& job, std::uint64_t max_bytes) {
+  if (!job.movie) return 0;
+  constexpr std::uint64_t kReferences = 20, kMostSampleBytes = 6;  // 16 and some in work; 4:4:4 of more than 8 bits
+  const MovieFacts& facts = job.movie->facts();
+  const std::uint64_t frame = static_cast<std::uint64_t>(facts.stored.area()) * kMostSampleBytes;
+  const std::uint64_t cached = job.passing ? 0 : std::min(movie_cache_bytes(max_bytes), facts.pts.size() * frame);
+  return cached + std::min<std::uint64_t>(kReferences, std::max<std::size_t>(facts.pts.size(), 1)) * frame;
+}
+
+}  // namespace
+
 Result<FrameNeed> FramePlanner::need_of(const PictureHeader& header, const Build& build, const FrameJob& job) {
   const BuildContext& context = build.context;
   FrameNeed need;
   need.reading = header.host_bytes;
   need.result = static_cast<std::uint64_t>(context.size.area()) * 4 * sizeof(float);
+  need.result += sink_.bytes_of_frame(job, context.size, header.has_alpha, header.facts.get());
+  need.held = sink_.bytes_held(context.size) + decoder_bytes(job, options_.read.max_bytes);
   need.device = session_.stack().memory_needed(build);
   largest_need_ = std::max(largest_need_, need.one_frame());
   if (need.one_frame() > options_.max_memory)

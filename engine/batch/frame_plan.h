@@ -23,6 +23,7 @@ struct FrameLoopOptions {
   double fps = 24;
   std::uint64_t max_memory = 6ull << 30;
   bool fail_fast = false;
+  bool whole_pre_roll = false;  ///< an earlier frame that cannot be read ends the run: what follows would be another
   NanPolicy nan_policy = NanPolicy::zero;  ///< fail: every pass of every frame is looked at, and nothing mended
   bool histories = false;                  ///< pictures depend on the frames before them
 };
@@ -30,9 +31,10 @@ struct FrameLoopOptions {
 /// Bytes that a frame takes.
 struct FrameNeed {
   std::uint64_t device = 0, reading = 0, result = 0;
-  std::uint64_t one_frame() const { return device + reading + result; }
+  std::uint64_t held = 0;  ///< whatever the number of frames: decoders' and encoders' frames
+  std::uint64_t one_frame() const { return device + reading + result + held; }
   /// One is read, one processed, `written` are being written.
-  std::uint64_t frames(std::uint64_t written) const { return device + 2 * reading + (1 + written) * result; }
+  std::uint64_t frames(std::uint64_t written) const { return device + 2 * reading + (1 + written) * result + held; }
 };
 
 /// Of a frame whose picture has not been read.

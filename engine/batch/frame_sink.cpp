@@ -22,6 +22,9 @@ class FileSink : public FrameSink {
     AFTERGLOW_CHECK(write_picture(picture, job.output, options_, diagnostics_));
     return look_ ? record_made(job, *look_) : Result<void>();
   }
+  std::uint64_t bytes_of_frame(const FrameJob& job, Size size, bool has_alpha, const FileFacts* facts) const override {
+    return write_bytes(job.output, options_, size, has_alpha, facts);
+  }
   void record_look(const Hash& look) override { look_ = look; }
 
  private:

@@ -29,6 +29,10 @@ class FrameSink {
   /// A frame; `index` is its place among those that the run was asked for, from 0. Where is_one(), one call at a time
   /// and in order; the places of frames that failed are left out.
   virtual Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture) = 0;
+  /// Memory that writing a frame takes besides the frame; what the sink holds of earlier frames. Bytes, for
+  /// --max-memory.
+  virtual std::uint64_t bytes_of_frame(const FrameJob&, Size, bool /*has_alpha*/, const FileFacts*) const { return 0; }
+  virtual std::uint64_t bytes_held(Size) const { return 0; }
   /// All that can come has come, of so many frames that were asked for: what was written appears. Without this call it
   /// goes.
   virtual Result<void> finish(std::size_t /*frames*/) { return {}; }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "core/json_text.h"
 #include "core/table.h"
@@ -80,22 +81,63 @@ double mean(const RunReport& report, Value value) {
 struct Step {
   const char* name;
   double milliseconds;
-  const char* note;
+  std::string note;
 };
+
+/// Mean of one of the steps.
+double mean_step(const RunReport& report, double FrameSteps::*step) {
+  return mean(report, [step](const FrameRecord& frame) { return frame.steps.*step; });
+}
+
+/// "a frame: 2.0 from its file, 11.5 decode"
+std::string parts_text(const RunReport& report, double whole, double FrameSteps::*part, const char* name,
+                       const char* rest) {
+  const double milliseconds = mean_step(report, part);
+  return fmt::format("a frame: {} {:.1f}, {} {:.1f}", name, milliseconds, rest, std::max(0.0, whole - milliseconds));
+}
 
 /// The steps in the order of work.
 std::vector<Step> steps(const RunReport& report) {
   const SessionTimes times = report.session ? report.session->times : SessionTimes{};
+  const double read = mean_step(report, &FrameSteps::read), write = mean_step(report, &FrameSteps::write);
   return {
       {"start-up", report.startup, "libraries and device; scripts not counted"},
       {"script", times.script, ""},
       {"compile", times.compile, "shaders and pipelines"},
-      {"read", mean(report, [](const auto& f) { return f.read; }), "a frame"},
+      {"plan", mean_step(report, &FrameSteps::plan), "a frame: its header, and the preset for it"},
+      {"read", read, parts_text(report, read, &FrameSteps::decode, "decode", "file")},
       {"upload", mean(report, [](const auto& f) { return f.times.upload; }), "a frame"},
       {"execute", mean(report, [](const auto& f) { return f.times.execute; }), "a frame"},
       {"read-back", mean(report, [](const auto& f) { return f.times.readback; }), "a frame"},
-      {"write", mean(report, [](const auto& f) { return f.write; }), "a frame"},
+      {"write", write, parts_text(report, write, &FrameSteps::encode, "encode", "file")},
   };
+}
+
+/// "a frame" goes without saying where there is one.
+std::string note_of(const Step& step, std::size_t done) {
+  if (done > 1 || !step.note.starts_with("a frame")) return step.note;
+  return step.note.size() > 9 ? step.note.substr(9) : "";
+}
+
+double processors_used(const RunReport& report) {
+  const double all = report.frames_wall * std::max(1u, std::thread::hardware_concurrency());
+  return all > 0 ? report.processors / all : 0;
+}
+
+/// How fast frames came, and what they waited for.
+std::string pace_text(const RunReport& report, std::size_t done) {
+  const double used = processors_used(report), frame = report.frames_wall / static_cast<double>(done);
+  const double read = mean_step(report, &FrameSteps::waited_read), write = mean_step(report, &FrameSteps::waited_write);
+  constexpr double kBusy = 0.9, kMuch = 0.2;
+  const char* limit = used >= kBusy                            ? "the processors are the limit"
+                      : read >= kMuch * frame && read >= write ? "reading is the limit"
+                      : write >= kMuch * frame                 ? "writing is the limit"
+                                                               : "the device is the limit";
+  return fmt::format(
+      "pace: {:.2f} frames a second; {:.0f} % of {} processors used; each frame waited {:.1f} ms to be read, {:.1f} ms "
+      "for others to "
+      "be written: {}\n",
+      1000 / std::max(frame, 1e-3), 100 * used, std::max(1u, std::thread::hardware_concurrency()), read, write, limit);
 }
 
 const FrameRecord* last_done(const RunReport& report) {
@@ -145,11 +187,17 @@ Json frame_json(const FrameRecord& frame) {
   if (frame.state != FrameRecord::State::done) return out;
   out["width"] = frame.size.width;
   out["height"] = frame.size.height;
-  out["milliseconds"] = Json{{"read", frame.read},
+  const FrameSteps& steps = frame.steps;
+  out["milliseconds"] = Json{{"plan", steps.plan},
+                             {"read", steps.read},
+                             {"decode", steps.decode},
                              {"upload", frame.times.upload},
                              {"execute", frame.times.execute},
                              {"read_back", frame.times.readback},
-                             {"write", frame.write}};
+                             {"encode", steps.encode},
+                             {"write", steps.write},
+                             {"waited_read", steps.waited_read},
+                             {"waited_write", steps.waited_write}};
   for (const auto& kernel : frame.times.kernels)
     out["passes"].push_back(Json{{"name", kernel.name}, {"milliseconds", kernel.milliseconds}});
   for (const auto& skipped : frame.skipped)
@@ -182,6 +230,15 @@ Json session_json(const SessionReport& session) {
 
 }  // namespace
 
+double processor_milliseconds() {
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto milliseconds = [](const timeval& time) {
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_usec);
+  };
+  return milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
+}
+
 std::uint64_t peak_memory() {
   struct rusage usage {};
   getrusage(RUSAGE_SELF, &usage);
@@ -199,9 +256,10 @@ std::string report_text(const RunReport& report, bool passes) {
   if (report.pre_roll > 0) out += fmt::format("pre-roll: {} earlier frames, not written\n", report.pre_roll);
   Table table({"step", "ms", ""});
   for (const auto& step : steps(report))
-    table.add({step.name, fmt::format("{:.1f}", step.milliseconds), done > 1 || *step.note != 'a' ? step.note : ""});
+    table.add({step.name, fmt::format("{:.1f}", step.milliseconds), note_of(step, done)});
   table.add({"wall", fmt::format("{:.1f}", report.wall), "from start to end; steps overlap"});
   out += table.text("  ");
+  if (done > 1) out += pace_text(report, done);
   out += fmt::format("memory: {} at the peak, {} estimated beforehand", memory_text(peak_memory()),
                      memory_text(report.memory_needed));
   if (report.session && report.session->memory.sum > 0)
@@ -223,6 +281,12 @@ std::string report_json(const RunReport& report) {
   Json out{{"afterglow", version()}};
   out["session"] = report.session ? session_json(*report.session) : Json(nullptr);
   for (const auto& step : steps(report)) out["milliseconds"][step.name] = step.milliseconds;
+  out["milliseconds"]["decode"] = mean_step(report, &FrameSteps::decode);
+  out["milliseconds"]["encode"] = mean_step(report, &FrameSteps::encode);
+  out["milliseconds"]["waited_read"] = mean_step(report, &FrameSteps::waited_read);
+  out["milliseconds"]["waited_write"] = mean_step(report, &FrameSteps::waited_write);
+  out["milliseconds"]["frames_wall"] = report.frames_wall;
+  out["milliseconds"]["processors"] = report.processors;
   out["milliseconds"]["wall"] = report.wall;
   out["memory"] = Json{{"peak", peak_memory()}, {"estimated", report.memory_needed}};
   out["pre_roll"] = report.pre_roll;

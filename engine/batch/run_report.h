@@ -13,13 +13,25 @@
 
 namespace afterglow {
 
-/// What became of one frame. Milliseconds; reading and writing overlap other frames' work.
+/// Where a frame's time went, in milliseconds. Reading and writing overlap other frames' work.
+struct FrameSteps {
+  double plan = 0;  ///< its header, and what the preset says of it
+  /// From the file until the picture was ready; `decode`: without waiting for the file, as far as that is known (EXR of
+  /// ZIP; other decoders read as they go).
+  double read = 0, decode = 0;
+  /// Until it was whole on disk, or in the video; `encode`: without waiting for the file.
+  double encode = 0, write = 0;
+  /// That nothing else could begin until it was read; until frames before it were written.
+  double waited_read = 0, waited_write = 0;
+};
+
+/// What became of one frame.
 struct FrameRecord {
   FrameJob job;
   enum class State { waiting, done, up_to_date, failed } state = State::waiting;
   std::optional<Error> error;
   Size size;
-  double read = 0, write = 0;
+  FrameSteps steps;
   FrameTimes times;
   FrameNonFinite non_finite;
   std::vector<Skipped> skipped;  ///< what this frame did not run because of its content
@@ -34,9 +46,13 @@ struct RunReport {
   std::size_t pre_roll = 0;  ///< earlier frames that were run besides, for what they hand on
   double startup = 0;        ///< from the start of the program until the first frame can begin; script not included
   double wall = 0;           ///< from the start of the program to now
+  double frames_wall = 0;    ///< from the first frame's beginning until the last was written
+  double processors = 0;     ///< milliseconds of processors in that time, of all threads
   std::uint64_t memory_needed = 0;  ///< estimate that was held against --max-memory, of the largest frame
 };
 
+/// Milliseconds of processors that this process has used so far.
+double processor_milliseconds();
 /// Largest resident size of this process so far, in bytes.
 std::uint64_t peak_memory();
 

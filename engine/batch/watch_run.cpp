@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
-#include "batch/input_watch.h"
 #include "core/file.h"
+#include "core/whole_files.h"
 
 namespace afterglow {
 namespace {
@@ -33,12 +34,30 @@ std::vector<Watched> watched_frames(FrameRecords& frames, int earlier) {
   return out;
 }
 
+WholeFiles watch_inputs(const FrameRecords& frames) {
+  std::set<std::filesystem::path> folders;
+  for (const auto& frame : frames)
+    for (const auto& file : frame.job.sources()) folders.insert(file.parent_path());
+  return WholeFiles(folders);
+}
+
+/// One hash of all files that a frame is made from, as they are now; nothing while one of them is not whole.
+std::optional<Hash> whole_sources(const FrameJob& job, WholeFiles& watch) {
+  Hasher hasher;
+  for (const auto& path : job.sources()) {
+    const auto stamp = watch.whole(path);
+    if (!stamp) return std::nullopt;
+    hasher.add(stamp->hex());
+  }
+  return hasher.finish();
+}
+
 /// Looks at all files once more; what has changed since it was made is due again, with what it reaches.
-void look_again(std::vector<Watched>& frames, InputWatch& watch) {
+void look_again(std::vector<Watched>& frames, WholeFiles& watch) {
   std::vector<bool> changed(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     Watched& one = frames[i];
-    one.now = watch.whole(one.record->job);
+    one.now = whole_sources(one.record->job, watch);
     if (!one.made && !one.due) one.made = one.now;  // up to date when the run began
     changed[i] = one.made && one.now && *one.now != *one.made;
   }
@@ -56,7 +75,7 @@ bool can_be_made(const std::vector<Watched>& frames, const Watched& one) {
 
 Result<void> run_watching(FrameRecords& frames, int earlier, bool fail_fast, const RunEvents& events,
                           const std::function<Result<void>()>& run) {
-  InputWatch watch(frames);
+  WholeFiles watch = watch_inputs(frames);
   std::vector<Watched> watched = watched_frames(frames, earlier);
   for (;;) {
     look_again(watched, watch);

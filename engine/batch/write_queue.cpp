@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "batch/write_queue.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "core/file_time.h"
 #include "core/stopwatch.h"
 
 namespace afterglow {
@@ -10,16 +12,22 @@ namespace afterglow {
 void WriteQueue::add(FrameRecord& frame, std::size_t index, Picture picture) {
   std::shared_future<Result<void>> before;
   if (sink_.is_one() && !writing_.empty()) before = writing_.back().written;
-  const auto write = [this, &frame, index, before, picture = std::move(picture)]() -> Result<void> {
+  auto write = [this, &frame, index, before, picture = std::move(picture)]() mutable -> Result<void> {
     // What came before could not be written: this would stand in a wrong place.
-    if (before.valid())
-      if (const Result<void>& earlier = before.get(); !earlier) return earlier;
+    if (before.valid()) {
+      const Result<void> earlier = before.get();
+      before = {};  // else each would hold all that were before it
+      if (!earlier) return earlier;
+    }
     const auto start = Clock::now();
+    const double files = FileTime::of_thread();
     auto written = sink_.write(frame.job, index, picture);
-    frame.write = milliseconds_since(start);
+    frame.steps.write = milliseconds_since(start);
+    frame.steps.encode = std::max(0.0, frame.steps.write - (FileTime::of_thread() - files));
+    memory_.give(std::move(picture));
     return written;
   };
-  writing_.push_back({&frame, std::async(std::launch::async, write).share()});
+  writing_.push_back({&frame, std::async(std::launch::async, std::move(write)).share()});
 }
 
 std::optional<WriteQueue::Written> WriteQueue::take() {

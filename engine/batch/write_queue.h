@@ -8,13 +8,15 @@
 
 #include "batch/frame_sink.h"
 #include "batch/run_report.h"
+#include "image/pixel_memory.h"
 
 namespace afterglow {
 
 /// Used from one thread; waits for what has begun when it goes.
 class WriteQueue {
  public:
-  explicit WriteQueue(FrameSink& sink) : sink_(sink) {}
+  /// `memory` gets that of pictures that have been written. Both outlive it.
+  WriteQueue(FrameSink& sink, PixelMemory& memory) : sink_(sink), memory_(memory) {}
 
   struct Written {
     FrameRecord* frame = nullptr;
@@ -31,6 +33,7 @@ class WriteQueue {
     std::shared_future<Result<void>> written;
   };
   FrameSink& sink_;
+  PixelMemory& memory_;
   std::deque<Writing> writing_;
 };
 

@@ -73,7 +73,8 @@ void clean_up_after(const Job& job, const AttemptFile& attempt) {
   const auto mark = json["temporaries"].get<std::string>();
   const fs::path outputs = job.folder.parent_path().parent_path();
   if (!mark.empty())
-    for (const fs::path& folder : {outputs, outputs / ".afterglow"}) remove_temporaries_of(mark, folder);
+    for (const fs::path& folder : {outputs, outputs / ".afterglow", job.folder / "pieces"})
+      remove_temporaries_of(mark, folder);
 }
 
 }  // namespace
@@ -90,7 +91,7 @@ Result<std::vector<AttemptFile>> attempts_of(const Job& job) {
   std::error_code ec;
   fs::directory_iterator it(folder, ec);
   for (const fs::directory_iterator end; !ec && it != end; it.increment(ec))
-    if (auto attempt = attempt_of_name(it->path()); attempt && attempt->chunk < job.chunks.size())
+    if (auto attempt = attempt_of_name(it->path()); attempt && attempt->chunk < job.tasks())
       out.push_back(std::move(*attempt));
   if (ec) return Error{ErrorKind::io, fmt::format("cannot be read: {}", ec.message()), folder.string()};
   const auto place = [](const AttemptFile& a) { return std::tuple(a.chunk, a.number, !a.exit_code); };

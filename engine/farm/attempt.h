@@ -2,6 +2,8 @@
 // What became of the chunks of a job: a file for each try to make one, in `attempts/`. Its name says how it went, so
 // that one listing of the folder tells the state of all:
 //
+// A video that is joined is one more chunk behind the others.
+//
 //   CHUNK.TRY.begun    it began: where and when
 //   CHUNK.TRY.exit-N   it ended with this exit code; the same, with what `run` reports
 //

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::size_t kLargest = 512u << 20;  // a million single files are named one by one
 
 Json chunk_json(const Chunk& chunk) {
@@ -59,6 +59,7 @@ Json job_json(const Job& job) {
            {"files", job.files},
            {"pre_roll", job.pre_roll ? Json(*job.pre_roll) : Json(nullptr)},
            {"needs", needs_json(job.needs)},
+           {"video", job.video},
            {"chunks", Json::array()}};
   for (const auto& chunk : job.chunks) out["chunks"].push_back(chunk_json(chunk));
   return out;
@@ -76,6 +77,7 @@ Job job_of_json(const Json& json) {
   job.files = json.at("files").get<std::map<std::string, std::string>>();
   if (!json.at("pre_roll").is_null()) job.pre_roll = json.at("pre_roll").get<int>();
   job.needs = needs_of(json.at("needs"));
+  job.video = json.at("video").get<std::string>();
   for (const auto& chunk : json.at("chunks")) job.chunks.push_back(chunk_of(chunk));
   for (const auto& chunk : job.chunks)
     if (chunk.count < 1) throw std::invalid_argument("a chunk without frames");
@@ -110,8 +112,28 @@ std::size_t Job::frames() const {
   return sum;
 }
 
-std::vector<std::string> Job::command(std::size_t chunk) const {
-  return {program, "farm", "chunk", folder.string(), fmt::format("{}", chunk)};
+std::vector<std::string> Job::command(std::size_t task) const {
+  if (is_join(task)) return {program, "farm", "join", folder.string()};
+  return {program, "farm", "chunk", folder.string(), fmt::format("{}", task)};
+}
+
+fs::path Job::piece(std::size_t chunk) const {
+  return folder / "pieces" / fmt::format("{}{}", chunk, fs::path(video).extension().string());
+}
+
+std::vector<Chunk> Job::inputs() const {
+  std::vector<Chunk> out;
+  for (const Chunk& chunk : chunks) {
+    const bool goes_on =
+        !out.empty() && !chunk.frames.empty() && !out.back().frames.empty() && out.back().inputs == chunk.inputs;
+    if (!goes_on) {
+      out.push_back(chunk);
+      continue;
+    }
+    out.back().frames += "," + chunk.frames;
+    out.back().count += chunk.count;
+  }
+  return out;
 }
 
 std::string frames_text(const std::vector<int>& frames) {
@@ -130,6 +152,7 @@ std::string frames_text(const std::vector<int>& frames) {
 std::vector<Chunk> chunks_of(const std::vector<FrameJob>& jobs, int most) {
   std::vector<Chunk> chunks;
   const auto is_sequence = [](const FrameJob& job) {
+    if (job.movie) return true;
     const auto pattern = parse_pattern(job.sequence);
     return pattern && pattern->numbered;
   };
@@ -172,7 +195,7 @@ Result<fs::path> make_job_folder(const fs::path& outputs) {
   while (!ec) {
     const fs::path folder = above / new_job_id();
     if (!fs::create_directory(folder, ec)) continue;  // somebody else's, made in the same moment
-    for (const char* name : {"look", "attempts", "logs"})
+    for (const char* name : {"look", "attempts", "logs", "pieces"})
       if (!ec) fs::create_directory(folder / name, ec);
     if (!ec) return folder;
   }

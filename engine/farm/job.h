@@ -8,6 +8,7 @@
 //   slurm.json  what was submitted
 //   attempts/   what became of each chunk: see attempt.h
 //   logs/       what each chunk had to say
+//   pieces/     of a job whose output is one video: what the chunks made, until it is joined
 #pragma once
 
 #include <filesystem>
@@ -49,13 +50,21 @@ struct Job {
   std::optional<int> pre_roll;  ///< earlier frames that a chunk runs first; empty: no frame depends on others
   Needs needs;
   std::vector<Chunk> chunks;
+  std::string video;  ///< the one output, absolute, joined from a piece a chunk; empty: pictures
 
   std::size_t frames() const;
-  /// The words that make one chunk.
-  std::vector<std::string> command(std::size_t chunk) const;
+  /// Chunks, and behind them the joining of a video.
+  std::size_t tasks() const { return chunks.size() + (video.empty() ? 0 : 1); }
+  bool is_join(std::size_t task) const { return task == chunks.size() && !video.empty(); }
+  /// The words that make one chunk, or join the video.
+  std::vector<std::string> command(std::size_t task) const;
+  /// Where a chunk leaves its part of the video.
+  std::filesystem::path piece(std::size_t chunk) const;
+  /// All frames as `run` takes them: inputs that follow each other and their frames, as few as can be.
+  std::vector<Chunk> inputs() const;
 };
 
-/// Chunks of at most so many frames, by sequence, in the order of `jobs`, which list_frames made.
+/// Chunks of at most so many frames, by sequence or video, in the order of `jobs`, which list_frames made.
 std::vector<Chunk> chunks_of(const std::vector<FrameJob>& jobs, int most);
 
 /// "1-24,30,32-40x2": what parse_frames makes the same frames of. Frames in their order, each once.

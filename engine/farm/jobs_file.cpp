@@ -32,6 +32,19 @@ Json files_json(const Job& job, std::span<const FrameRecord> frames) {
   return Json{{"inputs", inputs}, {"outputs", std::move(outputs)}};
 }
 
+/// What is to run when all chunks are done.
+Json join_json(const Job& job, const FrameListRequest& request) {
+  const auto command = job.command(job.chunks.size());
+  Json inputs = Json::array();
+  for (std::size_t i = 0; i < job.chunks.size(); ++i) inputs.push_back(job.piece(i).string());
+  for (const auto& input : request.inputs) inputs.push_back(whole_name(job, input));
+  return Json{{"after", "chunks"},
+              {"command", command},
+              {"shell", shell_line(command)},
+              {"inputs", std::move(inputs)},
+              {"outputs", Json::array({job.video})}};
+}
+
 }  // namespace
 
 Result<std::string> jobs_text(const Job& job, const FrameListRequest& request, const std::vector<FrameJob>& frames) {
@@ -53,9 +66,11 @@ Result<std::string> jobs_text(const Job& job, const FrameListRequest& request, c
                {"command", command},
                {"shell", shell_line(command)}};
     chunk.update(files_json(job, left.first(count)));
+    if (!job.video.empty()) chunk["outputs"] = Json::array({job.piece(i).string()});
     left = left.subspan(count);
     out["chunks"].push_back(std::move(chunk));
   }
+  if (!job.video.empty()) out["join"] = join_json(job, request);
   try {
     return out.dump(1) + "\n";
   } catch (const nlohmann::json::exception&) {

@@ -30,8 +30,9 @@ struct NodeSum {
 };
 
 struct Merge {
-  std::map<std::string, Json> frames;  ///< by output
-  std::vector<std::string> order;      ///< outputs as chunks have them
+  std::string video;                   ///< the one output; empty: pictures
+  std::map<std::string, Json> frames;  ///< by output, or by number and input where there is one output
+  std::vector<std::string> order;      ///< of `frames`, as chunks have them
   std::map<std::string, NodeSum> nodes;
   std::map<std::string, std::size_t> devices;                          ///< frames made, by device and execution
   std::map<std::pair<std::string, std::string>, std::size_t> skipped;  ///< tries or frames, by name and reason
@@ -60,8 +61,13 @@ void count_skipped(Merge& merge, const Json& from) {
 
 /// A frame that one try made and a later one found up to date keeps what the first says of it.
 void take_frame(Merge& merge, Json frame, const std::string& node, NodeSum& sum, std::size_t& made) {
-  const std::string output = text_of(frame, "output"), state = text_of(frame, "state");
+  const std::string state = text_of(frame, "state");
+  std::string output = text_of(frame, "output");
   if (output.empty()) return;
+  if (!merge.video.empty()) {  // one output of all
+    frame["output"] = merge.video;
+    output = fmt::format("{} {}", number_of(frame, "frame"), text_of(frame, "input"));
+  }
   const auto known = merge.frames.find(output);
   if (known == merge.frames.end()) merge.order.push_back(output);
   const bool was_done = known != merge.frames.end() && text_of(known->second, "state") == "done";
@@ -190,6 +196,7 @@ std::string merged_text(const Job& job, const JobStatus& status, const Merge& me
 Result<MergedReport> merged_report(const Job& job, const JobStatus& status) {
   AFTERGLOW_TRY(const auto attempts, attempts_of(job));
   Merge merge;
+  merge.video = job.video;
   for (const auto& attempt : attempts) take_attempt_report(merge, attempt);
   sum_times(merge);
   return MergedReport{merged_text(job, status, merge), json_text(merged_json(job, status, merge))};

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "core/file.h"
 #include "core/json_text.h"
@@ -74,6 +75,7 @@ class Latest {
     const auto [at, fresh] = from_.emplace(chunk, *place);
     if (!fresh && at->second > *place) return;
     at->second = *place;
+    state.array = array;
     states_[chunk] = std::move(state);
   }
   std::map<std::size_t, TaskState> take() { return std::move(states_); }
@@ -105,6 +107,41 @@ std::map<std::string, std::string> ids_by_cluster(const Submissions& submissions
     ids += (ids.empty() ? "" : ",") + array.id;
   }
   return out;
+}
+
+/// Arrays of the tasks; a video is joined by one of its own.
+std::vector<ArrayPlan> task_plans(const Job& job, std::vector<std::size_t> tasks, std::size_t most) {
+  const bool joins = !tasks.empty() && job.is_join(tasks.back());
+  if (joins) tasks.pop_back();
+  auto plans = array_plans(tasks, most);
+  if (joins) plans.push_back(array_plans({job.chunks.size()}, most).front());
+  return plans;
+}
+
+/// Whether the array is the joining of the video.
+bool is_join(const Job& job, const ArrayPlan& plan) {
+  const auto task = number_in(plan.tasks);
+  return task && job.is_join(plan.base + *task);
+}
+
+/// Arrays with chunks that wait or run. A join that waits for them already is taken back.
+Result<std::vector<std::string>> arrays_before_the_join(const Job& job, const Submissions& all) {
+  std::set<std::string> live;
+  AFTERGLOW_TRY(const auto states, task_states(all));
+  for (const auto& [task, state] : states) {
+    if (state.ended()) continue;
+    if (!job.is_join(task)) {
+      live.insert(state.array);
+      continue;
+    }
+    for (const SlurmArray& array : all.arrays) {
+      if (array.id != state.array) continue;
+      std::vector<std::string> words{"scancel", "--quiet", array.id};
+      add_cluster(words, array);
+      static_cast<void>(run_process(words));
+    }
+  }
+  return std::vector<std::string>(live.begin(), live.end());
 }
 
 }  // namespace
@@ -147,6 +184,8 @@ chunk=$(($1 + SLURM_ARRAY_TASK_ID))
 exec >>"$job/logs/$chunk.log" 2>&1
 {} farm chunk "$job" "$chunk"
 code=$?
+# Behind the last chunk a video is joined, once all are done: trying again brings none of them back.
+[ "$chunk" -lt {} ] || exit $code
 # What no other try mends: a look or options that are wrong. What was told to stop: 130, 143.
 case $code in 0 | 2 | 3 | 130 | 143) exit $code ;; esac
 if [ "${{SLURM_RESTART_COUNT:-0}}" -lt {} ]; then
@@ -155,7 +194,7 @@ if [ "${{SLURM_RESTART_COUNT:-0}}" -lt {} ]; then
 fi
 exit $code
 )",
-                     shell_word(job.folder.string()), shell_word(job.program), job.needs.retries);
+                     shell_word(job.folder.string()), shell_word(job.program), job.chunks.size(), job.needs.retries);
 }
 
 std::vector<ArrayPlan> array_plans(const std::vector<std::size_t>& chunks, std::size_t most) {
@@ -186,23 +225,29 @@ std::vector<std::string> sbatch_words(const Job& job, const ArrayPlan& plan) {
   add("--time=", job.needs.time);
   add("--mem=", job.needs.memory);
   words.insert(words.end(), job.needs.more.begin(), job.needs.more.end());
+  // Last, so that it counts: what the job's own words wait for, the chunks have waited for.
+  if (!plan.after.empty()) words.push_back("--dependency=afterany:" + join(plan.after, ":"));
   words.push_back((job.folder / "task.sh").string());
   words.push_back(fmt::format("{}", plan.base));
   return words;
 }
 
-std::vector<std::size_t> every_chunk(const Job& job) {
-  std::vector<std::size_t> out(job.chunks.size());
+std::vector<std::size_t> every_task(const Job& job) {
+  std::vector<std::size_t> out(job.tasks());
   std::iota(out.begin(), out.end(), 0);
   return out;
 }
 
 std::string plan_text(const Job& job) {
   const auto most = largest_array();
-  std::string out = fmt::format("# {} frames in {} chunks{}\n", job.frames(), job.chunks.size(),
-                                job.pre_roll ? fmt::format(", each behind {} frames of pre-roll", *job.pre_roll) : "");
-  for (const auto& plan : array_plans(every_chunk(job), most ? *most : job.chunks.size()))
-    out += shell_line(sbatch_words(job, plan)) + "\n";
+  std::string out = fmt::format("# {} frames in {} chunks{}{}\n", job.frames(), job.chunks.size(),
+                                job.pre_roll ? fmt::format(", each behind {} frames of pre-roll", *job.pre_roll) : "",
+                                job.video.empty() ? "" : ", then joined");
+  for (const auto& plan : task_plans(job, every_task(job), most ? *most : job.tasks())) {
+    ArrayPlan shown = plan;
+    if (is_join(job, plan)) shown.after = {"ARRAYS_ABOVE"};
+    out += shell_line(sbatch_words(job, shown)) + "\n";
+  }
   return out + fmt::format("\n# {}\n{}", (job.folder / "task.sh").string(), task_script(job));
 }
 
@@ -216,17 +261,23 @@ Result<std::size_t> largest_array() {
   return Error{ErrorKind::io, "scontrol does not say MaxArraySize; are job arrays switched off?"};
 }
 
-Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& chunks) {
+Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& tasks) {
   AFTERGLOW_TRY(const std::size_t most, largest_array());
   AFTERGLOW_TRY(Submissions all, read_submissions(job));
   const std::size_t before = all.arrays.size();
+  std::vector<std::string> live;  // arrays that the joining waits for
+  if (before > 0 && job.is_join(tasks.back())) {
+    AFTERGLOW_TRY(live, arrays_before_the_join(job, all));
+  }
   all.cancelled = false;
-  for (const auto& plan : array_plans(chunks, most)) {
+  for (auto& plan : task_plans(job, tasks, most)) {
+    if (is_join(job, plan)) plan.after = live;
     auto printed = output_of(sbatch_words(job, plan));
     Result<void> noted;
     if (printed) {
       const auto parts = split(trim(*printed), ';');
       all.arrays.push_back({parts[0], parts.size() > 1 ? parts[1] : "", plan.base});
+      live.push_back(parts[0]);
       noted = write_submissions(job, all);
     }
     if (printed && noted) continue;

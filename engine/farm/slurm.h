@@ -34,6 +34,7 @@ std::string task_script(const Job& job);
 struct ArrayPlan {
   std::size_t base = 0;
   std::string tasks;
+  std::vector<std::string> after = {};  ///< arrays that end before it begins
 };
 /// `most` tasks an array, numbered from 0. `chunks` by number.
 std::vector<ArrayPlan> array_plans(const std::vector<std::size_t>& chunks, std::size_t most);
@@ -43,23 +44,25 @@ std::vector<std::string> sbatch_words(const Job& job, const ArrayPlan& plan);
 /// How the job would be submitted, and the script: what --dry-run prints. Asks Slurm how large arrays may be, where it
 /// is there.
 std::string plan_text(const Job& job);
-/// The chunks of a job by number.
-std::vector<std::size_t> every_chunk(const Job& job);
+/// The tasks of a job by number: its chunks, and the joining of a video.
+std::vector<std::size_t> every_task(const Job& job);
 
 /// MaxArraySize of the cluster. Errors: io (Slurm is not there, or does not answer).
 Result<std::size_t> largest_array();
-/// Submits the chunks and takes down each array as it is accepted. Where one is refused, those before it are cancelled.
+/// Submits the tasks, by rising number, and takes down each array as it is accepted. Where one is refused, those before
+/// it are cancelled. The joining of a video waits for all chunks that Slurm has; one that waits already is taken back.
 /// Errors: io.
-Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& chunks);
+Result<Submissions> submit(const Job& job, const std::vector<std::size_t>& tasks);
 /// Ends what waits and runs. Errors: io.
 Result<void> cancel(const Job& job);
 
 /// What Slurm knows of a chunk.
 struct TaskState {
-  std::string state;   ///< in Slurm's words: PENDING, RUNNING, NODE_FAIL, …
-  std::string node;    ///< empty: none yet
-  std::string reason;  ///< why it waits
-  bool ended() const;  ///< nothing more happens to it
+  std::string state;    ///< in Slurm's words: PENDING, RUNNING, NODE_FAIL, …
+  std::string node;     ///< empty: none yet
+  std::string reason;   ///< why it waits
+  std::string array{};  ///< that it is of
+  bool ended() const;   ///< nothing more happens to it
 };
 /// Of the chunks that Slurm still knows: its queue, and its accounting where there is one. Errors: io.
 Result<std::map<std::size_t, TaskState>> task_states(const Submissions& submissions);

@@ -113,7 +113,7 @@ bool JobStatus::live() const {
 
 Result<JobStatus> status_of(const Job& job) {
   JobStatus status;
-  status.chunks.resize(job.chunks.size());
+  status.chunks.resize(job.tasks());
   status.frames = job.frames();
   AFTERGLOW_TRY(const Submissions submissions, read_submissions(job));
   for (const auto& array : submissions.arrays) status.arrays.push_back(array.id);
@@ -141,12 +141,14 @@ Result<JobStatus> status_of(const Job& job) {
   return status;
 }
 
-std::vector<std::size_t> chunks_to_retry(const JobStatus& status) {
+std::vector<std::size_t> tasks_to_retry(const Job& job, const JobStatus& status) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < status.chunks.size(); ++i) {
     const State state = status.chunks[i].state;
-    if (state == State::not_begun || state == State::failed || state == State::lost || state == State::cancelled)
-      out.push_back(i);
+    const bool ended =
+        state == State::not_begun || state == State::failed || state == State::lost || state == State::cancelled;
+    // A join that waits for the other chunks has to wait for these too.
+    if (ended || (job.is_join(i) && state == State::waiting && !out.empty())) out.push_back(i);
   }
   return out;
 }
@@ -162,8 +164,9 @@ std::string status_line(const JobStatus& status) {
 }
 
 std::string status_text(const Job& job, const JobStatus& status, bool all) {
-  std::string out = fmt::format("{}: {}, {} of {} frames, {} chunks: {}\n", job.id, job.look, status.frames_done,
-                                status.frames, job.chunks.size(), status_line(status));
+  std::string out =
+      fmt::format("{}: {}, {} of {} frames, {} chunks{}: {}\n", job.id, job.look, status.frames_done, status.frames,
+                  job.chunks.size(), job.video.empty() ? "" : " and the join", status_line(status));
   if (!status.arrays.empty()) out += fmt::format("slurm: {}\n", join(status.arrays));
   Table table({"chunk", "frames", "state", "tries", "node", ""});
   std::size_t rows = 0;
@@ -171,8 +174,8 @@ std::string status_text(const Job& job, const JobStatus& status, bool all) {
     const ChunkStatus& chunk = status.chunks[i];
     if (!all && (chunk.state == State::done || chunk.state == State::waiting)) continue;
     ++rows;
-    table.add({fmt::format("{}", i), chunk_name(job.chunks[i]), word_of(chunk.state), fmt::format("{}", chunk.tries),
-               chunk.node, first_line(chunk.why)});
+    table.add({fmt::format("{}", i), job.is_join(i) ? "join" : chunk_name(job.chunks[i]), word_of(chunk.state),
+               fmt::format("{}", chunk.tries), chunk.node, first_line(chunk.why)});
   }
   return rows > 0 ? out + table.text("  ") : out;
 }
@@ -192,8 +195,8 @@ Result<void> outcome_of(const Job& job, const JobStatus& status) {
   for (const ErrorKind known : {ErrorKind::usage, ErrorKind::script, ErrorKind::io, ErrorKind::device})
     if (!stopped && code == static_cast<int>(known)) kind = known;
   Error error{kind,
-              fmt::format("{} of {} chunks are not done ({})", job.chunks.size() - done, job.chunks.size(),
-                          status_line(status)),
+              fmt::format("{} of {} chunks{} are not done ({})", status.chunks.size() - done, job.chunks.size(),
+                          job.video.empty() ? "" : " and the join", status_line(status)),
               job.folder.string()};
   if (first && !first->why.empty()) error.trail.push_back(first_line(first->why));
   error.trail.push_back("`afterglow farm retry` makes what is missing");

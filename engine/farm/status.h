@@ -29,7 +29,7 @@ struct ChunkStatus {
 };
 
 struct JobStatus {
-  std::vector<ChunkStatus> chunks;
+  std::vector<ChunkStatus> chunks;  ///< and behind them the joining of a video
   std::vector<std::string> arrays;  ///< their ids
   std::size_t frames = 0, frames_done = 0;
   std::size_t count(ChunkStatus::State state) const;
@@ -40,8 +40,9 @@ struct JobStatus {
 
 /// Asks Slurm where the job was submitted to it. Errors: io.
 Result<JobStatus> status_of(const Job& job);
-/// Chunks that are neither done nor in the queue.
-std::vector<std::size_t> chunks_to_retry(const JobStatus& status);
+/// Chunks that are neither done nor in the queue; with any of them, or by itself, the joining of a video that is not
+/// done and does not run.
+std::vector<std::size_t> tasks_to_retry(const Job& job, const JobStatus& status);
 
 /// Counts, and a line for each chunk that is not as it should be; with `all` for every one.
 std::string status_text(const Job& job, const JobStatus& status, bool all);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "core/file_time.h"
 #include "core/parallel.h"
 #include "image/encode.h"
 #include "image/exr_zip.h"
@@ -51,7 +52,10 @@ class LineReader {
     std::vector<std::vector<std::uint8_t>> packed(static_cast<std::size_t>(most));
     for (int first = 0; first < chunks; first += most) {
       const int count = std::min(most, chunks - first);
-      for (int i = 0; i < count; ++i) fetch(first + i, packed[static_cast<std::size_t>(i)]);
+      {
+        const FileTime time;
+        for (int i = 0; i < count; ++i) fetch(first + i, packed[static_cast<std::size_t>(i)]);
+      }
       const long long samples = static_cast<long long>(line_bytes_) * lines_ * count;
       parallel_rows(count, samples, [&](int begin, int end) {
         ExrUnzip unzip;

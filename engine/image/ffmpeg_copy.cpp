@@ -9,6 +9,8 @@ extern "C" {
 
 #include <fmt/format.h>
 
+#include <string_view>
+
 #include "core/text.h"
 #include "image/ffmpeg_log.h"
 
@@ -32,6 +34,12 @@ std::string stream_name(const AVStream& stream, unsigned index) {
 bool can_hold(const AVOutputFormat& format, AVCodecID codec) {
   const int held = avformat_query_codec(&format, codec, FF_COMPLIANCE_NORMAL);
   return held == 1;
+}
+
+/// Fonts and the like, which Matroska holds by name and kind.
+bool is_attachment(const AVOutputFormat& format, const AVStream& from) {
+  return from.codecpar->codec_type == AVMEDIA_TYPE_ATTACHMENT && std::string_view(format.name) == "matroska" &&
+         av_dict_get(from.metadata, "filename", nullptr, 0) && av_dict_get(from.metadata, "mimetype", nullptr, 0);
 }
 
 }  // namespace
@@ -60,29 +68,44 @@ Result<std::unique_ptr<FfmpegCopy>> FfmpegCopy::open(const std::filesystem::path
   return copy;
 }
 
+/// As it is, or as other text; null where the container holds neither.
+Result<AVStream*> FfmpegCopy::add_stream(unsigned index) {
+  AVFormatContext& out = output_.container();
+  const AVStream& from = *input_->streams[index];
+  const AVMediaType kind = from.codecpar->codec_type;
+  const bool known = kind == AVMEDIA_TYPE_AUDIO || kind == AVMEDIA_TYPE_SUBTITLE;
+  const bool held = (known && can_hold(*out.oformat, from.codecpar->codec_id)) || is_attachment(*out.oformat, from);
+  if (!held && kind == AVMEDIA_TYPE_SUBTITLE) texts_[index] = FfmpegSubtitles::open(from, *out.oformat);
+  if (!held && !texts_[index]) return static_cast<AVStream*>(nullptr);
+  AVStream* to = avformat_new_stream(&out, nullptr);
+  const int code = !to             ? AVERROR(ENOMEM)
+                   : texts_[index] ? avcodec_parameters_from_context(to->codecpar, &texts_[index]->encoder())
+                                   : avcodec_parameters_copy(to->codecpar, from.codecpar);
+  if (code < 0) return Error{ErrorKind::io, "cannot be written: " + ffmpeg_error(code)};
+  to->codecpar->codec_tag = 0;
+  to->time_base = from.time_base;
+  to->disposition = from.disposition;
+  av_dict_copy(&to->metadata, from.metadata, 0);
+  return to;
+}
+
 Result<void> FfmpegCopy::add_streams(bool sound_only, const std::string& name, Diagnostics& diagnostics) {
   AVFormatContext& out = output_.container();
   std::vector<std::string> left;
   bool sound = false;
   target_.assign(input_->nb_streams, -1);
+  texts_.resize(input_->nb_streams);
   for (unsigned i = 0; i < input_->nb_streams; ++i) {
     const AVStream& from = *input_->streams[i];
     const AVMediaType kind = from.codecpar->codec_type;
     sound = sound || kind == AVMEDIA_TYPE_AUDIO;
     if (kind == AVMEDIA_TYPE_VIDEO || (sound_only && kind != AVMEDIA_TYPE_AUDIO)) continue;
-    const bool known = kind == AVMEDIA_TYPE_AUDIO || kind == AVMEDIA_TYPE_SUBTITLE;
-    if (!known || !can_hold(*out.oformat, from.codecpar->codec_id)) {
+    AFTERGLOW_TRY(const AVStream* to, add_stream(i));
+    const bool timecode = from.codecpar->codec_tag == MKTAG('t', 'm', 'c', 'd');  // told by a tag
+    if (to)
+      target_[i] = to->index;
+    else if (!timecode)
       left.push_back(stream_name(from, i));
-      continue;
-    }
-    AVStream* to = avformat_new_stream(&out, nullptr);
-    if (!to || avcodec_parameters_copy(to->codecpar, from.codecpar) < 0)
-      return Error{ErrorKind::io, "cannot be written: no memory"};
-    to->codecpar->codec_tag = 0;
-    to->time_base = from.time_base;
-    to->disposition = from.disposition;
-    av_dict_copy(&to->metadata, from.metadata, 0);
-    target_[i] = to->index;
   }
   if (sound_only && !sound) return Error{ErrorKind::io, "has no sound", file_.string()};
   if (!sound_only) av_dict_copy(&out.metadata, input_->metadata, AV_DICT_DONT_OVERWRITE);
@@ -90,6 +113,13 @@ Result<void> FfmpegCopy::add_streams(bool sound_only, const std::string& name, D
     diagnostics.warn(fmt::format("{}: {} of {} cannot be held by {} and {} left out", name, join(left), file_.string(),
                                  out.oformat->name, left.size() == 1 ? "is" : "are"));
   return {};
+}
+
+std::string FfmpegCopy::timecode() const {
+  const AVDictionaryEntry* found = av_dict_get(input_->metadata, "timecode", nullptr, 0);
+  for (unsigned i = 0; !found && i < input_->nb_streams; ++i)
+    found = av_dict_get(input_->streams[i]->metadata, "timecode", nullptr, 0);
+  return found ? found->value : "";
 }
 
 /// As far as they lie in the range.
@@ -146,7 +176,7 @@ Result<void> FfmpegCopy::copy(std::int64_t until) {
       const std::int64_t time = av_rescale_q(stamp, input_->streams[stream]->time_base, kMicroseconds);
       if (time >= range_.begin && time < range_.end) {
         if (time - range_.shift >= until) return {};  // later
-        AFTERGLOW_CHECK(put(*waiting_));
+        if (!texts_[stream] || texts_[stream]->convert(*waiting_)) AFTERGLOW_CHECK(put(*waiting_));
       }
     }
     waiting_.reset();

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Sound, subtitles, chapters and texts of one file go into another as they are, packet by packet.
+// Sound, subtitles, attachments, chapters and texts of one file go into another as they are, packet by packet;
+// subtitles that the other cannot hold as they are become text that it can.
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/diagnostics.h"
 #include "core/result.h"
 #include "image/ffmpeg_handles.h"
 #include "image/ffmpeg_output.h"
+#include "image/ffmpeg_subtitles.h"
 #include "image/video_output.h"
 
 namespace afterglow {
@@ -24,11 +27,14 @@ class FfmpegCopy {
                                                   Diagnostics& diagnostics);
   ~FfmpegCopy();
 
+  /// Of the first picture in the file; empty: it has none.
+  std::string timecode() const;
   /// Writes what comes before `until` (microseconds of the output's clock).
   Result<void> copy(std::int64_t until);
 
  private:
   explicit FfmpegCopy(FfmpegOutput& output) : output_(output) {}
+  Result<AVStream*> add_stream(unsigned index);
   Result<void> add_streams(bool sound_only, const std::string& name, Diagnostics& diagnostics);
   void add_chapters();
   Result<void> put(AVPacket& packet);
@@ -36,8 +42,9 @@ class FfmpegCopy {
   FfmpegOutput& output_;
   std::filesystem::path file_;
   AVFormatContext* input_ = nullptr;
-  std::vector<int> target_;  ///< of each stream; −1: none
-  PacketHandle waiting_;     ///< read, and later than the last `until`
+  std::vector<int> target_;                              ///< of each stream; −1: none
+  std::vector<std::unique_ptr<FfmpegSubtitles>> texts_;  ///< of streams that become others
+  PacketHandle waiting_;                                 ///< read, and later than the last `until`
   CopyRange range_;
   bool ended_ = false;
 };

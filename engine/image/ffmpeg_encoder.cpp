@@ -11,20 +11,15 @@ extern "C" {
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <map>
 
 #include "core/text.h"
-#include "image/ffmpeg_copy.h"
 #include "image/ffmpeg_log.h"
-#include "image/ffmpeg_output.h"
+#include "image/ffmpeg_video_file.h"
 #include "image/palette.h"
 
 namespace afterglow {
 namespace {
-
-constexpr AVRational kMicrosecond{1, AV_TIME_BASE};
-AVRational rational(const Rational& value) { return {value.numerator, value.denominator}; }
 
 Error encoder_failed(int code) { return {ErrorKind::io, "cannot be encoded: " + ffmpeg_error(code)}; }
 
@@ -34,15 +29,13 @@ class FfmpegEncoder : public VideoEncoder {
 
   Result<void> open(OutputFile& out, const std::filesystem::path& path, const std::string& name,
                     Diagnostics& diagnostics) {
-    AFTERGLOW_TRY(output_, FfmpegOutput::open(plan_.container.c_str(), out, path));
+    AFTERGLOW_TRY(file_, FfmpegVideoFile::open(plan_, out, path));
     AFTERGLOW_CHECK(open_codec(name));
-    AFTERGLOW_CHECK(add_stream());
-    if (!plan_.audio.empty()) {
-      AFTERGLOW_CHECK(add_copy(plan_.audio, true, name, diagnostics));
-    } else if (!plan_.source.empty()) {
-      AFTERGLOW_CHECK(add_copy(plan_.source, false, name, diagnostics));
-    }
-    return begin();
+    ParametersHandle parameters(avcodec_parameters_alloc());
+    if (!parameters) return encoder_failed(AVERROR(ENOMEM));
+    if (const int code = avcodec_parameters_from_context(parameters.get(), codec_.get()); code < 0)
+      return encoder_failed(code);
+    return file_->begin(*parameters, plan_.pack.layout->alpha, name, diagnostics);
   }
 
   Result<void> write(const PackedFrame& frame, VideoTime time) override {
@@ -73,9 +66,7 @@ class FfmpegEncoder : public VideoEncoder {
   Result<void> finish(bool whole) override {
     if (const int code = avcodec_send_frame(codec_.get(), nullptr); code < 0) return encoder_failed(code);
     AFTERGLOW_CHECK(drain());
-    const std::int64_t end = av_rescale_q(end_, rational(plan_.time_base), kMicrosecond);
-    if (copy_) AFTERGLOW_CHECK(copy_->copy(whole ? std::numeric_limits<std::int64_t>::max() : end));
-    return output_->finish();
+    return file_->finish(whole, end_);
   }
 
  private:
@@ -114,8 +105,8 @@ class FfmpegEncoder : public VideoEncoder {
     codec_->thread_count = 0;
     describe_colors();
     codec_->flags |= AV_CODEC_FLAG_BITEXACT;
-    if ((output_->container().oformat->flags & AVFMT_GLOBALHEADER) != 0) codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    if (plan_.codec == "h265" && plan_.container != "matroska") codec_->codec_tag = MKTAG('h', 'v', 'c', '1');
+    if (file_->wants_global_header()) codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+    if (const unsigned tag = file_->codec_tag(); tag != 0) codec_->codec_tag = tag;
     AVDictionary* options = nullptr;
     for (const auto& [key, value] : plan_.settings) av_dict_set(&options, key.c_str(), value.c_str(), 0);
     add_settings_of(codec->name, &options);
@@ -152,35 +143,7 @@ class FfmpegEncoder : public VideoEncoder {
     if (!rgb && plan_.pack.layout->chroma_x > 0) codec_->chroma_sample_location = AVCHROMA_LOC_LEFT;
   }
 
-  Result<void> add_stream() {
-    stream_ = avformat_new_stream(&output_->container(), nullptr);
-    if (!stream_) return encoder_failed(AVERROR(ENOMEM));
-    if (const int code = avcodec_parameters_from_context(stream_->codecpar, codec_.get()); code < 0)
-      return encoder_failed(code);
-    stream_->time_base = codec_->time_base;
-    stream_->avg_frame_rate = codec_->framerate;
-    stream_->sample_aspect_ratio = {1, 1};
-    if (plan_.codec == "vp9" && plan_.pack.layout->alpha) av_dict_set(&stream_->metadata, "alpha_mode", "1", 0);
-    return {};
-  }
-
-  Result<void> add_copy(const std::filesystem::path& file, bool sound_only, const std::string& name,
-                        Diagnostics& diagnostics) {
-    AFTERGLOW_TRY(copy_, FfmpegCopy::open(file, sound_only, *output_, plan_.range, name, diagnostics));
-    return {};
-  }
-
-  Result<void> begin() {
-    AVDictionary* options = nullptr;
-    if (plan_.container == "mp4") av_dict_set(&options, "movflags", "+faststart+write_colr", 0);
-    if (plan_.container == "mov") av_dict_set(&options, "movflags", "+write_colr", 0);
-    if (plan_.container == "apng") av_dict_set(&options, "plays", "0", 0);
-    auto begun = output_->begin(&options);
-    av_dict_free(&options);
-    return begun;
-  }
-
-  /// Packets that are ready, and what is to be copied before each.
+  /// Packets that are ready.
   Result<void> drain() {
     while (true) {
       PacketHandle packet(av_packet_alloc());
@@ -192,19 +155,13 @@ class FfmpegEncoder : public VideoEncoder {
         packet->duration = found->second;
         durations_.erase(found);
       }
-      const std::int64_t now = av_rescale_q(packet->dts, codec_->time_base, kMicrosecond);
-      if (copy_) AFTERGLOW_CHECK(copy_->copy(now));
-      av_packet_rescale_ts(packet.get(), codec_->time_base, stream_->time_base);
-      packet->stream_index = stream_->index;
-      AFTERGLOW_CHECK(output_->write(*packet));
+      AFTERGLOW_CHECK(file_->write(*packet));
     }
   }
 
   VideoPlan plan_;
-  std::unique_ptr<FfmpegOutput> output_;
-  std::unique_ptr<FfmpegCopy> copy_;
+  std::unique_ptr<FfmpegVideoFile> file_;
   CodecHandle codec_;
-  AVStream* stream_ = nullptr;
   std::map<std::int64_t, std::int64_t> durations_;  ///< of frames whose packets have not come, by time
   std::int64_t end_ = 0;
 };

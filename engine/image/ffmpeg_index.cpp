@@ -164,8 +164,8 @@ Result<MovieIndex> index_movie(FfmpegInput& input) {
   sort_by_time(index);
   std::size_t missing = missing_frames(input, index);
   // Matroska has no table of frames, but knows when it ends within something.
-  const std::string said = ffmpeg_said();
-  cut_short = cut_short || said.find("prematurely") != std::string::npos || said.find("partial") != std::string::npos;
+  const std::string words = ffmpeg_said();
+  cut_short = cut_short || words.find("prematurely") != std::string::npos || words.find("partial") != std::string::npos;
   if (cut_short && missing == 0) missing = 1;
   if (index.order.empty() && missing == 0) return Error{ErrorKind::io, "has no frame that shows"};
   add_missing(index, missing);

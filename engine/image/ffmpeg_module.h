@@ -23,6 +23,9 @@ struct FfmpegModule {
   Result<std::unique_ptr<VideoEncoder>> (*encode)(const VideoPlan& plan, OutputFile& out,
                                                   const std::filesystem::path& path, const std::string& name,
                                                   Diagnostics& diagnostics);
+  /// See ffmpeg_join.h.
+  Result<void> (*join)(const VideoPlan& plan, const VideoPieces& pieces, OutputFile& out,
+                       const std::filesystem::path& path, const std::string& name, Diagnostics& diagnostics);
 };
 
 /// Loads it on the first call; thread-safe. Errors: io (not installed, built without it).

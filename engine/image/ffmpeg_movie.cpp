@@ -17,7 +17,6 @@ namespace afterglow {
 namespace {
 
 /// Of decoded frames, for going backwards: some ten of 4K, a whole group of pictures of HD.
-constexpr std::uint64_t kCacheBytes = 256ull << 20;
 
 class FfmpegMovie : public MovieSource {
  public:
@@ -53,7 +52,7 @@ class FfmpegMovie : public MovieSource {
   }
 
   void begin(std::unique_ptr<FfmpegInput> input) {
-    const std::uint64_t cache = std::min(kCacheBytes, request_.limits.max_bytes / 8);
+    const std::uint64_t cache = movie_cache_bytes(request_.limits.max_bytes);
     decoder_ = std::make_unique<FfmpegDecoder>(
         FfmpegPackets(std::move(input), index_, [request = request_] { return reopen(request); }), index_, cache);
   }

@@ -8,6 +8,7 @@
 
 #include "image/ffmpeg_module.h"
 #include "image/movie_color.h"
+#include "image/oiio_module.h"
 
 namespace afterglow {
 
@@ -107,15 +108,23 @@ void tell(const Movie& movie, Diagnostics& diagnostics) {
   }
 }
 
+Result<std::shared_ptr<MovieSource>> open_source(const MovieRequest& request) {
+  const std::string name = request.file.string();
+  if (request.format == "webp") {
+    const auto module = oiio_module();
+    return module ? (*module)->open_webp(request) : Error{ErrorKind::io, module.error().message, name};
+  }
+  const auto module = ffmpeg_module();
+  return module ? (*module)->open(request) : Error{ErrorKind::io, module.error().message, name};
+}
+
 }  // namespace
 
 Result<std::shared_ptr<Movie>> Movie::open(const std::filesystem::path& file, const SizeLimits& limits,
                                            Diagnostics& diagnostics) {
-  const auto module = ffmpeg_module();
-  if (!module) return Error{ErrorKind::io, module.error().message, file.string()};
   std::shared_ptr<Movie> movie(new Movie());
   movie->file_ = file;
-  AFTERGLOW_TRY(movie->source_, (*module)->open({file, movie_format(file), limits}));
+  AFTERGLOW_TRY(movie->source_, open_source({file, movie_format(file), limits}));
   tell(*movie, diagnostics);
   return movie;
 }

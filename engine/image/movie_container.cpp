@@ -7,32 +7,29 @@
 #include <string_view>
 #include <system_error>
 
+#include "image/file_signature.h"
+
 namespace afterglow {
 namespace {
 
 using namespace std::string_view_literals;
 
-struct MovieSignature {
-  std::size_t at;
-  std::string_view bytes;
-  const char* format;
-};
 constexpr std::array kMovieSignatures{
-    MovieSignature{4, "ftyp"sv, "mov"},
-    MovieSignature{4, "moov"sv, "mov"},
-    MovieSignature{4, "mdat"sv, "mov"},
-    MovieSignature{4, "wide"sv, "mov"},
-    MovieSignature{8, "AVI "sv, "avi"},
-    MovieSignature{0, "\x1a\x45\xdf\xa3"sv, "matroska"},
-    MovieSignature{0, "\0\0\1\xba"sv, "mpeg"},
-    MovieSignature{0, "\0\0\1\xb3"sv, "mpegvideo"},
-    MovieSignature{0, "OggS"sv, "ogg"},
-    MovieSignature{0, "FLV\1"sv, "flv"},
-    MovieSignature{0, "\x30\x26\xb2\x75\x8e\x66\xcf\x11"sv, "asf"},
-    MovieSignature{0, "\x06\x0e\x2b\x34\x02\x05\x01\x01"sv, "mxf"},
-    MovieSignature{0, "DKIF"sv, "ivf"},
-    MovieSignature{0, "nut/multimedia container\0"sv, "nut"},
-    MovieSignature{0, "YUV4MPEG2"sv, "yuv4mpegpipe"},
+    FileSignature{4, "ftyp"sv, "mov"},
+    FileSignature{4, "moov"sv, "mov"},
+    FileSignature{4, "mdat"sv, "mov"},
+    FileSignature{4, "wide"sv, "mov"},
+    FileSignature{8, "AVI "sv, "avi"},
+    FileSignature{0, "\x1a\x45\xdf\xa3"sv, "matroska"},
+    FileSignature{0, "\0\0\1\xba"sv, "mpeg"},
+    FileSignature{0, "\0\0\1\xb3"sv, "mpegvideo"},
+    FileSignature{0, "OggS"sv, "ogg"},
+    FileSignature{0, "FLV\1"sv, "flv"},
+    FileSignature{0, "\x30\x26\xb2\x75\x8e\x66\xcf\x11"sv, "asf"},
+    FileSignature{0, "\x06\x0e\x2b\x34\x02\x05\x01\x01"sv, "mxf"},
+    FileSignature{0, "DKIF"sv, "ivf"},
+    FileSignature{0, "nut/multimedia container\0"sv, "nut"},
+    FileSignature{0, "YUV4MPEG2"sv, "yuv4mpegpipe"},
 };
 
 /// Pictures whose files are boxes too.
@@ -117,10 +114,9 @@ std::string movie_format(const std::filesystem::path& file) {
   in.read(bytes.data(), bytes.size());
   const std::string_view head(bytes.data(), static_cast<std::size_t>(in.gcount()));
   in.clear();
-  for (const MovieSignature& signature : kMovieSignatures) {
-    if (head.size() < signature.at || !head.substr(signature.at).starts_with(signature.bytes)) continue;
-    if (signature.bytes == "ftyp" && head.size() >= 12 && is_still(head.substr(8, 4))) return "";
-    return signature.format;
+  if (const auto format = format_by_signature(kMovieSignatures, head); !format.empty()) {
+    const bool still = head.size() >= 12 && head.substr(4, 4) == "ftyp" && is_still(head.substr(8, 4));
+    return still ? "" : std::string(format);
   }
   if (head.starts_with("GIF8"sv)) return gif_moves(in) ? "gif" : "";
   if (head.starts_with("\x89PNG"sv)) return png_moves(in) ? "apng" : "";

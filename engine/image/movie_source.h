@@ -2,6 +2,7 @@
 // What a reader of videos tells of one, and how it hands out frames: between movie.h and the module that decodes.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
@@ -16,6 +17,12 @@
 #include "image/size_limits.h"
 
 namespace afterglow {
+
+/// Bytes of decoded frames that a movie keeps at most, of those that pictures may take (ReadOptions::max_bytes).
+inline std::uint64_t movie_cache_bytes(std::uint64_t max_bytes) {
+  constexpr std::uint64_t kMost = 256ull << 20;
+  return std::min(kMost, max_bytes / 8);
+}
 
 /// Numbers as in ITU-T H.273; 2: the file does not say.
 struct MovieColor {

@@ -10,6 +10,7 @@
 
 #include "image/container_check.h"
 #include "image/image.h"
+#include "image/movie_source.h"
 #include "image/output_file.h"
 #include "image/output_format.h"
 #include "image/picture_file.h"
@@ -23,6 +24,8 @@ struct OiioModule {
   /// See oiio_write.h; `name` is for messages.
   Result<void> (*write)(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                         const WriteOptions& options);
+  /// See webp_movie.h.
+  Result<std::shared_ptr<MovieSource>> (*open_webp)(const MovieRequest& request);
   /// See visible_difference.h.
   Result<double> (*visible_difference)(const Image& a, const Image& b);
 };

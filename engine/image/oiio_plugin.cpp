@@ -4,9 +4,10 @@
 #include "image/oiio_file.h"
 #include "image/oiio_module.h"
 #include "image/oiio_write.h"
+#include "image/webp_movie.h"
 
 extern "C" __attribute__((visibility("default"))) const afterglow::OiioModule* afterglow_oiio_module() {
   static constexpr afterglow::OiioModule module{&afterglow::open_with_oiio, &afterglow::write_with_oiio,
-                                                &afterglow::visible_difference_with_oiio};
+                                                &afterglow::open_webp_movie, &afterglow::visible_difference_with_oiio};
   return &module;
 }

@@ -10,6 +10,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "core/file_time.h"
+
 namespace afterglow {
 namespace {
 constexpr std::size_t kBufferSize = 256 << 10;
@@ -43,6 +45,7 @@ bool OutputFile::write(const void* data, std::size_t size) {
     buffer_begin_ = position_;
   }
   if (size > kBufferSize) {
+    const FileTime time;
     const auto* bytes = static_cast<const char*>(data);
     for (std::size_t done = 0; done < size;) {
       const ssize_t written = ::pwrite(descriptor_, bytes + done, size - done, static_cast<off_t>(position_ + done));
@@ -62,6 +65,7 @@ bool OutputFile::write(const void* data, std::size_t size) {
 
 bool OutputFile::flush() {
   if (failure_) return false;
+  const FileTime time;
   for (std::size_t done = 0; done < buffer_.size();) {
     const ssize_t written =
         ::pwrite(descriptor_, buffer_.data() + done, buffer_.size() - done, static_cast<off_t>(buffer_begin_ + done));
@@ -90,6 +94,7 @@ bool OutputFile::read(void* data, std::size_t size) {
 Result<void> OutputFile::close() {
   if (descriptor_ >= 0) {
     flush();
+    const FileTime time;
     if (::close(descriptor_) != 0) fail(errno);  // network file systems report a full disk here
     descriptor_ = -1;
   }

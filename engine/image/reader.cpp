@@ -19,6 +19,7 @@
 #include "image/movie.h"
 #include "image/orientation.h"
 #include "image/picture_file.h"
+#include "image/pixel_memory.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -262,6 +263,26 @@ void report(const Picture& picture, NanPolicy policy, const fs::path& file, Diag
   harmless ? diagnostics.note(text) : diagnostics.warn_once("values made finite", text);
 }
 
+/// Values that are all read, or made from those that are (grey, no alpha), may be anything before.
+Image color_image(const Plan& plan, const ColorEncoding& encoding, PixelMemory* memory) {
+  const Size size = plan.color_part().data_window.size();
+  bool all_made = true;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const auto& channels = plan.color.channels;
+    const bool made = c == 3 ? encoding.alpha == AlphaKind::none : c > 0 && encoding.grey;
+    const bool twice = std::find(channels.begin(), channels.begin() + static_cast<std::ptrdiff_t>(c), channels[c]) !=
+                       channels.begin() + static_cast<std::ptrdiff_t>(c);
+    all_made = all_made && (made || (channels[c] >= 0 && !twice));
+  }
+  if (!memory || !all_made) return {size.width, size.height, 4};
+  Image image;
+  image.width = size.width;
+  image.height = size.height;
+  image.channels = 4;
+  image.pixels = memory->take(static_cast<std::size_t>(size.area()) * 4);
+  return image;
+}
+
 /// Allocates, reads and decodes everything of the plan. May throw std::bad_alloc.
 Result<Picture> read_planned(Plan& plan, const ReadOptions& options, Diagnostics& diagnostics) {
   const NanPolicy policy = options.nan_policy;
@@ -279,7 +300,7 @@ Result<Picture> read_planned(Plan& plan, const ReadOptions& options, Diagnostics
   }
 
   // Everything from the colour's own part is read in one go: the file is decompressed once.
-  picture.color = Image(part.data_window.width, part.data_window.height, 4);
+  picture.color = color_image(plan, encoding, options.memory);
   std::vector<ReadTarget> targets;
   add_targets(plan.color.channels, picture.color, targets);
   std::vector<Image> auxiliary;

@@ -18,6 +18,7 @@
 namespace afterglow {
 
 class Movie;
+class PixelMemory;
 
 /// `FILE[:NAME]` of --depth, --normal and --motion: another file and/or a channel or layer in it.
 struct LayerChoice {
@@ -41,6 +42,7 @@ struct ReadOptions {
       auxiliary;  ///< what the stack asks for: "depth", "normal", "motion", "layer:NAME"; only these are read
   NanPolicy nan_policy = NanPolicy::zero;  ///< fail: a picture with values that are not finite is an error (io)
   int max_side = 16384;                    ///< larger sides are refused from the header
+  PixelMemory* memory = nullptr;           ///< where the colour's pixels are taken from; null: anew
   std::uint64_t max_bytes = 6ull << 30;  ///< pictures whose own host memory would be larger are refused from the header
 };
 

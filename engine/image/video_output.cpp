@@ -20,13 +20,13 @@ struct Codec {
   const char* name;
   std::vector<std::string> encoders, layouts;  ///< layouts: the first is for 8 bits, `deep` for more
   const char* deep;
-  const char* alpha;  ///< layout with alpha, for 8 bits and for more; null: none
-  const char* deep_alpha;
-  std::optional<int> crf;  ///< the default; none: it takes no quality
+  const char* alpha = nullptr;  ///< layout with alpha, for 8 bits and for more; null: none
+  const char* deep_alpha = nullptr;
+  std::optional<int> crf = std::nullopt;  ///< the default; none: it takes no quality
   int worst_crf = 0;
   bool bitrate = false;
   bool exact = false;
-  Settings settings;
+  Settings settings = {};
 };
 
 struct Container {
@@ -37,101 +37,84 @@ struct Container {
 
 const std::vector<Codec>& codecs() {
   static const std::vector<Codec> all{
-      {"h264",
-       {"libx264"},
-       {"yuv420p", "yuv422p", "yuv444p", "yuv420p10le", "yuv422p10le", "yuv444p10le"},
-       "yuv420p",
-       nullptr,
-       nullptr,
-       18,
-       51,
-       true,
-       false,
-       {{"preset", "medium"}}},
-      {"h265",
-       {"libx265"},
-       {"yuv420p", "yuv422p", "yuv444p", "yuv420p10le", "yuv422p10le", "yuv444p10le", "yuv420p12le", "yuv422p12le",
-        "yuv444p12le"},
-       "yuv420p10le",
-       nullptr,
-       nullptr,
-       20,
-       51,
-       true,
-       false,
-       {{"preset", "medium"}, {"x265-params", "log-level=error"}}},
-      {"prores",
-       {"prores_ks"},
-       {"yuv422p10le"},
-       "yuv422p10le",
-       nullptr,
-       nullptr,
-       std::nullopt,
-       0,
-       false,
-       false,
-       {{"profile", "hq"}, {"vendor", "apl0"}}},
-      {"prores4444",
-       {"prores_ks"},
-       {"yuv444p10le", "yuva444p10le"},
-       "yuv444p10le",
-       "yuva444p10le",
-       "yuva444p10le",
-       std::nullopt,
-       0,
-       false,
-       false,
-       {{"profile", "4444"}, {"vendor", "apl0"}, {"alpha_bits", "16"}}},
-      {"dnxhr",
-       {"dnxhd"},
-       {"yuv422p10le", "yuv422p", "yuv444p10le"},
-       "yuv422p10le",
-       nullptr,
-       nullptr,
-       std::nullopt,
-       0,
-       false,
-       false,
-       {}},
-      {"ffv1",
-       {"ffv1"},
-       {"bgr0",        "bgra",        "gbrp10le",    "gbrp12le",    "gbrp16le",    "gbrap10le",
-        "gbrap12le",   "gbrap16le",   "yuv420p",     "yuv422p",     "yuv444p",     "yuv420p10le",
-        "yuv422p10le", "yuv444p10le", "yuv420p12le", "yuv422p12le", "yuv444p12le", "yuv420p16le",
-        "yuv422p16le", "yuv444p16le", "yuva420p",    "yuva444p10le"},
-       "gbrp16le",
-       "bgra",
-       "gbrap16le",
-       std::nullopt,
-       0,
-       false,
-       true,
-       {{"level", "3"}, {"g", "1"}, {"slices", "16"}, {"slicecrc", "1"}}},
-      {"vp9",
-       {"libvpx-vp9"},
-       {"yuv420p", "yuv422p", "yuv444p", "yuv420p10le", "yuv422p10le", "yuv444p10le", "yuv420p12le", "yuv422p12le",
-        "yuv444p12le", "yuva420p"},
-       "yuv420p",
-       "yuva420p",
-       "yuva420p",
-       24,
-       63,
-       true,
-       false,
-       {{"row-mt", "1"}, {"deadline", "good"}, {"cpu-used", "4"}}},
-      {"av1",
-       {"libsvtav1", "libaom-av1"},
-       {"yuv420p10le", "yuv420p"},
-       "yuv420p10le",
-       nullptr,
-       nullptr,
-       26,
-       63,
-       true,
-       false,
-       {}},
-      {"gif", {"gif"}, {"rgba", "rgb24"}, "rgb24", "rgba", "rgba", std::nullopt, 0, false, true, {}},
-      {"apng", {"apng"}, {"rgb24", "rgba"}, "rgb24", "rgba", "rgba", std::nullopt, 0, false, true, {{"pred", "mixed"}}},
+      {.name = "h264",
+       .encoders = {"libx264"},
+       .layouts = {"yuv420p", "yuv422p", "yuv444p", "yuv420p10le", "yuv422p10le", "yuv444p10le"},
+       .deep = "yuv420p",
+       .crf = 18,
+       .worst_crf = 51,
+       .bitrate = true,
+       .settings = {{"preset", "medium"}}},
+      {.name = "h265",
+       .encoders = {"libx265"},
+       .layouts = {"yuv420p", "yuv422p", "yuv444p", "yuv420p10le", "yuv422p10le", "yuv444p10le", "yuv420p12le",
+                   "yuv422p12le", "yuv444p12le"},
+       .deep = "yuv420p10le",
+       .crf = 20,
+       .worst_crf = 51,
+       .bitrate = true,
+       // Without the note of its settings, which names threads: pieces of several machines are one video.
+       .settings = {{"preset", "medium"}, {"x265-params", "log-level=error:info=0"}}},
+      {.name = "prores",
+       .encoders = {"prores_ks"},
+       .layouts = {"yuv422p10le"},
+       .deep = "yuv422p10le",
+       .settings = {{"profile", "hq"}, {"vendor", "apl0"}}},
+      {.name = "prores4444",
+       .encoders = {"prores_ks"},
+       .layouts = {"yuv444p10le", "yuva444p10le"},
+       .deep = "yuv444p10le",
+       .alpha = "yuva444p10le",
+       .deep_alpha = "yuva444p10le",
+       .settings = {{"profile", "4444"}, {"vendor", "apl0"}, {"alpha_bits", "16"}}},
+      {.name = "dnxhr",
+       .encoders = {"dnxhd"},
+       .layouts = {"yuv422p10le", "yuv422p", "yuv444p10le"},
+       .deep = "yuv422p10le"},
+      {.name = "ffv1",
+       .encoders = {"ffv1"},
+       .layouts = {"bgr0",        "bgra",        "gbrp10le",    "gbrp12le",    "gbrp16le",    "gbrap10le",
+                   "gbrap12le",   "gbrap16le",   "yuv420p",     "yuv422p",     "yuv444p",     "yuv420p10le",
+                   "yuv422p10le", "yuv444p10le", "yuv420p12le", "yuv422p12le", "yuv444p12le", "yuv420p16le",
+                   "yuv422p16le", "yuv444p16le", "yuva420p",    "yuva444p10le"},
+       .deep = "gbrp16le",
+       .alpha = "bgra",
+       .deep_alpha = "gbrap16le",
+       .exact = true,
+       .settings = {{"level", "3"}, {"g", "1"}, {"slices", "16"}, {"slicecrc", "1"}}},
+      {.name = "vp9",
+       .encoders = {"libvpx-vp9"},
+       .layouts = {"yuv420p", "yuv422p", "yuv444p", "yuv420p10le", "yuv422p10le", "yuv444p10le", "yuv420p12le",
+                   "yuv422p12le", "yuv444p12le", "yuva420p"},
+       .deep = "yuv420p",
+       .alpha = "yuva420p",
+       .deep_alpha = "yuva420p",
+       .crf = 24,
+       .worst_crf = 63,
+       .bitrate = true,
+       .settings = {{"row-mt", "1"}, {"deadline", "good"}, {"cpu-used", "4"}}},
+      {.name = "av1",
+       .encoders = {"libsvtav1", "libaom-av1"},
+       .layouts = {"yuv420p10le", "yuv420p"},
+       .deep = "yuv420p10le",
+       .crf = 26,
+       .worst_crf = 63,
+       .bitrate = true},
+      {.name = "gif",
+       .encoders = {"gif"},
+       .layouts = {"rgba", "rgb24"},
+       .deep = "rgb24",
+       .alpha = "rgba",
+       .deep_alpha = "rgba",
+       .exact = true},
+      {.name = "apng",
+       .encoders = {"apng"},
+       .layouts = {"rgb24", "rgba"},
+       .deep = "rgb24",
+       .alpha = "rgba",
+       .deep_alpha = "rgba",
+       .exact = true,
+       .settings = {{"pred", "mixed"}}},
   };
   return all;
 }
@@ -205,7 +188,7 @@ Error not_taken(const Codec& codec, const char* option, const std::filesystem::p
 
 Result<void> choose_quality(const Codec& codec, const WriteOptions& options, const std::filesystem::path& file,
                             VideoPlan& plan) {
-  const auto& [name, pixel_format, bitrate, crf, audio] = options.video;
+  const auto& [name, pixel_format, bitrate, crf, audio, piece] = options.video;
   if (crf && !codec.crf) return not_taken(codec, "--crf", file);
   if (!bitrate.empty() && !codec.bitrate) return not_taken(codec, "--bitrate", file);
   if (crf && (*crf < 0 || *crf > codec.worst_crf))
@@ -264,7 +247,7 @@ Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptio
   plan.pack.space = options.space ? options.space : find_output_space(picture ? "srgb" : "rec709").value();
   describe_space(*plan.pack.space, *plan.pack.layout, plan);
   plan.pack.dither = options.dither.value_or(codec->exact && plan.pack.layout->bits == 8);
-  plan.audio = options.video.audio;
+  if (!options.video.piece) plan.audio = options.video.audio;
   return plan;
 }
 

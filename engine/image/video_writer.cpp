@@ -3,11 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <system_error>
-
 #include "core/exception.h"
-#include "core/file.h"
-#include "core/temporary.h"
 #include "core/text.h"
 #include "image/ffmpeg_module.h"
 
@@ -26,58 +22,45 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, Vid
   AFTERGLOW_CHECK(check_video_size(plan, plan.size, file));
   AFTERGLOW_TRY(const FfmpegModule* module, ffmpeg_module());
   std::unique_ptr<VideoWriter> writer(new VideoWriter());
-  writer->file_ = file;
-  std::error_code ec;
-  writer->target_ = fs::is_symlink(file, ec) ? fs::weakly_canonical(file, ec) : file;
-  writer->temporary_ = temporary_beside(writer->target_);
   writer->plan_ = std::move(plan);
-  writer->out_ = std::make_unique<OutputFile>(writer->temporary_);
-  if (writer->out_->failure()) return writer->named(writer->out_->close().error());
-  auto encoder = module->encode(writer->plan_, *writer->out_, writer->temporary_, file.string(), diagnostics);
-  if (!encoder) return writer->named(std::move(encoder).error());
+  AFTERGLOW_TRY(writer->target_, VideoTarget::open(file));
+  VideoTarget& target = *writer->target_;
+  auto encoder = module->encode(writer->plan_, target.out(), target.temporary(), file.string(), diagnostics);
+  if (!encoder) return target.named(std::move(encoder).error());
   writer->encoder_ = std::move(*encoder);
   return writer;
 }
 
-VideoWriter::~VideoWriter() {
-  encoder_.reset();
-  out_.reset();
-  std::error_code ignored;
-  if (!committed_) fs::remove(temporary_, ignored);
-}
-
-/// What the file itself reports ("No space left on device") goes before what a library makes of it.
-Error VideoWriter::named(Error error) const {
-  if (out_ && out_->failure() != 0) error = out_->close().error();
-  if (error.file.empty() || error.file == temporary_) error.file = file_.string();
-  return error;
-}
-
 Result<void> VideoWriter::write(const Picture& picture, VideoTime time) {
   const Size size = picture.display_window.size();
+  const std::string name = target_->file().string();
   if (size != plan_.size)
     return Error{ErrorKind::usage,
                  fmt::format("a frame has {}x{} pixels, the first had {}x{}; a video has one size", size.width,
                              size.height, plan_.size.width, plan_.size.height),
-                 file_.string()};
+                 name};
   try {
     if (auto written = encoder_->write(pack_frame(picture, plan_.pack), time); !written)
-      return named(std::move(written).error());
-    if (out_->failure() != 0) return named({});
+      return target_->named(std::move(written).error());
+    if (target_->out().failure() != 0) return target_->named({});
   } catch (const std::exception& error) {
-    return Error{ErrorKind::io, "cannot be written: " + exception_text(error), file_.string()};
+    return Error{ErrorKind::io, "cannot be written: " + exception_text(error), name};
   }
   return {};
 }
 
 Result<void> VideoWriter::finish(bool whole) {
-  if (auto finished = encoder_->finish(whole); !finished) return named(std::move(finished).error());
-  if (auto closed = out_->close(); !closed) return named(std::move(closed).error());
-  std::error_code ec;
-  if (fs::file_size(temporary_, ec) != out_->size() || ec)
-    return Error{ErrorKind::io, "cannot be written: the file has lost bytes", file_.string()};
-  committed_ = true;  // commit_file removes it when it fails
-  return commit_file(temporary_, target_);
+  if (auto finished = encoder_->finish(whole); !finished) return target_->named(std::move(finished).error());
+  return target_->commit();
+}
+
+Result<void> join_video(const fs::path& file, const VideoPlan& plan, const VideoPieces& pieces,
+                        Diagnostics& diagnostics) {
+  AFTERGLOW_TRY(const FfmpegModule* module, ffmpeg_module());
+  AFTERGLOW_TRY(const auto target, VideoTarget::open(file));
+  auto joined = module->join(plan, pieces, target->out(), target->temporary(), file.string(), diagnostics);
+  if (!joined) return target->named(std::move(joined).error());
+  return target->commit();
 }
 
 }  // namespace afterglow

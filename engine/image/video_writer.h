@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// One video that is being written, whole or not at all.
+// One video that is being written, whole or not at all: of pictures, or of pieces that were written before.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <vector>
 
-#include "image/output_file.h"
 #include "image/video_output.h"
+#include "image/video_target.h"
 
 namespace afterglow {
 
@@ -30,7 +32,6 @@ class VideoWriter {
   /// Nothing appears at `file` before finish(). Errors: io (no such encoder, the file cannot be made), usage (sides).
   static Result<std::unique_ptr<VideoWriter>> open(const std::filesystem::path& file, VideoPlan plan,
                                                    Diagnostics& diagnostics);
-  ~VideoWriter();
 
   const VideoPlan& plan() const { return plan_; }
   /// Frames come by rising times. Errors: io (disk full, …), usage (a frame of another size).
@@ -40,16 +41,31 @@ class VideoWriter {
 
  private:
   VideoWriter() = default;
-  Error named(Error error) const;
 
-  std::filesystem::path file_, target_, temporary_;
   VideoPlan plan_;
-  std::unique_ptr<OutputFile> out_;
+  std::unique_ptr<VideoTarget> target_;  // outlives the encoder, which writes into it
   std::unique_ptr<VideoEncoder> encoder_;
-  bool committed_ = false;
 };
 
 /// Whether one of the plan's encoders is there. Errors: io (the module cannot be loaded), usage (none is).
 Result<void> check_video_encoder(const VideoPlan& plan, const std::filesystem::path& file);
+
+/// A part of a video: a file of the same container, with frames alone.
+struct VideoPiece {
+  std::filesystem::path file;
+  std::vector<VideoTime> times;  ///< of its frames in the order in which they show
+};
+/// What one file is to be made of.
+struct VideoPieces {
+  std::vector<VideoPiece> pieces;
+  bool whole = true;  ///< as VideoEncoder::finish
+  std::function<bool()> interrupted;
+};
+
+/// One file of all pieces, whose packets go into it as they are; with sound and all else as `plan` says, of which size,
+/// layout and encoder are not used. Errors: io (a piece that is damaged, has other frames or was encoded in another
+/// way), interrupted.
+Result<void> join_video(const std::filesystem::path& file, const VideoPlan& plan, const VideoPieces& pieces,
+                        Diagnostics& diagnostics);
 
 }  // namespace afterglow

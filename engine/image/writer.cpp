@@ -10,6 +10,7 @@
 
 #include "core/exception.h"
 #include "core/file.h"
+#include "core/file_time.h"
 #include "core/temporary.h"
 #include "image/exr_file.h"
 #include "image/oiio_module.h"
@@ -46,6 +47,7 @@ class Temporary {
   Temporary& operator=(const Temporary&) = delete;
   const fs::path& path() const { return path_; }
   Result<void> commit(const fs::path& to) {
+    const FileTime time;
     committed_ = true;  // commit_file removes it when it fails
     return commit_file(path_, to);
   }
@@ -139,6 +141,15 @@ std::optional<DisplayCodes> display_codes(const fs::path& file, const WriteOptio
   if (!format || sample_type(**format, options, facts) != SampleType::uint8) return std::nullopt;
   if (stored_space(**format, options, SampleType::uint8)) return std::nullopt;
   return DisplayCodes{.straight_alpha = has_alpha && (*format)->alpha, .dither = options.dither.value_or(true)};
+}
+
+std::uint64_t write_bytes(const fs::path& file, const WriteOptions& options, Size size, bool has_alpha,
+                          const FileFacts* facts) {
+  const auto format = output_format(file, options);
+  if (!format || (*format)->kind != OutputKind::png) return 0;
+  constexpr std::uint64_t kCopies = 2;  // filtered, and packed
+  const std::uint64_t sample = sample_type(**format, options, facts) == SampleType::uint8 ? 1 : 2;
+  return static_cast<std::uint64_t>(size.area()) * (has_alpha ? 4 : 3) * sample * kCopies;
 }
 
 Result<void> check_output(const fs::path& file, const WriteOptions& options) {

@@ -23,6 +23,7 @@ struct VideoOptions {
   std::string bitrate;          ///< "8M"
   std::optional<int> crf;       ///< quality, 0 is best
   std::filesystem::path audio;  ///< sound of another file
+  bool piece = false;           ///< frames alone, without what other files have: for join_video
 };
 
 struct WriteOptions {
@@ -48,6 +49,11 @@ struct WriteOptions {
 /// format wants it.
 Result<void> write_picture(const Picture& picture, const std::filesystem::path& file, const WriteOptions& options,
                            Diagnostics& diagnostics);
+
+/// Memory that `write_picture` takes besides a picture of this size, at most. 0 where it is a few rows,
+/// or not known. `facts` may be null.
+std::uint64_t write_bytes(const std::filesystem::path& file, const WriteOptions& options, Size size, bool has_alpha,
+                          const FileFacts* facts);
 
 /// The bytes that a file of this extension ("png") would have. Errors: as write_picture.
 Result<std::string> picture_bytes(const Picture& picture, const std::string& extension, const WriteOptions& options,

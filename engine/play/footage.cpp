@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <system_error>
 #include <unordered_map>
@@ -54,12 +55,11 @@ std::string frames_text(const std::vector<int>& frames) {
 
 Result<void> Footage::add_sequence(const std::string& input, const std::optional<std::vector<int>>& wanted) {
   AFTERGLOW_TRY(const Pattern pattern, parse_pattern(input));
-  AFTERGLOW_TRY(const auto files, find_frames(pattern, wanted));
+  AFTERGLOW_TRY(auto files, find_frames(pattern, wanted));
+  // A plain file that is missing is an error when it is read; a hole in a sequence is none.
+  if (pattern.numbered) std::erase_if(files, [&](const FrameFile& file) { return !there_(file.file); });
   std::unordered_map<int, int> picture_of;
   for (const FrameFile& file : files) {
-    std::error_code ignored;
-    // A plain file that is missing is an error when it is read; a hole in a sequence is none.
-    if (pattern.numbered && !fs::exists(file.file, ignored)) continue;
     picture_of[file.frame] = pictures();
     pictures_.push_back({.file = file.file, .number = file.frame, .movie = {}, .movie_frame = 0});
   }
@@ -141,25 +141,68 @@ Result<void> Footage::add(const std::string& input, const std::optional<std::vec
 
 Result<std::shared_ptr<const Footage>> Footage::open(const FootageOptions& options, Diagnostics& diagnostics) {
   std::shared_ptr<Footage> footage(new Footage());
-  footage->read_ = options.read;
+  footage->there_ = [](const fs::path& file) {
+    std::error_code ignored;
+    return fs::exists(file, ignored);
+  };
+  AFTERGLOW_CHECK(footage->add_inputs(options, diagnostics));
+  return std::shared_ptr<const Footage>(std::move(footage));
+}
+
+Result<std::shared_ptr<const Footage>> Footage::anew(const FootageOptions& options, const Footage& before,
+                                                     const std::set<fs::path>& changed, const There& there) {
+  std::shared_ptr<Footage> footage(new Footage());
+  footage->there_ = there;
+  Diagnostics quiet;  // holes were told of; those that come are filled as they are rendered
+  AFTERGLOW_CHECK(footage->add_inputs(options, quiet));
+  footage->renumber(before, changed);
+  if (changed.empty() && footage->frames_ == before.frames_) return std::shared_ptr<const Footage>();
+  return std::shared_ptr<const Footage>(std::move(footage));
+}
+
+void Footage::renumber(const Footage& before, const std::set<fs::path>& changed) {
+  std::map<fs::path, int> known;  // of a file that was rendered again the last number
+  for (int picture = 0; picture < before.pictures(); ++picture) known[before.file(picture)] = picture;
+  for (const auto& file : changed) known.erase(file);
+  std::vector<Source> pictures = before.pictures_;
+  std::vector<int> number;
+  for (Source& source : pictures_) {
+    const auto [at, is_new] = known.emplace(source.file, static_cast<int>(pictures.size()));
+    number.push_back(at->second);
+    if (is_new) pictures.push_back(std::move(source));
+  }
+  for (FootageFrame& frame : frames_) frame.picture = number[static_cast<std::size_t>(frame.picture)];
+  pictures_ = std::move(pictures);
+}
+
+Result<void> Footage::add_inputs(const FootageOptions& options, Diagnostics& diagnostics) {
+  read_ = options.read;
   std::optional<std::vector<int>> wanted;
   if (!options.frames.empty()) {
     AFTERGLOW_TRY(wanted, parse_frames(options.frames));
   }
   AFTERGLOW_TRY(const auto inputs, with_sequences(options.inputs));
   for (const std::string& input : inputs) {
-    const std::size_t before = footage->missing_.size();
-    AFTERGLOW_CHECK(footage->add(input, wanted, diagnostics));
-    const std::vector<int> missing(footage->missing_.begin() + static_cast<std::ptrdiff_t>(before),
-                                   footage->missing_.end());
+    const std::size_t before = missing_.size();
+    AFTERGLOW_CHECK(add(input, wanted, diagnostics));
+    const std::vector<int> missing(missing_.begin() + static_cast<std::ptrdiff_t>(before), missing_.end());
     if (!missing.empty())
       diagnostics.warn(fmt::format("{}: {} {} missing, the picture before is held: {}", input, missing.size(),
                                    missing.size() == 1 ? "frame is" : "frames are", frames_text(missing)));
   }
-  if (footage->frames_.empty()) return Error{ErrorKind::usage, "there is nothing to play", "afterglow play"};
-  if (footage->frames_.size() > kMostFrames)
+  if (frames_.empty()) return Error{ErrorKind::usage, "there is nothing to play", "afterglow play"};
+  if (frames_.size() > kMostFrames)
     return Error{ErrorKind::usage, fmt::format("there are more than {} frames", kMostFrames), "afterglow play"};
-  return std::shared_ptr<const Footage>(std::move(footage));
+  there_ = {};
+  return {};
+}
+
+std::vector<fs::path> Footage::files(int picture) const {
+  const Source& source = pictures_[static_cast<std::size_t>(picture)];
+  std::vector<fs::path> out{source.file};
+  for (const LayerChoice& choice : {read_.depth, read_.normal, read_.motion})
+    if (const auto layer = resolved(choice, source.number); layer && !layer->file.empty()) out.push_back(layer->file);
+  return out;
 }
 
 std::string Footage::picture_name(int picture) const {

@@ -5,8 +5,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,7 @@ struct FootageFrame {
   int picture = 0;  ///< which picture it shows: equal numbers, equal pixels
   bool held = false;
   std::optional<double> time{};  ///< of a video's frame: seconds from the video's first one
+  bool operator==(const FootageFrame&) const = default;
 };
 
 /// Immutable once opened; thread-safe.
@@ -39,12 +42,22 @@ class Footage {
   /// matches, a video that cannot be read, a frame list that names no frame that exists).
   static Result<std::shared_ptr<const Footage>> open(const FootageOptions& options, Diagnostics& diagnostics);
 
+  using There = std::function<bool(const std::filesystem::path& file)>;
+  /// The same inputs as they are now: a picture keeps its number, one whose file is in `changed` and one that is new
+  /// get numbers behind those of `before`. Of a sequence the files are there that `there` says so of. Null: all is as
+  /// it was. Without videos. Errors: as open; what was there may be gone.
+  static Result<std::shared_ptr<const Footage>> anew(const FootageOptions& options, const Footage& before,
+                                                     const std::set<std::filesystem::path>& changed,
+                                                     const There& there);
+
   int frames() const { return static_cast<int>(frames_.size()); }
   int pictures() const { return static_cast<int>(pictures_.size()); }
   const FootageFrame& frame(int position) const { return frames_[static_cast<std::size_t>(position)]; }
   /// For people: "shot.0007.exr", "clip.mp4, frame 7".
   std::string picture_name(int picture) const;
   const std::filesystem::path& file(int picture) const { return pictures_[static_cast<std::size_t>(picture)].file; }
+  /// Every file that the picture is read from.
+  std::vector<std::filesystem::path> files(int picture) const;
   /// Turns a second, where the footage says it (videos). Of a video whose rate varies each frame stays for as many
   /// turns as it shows.
   std::optional<double> fps() const { return fps_; }
@@ -66,6 +79,8 @@ class Footage {
     int movie_frame = 0;
   };
   Footage() = default;
+  Result<void> add_inputs(const FootageOptions& options, Diagnostics& diagnostics);
+  void renumber(const Footage& before, const std::set<std::filesystem::path>& changed);
   Result<void> add_sequence(const std::string& input, const std::optional<std::vector<int>>& wanted);
   Result<void> add_movie(const std::filesystem::path& file, const std::optional<std::vector<int>>& wanted,
                          Diagnostics& diagnostics);
@@ -73,6 +88,7 @@ class Footage {
   Result<void> add(const std::string& input, const std::optional<std::vector<int>>& wanted, Diagnostics& diagnostics);
 
   ReadOptions read_;
+  There there_;  ///< while it is opened
   std::vector<FootageFrame> frames_;
   std::vector<Source> pictures_;
   std::vector<int> missing_;

@@ -44,17 +44,20 @@ LiveOptions Player::State::live_options(const std::vector<Override>& overrides) 
 }
 
 void Player::State::begin_reading() {
+  rendering.reset();
   ahead.reset();  // waits for what is being read of the footage before
+  read_footage = footage;
   wanted_for.clear();
   unreadable.clear();
   ahead = std::make_unique<ReadAhead>(
-      [this, footage = footage](int key) {
+      [this](int key) {
+        const auto read_from = readable();
         std::vector<std::string> needs;
         {
           const std::lock_guard lock(mutex);
           needs = auxiliary;
         }
-        auto read = footage->read(key, needs, diagnostics);
+        auto read = read_from->read(key, needs, diagnostics);
         const std::lock_guard lock(mutex);
         if (read) {
           unreadable.erase(key);
@@ -64,6 +67,7 @@ void Player::State::begin_reading() {
         return read;
       },
       options.read_ahead, [this] { wake(); });
+  if (options.live.follow) rendering = std::make_unique<FootageWatch>(options.footage, footage, [this] { wake(); });
 }
 
 /// The due picture, then those that will be, as many as may fit.
@@ -264,6 +268,7 @@ Result<Step> Player::step() {
   }
   Step step;
   s.take_builds();
+  s.take_footage();
   s.tell_errors();
   step.reloaded = std::exchange(s.reloaded, false);
   if (!s.transport.playing()) s.figures.stop();

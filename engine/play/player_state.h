@@ -6,6 +6,7 @@
 #include <mutex>
 #include <set>
 
+#include "play/footage_watch.h"
 #include "play/player.h"
 #include "session/live_session.h"
 
@@ -23,8 +24,9 @@ struct Player::State {
   std::mutex mutex;
   std::condition_variable woken;
   bool awake = false;
-  std::vector<std::string> auxiliary;  ///< what readers read besides the colour
-  std::set<int> unreadable;            ///< pictures whose last reading failed
+  std::vector<std::string> auxiliary;           ///< what readers read besides the colour
+  std::set<int> unreadable;                     ///< pictures whose last reading failed
+  std::shared_ptr<const Footage> read_footage;  ///< that readers read of
 
   std::shared_ptr<const Footage> footage;
   Transport transport{1};
@@ -50,14 +52,17 @@ struct Player::State {
   int frames_untimed = 0;    ///< since a kernel was timed
   bool second_runs = false;  ///< B was run for what is on screen
   double turn_ended = 0;
-  std::vector<int> wanted_for;       ///< position, heading and speed that the wishes were made for
-  std::uint64_t measured = 0;        ///< generation of the stack whose first frame was measured
-  std::unique_ptr<ReadAhead> ahead;  // last: its threads use the rest
+  std::vector<int> wanted_for;              ///< position, heading and speed that the wishes were made for
+  std::uint64_t measured = 0;               ///< generation of the stack whose first frame was measured
+  std::unique_ptr<ReadAhead> ahead;         // its threads use the rest, as that of the next does
+  std::unique_ptr<FootageWatch> rendering;  ///< null: files stay as they are
 
   double now() const { return options.clock(); }
   void wake();
   LiveOptions live_options(const std::vector<Override>& overrides);
   void begin_reading();
+  void take_footage();
+  std::shared_ptr<const Footage> readable();
   void want_pictures();
   void take_builds();
   void tell_errors();

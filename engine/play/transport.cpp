@@ -48,6 +48,13 @@ void Transport::set_frames(int frames) {
   jump(0, false, anchor_time_);
 }
 
+void Transport::resize(int frames, double now) {
+  const bool all = first_ == 0 && last_ == frames_ - 1;
+  settle(now);
+  frames_ = std::max(frames, 1);
+  set_range(all ? 0 : std::min(first_, frames_ - 1), all ? frames_ - 1 : std::min(last_, frames_ - 1), now);
+}
+
 std::int64_t Transport::period() const {
   return loop_ == LoopMode::ping_pong ? std::max<std::int64_t>(1, 2LL * length() - 2) : length();
 }

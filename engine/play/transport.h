@@ -65,6 +65,9 @@ class Transport {
   /// Other footage: paused at its start, without a range.
   void set_frames(int frames);
 
+  /// The same footage, longer or shorter: all stays as it is, as far as it can. A range of all of it stays one.
+  void resize(int frames, double now);
+
   /// What ought to be on screen.
   struct Due {
     int position = 0;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Sequences: what is read and written under which name, frames that fail, --resume, Ctrl-C.
+#include <fmt/format.h>
+
 #include <csignal>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "cli_test.h"
@@ -156,6 +159,52 @@ TEST_F(Sequence, TooLittleMemoryForOverlapStillRuns) {
   const Outcome outcome = run_all({"--max-memory", "8M"});
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
   EXPECT_EQ(outputs().size(), 4u);
+}
+
+TEST_F(Sequence, StatsSayWhereTheTimeGoes) {
+  const Outcome outcome = run_all({"--stats", "--report", "report.json"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  for (const char* words :
+       {"plan ", "a frame: decode ", "a frame: encode ", "frames a second", "processors used", " is the limit"})
+    EXPECT_THAT(outcome.out, HasSubstr(words));
+  const auto report = nlohmann::json::parse(read("report.json"));
+  for (const auto& frame : report.at("frames")) {
+    const auto& times = frame.at("milliseconds");
+    EXPECT_GT(times.at("decode"), 0.0);
+    EXPECT_GT(times.at("encode"), 0.0);
+    EXPECT_GT(times.at("plan"), 0.0);
+    EXPECT_LT(times.at("decode"), times.at("read")) << "the file took none";
+    EXPECT_LT(times.at("encode"), times.at("write")) << "the file took none";
+    EXPECT_GE(times.at("waited_read"), 0.0);
+    EXPECT_GE(times.at("waited_write"), 0.0);
+  }
+  const auto& all = report.at("milliseconds");
+  EXPECT_LT(all.at("frames_wall"), all.at("wall"));
+  EXPECT_GT(all.at("processors"), 0.0);
+}
+
+TEST_F(Sequence, MemoryDoesNotGrowWithTheFrames) {
+  // Two pictures in turns: a frame that repeats the one before would not be run.
+  make_exr("many/0000.exr", 160, 90);
+  ASSERT_EQ(run({"run", "look.lua", "many/0000.exr", "-o", "many/0001.exr"}).exit_code, kDone);
+  constexpr int kFew = 100, kMany = 1000;
+  for (int i = 2; i < kMany; ++i)
+    fs::create_hard_link(path(fmt::format("many/{:04}.exr", i % 2)), path(fmt::format("many/{:04}.exr", i)));
+  std::vector<std::string> outputs{"out/####.png", "out/####.exr"};
+  if (std::system("command -v ffmpeg >/dev/null") == 0) outputs.emplace_back("out/clip.mkv");
+  for (const std::string& output : outputs) {
+    const auto peak = [&](int frames) -> std::uint64_t {
+      std::vector<std::string> arguments{
+          "run",      "look.lua",   "many/####.exr", "-o", output, "--frames", fmt::format("0-{}", frames - 1),
+          "--report", "report.json"};
+      if (output.ends_with("mkv")) arguments.insert(arguments.end(), {"--codec", "ffv1"});
+      const Outcome outcome = run(arguments);
+      EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+      return nlohmann::json::parse(read("report.json")).at("memory").at("peak");
+    };
+    // One picture of floats has 230 kB.
+    EXPECT_LT(peak(kMany), peak(kFew) + (24u << 20)) << output;
+  }
 }
 
 TEST_F(Sequence, DepthFromAPatternOfItsOwn) {

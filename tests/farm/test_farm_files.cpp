@@ -59,6 +59,25 @@ TEST_F(FarmFiles, JobsHaveCommandsNeedsAndOutputsThatAnySchedulerCanRun) {
   EXPECT_EQ(report_of("out")["frames"].size(), 10u);
 }
 
+/// As docs/farms.md says, on this machine alone.
+TEST_F(FarmFiles, GnuParallelRunsTheLines) {
+  if (std::system("command -v parallel >/dev/null") != 0) GTEST_SKIP() << "GNU parallel is not installed";
+  ASSERT_EQ(run({"run", "look.lua", "in/shot.####.exr", "-o", "one/"}).exit_code, kDone);
+  ASSERT_EQ(write_jobs({"--chunk", "3"}).exit_code, kDone);
+  RunOptions options;
+  options.program = "/bin/sh";
+  const Outcome ended = run({"-c",
+                             "python3 -c 'import json; print(\"\\n\".join(c[\"shell\"] for c in "
+                             "json.load(open(\"jobs.json\"))[\"chunks\"]))' "
+                             "> lines && parallel --jobs 2 --joblog log --retries 3 < lines"},
+                            options);
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  expect_as_one_run("out", "one");
+  const std::string log = read("log");
+  EXPECT_EQ(std::ranges::count(log, '\n'), 5) << log;
+  EXPECT_EQ(report_of("out")["frames_done"], 10);
+}
+
 TEST_F(FarmFiles, ADryRunWritesNothing) {
   const auto before = files();
   const Outcome outcome = farm({"look.lua", "in/shot.####.exr", "-o", "out/", "--chunk", "4", "--time", "10",
@@ -161,8 +180,8 @@ TEST_F(FarmFiles, DescriptionsThatAreNoneAreRefused) {
   with("{}");
   with(good.substr(0, good.size() / 2));
   auto later = nlohmann::json::parse(good);
-  later["afterglow_farm"] = 2;
-  EXPECT_THAT(with(later.dump()), HasSubstr("it has version 2, this program reads version 1"));
+  later["afterglow_farm"] = 3;
+  EXPECT_THAT(with(later.dump()), HasSubstr("it has version 3, this program reads version 2"));
 }
 
 TEST(FarmText, FramesAreReadBackAsTheyWere) {
@@ -191,6 +210,31 @@ TEST(FarmText, ArraysStayBelowTheLargest) {
   EXPECT_EQ(plans[3].base, 12u);
   EXPECT_EQ(plans[3].tasks, "2");
   EXPECT_EQ(farm::array_plans({0, 2, 4}, 100)[0].tasks, "0-4:2") << "as sbatch writes steps";
+}
+
+TEST(FarmText, AJoinWaitsForTheChunksThatAreTriedAgain) {
+  using farm::ChunkStatus;
+  farm::Job job;
+  job.folder = "/shots/job";
+  job.chunks.resize(3);
+  job.video = "/shots/a.mov";
+  EXPECT_EQ(farm::every_task(job).size(), 4u);
+  const auto retried = [&](std::vector<ChunkStatus::State> states) {
+    farm::JobStatus status;
+    for (const auto state : states) status.chunks.push_back({.state = state, .exit_code = {}, .node = {}, .why = {}});
+    return farm::tasks_to_retry(job, status);
+  };
+  using enum ChunkStatus::State;
+  EXPECT_EQ(retried({done, failed, done, waiting}), (std::vector<std::size_t>{1, 3}));
+  EXPECT_EQ(retried({done, running, done, waiting}), (std::vector<std::size_t>{}));
+  EXPECT_EQ(retried({done, done, done, failed}), (std::vector<std::size_t>{3}));
+  EXPECT_EQ(retried({lost, done, done, failed}), (std::vector<std::size_t>{0, 3}));
+  EXPECT_EQ(retried({done, done, done, done}), (std::vector<std::size_t>{}));
+  job.needs.more = {"--dependency=afterok:7"};
+  const auto words = farm::sbatch_words(job, {.base = 0, .tasks = "3", .after = {"12", "14"}});
+  const auto own = std::ranges::find(words, "--dependency=afterany:12:14");
+  EXPECT_NE(own, words.end());
+  EXPECT_GT(own, std::ranges::find(words, "--dependency=afterok:7")) << "of two options the last one counts";
 }
 
 TEST(FarmText, ShellsReadWordsBack) {

@@ -68,7 +68,7 @@ class PlayerTest : public ::testing::Test {
   Player& open(PlayerOptions options = {}) {
     if (options.preset.empty()) options.preset = path("look.lua");
     if (options.footage.inputs.empty()) options.footage.inputs = {path("s.#.exr")};
-    options.live.follow = false;  // edits are told of by `reload`: nothing here waits for the system's watching
+    options.live.follow = follow_;
     options.clock = [this] { return seconds_; };
     if (!options.fps) options.fps = 10;
     auto opened = Player::open(*device_, options, diagnostics_);
@@ -91,6 +91,7 @@ class PlayerTest : public ::testing::Test {
   float source() { return player_->probe({3, 2}).value()->source[0]; }
 
   static inline std::unique_ptr<Device> device_;
+  bool follow_ = false;  ///< else edits are told of by `reload`: then nothing waits for the system's watching
   double seconds_ = 100;
   Diagnostics diagnostics_;
   fs::path folder_;
@@ -311,6 +312,42 @@ TEST_F(PlayerTest, PicturesThatAreReadAgainAreShownWhenTheyCome) {
   turn();
   EXPECT_FLOAT_EQ(source(), 0.375f);
   EXPECT_FLOAT_EQ(result(), 0.75f);
+}
+
+TEST_F(PlayerTest, FramesThatAreStillRenderedAreShownAsTheyCome) {
+  write_sequence(2);
+  write_picture_of(5, 0.5f);
+  follow_ = true;
+  Player& player = open();
+  turn();
+  player.transport().go_to(2, seconds_);  // frame 3 is missing: 2 is held
+  turn();
+  EXPECT_TRUE(player.shown().held);
+  EXPECT_FLOAT_EQ(source(), 0.25f);
+  const auto until = [&](const std::function<bool()>& holds) {
+    for (int i = 0; i < 2000 && !holds(); ++i) {
+      player.wait(seconds_ + 1);
+      turn();
+    }
+    return holds();
+  };
+  write_picture_of(3, 0.375f);
+  EXPECT_TRUE(until([&] { return !player.shown().held; }));
+  EXPECT_EQ(player.shown().number, 3);
+  EXPECT_FLOAT_EQ(source(), 0.375f);
+  write_picture_of(3, 0.75f);
+  EXPECT_TRUE(until([&] { return source() == 0.75f; }));
+  EXPECT_EQ(player.shown().number, 3);
+  write_picture_of(7, 0.875f);
+  EXPECT_TRUE(until([&] { return player.footage().frames() == 7; }));
+  EXPECT_EQ(player.transport().last(), 6) << "what was all of it is all of it";
+  EXPECT_EQ(player.shown().number, 3);
+  write_picture_of(0, 0.0625f);  // one before: the frame that is shown stays
+  EXPECT_TRUE(until([&] { return player.footage().frames() == 8; }));
+  turn();
+  EXPECT_EQ(player.shown().number, 3);
+  EXPECT_EQ(player.transport().position(), 3);
+  EXPECT_FLOAT_EQ(source(), 0.75f);
 }
 
 TEST_F(PlayerTest, ComparesTwoPresets) {

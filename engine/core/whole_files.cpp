@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "batch/input_watch.h"
+#include "core/whole_files.h"
 
 #include <poll.h>
 #include <sys/inotify.h>
@@ -21,24 +21,24 @@ Hash stamp_now(const std::filesystem::path& file) { return inspect(file, FilePro
 
 }  // namespace
 
-InputWatch::InputWatch(const FrameRecords& frames) : events_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
-  std::set<std::filesystem::path> seen;
-  for (const auto& frame : frames)
-    for (const auto& file : frame.job.sources()) {
-      const auto folder = file.parent_path();
-      if (!seen.insert(folder).second || events_.get() < 0) continue;
-      const std::string name = folder.empty() ? "." : folder.string();
-      const int watch = inotify_add_watch(events_.get(), name.c_str(), kWhole | kWriting);
-      if (watch >= 0) folders_[watch].insert(folder);
-    }
+WholeFiles::WholeFiles(const std::set<std::filesystem::path>& folders)
+    : events_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
+  if (events_.get() < 0) return;
+  for (const auto& folder : folders) {
+    const std::string name = folder.empty() ? "." : folder.string();
+    const int watch = inotify_add_watch(events_.get(), name.c_str(), kWhole | kWriting);
+    if (watch >= 0) folders_[watch].insert(folder);
+  }
 }
 
-void InputWatch::wait() {
+bool WholeFiles::wait() {
   pollfd ready{events_.get(), POLLIN, 0};
-  if (poll(&ready, 1, kPause) > 0) take_events();
+  if (poll(&ready, 1, kPause) <= 0) return false;
+  take_events();
+  return true;
 }
 
-void InputWatch::take_events() {
+void WholeFiles::take_events() {
   alignas(inotify_event) std::array<char, 16384> buffer{};
   for (ssize_t size = 0; (size = read(events_.get(), buffer.data(), buffer.size())) > 0;)
     for (ssize_t at = 0; at < size;) {
@@ -55,7 +55,7 @@ void InputWatch::take_events() {
     }
 }
 
-bool InputWatch::is_whole(const std::filesystem::path& path, File& file) {
+bool WholeFiles::is_whole(const std::filesystem::path& path, File& file) {
   const Hash stamp = stamp_now(path);
   if (stamp != file.stamp) {
     file.stamp = stamp;
@@ -64,13 +64,10 @@ bool InputWatch::is_whole(const std::filesystem::path& path, File& file) {
   return stamp == file.closed || (!file.open && milliseconds_since(file.since) > kSettled);
 }
 
-std::optional<Hash> InputWatch::whole(const FrameJob& job) {
-  Hasher hasher;
-  for (const auto& path : job.sources()) {
-    if (!is_file(path) || !is_whole(path, files_[path])) return std::nullopt;
-    hasher.add(files_[path].stamp.hex());
-  }
-  return hasher.finish();
+std::optional<Hash> WholeFiles::whole(const std::filesystem::path& path) {
+  File& file = files_[path];
+  if (!is_file(path) || !is_whole(path, file)) return std::nullopt;
+  return file.stamp;
 }
 
 }  // namespace afterglow

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// When the frames of a video that is written show, and what of their own video goes along.
+#pragma once
+
+#include <memory>
+
+#include "batch/frame_list.h"
+#include "image/video_writer.h"
+
+namespace afterglow {
+
+/// Frames in the order in which they are written.
+class VideoTimes {
+ public:
+  /// `rate`: of frames that have no times of their own.
+  VideoTimes(std::filesystem::path file, Rational rate) : file_(std::move(file)), rate_(rate) {}
+
+  /// The clock, and the video that sound and the rest are copied from.
+  void begin(const FrameJob& first, VideoPlan& plan);
+  /// `index`: its place among those that were asked for. Errors: usage (frames of several videos, or backwards).
+  Result<VideoTime> of(const FrameJob& job, std::size_t index);
+  /// The last frame of their video was among them, or they have none.
+  bool whole() const { return whole_; }
+
+ private:
+  Error of_one() const;
+
+  std::filesystem::path file_;
+  Rational rate_;
+  std::shared_ptr<Movie> movie_;  ///< that the frames come from
+  long long start_ = 0;           ///< time stamp of its first frame that is written
+  int last_ = -1;                 ///< its frame that was written last
+  bool whole_ = true;
+};
+
+}  // namespace afterglow

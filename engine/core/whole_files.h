@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Files that somebody still writes: which of them are whole.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "core/file_descriptor.h"
+#include "core/hash.h"
+#include "core/stopwatch.h"
+
+namespace afterglow {
+
+/// Whole are those that were closed by whoever wrote them or renamed into place, and those that nobody has touched for
+/// two seconds (network file systems tell of nothing). Not thread-safe.
+class WholeFiles {
+ public:
+  /// Of files in these folders, which are there; the empty name is the current folder.
+  explicit WholeFiles(const std::set<std::filesystem::path>& folders);
+
+  /// Waits a tenth of a second, or less where something happens; true if it did.
+  bool wait();
+  /// Size, times and number of a file as they are now; nothing while it is not whole, or not there.
+  std::optional<Hash> whole(const std::filesystem::path& file);
+
+ private:
+  struct File {
+    Hash stamp, closed;  ///< of the last look, and of the time when it was closed
+    Clock::time_point since;
+    bool open = false;  ///< somebody on this machine writes it
+  };
+  bool is_whole(const std::filesystem::path& file, File& state);
+  void take_events();
+
+  FileDescriptor events_;
+  std::map<int, std::set<std::filesystem::path>> folders_;  ///< by watch, as files name them
+  std::map<std::filesystem::path, File> files_;
+};
+
+}  // namespace afterglow

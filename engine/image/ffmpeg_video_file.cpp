@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "image/ffmpeg_video_file.h"
+
+extern "C" {
+#include <libavutil/timecode.h>
+}
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "image/ffmpeg_log.h"
+
+namespace afterglow {
+namespace {
+
+constexpr AVRational kCopyClock{1, AV_TIME_BASE};
+
+Error stream_failed(int code) { return {ErrorKind::io, "cannot be written: " + ffmpeg_error(code)}; }
+
+}  // namespace
+
+Result<std::unique_ptr<FfmpegVideoFile>> FfmpegVideoFile::open(const VideoPlan& plan, OutputFile& out,
+                                                               const std::filesystem::path& path) {
+  std::unique_ptr<FfmpegVideoFile> file(new FfmpegVideoFile(plan));
+  AFTERGLOW_TRY(file->output_, FfmpegOutput::open(plan.container.c_str(), out, path));
+  return file;
+}
+
+bool FfmpegVideoFile::wants_global_header() const {
+  return (output_->container().oformat->flags & AVFMT_GLOBALHEADER) != 0;
+}
+
+unsigned FfmpegVideoFile::codec_tag() const {
+  return plan_.codec == "h265" && plan_.container != "matroska" ? MKTAG('h', 'v', 'c', '1') : 0;
+}
+
+Result<void> FfmpegVideoFile::begin(const AVCodecParameters& frames, bool alpha, const std::string& name,
+                                    Diagnostics& diagnostics) {
+  stream_ = avformat_new_stream(&output_->container(), nullptr);
+  if (!stream_) return stream_failed(AVERROR(ENOMEM));
+  if (const int code = avcodec_parameters_copy(stream_->codecpar, &frames); code < 0) return stream_failed(code);
+  stream_->time_base = rational(plan_.time_base);
+  stream_->avg_frame_rate = rational(plan_.rate);
+  stream_->sample_aspect_ratio = stream_->codecpar->sample_aspect_ratio = {1, 1};
+  if (plan_.codec == "vp9" && alpha) av_dict_set(&stream_->metadata, "alpha_mode", "1", 0);
+  AFTERGLOW_CHECK(add_copies(name, diagnostics));
+  if (copy_ && plan_.audio.empty()) add_timecode(copy_->timecode());
+  return write_head();
+}
+
+Result<void> FfmpegVideoFile::add_copies(const std::string& name, Diagnostics& diagnostics) {
+  const bool sound_only = !plan_.audio.empty();
+  const auto& from = sound_only ? plan_.audio : plan_.source;
+  if (from.empty()) return {};
+  AFTERGLOW_TRY(copy_, FfmpegCopy::open(from, sound_only, *output_, plan_.range, name, diagnostics));
+  return {};
+}
+
+/// That of the first picture that is written. `text`: of the source's first.
+void FfmpegVideoFile::add_timecode(const std::string& text) {
+  AVTimecode first{};
+  const AVRational rate = rational(plan_.rate);
+  if (text.empty() || av_timecode_init_from_string(&first, rate, text.c_str(), nullptr) < 0) return;
+  const auto frames = static_cast<int>(av_rescale_q(std::max(0LL, plan_.range.shift), kCopyClock, av_inv_q(rate)));
+  std::array<char, AV_TIMECODE_STR_SIZE> out{};
+  av_timecode_make_string(&first, out.data(), plan_.range.begin < 0 ? 0 : frames);
+  av_dict_set(&output_->container().metadata, "timecode", nullptr, 0);
+  av_dict_set(&stream_->metadata, "timecode", out.data(), 0);
+}
+
+Result<void> FfmpegVideoFile::write_head() {
+  AVDictionary* options = nullptr;
+  if (plan_.container == "mp4") av_dict_set(&options, "movflags", "+faststart+write_colr", 0);
+  if (plan_.container == "mov") av_dict_set(&options, "movflags", "+write_colr", 0);
+  if (plan_.container == "apng") av_dict_set(&options, "plays", "0", 0);
+  auto begun = output_->begin(&options);
+  av_dict_free(&options);
+  return begun;
+}
+
+Result<void> FfmpegVideoFile::write(AVPacket& packet) {
+  const AVRational clock = rational(plan_.time_base);
+  if (copy_) AFTERGLOW_CHECK(copy_->copy(av_rescale_q(packet.dts, clock, kCopyClock)));
+  av_packet_rescale_ts(&packet, clock, stream_->time_base);
+  packet.stream_index = stream_->index;
+  return output_->write(packet);
+}
+
+Result<void> FfmpegVideoFile::finish(bool whole, std::int64_t end) {
+  const std::int64_t until = av_rescale_q(end, rational(plan_.time_base), kCopyClock);
+  if (copy_) AFTERGLOW_CHECK(copy_->copy(whole ? std::numeric_limits<std::int64_t>::max() : until));
+  return output_->finish();
+}
+
+}  // namespace afterglow

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// What a video that is written takes from other files: sound, subtitles, chapters, attachments, times.
+
+#include "video_out_test.h"
+
+namespace afterglow::test {
+namespace {
+
+TEST_F(VideoOut, SoundOfAnotherFileIsCopied) {
+  make_frames(24);
+  ASSERT_EQ(shell("ffmpeg -v error -f lavfi -i sine=frequency=440:duration=1 -c:a aac sound.m4a").exit_code, 0);
+  ASSERT_EQ(make_video("a.mp4", {"--audio", "sound.m4a"}).exit_code, kDone);
+  const auto hashes = [&](const std::string& name) {
+    std::vector<std::string> all;
+    const auto packets = probe(name, "-select_streams a -show_packets -show_data_hash md5");
+    for (const auto& packet : packets.at("packets"))
+      all.push_back(packet.at("data_hash").get<std::string>() + " " + packet.at("pts_time").get<std::string>());
+    return all;
+  };
+  const auto from = hashes("sound.m4a"), to = hashes("a.mp4");
+  ASSERT_GT(from.size(), 40u);
+  EXPECT_EQ(from, to);
+  const Outcome none = make_video("b.mp4", {"--audio", "in/1001.ppm"});
+  EXPECT_EQ(none.exit_code, kFiles);
+  EXPECT_THAT(none.err, HasSubstr("in/1001.ppm: error: "));
+  EXPECT_FALSE(fs::exists(path("b.mp4")));
+}
+
+/// Times, sound, subtitles and chapters of a video stay with it.
+TEST_F(VideoOut, VideoToVideo) {
+  make_frames(40);
+  write("chapters.txt",
+        ";FFMETADATA1\ntitle=A "
+        "shot\n[CHAPTER]\nTIMEBASE=1/1000\nSTART=0\nEND=700\ntitle=one\n[CHAPTER]\nTIMEBASE=1/1000\n"
+        "START=700\nEND=1600\ntitle=two\n");
+  write("text.srt", "1\n00:00:00,200 --> 00:00:00,900\nhello\n");
+  // Every third frame is gone: the rate varies.
+  ASSERT_EQ(
+      shell(
+          "ffmpeg -v error -framerate 25 -start_number 1001 -i in/%04d.ppm -f lavfi -i sine=frequency=440:duration=1.6 "
+          "-i text.srt -i chapters.txt -map 0 -map 1 -map 2 -map_metadata 3 -map_chapters 3 -vf "
+          "\"select='mod(n,3)'\" -vsync vfr -c:v libx264 -bf 2 -g 10 -pix_fmt yuv444p -crf 5 -c:a aac -c:s srt in.mkv")
+          .exit_code,
+      0);
+  const Outcome outcome = run({"run", "look.lua", "in.mkv", "-o", "out.mkv", "--codec", "ffv1"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  const auto texts = [&](const std::string& name, const std::string& what, const char* list, const char* key) {
+    std::vector<std::string> all;
+    const auto probed = probe(name, what);
+    for (const auto& one : probed.at(list)) all.push_back(one.at(key).get<std::string>());
+    return all;
+  };
+  const std::string times = "-select_streams v -show_frames -show_entries frame=pts_time";
+  EXPECT_EQ(texts("in.mkv", times, "frames", "pts_time"), texts("out.mkv", times, "frames", "pts_time"));
+  for (const char* stream : {"a", "s"}) {
+    const std::string what = std::string("-show_packets -show_data_hash md5 -select_streams ") + stream;
+    EXPECT_EQ(texts("in.mkv", what, "packets", "data_hash"), texts("out.mkv", what, "packets", "data_hash")) << stream;
+    EXPECT_EQ(texts("in.mkv", what, "packets", "pts_time"), texts("out.mkv", what, "packets", "pts_time")) << stream;
+  }
+  EXPECT_EQ(texts("out.mkv", "-show_chapters", "chapters", "start_time"),
+            texts("in.mkv", "-show_chapters", "chapters", "start_time"));
+  const auto frames = frames_of("out.mkv"), before = frames_of("in.mkv");
+  ASSERT_EQ(frames.size(), before.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_EQ(number_of(frames[i]), number_of(before[i])) << i;
+
+  // A part begins at 0, with the sound beside it.
+  const Outcome part = run({"run", "look.lua", "in.mkv", "-o", "part.mkv", "--codec", "ffv1", "--frames", "11-20"});
+  ASSERT_EQ(part.exit_code, kDone) << part.err;
+  const auto some = frames_of("part.mkv");
+  ASSERT_EQ(some.size(), 10u);
+  EXPECT_EQ(number_of(some[0]), number_of(before[10]));
+  const auto all = texts("in.mkv", times, "frames", "pts_time"), ten = texts("part.mkv", times, "frames", "pts_time");
+  for (std::size_t i = 0; i < 10; ++i)
+    EXPECT_NEAR(std::stod(ten[i]), std::stod(all[10 + i]) - std::stod(all[10]), 0.0011) << i;
+  const auto sound = texts("part.mkv", "-show_packets -select_streams a", "packets", "pts_time");
+  ASSERT_FALSE(sound.empty());
+  EXPECT_GE(std::stod(sound.front()), 0);
+  EXPECT_LT(std::stod(sound.front()), 0.03);
+  EXPECT_LT(std::stod(sound.back()), std::stod(ten.back()) + 0.09);
+}
+
+/// What a container does not hold as it is becomes text that it does; attachments go where they can be named.
+TEST_F(VideoOut, SubtitlesBecomeThoseOfTheContainer) {
+  make_frames(24);
+  write("text.srt", "1\n00:00:00,100 --> 00:00:00,400\nfirst <i>line</i>\n\n2\n00:00:00,500 --> 00:00:00,900\nlast\n");
+  write("font.ttf", "no font, but its bytes stay");
+  ASSERT_EQ(shell("ffmpeg -v error -framerate 24 -start_number 1001 -i in/%04d.ppm -i text.srt -map 0 -map 1 "
+                  "-attach font.ttf -metadata:s:t mimetype=font/ttf -c:v ffv1 -c:s srt in.mkv")
+                .exit_code,
+            0);
+  const auto cues = [&](const std::string& name) {
+    const Outcome outcome = shell("ffmpeg -v error -i " + name + " -map 0:s -f srt -");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.out;
+  };
+  const std::string before = cues("in.mkv");
+  ASSERT_THAT(before, HasSubstr("00:00:00,500 --> 00:00:00,900\nlast"));
+  for (const auto& [name, codec] : {std::pair{"out.mp4", "mov_text"}, std::pair{"out.mov", "mov_text"}}) {
+    const Outcome outcome = run({"run", "look.lua", "in.mkv", "-o", name});
+    ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("attachment 3 (none) of in.mkv cannot be held by"));
+    EXPECT_EQ(probe(name, "-select_streams s -show_streams").at("streams").at(0).at("codec_name"), codec);
+    EXPECT_EQ(cues(name), before) << name;
+  }
+  // And back: Matroska holds no mov_text.
+  ASSERT_EQ(run({"run", "look.lua", "out.mp4", "-o", "again.mkv"}).exit_code, kDone);
+  EXPECT_EQ(probe("again.mkv", "-select_streams s -show_streams").at("streams").at(0).at("codec_name"), "ass");
+  EXPECT_EQ(cues("again.mkv"), before);
+  const Outcome kept = run({"run", "look.lua", "in.mkv", "-o", "kept.mkv"});
+  ASSERT_EQ(kept.exit_code, kDone);
+  EXPECT_THAT(kept.err, IsEmpty());
+  ASSERT_EQ(shell("ffmpeg -v error -dump_attachment:t:0 out.ttf -i kept.mkv -t 0 -f null -").exit_code, 0);
+  EXPECT_EQ(read("out.ttf"), read("font.ttf"));
+}
+
+TEST_F(VideoOut, TheTimecodeIsThatOfTheFirstPicture) {
+  make_frames(20);
+  ASSERT_EQ(
+      shell(
+          "ffmpeg -v error -framerate 25 -start_number 1001 -i in/%04d.ppm -c:v prores_ks -timecode 09:59:59:20 in.mov")
+          .exit_code,
+      0);
+  for (const auto& [frames, first] : {std::pair{"1-20", "09:59:59:20"}, std::pair{"8-20", "10:00:00:02"}}) {
+    const Outcome outcome = run({"run", "look.lua", "in.mov", "-o", "out.mov", "--frames", frames});
+    ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+    EXPECT_THAT(outcome.err, IsEmpty());
+    EXPECT_EQ(stream_of("out.mov").at("tags").at("timecode"), first);
+  }
+}
+
+}  // namespace
+}  // namespace afterglow::test
