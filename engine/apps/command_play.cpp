@@ -52,8 +52,12 @@ Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& op
 }
 
 Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& options, Console& console) {
-  const PlayWindowOptions window{
-      .scale = a.ui_scale, .full_screen = a.full_screen, .paused = a.paused, .stats = a.stats, .speed = a.speed};
+  const PlayWindowOptions window{.scale = a.ui_scale,
+                                 .full_screen = a.full_screen,
+                                 .paused = a.paused,
+                                 .stats = a.stats,
+                                 .speed = a.speed,
+                                 .exports = a.exports};
   Result<void> reported;
   const auto report = [&](const Device& device, Player& player, const PlayedTimes& times, const Result<void>& done) {
     PlayReport figures{.preset = options.preset.string(),

@@ -58,6 +58,11 @@ void PlayArguments::add_playing(CLI::App& app) {
       ->check(CLI::Range(0.5, 4.0))
       ->type_name("X")
       ->group(window);
+  app.add_option("--export", exports,
+                 "Where S writes the frame, full size: a file, a pattern like out.####.png, or a folder (default: "
+                 "NAME_graded.exr here)")
+      ->type_name("OUTPUT")
+      ->group(window);
   app.add_flag("--headless", headless, "Play without a window, and end")->group(alone);
   app.add_option("--count", count, "Frames to play, looping as --loop says (default: each once)")
       ->check(CLI::PositiveNumber)
@@ -80,6 +85,8 @@ Result<void> PlayArguments::check() const {
   if (!headless && (count > 0 || fast || real_time || !screenshot.empty()))
     return Error{ErrorKind::usage, "--count, --fast, --real-time and --screenshot go with --headless",
                  "afterglow play"};
+  std::error_code none;
+  if (!exports.empty() && !std::filesystem::is_directory(exports, none)) AFTERGLOW_CHECK(check_output(exports, {}));
   // The format goes by the extension: wrong ones are refused before any work.
   return screenshot.empty() ? Result<void>{} : check_output(screenshot, {});
 }

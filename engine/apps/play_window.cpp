@@ -36,7 +36,8 @@ Result<void> play_in_window(
     player->transport().set_speed(options.speed, player->now());
     if (!options.paused && player->footage().frames() > 1) player->transport().play(player->now());
     WindowOptions shown = window_options(options);
-    PlayParts parts(*player, player_options.preset, player_options.live.stack.preset);
+    PlayParts parts(*player, player_options.preset, player_options.live.stack.preset, options.exports,
+                    console.diagnostics());
     parts.add_to(shown);
     PlayedTimes times{.startup = milliseconds_since(start)};
     const auto began = Clock::now();

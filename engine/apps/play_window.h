@@ -19,6 +19,7 @@ struct PlayWindowOptions {
   bool paused = false;
   bool stats = false;
   double speed = 1;
+  std::filesystem::path exports;  ///< see FrameExport; empty: beside where the program was called
 };
 
 /// In milliseconds.

@@ -6,8 +6,9 @@
 
 namespace afterglow {
 
-PlayParts::PlayParts(Player& player, const std::filesystem::path& preset, const PresetOptions& options)
-    : port_(player), preset_options_(options) {
+PlayParts::PlayParts(Player& player, const std::filesystem::path& preset, const PresetOptions& options,
+                     const std::filesystem::path& exports, Diagnostics& diagnostics)
+    : port_(player), preset_options_(options), export_(exports, diagnostics) {
   panel_.emplace(preset, preset_options_);
 }
 
@@ -26,9 +27,18 @@ void PlayParts::draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size
   draw_transport_bar(ui, state, place, size);
 }
 
+void PlayParts::draw_panel(Ui& ui, ImVec2 place, ImVec2 size) {
+  export_.poll(ui);
+  panel_->draw(ui, port_, place, size);
+}
+
 void PlayParts::add_to(WindowOptions& options) {
-  options.panel = [this](Player&, Ui& ui, ImVec2 place, ImVec2 size) { panel_->draw(ui, port_, place, size); };
-  options.hidden_panel = [this](Player&, Ui& ui) { panel_->turn(ui, port_); };
+  options.panel = [this](Player&, Ui& ui, ImVec2 place, ImVec2 size) { draw_panel(ui, place, size); };
+  options.hidden_panel = [this](Player&, Ui& ui) {
+    export_.poll(ui);
+    panel_->turn(ui, port_);
+  };
+  options.export_frame = [this](Player& player, Ui& ui) { export_.begin(player, ui); };
   options.transport = [this](Player& player, Ui& ui, ImVec2 place, ImVec2 size) {
     draw_transport(player, ui, place, size);
   };

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "window/frame_export.h"
 #include "window/panel.h"
 #include "window/player_port.h"
 #include "window/run_window.h"
@@ -14,14 +15,18 @@ namespace afterglow {
 class PlayParts {
  public:
   /// `preset`, `options`: as the player's preset is loaded.
-  PlayParts(Player& player, const std::filesystem::path& preset, const PresetOptions& options);
+  /// `exports`: where frames are written, see FrameExport.
+  PlayParts(Player& player, const std::filesystem::path& preset, const PresetOptions& options,
+            const std::filesystem::path& exports, Diagnostics& diagnostics);
   void add_to(WindowOptions& options);
 
  private:
   void draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) const;
+  void draw_panel(Ui& ui, ImVec2 place, ImVec2 size);
   PlayerPort port_;
   PresetOptions preset_options_;
   std::optional<Panel> panel_;
+  FrameExport export_;
 };
 
 }  // namespace afterglow

@@ -33,6 +33,7 @@ struct WindowOptions {
   std::function<std::string(Player&)> unsaved;
   enum class Saving { busy, done, failed };
   std::function<Saving()> saving;                  ///< what has become of the last `save`
+  std::function<void(Player&, Ui&)> export_frame;  ///< S
   std::function<void(Player&, Ui&)> undo_save;     ///< takes back the last `save`
   std::function<void(Player&, Ui&)> search;        ///< the keyboard goes to the panel's search
   std::function<void(Player&, Ui&)> hidden_panel;  ///< called in place of `panel` while that is hidden

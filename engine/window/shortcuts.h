@@ -16,6 +16,9 @@ struct KeyPress {
 
 enum class Action {
   play,
+  shuttle_back,
+  shuttle_pause,
+  shuttle_forward,
   step_forward,
   step_back,
   jump_forward,
@@ -23,6 +26,7 @@ enum class Action {
   go_to_first,
   go_to_last,
   loop_mode,
+  go_to_frame,
   range_begin,
   range_end,
   range_clear,
@@ -58,6 +62,7 @@ enum class Action {
   transport,
   full_screen,
   screenshot,
+  export_frame,
   reload,
   copy_message,
   undo,

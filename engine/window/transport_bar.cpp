@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "window/flow.h"
+#include "window/frame_field.h"
 #include "window/icons.h"
 
 namespace afterglow {
@@ -95,7 +96,8 @@ void draw_counter(const Ui& ui, const TransportBarState& state) {
                                           : fmt::format("-/{}", frames))
                              .c_str());
   ImGui::PopFont();
-  ui.help(state.name);
+  ui.help(line.shown >= 0 ? fmt::format("{}\n{}", state.name, timecode_text(line.shown, line.transport.fps()))
+                          : state.name);
 }
 
 void draw_pace(const Ui& ui, const TransportBarState& state) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "window/typed_value.h"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -86,8 +88,18 @@ std::optional<SettingValue> TypedValue::draw(Ui& ui, const char* name, const Set
   constexpr int kPatience = 4;
   if (std::exchange(begin_, false)) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(width);
-  const bool entered = ImGui::InputText(name, text_.data(), text_.size(),
-                                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  // Tab takes the value as Enter does, and goes to no other field: keys are shortcuts again.
+  bool tab = false;
+  const auto on_tab = [](ImGuiInputTextCallbackData* data) {
+    *static_cast<bool*>(data->UserData) = true;
+    return 0;
+  };
+  bool entered = ImGui::InputText(
+      name, text_.data(), text_.size(),
+      ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CallbackCompletion,
+      on_tab, &tab);
+  if (tab) ImGui::ClearActiveID();
+  entered = entered || tab;
   const bool left = ImGui::IsItemDeactivated();
   idle_ = ImGui::IsItemActive() ? 0 : idle_ + 1;
   active_ = active_ || ImGui::IsItemActive();

@@ -4,6 +4,7 @@
 
 #include <imgui.h>
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -27,6 +28,7 @@ struct Ui {
   bool show_panel = true;
   bool show_transport = true;
   bool show_help = false;
+  bool show_frame_field = false;
   bool show_stats = false;
   bool show_histogram = false;
 
@@ -50,7 +52,11 @@ struct Ui {
   double message_until = 0;
   mutable HoverHelp hover;   ///< what `help` remembers
   bool values_apply = true;  ///< false: settings are shown and cannot be changed
-  TypedValue typed;          ///< the setting that is being typed
+  struct {
+    std::array<char, 32> text{};
+    bool begin = false;  ///< it gets the keyboard with the next frame
+  } frame_field;
+  TypedValue typed;  ///< the setting that is being typed
 
   float px(float size) const { return size * scale; }
 };

@@ -69,7 +69,7 @@ void draw_view_controls(Ui& ui, PanelPort& port) {
   ui.help("H");
   ImGui::SameLine();
   ImGui::Checkbox("figures", &ui.show_stats);
-  ui.help("Frame times and reload latency (S)");
+  ui.help("Frame times and reload latency (Shift+S)");
 }
 
 }  // namespace afterglow

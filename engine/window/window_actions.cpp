@@ -48,6 +48,21 @@ bool WindowApp::act_on_transport(Action action) {
     case Action::play:
       t.toggle(now);
       return true;
+    case Action::shuttle_back:
+      shuttle(-1);
+      return true;
+    case Action::shuttle_pause:
+      t.pause(now);
+      t.set_speed(1, now);
+      return true;
+    case Action::shuttle_forward:
+      shuttle(1);
+      return true;
+    case Action::go_to_frame:
+      ui.show_frame_field = ui.frame_field.begin = true;
+      ui.frame_field.text.fill(0);
+      await_field();
+      return true;
     case Action::step_forward:
       t.step(1, now);
       return true;
@@ -88,6 +103,16 @@ bool WindowApp::act_on_transport(Action action) {
     default:
       return false;
   }
+}
+
+/// One way at the speed of the clock; pressed again, twice as fast.
+void WindowApp::shuttle(int direction) {
+  Transport& t = player_.transport();
+  const double now = player_.now();
+  const bool goes_on = t.playing() && (t.speed() < 0) == (direction < 0);
+  t.set_speed(goes_on ? t.speed() * 2 : direction, now);
+  t.play(now);
+  interface_->ui().say(fmt::format("speed {:g}×", t.speed()));
 }
 
 bool WindowApp::act_on_view(Action action) {
@@ -293,6 +318,9 @@ bool WindowApp::act_on_window(Action action) {
       diagnostics_.note("window written to " + file.string());
       return true;
     }
+    case Action::export_frame:
+      if (options_.export_frame) options_.export_frame(player_, ui);
+      return true;
     case Action::help:
       ui.show_help = !ui.show_help;
       return true;

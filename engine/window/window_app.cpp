@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "window/frame_field.h"
+
 namespace afterglow {
 
 namespace {
@@ -242,6 +244,7 @@ Result<void> WindowApp::draw() {
   draw_parts(window);
   navigate();
   AFTERGLOW_CHECK(draw_overlays());
+  draw_frame_field();
   quit_when_saved();
   if (quitting_ == Quitting::asked) {
     const std::string changes = options_.unsaved(player_) + " would be lost.";
@@ -344,6 +347,25 @@ Result<void> WindowApp::draw_overlays() {
   if (under_cursor_.probe) draw_probe_overlay(*under_cursor_.probe, ui, area, below);
   draw_message_overlay(ui, area);
   return {};
+}
+
+void WindowApp::draw_frame_field() {
+  Ui& ui = interface_->ui();
+  if (!ui.show_frame_field) return;
+  const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+  const auto text = afterglow::draw_frame_field(
+      ui, {static_cast<float>(area_.width) / scale.x / 2, static_cast<float>(area_.height) / scale.y * 0.75f});
+  if (!text || text->empty()) return;
+  Transport& t = player_.transport();
+  const Footage& footage = player_.footage();
+  const auto to =
+      position_named(*text, t.position(), t.frames(), t.fps(), [&](int at) { return footage.frame(at).number; });
+  if (to) {
+    t.go_to(*to, player_.now());
+  } else {
+    ui.say("'" + *text + "' is no frame: 1001, +12, -3 or 00:01:12");
+  }
+  redraw_ = kSettle;
 }
 
 OverlayPicture WindowApp::overlay_picture() const {

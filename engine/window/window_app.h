@@ -60,6 +60,8 @@ class WindowApp {
   bool act_on_window(Action action);
   void show_neighbour(int by);
   void next_wipe();
+  void shuttle(int direction);
+  void draw_frame_field();
   void compare_by(CompareBy by);
   Size picture_window() const;  ///< what one picture has of `area_`
   void minimise_or_restore(bool minimised);

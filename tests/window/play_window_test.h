@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/file.h"
+#include "image/reader.h"
 #include "image/writer.h"
 #include "played_window.h"
 #include "x_client.h"

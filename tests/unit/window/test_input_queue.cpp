@@ -6,6 +6,7 @@
 #include <GLFW/glfw3.h>
 
 #include "window/flow.h"
+#include "window/frame_field.h"
 #include "window/hover_help.h"
 #include "window/input_queue.h"
 
@@ -82,6 +83,23 @@ TEST(HoverHelp, ComesWhenThePointerRestsAndNeverWhileItDrags) {
   help.begin_frame();
   help.begin_frame();
   EXPECT_FALSE(due(other, 51, false, 9.7)) << "it was away";
+}
+
+TEST(FrameField, NumbersStepsAndTimecodes) {
+  const auto number = [](int at) { return 1001 + at + (at >= 5 ? 10 : 0); };  // a hole of ten
+  const auto at = [&](const char* text) { return position_named(text, 4, 100, 23.976, number).value_or(-1); };
+  EXPECT_EQ(at("1003"), 2);
+  EXPECT_EQ(at(" 1005 "), 4);
+  EXPECT_EQ(at("1008"), 5) << "the next one that is there";
+  EXPECT_EQ(at("1"), 0);
+  EXPECT_EQ(at("99999"), 99);
+  EXPECT_EQ(at("+12"), 16);
+  EXPECT_EQ(at("-12"), 0);
+  EXPECT_EQ(at("00:00:01:06"), 30);
+  EXPECT_EQ(at("2:3"), 51);
+  for (const char* wrong : {"", "x", "12x", "1:x", "1:2:3:4:5", "+", "1:-2"}) EXPECT_EQ(at(wrong), -1) << wrong;
+  EXPECT_EQ(timecode_text(51, 23.976), "00:00:02:03");
+  EXPECT_EQ(timecode_text(24 * 3661 + 5, 24), "01:01:01:05");
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Writes frames as they are shown, whole and full size, beside the playing.
+#pragma once
+
+#include <filesystem>
+#include <future>
+#include <string>
+#include <vector>
+
+#include "play/player.h"
+#include "window/ui.h"
+
+namespace afterglow {
+
+/// Drawing thread alone; files are written on threads of their own.
+class FrameExport {
+ public:
+  /// `to`: a file (out.####.png takes the frame's number) or a folder (NAME_graded.exr in it).
+  FrameExport(std::filesystem::path to, Diagnostics& diagnostics) : to_(std::move(to)), diagnostics_(diagnostics) {}
+  /// Waits for what is being written.
+  ~FrameExport() = default;
+
+  /// Takes the frame from the device and begins to write it.
+  void begin(Player& player, Ui& ui);
+  /// In each turn: tells what was written or why not.
+  void poll(Ui& ui);
+  /// The file that a frame of that name and number goes to.
+  Result<std::filesystem::path> file_for(const std::string& picture, int number) const;
+
+ private:
+  struct Written {
+    std::filesystem::path file;
+    Result<void> done;
+  };
+  std::filesystem::path to_;
+  Diagnostics& diagnostics_;
+  std::vector<std::future<Written>> running_;
+};
+
+}  // namespace afterglow
