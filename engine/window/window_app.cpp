@@ -147,6 +147,10 @@ void WindowApp::await_field() { field_awaited_ = kFramesToField; }
 void WindowApp::ask_to_quit() {
   redraw_ = kSettle;
   if (quitting_ != Quitting::no) return;
+  if (options_.saving && options_.saving() == WindowOptions::Saving::busy) {
+    quitting_ = Quitting::saving;  // what is being written is no loss
+    return;
+  }
   const bool unsaved = options_.unsaved && !options_.unsaved(player_).empty();
   quitting_ = unsaved ? Quitting::asked : Quitting::no;
   if (unsaved) diagnostics_.note("asked whether to save");

@@ -107,6 +107,33 @@ TEST_F(PlayEditing, SavingKeepsTheHistoryAndQuittingAsks) {
   EXPECT_GT(report.at("milliseconds").at("wall"), 0);
 }
 
+TEST_F(PlayEditing, TheFileAndThePanelDisagree) {
+  ASSERT_NO_FATAL_FAILURE(open());
+  type("-100", "Return");
+  expect_color(kDull, "typed");
+  write_look("100");
+  // Thin letters have few pixels of the very colour: those near it count.
+  const auto amber = [&] {
+    const Screen screen = shot();
+    int count = 0;
+    for (std::size_t i = 0; i + 2 < screen.rgb.size(); i += 3)
+      count += screen.rgb[i] > 200 && screen.rgb[i + 1] > 160 && screen.rgb[i + 1] < 210 && screen.rgb[i + 2] < 100;
+    return count;
+  };
+  int told = 0;
+  EXPECT_TRUE(until([&] { return (told = amber()) > 60; })) << "both values are told";
+  expect_color(kDull, "the panel's stays");
+  ASSERT_TRUE(user("key ctrl+s"));
+  EXPECT_TRUE(until([&] { return amber() > told + 60; })) << "why nothing was written";
+  EXPECT_NE(preset().find("saturation = 100 }"), std::string::npos);
+  ASSERT_TRUE(user("mousemove 960 217 click 1"));  // keep mine
+  EXPECT_TRUE(until([&] {
+    return user("mousemove 400 300 key ctrl+s") && preset().find("saturation = -100 }") != std::string::npos;
+  }));
+  ASSERT_TRUE(user("key ctrl+q"));
+  expect_clean_end();
+}
+
 TEST_F(PlayEditing, WhileTheFileHasAnErrorSettingsRest) {
   ASSERT_NO_FATAL_FAILURE(open());
   std::ofstream(folder_ / "look.lua") << "return {";
