@@ -8,8 +8,6 @@
 
 namespace afterglow::reference {
 
-namespace {}  // namespace
-
 double perceived(const Rgb& c) { return std::sqrt(luminance(glm::clamp(c, Rgb(0), Rgb(1)))); }
 
 DoubleImage sharpen(const DoubleImage& source, double intensity, double contrast) {
@@ -43,8 +41,15 @@ DoubleImage pixelate(const DoubleImage& source, int size) {
 }
 
 DoubleImage edge_detection(const DoubleImage& source, const EdgeDetection& s) {
+  const int around = s.apart / 2;
+  const DoubleImage mean = generate(source.size(), [&](int x, int y) {
+    Rgba sum(0);
+    for (int j = -around; j <= around; ++j)
+      for (int i = -around; i <= around; ++i) sum += source.clamped(x + i, y + j);
+    return sum / static_cast<double>(s.apart * s.apart);
+  });
   return generate(source.size(), [&](int x, int y) {
-    const auto at = [&](int dx, int dy) { return perceived(Rgb(source.clamped(x + dx, y + dy))); };
+    const auto at = [&](int dx, int dy) { return perceived(Rgb(mean.clamped(x + s.apart * dx, y + s.apart * dy))); };
     double gx, gy;
     if (s.kind == EdgeOperator::roberts) {
       gx = (at(0, 0) - at(1, 1)) / std::sqrt(2.0);

@@ -20,6 +20,7 @@ struct EdgeDetection {
   double intensity = 2, threshold = 0.05;
   Rgb color{0}, background{1};
   double background_opacity = 0;
+  int apart = 1;  ///< an odd number of pixels between those that are compared, each the mean of a square of that side
 };
 DoubleImage edge_detection(const DoubleImage& source, const EdgeDetection& settings);
 

@@ -31,7 +31,13 @@ return fx.effect {
   build = function(g, s, source)
     -- A preview's pixels show so much less of a line; larger pictures have broader ones.
     local finer, apart = math.min(1, g.length_scale), math.max(1, math.floor(g.length_scale + 0.5))
-    return g:pass { shader = "edge_detection/lines", source = source, operator = ({ sobel = 0, scharr = 1, roberts = 2 })[s.operator],
+    local tones = source
+    if apart > 1 then  -- no pixel between them is left out
+      local mean = {}
+      for i = 1, apart do mean[i] = { i - (apart + 1) / 2, 1 / apart } end
+      tones = g:filter { source = source, filter = { x = mean, y = mean }, name = "mean" }
+    end
+    return g:pass { shader = "edge_detection/lines", source = source, tones = tones, operator = ({ sobel = 0, scharr = 1, roberts = 2 })[s.operator],
                     intensity = s.intensity, finer = finer, apart = apart, reach = apart, threshold = s.threshold, ink = s.color, paper = s.background, opacity = s.background_opacity }
   end,
 }

@@ -6,6 +6,7 @@ layout(constant_id = 0) const int operator = 0;  // Sobel, Scharr, Roberts
 layout(constant_id = 1) const int apart = 1;     // pixels between those that are compared
 
 uniform sampler2D source;
+uniform sampler2D tones;  // the source; where pixels are compared that are `apart`, the mean over squares of that side
 uniform float intensity;
 uniform float threshold;
 uniform vec3 ink;
@@ -13,7 +14,7 @@ uniform vec3 paper;
 uniform float opacity;
 uniform float finer;  // below 1 in a preview: how much a line of one pixel covers of its own
 
-float at(ivec2 pixel) { return perceived(fetch(source, pixel).rgb); }
+float at(ivec2 pixel) { return perceived(fetch(tones, pixel).rgb); }
 
 vec2 gradient(ivec2 pixel) {
   float own = at(pixel), e = at(pixel + ivec2(apart, 0)), s = at(pixel + ivec2(0, apart)), se = at(pixel + ivec2(apart, apart));

@@ -35,7 +35,7 @@ SmallDisk::SmallDisk(std::filesystem::path folder, const std::string& size)
     : folder_(std::move(folder)), mounted_(enter_namespace() && mount_tmpfs(folder_, size, 0)) {}
 
 SmallDisk::~SmallDisk() {
-  if (mounted_) umount(folder_.c_str());
+  if (mounted_) umount2(folder_.c_str(), MNT_DETACH);  // somebody may still look at it
 }
 
 bool SmallDisk::resize(const std::string& size) const { return mount_tmpfs(folder_, size, MS_REMOUNT); }

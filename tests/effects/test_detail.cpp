@@ -69,6 +69,18 @@ TEST_F(Effects, EdgeDetectionAgrees) {
   expect_skipped("fx.edge_detection { intensity = 0 }", "intensity and background_opacity are 0");
 }
 
+/// Lengths three times as long: no pixel between those that are compared is left out.
+TEST_F(Effects, EdgeDetectionOfLargerPicturesAgrees) {
+  for (const auto kind : {EdgeOperator::sobel, EdgeOperator::roberts}) {
+    const auto scene = random_scene({75, 60}, 41);
+    const EdgeDetection settings{.kind = kind, .intensity = 0.7, .apart = 3};
+    for (const Way way : {Way::plain, Way::fused})
+      EXPECT_TRUE(agrees(run_stack(edged(settings).entries, scene, way, 3).result,
+                         edge_detection(scene.source, settings), way == Way::plain ? kSteep.full : kSteep.fused,
+                         kRgba));
+  }
+}
+
 TEST_F(Effects, AStepFromBlackToWhiteIsAnEdgeOfOne) {
   Scene scene{"step", DoubleImage(8, 8), {}, {}};
   for (int y = 0; y < 8; ++y)

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Jobs that something befalls: nodes, processes, disks, pictures, other jobs, people.
-#include <sched.h>
 #include <signal.h>
-#include <sys/mount.h>
 
 #include "farm_test.h"
+#include "small_disk.h"
 
 namespace afterglow::test {
 namespace {
@@ -19,10 +18,6 @@ class FarmFaults : public FarmTest {
     make_look_back(kWork);
     fs::create_directory(path("one"));
     fs::create_directory(path("out"));
-  }
-  void TearDown() override {
-    umount2(path("out").c_str(), MNT_DETACH);  // of the test that mounts there
-    FarmTest::TearDown();
   }
   void make_truth(int frames, int width = 16, int height = 9) const {
     make_frames("in", 1, frames, width, height);
@@ -160,15 +155,12 @@ TEST_F(FarmFaults, ABadFrameIsNamedAndTheRestIsMade) {
 }
 
 TEST_F(FarmFaults, AFullDiskFailsAndRetryGoesOnWhenThereIsRoom) {
-  // A small disk in a place of this test's own, so that it goes with the test; a limit on files where that needs
-  // rights.
   make_look_back();
-  const bool small_disk = unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-                          mount("none", path("out").c_str(), "tmpfs", 0, "size=400k") == 0;
+  const SmallDisk disk(path("out"), "400k");  // before the daemons begin, so that they see it
   AFTERGLOW_NEEDS_CLUSTER();
   make_truth(24, 64, 36);
   RunOptions limited;
-  limited.largest_file = small_disk ? 0 : 12'000;  // Slurm hands limits on
+  limited.largest_file = disk.is_mounted() ? 0 : 12'000;  // Slurm hands limits on
   const Outcome waited = submit({"--chunk", "6", "--retries", "0", "--wait"}, limited);
   EXPECT_EQ(waited.exit_code, kFiles) << waited.err;
   EXPECT_THAT(waited.err, HasSubstr("chunks are not done"));
@@ -176,8 +168,8 @@ TEST_F(FarmFaults, AFullDiskFailsAndRetryGoesOnWhenThereIsRoom) {
   const auto there = pictures("out");
   EXPECT_LT(there.size(), 24u);
   for (const auto& [name, content] : there) EXPECT_TRUE(content == read("one/" + name)) << name << " is whole";
-  if (small_disk) {
-    ASSERT_EQ(mount("none", path("out").c_str(), "tmpfs", MS_REMOUNT, "size=8m"), 0);
+  if (disk.is_mounted()) {
+    ASSERT_TRUE(disk.resize("8m"));
   }
   const Outcome retried = farm({"retry", "out", "--wait"});
   EXPECT_EQ(retried.exit_code, kDone) << retried.err;

@@ -80,7 +80,11 @@ TEST_F(Cells, EveryShippedLookAgreesWithTheWholeOracle) {
     // These read between pixels, at positions that are sums of floats: one near 100 is known to 2^-18.
     const std::string name = entry.path().stem().string();
     const bool between = name == "anamorphic_night" || name == "vhs_tape" || name == "night_vision";
-    EXPECT_LE(cell->points.at(0).quality->error.percentile, between ? 5e-4 : 1e-5)
+    // AgX's punchy look raises rounding by its power and its saturation; tone_mapping promises 5e-5 of it.
+    const bool punchy = name == "neon_additive" || name == "toon";
+    EXPECT_LE(cell->points.at(0).quality->error.percentile, between  ? 5e-4
+                                                            : punchy ? 5e-5
+                                                                     : 1e-5)
         << entry.path() << " against " << cell->truth;
     with_oracle += cell->truth == "double precision";
   }
