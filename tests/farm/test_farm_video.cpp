@@ -110,7 +110,7 @@ TEST_F(FarmVideo, ChunksOfAClipMakeTheFramesOfOneRun) {
 
 struct Intra {
   const char *file, *codec;
-  bool same_file = true;  ///< FFmpeg reads FFV1's header of an odd length back with one byte more
+  bool same_file = true;  ///< FFmpeg 5 reads FFV1's header of an odd length back with one byte more
 };
 class FarmVideoIntra : public FarmVideo, public ::testing::WithParamInterface<Intra> {};
 
@@ -122,8 +122,9 @@ TEST_P(FarmVideoIntra, TheJoinedFileIsThatOfOneRunByteForByte) {
   EXPECT_EQ(frames_of(std::string("out/") + file), frames_of(std::string("one/") + file));
   EXPECT_EQ(packets_of(std::string("out/") + file, "v"), packets_of(std::string("one/") + file, "v"));
   EXPECT_EQ(packets_of(std::string("out/") + file, "a"), packets_of(std::string("one/") + file, "a"));
-  const bool same = read(std::string("out/") + file) == read(std::string("one/") + file);
-  EXPECT_EQ(same, same_file);
+  if (same_file) {
+    EXPECT_TRUE(read(std::string("out/") + file) == read(std::string("one/") + file));
+  }
   EXPECT_FALSE(fs::exists(job_of("out") / "pieces")) << "what was joined goes";
 }
 INSTANTIATE_TEST_SUITE_P(FarmVideo, FarmVideoIntra,
