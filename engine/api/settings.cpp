@@ -69,21 +69,6 @@ Result<SettingValue> value_of(const afterglow_stack* stack, const char* function
                nearest_name(parts.setting, names)};
 }
 
-int components(SettingType type) {
-  switch (type) {
-    case SettingType::integer:
-    case SettingType::number:
-      return 1;
-    case SettingType::vec2:
-      return 2;
-    case SettingType::color:
-    case SettingType::vec3:
-      return 3;
-    default:
-      return 0;
-  }
-}
-
 Error wrong_type(afterglow_string name, const char* what) {
   return usage(fmt::format("'{}' is no {}", text_of(name), what));
 }
@@ -144,7 +129,7 @@ afterglow_error* afterglow_stack_get_number(const afterglow_stack* stack, afterg
   return call([&]() -> Result<void> {
     if (!out) return usage("afterglow_stack_get_number: out is NULL");
     AFTERGLOW_TRY(const SettingValue value, value_of(stack, "afterglow_stack_get_number", name));
-    if (components(value.type) != 1) return wrong_type(name, "number");
+    if (number_count(value.type) != 1) return wrong_type(name, "number");
     *out = value.number[0];
     return {};
   });
@@ -174,7 +159,7 @@ afterglow_error* afterglow_stack_get_numbers(const afterglow_stack* stack, after
   return call([&]() -> Result<void> {
     if (!count || (!values && capacity > 0)) return usage("afterglow_stack_get_numbers: values or count is NULL");
     AFTERGLOW_TRY(const SettingValue value, value_of(stack, "afterglow_stack_get_numbers", name));
-    const int wanted = components(value.type);
+    const int wanted = number_count(value.type);
     if (wanted == 0) return wrong_type(name, "number, vector or colour");
     *count = static_cast<std::size_t>(wanted);
     std::copy_n(value.number.begin(), std::min(capacity, *count), values);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <iterator>
 #include <system_error>
@@ -12,18 +11,18 @@
 #include "apps/farm_arguments.h"
 #include "apps/run_events.h"
 #include "core/file.h"
+#include "core/parse_number.h"
 #include "farm/attempt.h"
 
 namespace afterglow {
 namespace {
 
 Result<std::size_t> task_number(const farm::Job& job, const std::string& text) {
-  std::size_t number = 0;
-  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (ec != std::errc() || end != text.data() + text.size() || number >= job.tasks())
+  const auto number = parse_number<std::size_t>(text);
+  if (!number || *number >= job.tasks())
     return Error{ErrorKind::usage, fmt::format("there is no chunk '{}'", text), job.folder.string(), 0,
                  fmt::format("0 to {}", job.chunks.size() - 1)};
-  return number;
+  return *number;
 }
 
 /// What the job was submitted with, with its folder as the current one.

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
 
+#include "core/parse_number.h"
 #include "core/paths.h"
 #include "core/text.h"
 #include "exec/calibration.h"
@@ -178,8 +178,8 @@ Result<Size> parse_size(const std::string& text) {
   const auto parts = split(lower(text), 'x');
   Size size;
   const auto number = [](const std::string& part, int& out) {
-    const auto [end, ec] = std::from_chars(part.data(), part.data() + part.size(), out);
-    return ec == std::errc() && end == part.data() + part.size() && out >= 1 && out <= 16384;
+    out = parse_number<int>(part).value_or(0);
+    return out >= 1 && out <= 16384;
   };
   if (parts.size() != 2 || !number(parts[0], size.width) || !number(parts[1], size.height))
     return Error{ErrorKind::usage, fmt::format("'{}' is no size", text), "--size", 0, "WIDTHxHEIGHT, each 1 to 16384"};
@@ -191,9 +191,8 @@ Result<Rect> parse_region(const std::string& text) {
   std::array<int, 4> numbers{};
   bool good = parts.size() == numbers.size();
   for (std::size_t i = 0; good && i < numbers.size(); ++i) {
-    const auto [end, ec] = std::from_chars(parts[i].data(), parts[i].data() + parts[i].size(), numbers[i]);
-    good = ec == std::errc() && end == parts[i].data() + parts[i].size() && numbers[i] >= (i < 2 ? 0 : 1) &&
-           numbers[i] <= 16384;
+    numbers[i] = parse_number<int>(parts[i]).value_or(-1);
+    good = numbers[i] >= (i < 2 ? 0 : 1) && numbers[i] <= 16384;
   }
   if (!good)
     return Error{ErrorKind::usage, fmt::format("'{}' is no region", text), "--region", 0,
@@ -206,9 +205,9 @@ Result<Position> parse_position(const std::string& text) {
   const auto parts = split(text, ',');
   bool good = parts.size() == 3;
   for (std::size_t i = 0; good && i < 3; ++i) {
-    const std::string part = trim(parts[i]);
-    const auto [end, ec] = std::from_chars(part.data(), part.data() + part.size(), position[i]);
-    good = ec == std::errc() && end == part.data() + part.size() && std::isfinite(position[i]);
+    const auto number = parse_number<double>(trim(parts[i]));
+    good = number && std::isfinite(*number);
+    if (good) position[i] = *number;
   }
   if (good) return position;
   return Error{ErrorKind::usage, fmt::format("'{}' is no position", text), "--at", 0, "X,Y,Z, three numbers"};

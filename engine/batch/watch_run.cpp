@@ -41,23 +41,12 @@ WholeFiles watch_inputs(const FrameRecords& frames) {
   return WholeFiles(folders);
 }
 
-/// One hash of all files that a frame is made from, as they are now; nothing while one of them is not whole.
-std::optional<Hash> whole_sources(const FrameJob& job, WholeFiles& watch) {
-  Hasher hasher;
-  for (const auto& path : job.sources()) {
-    const auto stamp = watch.whole(path);
-    if (!stamp) return std::nullopt;
-    hasher.add(stamp->hex());
-  }
-  return hasher.finish();
-}
-
 /// Looks at all files once more; what has changed since it was made is due again, with what it reaches.
 void look_again(std::vector<Watched>& frames, WholeFiles& watch) {
   std::vector<bool> changed(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     Watched& one = frames[i];
-    one.now = whole_sources(one.record->job, watch);
+    one.now = stamp_of(one.record->job.sources(), [&](const auto& file) { return watch.whole(file); });
     if (!one.made && !one.due) one.made = one.now;  // up to date when the run began
     changed[i] = one.made && one.now && *one.now != *one.made;
   }

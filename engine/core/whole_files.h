@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <vector>
 
 #include "core/file_descriptor.h"
 #include "core/hash.h"
@@ -38,5 +39,17 @@ class WholeFiles {
   std::map<int, std::set<std::filesystem::path>> folders_;  ///< by watch, as files name them
   std::map<std::filesystem::path, File> files_;
 };
+
+/// One hash of all these files by `stamp`, which says what one is like; nothing while it knows nothing of one of them.
+template <class Stamp>
+std::optional<Hash> stamp_of(const std::vector<std::filesystem::path>& files, const Stamp& stamp) {
+  Hasher hasher;
+  for (const auto& file : files) {
+    const std::optional<Hash> one = stamp(file);
+    if (!one) return std::nullopt;
+    hasher.add(one->hex());
+  }
+  return hasher.finish();
+}
 
 }  // namespace afterglow

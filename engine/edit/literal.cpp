@@ -13,18 +13,6 @@
 namespace afterglow::script {
 namespace {
 
-int components(SettingType type) {
-  switch (type) {
-    case SettingType::vec2:
-      return 2;
-    case SettingType::color:
-    case SettingType::vec3:
-      return 3;
-    default:
-      return 1;
-  }
-}
-
 // Numbers that came from 32-bit floats are written as those: 0.1, not 0.10000000149.
 std::string decimal_text(double value) {
   const auto narrow = static_cast<float>(value);
@@ -175,7 +163,7 @@ std::string literal_like(const LuaText& text, std::size_t first, std::size_t end
     case SettingType::vec2:
     case SettingType::vec3: {
       const auto numbers = list_numbers(text, first, end);
-      if (numbers.size() == static_cast<std::size_t>(components(value.type)))
+      if (numbers.size() == static_cast<std::size_t>(number_count(value.type)))
         return list_like(text, numbers, first, end, value);
       break;
     }
@@ -203,7 +191,7 @@ std::string literal_text(const SettingValue& value, char quote, bool spaced) {
       break;
   }
   std::string out;
-  for (int i = 0; i < components(value.type); ++i)
+  for (int i = 0; i < number_count(value.type); ++i)
     out += (i ? ", " : "") + decimal_text(value.number[static_cast<std::size_t>(i)]);
   return spaced ? "{ " + out + " }" : "{" + out + "}";
 }

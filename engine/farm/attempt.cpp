@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -15,6 +14,7 @@
 
 #include "core/file.h"
 #include "core/json_text.h"
+#include "core/parse_number.h"
 #include "core/temporary.h"
 #include "core/text.h"
 
@@ -39,8 +39,9 @@ double seconds_now() {
 
 template <class Number>
 bool read_number(std::string_view text, Number& out) {
-  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
-  return ec == std::errc() && end == text.data() + text.size() && !text.empty();
+  const auto number = parse_number<Number>(text);
+  if (number) out = *number;
+  return number.has_value();
 }
 
 std::optional<AttemptFile> attempt_of_name(const fs::path& path) {

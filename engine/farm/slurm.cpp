@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -13,6 +12,7 @@
 
 #include "core/file.h"
 #include "core/json_text.h"
+#include "core/parse_number.h"
 #include "core/text.h"
 #include "farm/process.h"
 
@@ -44,13 +44,6 @@ Result<std::string> output_of(const std::vector<std::string>& words) {
   return ended->out;
 }
 
-std::optional<std::size_t> number_in(std::string_view text) {
-  std::size_t out = 0;
-  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
-  if (ec != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
-  return out;
-}
-
 /// Words that are for one cluster, where there are several.
 void add_cluster(std::vector<std::string>& words, const SlurmArray& array) {
   if (!array.cluster.empty()) words.push_back("--clusters=" + array.cluster);
@@ -69,7 +62,7 @@ class Latest {
   explicit Latest(const Submissions& submissions) : submissions_(submissions) {}
   void add(const std::string& array, std::string_view task, TaskState state) {
     const auto place = place_of(submissions_, array);
-    const auto index = number_in(task);
+    const auto index = parse_number<std::size_t>(task);
     if (!place || !index) return;
     const std::size_t chunk = submissions_.arrays[*place].base + *index;
     const auto [at, fresh] = from_.emplace(chunk, *place);
@@ -120,7 +113,7 @@ std::vector<ArrayPlan> task_plans(const Job& job, std::vector<std::size_t> tasks
 
 /// Whether the array is the joining of the video.
 bool is_join(const Job& job, const ArrayPlan& plan) {
-  const auto task = number_in(plan.tasks);
+  const auto task = parse_number<std::size_t>(plan.tasks);
   return task && job.is_join(plan.base + *task);
 }
 
@@ -256,7 +249,7 @@ Result<std::size_t> largest_array() {
   for (const auto& line : lines_of(text)) {
     const std::size_t at = line.find('=');
     if (at == std::string::npos || trim(line.substr(0, at)) != "MaxArraySize") continue;
-    if (const auto size = number_in(trim(line.substr(at + 1))); size && *size > 0) return *size;
+    if (const auto size = parse_number<std::size_t>(trim(line.substr(at + 1))); size && *size > 0) return *size;
   }
   return Error{ErrorKind::io, "scontrol does not say MaxArraySize; are job arrays switched off?"};
 }

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <set>
 
+#include "core/parse_number.h"
 #include "core/text.h"
 #include "gpu/error.h"
 #include "gpu/instance.h"
@@ -207,10 +207,8 @@ Result<std::size_t> choose_device(std::span<const DeviceInfo> devices, const std
     return usable_or_error(devices, 0);
   }
 
-  std::size_t index = 0;
-  const auto [end, code] = std::from_chars(choice.data(), choice.data() + choice.size(), index);
-  const bool number = code == std::errc{} && end == choice.data() + choice.size();
-  if (number && index < devices.size()) return usable_or_error(devices, index);
+  const auto number = parse_number<std::size_t>(choice);
+  if (number && *number < devices.size()) return usable_or_error(devices, *number);
   // "7" must not mean a GeForce 7900 or any uuid with a 7 in it: short numbers are indices alone, parts of a uuid are
   // not short.
   constexpr std::size_t kLongestIndex = 2, kShortestUuidPart = 4;

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "core/parse_number.h"
 #include "core/text.h"
 
 namespace afterglow {
@@ -49,12 +49,7 @@ std::vector<std::pair<std::string, std::string>> all_of(const Metadata& metadata
   return out;
 }
 
-std::optional<std::uint32_t> read_id(std::string_view digits) {
-  std::uint32_t value = 0;
-  const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
-  if (digits.empty() || read.ec != std::errc() || read.ptr != digits.data() + digits.size()) return {};
-  return value;
-}
+std::optional<std::uint32_t> read_id(std::string_view digits) { return parse_number<std::uint32_t>(digits, 16); }
 
 /// Blender writes names as they are, and one with a quotation mark in it makes the manifest no JSON. What ends a name
 /// is known all the same: a mark, a colon, eight digits in marks, then a comma or the end.

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
 
+#include "core/parse_number.h"
 #include "core/text.h"
 #include "image/lut_file.h"
 
@@ -32,10 +32,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 
 std::optional<double> number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return {};
-  return value;
+  return parse_number<double>(word);
 }
 
 std::string shown(std::string_view text) {

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
 
+#include "core/parse_number.h"
 #include "core/text.h"
 #include "image/metadata.h"
 #include "image/output_space.h"
@@ -83,9 +83,10 @@ Result<Compression> parse_compression(const std::string& text) {
   Compression result{lower(text.substr(0, colon)), -1};
   if (colon == std::string::npos) return result;
   const std::string level = text.substr(colon + 1);
-  const auto [end, error] = std::from_chars(level.data(), level.data() + level.size(), result.level);
-  if (error != std::errc() || end != level.data() + level.size() || !(result.level >= 0) || !(result.level <= 1e5f))
+  const auto number = parse_number<float>(level);
+  if (!number || !(*number >= 0) || !(*number <= 1e5f))
     return Error{ErrorKind::usage, fmt::format("the compression level '{}' is not a number of at least 0", level)};
+  result.level = *number;
   return result;
 }
 

@@ -14,7 +14,6 @@
 namespace afterglow {
 namespace {
 
-constexpr std::uint64_t kCacheBytes = 256ull << 20;  // of decoded frames, for going backwards
 constexpr int kMostFrames = 1'000'000;
 
 struct WebpDeleter {
@@ -49,6 +48,7 @@ bool cut_to_whole_chunks(std::string& bytes) {
 class WebpMovie : public MovieSource {
  public:
   Result<void> open(const MovieRequest& request) {
+    cache_bytes_ = movie_cache_bytes(request.limits.max_bytes);
     AFTERGLOW_TRY(bytes_, read_file(request.file, request.limits.max_bytes));
     const bool cut = cut_to_whole_chunks(bytes_);
     data_ = {reinterpret_cast<const std::uint8_t*>(bytes_.data()), bytes_.size()};
@@ -142,7 +142,7 @@ class WebpMovie : public MovieSource {
 
   void keep(int frame, const std::uint8_t* canvas) {
     const auto bytes = static_cast<std::size_t>(facts_.size.area()) * 4;
-    while (!cache_.empty() && (cache_.size() + 1) * bytes > kCacheBytes) {
+    while (!cache_.empty() && (cache_.size() + 1) * bytes > cache_bytes_) {
       // The one that is furthest away from where decoding is.
       const auto first = cache_.begin(), last = std::prev(cache_.end());
       cache_.erase(frame - first->first > last->first - frame ? first : last);
@@ -154,7 +154,8 @@ class WebpMovie : public MovieSource {
   WebPData data_{};
   std::mutex mutex_;
   std::unique_ptr<WebPAnimDecoder, WebpDeleter> decoder_;
-  int next_ = 0;  ///< that the decoder gives next
+  int next_ = 0;                   ///< that the decoder gives next
+  std::uint64_t cache_bytes_ = 0;  ///< of decoded frames, for going backwards
   std::map<int, std::vector<std::uint8_t>> cache_;
 };
 

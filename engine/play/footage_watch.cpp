@@ -27,17 +27,6 @@ std::set<std::filesystem::path> folders_of(const Footage& footage) {
 
 std::optional<Hash> stamp_now(const std::filesystem::path& file) { return inspect(file, FileProbe::Kind::stamp).seen; }
 
-/// Of all files of a picture; nothing while one of them is not known. `stamp`: of one file.
-std::optional<Hash> stamp_of(const std::vector<std::filesystem::path>& files, const auto& stamp) {
-  Hasher hasher;
-  for (const auto& file : files) {
-    const std::optional<Hash> one = stamp(file);
-    if (!one) return std::nullopt;
-    hasher.add(one->hex());
-  }
-  return hasher.finish();
-}
-
 /// Of pictures that have none. One that is not known is any other than the next.
 void take_stamps(const Footage& footage, const auto& stamp, Stamps& taken) {
   for (int picture = 0; picture < footage.pictures(); ++picture)

@@ -18,6 +18,22 @@ namespace afterglow {
 
 enum class SettingType { integer, number, boolean, enumeration, color, vec2, vec3, file, text };
 
+/// How many numbers a value is; 0: it is none.
+constexpr int number_count(SettingType type) {
+  switch (type) {
+    case SettingType::integer:
+    case SettingType::number:
+      return 1;
+    case SettingType::vec2:
+      return 2;
+    case SettingType::color:
+    case SettingType::vec3:
+      return 3;
+    default:
+      return 0;
+  }
+}
+
 /// A value of a setting; colours are scene-linear.
 struct SettingValue {
   SettingType type = SettingType::number;

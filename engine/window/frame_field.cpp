@@ -4,21 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <utility>
 
+#include "core/parse_number.h"
 #include "core/text.h"
 #include "window/sheet.h"
 
 namespace afterglow {
 namespace {
-
-std::optional<int> whole(std::string_view text) {
-  int value = 0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  return read.ec == std::errc() && read.ptr == end ? std::optional(value) : std::nullopt;
-}
 
 /// Frames of a timecode a second: 24 of 23.976.
 int frames_a_second(double fps) { return std::max(1, static_cast<int>(std::lround(fps))); }
@@ -28,7 +22,7 @@ std::optional<int> position_of_timecode(const std::string& text, double fps) {
   if (parts.size() < 2 || parts.size() > 4) return std::nullopt;
   long long seconds = 0, frames = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const auto part = whole(parts[i]);
+    const auto part = parse_number<int>(parts[i]);
     if (!part || *part < 0 || *part > 1'000'000) return std::nullopt;
     if (i + 1 == parts.size()) {
       frames = *part;
@@ -51,10 +45,10 @@ std::optional<int> position_named(const std::string& text, int position, int fra
     return at ? std::optional(held(*at)) : std::nullopt;
   }
   if (word[0] == '+' || word[0] == '-') {
-    const auto by = whole(std::string_view(word).substr(word[0] == '+' ? 1 : 0));
+    const auto by = parse_number<int>(std::string_view(word).substr(word[0] == '+' ? 1 : 0));
     return by ? std::optional(held(static_cast<long long>(position) + *by)) : std::nullopt;
   }
-  const auto wanted = whole(word);
+  const auto wanted = parse_number<int>(word);
   if (!wanted) return std::nullopt;
   for (int i = 0; i < frames; ++i)
     if (number(i) >= *wanted) return i;
@@ -69,9 +63,7 @@ std::string timecode_text(int position, double fps) {
 std::optional<std::string> draw_frame_field(Ui& ui, ImVec2 middle) {
   begin_sheet("frame field", middle, {0.5f, 0.5f}, ui, 0);
   ImGui::TextUnformatted("Go to frame");
-  if (ui.frame_field.begin) ImGui::SetWindowFocus();
-  if (ui.frame_field.begin) ImGui::SetKeyboardFocusHere();
-  ui.frame_field.begin = false;
+  if (std::exchange(ui.frame_field.begin, false)) focus_next_item();
   ImGui::SetNextItemWidth(ui.px(180));
   auto& text = ui.frame_field.text;
   const bool entered = ImGui::InputTextWithHint("##frame", "1001, +12, 00:01:12", text.data(), text.size(),

@@ -117,11 +117,7 @@ void Panel::draw_head(Ui& ui, PanelPort& port) {
     port.end_gesture();
     port.reset_all();
   }
-  if (focus_search_) {
-    ImGui::SetWindowFocus();  // Dear ImGui 1.90.1 gives the keyboard to items of the focused window alone
-    ImGui::SetKeyboardFocusHere();
-  }
-  focus_search_ = false;
+  if (std::exchange(focus_search_, false)) focus_next_item();
   ImGui::SetNextItemWidth(-1);
   ImGui::InputTextWithHint("##search", "Search settings", search_.data(), search_.size(),
                            ImGuiInputTextFlags_AutoSelectAll);

@@ -4,46 +4,25 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
+#include "core/parse_number.h"
 #include "core/text.h"
 #include "window/ui.h"
 
 namespace afterglow {
-namespace {
-
-std::size_t count_of(SettingType type) {
-  switch (type) {
-    case SettingType::number:
-    case SettingType::integer:
-      return 1;
-    case SettingType::vec2:
-      return 2;
-    case SettingType::vec3:
-    case SettingType::color:
-      return 3;
-    default:
-      return 0;
-  }
-}
-
-}  // namespace
-
 std::optional<SettingValue> parse_typed(const SettingSchema& schema, const std::string& text) {
   std::string spaced = text;
   std::ranges::replace(spaced, ',', ' ');
   std::vector<double> numbers;
   for (const auto& word : split(spaced, ' ')) {
     if (word.empty()) continue;
-    double number = 0;
-    const char* const end = word.data() + word.size();
-    const auto read = std::from_chars(word.data() + (word[0] == '+' ? 1 : 0), end, number);
-    if (read.ec != std::errc() || read.ptr != end || !std::isfinite(number)) return std::nullopt;
-    numbers.push_back(number);
+    const auto number = parse_number<double>(std::string_view(word).substr(word[0] == '+' ? 1 : 0));
+    if (!number || !std::isfinite(*number)) return std::nullopt;
+    numbers.push_back(*number);
   }
-  const std::size_t count = count_of(schema.type);
+  const std::size_t count = number_count(schema.type);
   // One number for all of them: grey.
   if (numbers.size() == 1 && count > 1) numbers.assign(count, numbers[0]);
   if (numbers.size() != count || count == 0) return std::nullopt;
@@ -59,12 +38,12 @@ std::optional<SettingValue> parse_typed(const SettingSchema& schema, const std::
 
 std::string typed_text(const SettingSchema& schema, const SettingValue& value) {
   std::string out;
-  for (std::size_t i = 0; i < count_of(schema.type); ++i) out += (i > 0 ? " " : "") + number_text(value.number[i]);
+  for (std::size_t i = 0; i < number_count(schema.type); ++i) out += (i > 0 ? " " : "") + number_text(value.number[i]);
   return out;
 }
 
 bool TypedValue::opened(ImGuiID item, const SettingSchema& schema, const SettingValue& value, float width) {
-  if (count_of(schema.type) == 0 || !ImGui::IsWindowHovered()) return false;
+  if (number_count(schema.type) == 0 || !ImGui::IsWindowHovered()) return false;
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float swatch = schema.type == SettingType::color ? ImGui::GetFrameHeight() : 0;
   if (!ImGui::IsMouseHoveringRect({from.x + swatch, from.y}, {from.x + width, from.y + ImGui::GetFrameHeight()}))
@@ -86,7 +65,7 @@ bool TypedValue::opened(ImGuiID item, const SettingSchema& schema, const Setting
 std::optional<SettingValue> TypedValue::draw(Ui& ui, const char* name, const SettingSchema& schema,
                                              const SettingValue& value, float width) {
   constexpr int kPatience = 4;
-  if (std::exchange(begin_, false)) ImGui::SetKeyboardFocusHere();
+  if (std::exchange(begin_, false)) focus_next_item();
   ImGui::SetNextItemWidth(width);
   // Tab takes the value as Enter does, and goes to no other field: keys are shortcuts again.
   bool tab = false;

@@ -15,4 +15,9 @@ void Ui::help(const std::string& text) const {
   ImGui::EndTooltip();
 }
 
+void focus_next_item() {
+  ImGui::SetWindowFocus();  // Dear ImGui 1.90.1 gives it to items of the focused window alone
+  ImGui::SetKeyboardFocusHere();
+}
+
 }  // namespace afterglow

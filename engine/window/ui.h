@@ -61,6 +61,9 @@ struct Ui {
   float px(float size) const { return size * scale; }
 };
 
+/// Gives the keyboard to the item that is drawn next.
+void focus_next_item();
+
 /// The colours of the interface.
 namespace ui_color {
 inline constexpr ImU32 kText = IM_COL32(222, 224, 228, 255), kDim = IM_COL32(150, 154, 162, 255),

@@ -140,6 +140,16 @@ class PanelTest : public ::testing::Test {
   }
 
   void move(float x, float y) { ImGui::GetIO().MousePos = {x, y}; }
+  /// The panel makes bloom's intensity 0.5, and then the file 0.9; returns what the file holds.
+  std::string change_both() {
+    port->changes.set("bloom", "intensity", {SettingType::number, {0.5}, ""});
+    frame();
+    std::string text = kPreset;
+    text.replace(text.find("0.2"), 3, "0.9");
+    std::ofstream(file) << text;
+    port->reload();
+    return text;
+  }
   void press(bool down, int button = 0) {
     ImGui::GetIO().MouseDown[button] = down;
     frame();
@@ -299,12 +309,7 @@ TEST_F(PanelTest, WhileTheFileHasAnErrorSettingsRest) {
 
 /// The file changes what the panel has changed: both values are told, and Save writes neither over the other.
 TEST_F(PanelTest, ConflictsAreToldAndDecided) {
-  port->changes.set("bloom", "intensity", {SettingType::number, {0.5}, ""});
-  frame();
-  std::string text = kPreset;
-  text.replace(text.find("0.2"), 3, "0.9");
-  std::ofstream(file) << text;
-  port->reload();
+  const std::string text = change_both();
   EXPECT_THAT(words(), HasSubstr("The file says 0.9 now (it was 0.2)"));
   panel->save(*port);
   EXPECT_THAT(words(), HasSubstr("bloom.intensity was changed in the file too: it says 0.9 now, the panel 0.5"));
@@ -320,12 +325,7 @@ TEST_F(PanelTest, ConflictsAreToldAndDecided) {
 }
 
 TEST_F(PanelTest, TheFilesValueIsTaken) {
-  port->changes.set("bloom", "intensity", {SettingType::number, {0.5}, ""});
-  frame();
-  std::string text = kPreset;
-  text.replace(text.find("0.2"), 3, "0.9");
-  std::ofstream(file) << text;
-  port->reload();
+  change_both();
   ASSERT_TRUE(find({"Settings", "bloom", "intensity", "Take the file's"}));
   click();
   EXPECT_FALSE(port->changes.value("bloom", "intensity"));
