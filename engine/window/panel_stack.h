@@ -32,7 +32,7 @@ class PanelStack {
     if (running_.valid()) running_.wait();
   }
 
-  /// Of the last one: "vignette was added"; why not when it failed.
+  /// Of the last one: "glow was added"; why not when it failed.
   const std::string& message() const { return message_; }
   bool failed() const { return failed_; }
   void dismiss() { failed_ = false; }
