@@ -22,6 +22,7 @@ class PlayParts {
 
  private:
   void draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) const;
+  bool edit_stack(Ui& ui, Action action);
   void draw_panel(Ui& ui, ImVec2 place, ImVec2 size);
   PlayerPort port_;
   PresetOptions preset_options_;

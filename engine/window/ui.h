@@ -50,7 +50,9 @@ struct Ui {
   void help(const std::string& text) const;
   std::string message;
   double message_until = 0;
-  mutable HoverHelp hover;   ///< what `help` remembers
+  mutable HoverHelp hover;  ///< what `help` remembers
+  /// A field gets the keyboard within a few frames: what is typed meanwhile is for it.
+  bool field_opens = false;
   bool values_apply = true;  ///< false: settings are shown and cannot be changed
   struct {
     std::array<char, 32> text{};

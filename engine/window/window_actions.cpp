@@ -278,12 +278,27 @@ bool WindowApp::act_on_preset(Action action) {
       if (options_.undo_save) options_.undo_save(player_, ui);
       return true;
     case Action::reset_all: {
-      const bool edited = !player_.edits().edits().empty();
+      const bool edited = !player_.edits().none();
       player_.end_gesture();
       player_.reset_all();
-      ui.say(edited ? "all settings as the file has them" : "no setting was changed");
+      ui.say(edited ? "stack and settings as the file has them" : "nothing was changed");
       return true;
     }
+    case Action::save_as:
+    case Action::add_effect:
+    case Action::next_entry:
+    case Action::previous_entry:
+    case Action::entry_earlier:
+    case Action::entry_later:
+    case Action::duplicate_entry:
+    case Action::remove_entry:
+    case Action::toggle_entry:
+    case Action::copy_settings:
+    case Action::paste_settings:
+      if (!options_.edit_stack) return true;
+      ui.show_panel = true;
+      if (options_.edit_stack(player_, ui, action)) await_field();
+      return true;
     case Action::search:
       ui.show_panel = true;
       if (options_.search) {
@@ -327,7 +342,7 @@ bool WindowApp::act_on_window(Action action) {
     case Action::escape:
       if (ui.show_help) {
         ui.show_help = false;
-      } else {
+      } else if (!options_.close_windows || !options_.close_windows()) {
         window_.set_full_screen(false);
       }
       return true;

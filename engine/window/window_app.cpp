@@ -40,7 +40,8 @@ Result<std::unique_ptr<WindowApp>> WindowApp::create(DesktopWindow& window, Devi
   Ui& ui = app->interface_->ui();
   ui.show_stats = options.stats;
   ui.copy = [&window](const std::string& text) { window.set_clipboard(text); };
-  ui.open = [raw = app.get()](const std::string& path) { raw->open_dropped(path); };
+  // Not within the frame that asks for it: what asks may be gone then.
+  ui.open = [raw = app.get()](const std::string& path) { raw->to_open_.emplace_back(path); };
   ui.again = [raw = app.get()] { raw->redraw_ = std::max(raw->redraw_, 2); };
   return app;
 }
@@ -120,6 +121,7 @@ void WindowApp::take_events() {
   for (const InputEvent& event : events.input) input_.push(event);
   deliver_input();
   for (const auto& path : events.dropped) open_dropped(path);
+  for (const auto& path : std::exchange(to_open_, {})) open_dropped(path);
 }
 
 /// As much as the next frame can tell apart. Keys act at once where no text is typed.
@@ -180,6 +182,10 @@ void WindowApp::quit_when_saved() {
 /// meanwhile is the field's.
 void WindowApp::input_seen() {
   input_.frame_done();
+  if (std::exchange(interface_->ui().field_opens, false)) {
+    await_field();
+    return;
+  }
   if (field_awaited_ == 0 && interface_->ui().typed.opening()) await_field();
   if (field_awaited_ > 0) field_awaited_ = interface_->wants_keyboard() ? 0 : field_awaited_ - 1;
   deliver_input();

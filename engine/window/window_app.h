@@ -79,6 +79,7 @@ class WindowApp {
   std::unique_ptr<Painter> painter_;
 
   InputQueue input_;
+  std::vector<std::filesystem::path> to_open_;
   int field_awaited_ = 0;  ///< frames that a field has to get the keyboard; what is typed waits for it
 
   Rect area_;  ///< of the frame buffer that the picture has
