@@ -29,8 +29,8 @@ of [docs/effects](../effects).
 
 - **Cost**: time of a steady frame at 1920×1080 over that of a pass that copies the picture, on the alley at night (motion blur and taa: on the frame with
   motion vectors); smallest and largest of {rounds} rounds.
-- **Preview**: RMS between a run at a third of the size (`run --size`) and the whole result scaled down, both behind a tone curve, over that of the curve alone ({alone:.4f}):
-  1 is as near as a picture that is scaled first can come. Grain and glitches are another pattern at another size.
+- **Preview**: RMS between a run at a third of the size (`run --size`) and the whole result scaled down, both behind a tone curve, over that of the curve alone on that
+  picture ({alone:.4f} on the alley): 1 is as near as a picture that is scaled first can come. Grain and glitches are another pattern at another size.
 - **Alpha**: a picture with alpha from 1/64 to 1 goes through. *kept*: alpha comes out bit for bit. *colour*: for effects that work on each pixel by itself,
   the largest relative difference |x − y| / (|y| + 0.01) between colour ÷ alpha and the result of the same picture when it is opaque; effects that read
   around a pixel weigh its neighbours by their alpha, as they should, and have no such number. [alpha.md](../alpha.md) tries more settings.
@@ -147,7 +147,7 @@ def main():
     a = parser.parse_args()
     names = a.effects or costs.effects()
     rounds = [costs.measure(a.program, names, WHOLE, a.repeat) for _ in range(a.rounds)]
-    device = subprocess.run([a.program, "devices", "-q"], capture_output=True, text=True).stdout.strip().splitlines()
+    device = json.loads(subprocess.run([a.program, "devices", "--json", "-q"], check=True, capture_output=True, text=True).stdout)
     with tempfile.TemporaryDirectory() as folder:
         def look_of(name, entries):
             path = os.path.join(folder, name + ".lua")
@@ -157,17 +157,20 @@ def main():
         nothing = look_of("nothing", "")
         opaque, soft = ramp(folder)
         example = lambda name: os.path.join(costs.HERE, f"docs/effects/{name}.lua")
-        alone = preview(a.program, example("before"), costs.PICTURE, nothing, folder)
+        alone = {}
         rows = []
         for name in names:
-            near = preview(a.program, example(name), costs.picture_of(name, costs.PICTURE), nothing, folder) / alone
+            picture = costs.picture_of(name, costs.PICTURE)
+            if picture not in alone:
+                alone[picture] = preview(a.program, example("before"), picture, nothing, folder)
+            near = preview(a.program, example(name), picture, nothing, folder) / alone[picture]
             by_itself = look_of(name, costs.entry(name))
             kept, colour = soft_edges(a.program, by_itself, opaque, soft, folder, works_by_pixel(a.program, by_itself))
             least, most = min(r[name] for r in rounds), max(r[name] for r in rounds)
             rows.append(f"| `{name}` | {least:.1f} to {most:.1f} | {'grain' if name in GRAIN else f'{near:.2f}'} | "
                         f"{'kept' if kept else 'changed'} | {'' if colour is None else f'{colour:.0e}'} |\n")
             print(rows[-1], end="", file=sys.stderr, flush=True)
-    text = HEAD.format(device=device[0] if device else "", rounds=a.rounds, alone=alone) + "".join(rows)
+    text = HEAD.format(device=device, rounds=a.rounds, alone=alone.get(costs.PICTURE, 0)) + "".join(rows)
     if a.output:
         with open(a.output, "w", encoding="utf-8") as file:
             file.write(text)

@@ -16,7 +16,7 @@ vec4 sample_at(ivec2 pixel) { return vec4(fract(sin(dot(vec2(pixel) + seed, vec2
     shader("lit", "vec4 apply(vec4 color, vec4 dirt) { return color + dirt; }\n");
   }
 
-  /// Six kernels, the first two of them of settings alone; images of the others take turns in the memory.
+  /// Nine kernels, the first two of them of settings alone; images of the others take turns in the memory.
   static Graph graph(Size size, double seed = 1) {
     const Filter blur{Interpolation::cubic_bspline};
     GraphBuilder b(size);
@@ -25,8 +25,9 @@ vec4 sample_at(ivec2 pixel) { return vec4(fract(sin(dot(vec2(pixel) + seed, vec2
     const ImageId dirt = b.filter("dirt", spots, size, blur);
     ImageId image = b.source();
     for (const char* name : {"a", "b", "c"}) image = b.filter(name, image, size, blur);
-    const ImageId lit = b.pixel("lit", "lit", image, {{"dirt", dirt}});
-    return b.finish(b.filter("again", lit, size, blur));
+    image = b.pixel("lit", "lit", image, {{"dirt", dirt}});
+    for (const char* name : {"d", "e", "f"}) image = b.filter(name, image, size, blur);
+    return b.finish(b.filter("again", image, size, blur));
   }
 
   FrameTimes run(FrameRunner& frames, Program& program, Size size, const std::vector<float>& pixels, HostResult& out,
