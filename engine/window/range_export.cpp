@@ -9,7 +9,6 @@
 
 #include "core/file.h"
 #include "image/sequence.h"
-#include "image/video_output.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -127,7 +126,7 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
   out.loop.fps = player.transport().fps();
   out.files.limits = {out.loop.read.max_side, out.loop.read.max_bytes};
   std::error_code none;
-  if (!fs::is_directory(output, none) && !is_video_output(output)) AFTERGLOW_CHECK(check_output(output, {}));
+  if (!fs::is_directory(output, none) && !is_one_output(output)) AFTERGLOW_CHECK(check_output(output, {}));
   return out;
 }
 
