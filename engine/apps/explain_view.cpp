@@ -34,6 +34,7 @@ struct PassFate {
   const Pass* pass;
   const char* state;  ///< "runs", "fused", "skipped"
   std::string kernel, reason;
+  bool once = false;  // it runs when its settings change, not in every frame
 };
 
 std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
@@ -49,7 +50,8 @@ std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
     }
     const PlanKernel& runs = look.plan.kernels[static_cast<std::size_t>(kernel)];
     const bool first = runs.passes.front() == static_cast<int>(i);
-    fates.push_back({&pass, first ? "runs" : "fused", runs.name, first ? "" : kFusionReason});
+    fates.push_back({&pass, first ? "runs" : "fused", runs.name, first ? "" : kFusionReason,
+                     static_cast<bool>(look.plan.once[static_cast<std::size_t>(kernel)])});
   }
   return fates;
 }
@@ -57,8 +59,10 @@ std::vector<PassFate> fates_of(const Look& look, const std::string& entry) {
 std::string fate_text(const Look& look, const PassFate& fate) {
   if (fate.kernel.empty()) return "skipped: " + fate.reason;
   const std::string what = fmt::format("{} {}", info_of(fate.pass->kind).name, size_text(look.build.graph, *fate.pass));
+  const std::string often = fate.once ? ", once: it depends on settings and size alone" : "";
   if (std::string_view(fate.state) == "fused") return fmt::format("{}, fused into {}", what, fate.kernel);
-  return fate.kernel == fate.pass->name ? what + ", runs" : fmt::format("{}, runs as {}", what, fate.kernel);
+  return fate.kernel == fate.pass->name ? what + ", runs" + often
+                                        : fmt::format("{}, runs as {}{}", what, fate.kernel, often);
 }
 
 std::string volume_steps(const SettingHistory& setting) {
@@ -171,6 +175,7 @@ std::string explain_json(const ExplainView& view) {
       Json pass{{"name", fate.pass->name}, {"state", fate.state}};
       if (!fate.kernel.empty()) pass["kernel"] = fate.kernel;
       if (!fate.reason.empty()) pass["reason"] = fate.reason;
+      if (fate.once) pass["once"] = true;
       item["passes"].push_back(std::move(pass));
     }
     for (const auto& history : view.look.build.graph.histories)

@@ -114,9 +114,11 @@ std::string graph_json(const Graph& graph, const Plan& plan, const std::string& 
            {"graph", Json::parse(to_json(graph))},
            {"kernels", Json::array()},
            {"skipped", Json::array()}};
-  for (const auto& kernel : plan.kernels) {
+  for (std::size_t k = 0; k < plan.kernels.size(); ++k) {
+    const PlanKernel& kernel = plan.kernels[k];
     Json item{{"name", kernel.name}, {"passes", Json::array()}};
     for (const int pass : kernel.passes) item["passes"].push_back(graph.passes[static_cast<std::size_t>(pass)].name);
+    if (plan.once[k]) item["once"] = true;
     if (kernel.passes.size() > 1) item["fused_because"] = std::string("the later passes ") + kFusionReason;
     out["kernels"].push_back(std::move(item));
   }

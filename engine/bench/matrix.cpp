@@ -24,7 +24,7 @@ std::vector<Size> scaling_sizes(int most) {
 Result<Picture> picture_of(const MatrixRequest& request, Size size, Diagnostics& diagnostics) {
   if (request.picture.empty()) return make_picture(size);
   ReadOptions options;
-  options.auxiliary = {"depth", "normal"};
+  options.auxiliary = {"depth", "normal", "motion"};
   AFTERGLOW_TRY(Picture picture, read_picture(request.picture, options, diagnostics));
   scale_picture(picture, {size});
   return picture;

@@ -109,11 +109,30 @@ Result<Point> PreparedStack::try_out(Device& device, const Picture& picture, boo
 
 Result<void> PreparedStack::record(const Device& device, const DevicePicture& picture) {
   AFTERGLOW_CHECK(stack_->bind(picture.inputs(), picture.result()));
-  const VkImageLayout layout = runs() ? stack_->program()->source_layout() : VK_IMAGE_LAYOUT_GENERAL;
+  const VkImageLayout layout = runs() ? stack_->program()->input_layout() : VK_IMAGE_LAYOUT_GENERAL;
+  const auto framed = [&](VkCommandBuffer commands, const auto& record) {
+    picture.before(commands, layout);
+    record();
+    picture.after(commands, layout);
+  };
+  // What is timed is a steady frame: what is made once has been made by a whole one.
+  std::vector<bool> steady;
+  if (runs()) steady = stack_->program()->plan().once;
+  steady.flip();
+  const bool any_once = std::ranges::find(steady, false) != steady.end();
+  if (any_once) {
+    AFTERGLOW_TRY(TimedWork whole, TimedWork::create(device, [&](VkCommandBuffer commands) {
+                    framed(commands, [&] { stack_->program()->record(commands); });
+                  }));
+    AFTERGLOW_CHECK(whole.run());
+  }
   AFTERGLOW_TRY(work_, TimedWork::create(device, [&](VkCommandBuffer commands) {
-                  picture.before(commands, layout);
-                  stack_->record(commands);
-                  picture.after(commands, layout);
+                  framed(commands, [&] {
+                    if (any_once)
+                      stack_->program()->record(commands, VK_NULL_HANDLE, steady);
+                    else
+                      stack_->record(commands);
+                  });
                 }));
   return {};
 }

@@ -144,6 +144,66 @@ Replacements on_own_line(const Layout& layout, const Item& last, const std::stri
   return {{stop, 0, std::string(1, separator)}, {at, 0, std::move(line)}};
 }
 
+// The separator that a constructor of several items is written with.
+char separator_of(const Layout& layout) {
+  for (const Item& item : layout.items)
+    if (layout.separated(item)) return layout.lua[item.end].text[0];
+  return ',';
+}
+
+/// An item with what goes where it goes: pieces of the text, in their order.
+struct Slot {
+  struct Piece {
+    std::size_t begin = 0, end = 0;
+  };
+  Piece above, value, behind;
+};
+
+// Where the line of the item ends, when nothing but comments stands behind it there.
+std::optional<std::size_t> own_line_end(const Layout& layout, const Item& item) {
+  const LuaText& lua = layout.lua;
+  if (!layout.starts_line(layout.begin(item))) return {};
+  const std::size_t stop = layout.end(item), end = lua.end_of_line(stop);
+  const std::size_t next = layout.separated(item) ? item.end + 1 : item.end;
+  if (next < lua.size() && lua[next].begin < end) return {};
+  return end;
+}
+
+// Where the lines of comments right above the item begin; its own line where there are none.
+std::size_t comments_begin(const Layout& layout, const Item& item, std::size_t least) {
+  std::size_t begin = layout.line_begin(layout.begin(item));
+  while (begin > least && begin >= 2) {
+    const std::size_t above = layout.line_begin(begin - (layout.between(begin - 2, begin) == "\r\n" ? 2 : 1));
+    const auto line = layout.between(above, begin);
+    const std::size_t first = line.find_first_not_of(" \t");
+    // A comment of one line: one that goes over several may not be cut.
+    if (above < least || first == std::string_view::npos || !line.substr(first).starts_with("--") ||
+        line.substr(first).starts_with("--["))
+      break;
+    begin = above;
+  }
+  return begin;
+}
+
+Slot slot_of(const Layout& layout, const Item& item) {
+  const std::size_t begin = layout.begin(item), value_end = layout.value_end(item), end = layout.end(item);
+  Slot slot{{begin, begin}, {begin, value_end}, {end, end}};
+  const auto line_end = own_line_end(layout, item);
+  if (!line_end) return slot;
+  slot.behind = {end, *line_end};
+  const std::size_t before = item.first == 0 ? 0 : layout.lua[item.first - 1].end();
+  const std::size_t line = layout.line_begin(begin);
+  slot.above = {comments_begin(layout, item, layout.lua.end_of_line(before)), line};
+  return slot;
+}
+
+// The piece in another place: what stands before its first line there stays.
+void put(Replacements& out, const Layout& layout, const Slot::Piece& place, const Slot::Piece& piece) {
+  const auto text = layout.between(piece.begin, piece.end);
+  if (text != layout.between(place.begin, place.end))
+    out.push_back({place.begin, place.end - place.begin, std::string(text)});
+}
+
 }  // namespace
 
 std::string replaced(std::string_view text, const Replacements& replacements) {
@@ -204,6 +264,80 @@ std::optional<Replacements> remove_item(const LuaText& text, std::size_t open, c
   if (is_last) return Replacements{{before, (is_first && !has_break(right) ? after : end) - before, ""}};
   if (has_break(right) && !is_first) return Replacements{{before, end - before, ""}};
   return Replacements{{begin, after - begin, ""}};
+}
+
+Replacements insert_behind(const LuaText& text, std::size_t open, std::size_t behind, const std::string& source) {
+  const Layout layout(text, open);
+  const Item& item = layout.items[behind];
+  return layout.line_each() ? on_own_line(layout, item, source) : behind_last(layout, item, source);
+}
+
+Replacements insert_before(const LuaText& text, std::size_t open, std::size_t before, const std::string& source) {
+  const Layout layout(text, open);
+  const std::size_t at = layout.begin(layout.items[before]);
+  const std::string space =
+      layout.starts_line(at) ? layout.line_break() + std::string(layout.before_on_line(at)) : std::string(" ");
+  return {{at, 0, source + separator_of(layout) + space}};
+}
+
+Replacements insert_first(const LuaText& text, std::size_t open, const std::string& source) {
+  return into_empty(Layout(text, open), source);
+}
+
+Replacements take_out(const LuaText& text, std::size_t open, std::size_t index) {
+  const Layout layout(text, open);
+  const Item& item = layout.items[index];
+  const bool is_last = index + 1 == layout.items.size();
+  Replacements out;
+  // Where the last item has no separator, the one before it has none either.
+  if (is_last && index > 0 && !layout.separated(item)) {
+    const Token& separator = text[layout.items[index - 1].end];
+    out.push_back({separator.begin, separator.text.size(), ""});
+  }
+  if (const auto line_end = own_line_end(layout, item)) {
+    const std::size_t line = layout.line_begin(layout.begin(item));
+    const std::size_t next = *line_end + (text.text().substr(*line_end, 2) == "\r\n" ? 2 : 1);
+    out.push_back({line, std::min(next, text.text().size()) - line, ""});
+    return out;
+  }
+  const std::size_t before = text[item.first - 1].end(), begin = layout.begin(item), end = layout.end(item);
+  const std::size_t after = text[layout.separated(item) ? item.end + 1 : item.end].begin;
+  const auto left = layout.between(before, begin), right = layout.between(end, after);
+  const bool clear_left = is_blank(left) && !has_break(left), clear_right = is_blank(right) && !has_break(right);
+  const bool alone = layout.items.size() == 1;
+  const std::size_t from = clear_left && (alone || is_last || !clear_right) ? before : begin;
+  const bool blank_before = text.text()[begin - 1] == ' ';
+  const bool takes_right = alone ? from == before : !is_last || (from == begin && blank_before);
+  const std::size_t to = clear_right && takes_right ? after : end;
+  // Not both the spaces before and behind, where something stands on either side.
+  out.push_back({from, (from == before && !alone ? end : to) - from, ""});
+  return out;
+}
+
+Replacements move_item(const LuaText& text, std::size_t open, const std::vector<std::size_t>& among, std::size_t from,
+                       std::size_t to) {
+  const Layout layout(text, open);
+  std::vector<std::size_t> places;
+  for (const std::size_t index : among)
+    if (index >= std::min(from, to) && index <= std::max(from, to)) places.push_back(index);
+  std::vector<std::size_t> order = places;  // which item comes into which place
+  if (from < to)
+    std::rotate(order.begin(), order.begin() + 1, order.end());
+  else
+    std::rotate(order.begin(), order.end() - 1, order.end());
+  std::vector<Slot> slots;
+  for (const std::size_t index : places) slots.push_back(slot_of(layout, layout.items[index]));
+  // Comments of lines go along between lines alone: elsewhere they would hide what follows.
+  const bool lines = std::ranges::all_of(
+      places, [&](std::size_t index) { return own_line_end(layout, layout.items[index]).has_value(); });
+  Replacements out;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto moved = static_cast<std::size_t>(std::ranges::find(places, order[i]) - places.begin());
+    if (lines) put(out, layout, slots[i].above, slots[moved].above);
+    put(out, layout, slots[i].value, slots[moved].value);
+    if (lines) put(out, layout, slots[i].behind, slots[moved].behind);
+  }
+  return out;
 }
 
 }  // namespace afterglow::script

@@ -31,4 +31,18 @@ Replacements insert_item(const LuaText& text, std::size_t open, const std::strin
 /// be about it, and nobody can say what becomes of them.
 std::optional<Replacements> remove_item(const LuaText& text, std::size_t open, const LuaText::Item& item);
 
+/// `source` as an item without a key behind item number `behind`, in the layout of that one.
+Replacements insert_behind(const LuaText& text, std::size_t open, std::size_t behind, const std::string& source);
+/// The same before item number `before`.
+Replacements insert_before(const LuaText& text, std::size_t open, std::size_t before, const std::string& source);
+/// The same into a constructor without items.
+Replacements insert_first(const LuaText& text, std::size_t open, const std::string& source);
+/// Without item number `index` and what stands on its own lines behind it: a comment there is about it. Comments on
+/// lines of their own stay.
+Replacements take_out(const LuaText& text, std::size_t open, std::size_t index);
+/// Item number `from` in the place of number `to`, those between one place on; `among` are the items that change
+/// places, ascending. Comments right above an item and behind it on its line go with it; separators and layout stay.
+Replacements move_item(const LuaText& text, std::size_t open, const std::vector<std::size_t>& among, std::size_t from,
+                       std::size_t to);
+
 }  // namespace afterglow::script

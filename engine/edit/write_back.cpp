@@ -14,17 +14,17 @@
 
 namespace afterglow {
 
-using namespace script;
-
-namespace {
-
-Result<Preset> load_text(const std::filesystem::path& file, std::string text, PresetOptions options) {
+Result<Preset> script::load_text(const std::filesystem::path& file, std::string text, PresetOptions options) {
   options.overrides.clear();
   options.text = std::move(text);
   ShaderLibrary shaders(search_path_for(file, options.paths));
   Diagnostics silent;
   return Preset::load(file, options, shaders, silent);
 }
+
+using namespace script;
+
+namespace {
 
 /// An edit with all that is known about it before the text is touched.
 struct Task {

@@ -59,6 +59,12 @@ struct Rewrite {
 Result<Rewrite> rewrite_preset(const std::filesystem::path& file, const std::string& before,
                                const std::vector<PresetEdit>& edits, const PresetOptions& options);
 
+/// A preset's text that is not in its file yet: changes go into it, and then all of it into the file.
+struct WorkingText {
+  std::string text;
+  std::string base;  ///< of the file that it was made from
+};
+
 /// Saves into one preset's file, and takes saves back. Not thread-safe; needs no device, and about a load of the preset
 /// for each call of plan (twice).
 class PresetWriter {
@@ -66,8 +72,8 @@ class PresetWriter {
   PresetWriter(std::filesystem::path file, PresetOptions options);
 
   const std::filesystem::path& file() const { return file_; }
-  /// Reads the file; writes nothing. Errors: as rewrite_preset; io.
-  Result<Rewrite> plan(const std::vector<PresetEdit>& edits) const;
+  /// Reads the file; writes nothing. Errors: as rewrite_preset; io (also: the file is no longer `working`'s base).
+  Result<Rewrite> plan(const std::vector<PresetEdit>& edits, const std::optional<WorkingText>& working = {}) const;
   /// Replaces the file, whole or not at all; links are followed, mode bits kept. Does nothing when there is no change.
   /// Errors (io): the file is no longer what the plan was made from; it cannot be written.
   Result<void> save(const Rewrite& rewrite);

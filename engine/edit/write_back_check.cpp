@@ -105,23 +105,6 @@ Result<void> check_entry(const StackEntry& before, const StackEntry& after, cons
   return {};
 }
 
-Result<void> check_stack(const Preset& before, const Preset& after) {
-  const auto volumes = [](const Preset& preset) {
-    std::string out;
-    for (const auto& volume : preset.explanation().volumes)
-      out += fmt::format("{} {} {} {}; ", volume.name, volume.priority, volume.weight, volume.factor);
-    return out;
-  };
-  if (before.name() != after.name()) return differs("the stack's name", before.name(), after.name());
-  if (before.max_error() != after.max_error()) return differs("max_error", "as it is", "another");
-  if (before.explanation().position != after.explanation().position) return differs("position", "as it is", "another");
-  if (volumes(before) != volumes(after)) return differs("the volumes", volumes(before), volumes(after));
-  if (before.entries().size() != after.entries().size())
-    return differs("the stack", std::to_string(before.entries().size()) + " entries",
-                   std::to_string(after.entries().size()));
-  return {};
-}
-
 }  // namespace
 
 bool is_same(const SettingValue& a, const SettingValue& b) {
@@ -175,8 +158,26 @@ Result<Said> said_of(const Preset& preset, const PresetEdit& edit) {
                nearest_name(edit.setting, names)};
 }
 
+Result<void> check_stack(const Preset& before, const Preset& after) {
+  const auto volumes = [](const Preset& preset) {
+    std::string out;
+    for (const auto& volume : preset.explanation().volumes)
+      out += fmt::format("{} {} {} {}; ", volume.name, volume.priority, volume.weight, volume.factor);
+    return out;
+  };
+  if (before.name() != after.name()) return differs("the stack's name", before.name(), after.name());
+  if (before.max_error() != after.max_error()) return differs("max_error", "as it is", "another");
+  if (before.input_space() != after.input_space()) return differs("input_space", "as it is", "another");
+  if (before.explanation().position != after.explanation().position) return differs("position", "as it is", "another");
+  if (volumes(before) != volumes(after)) return differs("the volumes", volumes(before), volumes(after));
+  return {};
+}
+
 Result<void> check_edits(const Preset& before, const Preset& after, const std::vector<PresetEdit>& edits) {
   AFTERGLOW_CHECK(check_stack(before, after));
+  if (before.entries().size() != after.entries().size())
+    return differs("the stack", std::to_string(before.entries().size()) + " entries",
+                   std::to_string(after.entries().size()));
   for (const auto& entry : before.entries()) {
     const auto other = std::ranges::find(after.entries(), entry.name, &StackEntry::name);
     if (other == after.entries().end()) return differs(entry.name, "an entry", "nothing");

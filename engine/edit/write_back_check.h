@@ -7,6 +7,9 @@
 
 namespace afterglow::script {
 
+/// The preset that `text` in the place of the file's is, without overrides. Errors: as Preset::load.
+Result<Preset> load_text(const std::filesystem::path& file, std::string text, PresetOptions options);
+
 /// What the preset itself says of a setting: before volumes, without overrides.
 struct Said {
   SettingSchema schema;
@@ -20,6 +23,8 @@ Result<Said> said_of(const Preset& preset, const PresetEdit& edit);
 /// The same for shaders: 32-bit floats. Integers, choices and booleans exactly.
 bool is_same(const SettingValue& a, const SettingValue& b);
 
+/// All but the entries. Errors (script, without file): what differs.
+Result<void> check_stack(const Preset& before, const Preset& after);
 /// Errors (script, without file): what differs.
 Result<void> check_edits(const Preset& before, const Preset& after, const std::vector<PresetEdit>& edits);
 

@@ -15,16 +15,23 @@ constexpr std::size_t kMostSaves = 100;
 PresetWriter::PresetWriter(std::filesystem::path file, PresetOptions options)
     : file_(std::move(file)), options_(std::move(options)) {}
 
-Result<Rewrite> PresetWriter::plan(const std::vector<PresetEdit>& edits) const {
-  AFTERGLOW_TRY(const std::string text, read_file(file_));
-  return rewrite_preset(file_, text, edits, options_);
-}
-
 // Errors: the file holds something else.
 Result<void> PresetWriter::expect(const std::string& text) const {
   AFTERGLOW_TRY(const std::string now, read_file(file_));
   if (now == text) return {};
   return Error{ErrorKind::io, "was changed by something else in the meantime; nothing was written", file_.string()};
+}
+
+Result<Rewrite> PresetWriter::plan(const std::vector<PresetEdit>& edits,
+                                   const std::optional<WorkingText>& working) const {
+  if (!working) {
+    AFTERGLOW_TRY(const std::string text, read_file(file_));
+    return rewrite_preset(file_, text, edits, options_);
+  }
+  AFTERGLOW_CHECK(expect(working->base));
+  AFTERGLOW_TRY(Rewrite rewrite, rewrite_preset(file_, working->text, edits, options_));
+  rewrite.before = working->base;
+  return rewrite;
 }
 
 Result<void> PresetWriter::save(const Rewrite& rewrite) {

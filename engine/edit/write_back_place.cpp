@@ -206,6 +206,11 @@ Result<std::vector<Place>> places_of(const LuaText& text, const Preset& preset, 
   return places;
 }
 
+std::size_t table_of(const LuaText& text, const Place& place) {
+  const Range argument = argument_of(text, token_at(text, place.offset), place.argument);
+  return argument && is_table(text, argument) ? argument.first : LuaText::kNone;
+}
+
 Result<Change> write_at(const LuaText& text, const std::string& file, const Place& place, const PresetEdit& edit,
                         const SettingValue& value) {
   std::vector<std::string> path = place.path;

@@ -21,6 +21,9 @@ struct Place {
 Result<std::vector<Place>> places_of(const LuaText& text, const Preset& preset, const std::string& file,
                                      const PresetEdit& edit);
 
+/// The table constructor among the arguments of a call; kNone: an expression or nothing stands there.
+std::size_t table_of(const LuaText& text, const Place& place);
+
 struct Change {
   Replacements replacements;  ///< none: nothing to do
   std::size_t at = 0;         ///< offset of the new value in the text once it is replaced; of the call when removed

@@ -55,10 +55,6 @@ std::uint64_t next_version() {
 
 }  // namespace
 
-VkImageLayout input_layout(const Program& program, const std::string& name) {
-  return name == "source" ? program.source_layout() : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-}
-
 Result<std::map<std::string, ImageDesc>> FrameInputs::wanted_by(const Program& program,
                                                                 const std::map<std::string, HostImage>& host) {
   const Graph& graph = program.graph();
@@ -67,9 +63,9 @@ Result<std::map<std::string, ImageDesc>> FrameInputs::wanted_by(const Program& p
     AFTERGLOW_CHECK(check_input(graph, name, id, host));
     descs[name] = {.name = name,
                    .size = graph.images[id].size,
-                   .format = input_format(name, host.at(name), program.storage_format()),
+                   .format = input_format(name, host.at(name).channels, program.storage_format()),
                    .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
-    if (input_layout(program, name) == VK_IMAGE_LAYOUT_GENERAL) descs[name].usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+    if (program.input_layout() == VK_IMAGE_LAYOUT_GENERAL) descs[name].usage |= VK_IMAGE_USAGE_STORAGE_BIT;
   }
   return descs;
 }
@@ -122,8 +118,8 @@ std::map<std::string, ImageBinding> FrameInputs::bindings() const {
 
 void FrameInputs::before(const Program& program, VkCommandBuffer commands) {
   std::vector<VkImageMemoryBarrier2> barriers;
+  const VkImageLayout wanted = program.input_layout();
   for (auto& [name, image] : images_) {
-    const VkImageLayout wanted = input_layout(program, name);
     if (!image.direct && image.layout == wanted) continue;  // the upload has done it
     const VkPipelineStageFlags2 stage =
         VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | (image.direct ? VK_PIPELINE_STAGE_2_HOST_BIT : 0);

@@ -14,9 +14,6 @@
 
 namespace afterglow {
 
-/// The layout in which a program reads an input.
-VkImageLayout input_layout(const Program& program, const std::string& name);
-
 /// Not thread-safe.
 class FrameInputs {
  public:

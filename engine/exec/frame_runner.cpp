@@ -219,7 +219,7 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
                                [&](VkCommandBuffer commands) {
                                  inputs.before(program, commands);
                                  result.before(commands);
-                                 program.record(commands, -1, queries, run);
+                                 program.record(commands, queries, run);
                                  if (separate) return;
                                  inputs.after(commands);
                                  result.after(commands);
@@ -243,7 +243,7 @@ Result<void> FrameRunner::State::time_separately(Program& program, const std::ve
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     if (!run[i]) continue;
     const auto begin = Clock::now();
-    auto done = submitter.submit([&](VkCommandBuffer commands) { program.record(commands, static_cast<int>(i)); });
+    auto done = submitter.submit([&](VkCommandBuffer commands) { program.record_again(commands, i); });
     if (done) done = submitter.wait();
     if (!done) {
       Error error = std::move(done).error();

@@ -36,9 +36,9 @@ std::map<std::string, ImageId> inputs_of(const Graph& graph) {
   return out;
 }
 
-VkFormat input_format(const std::string& name, const HostImage& image, VkFormat storage) {
+VkFormat input_format(const std::string& name, int channels, VkFormat storage) {
   if (name == "source") return storage;
-  return image.channels == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+  return known_channels(name).value_or(channels) == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
 void copy_source(const HostImage& source, HostResult& out) {

@@ -18,8 +18,9 @@ Result<void> check_input(const Graph& graph, const std::string& name, ImageId id
 /// The images that a program reads, by the names of HostImages.
 std::map<std::string, ImageId> inputs_of(const Graph& graph);
 
-/// Depths keep one channel; everything but the source is stored as full floats, whatever the storage of the stack.
-VkFormat input_format(const std::string& name, const HostImage& image, VkFormat storage);
+/// Everything but the source is stored as full floats, whatever the storage of the stack. Shaders that read an image as
+/// a storage image name its format: what a name tells (`known_channels`) counts more than the channels that are given.
+VkFormat input_format(const std::string& name, int channels, VkFormat storage);
 
 /// The source as RGBA; the result's pixels may be its own memory. Pictures with `read_row` go to a `write_row`.
 void copy_source(const HostImage& source, HostResult& out);

@@ -88,17 +88,11 @@ Result<void> Program::bind(const std::map<std::string, ImageBinding>& inputs, co
   return {};
 }
 
-void Program::record(VkCommandBuffer commands, int only, VkQueryPool timestamps, const std::vector<bool>& run) const {
+void Program::record(VkCommandBuffer commands, VkQueryPool timestamps, const std::vector<bool>& run) const {
   const State& s = *state_;
   if (s.bindings == 0) return;
   const std::size_t count = s.plan.kernels.size();
   if (s.begins_anew()) s.write_set(State::kFirst, [&](ImageId id) { return s.look_in_first_frame(id); });
-  if (only >= 0) {
-    const auto kernel = static_cast<std::size_t>(only);
-    if (kernel < count)
-      s.record_one(commands, kernel, s.kernels[static_cast<std::size_t>(s.parity())][kernel].barriers);
-    return;
-  }
   const auto stamp = [&](std::size_t query) {
     if (timestamps == VK_NULL_HANDLE) return;
     s.device.vk().vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, timestamps,
@@ -135,7 +129,7 @@ const ExecutionConfig& Program::config() const { return state_->options.config; 
 bool Program::flags_non_finite() const { return state_->options.flag_non_finite; }
 VkFormat Program::result_format() const { return state_->result_format(); }
 int Program::result_rows() const { return state_->result_rows; }
-VkImageLayout Program::source_layout() const { return state_->source_layout(); }
+VkImageLayout Program::input_layout() const { return state_->input_layout(); }
 
 std::optional<Program::Transient> Program::transient(ImageId image) const {
   const State& s = *state_;

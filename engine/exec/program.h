@@ -33,8 +33,9 @@ struct WorthAKernel {
 struct ProgramOptions {
   ExecutionConfig config{};  ///< as wished: what the device cannot do is left out
   bool reference = false;    ///< every pass on its own, computed weights, no sharing of memory, images may be read back
-  /// With `config.storage_reads`: the source that will be bound has STORAGE usage and comes in GENERAL layout.
-  bool source_is_storage = false;
+  /// With `config.storage_reads`: the inputs that will be bound have STORAGE usage, the formats of `input_format`
+  /// (host_input.h), and come in GENERAL layout.
+  bool inputs_are_storage = false;
   WorthAKernel worth{};
   bool unorm8 = false;  ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
   /// The result's alpha is 0 where a colour that was not finite came up in a pass and no pass of another kernel that
@@ -92,8 +93,9 @@ class Program {
   /// By name of an input ("source", "depth", …): a number that no other pixels of it ever had, in this process.
   using InputVersions = std::map<std::string, std::uint64_t>;
   /// The kernels that have to run for the result to be right with these inputs, the parameters as they are, and what
-  /// images hold. Parallel to the plan's kernels. Without `keep_images` all or none. `result_lost`: the result image
-  /// does not hold what this program last wrote. What these kernels' images hold counts as lost until `up_to_date`.
+  /// images hold. Parallel to the plan's kernels. Without `keep_images` all or none, but for what is made
+  /// once (Plan::once). `result_lost`: the result image does not hold what this program last wrote. What these kernels'
+  /// images hold counts as lost until `up_to_date`.
   std::vector<bool> begin_run(const InputVersions& inputs, bool result_lost);
   /// Notes that what `begin_run` said has run, in the frame that its histories began.
   void up_to_date();
@@ -130,15 +132,14 @@ class Program {
 
   /// Records all kernels with their barriers. Inputs must be in SHADER_READ_ONLY_OPTIMAL with their writes made visible
   /// to fragment shader reads; the result must be in COLOR_ATTACHMENT_OPTIMAL (with
-  /// `result_rows` above 1, it and its targets in GENERAL) and is left so. `only` ≥ 0 records that
-  /// kernel alone (for pass-by-pass timing). `timestamps`: pool with kernels().size()+1 queries, or null.
-  /// `run`: as `kernels_to_run` said, or empty for all.
-  void record(VkCommandBuffer commands, int only = -1, VkQueryPool timestamps = VK_NULL_HANDLE,
+  /// `result_rows` above 1, it and its targets in GENERAL) and is left so. `timestamps`: pool with
+  /// kernels().size()+1 queries, or null. `run`: as `begin_run` said, or empty for all.
+  void record(VkCommandBuffer commands, VkQueryPool timestamps = VK_NULL_HANDLE,
               const std::vector<bool>& run = {}) const;
 
   /// Records one kernel once more after a run, as the frame that ran last; every image holds and is laid out after it
-  /// what and as it was before. Needs `keep_images`. The caller's images as for `record`. `timestamps`: a pool with 2
-  /// queries, or null.
+  /// what and as it was before. Needs `keep_images`, or that all that ran are recorded again, in their order. The
+  /// caller's images as for `record`. `timestamps`: a pool with 2 queries, or null.
   void record_again(VkCommandBuffer commands, std::size_t kernel, VkQueryPool timestamps = VK_NULL_HANDLE) const;
 
   const Plan& plan() const;
@@ -155,8 +156,8 @@ class Program {
   VkFormat result_format() const;  ///< the storage format, or R8G8B8A8_UNORM with ProgramOptions::unorm8
   /// With `result_by_rows`: how many rows the targets of the result must have; 1: they are not used.
   int result_rows() const;
-  /// The layout in which `record` wants the source: SHADER_READ_ONLY_OPTIMAL, or GENERAL (then with STORAGE usage).
-  VkImageLayout source_layout() const;
+  /// The layout in which `record` wants the inputs: SHADER_READ_ONLY_OPTIMAL, or GENERAL (then with STORAGE usage).
+  VkImageLayout input_layout() const;
   /// A transient image and the layout it is in after a whole run; null for images without memory of their own (inputs,
   /// the result, what fused passes hand on). Its pixels are `kept` after the run by a program created with `reference`
   /// alone.

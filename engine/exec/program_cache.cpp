@@ -65,7 +65,7 @@ bool same_program(const FrameWork& a, const FrameWork& b) {
 
 ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, const FrameWork& work,
                              const ExecutionConfig& config, std::set<Hash>& checked) {
-  ProgramOptions options{.config = config, .source_is_storage = true, .unorm8 = work.unorm8, .flag_non_finite = true};
+  ProgramOptions options{.config = config, .inputs_are_storage = true, .unorm8 = work.unorm8, .flag_non_finite = true};
   fit_to_cpu_driver(options.config);
   ShaderFindings found;
   for (const bool compute : {false, true}) {  // both ways of passes that have two
@@ -116,7 +116,7 @@ ProgramOptions ProgramCache::State::program_options() const {
   out.config = options.config;
   out.config.storage = storage();
   out.reference = options.reference;
-  out.source_is_storage = out.result_by_rows = options.own_images;
+  out.inputs_are_storage = out.result_by_rows = options.own_images;
   out.flag_non_finite = options.flag_non_finite;
   out.keep_images = options.keep_images;
   out.max_memory = options.max_memory;

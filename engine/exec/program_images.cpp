@@ -30,7 +30,7 @@ Program::State::Seen Program::State::look_between(ImageId image) const {
 Program::State::Seen Program::State::look_at_input(ImageId image) const {
   const auto found = inputs.find(image);
   if (found == inputs.end()) return {};
-  return {found->second.view, image == graph.source ? source_layout() : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  return {found->second.view, input_layout()};
 }
 
 const GpuImage* Program::State::history_image(ImageId image, int parity) const {

@@ -97,7 +97,10 @@ std::vector<bool> Program::begin_run(const InputVersions& inputs, bool result_lo
     stale[i] = s.holds(i) != s.making[i] || (result_lost && s.plan.kernels[i].output == s.graph.result);
   s.running = kernels_to_run(s.graph, s.plan, stale);
   const bool any = std::ranges::find(s.running, true) != s.running.end();
-  if (any && !s.options.keep_images) s.running.assign(count, true);
+  if (any && !s.options.keep_images) {  // the others share memory: they hold nothing from frame to frame
+    for (std::size_t i = 0; i < count; ++i) stale[i] = stale[i] || !s.plan.once[i];
+    s.running = kernels_to_run(s.graph, s.plan, stale);
+  }
   for (std::size_t i = 0; i < count; ++i)
     if (s.running[i]) s.holds(i).reset();
   return s.running;

@@ -76,9 +76,9 @@ struct Program::State {
   VkImageLayout history_layout() const {
     return options.config.storage_reads ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   }
-  VkImageLayout source_layout() const {
-    return options.source_is_storage && options.config.storage_reads ? VK_IMAGE_LAYOUT_GENERAL
-                                                                     : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  VkImageLayout input_layout() const {
+    return options.inputs_are_storage && options.config.storage_reads ? VK_IMAGE_LAYOUT_GENERAL
+                                                                      : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   }
   VkImageLayout target_layout(ImageId output) const;
   VkFormat result_format() const { return options.unorm8 ? VK_FORMAT_R8G8B8A8_UNORM : format; }

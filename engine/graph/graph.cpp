@@ -139,6 +139,13 @@ bool is_computed(const Graph& graph, ImageId image) {
   return producer >= 0 && graph.passes[producer].kind == PassKind::compute;
 }
 
+std::optional<int> known_channels(const std::string& input) {
+  if (input == "depth") return 1;
+  if (input == "motion") return 2;
+  if (input == "normal") return 3;
+  return std::nullopt;
+}
+
 std::vector<std::string> shaders_of(const Pass& pass) {
   std::vector<std::string> out;
   for (const auto& name : {pass.shader, pass.by_workgroups})

@@ -110,6 +110,10 @@ struct Graph {
 /// to.
 bool is_computed(const Graph& graph, ImageId image);
 
+/// How many channels an auxiliary image holds, where its name tells: of "depth" 1, of "motion" 2, of "normal" 3. Others
+/// hold what a frame brings.
+std::optional<int> known_channels(const std::string& input);
+
 /// Names of the shaders that a pass may run.
 std::vector<std::string> shaders_of(const Pass& pass);
 

@@ -16,6 +16,7 @@ namespace afterglow {
 /// Bytes, with the inputs and the result. Of `config` it reads `fusion`, `storage` and `share_memory`.
 std::uint64_t memory_needed(const Graph& graph, const ExecutionConfig& config);
 
+/// Of a steady frame: kernels that run once move nothing.
 struct KernelTraffic {
   std::string name;
   std::uint64_t read = 0, written = 0;

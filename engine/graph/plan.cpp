@@ -25,6 +25,22 @@ std::vector<bool> passes_that_matter(const Graph& graph) {
   return keep;
 }
 
+// Whoever runs the graph gives the result's image, and the frame before that of a history: both are drawn to.
+bool must_be_drawn(const Graph& graph, ImageId image) {
+  return image == graph.result || history_of_next(graph, image) != nullptr;
+}
+
+// Images that no frame changes, by the passes that make them: nothing of the source, of an auxiliary image or of a
+// frame before flows into them. Who runs the graph takes the result anew in every frame, and a history its next image.
+std::vector<bool> made_once(const Graph& graph) {
+  std::vector<bool> once(graph.images.size(), false);
+  for (std::size_t i = 0; i < graph.images.size(); ++i) once[i] = graph.images[i].data != nullptr;
+  for (const auto& pass : graph.passes)
+    once[pass.output] = !must_be_drawn(graph, pass.output) &&
+                        std::ranges::all_of(images_read(graph, pass), [&](ImageId read) { return once[read]; });
+  return once;
+}
+
 std::vector<int> count_readers(const Graph& graph, const std::vector<bool>& keep) {
   std::vector<int> readers(graph.images.size(), 0);
   ++readers[graph.result];                                              // whoever runs the graph
@@ -36,11 +52,6 @@ std::vector<int> count_readers(const Graph& graph, const std::vector<bool>& keep
 }
 
 bool is_anchor(const Pass& pass) { return info_of(pass.kind).begins; }
-
-// Whoever runs the graph gives the result's image, and the frame before that of a history: both are drawn to.
-bool must_be_drawn(const Graph& graph, ImageId image) {
-  return image == graph.result || history_of_next(graph, image) != nullptr;
-}
 
 bool runs_as_workgroups(const Graph& graph, const PlanKernel& kernel, const ExecutionConfig& config) {
   const Pass& anchor = graph.passes[kernel.passes.front()];
@@ -70,8 +81,8 @@ std::size_t bound_images(const Graph& graph, const PlanKernel& kernel) {
 // readers of an image stand in one kernel.
 class Joiner {
  public:
-  Joiner(const Graph& graph, const std::vector<bool>& keep)
-      : graph_(graph), readers_(count_readers(graph, keep)), kernel_of_(graph.images.size(), -1) {}
+  Joiner(const Graph& graph, const std::vector<bool>& keep, const std::vector<bool>& once)
+      : graph_(graph), once_(once), readers_(count_readers(graph, keep)), kernel_of_(graph.images.size(), -1) {}
 
   void add(int index, Fusion fusion) {
     const Pass& pass = graph_.passes[index];
@@ -98,6 +109,7 @@ class Joiner {
         const int feeder = kernel_of_[input.image];
         if (feeder < 0 || kernels_[feeder].passes.empty() || !reads_own_pixel(graph_.passes[index], input)) continue;
         if (own_readers(kernel, input.image) != readers_[input.image]) continue;
+        if (once_[input.image] && !once_[kernel.output]) continue;  // one read a frame instead of all that makes it
         if (fusion == Fusion::filters && !is_anchor_of(kernels_[feeder], kernel)) continue;
         if (is_anchor(first(kernel)) && is_anchor(first(kernels_[feeder]))) continue;
         if (first(kernels_[feeder]).kind == PassKind::compute && must_be_drawn(graph_, kernel.output)) continue;
@@ -133,6 +145,7 @@ class Joiner {
   }
 
   const Graph& graph_;
+  const std::vector<bool>& once_;
   std::vector<int> readers_;
   std::vector<int> kernel_of_;  // image → kernel that ends with it
   std::vector<PlanKernel> kernels_;
@@ -150,6 +163,8 @@ void find_lifetimes(const Graph& graph, Plan& plan) {
     plan.lifetimes.push_back({now, now});
   }
   const int end = static_cast<int>(plan.kernels.size()) - 1;
+  for (std::size_t k = 0; k < plan.kernels.size(); ++k)
+    if (plan.once[k]) plan.lifetimes[place_of[plan.kernels[k].output]] = {0, end};
   if (const auto it = place_of.find(graph.result); it != place_of.end()) plan.lifetimes[it->second].last = end;
   for (const auto& history : graph.histories)
     if (const auto it = place_of.find(history.next); it != place_of.end()) plan.lifetimes[it->second].last = end;
@@ -172,8 +187,8 @@ std::optional<int> value_in(const Graph& graph, const PlanKernel& kernel, ImageI
 
 Plan make_plan(const Graph& graph, const ExecutionConfig& config) {
   Plan plan;
-  const std::vector<bool> keep = passes_that_matter(graph);
-  Joiner joiner(graph, keep);
+  const std::vector<bool> keep = passes_that_matter(graph), once = made_once(graph);
+  Joiner joiner(graph, keep, once);
   for (std::size_t i = 0; i < graph.passes.size(); ++i) {
     if (keep[i])
       joiner.add(static_cast<int>(i), config.fusion);
@@ -182,6 +197,7 @@ Plan make_plan(const Graph& graph, const ExecutionConfig& config) {
   }
   plan.kernels = joiner.finish();
   for (auto& kernel : plan.kernels) kernel.compute = runs_as_workgroups(graph, kernel, config);
+  for (const auto& kernel : plan.kernels) plan.once.push_back(once[kernel.output]);
   find_lifetimes(graph, plan);
   return plan;
 }

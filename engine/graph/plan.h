@@ -31,8 +31,12 @@ struct Plan {
       transient;  ///< images that need memory, in order of first use (result included when it is not an input)
   struct Lifetime {
     int first = 0, last = 0;
-  };                                ///< kernel indices, inclusive
-  std::vector<Lifetime> lifetimes;  ///< parallel to `transient`; the result and what histories keep live to the end
+  };  ///< kernel indices, inclusive
+  /// Parallel to `transient`; the result and what histories keep live to the end, what is made once from end to end.
+  std::vector<Lifetime> lifetimes;
+  /// Parallel to `kernels`: what they make depends on settings and sizes alone, on no picture of a frame. It shares
+  /// memory with nothing, and is made again only when its settings change.
+  std::vector<bool> once;
 };
 
 /// Of `config` it reads `fusion` and `compute`. What compute kernels make is transient: neither the result nor kept by

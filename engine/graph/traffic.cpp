@@ -21,10 +21,9 @@ std::set<ImageId> read_by(const Graph& graph, const PlanKernel& kernel) {
 Traffic traffic_of(const Graph& graph, const Plan& plan, const ExecutionConfig& config, const Regions* parts) {
   const std::uint64_t stored = config.storage == Storage::fp16 ? 8 : 16;
   const auto bytes_per_pixel = [&](ImageId image) -> std::uint64_t {
-    const auto depth = graph.auxiliary.find("depth");
-    if (depth != graph.auxiliary.end() && depth->second == image) return 4;  // one channel
     const GraphImage& made = graph.images[static_cast<std::size_t>(image)];
     const bool given = made.producer < 0 && image != graph.source;
+    if (given && known_channels(made.name) == 1) return 4;
     return given || is_precise(graph, image) ? 16 : stored;
   };
   const auto area = [&](ImageId image) -> std::uint64_t {
@@ -45,6 +44,10 @@ Traffic traffic_of(const Graph& graph, const Plan& plan, const ExecutionConfig& 
   for (std::size_t k = 0; k < plan.kernels.size(); ++k) {
     const PlanKernel& kernel = plan.kernels[k];
     KernelTraffic one{.name = kernel.name};
+    if (plan.once[k]) {  // no frame but the first
+      out.kernels.push_back(std::move(one));
+      continue;
+    }
     for (const ImageId image : read_by(graph, kernel)) {
       one.read += count(image, area(image));
       if (graph.images[static_cast<std::size_t>(image)].producer < 0) inputs.insert(image);

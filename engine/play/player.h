@@ -96,6 +96,7 @@ class Player {
   Transport& transport();
   View& view();
   const Footage& footage() const;
+  const FootageOptions& footage_options() const;  ///< what `footage` was opened with
   FrameState frame_state(int position) const;
   LiveStack& live();
   LiveStack* other();  ///< null without a second preset
@@ -108,6 +109,9 @@ class Player {
   // Settings over those of the preset (and over --set); they apply with the next turns, through LiveStack.
   void set(const std::string& entry, const std::string& setting, const SettingValue& value);
   void reset(const std::string& entry, const std::string& setting);
+  void set_all(const std::vector<SettingEdit>& values);
+  void set_stack(const StackChange& change);
+  void reset_stack();
   void reset_all();
   bool undo();
   bool redo();
@@ -115,6 +119,7 @@ class Player {
   void end_gesture();
   /// See SettingEdits::rebase.
   void rebase(const std::vector<BaseChange>& changes);
+  void rebase(const std::vector<BaseChange>& changes, const TextChange& text);
 
   /// See LiveStack::show.
   void show(const std::string& image);

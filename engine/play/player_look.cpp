@@ -107,7 +107,7 @@ Result<Picture> Player::screenshot() {
 
 void Player::State::apply_edits() {
   const PresetOptions& given = options.live.stack.preset;
-  first->live().set_overrides(edits.overrides(given.overrides), edits.arguments(given.arguments));
+  first->live().set_overrides(edits.overrides(given.overrides), edits.arguments(given.arguments), edits.stack_text());
 }
 
 void Player::set(const std::string& entry, const std::string& setting, const SettingValue& value) {
@@ -117,6 +117,20 @@ void Player::set(const std::string& entry, const std::string& setting, const Set
 
 void Player::reset(const std::string& entry, const std::string& setting) {
   if (state_->edits.reset(entry, setting)) state_->apply_edits();
+}
+
+void Player::set_all(const std::vector<SettingEdit>& values) {
+  state_->edits.set_all(values);
+  state_->apply_edits();
+}
+
+void Player::set_stack(const StackChange& change) {
+  state_->edits.set_stack(change);
+  state_->apply_edits();
+}
+
+void Player::reset_stack() {
+  if (state_->edits.reset_stack()) state_->apply_edits();
 }
 
 void Player::reset_all() {
@@ -140,6 +154,11 @@ void Player::end_gesture() { state_->edits.end_gesture(); }
 
 void Player::rebase(const std::vector<BaseChange>& changes) {
   state_->edits.rebase(changes);
+  state_->apply_edits();
+}
+
+void Player::rebase(const std::vector<BaseChange>& changes, const TextChange& text) {
+  state_->edits.rebase(changes, text);
   state_->apply_edits();
 }
 

@@ -14,14 +14,14 @@ auto is(const std::string& entry, const std::string& setting) {
 
 }  // namespace
 
-bool SettingEdits::take(std::vector<SettingEdit> edits, const std::string& gesture) {
-  if (edits == history_[at_]) return false;
+bool SettingEdits::take(Step step, const std::string& gesture) {
+  if (step == history_[at_]) return false;
   const bool same_step = !gesture.empty() && gesture == open_ && at_ > 0 && at_ + 1 == history_.size();
   history_.resize(at_ + 1);
   if (same_step) {
-    history_[at_] = std::move(edits);
+    history_[at_] = std::move(step);
   } else {
-    history_.push_back(std::move(edits));
+    history_.push_back(std::move(step));
     if (history_.size() > kMostSteps) history_.erase(history_.begin());
     at_ = history_.size() - 1;
   }
@@ -29,27 +29,51 @@ bool SettingEdits::take(std::vector<SettingEdit> edits, const std::string& gestu
   return true;
 }
 
-void SettingEdits::set(const std::string& entry, const std::string& setting, const SettingValue& value) {
-  auto edits = history_[at_];
-  const auto found = std::ranges::find_if(edits, is(entry, setting));
+void SettingEdits::set(std::vector<SettingEdit>& edits, const SettingEdit& value) {
+  const auto found = std::ranges::find_if(edits, is(value.entry, value.setting));
   if (found != edits.end()) {
-    found->value = value;
+    found->value = value.value;
   } else {
-    edits.push_back({entry, setting, value});
+    edits.push_back(value);
   }
-  take(std::move(edits), entry + "." + setting);
 }
 
+void SettingEdits::set(const std::string& entry, const std::string& setting, const SettingValue& value) {
+  Step step = history_[at_];
+  set(step.edits, {entry, setting, value});
+  take(std::move(step), entry + "." + setting);
+}
+
+void SettingEdits::set_all(const std::vector<SettingEdit>& values) {
+  Step step = history_[at_];
+  for (const SettingEdit& value : values) set(step.edits, value);
+  take(std::move(step), "");
+}
+
+void SettingEdits::set_stack(const StackChange& change) {
+  Step step{{}, change.text};
+  for (const SettingEdit& edit : edits()) {
+    const auto now = std::ranges::find(change.renamed, edit.entry, &std::pair<std::string, std::string>::first);
+    if (edit.entry.empty()) step.edits.push_back(edit);
+    if (now == change.renamed.end()) continue;
+    step.edits.push_back({now->second, edit.setting, edit.value});
+    if (now->second == change.copied) step.edits.push_back({change.copy, edit.setting, edit.value});
+  }
+  take(std::move(step), "");
+}
+
+bool SettingEdits::reset_stack() { return take({edits(), nullptr}, ""); }
+
 bool SettingEdits::reset(const std::string& entry, const std::string& setting) {
-  auto edits = history_[at_];
-  std::erase_if(edits, is(entry, setting));
-  return take(std::move(edits), "");
+  Step step = history_[at_];
+  std::erase_if(step.edits, is(entry, setting));
+  return take(std::move(step), "");
 }
 
 bool SettingEdits::reset_entry(const std::string& entry) {
-  auto edits = history_[at_];
-  std::erase_if(edits, [&](const SettingEdit& edit) { return edit.entry == entry; });
-  return take(std::move(edits), "");
+  Step step = history_[at_];
+  std::erase_if(step.edits, [&](const SettingEdit& edit) { return edit.entry == entry; });
+  return take(std::move(step), "");
 }
 
 bool SettingEdits::reset_all() { return take({}, ""); }
@@ -68,17 +92,36 @@ bool SettingEdits::redo() {
   return true;
 }
 
+void SettingEdits::rebase(std::vector<SettingEdit>& edits, const std::vector<BaseChange>& changes) {
+  for (const BaseChange& change : changes) {
+    const auto found = std::ranges::find_if(edits, is(change.entry, change.setting));
+    if (found == edits.end()) {
+      if (!(change.before == change.after)) edits.push_back({change.entry, change.setting, change.before});
+    } else if (found->value == change.after) {
+      edits.erase(found);
+    }
+  }
+}
+
 void SettingEdits::rebase(const std::vector<BaseChange>& changes) {
   open_.clear();
-  for (auto& step : history_)
-    for (const BaseChange& change : changes) {
-      const auto found = std::ranges::find_if(step, is(change.entry, change.setting));
-      if (found == step.end()) {
-        if (!(change.before == change.after)) step.push_back({change.entry, change.setting, change.before});
-      } else if (found->value == change.after) {
-        step.erase(found);
-      }
+  for (Step& step : history_)
+    if (!step.text) rebase(step.edits, changes);
+}
+
+void SettingEdits::rebase(const std::vector<BaseChange>& changes, const TextChange& text) {
+  open_.clear();
+  const auto before = std::make_shared<const std::string>(text.before);
+  for (Step& step : history_) {
+    if (!step.text) {
+      step.text = before;
+    } else if (step.text == text.written) {
+      rebase(step.edits, changes);
+      step.text = nullptr;
+    } else if (*step.text == text.after) {
+      step.text = nullptr;
     }
+  }
 }
 
 std::optional<SettingValue> SettingEdits::value(const std::string& entry, const std::string& setting) const {

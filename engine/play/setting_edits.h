@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What the panel has changed: settings over those of the preset, with undo and redo. Plain data.
+// What the panel has changed: the stack, and settings over those of the preset, with undo and redo. Plain data.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "script/preset.h"
@@ -24,11 +26,33 @@ struct BaseChange {
   SettingValue before, after;
 };
 
+/// The text of a preset whose stack was changed; null: as its file is.
+using StackText = std::shared_ptr<const std::string>;
+
+/// A changed stack, and what became of the entries that settings were changed of.
+struct StackChange {
+  StackText text;
+  std::vector<std::pair<std::string, std::string>> renamed;  ///< before and now, of all that are still there
+  std::string copied, copy;  ///< an entry (its name now), and the one that gets its changed settings too; or empty
+};
+
+/// The text of the file has become another.
+struct TextChange {
+  std::string before, after;
+  StackText written;  ///< the changed stack that went into `after`, or null
+};
+
 /// Not thread-safe.
 class SettingEdits {
  public:
   /// Changes a setting. Changes of the same setting within one gesture (a drag of a slider) are one step of undo.
   void set(const std::string& entry, const std::string& setting, const SettingValue& value);
+  /// Several as one step.
+  void set_all(const std::vector<SettingEdit>& values);
+  /// One step.
+  void set_stack(const StackChange& change);
+  /// The stack as the file has it; settings stay. False when it was not changed.
+  bool reset_stack();
   /// The preset's value again. False when it was not changed.
   bool reset(const std::string& entry, const std::string& setting);
   bool reset_entry(const std::string& entry);
@@ -44,9 +68,13 @@ class SettingEdits {
   /// The preset was saved with edits in it, or a save was taken back: every step of the history stays what it was on
   /// screen. Steps that had the value from before get it as an edit; those that say what the preset says now need none.
   void rebase(const std::vector<BaseChange>& changes);
+  /// The same where stacks went into the file, or come out of it: steps that were as the file was keep its old text.
+  void rebase(const std::vector<BaseChange>& changes, const TextChange& text);
 
   /// In the order in which they were first made.
-  const std::vector<SettingEdit>& edits() const { return history_[at_]; }
+  const std::vector<SettingEdit>& edits() const { return history_[at_].edits; }
+  const StackText& stack_text() const { return history_[at_].text; }
+  bool none() const { return edits().empty() && !stack_text(); }
   std::optional<SettingValue> value(const std::string& entry, const std::string& setting) const;
   /// For LiveStack::set_overrides: those of the command line, then these.
   std::vector<Override> overrides(const std::vector<Override>& given) const;
@@ -54,8 +82,15 @@ class SettingEdits {
   std::vector<ArgumentValue> arguments(const std::vector<ArgumentValue>& given) const;
 
  private:
-  bool take(std::vector<SettingEdit> edits, const std::string& gesture);
-  std::vector<std::vector<SettingEdit>> history_{{}};
+  struct Step {
+    std::vector<SettingEdit> edits;
+    StackText text;
+    friend bool operator==(const Step&, const Step&) = default;
+  };
+  bool take(Step step, const std::string& gesture);
+  static void set(std::vector<SettingEdit>& edits, const SettingEdit& value);
+  static void rebase(std::vector<SettingEdit>& edits, const std::vector<BaseChange>& changes);
+  std::vector<Step> history_{Step{}};
   std::size_t at_ = 0;
   std::string open_;  ///< the setting that the present gesture changes
 };

@@ -119,12 +119,14 @@ void LiveStack::set_overrides(std::vector<Override> overrides) {
   state_->builder.change([&](LiveRequest& request) { request.overrides = std::move(overrides); }, true);
 }
 
-void LiveStack::set_overrides(std::vector<Override> overrides, std::vector<ArgumentValue> arguments) {
+void LiveStack::set_overrides(std::vector<Override> overrides, std::vector<ArgumentValue> arguments,
+                              std::shared_ptr<const std::string> text) {
   state_->overrides = overrides;
   state_->builder.change(
       [&](LiveRequest& request) {
         request.overrides = std::move(overrides);
         request.arguments = std::move(arguments);
+        request.text = std::move(text);
       },
       true);
 }

@@ -97,8 +97,10 @@ class LiveStack {
   /// `--set` and the panel's: all of them, later ones win. Those that do not fit the preset are left out with a
   /// warning, and come back when it fits again.
   void set_overrides(std::vector<Override> overrides);
-  /// The same with `--arg` and the panel's arguments, in one build.
-  void set_overrides(std::vector<Override> overrides, std::vector<ArgumentValue> arguments);
+  /// The same with `--arg` and the panel's arguments, and with the preset's text where it is another than its file's
+  /// (null: the file's), in one build.
+  void set_overrides(std::vector<Override> overrides, std::vector<ArgumentValue> arguments,
+                     std::shared_ptr<const std::string> text = {});
   const std::vector<Override>& overrides() const;
   /// The image that takes the result's place: "" for the result itself, "source", or the name of an image of the graph
   /// ("glow.down[2]"). While the graph has no such image the result is shown and `status().warnings` says so.

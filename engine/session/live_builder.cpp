@@ -177,6 +177,10 @@ Result<BuiltStack> LiveBuilder::load(const LiveRequest& request, const std::shar
   options.preset.arguments = request.arguments;
   options.preset.leave_out_unfit = true;
   options.preset.record = record;
+  if (request.text) {
+    options.preset.text = *request.text;
+    record->note(preset_, FileProbe::Kind::content);  // whoever wrote the text wants to know when the file changes
+  }
   {
     const std::lock_guard lock(mutex_);
     script_began_ = Clock::now();

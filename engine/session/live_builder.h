@@ -25,6 +25,7 @@ struct LiveRequest {
   std::optional<DisplayEncoding> encoding;
   std::vector<Override> overrides;
   std::vector<ArgumentValue> arguments;
+  std::shared_ptr<const std::string> text;  ///< of the preset; null: its file's
   std::string shown;
   bool for_frame = false;  ///< asked for because of `context` alone; the next build takes it
 };

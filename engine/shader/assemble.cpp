@@ -254,7 +254,10 @@ class Assembler {
       images_ += fmt::format("layout(set = 0, binding = {}) uniform sampler2D {};\n", slot + 1, variable);
     } else {
       images_ += fmt::format("layout(set = 0, binding = {}, {}) uniform readonly image2D {};\n", slot + 1,
-                             read == ImageRead::storage_rgba16f ? "rgba16f" : "rgba32f", variable);
+                             read == ImageRead::storage_rgba16f ? "rgba16f"
+                             : read == ImageRead::storage_r32f  ? "r32f"
+                                                                : "rgba32f",
+                             variable);
     }
     return read;
   }

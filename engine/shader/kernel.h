@@ -48,7 +48,7 @@ enum class AxisRatio { any, same, half, twice, fourfold };  // n_dst = n_src · 
 
 /// How the engine reads an image: through a sampler, or as a storage image of a format, which some devices do much
 /// faster (lavapipe: 0.6 against 1.8 ns a texel of four floats).
-enum class ImageRead { sampled, storage_rgba32f, storage_rgba16f };
+enum class ImageRead { sampled, storage_rgba32f, storage_rgba16f, storage_r32f };
 
 /// What a kernel writes: RGBA32F; RGBA16F (held to ±65504 and rounded); RGBA8 of codes that the last stage gives as
 /// 0…1.

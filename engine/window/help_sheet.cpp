@@ -45,11 +45,12 @@ void draw_help_sheet(Ui& ui, ImVec2 area) {
     ImGui::BeginGroup();
     const char* group = "";
     int rows = 0;
+    const bool wide = area.x >= ui.px(1040);  // what two columns of the longest words take
     for (const Shortcut& shortcut : shortcuts()) {
       if (std::strcmp(shortcut.group, group) == 0) continue;
       group = shortcut.group;
       // Two columns of groups.
-      if (rows++ == 2) {
+      if (rows++ == 2 && wide) {
         ImGui::EndGroup();
         ImGui::SameLine(0, ui.px(32));
         ImGui::BeginGroup();

@@ -162,7 +162,9 @@ const ImDrawData& Interface::end() {
 }
 
 bool Interface::wants_keyboard() const {
-  return ImGui::GetIO().WantTextInput || ImGui::GetCurrentContext()->WantTextInputNextFrame == 1;
+  // Both stay for a frame behind a field that was left.
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  return context.ActiveId != 0 && (context.IO.WantTextInput || context.WantTextInputNextFrame == 1);
 }
 bool Interface::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
 

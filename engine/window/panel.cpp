@@ -5,64 +5,57 @@
 
 #include <algorithm>
 
-#include "core/text.h"
 #include "script/build.h"
 #include "window/panel_row.h"
 #include "window/view_controls.h"
 
 namespace afterglow {
+void Panel::save(PanelPort& port) {
+  save_waits_ = stack_.busy();
+  if (!save_waits_) save_.save(port, bases_);
+}
+
 namespace {
 
-const std::string* reason_of(const std::vector<Skipped>& list, const std::string& name) {
-  for (const auto& skipped : list)
-    if (skipped.name == name) return &skipped.reason;
-  return nullptr;
+/// Names without an extension are presets; relative ones lie beside the one that is copied.
+std::filesystem::path copy_of(const std::filesystem::path& preset, const std::string& name) {
+  std::filesystem::path file = preset.parent_path() / name;
+  if (file.extension().empty()) file += ".lua";
+  return file;
 }
-
-bool is_edited(const SettingEdits& edits, const std::string& entry) {
-  return std::any_of(edits.edits().begin(), edits.edits().end(), [&](const auto& edit) { return edit.entry == entry; });
-}
-
-PanelRow row_of(const StackEntry& entry, const SettingHistory& history, const SettingSchema& schema,
-                const SettingValue& value) {
-  return {entry.name, history.name, schema, value, &history, history.preset.has_value()};
-}
-
-SettingValue boolean(bool on) { return {SettingType::boolean, {on ? 1.0 : 0.0}, ""}; }
 
 }  // namespace
-
-double cost_of(const std::string& entry, const std::vector<KernelTime>& times) {
-  double sum = 0;
-  bool known = false;
-  for (const auto& kernel : times) {
-    const auto passes = split(kernel.name, '+');
-    const auto own = std::count_if(passes.begin(), passes.end(),
-                                   [&](const std::string& pass) { return pass.substr(0, pass.find('.')) == entry; });
-    if (own == 0) continue;
-    known = true;
-    sum += kernel.milliseconds * static_cast<double>(own) / static_cast<double>(passes.size());
-  }
-  return known ? sum : -1;
-}
-
-bool Panel::found(const std::string& text) const {
-  return search_[0] == '\0' || lower(text).find(lower(search_.data())) != std::string::npos;
-}
 
 std::string Panel::unsaved(PanelPort& port) const {
   if (save_.settling()) return {};
   const auto& edits = port.edits().edits();
   const auto count = std::ranges::count_if(edits, [](const SettingEdit& edit) { return !edit.entry.empty(); });
-  if (count == 0) return {};
-  return fmt::format("{} of {}", count == 1 ? "1 setting" : fmt::format("{} settings", count),
-                     save_.file().filename().string());
+  const bool stack = port.edits().stack_text() != nullptr;
+  if (count == 0 && !stack) return {};
+  const std::string settings = count == 1 ? "1 setting" : fmt::format("{} settings", count);
+  const std::string what = !stack ? settings : count == 0 ? "the stack" : "the stack and " + settings;
+  return fmt::format("{} of {}", what, save_.file().filename().string());
 }
 
 void Panel::turn(Ui& ui, PanelPort& port) {
   if (save_.poll(port, bases_)) ui.say(save_.message());
-  if (save_.busy()) ui.again();
-  if (!save_.settling()) bases_.follow(port);
+  if (const auto copy = save_.take_copy()) ui.open(copy->string());
+  if (stack_.poll(port, !save_.busy())) ui.say(stack_.message());
+  // What was asked for before is part of what is saved.
+  if (save_waits_ && !stack_.busy()) {
+    save_waits_ = false;
+    save_.save(port, bases_);
+  }
+  if (const std::string shown = stack_.take_shown(); !shown.empty()) {
+    chosen_ = shown;
+    scroll_to_chosen_ = true;
+  }
+  library_.poll();
+  if (save_.busy() || stack_.busy() || library_.reading()) ui.again();
+  // Other stacks have other entries by the same names.
+  if (text_ != port.edits().stack_text()) bases_.forget();
+  text_ = port.edits().stack_text();
+  if (!save_.settling() && !port.status().building) bases_.follow(port);
 }
 
 void Panel::draw(Ui& ui, PanelPort& port, ImVec2 place, ImVec2 size) {
@@ -78,6 +71,46 @@ void Panel::draw(Ui& ui, PanelPort& port, ImVec2 place, ImVec2 size) {
     draw_outcome(ui);
   }
   ImGui::End();
+  draw_windows(ui, port);
+}
+
+void Panel::draw_windows(Ui& ui, PanelPort& port) {
+  const ImVec2 area = ImGui::GetIO().DisplaySize;
+  const ImVec2 size{std::min(ui.px(660), area.x * 0.95f), std::min(ui.px(480), area.y * 0.9f)};
+  const auto effect = browser_.draw(ui, library_, {(area.x - size.x) / 2, (area.y - size.y) / 2}, size);
+  if (effect) stack_.begin({StackEdit::Kind::add, *effect});
+  if (const auto name = save_as_.draw(ui, area)) save_.save_as(port, copy_of(save_.file(), *name));
+}
+
+void Panel::save_as() {
+  const std::filesystem::path folder = save_.file().parent_path();
+  NameDialog::Question question{.title = "Save preset as",
+                                .note = "In " + (folder.empty() ? "the current folder" : folder.string()),
+                                .name = free_name(save_.file()).filename().string(),
+                                .button = "Save",
+                                .in_the_way = {}};
+  question.in_the_way = [preset = save_.file()](const std::string& name) -> std::optional<std::string> {
+    std::error_code none;
+    const std::filesystem::path file = copy_of(preset, name);
+    return std::filesystem::exists(file, none) ? std::optional(file.filename().string()) : std::nullopt;
+  };
+  save_as_.open(std::move(question));
+}
+
+void Panel::read_library(PanelPort& port) {
+  if (const Preset* preset = port.preset()) library_.read(preset->path());
+}
+
+void Panel::add_effect(PanelPort& port) {
+  read_library(port);
+  browser_.open();
+}
+
+bool Panel::close_windows() {
+  const bool open = browser_.is_open() || save_as_.is_open();
+  browser_.close();
+  save_as_.close();
+  return open;
 }
 
 /// While the file has an error the picture is that of the last good one: settings of a file that cannot be run are
@@ -103,32 +136,55 @@ void Panel::draw_head(Ui& ui, PanelPort& port) {
   ImGui::PopFont();
   ui.help(save_.file().string());
   const SettingEdits& edits = port.edits();
-  const bool changed = !edits.edits().empty();
+  const bool changed = !edits.none();
   if (small_button(ui, save_.busy() ? "Saving…" : "Save preset", "Write the changes into the preset's file (Ctrl+S)",
                    changed && !save_.busy()))
     save(port);
-  ImGui::SameLine();
+  beside("Save as…");
+  if (small_button(ui, "Save as…", "Write the preset as it is now to another file, and go on with that (Ctrl+Shift+S)",
+                   port.build() && !save_.busy()))
+    save_as();
+  beside("Undo save");
   if (small_button(ui, "Undo save", "The file as it was before the last save", save_.can_undo())) undo_save(port);
   if (small_button(ui, "Undo", "Ctrl+Z", edits.can_undo())) port.undo();
-  ImGui::SameLine();
+  beside("Redo");
   if (small_button(ui, "Redo", "Ctrl+Shift+Z", edits.can_redo())) port.redo();
-  ImGui::SameLine();
-  if (small_button(ui, "Reset all", "All settings as the file has them", changed)) {
+  beside("Reset all");
+  if (small_button(ui, "Reset all", "The stack and all settings as the file has them", changed)) {
     port.end_gesture();
     port.reset_all();
   }
+  beside("Add effect");
+  if (small_button(ui, stack_.busy() ? "Adding…###add" : "Add effect###add",
+                   "Choose an effect to add to the stack (Ctrl+A)", port.build() && !stack_.busy()))
+    add_effect(port);
+  draw_conflict(ui, port);
   if (std::exchange(focus_search_, false)) focus_next_item();
   ImGui::SetNextItemWidth(-1);
   ImGui::InputTextWithHint("##search", "Search settings", search_.data(), search_.size(),
                            ImGuiInputTextFlags_AutoSelectAll);
 }
 
+/// The file was changed since the stack was changed here: a way to each.
+void Panel::draw_conflict(const Ui& ui, PanelPort& port) {
+  if (!stack_.conflict()) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kWarning);
+  ImGui::TextWrapped("%s was changed since its stack was changed here.", save_.file().filename().string().c_str());
+  ImGui::PopStyleColor();
+  if (small_button(ui, "Keep mine", "The stack as it is here; Save writes it over the file's")) stack_.keep();
+  ImGui::SameLine();
+  if (small_button(ui, "Take the file's", "The stack that the file has now; Undo brings this one back"))
+    stack_.take(port);
+}
+
 // What the last save left out and why, or why it failed, over the end of the panel: nothing moves for it. What went
 // well is said over the picture for a moment.
 void Panel::draw_outcome(Ui& ui) {
-  if (!save_.failed() && save_.refused().empty() && save_.notes().empty()) return;
-  std::vector<std::pair<ImU32, std::string>> lines{
-      {save_.failed() ? ui_color::kError : ui_color::kGood, save_.message()}};
+  const bool saved = save_.failed() || !save_.refused().empty() || !save_.notes().empty();
+  if (!saved && !stack_.failed()) return;
+  std::vector<std::pair<ImU32, std::string>> lines;
+  if (stack_.failed()) lines.emplace_back(ui_color::kError, stack_.message());
+  if (saved) lines.emplace_back(save_.failed() ? ui_color::kError : ui_color::kGood, save_.message());
   for (const auto& refused : save_.refused()) lines.emplace_back(ui_color::kWarning, refused.reason.text());
   for (const auto& note : save_.notes()) lines.emplace_back(ui_color::kDim, note);
 
@@ -153,7 +209,10 @@ void Panel::draw_outcome(Ui& ui) {
     }
     if (small_button(ui, "Copy", "The messages, to the clipboard")) ui.copy(all);
     ImGui::SameLine();
-    if (small_button(ui, "Dismiss", "Hide the messages")) save_.dismiss();
+    if (small_button(ui, "Dismiss", "Hide the messages")) {
+      save_.dismiss();
+      stack_.dismiss();
+    }
   }
   ImGui::EndChild();
   ImGui::PopStyleColor();
@@ -179,83 +238,6 @@ void Panel::draw_arguments(Ui& ui, PanelPort& port) {
     ImGui::Spacing();
   }
   ImGui::PopID();
-}
-
-void Panel::draw_entries(Ui& ui, PanelPort& port) {
-  const Build* build = port.build();
-  if (!build) return;
-  if (build->entries->empty()) ImGui::TextDisabled("The stack has no effects");
-  for (std::size_t i = 0; i < build->entries->size(); ++i) draw_entry(ui, port, i);
-}
-
-void Panel::draw_entry(Ui& ui, PanelPort& port, std::size_t index) {
-  const Preset& preset = *port.preset();
-  const StackEntry& entry = (*port.build()->entries)[index];
-  const EffectSchema& schema = preset.schema(entry.effect);
-  const bool whole = found(entry.name) || found(entry.effect);
-  const auto shows = [&](const SettingSchema& setting) { return whole || found(setting.name) || found(setting.doc); };
-  const EntryHistory& history = port.build()->explanation->entries[index];
-  const auto matches = [&](const SettingHistory& setting) { return whole || found(setting.name); };
-  if (!whole && std::ranges::none_of(schema.settings, shows) && std::ranges::none_of(history.composition, matches))
-    return;
-
-  ImGui::PushID(entry.name.c_str());
-  const std::string* skipped = reason_of(port.skipped(), entry.name);
-  if (search_[0] != '\0') ImGui::SetNextItemOpen(true);
-  if (draw_entry_head(ui, port, entry, skipped)) {
-    if (skipped) ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kDim);
-    if (skipped) ImGui::TextWrapped("skipped: %s", skipped->c_str());
-    for (std::size_t i = 0; i < schema.settings.size() && i < entry.settings.size(); ++i)
-      if (shows(schema.settings[i]))
-        draw_row(ui, port, bases_, row_of(entry, history.settings[i], schema.settings[i], entry.settings[i].second));
-    for (const auto& setting : history.composition)
-      if (const auto of = matches(setting) ? preset.setting_schema(entry, setting.name) : std::nullopt)
-        draw_row(ui, port, bases_, row_of(entry, setting, *of, setting.value));
-    if (entry.mask && (whole || found("mask"))) ImGui::TextDisabled("mask: %s", entry.mask->text().c_str());
-    if (skipped) ImGui::PopStyleColor();
-    ImGui::Spacing();
-  }
-  ImGui::PopID();
-}
-
-// Switch, name, cost, reset. True while the settings below are to be seen.
-bool Panel::draw_entry_head(Ui& ui, PanelPort& port, const StackEntry& entry, const std::string* skipped) {
-  const auto edited = port.edits().value(entry.name, "enabled");
-  bool on = edited ? edited->number[0] != 0 : entry.enabled;
-  if (ImGui::Checkbox("##enabled", &on)) {
-    port.end_gesture();
-    port.set(entry.name, "enabled", boolean(on));
-    port.end_gesture();
-  }
-  ui.help("Run this effect");
-  ImGui::SameLine();
-  const bool dim = skipped || !on, changed = is_edited(port.edits(), entry.name);
-  if (dim || changed) ImGui::PushStyleColor(ImGuiCol_Text, dim ? ui_color::kDim : ui_color::kAccent);
-  const std::string title = fmt::format("{}{}###head", entry.name, changed ? " •" : "");
-  const bool open =
-      ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_AllowItemOverlap);
-  if (dim || changed) ImGui::PopStyleColor();
-  ui.help(fmt::format("{}\n{}, order {}\n{}:{}{}", port.preset()->schema(entry.effect).doc, entry.at, entry.order,
-                      entry.file, entry.line, skipped ? "\nskipped: " + *skipped : ""));
-  const double cost = cost_of(entry.name, port.times());
-  const std::string label = cost >= 0 ? fmt::format("{:.2f} ms", cost) : "";
-  float right = ImGui::GetWindowContentRegionMax().x;
-  if (changed) {
-    right -= ImGui::CalcTextSize("Reset").x + 2 * ImGui::GetStyle().FramePadding.x;
-    ImGui::SameLine(right);
-    if (small_button(ui, "Reset", "This effect as the file has it")) {
-      port.end_gesture();
-      const std::vector<SettingEdit> edits = port.edits().edits();
-      for (const auto& edit : edits)
-        if (edit.entry == entry.name) port.reset(edit.entry, edit.setting);
-      port.end_gesture();
-    }
-  }
-  if (!label.empty()) {
-    ImGui::SameLine(right - ImGui::CalcTextSize(label.c_str()).x - ui.px(8));
-    ImGui::TextDisabled("%s", label.c_str());
-  }
-  return open;
 }
 
 }  // namespace afterglow

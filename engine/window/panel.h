@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The settings panel: everything that the effects of the stack declare, with what becomes of them; how the picture is
-// looked at; writing back.
+// The panel: the stack and everything that its effects declare, with what becomes of them; how the picture is looked
+// at; writing back.
 #pragma once
 
 #include <array>
 #include <string>
 
+#include "window/effect_browser.h"
+#include "window/name_dialog.h"
 #include "window/panel_save.h"
+#include "window/panel_stack.h"
 #include "window/ui.h"
 
 namespace afterglow {
@@ -15,7 +18,8 @@ namespace afterglow {
 class Panel {
  public:
   /// `options`: as the preset is loaded, without the panel's edits.
-  Panel(std::filesystem::path preset, PresetOptions options) : save_(std::move(preset), std::move(options)) {}
+  Panel(const std::filesystem::path& preset, const PresetOptions& options)
+      : stack_(preset, options), save_(preset, options, stack_) {}
 
   /// Within a frame of ImGui, as a window at this place. Not called while it is hidden; `turn` then is.
   void draw(Ui& ui, PanelPort& port, ImVec2 place, ImVec2 size);
@@ -23,26 +27,59 @@ class Panel {
   void turn(Ui& ui, PanelPort& port);
 
   // What keys do too.
-  void save(PanelPort& port) { save_.save(port, bases_); }
+  void save(PanelPort& port);
   void undo_save(PanelPort& port) { save_.undo(port, bases_); }
   /// The cursor goes into the search field with the next draw.
   void search() { focus_search_ = true; }
+  void add_effect(PanelPort& port);  ///< asks which
+  void save_as();                    ///< asks where
+  /// What is done to the entry that is chosen; says so where none is.
+  enum class EntryAction { remove, duplicate, earlier, later, toggle, copy, paste };
+  void act(Ui& ui, PanelPort& port, EntryAction action);
+  /// The entry behind the one that is chosen, or before it.
+  void choose_next(Ui& ui, PanelPort& port, int by);
+  const std::string& chosen() const { return chosen_; }
+  /// Closes what is open over the picture; false: nothing was.
+  bool close_windows();
 
   /// What has been changed and is not in the file: "2 settings of look.lua". Empty: nothing.
   std::string unsaved(PanelPort& port) const;
   const PanelSave& saving() const { return save_; }
+  bool busy() const { return save_.busy() || save_waits_; }
+  const PanelStack& stack() const { return stack_; }
 
  private:
   void draw_head(Ui& ui, PanelPort& port);
   void draw_outcome(Ui& ui);
+  void draw_conflict(const Ui& ui, PanelPort& port);
+  void draw_windows(Ui& ui, PanelPort& port);
   void draw_settings(Ui& ui, PanelPort& port);
   void draw_arguments(Ui& ui, PanelPort& port);
   void draw_entries(Ui& ui, PanelPort& port);
   void draw_entry(Ui& ui, PanelPort& port, std::size_t index);
   bool draw_entry_head(Ui& ui, PanelPort& port, const StackEntry& entry, const std::string* skipped);
+  void draw_entry_end(Ui& ui, PanelPort& port, const StackEntry& entry, bool changed);
+  void draw_entry_menu(Ui& ui, PanelPort& port, const StackEntry& entry);
+  void draw_mask_menu(const StackEntry& entry);
+  const StackEntry* entry_named(PanelPort& port, const std::string& name) const;
+  void copy_settings(Ui& ui, PanelPort& port, const StackEntry& entry);
+  void paste_settings(Ui& ui, PanelPort& port, const StackEntry& entry);
+  void read_library(PanelPort& port);
   bool found(const std::string& text) const;
 
-  PanelSave save_;
+  PanelStack stack_;
+  PanelSave save_;  // uses it
+  EffectLibrary library_;
+  EffectBrowser browser_;
+  NameDialog save_as_;
+  bool save_waits_ = false;  ///< for changes of the stack
+  StackText text_;           ///< that the bases are of
+  std::string chosen_;       ///< the entry that keys are about
+  bool scroll_to_chosen_ = false;
+  struct {
+    std::string effect;
+    std::vector<SettingEdit> values;  ///< of all settings
+  } copied_;
   EditBases bases_;
   std::array<char, 64> search_{};
   bool focus_search_ = false;

@@ -31,6 +31,8 @@ class EditBases {
   const EditConflict* find(const std::string& entry, const std::string& setting) const;
   /// The panel's value stays, over what the file says now.
   void keep(const std::string& entry, const std::string& setting);
+  /// What was changed from what, of another stack.
+  void forget() { bases_.clear(); }
   /// The file is about to say this: that is no conflict.
   void expect(const std::string& entry, const std::string& setting, const SettingValue& value);
 

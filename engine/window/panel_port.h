@@ -29,11 +29,15 @@ class PanelPort {
   virtual const SettingEdits& edits() = 0;
   virtual void set(const std::string& entry, const std::string& setting, const SettingValue& value) = 0;
   virtual void reset(const std::string& entry, const std::string& setting) = 0;
+  virtual void set_all(const std::vector<SettingEdit>& values) = 0;
+  virtual void set_stack(const StackChange& change) = 0;
+  virtual void reset_stack() = 0;
   virtual void reset_all() = 0;
   virtual bool undo() = 0;
   virtual bool redo() = 0;
   virtual void end_gesture() = 0;
   virtual void rebase(const std::vector<BaseChange>& changes) = 0;  ///< see SettingEdits::rebase
+  virtual void rebase(const std::vector<BaseChange>& changes, const TextChange& text) = 0;
 
   virtual View& view() = 0;
   virtual std::vector<std::string> images() = 0;  ///< that can be shown, see LiveStack::images

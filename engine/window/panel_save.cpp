@@ -7,6 +7,8 @@
 #include <chrono>
 #include <utility>
 
+#include "core/file.h"
+#include "core/replace_file.h"
 #include "script/explanation.h"
 
 namespace afterglow {
@@ -88,23 +90,67 @@ void PanelSave::save(PanelPort& port, const EditBases& bases) {
   }
   if (arguments)
     notes_.push_back("Arguments are not part of the preset: they are given by " + argument_words(port.edits()));
-  if (saving_.empty()) {
+  const auto working = stack_.working(port);
+  saving_stack_ = port.edits().stack_text();
+  if (stack_.conflict())
+    return tell(fmt::format("{} was changed since its stack was changed here: Keep mine or Take the file's",
+                            writer_.file().filename().string()),
+                true);
+  if (saving_.empty() && !working) {
     refused_ = held_back_;
     return tell(refused_.empty() ? "No setting was changed" : "Nothing was written: the file was changed too", false);
   }
   std::vector<PresetEdit> edits;
   for (const auto& change : saving_) edits.push_back({change.entry, change.setting, change.after, ""});
-  running_ = std::async(std::launch::async, [this, edits] {
-    Outcome outcome;
-    auto plan = writer_.plan(edits);
-    if (!plan) {
-      outcome.error = plan.error();
-      return outcome;
-    }
-    outcome.rewrite = std::move(*plan);
-    if (const auto saved = writer_.save(outcome.rewrite); !saved) outcome.error = saved.error();
+  running_ = std::async(std::launch::async, [this, edits, working] { return write(edits, working); });
+}
+
+PanelSave::Outcome PanelSave::write(const std::vector<PresetEdit>& edits, const std::optional<WorkingText>& working) {
+  Outcome outcome;
+  auto plan = writer_.plan(edits, working);
+  if (!plan) {
+    outcome.error = plan.error();
     return outcome;
-  });
+  }
+  outcome.rewrite = std::move(*plan);
+  if (const auto saved = writer_.save(outcome.rewrite); !saved) outcome.error = saved.error();
+  return outcome;
+}
+
+void PanelSave::save_as(PanelPort& port, const std::filesystem::path& to) {
+  if (busy()) return;
+  dismiss();
+  std::vector<PresetEdit> edits;
+  for (const SettingEdit& edit : port.edits().edits())
+    if (!edit.entry.empty()) edits.push_back({edit.entry, edit.setting, edit.value, ""});
+  const auto working = stack_.working(port);
+  running_ = std::async(std::launch::async, [this, edits, working, to] { return write_copy(edits, working, to); });
+}
+
+/// The text as a save would make it, run where it will lie: what it names beside it may not be there.
+PanelSave::Outcome PanelSave::write_copy(const std::vector<PresetEdit>& edits,
+                                         const std::optional<WorkingText>& working,
+                                         const std::filesystem::path& to) const {
+  Outcome outcome;
+  const auto made = [&]() -> Result<void> {
+    std::string text = working ? working->text : "";
+    if (!working) {
+      AFTERGLOW_TRY(text, read_file(writer_.file()));
+    }
+    AFTERGLOW_TRY(outcome.rewrite, rewrite_preset(writer_.file(), text, edits, options_));
+    if (!outcome.rewrite.refused.empty()) {
+      Error error = outcome.rewrite.refused[0].reason;
+      error.message = "nothing was written: " + error.message;
+      return error;
+    }
+    if (auto there = rewrite_preset(to, outcome.rewrite.text, {}, options_); !there) return there.error();
+    std::error_code none;
+    return std::filesystem::exists(to, none) ? replace_file_atomically(to, outcome.rewrite.text)
+                                             : write_file_atomically(to, outcome.rewrite.text);
+  }();
+  if (!made) outcome.error = made.error();
+  outcome.copy = to;
+  return outcome;
 }
 
 bool PanelSave::poll(PanelPort& port, EditBases& bases) {
@@ -113,30 +159,48 @@ bool PanelSave::poll(PanelPort& port, EditBases& bases) {
   Outcome outcome = running_.get();
   if (outcome.error) {
     tell(outcome.error->text(), true);
-    return true;
+  } else if (outcome.copy) {
+    tell("saved as " + outcome.copy->string(), false);
+    copy_ = outcome.copy;
+  } else {
+    take_saved(port, bases, std::move(outcome.rewrite));
   }
-  refused_ = std::move(outcome.rewrite.refused);
-  std::ranges::move(outcome.rewrite.notes, std::back_inserter(notes_));
+  return true;
+}
+
+void PanelSave::take_saved(PanelPort& port, EditBases& bases, Rewrite rewrite) {
+  refused_ = std::move(rewrite.refused);
+  std::ranges::move(rewrite.notes, std::back_inserter(notes_));
   std::erase_if(saving_, [&](const BaseChange& change) {
     return std::any_of(refused_.begin(), refused_.end(), [&](const RefusedSetting& refused) {
       return refused.edit.entry == change.entry && refused.edit.setting == change.setting;
     });
   });
-  for (BaseChange& change : saving_) change.before = switched_before(outcome.rewrite, change).value_or(change.before);
+  for (BaseChange& change : saving_) change.before = switched_before(rewrite, change).value_or(change.before);
   std::ranges::move(held_back_, std::back_inserter(refused_));
-  settling_ = saving_;
-  if (outcome.rewrite.text != outcome.rewrite.before) written_.push_back(saving_);
-  if (written_.size() > writer_.saves()) written_.erase(written_.begin());
-  std::string text = outcome.rewrite.written.empty()
-                         ? "The preset says so already"
-                         : fmt::format("{} written to {}",
-                                       outcome.rewrite.written.size() == 1
-                                           ? std::string("1 setting")
-                                           : fmt::format("{} settings", outcome.rewrite.written.size()),
-                                       writer_.file().filename().string());
+  const bool stack = saving_stack_ != nullptr;
+  if (rewrite.text != rewrite.before) {
+    written_.push_back(stack ? std::vector<BaseChange>() : saving_);
+    texts_.push_back({rewrite.before, rewrite.text, stack});
+  }
+  if (written_.size() > writer_.saves()) {
+    written_.erase(written_.begin());
+    texts_.erase(texts_.begin());
+  }
+  stack_.wrote(rewrite.text);
+  if (stack) {  // what is on screen is what the file says now, at once
+    for (const BaseChange& change : saving_) bases.expect(change.entry, change.setting, change.after);
+    port.rebase(saving_, {rewrite.before, rewrite.text, saving_stack_});
+  } else {
+    settling_ = saving_;
+  }
+  const std::size_t count = rewrite.written.size();
+  const std::string settings = count == 1 ? "1 setting" : fmt::format("{} settings", count);
+  const std::string what = !stack ? settings : count == 0 ? "the stack" : "the stack and " + settings;
+  std::string text = count == 0 && !stack ? "The preset says so already"
+                                          : fmt::format("{} written to {}", what, writer_.file().filename().string());
   if (!refused_.empty()) text = fmt::format("{}; {} left out", text, refused_.size());
   tell(std::move(text), false);
-  return true;
 }
 
 // The edits go when the preset on screen says the same: dropping them before would show the old values for a moment.
@@ -158,7 +222,15 @@ void PanelSave::undo(PanelPort& port, EditBases& bases) {
   dismiss();
   if (const auto undone = writer_.undo(); !undone) return tell(undone.error().text(), true);
   std::vector<BaseChange> back = std::move(written_.back());
+  const SavedText text = std::move(texts_.back());
   written_.pop_back();
+  texts_.pop_back();
+  stack_.wrote(text.before);
+  if (text.stack) {
+    settling_.clear();
+    port.rebase({}, {text.after, text.before, nullptr});
+    return tell(fmt::format("{} is as it was before", writer_.file().filename().string()), false);
+  }
   for (BaseChange& change : back) {
     bases.expect(change.entry, change.setting, change.before);
     std::swap(change.before, change.after);

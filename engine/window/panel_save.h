@@ -9,6 +9,7 @@
 
 #include "edit/write_back.h"
 #include "window/panel_base.h"
+#include "window/panel_stack.h"
 
 namespace afterglow {
 
@@ -18,13 +19,21 @@ std::string argument_words(const SettingEdits& edits);
 /// Drawing thread alone; scripts run and files are written on a thread of its own, so that playing goes on.
 class PanelSave {
  public:
-  PanelSave(std::filesystem::path preset, PresetOptions options) : writer_(std::move(preset), std::move(options)) {}
+  /// `stack` outlives it.
+  PanelSave(std::filesystem::path preset, PresetOptions options, PanelStack& stack)
+      : writer_(std::move(preset), options), options_(std::move(options)), stack_(stack) {}
   /// Waits for a save that is under way.
   ~PanelSave() = default;
 
   const std::filesystem::path& file() const { return writer_.file(); }
-  /// Begins to write all edits but those in conflict with the file. Nothing happens while another save runs.
+  /// Begins to write the stack and all edits but those in conflict with the file. Nothing happens while another save
+  /// runs, or while stack and file disagree.
   void save(PanelPort& port, const EditBases& bases);
+  /// Writes the preset as it is on screen to another file, whole or not at all; its own stays as it is. Errors, also
+  /// where a value cannot be written, are told by `poll`.
+  void save_as(PanelPort& port, const std::filesystem::path& to);
+  /// The file that `save_as` has written; once.
+  std::optional<std::filesystem::path> take_copy() { return std::exchange(copy_, std::nullopt); }
   /// The file as it was before the last save; what was written then stands over it as edits again.
   void undo(PanelPort& port, EditBases& bases);
   bool can_undo() const { return !busy() && writer_.saves() > 0; }
@@ -50,11 +59,25 @@ class PanelSave {
   struct Outcome {
     std::optional<Error> error;
     Rewrite rewrite;
+    std::optional<std::filesystem::path> copy = {};
   };
+  Outcome write(const std::vector<PresetEdit>& edits, const std::optional<WorkingText>& working);
+  Outcome write_copy(const std::vector<PresetEdit>& edits, const std::optional<WorkingText>& working,
+                     const std::filesystem::path& to) const;
+  void take_saved(PanelPort& port, EditBases& bases, Rewrite rewrite);
   void tell(std::string message, bool failed);
   void forget_what_is_in_the_file(PanelPort& port, EditBases& bases);
 
   PresetWriter writer_;
+  PresetOptions options_;
+  PanelStack& stack_;
+  StackText saving_stack_;  // what the running save writes; null: the stack is the file's
+  std::optional<std::filesystem::path> copy_;
+  struct SavedText {
+    std::string before, after;
+    bool stack = false;  // a changed one went into it
+  };
+  std::vector<SavedText> texts_;                  // of each save that can be taken back
   std::vector<BaseChange> saving_;                // what the running save writes
   std::vector<RefusedSetting> held_back_;         // in conflict with the file
   std::vector<std::vector<BaseChange>> written_;  // by each save that can be taken back

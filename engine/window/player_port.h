@@ -23,11 +23,17 @@ class PlayerPort final : public PanelPort {
     player_.set(entry, setting, value);
   }
   void reset(const std::string& entry, const std::string& setting) override { player_.reset(entry, setting); }
+  void set_all(const std::vector<SettingEdit>& values) override { player_.set_all(values); }
+  void set_stack(const StackChange& change) override { player_.set_stack(change); }
+  void reset_stack() override { player_.reset_stack(); }
   void reset_all() override { player_.reset_all(); }
   bool undo() override { return player_.undo(); }
   bool redo() override { return player_.redo(); }
   void end_gesture() override { player_.end_gesture(); }
   void rebase(const std::vector<BaseChange>& changes) override { player_.rebase(changes); }
+  void rebase(const std::vector<BaseChange>& changes, const TextChange& text) override {
+    player_.rebase(changes, text);
+  }
 
   View& view() override { return player_.view(); }
   std::vector<std::string> images() override { return player_.live().images(); }

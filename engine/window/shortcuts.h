@@ -63,6 +63,7 @@ enum class Action {
   full_screen,
   screenshot,
   export_frame,
+  export_range,
   reload,
   copy_message,
   undo,
@@ -70,7 +71,18 @@ enum class Action {
   save,
   undo_save,
   reset_all,
+  save_as,
   search,
+  add_effect,
+  next_entry,
+  previous_entry,
+  entry_earlier,
+  entry_later,
+  duplicate_entry,
+  remove_entry,
+  toggle_entry,
+  copy_settings,
+  paste_settings,
   help,
   escape,
   quit,
@@ -81,7 +93,7 @@ struct Shortcut {
   int key;            ///< GLFW_KEY_…
   int mods;           ///< GLFW_MOD_…, exactly these
   const char* keys;   ///< as people read it: "Ctrl+S"
-  const char* group;  ///< "Play", "Look", "Picture", "Window", "Preset"
+  const char* group;  ///< "Play", "Look", "Picture", "Window", "Preset", "Stack"
   const char* doc;
   bool repeats = false;  ///< while the key is held
 };

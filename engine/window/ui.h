@@ -50,7 +50,9 @@ struct Ui {
   void help(const std::string& text) const;
   std::string message;
   double message_until = 0;
-  mutable HoverHelp hover;   ///< what `help` remembers
+  mutable HoverHelp hover;  ///< what `help` remembers
+  /// A field gets the keyboard within a few frames: what is typed meanwhile is for it.
+  bool field_opens = false;
   bool values_apply = true;  ///< false: settings are shown and cannot be changed
   struct {
     std::array<char, 32> text{};
@@ -63,6 +65,10 @@ struct Ui {
 
 /// Gives the keyboard to the item that is drawn next.
 void focus_next_item();
+
+/// True in the frame of a double click: the fourth of four quick clicks is one too, as two of them are two double
+/// clicks.
+bool double_clicked();
 
 /// The colours of the interface.
 namespace ui_color {

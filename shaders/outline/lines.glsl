@@ -46,33 +46,31 @@ float normal_change(vec3 a, vec3 b) { return min(length(clamp(a - b, -1e15, 1e15
 // How much farther or nearer the pixel ahead is than the plane through the pixel and the one behind it. Along a line on the screen the inverse
 // distance of a plane is linear, so its change ahead is that behind; in distances: |z − z₋|·z₊/z₋. Where nothing lies behind, the plane is that
 // through the two pixels ahead.
-float change_from_plane(ivec2 centre, ivec2 ahead) {
+float change_from_plane(float z, ivec2 centre, ivec2 ahead) {
   ivec2 behind = 2 * centre - ahead, further = 2 * ahead - centre;
   bool inside = min(behind.x, behind.y) >= 0;
-  float z = depth_at(centre), next = depth_at(ahead), other = depth_at(inside ? behind : further);
-  float change = depth_change(z, next), slope = inside ? depth_change(other, z) : depth_change(next, other);
+  float next = depth_at(ahead), other = depth_at(inside ? behind : further);
+  float change = depth_change(z, next), slope = depth_change(inside ? other : next, inside ? z : other);
   bool goes_on = inside ? (next > z) == (z > other) : (next > z) == (other > next);
   if (!raw_depth) {
-    float from = device_input ? distance_of(inside ? other : z) : inside ? other : z, to = device_input ? distance_of(inside ? next : other) : inside ? next : other;
-    slope = min(slope * (inside ? max(to, 1e-6) / max(from, 1e-6) : max(from, 1e-6) / max(to, 1e-6)), kMaxEdge);
+    float from = other, to = inside ? next : z;
+    if (device_input) from = distance_of(from), to = distance_of(to);
+    slope = min(slope * (max(to, 1e-6) / max(from, 1e-6)), kMaxEdge);
   }
   return goes_on ? max(change - slope, 0.0) : change;
 }
 
-int reach(ivec2 pixel) {
+int reach(float z) {
   float w = width;
-  if (fade) {
-    float z = depth_at(pixel);
-    if (device_input) z = distance_of(z);
-    w *= clamp(1.0 - z / fade_distance, 0.0, 1.0);
-  }
+  if (fade) w *= clamp(1.0 - (device_input ? distance_of(z) : z) / fade_distance, 0.0, 1.0);
   return int(floor(w + 0.5));
 }
 
 vec4 sample_at(ivec2 pixel) {
   ivec2 centre = derivative ? (pixel / 2) * 2 : pixel;
+  float z = fade || use_depth ? depth_at(centre) : 0.0;
   // Where lines are thinner than a preview's pixels, these show so much less of them.
-  float thick = derivative ? scale : float(reach(pixel)) * scale;
+  float thick = derivative ? scale : float(reach(z)) * scale;
   int apart = derivative ? 1 : thick > 0.0 ? max(int(floor(thick + 0.5)), 1) : 0;
   float covered = min(thick, 1.0);
   ivec2 right = centre + ivec2(apart, 0), below = centre + ivec2(0, apart);
@@ -81,9 +79,9 @@ vec4 sample_at(ivec2 pixel) {
   // these; an edge does not go on and counts whole.
   float depth_edge = 0.0, normal_edge = 0.0;
   if (use_depth && level_slopes) {
-    depth_edge = change_from_plane(centre, right) + change_from_plane(centre, below);
+    depth_edge = change_from_plane(z, centre, right) + change_from_plane(z, centre, below);
   } else if (use_depth) {
-    float z = depth_at(centre), across = depth_change(z, depth_at(right)), down = depth_change(z, depth_at(below));
+    float across = depth_change(z, depth_at(right)), down = depth_change(z, depth_at(below));
     if (preview) {
       across -= (1.0 - scale) * min(across, depth_change(z, depth_at(2 * centre - right)));
       down -= (1.0 - scale) * min(down, depth_change(z, depth_at(2 * centre - below)));

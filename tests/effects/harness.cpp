@@ -83,7 +83,7 @@ Made run(const Graph& graph, ShaderLibrary& shaders, const Scene& scene, Way way
                                           .compute = way == Way::computed,
                                           .rows = way == Way::plain ? 1 : kMaxRows},
                                .reference = way == Way::plain,
-                               .source_is_storage = way != Way::plain,
+                               .inputs_are_storage = way != Way::plain,
                                .worth = {0, 0},
                                .result_by_rows = way != Way::plain};
   auto program = need(Program::create(*harness.device, shaders, harness.compiler, graph, options));

@@ -43,6 +43,7 @@ TEST_F(Effects, DepthOfFieldAgrees) {
        focused({.focus_distance = 2, .aperture = 0.1, .max_radius = 12, .blades = 5, .rotation = 20}),
        focused({.focus_distance = 4, .aperture = 0.1, .max_radius = 40, .samples = 8, .squeeze = 2}),
        focused({.focus_distance = 9, .aperture = 0.1, .max_radius = 10, .blades = 6, .squeeze = 0.5, .cat_eye = 1}),
+       focused({.focus_distance = 9, .aperture = 0.1, .max_radius = 34, .samples = 8, .blades = 6, .cat_eye = 1}),
        focused({.focus_distance = 0.01, .samples = 8})},
       kDecisions);
 }

@@ -12,7 +12,12 @@ ImageRead read_of(const Graph& graph, ImageId image, const ProgramOptions& optio
   if (graph.images[image].data) return ImageRead::storage_rgba32f;  // whatever the stack's own images are
   const History* history = history_of_previous(graph, image);
   const bool between = history || graph.images[image].producer >= 0;
-  if (!between && !(image == graph.source && options.source_is_storage)) return ImageRead::sampled;
+  if (!between && !options.inputs_are_storage) return ImageRead::sampled;
+  if (!between && image != graph.source) {
+    const auto channels = known_channels(graph.images[image].name);
+    if (!channels) return ImageRead::sampled;
+    return channels == 1 ? ImageRead::storage_r32f : ImageRead::storage_rgba32f;
+  }
   const ImageRead read = options.config.storage == Storage::fp16 && !is_precise(graph, image)
                              ? ImageRead::storage_rgba16f
                              : ImageRead::storage_rgba32f;

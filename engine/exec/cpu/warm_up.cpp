@@ -25,18 +25,14 @@ bool cache_is_off() {
   return false;
 }
 
-int usual_channels(const std::string& input) {
-  if (input == "source") return 4;
-  if (input == "depth") return 1;
-  return input == "motion" ? 2 : 3;
-}
-
 /// Inputs as pictures usually have them; their pixels are never looked at.
 std::map<std::string, HostImage> inputs_for(const Graph& graph) {
   static const float kNothing = 0;
   std::map<std::string, HostImage> out;
   for (const auto& [name, id] : inputs_of(graph))
-    out[name] = {.pixels = &kNothing, .size = graph.images[id].size, .channels = usual_channels(name)};
+    out[name] = {.pixels = &kNothing,
+                 .size = graph.images[id].size,
+                 .channels = known_channels(name).value_or(name == "source" ? 4 : 3)};
   return out;
 }
 

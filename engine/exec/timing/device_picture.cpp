@@ -13,8 +13,6 @@ namespace {
 
 constexpr VkImageLayout kRest = VK_IMAGE_LAYOUT_GENERAL;
 
-HostImage host(const Image& image) { return {image.pixels.data(), image.size(), image.channels}; }
-
 }  // namespace
 
 Result<FrameImage> upload_image(const Device& device, const Image& image, VkFormat format, VkImageUsageFlags usage,
@@ -50,12 +48,11 @@ Result<FrameImage> upload_image(const Device& device, const Image& image, VkForm
 Result<DevicePicture> DevicePicture::create(const Device& device, const Picture& picture, const PictureKind& kind) {
   DevicePicture out;
   out.device_ = &device;
-  AFTERGLOW_TRY(out.inputs_["source"], upload_image(device, picture.color, kind.source,
-                                                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT, kRest));
+  constexpr VkImageUsageFlags kUsage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+  AFTERGLOW_TRY(out.inputs_["source"], upload_image(device, picture.color, kind.source, kUsage, kRest));
   for (const auto& [name, image] : picture.auxiliary) {
     AFTERGLOW_TRY(out.inputs_[name],
-                  upload_image(device, image, input_format(name, host(image), kind.source), VK_IMAGE_USAGE_SAMPLED_BIT,
-                               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
+                  upload_image(device, image, input_format(name, image.channels, kind.source), kUsage, kRest));
   }
   const ImageDesc result{.name = "result",
                          .size = picture.color.size(),
@@ -80,29 +77,33 @@ ImageBinding DevicePicture::result() const {
   return {image.get(), image.view(), image.desc().format, image.desc().size, result_.rows.views()};
 }
 
-void DevicePicture::before(VkCommandBuffer commands, VkImageLayout source_layout) const {
+/// Every input from one layout into another.
+std::vector<VkImageMemoryBarrier2> DevicePicture::turned(VkImageLayout from, VkImageLayout to) const {
+  std::vector<VkImageMemoryBarrier2> barriers;
+  if (from == to) return barriers;
+  for (const auto& [name, image] : inputs_)
+    barriers.push_back(image_barrier(image.image.get(), VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, from,
+                                     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(to), to));
+  return barriers;
+}
+
+void DevicePicture::before(VkCommandBuffer commands, VkImageLayout input_layout) const {
   std::vector<VkImage> results{result_.image.get()};
   for (int k = 0; k < result_.rows.rows(); ++k) results.push_back(result_.rows.image(k));
   const VkImageLayout drawn =
       result_.rows.rows() > 1 ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  std::vector<VkImageMemoryBarrier2> barriers;
+  std::vector<VkImageMemoryBarrier2> barriers = turned(kRest, input_layout);
   for (const VkImage image : results)
     barriers.push_back(image_barrier(image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                                      VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, drawn));
-  if (source_layout != kRest)
-    barriers.push_back(image_barrier(source().image, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, kRest,
-                                     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(source_layout),
-                                     source_layout));
   record_barriers(*device_, commands, barriers.data(), barriers.size());
 }
 
-void DevicePicture::after(VkCommandBuffer commands, VkImageLayout source_layout) const {
-  if (source_layout == kRest) return;
-  const auto barrier = image_barrier(source().image, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, source_layout,
-                                     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, reading_access(kRest), kRest);
-  record_barriers(*device_, commands, &barrier, 1);
+void DevicePicture::after(VkCommandBuffer commands, VkImageLayout input_layout) const {
+  const auto barriers = turned(input_layout, kRest);
+  record_barriers(*device_, commands, barriers.data(), barriers.size());
 }
 
 }  // namespace afterglow

@@ -5,6 +5,7 @@
 #include <compare>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "exec/frame_image.h"
 #include "exec/program.h"
@@ -22,7 +23,7 @@ struct PictureKind {
 
 class DevicePicture {
  public:
-  /// Uploads the colour, and auxiliary images as full floats. Errors: device.
+  /// Uploads the colour and auxiliary images, these as `input_format` says. Errors: device.
   static Result<DevicePicture> create(const Device& device, const Picture& picture, const PictureKind& kind);
   DevicePicture() = default;
 
@@ -30,18 +31,19 @@ class DevicePicture {
   ImageBinding source() const;
   ImageBinding result() const;
 
-  /// Brings the source into the layout that a program wants and the result into that of a target; and back. Between
-  /// uses the source is in GENERAL.
-  void before(VkCommandBuffer commands, VkImageLayout source_layout) const;
-  void after(VkCommandBuffer commands, VkImageLayout source_layout) const;
+  /// Brings the inputs into the layout that a program wants and the result into that of a target; and back. Between
+  /// uses inputs are in GENERAL.
+  void before(VkCommandBuffer commands, VkImageLayout input_layout) const;
+  void after(VkCommandBuffer commands, VkImageLayout input_layout) const;
 
  private:
+  std::vector<VkImageMemoryBarrier2> turned(VkImageLayout from, VkImageLayout to) const;
   const Device* device_ = nullptr;
   std::map<std::string, FrameImage> inputs_;
   FrameImage result_;
 };
 
-/// A new image on the device with the pixels of `image`, in GENERAL, or in SHADER_READ_ONLY_OPTIMAL. Errors: device.
+/// A new image on the device with the pixels of `image`, in `layout`. Errors: device.
 Result<FrameImage> upload_image(const Device& device, const Image& image, VkFormat format, VkImageUsageFlags usage,
                                 VkImageLayout layout);
 

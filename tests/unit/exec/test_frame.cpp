@@ -73,6 +73,36 @@ TEST_F(FrameTest, SteadyFramesMakeNoObjectsAndGiveTheSameBits) {
   }
 }
 
+TEST_F(FrameTest, InputsReadAsStorageImagesGiveTheSameBits) {
+  shader("edges", R"(uniform sampler2D depth;
+uniform sampler2D normal;
+uniform sampler2D other;
+vec4 sample_at(ivec2 pixel) {
+  vec4 d = fetch(depth, pixel + ivec2(1, 0)) - fetch(depth, pixel);
+  return d + fetch(normal, pixel - 1) * fetch_linear(depth, vec2(pixel)) + fetch(other, pixel);
+}
+)");
+  const Size size{37, 21};
+  GraphBuilder b(size);
+  const std::map<std::string, ImageId> images{{"depth", b.auxiliary("depth", size)},
+                                              {"normal", b.auxiliary("normal", size)},
+                                              {"other", b.auxiliary("layer:mask", size)}};
+  const ImageId lines = b.sample("lines", "edges", size, images);
+  const Graph graph = b.finish(b.filter("copy", lines, size, {}));
+  const auto color = noise(size, 41), normal = noise(size, 42, 3), mask = noise(size, 43, 1);
+  const ExecutionConfig reads{.storage_reads = true};
+  for (const int channels : {1, 4}) {  // a depth with more channels is its first one
+    const auto depth = noise(size, 44, channels);
+    const std::map<std::string, HostImage> inputs{{"source", {color.data(), size, 4}},
+                                                  {"depth", {depth.data(), size, channels}},
+                                                  {"normal", {normal.data(), size, 3}},
+                                                  {"layer:mask", {mask.data(), size, 1}}};
+    const auto sampled = run(graph, inputs).pixels;
+    for (const bool direct : {true, false})
+      EXPECT_EQ(run(graph, inputs, {.config = reads, .inputs_are_storage = true}, direct).pixels, sampled);
+  }
+}
+
 TEST_F(FrameTest, WhatStaysOnTheDeviceIsWhatWouldBeReadBack) {
   const Size size{101, 57};
   const auto pixels = noise(size, 31);

@@ -284,7 +284,7 @@ TEST_F(ProgramTest, RecordsTwiceIntoACallersCommandBufferWithTimestamps) {
                                      VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     record_barriers(device(), commands, &again, 1);
-    made->record(commands, -1, *queries);
+    made->record(commands, *queries);
   }));
   ASSERT_TRUE(submitter->wait());
   const auto times = timer.read(made->plan());

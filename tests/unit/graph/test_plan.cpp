@@ -95,6 +95,44 @@ TEST(Plan, AHeadStandsFirstWhateverIsJoinedToIt) {
   EXPECT_EQ(value_in(b.graph, plan.kernels[0], b.graph.source), std::nullopt);
 }
 
+TEST(Plan, WhatNoPictureReachesIsMadeOnceAndSharesNothing) {
+  Builder b;
+  const ImageId spots = b.sample("spots", {}, {8, 4});
+  const ImageId tinted = b.pixel("tint", b.filter("soft", spots, {16, 8}));
+  const ImageId blurred = b.filter("blur", b.graph.source, {16, 8});
+  b.pixel("tone", b.pixel("lit", blurred, {{"dirt", tinted, true}}));
+  for (const Fusion fusion : {Fusion::none, Fusion::filters, Fusion::all}) {
+    const Plan plan = make_plan(b.graph, {.fusion = fusion});
+    if (fusion == Fusion::all) {
+      EXPECT_EQ(names(plan), (Names{"test.spots", "test.soft+test.tint", "test.blur+test.lit+test.tone"}))
+          << "what is made in each frame does not take along what is not";
+    }
+    const int end = static_cast<int>(plan.kernels.size()) - 1;
+    ASSERT_EQ(plan.once.size(), plan.kernels.size());
+    for (std::size_t k = 0; k < plan.kernels.size(); ++k) {
+      const std::string& name = plan.kernels[k].name;
+      EXPECT_EQ(plan.once[k], name.find("lit") == name.npos && name != "test.blur" && name != "test.tone") << name;
+      EXPECT_EQ(plan.transient[k], plan.kernels[k].output);
+      if (plan.once[k]) {
+        EXPECT_EQ(plan.lifetimes[k].first, 0) << name;
+        EXPECT_EQ(plan.lifetimes[k].last, end) << name;
+      }
+    }
+  }
+}
+
+TEST(Plan, ResultsAndWhatFramesHandOnAreMadeInEachFrame) {
+  Builder b;
+  b.sample("spots", {}, {16, 8});
+  EXPECT_EQ(make_plan(b.graph, {}).once, std::vector<bool>{false});
+  const ImageId made = b.sample("more", {}, {16, 8});
+  b.graph.images.push_back({"test.before", {16, 8}, -1});
+  const auto before = static_cast<ImageId>(b.graph.images.size()) - 1;
+  b.pixel("mix", before);
+  b.graph.histories = {{.name = "test.before", .effect = "test", .previous = before, .next = made}};
+  EXPECT_EQ(make_plan(b.graph, {}).once, (std::vector<bool>{false, false}));
+}
+
 TEST(Plan, TwoAnchorsShareNoKernel) {
   Builder b;
   const ImageId a = b.filter("a", b.graph.source, {16, 8}), c = b.filter("c", b.graph.source, {16, 8});

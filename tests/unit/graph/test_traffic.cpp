@@ -47,6 +47,16 @@ TEST(Traffic, PyramidsAreToldApartAndImagesReadTwiceByAKernelCountOnce) {
   EXPECT_DOUBLE_EQ(traffic.excess(), 1.5);
 }
 
+TEST(Traffic, WhatIsMadeOnceMovesNothingBetweenFrames) {
+  Builder b;
+  const ImageId spots = b.sample("spots", {}, {16, 8});
+  b.sample("lit", {{"source", b.graph.source}, {"dirt", spots}}, {16, 8});
+  const Traffic traffic = of(b.graph);
+  ASSERT_EQ(traffic.kernels.size(), 2u);
+  EXPECT_EQ(traffic.kernels[0].written, 0u);
+  EXPECT_EQ(traffic.total, 3 * kPixels * kFull);
+}
+
 TEST(Traffic, RegionsMoveTheirPart) {
   Builder b;
   b.pixel("a", b.graph.source);

@@ -110,5 +110,56 @@ TEST(SettingEdits, SavingKeepsTheHistory) {
   EXPECT_EQ(edits.value("glow", "intensity"), number(1));
 }
 
+StackText text_of(const char* text) { return std::make_shared<const std::string>(text); }
+
+TEST(SettingEdits, StacksAreStepsAndSettingsFollowTheirEntries) {
+  SettingEdits edits;
+  edits.set("glow", "knee", number(0.1));
+  edits.set("glow#2", "knee", number(0.2));
+  edits.set("", "strength", number(3));
+  edits.set_stack({text_of("without the first"), {{"glow#2", "glow"}}, "", ""});
+  EXPECT_EQ(*edits.stack_text(), "without the first");
+  EXPECT_EQ(edits.value("glow", "knee"), number(0.2));
+  EXPECT_FALSE(edits.value("glow#2", "knee"));
+  EXPECT_TRUE(edits.value("", "strength"));
+  edits.set_stack({text_of("twice"), {{"glow", "glow"}}, "glow", "glow#2"});
+  EXPECT_EQ(edits.value("glow#2", "knee"), number(0.2));
+  ASSERT_TRUE(edits.undo());
+  ASSERT_TRUE(edits.undo());
+  EXPECT_FALSE(edits.stack_text());
+  EXPECT_EQ(edits.value("glow", "knee"), number(0.1));
+  ASSERT_TRUE(edits.redo());
+  EXPECT_TRUE(edits.reset_stack());
+  EXPECT_FALSE(edits.reset_stack());
+  EXPECT_EQ(edits.value("glow", "knee"), number(0.2));
+  EXPECT_TRUE(edits.reset_all());
+  EXPECT_TRUE(edits.none());
+}
+
+TEST(SettingEdits, SavingAStackKeepsTheHistory) {
+  SettingEdits edits;
+  edits.set("glow", "knee", number(0.1));
+  edits.set_stack({text_of("B"), {{"glow", "glow"}}, "", ""});
+  const StackText saved = edits.stack_text();
+  edits.set("glow", "knee", number(0.7));
+  edits.rebase({{"glow", "knee", number(0.5), number(0.7)}}, {"A", "B with 0.7", saved});
+  EXPECT_TRUE(edits.none()) << "the file says it all";
+  ASSERT_TRUE(edits.undo());
+  EXPECT_FALSE(edits.stack_text()) << "the stack of the file";
+  EXPECT_EQ(edits.value("glow", "knee"), number(0.1));
+  ASSERT_TRUE(edits.undo());
+  EXPECT_EQ(*edits.stack_text(), "A") << "as the file was";
+  EXPECT_EQ(edits.value("glow", "knee"), number(0.1));
+  ASSERT_TRUE(edits.undo());
+  EXPECT_EQ(*edits.stack_text(), "A");
+  EXPECT_TRUE(edits.edits().empty());
+  // The save is taken back.
+  edits.rebase({}, {"B with 0.7", "A", nullptr});
+  EXPECT_TRUE(edits.none());
+  while (edits.redo()) {
+  }
+  EXPECT_EQ(*edits.stack_text(), "B with 0.7");
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -79,7 +79,7 @@ TEST(StorageReads, KernelsAreValidAndLinesStay) {
   const ShaderFiles files;
   KernelCompiler compiler({});
   const spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_1);
-  for (const ImageRead read : {ImageRead::storage_rgba32f, ImageRead::storage_rgba16f}) {
+  for (const ImageRead read : {ImageRead::storage_rgba32f, ImageRead::storage_rgba16f, ImageRead::storage_r32f}) {
     KernelDesc sampled, filtered, own;
     sampled.sample = files.stage("test/edges", kEdges);
     sampled.reads = {read, read};

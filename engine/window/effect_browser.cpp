@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "window/effect_browser.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "core/text.h"
+#include "script/preset.h"
+#include "window/panel_row.h"
+#include "window/ui.h"
+
+namespace afterglow {
+
+void EffectLibrary::read(const SearchPath& path) {
+  if (reading()) return;
+  running_ = std::async(std::launch::async, [path] {
+    Diagnostics silent;  // a broken script is left out: the preset that names it tells why
+    Read out;
+    if (auto effects = list_effects(path, silent)) out.effects = std::move(*effects);
+    if (auto masks = list_masks(path, silent)) out.masks = std::move(*masks);
+    return out;
+  });
+}
+
+void EffectLibrary::poll() {
+  if (reading() && running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) read_ = running_.get();
+}
+
+void EffectBrowser::open() {
+  open_ = begin_ = true;
+  search_.fill(0);
+  entered_ = false;
+  chosen_ = 0;
+}
+
+/// Every word of the search, in the name or the doc.
+bool EffectBrowser::found(const EffectSchema& effect) const {
+  const std::string text = lower(effect.name + " " + effect.doc + " " + effect.at);
+  const auto words = split(lower(search_.data()), ' ');
+  return std::ranges::all_of(words, [&](const std::string& word) { return text.find(word) != std::string::npos; });
+}
+
+std::optional<std::string> EffectBrowser::draw(Ui& ui, const EffectLibrary& library, ImVec2 at, ImVec2 size) {
+  if (!open_) return std::nullopt;
+  const bool reading = library.reading() && library.effects().empty();
+  if (reading) ui.again();
+  std::vector<const EffectSchema*> list;
+  for (const EffectSchema& effect : library.effects())
+    if (found(effect)) list.push_back(&effect);
+  // Those whose name begins so come first.
+  const std::string begin = lower(search_.data());
+  std::ranges::stable_sort(list, [&](const EffectSchema* a, const EffectSchema* b) {
+    return a->name.starts_with(begin) && !b->name.starts_with(begin);
+  });
+
+  std::optional<std::string> chosen;
+  ImGui::SetNextWindowPos(at);
+  ImGui::SetNextWindowSize(size);
+  constexpr int kFlags = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                         ImGuiWindowFlags_NoSavedSettings;
+  if (ImGui::Begin("Add an effect", &open_, kFlags)) {
+    if (std::exchange(begin_, false)) focus_next_item();
+    ImGui::SetNextItemWidth(-1);
+    const std::string before = search_.data();
+    int step = 0;  // by Up and Down, which stay in the field
+    const auto on_arrow = [](ImGuiInputTextCallbackData* data) {
+      *static_cast<int*>(data->UserData) = data->EventKey == ImGuiKey_UpArrow ? -1 : 1;
+      return 0;
+    };
+    const bool entered = ImGui::InputTextWithHint(
+        "##effect", "Search effects; Up, Down, Enter", search_.data(), search_.size(),
+        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackHistory, on_arrow, &step);
+    const bool left = ImGui::IsItemDeactivated() && !entered && !ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+    if (before != search_.data()) chosen_ = 0;
+    if (step != 0 && !list.empty()) {
+      const auto last = static_cast<int>(list.size()) - 1;
+      chosen_ = static_cast<std::size_t>(std::clamp(static_cast<int>(chosen_) + step, 0, last));
+      scroll_ = true;
+    }
+    chosen_ = std::min(chosen_, list.empty() ? 0 : list.size() - 1);
+    const float foot = ImGui::GetFrameHeightWithSpacing();
+    const float width = std::max(ui.px(170), ImGui::GetContentRegionAvail().x * 0.4f);
+    ImGui::BeginChild("list", {width, -foot}, true);
+    if (reading) ImGui::TextDisabled("Reading the effects…");
+    if (!reading && list.empty()) ImGui::TextDisabled("No effect is called so");
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (ImGui::Selectable(list[i]->name.c_str(), i == chosen_, ImGuiSelectableFlags_AllowDoubleClick)) {
+        chosen_ = i;
+        begin_ = true;  // Enter and the arrows go on from here
+        if (double_clicked()) chosen = list[i]->name;
+      }
+      if (i == chosen_ && std::exchange(scroll_, false)) ImGui::SetScrollHereY();
+    }
+    ImGui::EndChild();
+    ImGui::SameLine();
+    ImGui::BeginChild("page", {0, -foot}, true);
+    if (!list.empty()) draw_page(ui, *list[chosen_]);
+    ImGui::EndChild();
+    entered_ = entered_ || entered;  // before the effects were read: they are waited for
+    const bool enter = !reading && std::exchange(entered_, false);
+    if (small_button(ui, "Add", "Enter", !list.empty()) || (enter && !list.empty())) chosen = list[chosen_]->name;
+    if (left) open_ = false;
+    ImGui::SameLine();
+    if (small_button(ui, "Cancel", "Esc")) open_ = false;
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s", fmt::format("{} of {}", list.size(), library.effects().size()).c_str());
+  }
+  ImGui::End();
+  if (chosen) open_ = false;
+  return chosen;
+}
+
+void EffectBrowser::draw_page(const Ui& ui, const EffectSchema& effect) const {
+  ImGui::PushFont(ui.bold);
+  ImGui::TextUnformatted(effect.name.c_str());
+  ImGui::PopFont();
+  ImGui::TextWrapped("%s", effect.doc.c_str());
+  ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kDim);
+  ImGui::TextWrapped("Runs at %s, order %d", effect.at.c_str(), effect.order);
+  ImGui::PopStyleColor();
+  ImGui::Separator();
+  for (const SettingSchema& setting : effect.settings) {
+    ImGui::TextUnformatted(setting.name.c_str());
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s", setting.default_value.text().c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kDim);
+    ImGui::TextWrapped("%s", setting.doc.c_str());
+    ImGui::PopStyleColor();
+  }
+}
+
+}  // namespace afterglow

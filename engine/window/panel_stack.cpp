@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "window/panel_stack.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "core/file.h"
+
+namespace afterglow {
+
+void PanelStack::begin(StackEdit edit) { waiting_.push_back(std::move(edit)); }
+
+void PanelStack::start(PanelPort& port) {
+  failed_ = false;
+  edit_ = std::move(waiting_.front());
+  waiting_.pop_front();
+  made_from_ = port.edits().stack_text();
+  port.end_gesture();
+  running_ = std::async(std::launch::async, [this, wanted = edit_, text = made_from_] { return run(wanted, text); });
+}
+
+PanelStack::Outcome PanelStack::run(const StackEdit& edit, const StackText& text) const {
+  Outcome out;
+  auto file = read_file(file_);
+  if (!file && !text) {
+    out.error = file.error();
+    return out;
+  }
+  if (file) out.base = std::move(*file);
+  auto rewrite = rewrite_stack(file_, text ? *text : out.base, edit, options_);
+  if (rewrite) {
+    out.rewrite = std::move(*rewrite);
+  } else {
+    out.error = rewrite.error();
+  }
+  return out;
+}
+
+std::string PanelStack::told(const StackEdit& edit, const std::string& entry) {
+  switch (edit.kind) {
+    case StackEdit::Kind::add:
+      return fmt::format("{} was added", entry);
+    case StackEdit::Kind::remove:
+      return fmt::format("{} was removed", edit.name);
+    case StackEdit::Kind::duplicate:
+      return fmt::format("{} was copied: {}", edit.name, entry);
+    case StackEdit::Kind::earlier:
+    case StackEdit::Kind::later:
+      return fmt::format("{} runs {}", entry, edit.kind == StackEdit::Kind::later ? "later" : "earlier");
+    default:
+      return edit.mask.empty() ? fmt::format("{} has no mask", entry)
+                               : fmt::format("{} has the mask {}", entry, edit.mask);
+  }
+}
+
+/// Names of entries that edits wait for.
+void PanelStack::follow(const StackRewrite& rewrite) {
+  std::erase_if(waiting_, [&](StackEdit& edit) {
+    if (edit.kind == StackEdit::Kind::add) return false;
+    const auto found = std::ranges::find(rewrite.renamed, edit.name, &std::pair<std::string, std::string>::first);
+    if (found != rewrite.renamed.end()) edit.name = found->second;
+    return found == rewrite.renamed.end();
+  });
+}
+
+bool PanelStack::poll(PanelPort& port, bool may_begin) {
+  if (!may_begin) return false;
+  look_at_file(port);
+  if (!running_.valid() && !waiting_.empty()) start(port);
+  if (!running_.valid() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  Outcome outcome = running_.get();
+  if (!outcome.error && port.edits().stack_text() != made_from_)
+    outcome.error = Error{ErrorKind::other, "the stack was changed meanwhile; nothing was done"};
+  failed_ = outcome.error.has_value();
+  if (failed_) {
+    message_ = outcome.error->text();
+    return true;
+  }
+  if (!made_from_) {  // later ones keep the base of the first
+    base_ = outcome.base;
+    seen_.reset();
+  }
+  StackChange change{std::make_shared<const std::string>(std::move(outcome.rewrite.text)), outcome.rewrite.renamed, "",
+                     ""};
+  const std::string& entry = outcome.rewrite.entry;
+  if (edit_.kind == StackEdit::Kind::duplicate) {
+    for (const auto& [before, now] : change.renamed)
+      if (before == edit_.name) change.copied = now;
+    change.copy = entry;
+  }
+  follow(outcome.rewrite);
+  port.set_stack(change);
+  message_ = told(edit_, entry);
+  shown_ = entry;
+  return true;
+}
+
+std::optional<WorkingText> PanelStack::working(PanelPort& port) const {
+  const StackText& text = port.edits().stack_text();
+  if (!text) return std::nullopt;
+  return WorkingText{*text, base_};
+}
+
+/// The file is read when its time is another one than before.
+void PanelStack::look_at_file(PanelPort& port) {
+  if (!port.edits().stack_text()) {
+    conflict_ = false;
+    seen_.reset();
+    return;
+  }
+  std::error_code none;
+  const auto time = std::filesystem::last_write_time(file_, none);
+  if (none || (seen_ && *seen_ == time)) return;
+  auto text = read_file(file_);
+  if (!text) return;
+  seen_ = time;
+  conflict_ = *text != base_;
+  now_ = std::move(*text);
+}
+
+void PanelStack::keep() {
+  base_ = now_;
+  conflict_ = false;
+}
+
+void PanelStack::take(PanelPort& port) {
+  conflict_ = false;
+  port.end_gesture();
+  port.reset_stack();
+}
+
+void PanelStack::wrote(std::string text) {
+  base_ = std::move(text);
+  seen_.reset();
+  conflict_ = false;
+}
+
+}  // namespace afterglow
