@@ -29,13 +29,16 @@ cores=$(nproc)
 make_frames() { # SIZE COUNT: 24 pictures, each linked as often as needed
   local size=$1 count=$2 i
   mkdir -p "$work/in"
-  oiiotool "$picture" --ch R,G,B -o "$work/whole.exr" 2>/dev/null ||
-    oiiotool "$picture" --ch ViewLayer.Combined.R,ViewLayer.Combined.G,ViewLayer.Combined.B --chnames R,G,B -o "$work/whole.exr"
+  # A channel that is not there would be filled with 0.
+  local prefix=
+  if oiiotool --info -v "$picture" | grep -q 'ViewLayer\.Combined\.R'; then prefix=ViewLayer.Combined.; fi
+  oiiotool "$picture" --ch "${prefix}R,${prefix}G,${prefix}B" --chnames R,G,B -o "$work/whole.exr"
   oiiotool "$work/whole.exr" --fullpixels --resize:filter=triangle "$size" -d float -o "$work/large.exr"
   for ((i = 0; i < 24 && i < count; ++i)); do
     oiiotool "$work/large.exr" --cshift "+$((8 * i))+0" \
       --create "$size" 3 --addc 1 --noise:type=gaussian:mean=0:stddev=0.1:mono=1:seed=$i --mul -d half --compression zip -o "$work/frame.$i.exr"
   done
+  oiiotool --stats "$work/frame.0.exr" | awk '/Stats Max/ { exit !($3 > 0) }' || { echo "$picture: no light in R, G, B" >&2; exit 1; }
   for ((i = 0; i < count; ++i)); do ln "$work/frame.$((i % 24)).exr" "$(printf '%s/in/%04d.exr' "$work" "$i")"; done
 }
 
