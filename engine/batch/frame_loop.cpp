@@ -50,7 +50,8 @@ Result<void> FrameLoop::run(Schedule& schedule) {
   total_ = frames.size() - pre_roll_;
   endless_ = static_cast<bool>(schedule.more);
   const auto start = Clock::now();
-  std::unique_ptr<Reading> next;
+  std::deque<std::unique_ptr<Reading>> next;
+  std::size_t begun = 0;
   for (std::size_t i = 0; i < frames.size() || fetch(schedule, i); ++i) {
     if (events_.interrupted()) return close(interruption());
     if (frames.size() > 1)
@@ -58,7 +59,9 @@ Result<void> FrameLoop::run(Schedule& schedule) {
                        frames[i].pre_roll ? "before " + frames[i].record->job.output.filename().string()
                                           : frames[i].record->job.output.filename().string(),
                        milliseconds_since(start) / 1000);
-    auto reading = next ? std::move(next) : begin_reading(frames[i]);
+    if (next.empty()) next.push_back(begin_reading(frames[begun++]));
+    auto reading = std::move(next.front());
+    next.pop_front();
     // Shaders, pipelines and memory are made while the first picture is read.
     if (i == 0 && !reading->refused) {
       if (auto prepared = session_.prepare(reading->request); !prepared && ends_run(prepared.error()))
@@ -69,7 +72,8 @@ Result<void> FrameLoop::run(Schedule& schedule) {
       reading->picture.wait();
       reading->frame->steps.waited_read = milliseconds_since(waiting);
     }
-    if (overlap_ && (i + 1 < frames.size() || fetch(schedule, i + 1))) next = begin_reading(frames[i + 1]);
+    while (overlap_ && next.size() < most_read_ && (begun < frames.size() || fetch(schedule, begun)))
+      next.push_back(begin_reading(frames[begun++]));
     if (auto done = process(std::move(reading)); !done) return close(done.error());
     if (!overlap_)
       if (auto done = finish_writing(0); !done) return close(done.error());
@@ -142,12 +146,16 @@ Result<std::shared_ptr<const Build>> FrameLoop::inspect(const FrameJob& job) {
 }
 
 /// Frames are read, processed and written beside each other as memory allows.
-void FrameLoop::choose_overlap(const FrameNeed& need) {
-  constexpr std::uint64_t kMostWritten = 3;
-  overlap_ = several() && need.frames(1) <= options_.max_memory;
-  most_written_ = 1;
-  while (overlap_ && most_written_ < kMostWritten && need.frames(most_written_ + 1) <= options_.max_memory)
-    ++most_written_;
+void FrameLoop::choose_overlap(const FrameNeed& need, const FrameJob& job) {
+  constexpr std::uint64_t kMostRead = 2, kMostWritten = 3;
+  const auto fits = [&](std::uint64_t read, std::uint64_t written) {
+    return need.frames(read, written) <= options_.max_memory;
+  };
+  overlap_ = several() && fits(1, 1);
+  most_read_ = most_written_ = 1;
+  while (overlap_ && most_written_ < kMostWritten && fits(1, most_written_ + 1)) ++most_written_;
+  const bool in_order = endless_ || job.movie;  // what gives its frames one by one has no use for two readers
+  while (overlap_ && !in_order && most_read_ < kMostRead && fits(most_read_ + 1, most_written_)) ++most_read_;
 }
 
 std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFrame& scheduled) {
@@ -179,7 +187,7 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
     reading->refused = need.error();
     return reading;
   }
-  choose_overlap(*need);
+  choose_overlap(*need, frame.job);
   reading->picture = std::async(std::launch::async,
                                 [this, &frame, options = reading->options, scaling = reading->scaling,
                                  header = std::move(planned->header)]() -> Result<Picture> {
@@ -275,6 +283,7 @@ Result<void> FrameLoop::finish_running() {
 /// The frame's result. One in which something was not finite, or more than half floats hold, is made once more from its
 /// file, pass by pass in full floats and mended.
 Result<void> FrameLoop::make(Reading& reading, Picture& picture) {
+  picture.unorm8 = memory_.take_codes();
   AFTERGLOW_CHECK(session_.collect(picture));
   const SessionReport report = session_.report();
   if (!report.flagged && report.clamped == 0) return {};

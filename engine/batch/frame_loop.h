@@ -45,7 +45,7 @@ class FrameLoop {
   struct Reading;
   bool fetch(Schedule& schedule, std::size_t place);
   bool several() const { return endless_ || total_ + pre_roll_ > 1; }
-  void choose_overlap(const FrameNeed& need);
+  void choose_overlap(const FrameNeed& need, const FrameJob& job);
   std::unique_ptr<Reading> begin_reading(const ScheduledFrame& scheduled);
   Result<void> place_in_time(Reading& reading);
   std::size_t ahead() const;
@@ -75,6 +75,7 @@ class FrameLoop {
   bool endless_ = false;  ///< nobody knows how many frames will come
   std::optional<Error> stream_error_;
   bool overlap_ = false;
+  std::size_t most_read_ = 1;     ///< frames that are being read beside the one that is processed
   std::size_t most_written_ = 1;  ///< frames that are being written at a time
   std::optional<int> last_;       ///< number of the frame that the next one follows
   std::optional<int> begun_;      ///< number of the frame that was evaluated last

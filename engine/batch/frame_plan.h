@@ -33,8 +33,10 @@ struct FrameNeed {
   std::uint64_t device = 0, reading = 0, result = 0;
   std::uint64_t held = 0;  ///< whatever the number of frames: decoders' and encoders' frames
   std::uint64_t one_frame() const { return device + reading + result + held; }
-  /// One is read, one processed, `written` are being written.
-  std::uint64_t frames(std::uint64_t written) const { return device + 2 * reading + (1 + written) * result + held; }
+  /// So many are read, one is processed, `written` are being written.
+  std::uint64_t frames(std::uint64_t read, std::uint64_t written) const {
+    return device + (1 + read) * reading + (1 + written) * result + held;
+  }
 };
 
 /// Of a frame whose picture has not been read.

@@ -12,7 +12,9 @@ namespace {
 /// A file a frame.
 class FileSink : public FrameSink {
  public:
-  FileSink(const WriteOptions& options, Diagnostics& diagnostics) : options_(options), diagnostics_(diagnostics) {}
+  FileSink(const WriteOptions& options, Diagnostics& diagnostics) : options_(options), diagnostics_(diagnostics) {
+    options_.memory = &memory_;
+  }
 
   bool is_one() const override { return false; }
   std::optional<DisplayCodes> codes(const FrameJob& job, bool has_alpha, const FileFacts* facts) const override {
@@ -28,6 +30,7 @@ class FileSink : public FrameSink {
   void record_look(const Hash& look) override { look_ = look; }
 
  private:
+  WorkMemory memory_;
   WriteOptions options_;
   Diagnostics& diagnostics_;
   std::optional<Hash> look_;

@@ -37,11 +37,12 @@ struct HostImage {
 };
 
 struct HostResult {
-  /// RGBA. It may be the very memory of the input "source": it is written after all inputs have been read. A vector
-  /// that is large enough already is not allocated again.
+  /// RGBA. It may be the very memory of the input "source": it is written after all inputs have been read. Vectors
+  /// that are large enough already are not allocated again.
   std::vector<float> pixels;
-  std::vector<std::uint8_t> unorm8;  ///< instead of `pixels`, of a program with ProgramOptions::unorm8: RGBA
-  std::uint64_t clamped = 0;         ///< half storage: source or result samples held at ±65504
+  /// Instead of `pixels`, of a program with ProgramOptions::unorm8: RGBA. Empty behind others, whatever it held.
+  std::vector<std::uint8_t> unorm8;
+  std::uint64_t clamped = 0;  ///< half storage: source or result samples held at ±65504
   /// Of a program with ProgramOptions::flag_non_finite: some alpha is 0. Such a program's `pixels` have no other alpha.
   bool flagged = false;
   bool keep_alpha = false;  ///< write R, G and B alone where `pixels` has the size of the result already

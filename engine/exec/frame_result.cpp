@@ -99,6 +99,7 @@ Result<std::uint64_t> FrameResult::download_looking(Staging& staging, const Rect
   const auto first = [&](int y) {
     return row_values * static_cast<std::size_t>(y) + static_cast<std::size_t>(part.x) * 4;
   };
+  if (out.write_row || format != VK_FORMAT_R8G8B8A8_UNORM) out.unorm8.clear();  // its memory stays
   if (out.write_row)
     return over_rows_of(staging, part, [&](int y, const std::byte* from) {
       look(from, format);

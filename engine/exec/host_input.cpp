@@ -42,6 +42,7 @@ VkFormat input_format(const std::string& name, int channels, VkFormat storage) {
 }
 
 void copy_source(const HostImage& source, HostResult& out) {
+  out.unorm8.clear();
   std::vector<float>& pixels = out.pixels;
   const auto [width, height] = source.size;
   if (source.read_row && out.write_row) {

@@ -8,6 +8,11 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#include "core/processor.h"
 
 namespace afterglow {
 namespace {
@@ -62,7 +67,43 @@ float OutputSpace::stored(float light) const {
   return std::min(table_[part] + (table_[part + 1] - table_[part]) * t, 1.0f);
 }
 
+#if defined(__x86_64__)
+/// `stored` of two pixels at a time, the same bits; how many pixels that were.
+__attribute__((target("avx2"))) std::size_t OutputSpace::encode_pairs(float* rgba, std::size_t pixels) const {
+  const __m256i first = _mm256_set1_epi32(static_cast<int>(part_of(kSmallest)));
+  const __m256i last = _mm256_set1_epi32(static_cast<int>(table_.size()) - 2);
+  const __m256 of_zero = _mm256_set1_ps(of_zero_), rise = _mm256_set1_ps(table_.front() - of_zero_);
+  const __m256 one = _mm256_set1_ps(1), smallest = _mm256_set1_ps(kSmallest), largest = _mm256_set1_ps(kLargest);
+  std::size_t i = 0;
+  for (; i + 2 <= pixels; i += 2, rgba += 8) {
+    const __m256 light = _mm256_loadu_ps(rgba);
+    const __m256i bits = _mm256_castps_si256(light);
+    __m256i part = _mm256_sub_epi32(_mm256_srli_epi32(bits, kShift), first);
+    part = _mm256_min_epi32(_mm256_max_epi32(part, _mm256_setzero_si256()), last);
+    const __m256 low = _mm256_i32gather_ps(table_.data(), part, 4);
+    const __m256 high = _mm256_i32gather_ps(table_.data() + 1, part, 4);
+    const __m256 t = _mm256_mul_ps(_mm256_cvtepi32_ps(_mm256_and_si256(bits, _mm256_set1_epi32(kMask))),
+                                   _mm256_set1_ps(1.0f / (kMask + 1)));
+    __m256 value = _mm256_min_ps(_mm256_add_ps(low, _mm256_mul_ps(_mm256_sub_ps(high, low), t)), one);
+    value = _mm256_blendv_ps(value, one, _mm256_cmp_ps(light, largest, _CMP_GE_OQ));
+    // NaN and what is below 0 become 0: max gives its second operand for NaN.
+    const __m256 dark = _mm256_div_ps(_mm256_max_ps(light, _mm256_setzero_ps()), smallest);
+    const __m256 near_zero = _mm256_add_ps(of_zero, _mm256_mul_ps(rise, dark));
+    value = _mm256_blendv_ps(near_zero, value, _mm256_cmp_ps(light, smallest, _CMP_GT_OQ));
+    _mm256_storeu_ps(rgba, _mm256_blend_ps(value, light, 0x88));  // alpha stays
+  }
+  return i;
+}
+#endif
+
 void OutputSpace::encode(float* rgba, std::size_t pixels) const {
+#if defined(__x86_64__)
+  if (!matrix_ && has_avx2()) {
+    const std::size_t done = encode_pairs(rgba, pixels);
+    rgba += 4 * done;
+    pixels -= done;
+  }
+#endif
   for (std::size_t i = 0; i < pixels; ++i, rgba += 4) {
     if (matrix_) {
       const Matrix3& m = *matrix_;

@@ -26,6 +26,7 @@ class OutputSpace {
  private:
   explicit OutputSpace(const InputSpace& space);
   float stored(float light) const;
+  std::size_t encode_pairs(float* rgba, std::size_t pixels) const;
 
   const char* name_;
   std::optional<Matrix3> matrix_;  ///< from Rec.709, when the primaries are others

@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "core/parallel.h"
+#include "core/processor.h"
 #include "image/encode.h"
+
+#define AFTERGLOW_INLINE __attribute__((always_inline)) inline
 
 namespace afterglow {
 namespace {
@@ -94,80 +98,182 @@ void pack_rgb(const StoredRows& rows, PackedFrame& frame) {
   });
 }
 
-/// From −½…½, with `half` of them across filtered away.
-struct ChromaRows {
-  std::size_t width = 0;
-  std::vector<float> blue, red;
+/// A row of yuv, in values of 0…1 and −½…½.
+struct YuvRow {
+  explicit YuvRow(std::size_t width) : luma(width), blue(width), red(width) {}
+  std::vector<float> luma, blue, red;
 };
 
-void filter_across(const std::vector<float>& full, bool half, float* out, std::size_t width) {
-  if (!half) return static_cast<void>(std::copy(full.begin(), full.end(), out));
-  const std::size_t last = full.size() - 1;
-  for (std::size_t i = 0; i < width; ++i) {
-    const std::size_t at = 2 * i;
-    out[i] = 0.25f * full[at > 0 ? at - 1 : 0] + 0.5f * full[at] + 0.25f * full[std::min(at + 1, last)];
+AFTERGLOW_INLINE void to_yuv(const float* rgba, LumaWeights weights, std::size_t width, float* __restrict luma,
+                             float* __restrict blue, float* __restrict red) {
+  for (std::size_t x = 0; x < width; ++x) {
+    const double r = rgba[x * 4], g = rgba[x * 4 + 1], b = rgba[x * 4 + 2];
+    const double l = weights.red * r + (1 - weights.red - weights.blue) * g + weights.blue * b;
+    luma[x] = static_cast<float>(l);
+    blue[x] = static_cast<float>((b - l) / (2 * (1 - weights.blue)));
+    red[x] = static_cast<float>((r - l) / (2 * (1 - weights.red)));
   }
 }
 
-/// Luma and alpha are done; chroma is left at the height of the picture.
-ChromaRows pack_luma(const StoredRows& rows, LumaWeights luma, PackedFrame& frame) {
-  const PixelLayout& layout = *frame.layout;
-  const auto width = static_cast<std::size_t>(frame.size.width);
-  ChromaRows chroma;
-  chroma.width = (width + static_cast<std::size_t>(layout.chroma_x)) >> layout.chroma_x;
-  chroma.blue.resize(chroma.width * static_cast<std::size_t>(frame.size.height));
-  chroma.red.resize(chroma.blue.size());
-  const PlaneOut luma_out(frame, 0), alpha_out(frame, layout.alpha ? 3 : 0);
-  const float scale = static_cast<float>(1 << (layout.bits - 8));
-  for_rows(frame.size, [&](int y, std::vector<float>& rgba) {
-    std::vector<float> blue(width), red(width);
-    rows.row(y, rgba);
-    for (std::size_t x = 0; x < width; ++x) {
-      const double r = rgba[x * 4], g = rgba[x * 4 + 1], b = rgba[x * 4 + 2];
-      const double l = luma.red * r + (1 - luma.red - luma.blue) * g + luma.blue * b;
-      blue[x] = static_cast<float>((b - l) / (2 * (1 - luma.blue)));
-      red[x] = static_cast<float>((r - l) / (2 * (1 - luma.red)));
-      luma_out.put(x, y, (16 + 219 * static_cast<float>(l)) * scale, rows.noise(x, y));
-      if (layout.alpha) alpha_out.put(x, y, std::clamp(rgba[x * 4 + 3], 0.0f, 1.0f) * alpha_out.max(), 0.5f);
-    }
-    const std::size_t at = chroma.width * static_cast<std::size_t>(y);
-    filter_across(blue, layout.chroma_x > 0, &chroma.blue[at], chroma.width);
-    filter_across(red, layout.chroma_x > 0, &chroma.red[at], chroma.width);
-  });
-  return chroma;
+/// With half of a row filtered away, if that is wished.
+AFTERGLOW_INLINE void filter_across(const float* full, std::size_t full_width, bool half, float* __restrict out,
+                                    std::size_t width) {
+  if (!half) return static_cast<void>(std::copy_n(full, width, out));
+  const std::size_t last = full_width - 1;
+  const auto at = [&](std::size_t i) {
+    return 0.25f * full[i > 0 ? 2 * i - 1 : 0] + 0.5f * full[2 * i] + 0.25f * full[std::min(2 * i + 1, last)];
+  };
+  out[0] = at(0);
+  for (std::size_t i = 1; i + 1 < width; ++i)
+    out[i] = 0.25f * full[2 * i - 1] + 0.5f * full[2 * i] + 0.25f * full[2 * i + 1];
+  out[width - 1] = at(width - 1);
 }
 
-void pack_chroma(const StoredRows& rows, const ChromaRows& chroma, PackedFrame& frame) {
-  const PixelLayout& layout = *frame.layout;
-  const float scale = static_cast<float>(1 << (layout.bits - 8));
-  const int last = frame.size.height - 1;
-  const PlaneOut blue_out(frame, 1), red_out(frame, 2);
-  const auto sample = [&](const std::vector<float>& from, std::size_t x, int y) {
-    const auto at = [&](int row) {
-      return from[chroma.width * static_cast<std::size_t>(std::clamp(row, 0, last)) + x];
-    };
-    if (layout.chroma_y == 0) return at(y);
-    return 0.125f * (at(2 * y - 1) + at(2 * y + 2)) + 0.375f * (at(2 * y) + at(2 * y + 1));
-  };
-  for_rows({static_cast<int>(chroma.width), frame.planes[1].rows}, [&](int y, std::vector<float>&) {
-    for (std::size_t x = 0; x < chroma.width; ++x) {
-      // Other places of the noise than luma's, so that the three do not go together.
-      blue_out.put(x, y, (128 + 224 * sample(chroma.blue, x, y)) * scale, rows.noise(x + 21, y + 13));
-      red_out.put(x, y, (128 + 224 * sample(chroma.red, x, y)) * scale, rows.noise(x + 43, y + 37));
+/// `base` + `range` · value as codes of 8 bits, times `scale` where there are more.
+template <class Code>
+AFTERGLOW_INLINE void to_codes(const float* values, const float* noise, std::size_t width, float base, float range,
+                               float scale, float most, Code* __restrict codes) {
+  for (std::size_t x = 0; x < width; ++x) {
+    const float code = (base + range * values[x]) * scale + noise[x];
+    codes[x] = static_cast<Code>(static_cast<int>(std::min(std::max(code, 0.0f), most)));
+  }
+}
+
+/// What of this is compiled twice.
+struct YuvLoops {
+  AFTERGLOW_INLINE static void convert(const float* rgba, LumaWeights weights, bool half, YuvRow& full, float* blue,
+                                       float* red, std::size_t chroma_width) {
+    const std::size_t width = full.luma.size();
+    to_yuv(rgba, weights, width, full.luma.data(), full.blue.data(), full.red.data());
+    filter_across(full.blue.data(), width, half, blue, chroma_width);
+    filter_across(full.red.data(), width, half, red, chroma_width);
+  }
+  AFTERGLOW_INLINE static void filter_down(const std::array<const float*, 4>& rows, std::size_t width,
+                                           float* __restrict out) {
+    for (std::size_t x = 0; x < width; ++x)
+      out[x] = 0.125f * (rows[0][x] + rows[3][x]) + 0.375f * (rows[1][x] + rows[2][x]);
+  }
+  AFTERGLOW_INLINE static void put(const float* values, const float* noise, std::size_t width, float base, float range,
+                                   int bits, std::uint8_t* row) {
+    const float scale = static_cast<float>(1 << (bits - 8)), most = static_cast<float>((1 << bits) - 1);
+    if (bits > 8) {
+      to_codes(values, noise, width, base, range, scale, most, reinterpret_cast<std::uint16_t*>(row));
+    } else {
+      to_codes(values, noise, width, base, range, scale, most, row);
     }
-  });
+  }
+};
+
+#if defined(__x86_64__)
+struct YuvLoopsAvx2 {
+  __attribute__((target("avx2"))) static void convert(const float* rgba, LumaWeights weights, bool half, YuvRow& full,
+                                                      float* blue, float* red, std::size_t chroma_width) {
+    YuvLoops::convert(rgba, weights, half, full, blue, red, chroma_width);
+  }
+  __attribute__((target("avx2"))) static void filter_down(const std::array<const float*, 4>& rows, std::size_t width,
+                                                          float* out) {
+    YuvLoops::filter_down(rows, width, out);
+  }
+  __attribute__((target("avx2"))) static void put(const float* values, const float* noise, std::size_t width,
+                                                  float base, float range, int bits, std::uint8_t* row) {
+    YuvLoops::put(values, noise, width, base, range, bits, row);
+  }
+};
+#endif
+
+/// Rows of yuv planes from rows of a picture, top down; the last four rows of chroma are kept.
+template <class Loops>
+class YuvBand {
+ public:
+  YuvBand(const StoredRows& rows, LumaWeights luma, PackedFrame& frame)
+      : rows_(rows),
+        weights_(luma),
+        frame_(frame),
+        layout_(*frame.layout),
+        width_(static_cast<std::size_t>(frame.size.width)),
+        chroma_width_((width_ + static_cast<std::size_t>(layout_.chroma_x)) >> layout_.chroma_x),
+        full_(width_),
+        noise_(width_) {
+    for (auto* kept : {&blue_, &red_})
+      for (auto& row : *kept) row.resize(chroma_width_);
+  }
+
+  /// These rows of chroma, and those of luma that belong to them.
+  void make(int begin, int end) {
+    const int last = frame_.size.height - 1, down = layout_.chroma_y, first_luma = begin << down;
+    const int luma_end = std::min(end << down, last + 1);
+    int next = std::max(first_luma - down, 0);
+    std::vector<float> filtered(chroma_width_);
+    for (int y = begin; y < end; ++y) {
+      for (const int need = std::min((y << down) + 2 * down, last); next <= need; ++next)
+        take_row(next, next >= first_luma && next < luma_end);
+      for (std::size_t plane = 1; plane <= 2; ++plane) {
+        const auto& kept = plane == 1 ? blue_ : red_;
+        const auto at = [&](int row) { return kept[static_cast<std::size_t>(std::clamp(row, 0, last)) % 4].data(); };
+        const float* values = at(y);
+        if (down > 0) {
+          Loops::filter_down({at(2 * y - 1), at(2 * y), at(2 * y + 1), at(2 * y + 2)}, chroma_width_, filtered.data());
+          values = filtered.data();
+        }
+        // Other places of the noise than luma's, so that the three do not go together.
+        put(plane, y, values, chroma_width_, 128, 224, plane == 1 ? 21 : 43, plane == 1 ? 13 : 37);
+      }
+    }
+  }
+
+ private:
+  void take_row(int y, bool own) {
+    rows_.row(y, rgba_);
+    const std::size_t place = static_cast<std::size_t>(y) % 4;
+    Loops::convert(rgba_.data(), weights_, layout_.chroma_x > 0, full_, blue_[place].data(), red_[place].data(),
+                   chroma_width_);
+    if (!own) return;
+    put(0, y, full_.luma.data(), width_, 16, 219, 0, 0);
+    if (!layout_.alpha) return;
+    const PlaneOut alpha(frame_, 3);
+    for (std::size_t x = 0; x < width_; ++x)
+      alpha.put(x, y, std::clamp(rgba_[x * 4 + 3], 0.0f, 1.0f) * alpha.max(), 0.5f);
+  }
+
+  void put(std::size_t plane, int y, const float* values, std::size_t width, float base, float range, int noise_x,
+           int noise_y) {
+    for (std::size_t x = 0; x < width; ++x) noise_[x] = rows_.noise(x + static_cast<std::size_t>(noise_x), y + noise_y);
+    const auto& out = frame_.planes[plane];
+    Loops::put(values, noise_.data(), width, base, range, layout_.bits,
+               frame_.bytes.data() + out.offset + out.stride * static_cast<std::size_t>(y));
+  }
+
+  const StoredRows& rows_;
+  LumaWeights weights_;
+  PackedFrame& frame_;
+  const PixelLayout& layout_;
+  std::size_t width_, chroma_width_;
+  YuvRow full_;
+  std::vector<float> noise_, rgba_;
+  std::array<std::vector<float>, 4> blue_, red_;
+};
+
+template <class Loops>
+void pack_yuv(const StoredRows& rows, LumaWeights luma, PackedFrame& frame) {
+  parallel_rows(frame.planes[1].rows, static_cast<long long>(frame.size.area()) * 4,
+                [&](int begin, int end) { YuvBand<Loops>(rows, luma, frame).make(begin, end); });
 }
 
 }  // namespace
 
-PackedFrame pack_frame(const Picture& picture, const PackRules& rules) {
-  PackedFrame frame = empty_frame(*rules.layout, picture.display_window.size());
+PackedFrame pack_frame(const Picture& picture, const PackRules& rules, std::vector<std::uint8_t> memory) {
+  PackedFrame frame = empty_frame(*rules.layout, picture.display_window.size(), std::move(memory));
   const StoredRows rows(picture, rules);
   if (rules.layout->rgb_colors()) {
     pack_rgb(rows, frame);
   } else {
-    const ChromaRows chroma = pack_luma(rows, rules.luma, frame);
-    pack_chroma(rows, chroma, frame);
+#if defined(__x86_64__)
+    if (has_avx2()) {
+      pack_yuv<YuvLoopsAvx2>(rows, rules.luma, frame);
+      return frame;
+    }
+#endif
+    pack_yuv<YuvLoops>(rows, rules.luma, frame);
   }
   return frame;
 }

@@ -2,6 +2,9 @@
 // A finished picture as a frame of a video: encoded in a space, as RGB or YUV, with chroma of its size.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "image/output_space.h"
 #include "image/picture.h"
 #include "image/pixel_layout.h"
@@ -23,7 +26,8 @@ struct PackRules {
 
 /// The display window. RGB is of full range, YUV of limited range (ITU-R BT.709, 4.6), alpha straight and of full
 /// range. Chroma lies at the left of its pixels and half-way between its rows, as MPEG-2 has it: means of 1 2 1 across
-/// and 1 3 3 1 down. In double precision but for the curve of the space (see OutputSpace).
-PackedFrame pack_frame(const Picture& picture, const PackRules& rules);
+/// and 1 3 3 1 down. In double precision but for the curve of the space (see OutputSpace). `memory`: of a frame
+/// that is done.
+PackedFrame pack_frame(const Picture& picture, const PackRules& rules, std::vector<std::uint8_t> memory = {});
 
 }  // namespace afterglow

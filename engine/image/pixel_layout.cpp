@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "image/pixel_layout.h"
 
+#include <utility>
+
 namespace afterglow {
 namespace {
 
@@ -44,8 +46,8 @@ const PixelLayout* find_pixel_layout(const std::string& name) {
   return nullptr;
 }
 
-PackedFrame empty_frame(const PixelLayout& layout, Size size) {
-  PackedFrame frame{&layout, size, {}, {}};
+PackedFrame empty_frame(const PixelLayout& layout, Size size, std::vector<std::uint8_t> memory) {
+  PackedFrame frame{&layout, size, std::move(memory), {}};
   std::size_t bytes = 0;
   for (int plane = 0; plane < layout.planes(); ++plane) {
     const bool chroma = layout.kind == PixelLayout::Kind::yuv && (plane == 1 || plane == 2);

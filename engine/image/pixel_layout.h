@@ -44,7 +44,8 @@ struct PackedFrame {
   std::vector<Plane> planes;
 };
 
-/// With planes of the right sizes. Sides of chroma are rounded up.
-PackedFrame empty_frame(const PixelLayout& layout, Size size);
+/// With planes of the right sizes. Sides of chroma are rounded up. `memory` is used where there is some; the bytes may
+/// be anything.
+PackedFrame empty_frame(const PixelLayout& layout, Size size, std::vector<std::uint8_t> memory = {});
 
 }  // namespace afterglow

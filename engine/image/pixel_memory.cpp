@@ -2,14 +2,19 @@
 #include <utility>
 
 #include "image/reader.h"
+#include "image/writer.h"
 
 namespace afterglow {
 
 std::vector<float> PixelMemory::take(std::size_t count) {
   std::vector<std::vector<float>> others;  // go after the lock
+  std::vector<std::vector<std::uint8_t>> other_codes;
   {
     const std::lock_guard lock(mutex_);
-    if (count_ != count) others.swap(free_);
+    if (count_ != count) {
+      others.swap(free_);
+      other_codes.swap(free_codes_);
+    }
     count_ = count;
     if (!free_.empty()) {
       std::vector<float> pixels = std::move(free_.back());
@@ -18,14 +23,44 @@ std::vector<float> PixelMemory::take(std::size_t count) {
     }
   }
   others.clear();
+  other_codes.clear();
   return std::vector<float>(count);
+}
+
+std::vector<std::uint8_t> PixelMemory::take_codes() {
+  const std::lock_guard lock(mutex_);
+  if (free_codes_.empty()) return {};
+  std::vector<std::uint8_t> codes = std::move(free_codes_.back());
+  free_codes_.pop_back();
+  return codes;
 }
 
 void PixelMemory::give(Picture&& picture) {
   Picture done = std::move(picture);  // all of it goes, whoever holds what is left
   std::vector<float> pixels = std::move(done.color.pixels);
+  std::vector<std::uint8_t> codes = std::move(done.unorm8);
   const std::lock_guard lock(mutex_);
+  if (!codes.empty() && codes.size() == count_) free_codes_.push_back(std::move(codes));
   if (!pixels.empty() && pixels.size() == count_) free_.push_back(std::move(pixels));
+}
+
+WorkMemory::Block WorkMemory::take(std::size_t size) {
+  Block block;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!free_.empty()) {
+      block = std::move(free_.back());
+      free_.pop_back();
+    }
+  }
+  if (block.size >= size && block.size / 2 <= size) return block;
+  block = {};  // before the new one is made: the two need not exist at once
+  return {std::make_unique_for_overwrite<std::uint8_t[]>(size), size};
+}
+
+void WorkMemory::give(Block block) {
+  const std::lock_guard lock(mutex_);
+  free_.push_back(std::move(block));
 }
 
 }  // namespace afterglow

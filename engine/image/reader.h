@@ -27,6 +27,8 @@ class PixelMemory {
  public:
   /// So many values; they may be anything.
   std::vector<float> take(std::size_t count);
+  /// For 8-bit codes: what a picture had them in, or empty.
+  std::vector<std::uint8_t> take_codes();
   /// Takes the picture, and keeps what it has of that memory.
   void give(Picture&& picture);
 
@@ -34,6 +36,7 @@ class PixelMemory {
   std::mutex mutex_;
   std::size_t count_ = 0;  ///< that was asked for last
   std::vector<std::vector<float>> free_;
+  std::vector<std::vector<std::uint8_t>> free_codes_;
 };
 
 /// `FILE[:NAME]` of --depth, --normal and --motion: another file and/or a channel or layer in it.

@@ -2,6 +2,7 @@
 #include "image/strips.h"
 
 #include <algorithm>
+#include <cstring>
 #include <vector>
 
 #include "core/parallel.h"
@@ -30,7 +31,13 @@ void encode_rows(const Picture& picture, const StripForm& form, int first, int r
     std::vector<std::uint8_t> row(width * 4);
     for (int i = 0; i < rows; ++i) {
       display_row(picture, first + i, static_cast<std::uint8_t>(padding * 255), row.data());
-      for (std::size_t x = 0; x < width; ++x, bytes += channels) std::copy_n(&row[x * 4], channels, bytes);
+      if (channels == 4) {
+        std::copy_n(row.data(), width * 4, bytes);
+      } else {  // four bytes at a time, of which the next ones cover the last
+        for (std::size_t x = 0; x + 1 < width; ++x) std::memcpy(bytes + 3 * x, &row[x * 4], 4);
+        std::copy_n(&row[width * 4 - 4], 3, bytes + 3 * (width - 1));
+      }
+      bytes += width * channels;
     }
     return;
   }

@@ -40,8 +40,8 @@ Result<void> VideoWriter::write(const Picture& picture, VideoTime time) {
                              size.height, plan_.size.width, plan_.size.height),
                  name};
   try {
-    if (auto written = encoder_->write(pack_frame(picture, plan_.pack), time); !written)
-      return target_->named(std::move(written).error());
+    packed_ = pack_frame(picture, plan_.pack, std::move(packed_.bytes));
+    if (auto written = encoder_->write(packed_, time); !written) return target_->named(std::move(written).error());
     if (target_->out().failure() != 0) return target_->named({});
   } catch (const std::exception& error) {
     return Error{ErrorKind::io, "cannot be written: " + exception_text(error), name};

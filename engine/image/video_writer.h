@@ -43,6 +43,7 @@ class VideoWriter {
   VideoWriter() = default;
 
   VideoPlan plan_;
+  PackedFrame packed_;                   ///< the last, for its memory
   std::unique_ptr<VideoTarget> target_;  // outlives the encoder, which writes into it
   std::unique_ptr<VideoEncoder> encoder_;
 };

@@ -9,6 +9,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/parallel.h"
@@ -133,10 +134,9 @@ void write_header(const Picture& picture, const StripForm& form, OutputFile& out
 }
 
 /// All rows, each behind the number of its filter.
-std::unique_ptr<std::uint8_t[]> filtered_rows(const Picture& picture, const StripForm& form) {
+void filter_rows(const Picture& picture, const StripForm& form, std::uint8_t* filtered) {
   const int height = picture.display_window.height;
   const std::size_t row_bytes = form.row_bytes(picture), pixel = (form.alpha ? 4 : 3) * form.sample_bytes();
-  auto filtered = std::make_unique_for_overwrite<std::uint8_t[]>((row_bytes + 1) * static_cast<std::size_t>(height));
   const auto encode = [&](int y, int rows, std::uint8_t* samples) {
     encode_rows(picture, form, y, rows, samples);
     if (form.type == SampleType::uint16)
@@ -159,24 +159,26 @@ std::unique_ptr<std::uint8_t[]> filtered_rows(const Picture& picture, const Stri
       std::copy_n(row, row_bytes, rows.data());
     }
   });
-  return filtered;
 }
 
 }  // namespace
 
-Result<void> write_png(const Picture& picture, const StripForm& form, OutputFile& out, int level) {
+Result<void> write_png(const Picture& picture, const StripForm& form, OutputFile& out, int level, WorkMemory* memory) {
   write_header(picture, form, out);
   const std::size_t size = (form.row_bytes(picture) + 1) * static_cast<std::size_t>(picture.display_window.height);
-  auto filtered = filtered_rows(picture, form);
   const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> deflate(
       libdeflate_alloc_compressor(std::clamp(level, 0, 9)), &libdeflate_free_compressor);
   if (!deflate) throw std::bad_alloc();
   const std::size_t room = libdeflate_zlib_compress_bound(deflate.get(), size);
-  const auto packed = std::make_unique_for_overwrite<std::uint8_t[]>(room);
-  const std::size_t length = libdeflate_zlib_compress(deflate.get(), filtered.get(), size, packed.get(), room);
-  filtered.reset();
+  WorkMemory own;
+  if (!memory) memory = &own;
+  WorkMemory::Block block = memory->take(size + room);
+  std::uint8_t *filtered = block.bytes.get(), *packed = filtered + size;
+  filter_rows(picture, form, filtered);
+  const std::size_t length = libdeflate_zlib_compress(deflate.get(), filtered, size, packed, room);
   for (std::size_t i = 0; i < length && !out.failure(); i += kChunkBytes)
     write_chunk(out, "IDAT", &packed[i], std::min(kChunkBytes, length - i));
+  memory->give(std::move(block));
   write_chunk(out, "IEND", "");
   return {};
 }

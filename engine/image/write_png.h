@@ -9,7 +9,8 @@
 namespace afterglow {
 
 /// The display window as 8- or 16-bit RGB or straight RGBA. `level`: libdeflate's, 0 to 9. The bytes do not depend
-/// on the number of threads. Takes up to twice the bytes of the samples besides. Failures are found in `out`.
-Result<void> write_png(const Picture& picture, const StripForm& form, OutputFile& out, int level);
+/// on the number of threads. Takes up to twice the bytes of the samples from `memory` (null: anew). Failures are found
+/// in `out`.
+Result<void> write_png(const Picture& picture, const StripForm& form, OutputFile& out, int level, WorkMemory* memory);
 
 }  // namespace afterglow

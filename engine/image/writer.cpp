@@ -63,7 +63,7 @@ Result<void> write_format(const Picture& picture, const OutputFormat& format, Ou
     case OutputKind::exr:
       break;
     case OutputKind::png:
-      return write_png(picture, strip_form(picture, format, options), out, options.png_level);
+      return write_png(picture, strip_form(picture, format, options), out, options.png_level, options.memory);
     case OutputKind::cineon:
       return write_cineon(picture, strip_form(picture, format, options), out);
     case OutputKind::ppm:

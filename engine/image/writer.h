@@ -3,9 +3,14 @@
 // text).
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/diagnostics.h"
 #include "core/result.h"
@@ -13,6 +18,22 @@
 #include "image/picture.h"
 
 namespace afterglow {
+
+/// Memory of files that are done, for those that come. Holds no more blocks than were in use at a time. Thread-safe.
+class WorkMemory {
+ public:
+  struct Block {
+    std::unique_ptr<std::uint8_t[]> bytes;
+    std::size_t size = 0;
+  };
+  /// At least so many bytes; they may be anything.
+  Block take(std::size_t size);
+  void give(Block block);
+
+ private:
+  std::mutex mutex_;
+  std::vector<Block> free_;
+};
 
 enum class SampleType { automatic, half, float32, uint8, uint10, uint12, uint16 };
 
@@ -41,7 +62,8 @@ struct WriteOptions {
   std::optional<bool> dither = {};
   int dither_x = 0, dither_y = 0;  ///< where the picture's upper left pixel lies in the noise (≥ 0)
   VideoOptions video{};
-  bool keep_layers = false;  ///< EXR → EXR: copy all other channels and parts of `picture.facts`' file unchanged
+  WorkMemory* memory = nullptr;  ///< used by `write_picture` for what it makes of a picture; null: made anew
+  bool keep_layers = false;      ///< EXR → EXR: copy all other channels and parts of `picture.facts`' file unchanged
 };
 
 /// Scene formats (EXR, HDR, PFM) get scene-linear values and, for EXR, both windows; all others get the display window,

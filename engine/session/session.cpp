@@ -142,6 +142,7 @@ Result<void> Session::collect(Picture& picture) {
   if (s.frames.empty()) return Error{ErrorKind::other, "no frame is in flight"};
   State::Frame frame = std::move(s.frames.front());
   s.frames.pop_front();
+  std::vector<std::uint8_t> codes = std::move(picture.unorm8);
   picture = std::move(frame.picture);
   s.last = {};
   s.times.frame = {};
@@ -154,6 +155,7 @@ Result<void> Session::collect(Picture& picture) {
   // they are, exact whatever the storage format.
   HostResult& result = s.result;
   result.pixels = std::move(picture.color.pixels);
+  result.unorm8 = std::move(codes);
   result.keep_alpha = true;
   auto report = s.renderer->collect(result);
   picture.color.pixels = std::move(result.pixels);

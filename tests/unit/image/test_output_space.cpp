@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
+#include <vector>
 
 #include "image/output_space.h"
 
@@ -44,6 +46,23 @@ TEST(OutputSpace, HoldsWhatIsBeyond) {
     OutputSpace::of(space).encode(pixels, 2);
     for (const float value : pixels) EXPECT_TRUE(value >= 0 && value <= 1) << space.name << " " << value;
     EXPECT_TRUE(space.primaries.red != kRec709.red || pixels[0] == 1) << space.name;
+  }
+}
+
+/// Pixels beside each other are made together; alone they are not.
+TEST(OutputSpace, ManyPixelsAreTheSameBitsAsOne) {
+  std::vector<float> light;
+  for (const float special : {0.0f, -0.0f, 1e-45f, 1e-38f, 0x1p-40f, 0x1.000002p-40f, 0x1p10f, 1023.99f, 1e30f, -1e30f,
+                              INFINITY, -INFINITY, NAN, 1.0f, 0.18f})
+    light.insert(light.end(), 4, special);
+  for (float value = 0x1p-45f; value < 0x1p14f; value *= 1.0037f) light.push_back(value);
+  light.resize(light.size() / 4 * 4);
+  for (const InputSpace& space : input_spaces()) {
+    const OutputSpace& out = OutputSpace::of(space);
+    std::vector<float> together = light, alone = light;
+    out.encode(together.data(), together.size() / 4);
+    for (std::size_t i = 0; i < alone.size(); i += 4) out.encode(&alone[i], 1);
+    EXPECT_EQ(std::memcmp(together.data(), alone.data(), alone.size() * sizeof(float)), 0) << space.name;
   }
 }
 

@@ -46,11 +46,11 @@ int code_at(const PackedFrame& frame, std::size_t plane, int x, int y) {
 
 class Yuv : public testing::TestWithParam<const char*> {};
 
-TEST_P(Yuv, IsTheNearestCode) {
-  const PixelLayout& layout = *find_pixel_layout(GetParam());
-  const int width = 22, height = 14;
+void expect_nearest_codes(const PixelLayout& layout, int width, int height) {
   const PackRules rules{&layout, find_output_space("srgb").value(), kBt709Luma, false};
-  const PackedFrame frame = pack_frame(picture_of(width, height, layout.alpha), rules);
+  // Memory of another frame may hold anything.
+  const PackedFrame frame =
+      pack_frame(picture_of(width, height, layout.alpha), rules, std::vector<std::uint8_t>(1000, 77));
   const double scale = 1 << (layout.bits - 8);
   const auto yuv = [&](int x, int y) -> std::array<double, 3> {
     const auto v = stored_of(std::clamp(x, 0, width - 1), std::clamp(y, 0, height - 1), layout.alpha);
@@ -79,6 +79,10 @@ TEST_P(Yuv, IsTheNearestCode) {
         ASSERT_NEAR(code_at(frame, c, x, y), (128 + 224 * sum) * scale, off) << x << "," << y << " " << c;
       }
 }
+
+TEST_P(Yuv, IsTheNearestCode) { expect_nearest_codes(*find_pixel_layout(GetParam()), 22, 14); }
+/// Made in several bands, whose rows of chroma look over their edges.
+TEST_P(Yuv, LargeOnesAreTheNearestCodesToo) { expect_nearest_codes(*find_pixel_layout(GetParam()), 402, 301); }
 
 INSTANTIATE_TEST_SUITE_P(All, Yuv,
                          testing::Values("yuv420p", "yuv422p", "yuv444p", "yuv420p10", "yuv422p12", "yuv444p16",

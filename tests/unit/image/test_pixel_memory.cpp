@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include "image/writer.h"
 #include "make_files.h"
 #include "temporary_folder.h"
 
@@ -27,6 +28,40 @@ TEST(PixelMemory, OtherSizesAreLetGo) {
   EXPECT_EQ(memory.take(100).size(), 100u);
   memory.give(std::move(large));
   EXPECT_EQ(memory.take(200).size(), 200u);
+}
+
+TEST(PixelMemory, KeepsCodesOfPicturesOfThatSize) {
+  PixelMemory memory;
+  EXPECT_TRUE(memory.take_codes().empty());
+  Picture picture, other;
+  picture.color.pixels = memory.take(100);
+  picture.unorm8.resize(100);
+  other.unorm8.resize(50);
+  const std::uint8_t* codes = picture.unorm8.data();
+  memory.give(std::move(picture));
+  memory.give(std::move(other));
+  EXPECT_EQ(memory.take_codes().data(), codes);
+  EXPECT_TRUE(memory.take_codes().empty());
+  Picture last;
+  last.unorm8.resize(100);
+  memory.give(std::move(last));
+  static_cast<void>(memory.take(60));  // another size is wanted
+  EXPECT_TRUE(memory.take_codes().empty());
+}
+
+TEST(WorkMemory, IsUsedAgainWhereItIsOfAboutThatSize) {
+  WorkMemory memory;
+  auto block = memory.take(100);
+  const std::uint8_t* first = block.bytes.get();
+  memory.give(std::move(block));
+  block = memory.take(80);
+  EXPECT_EQ(block.bytes.get(), first);
+  EXPECT_EQ(block.size, 100u);
+  memory.give(std::move(block));
+  EXPECT_EQ(memory.take(30).size, 30u);  // much smaller: the large one goes
+  block = memory.take(10);
+  memory.give(std::move(block));
+  EXPECT_EQ(memory.take(200).size, 200u);
 }
 
 /// Whatever was in it, pictures of every kind are read as into new memory.
