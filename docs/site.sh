@@ -17,6 +17,7 @@ pages=(
   "docs/looks.md|Looks"
   "docs/effects.md|Effects"
   "docs/composition.md|Composing looks"
+  "docs/player.md|The player"
   "docs/video.md|Videos"
   "docs/writing_effects.md|Writing an effect"
   "docs/tone_mapping.md|Tone curves"

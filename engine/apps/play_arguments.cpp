@@ -58,9 +58,10 @@ void PlayArguments::add_playing(CLI::App& app) {
       ->check(CLI::Range(0.5, 4.0))
       ->type_name("X")
       ->group(window);
-  app.add_option("--export", exports,
-                 "Where S writes the frame, full size: a file, a pattern like out.####.png, or a folder (default: "
-                 "NAME_graded.exr here)")
+  app.add_option(
+         "--export", exports,
+         "Where S writes the frame, and Ctrl+R the range, full size: a file, a pattern like out.####.png, a folder "
+         "or a video (default: NAME_graded.exr here)")
       ->type_name("OUTPUT")
       ->group(window);
   app.add_flag("--headless", headless, "Play without a window, and end")->group(alone);

@@ -27,6 +27,7 @@ Result<void> play_in_window(
   const auto start = Clock::now();
   install_interrupt_handler();
   AFTERGLOW_TRY(const auto window, DesktopWindow::create("Afterglow", options.size));
+  const DeviceOptions export_device = device_options;  // no window is shown on that
   device_options.presentation = window->presentation();
   AFTERGLOW_TRY(const auto device, Device::create(device_options, console.diagnostics()));
   player_options.wake = &DesktopWindow::wake;
@@ -36,7 +37,11 @@ Result<void> play_in_window(
     player->transport().set_speed(options.speed, player->now());
     if (!options.paused && player->footage().frames() > 1) player->transport().play(player->now());
     WindowOptions shown = window_options(options);
-    PlayParts parts(*player, player_options.preset, player_options.live.stack.preset, options.exports,
+    PlayParts parts(*player,
+                    {.preset = player_options.preset,
+                     .device = export_device,
+                     .stack = player_options.live.stack,
+                     .to = options.exports},
                     console.diagnostics());
     parts.add_to(shown);
     PlayedTimes times{.startup = milliseconds_since(start)};

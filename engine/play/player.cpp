@@ -324,6 +324,7 @@ double Player::now() const { return state_->now(); }
 Transport& Player::transport() { return state_->transport; }
 View& Player::view() { return state_->view; }
 const Footage& Player::footage() const { return *state_->footage; }
+const FootageOptions& Player::footage_options() const { return state_->options.footage; }
 LiveStack& Player::live() { return state_->first->live(); }
 LiveStack* Player::other() { return state_->second ? &state_->second->live() : nullptr; }
 const ShownFrame& Player::shown() const { return state_->shown; }

@@ -96,6 +96,7 @@ class Player {
   Transport& transport();
   View& view();
   const Footage& footage() const;
+  const FootageOptions& footage_options() const;  ///< what `footage` was opened with
   FrameState frame_state(int position) const;
   LiveStack& live();
   LiveStack* other();  ///< null without a second preset

@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "script/preset.h"
 #include "window/panel_row.h"
+#include "window/ui.h"
 
 namespace afterglow {
 
@@ -89,7 +90,7 @@ std::optional<std::string> EffectBrowser::draw(Ui& ui, const EffectLibrary& libr
       if (ImGui::Selectable(list[i]->name.c_str(), i == chosen_, ImGuiSelectableFlags_AllowDoubleClick)) {
         chosen_ = i;
         begin_ = true;  // Enter and the arrows go on from here
-        if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) chosen = list[i]->name;
+        if (double_clicked()) chosen = list[i]->name;
       }
       if (i == chosen_ && std::exchange(scroll_, false)) ImGui::SetScrollHereY();
     }

@@ -3,6 +3,7 @@
 // between fit and 1:1.
 #include <cmath>
 
+#include "window/ui.h"
 #include "window/window_app.h"
 
 namespace afterglow {
@@ -57,7 +58,7 @@ void WindowApp::navigate() {
   const bool wipe = drag_ == Drag::wipe || (drag_ == Drag::none && over_wipe(*at));
   if (wipe) ImGui::SetMouseCursor(view.wipe_vertical ? ImGuiMouseCursor_ResizeNS : ImGuiMouseCursor_ResizeEW);
   if (io.MouseWheel != 0) zoom_at(view, picture, window, *at, std::pow(kZoomStep, io.MouseWheel));
-  if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && !wipe) {
+  if (double_clicked() && !wipe) {
     if (view.fit) {
       zoom_at(view, picture, window, *at, 1 / fitting_zoom(picture, window));
       view.zoom = 1;

@@ -13,6 +13,8 @@ namespace afterglow {
 
 namespace {
 
+constexpr float kProbeWidth = 390;  // with its distance from the border
+
 void wrapped(ImU32 color, const std::string& text, float width) {
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::PushTextWrapPos(width);
@@ -150,6 +152,7 @@ void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area) {
 }
 
 void draw_probe_overlay(const Probe& probe, const Ui& ui, const OverlayArea& area, float above) {
+  if (area.size.x < ui.px(kProbeWidth)) return;  // it would lie over the panel
   begin_sheet("probe", {area.at.x + ui.px(14), area.at.y + area.size.y - ui.px(14) - above}, {0, 1}, ui,
               ImGuiWindowFlags_NoInputs);
   ImGui::PushFont(ui.mono);

@@ -15,6 +15,17 @@ void Panel::save(PanelPort& port) {
   if (!save_waits_) save_.save(port, bases_);
 }
 
+namespace {
+
+/// Names without an extension are presets; relative ones lie beside the one that is copied.
+std::filesystem::path copy_of(const std::filesystem::path& preset, const std::string& name) {
+  std::filesystem::path file = preset.parent_path() / name;
+  if (file.extension().empty()) file += ".lua";
+  return file;
+}
+
+}  // namespace
+
 std::string Panel::unsaved(PanelPort& port) const {
   if (save_.settling()) return {};
   const auto& edits = port.edits().edits();
@@ -68,7 +79,22 @@ void Panel::draw_windows(Ui& ui, PanelPort& port) {
   const ImVec2 size{std::min(ui.px(660), area.x * 0.95f), std::min(ui.px(480), area.y * 0.9f)};
   const auto effect = browser_.draw(ui, library_, {(area.x - size.x) / 2, (area.y - size.y) / 2}, size);
   if (effect) stack_.begin({StackEdit::Kind::add, *effect});
-  if (const auto file = save_as_.draw(ui, area)) save_.save_as(port, *file);
+  if (const auto name = save_as_.draw(ui, area)) save_.save_as(port, copy_of(save_.file(), *name));
+}
+
+void Panel::save_as() {
+  const std::filesystem::path folder = save_.file().parent_path();
+  NameDialog::Question question{.title = "Save preset as",
+                                .note = "In " + (folder.empty() ? "the current folder" : folder.string()),
+                                .name = free_name(save_.file()).filename().string(),
+                                .button = "Save",
+                                .in_the_way = {}};
+  question.in_the_way = [preset = save_.file()](const std::string& name) -> std::optional<std::string> {
+    std::error_code none;
+    const std::filesystem::path file = copy_of(preset, name);
+    return std::filesystem::exists(file, none) ? std::optional(file.filename().string()) : std::nullopt;
+  };
+  save_as_.open(std::move(question));
 }
 
 void Panel::read_library(PanelPort& port) {
@@ -114,21 +140,21 @@ void Panel::draw_head(Ui& ui, PanelPort& port) {
   if (small_button(ui, save_.busy() ? "Saving…" : "Save preset", "Write the changes into the preset's file (Ctrl+S)",
                    changed && !save_.busy()))
     save(port);
-  ImGui::SameLine();
+  beside("Save as…");
   if (small_button(ui, "Save as…", "Write the preset as it is now to another file, and go on with that (Ctrl+Shift+S)",
                    port.build() && !save_.busy()))
     save_as();
-  ImGui::SameLine();
+  beside("Undo save");
   if (small_button(ui, "Undo save", "The file as it was before the last save", save_.can_undo())) undo_save(port);
   if (small_button(ui, "Undo", "Ctrl+Z", edits.can_undo())) port.undo();
-  ImGui::SameLine();
+  beside("Redo");
   if (small_button(ui, "Redo", "Ctrl+Shift+Z", edits.can_redo())) port.redo();
-  ImGui::SameLine();
+  beside("Reset all");
   if (small_button(ui, "Reset all", "The stack and all settings as the file has them", changed)) {
     port.end_gesture();
     port.reset_all();
   }
-  ImGui::SameLine();
+  beside("Add effect");
   if (small_button(ui, stack_.busy() ? "Adding…###add" : "Add effect###add",
                    "Choose an effect to add to the stack (Ctrl+A)", port.build() && !stack_.busy()))
     add_effect(port);

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "window/effect_browser.h"
+#include "window/name_dialog.h"
 #include "window/panel_save.h"
 #include "window/panel_stack.h"
-#include "window/save_as.h"
 #include "window/ui.h"
 
 namespace afterglow {
@@ -32,7 +32,7 @@ class Panel {
   /// The cursor goes into the search field with the next draw.
   void search() { focus_search_ = true; }
   void add_effect(PanelPort& port);  ///< asks which
-  void save_as() { save_as_.open(save_.file()); }
+  void save_as();                    ///< asks where
   /// What is done to the entry that is chosen; says so where none is.
   enum class EntryAction { remove, duplicate, earlier, later, toggle, copy, paste };
   void act(Ui& ui, PanelPort& port, EntryAction action);
@@ -60,7 +60,7 @@ class Panel {
   bool draw_entry_head(Ui& ui, PanelPort& port, const StackEntry& entry, const std::string* skipped);
   void draw_entry_end(Ui& ui, PanelPort& port, const StackEntry& entry, bool changed);
   void draw_entry_menu(Ui& ui, PanelPort& port, const StackEntry& entry);
-  void draw_mask_menu(PanelPort& port, const StackEntry& entry);
+  void draw_mask_menu(const StackEntry& entry);
   const StackEntry* entry_named(PanelPort& port, const std::string& name) const;
   void copy_settings(Ui& ui, PanelPort& port, const StackEntry& entry);
   void paste_settings(Ui& ui, PanelPort& port, const StackEntry& entry);
@@ -71,7 +71,7 @@ class Panel {
   PanelSave save_;  // uses it
   EffectLibrary library_;
   EffectBrowser browser_;
-  SaveAs save_as_;
+  NameDialog save_as_;
   bool save_waits_ = false;  ///< for changes of the stack
   StackText text_;           ///< that the bases are of
   std::string chosen_;       ///< the entry that keys are about

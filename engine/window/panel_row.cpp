@@ -42,6 +42,13 @@ std::string setting_help(const SettingSchema& schema, const SettingHistory* hist
 
 }  // namespace
 
+void beside(const char* label) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float end =
+      ImGui::GetItemRectMax().x + style.ItemSpacing.x + ImGui::CalcTextSize(label).x + 2 * style.FramePadding.x;
+  if (end <= ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+}
+
 bool small_button(const Ui& ui, const char* label, const char* help, bool enabled) {
   ImGui::BeginDisabled(!enabled);
   const bool pressed = ImGui::SmallButton(label);

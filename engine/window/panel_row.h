@@ -21,6 +21,8 @@ struct PanelRow {
 /// Within the panel's window.
 void draw_row(Ui& ui, PanelPort& port, EditBases& bases, const PanelRow& row);
 
+/// The small button that comes next stands on the line of the last item, where it has room.
+void beside(const char* label);
 bool small_button(const Ui& ui, const char* label, const char* help, bool enabled = true);
 
 }  // namespace afterglow

@@ -6,10 +6,13 @@
 
 namespace afterglow {
 
-PlayParts::PlayParts(Player& player, const std::filesystem::path& preset, const PresetOptions& options,
-                     const std::filesystem::path& exports, Diagnostics& diagnostics)
-    : port_(player), preset_options_(options), export_(exports, diagnostics) {
-  panel_.emplace(preset, preset_options_);
+PlayParts::PlayParts(Player& player, const ExportSetup& setup, Diagnostics& diagnostics)
+    : player_(player),
+      port_(player),
+      preset_options_(setup.stack.preset),
+      export_(setup.to, diagnostics),
+      range_export_(setup, diagnostics) {
+  panel_.emplace(setup.preset, preset_options_);
 }
 
 void PlayParts::draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) const {
@@ -27,8 +30,35 @@ void PlayParts::draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size
   draw_transport_bar(ui, state, place, size);
 }
 
+void PlayParts::ask_for_range(Ui& ui) {
+  if (range_export_.busy()) return ui.say("an export is under way: " + range_export_.state());
+  NameDialog::Question question{
+      .title = "Export " + range_export_.range_text(player_),
+      .note = "A sequence (out.####.exr) or a video (out.mp4). The look is that of now, whatever changes meanwhile.",
+      .name = range_export_.proposed(player_),
+      .button = "Export",
+      .in_the_way = {}};
+  question.in_the_way = [this](const std::string& name) -> std::optional<std::string> {
+    const auto file = range_export_.in_the_way(player_, name);
+    return file ? std::optional(file->filename().string()) : std::nullopt;
+  };
+  range_name_.open(std::move(question));
+}
+
+void PlayParts::draw_dialogs(Ui& ui) {
+  if (const auto name = range_name_.draw(ui, ImGui::GetIO().DisplaySize)) range_export_.begin(player_, ui, *name);
+}
+
+std::string PlayParts::unsaved() {
+  const std::string changes = panel_->unsaved(port_);
+  if (!range_export_.busy()) return changes;
+  const std::string rest = "the rest of an export (" + range_export_.state() + ")";
+  return changes.empty() ? rest : changes + " and " + rest;
+}
+
 void PlayParts::draw_panel(Ui& ui, ImVec2 place, ImVec2 size) {
   export_.poll(ui);
+  range_export_.poll(player_, ui);
   panel_->draw(ui, port_, place, size);
 }
 
@@ -74,6 +104,7 @@ void PlayParts::add_to(WindowOptions& options) {
   options.panel = [this](Player&, Ui& ui, ImVec2 place, ImVec2 size) { draw_panel(ui, place, size); };
   options.hidden_panel = [this](Player&, Ui& ui) {
     export_.poll(ui);
+    range_export_.poll(player_, ui);
     panel_->turn(ui, port_);
   };
   options.export_frame = [this](Player& player, Ui& ui) { export_.begin(player, ui); };
@@ -83,7 +114,11 @@ void PlayParts::add_to(WindowOptions& options) {
   options.transport_height = [](const Ui& ui, float width) { return transport_bar_height(ui, width); };
   options.help = [](Player&, Ui& ui, ImVec2, ImVec2 size) { draw_help_sheet(ui, size); };
   options.save = [this](Player&, Ui&) { panel_->save(port_); };
-  options.unsaved = [this](Player&) { return panel_->unsaved(port_); };
+  options.unsaved = [this](Player&) { return unsaved(); };
+  options.dialogs = [this](Player&, Ui& ui) { draw_dialogs(ui); };
+  options.strip = [this](Player&, Ui& ui, ImVec2 place, ImVec2 size) { range_export_.draw(ui, place, size); };
+  options.strip_height = [this](const Ui& ui) { return range_export_.busy() ? ui.px(40) : 0; };
+  options.export_range = [this](Player&, Ui& ui) { ask_for_range(ui); };
   options.saving = [this] {
     const PanelSave& save = panel_->saving();
     if (panel_->busy()) return WindowOptions::Saving::busy;
@@ -94,9 +129,16 @@ void PlayParts::add_to(WindowOptions& options) {
     panel_->undo_save(port_);
   };
   options.edit_stack = [this](Player&, Ui& ui, Action action) { return edit_stack(ui, action); };
-  options.close_windows = [this] { return panel_->close_windows(); };
+  options.close_windows = [this] {
+    const bool open = range_name_.is_open();
+    range_name_.close();
+    return panel_->close_windows() || open;
+  };
   options.search = [this](Player&, Ui&) { panel_->search(); };
-  options.preset_opened = [this](const std::filesystem::path& preset) { panel_.emplace(preset, preset_options_); };
+  options.preset_opened = [this](const std::filesystem::path& preset) {
+    panel_.emplace(preset, preset_options_);
+    range_export_.preset_opened(preset);
+  };
 }
 
 }  // namespace afterglow

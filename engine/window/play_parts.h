@@ -7,6 +7,7 @@
 #include "window/frame_export.h"
 #include "window/panel.h"
 #include "window/player_port.h"
+#include "window/range_export.h"
 #include "window/run_window.h"
 
 namespace afterglow {
@@ -14,20 +15,24 @@ namespace afterglow {
 /// Gives a WindowOptions its parts. Must outlive the run_window that uses them, and be gone before the player.
 class PlayParts {
  public:
-  /// `preset`, `options`: as the player's preset is loaded.
-  /// `exports`: where frames are written, see FrameExport.
-  PlayParts(Player& player, const std::filesystem::path& preset, const PresetOptions& options,
-            const std::filesystem::path& exports, Diagnostics& diagnostics);
+  /// `setup`: as the player's preset is loaded, and where frames are written (FrameExport, RangeExport).
+  PlayParts(Player& player, const ExportSetup& setup, Diagnostics& diagnostics);
   void add_to(WindowOptions& options);
 
  private:
   void draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) const;
   bool edit_stack(Ui& ui, Action action);
+  void ask_for_range(Ui& ui);
+  void draw_dialogs(Ui& ui);
+  std::string unsaved();
   void draw_panel(Ui& ui, ImVec2 place, ImVec2 size);
+  Player& player_;
   PlayerPort port_;
   PresetOptions preset_options_;
   std::optional<Panel> panel_;
   FrameExport export_;
+  RangeExport range_export_;
+  NameDialog range_name_;
 };
 
 }  // namespace afterglow

@@ -35,8 +35,12 @@ struct WindowOptions {
   enum class Saving { busy, done, failed };
   std::function<Saving()> saving;                  ///< what has become of the last `save`
   std::function<void(Player&, Ui&)> export_frame;  ///< S
-  std::function<void(Player&, Ui&)> undo_save;     ///< takes back the last `save`
-  std::function<void(Player&, Ui&)> search;        ///< the keyboard goes to the panel's search
+  std::function<void(Player&, Ui&)> export_range;  ///< Ctrl+R: asks where; a field gets the keyboard
+  std::function<void(Player&, Ui&)> dialogs;       ///< drawn in each frame, over everything but the help
+  Part strip;                                      ///< between picture and transport, while it wants a height
+  std::function<float(const Ui&)> strip_height;
+  std::function<void(Player&, Ui&)> undo_save;  ///< takes back the last `save`
+  std::function<void(Player&, Ui&)> search;     ///< the keyboard goes to the panel's search
   /// Keys that are about the stack, and Save as. True: a field is about to get the keyboard.
   std::function<bool(Player&, Ui&, Action)> edit_stack;
   std::function<bool()> close_windows;             ///< Esc; false: nothing was open

@@ -94,6 +94,8 @@ constexpr Shortcut kShortcuts[] = {
     {Action::screenshot, GLFW_KEY_F12, kNone, "F12", "Window", "Write the window's contents to a PNG file"},
     {Action::export_frame, GLFW_KEY_S, kNone, "S", "Window",
      "Write the frame, whole and full size, as --export says (default: EXR)"},
+    {Action::export_range, GLFW_KEY_R, kControl, "Ctrl+R", "Window",
+     "Write the frames of the range as a sequence or a video"},
     {Action::help, GLFW_KEY_F1, kNone, "F1", "Window", "This sheet"},
     {Action::help, GLFW_KEY_SLASH, kShift, "?", "Window", "This sheet"},
     {Action::escape, GLFW_KEY_ESCAPE, kNone, "Esc", "Window", "Close the sheet, else leave full screen"},

@@ -63,6 +63,7 @@ enum class Action {
   full_screen,
   screenshot,
   export_frame,
+  export_range,
   reload,
   copy_message,
   undo,

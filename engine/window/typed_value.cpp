@@ -48,7 +48,7 @@ bool TypedValue::opened(ImGuiID item, const SettingSchema& schema, const Setting
   const float swatch = schema.type == SettingType::color ? ImGui::GetFrameHeight() : 0;
   if (!ImGui::IsMouseHoveringRect({from.x + swatch, from.y}, {from.x + width, from.y + ImGui::GetFrameHeight()}))
     return false;
-  const bool twice = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+  const bool twice = double_clicked();
   const bool control = ImGui::IsMouseClicked(ImGuiMouseButton_Left) && ImGui::GetIO().KeyCtrl;
   if (!twice && !control) return false;
   take_back_ = twice && pressed_ == item && !(before_ == value);

@@ -20,4 +20,9 @@ void focus_next_item() {
   ImGui::SetKeyboardFocusHere();
 }
 
+bool double_clicked() {
+  const int clicks = ImGui::GetMouseClickedCount(ImGuiMouseButton_Left);
+  return clicks > 0 && clicks % 2 == 0;
+}
+
 }  // namespace afterglow

@@ -66,6 +66,10 @@ struct Ui {
 /// Gives the keyboard to the item that is drawn next.
 void focus_next_item();
 
+/// True in the frame of a double click: the fourth of four quick clicks is one too, as two of them are two double
+/// clicks.
+bool double_clicked();
+
 /// The colours of the interface.
 namespace ui_color {
 inline constexpr ImU32 kText = IM_COL32(222, 224, 228, 255), kDim = IM_COL32(150, 154, 162, 255),

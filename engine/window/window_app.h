@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// State of a window that plays, for window_app.cpp (loop and frame), window_actions.cpp (keys) and navigation.cpp
-// (mouse).
+// State of a window that plays, for window_app.cpp (loop), window_frame.cpp (what is drawn), window_input.cpp (what
+// comes in), window_actions.cpp and view_actions.cpp (keys), navigation.cpp (mouse).
 #pragma once
 
 #include <memory>
@@ -81,6 +81,9 @@ class WindowApp {
   InputQueue input_;
   std::vector<std::filesystem::path> to_open_;
   int field_awaited_ = 0;  ///< frames that a field has to get the keyboard; what is typed waits for it
+
+  static constexpr int kSettle = 3;  ///< ImGui needs a frame to see an event and one to answer it
+  static constexpr double kHistogramPause = 0.1;
 
   Rect area_;  ///< of the frame buffer that the picture has
   ViewBackground background_ = ViewBackground::none;

@@ -252,6 +252,20 @@ TEST_F(Live, OverridesSurviveAndThoseThatDoNotFitAreLeftOut) {
   EXPECT_TRUE(live().status().warnings.empty());
 }
 
+TEST_F(Live, AnotherTextStandsInPlaceOfTheFiles) {
+  LiveOptions options;
+  options.follow = false;
+  open(options);
+  const float file = shown();
+  const std::string text = "local fx = require \"afterglow\"\nreturn fx.stack { fx.t { gain = 8 } }\n";
+  live().set_overrides({}, {}, std::make_shared<const std::string>(text));
+  EXPECT_EQ(settled(), 4.f);
+  live().set_overrides({{"t", "gain", "10"}});
+  EXPECT_EQ(settled(), 5.f) << "overrides alone leave the text";
+  live().set_overrides({}, {});
+  EXPECT_EQ(settled(), file);
+}
+
 TEST_F(Live, ShowsAnyImageOfTheGraph) {
   open_unwatched();
   EXPECT_EQ(shown(), 1.f);

@@ -13,7 +13,7 @@
 #include "window/help_sheet.h"
 #include "window/interface.h"
 #include "window/panel.h"
-#include "window/save_as.h"
+#include "window/name_dialog.h"
 #include "window/setting_widget.h"
 #include "window/shortcuts.h"
 #include "window/transport_bar.h"
@@ -187,7 +187,7 @@ class PanelTest : public ::testing::Test {
   }
   /// The button of the Save as dialog, which stands in the middle.
   bool find_in_dialog() {
-    const ImGuiID id = id_of({"Save preset as", "Save (Enter)"});
+    const ImGuiID id = id_of({"Save preset as###name", "###do"});
     for (float y = kHeight / 2 - 120; y < kHeight / 2 + 120; y += 6)
       for (float x = kWidth - 260; x < kWidth + 260; x += 12) {
         move(x, y);

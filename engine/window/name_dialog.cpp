@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "window/save_as.h"
+#include "window/name_dialog.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/text.h"
@@ -21,50 +22,47 @@ fs::path free_name(const fs::path& preset) {
   }
 }
 
-void SaveAs::open(const fs::path& preset) {
+void NameDialog::open(Question question) {
+  question_ = std::move(question);
   open_ = begin_ = true;
-  folder_ = preset.parent_path();
   asked_.clear();
   text_.fill(0);
-  free_name(preset).filename().string().copy(text_.data(), text_.size() - 1);
+  question_.name.copy(text_.data(), text_.size() - 1);
 }
 
-std::optional<fs::path> SaveAs::draw(Ui& ui, ImVec2 area) {
+std::optional<std::string> NameDialog::draw(Ui& ui, ImVec2 area) {
   if (!open_) return std::nullopt;
   ImGui::SetNextWindowPos({area.x / 2, area.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
   constexpr int kFlags = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                          ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings;
-  std::optional<fs::path> chosen;
-  if (ImGui::Begin("Save preset as", &open_, kFlags)) {
+  std::optional<std::string> chosen;
+  if (ImGui::Begin((question_.title + "###name").c_str(), &open_, kFlags)) {
     const float width = std::min(ui.px(420), area.x * 0.9f);
     if (std::exchange(begin_, false)) focus_next_item();
     ImGui::SetNextItemWidth(width);
     const bool entered = ImGui::InputText("##file", text_.data(), text_.size(),
                                           ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     const bool left = ImGui::IsItemDeactivated() && !entered && !ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+    const bool asks = !asked_.empty();
+    const std::string note = asks ? fmt::format("{} exists: Enter again replaces it", over_) : question_.note;
     ImGui::PushTextWrapPos(width);
-    if (asked_.empty()) {
-      ImGui::TextDisabled("In %s", folder_.empty() ? "the current folder" : folder_.string().c_str());
-    } else {
-      ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kWarning);
-      ImGui::TextWrapped("%s exists: Enter again replaces it", asked_.filename().string().c_str());
-      ImGui::PopStyleColor();
-    }
+    ImGui::PushStyleColor(ImGuiCol_Text, asks ? ui_color::kWarning : ui_color::kDim);
+    ImGui::TextUnformatted(note.c_str());
+    ImGui::PopStyleColor();
     ImGui::PopTextWrapPos();
-    const bool pressed = ImGui::Button("Save (Enter)");
+    const bool pressed = ImGui::Button((question_.button + " (Enter)###do").c_str());
     ImGui::SameLine();
     if (ImGui::Button("Go back (Esc)") || left) open_ = false;
     const std::string name = trim(text_.data());
     if ((entered || pressed) && !name.empty()) {
-      fs::path file = folder_ / name;
-      if (file.extension().empty()) file += ".lua";
-      std::error_code none;
-      if (fs::exists(file, none) && file != asked_) {
-        asked_ = file;
+      const auto over = question_.in_the_way ? question_.in_the_way(name) : std::nullopt;
+      if (over && name != asked_) {
+        asked_ = name;
+        over_ = *over;
         begin_ = ui.field_opens = true;  // the field keeps the keyboard
         ui.again();
       } else {
-        chosen = file;
+        chosen = name;
         open_ = false;
       }
     }

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// What keys do to how the picture is looked at.
+#include <algorithm>
+
+#include "window/window_app.h"
+
+namespace afterglow {
+
+namespace {
+
+constexpr double kExposureStep = 0.25, kMostExposure = 16;
+
+}  // namespace
+
+bool WindowApp::act_on_view(Action action) {
+  View& view = player_.view();
+  const Size picture = player_.images().picture, window = picture_window();
+  const Point middle{window.width / 2.0, window.height / 2.0};
+  Ui& ui = interface_->ui();
+  switch (action) {
+    case Action::fit:
+      fit(view);
+      return true;
+    case Action::one_to_one:
+      one_to_one(view, picture, window);
+      return true;
+    case Action::zoom_in:
+      zoom_at(view, picture, window, cursor().value_or(middle), 1.25);
+      return true;
+    case Action::zoom_out:
+      zoom_at(view, picture, window, cursor().value_or(middle), 1 / 1.25);
+      return true;
+    case Action::smooth:
+      view.smooth = !view.smooth;
+      ui.say(view.smooth ? "magnified: linear" : "magnified: nearest pixel");
+      return true;
+    case Action::compare:
+      next_wipe();
+      return true;
+    case Action::flip:
+      compare_by(CompareBy::flip);
+      return true;
+    case Action::side_by_side:
+      compare_by(CompareBy::side_by_side);
+      return true;
+    case Action::difference:
+      compare_by(CompareBy::difference);
+      return true;
+    case Action::turn_wipe:
+      view.wipe_vertical = !view.wipe_vertical;
+      if (!wipes(view)) ui.say("nothing is wiped: W does");
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Off, what went in, the other preset. From another kind of comparison: the same by a wipe.
+void WindowApp::next_wipe() {
+  View& view = player_.view();
+  if (view.compare != Compare::none && view.by != CompareBy::wipe) {
+    view.by = CompareBy::wipe;
+  } else {
+    view.by = CompareBy::wipe;
+    view.compare = view.compare == Compare::none                        ? Compare::source
+                   : view.compare == Compare::source && player_.other() ? Compare::other
+                                                                        : Compare::none;
+  }
+  interface_->ui().say(comparison_text(view));
+}
+
+/// With the other preset where there is one, else with what went in; the key pressed again ends it.
+void WindowApp::compare_by(CompareBy by) {
+  View& view = player_.view();
+  if (view.compare != Compare::none && view.by == by) {
+    view.compare = Compare::none;
+  } else if (view.compare == Compare::none) {
+    view.compare = player_.other() ? Compare::other : Compare::source;
+  }
+  view.by = by;
+  interface_->ui().say(comparison_text(view));
+}
+
+bool WindowApp::act_on_picture(Action action) {
+  View& view = player_.view();
+  Ui& ui = interface_->ui();
+  // A second press takes all channels again.
+  const auto channel = [&](ViewChannel wanted) {
+    view.channel = view.channel == wanted ? ViewChannel::color : wanted;
+    return true;
+  };
+  const auto expose = [&](double value) {
+    view.exposure = std::clamp(value, -kMostExposure, kMostExposure);
+    return true;
+  };
+  switch (action) {
+    case Action::color:
+      view.channel = ViewChannel::color;
+      return true;
+    case Action::red:
+      return channel(ViewChannel::red);
+    case Action::green:
+      return channel(ViewChannel::green);
+    case Action::blue:
+      return channel(ViewChannel::blue);
+    case Action::alpha:
+      return channel(ViewChannel::alpha);
+    case Action::luminance:
+      return channel(ViewChannel::luminance);
+    case Action::exposure_up:
+      return expose(view.exposure + kExposureStep);
+    case Action::exposure_down:
+      return expose(view.exposure - kExposureStep);
+    case Action::exposure_reset:
+      return expose(0);
+    case Action::false_color:
+      view.false_color = !view.false_color;
+      return true;
+    case Action::background:
+      background_ = static_cast<ViewBackground>((static_cast<int>(background_) + 1) % 3);
+      return true;
+    case Action::next_image:
+      show_neighbour(1);
+      return true;
+    case Action::previous_image:
+      show_neighbour(-1);
+      return true;
+    case Action::result_image:
+      player_.show("");
+      return true;
+    case Action::histogram:
+      ui.show_histogram = !ui.show_histogram;
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// The result comes behind the last image between passes, and before the first.
+void WindowApp::show_neighbour(int by) {
+  std::vector<std::string> images = player_.live().images();
+  images.emplace_back();
+  const auto at = std::ranges::find(images, player_.live().shown());
+  const auto count = static_cast<int>(images.size());
+  const int index = at == images.end() ? count - 1 : static_cast<int>(at - images.begin());
+  player_.show(images[static_cast<std::size_t>((index + by + count) % count)]);
+}
+
+}  // namespace afterglow

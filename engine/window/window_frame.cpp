@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+// A frame of a window that plays: the interface, the picture, what is drawn over it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "window/frame_field.h"
+#include "window/window_app.h"
+
+namespace afterglow {
+
+namespace {
+
+constexpr float kPanelWidth = 376, kTransportHeight = 78;
+constexpr double kRetry = 0.02;  // when the window could not be drawn to
+
+ViewImage view_image(const DeviceImage& image) { return {image.binding.view, image.layout, image.binding.size}; }
+
+}  // namespace
+
+Result<void> WindowApp::follow_scale() {
+  if (interface_->set_scale(options_.scale.value_or(window_.content_scale()))) {
+    AFTERGLOW_CHECK(painter_->take_fonts());
+  }
+  return {};
+}
+
+Result<void> WindowApp::draw() {
+  AFTERGLOW_CHECK(follow_scale());
+  const Size window = window_.framebuffer();
+  if (window.area() == 0) return {};
+  Ui& ui = interface_->ui();
+  ui.now = player_.now();
+  ui.hover.begin_frame();
+  interface_->begin();
+  draw_parts(window);
+  navigate();
+  AFTERGLOW_CHECK(draw_overlays());
+  draw_frame_field();
+  if (options_.dialogs) options_.dialogs(player_, ui);
+  quit_when_saved();
+  if (quitting_ == Quitting::asked) {
+    const std::string changes = options_.unsaved(player_) + " would be lost.";
+    if (const auto answer = draw_quit_dialog(ui, changes, ImGui::GetIO().DisplaySize)) answer_quit(*answer);
+  }
+  if (options_.help && ui.show_help) options_.help(player_, ui, {0, 0}, ImGui::GetIO().DisplaySize);
+  const ImDrawData& data = interface_->end();
+  AFTERGLOW_TRY(const auto drawn, painter_->paint(window, view_frames(), data));
+  last_draw_ = player_.now();
+  if (drawn == Swapchain::Drawn::yes && redraw_ > 0) --redraw_;
+  input_seen();
+  if (drawn != Swapchain::Drawn::yes) {
+    last_draw_ += kRetry;
+    return {};
+  }
+  if (!step_shown_) {
+    step_shown_ = true;
+    player_.presented();
+    const ShownFrame& shown = player_.shown();
+    const std::string name = shown.name.empty() ? "nothing" : shown.name;
+    if (shown.unreadable) {
+      diagnostics_.note(fmt::format("unreadable {}: position {}: {}", name, shown.position, shown.unreadable->text()));
+    } else {
+      diagnostics_.note(fmt::format("shown {}: position {}, generation {}, window {}x{}{}", name, shown.position,
+                                    noted_generation_, window.width, window.height,
+                                    shown.held ? fmt::format(", in place of frame {}", shown.number) : ""));
+    }
+  }
+  return {};
+}
+
+/// The panel at the right, the transport at the bottom, the rest is the picture's.
+void WindowApp::draw_parts(Size window) {
+  Ui& ui = interface_->ui();
+  const ImGuiIO& io = ImGui::GetIO();
+  const float width = io.DisplaySize.x, height = io.DisplaySize.y;
+  const float panel = options_.panel && ui.show_panel ? std::min(ui.px(kPanelWidth), width * 0.6f) : 0;
+  const float wanted =
+      options_.transport_height ? options_.transport_height(ui, width - panel) : ui.px(kTransportHeight);
+  const float bar = options_.transport && ui.show_transport ? std::min(wanted, height * 0.5f) : 0;
+  player_.time_kernels(panel > 0);  // it shows what effects cost
+  if (panel > 0) {
+    options_.panel(player_, ui, {width - panel, 0}, {panel, height});
+  } else if (options_.hidden_panel) {
+    options_.hidden_panel(player_, ui);
+  }
+  if (bar > 0) options_.transport(player_, ui, {0, height - bar}, {width - panel, bar});
+  const float strip = options_.strip && options_.strip_height ? options_.strip_height(ui) : 0;
+  if (strip > 0) options_.strip(player_, ui, {0, height - bar - strip}, {width - panel, strip});
+  const float sx = io.DisplayFramebufferScale.x, sy = io.DisplayFramebufferScale.y;
+  area_ = {0, 0, std::max(window.width - static_cast<int>(std::lround(panel * sx)), 1),
+           std::max(window.height - static_cast<int>(std::lround((bar + strip) * sy)), 1)};
+  ui.picture_window = picture_window();
+}
+
+std::vector<ViewFrame> WindowApp::view_frames() const {
+  const PlayerImages images = player_.images();
+  if (images.result.binding.view == VK_NULL_HANDLE) return {};
+  ViewFrame frame;
+  frame.shown = view_image(images.result);
+  frame.view = player_.view();
+  std::optional<ViewImage> compared;
+  if (frame.view.compare == Compare::source && images.source.binding.view) compared = view_image(images.source);
+  if (frame.view.compare == Compare::other && images.other) compared = view_image(*images.other);
+  frame.picture = images.picture;
+  frame.area = area_;
+  frame.background = background_;
+  frame.pixel_scale = interface_->ui().scale;
+  if (!compared) return {frame};
+  switch (frame.view.by) {
+    case CompareBy::flip:
+      frame.shown = *compared;
+      return {frame};
+    case CompareBy::side_by_side: {
+      const Size half = picture_window();
+      ViewFrame left = frame;
+      left.shown = *compared;
+      left.area = {area_.x, area_.y, half.width, half.height};
+      frame.area = {area_.x + area_.width - half.width, area_.y, half.width, half.height};
+      return {left, frame};
+    }
+    default:
+      frame.compared = compared;
+      return {frame};
+  }
+}
+
+Result<void> WindowApp::draw_overlays() {
+  AFTERGLOW_CHECK(look_under_cursor());
+  AFTERGLOW_CHECK(look_at_histogram());
+  const Ui& ui = interface_->ui();
+  const OverlayArea area{ImVec2(0, 0),
+                         ImVec2(static_cast<float>(area_.width) / ImGui::GetIO().DisplayFramebufferScale.x,
+                                static_cast<float>(area_.height) / ImGui::GetIO().DisplayFramebufferScale.y)};
+  const OverlayPicture place = overlay_picture();
+  draw_frame_mark(player_, ui, place, area);
+  if (under_cursor_.probe) draw_pixel_mark(under_cursor_.probe->pixel, ui, place);
+  draw_state_overlay(player_, ui, area);
+  if (ui.show_stats) draw_stats_overlay(player_, ui, area);
+  if (ui.show_histogram && spread_.histogram) draw_histogram_overlay(*spread_.histogram, ui, area);
+  const float below = draw_error_overlay(player_, interface_->ui(), area);
+  if (under_cursor_.probe) draw_probe_overlay(*under_cursor_.probe, ui, area, below);
+  draw_message_overlay(ui, area);
+  return {};
+}
+
+void WindowApp::draw_frame_field() {
+  Ui& ui = interface_->ui();
+  if (!ui.show_frame_field) return;
+  const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+  const auto text = afterglow::draw_frame_field(
+      ui, {static_cast<float>(area_.width) / scale.x / 2, static_cast<float>(area_.height) / scale.y * 0.75f});
+  if (!text || text->empty()) return;
+  Transport& t = player_.transport();
+  const Footage& footage = player_.footage();
+  const auto to =
+      position_named(*text, t.position(), t.frames(), t.fps(), [&](int at) { return footage.frame(at).number; });
+  if (to) {
+    t.go_to(*to, player_.now());
+  } else {
+    ui.say("'" + *text + "' is no frame: 1001, +12, -3 or 00:01:12");
+  }
+  redraw_ = kSettle;
+}
+
+OverlayPicture WindowApp::overlay_picture() const {
+  const Size picture = player_.images().picture, window = picture_window();
+  OverlayPicture out{.place = placement(player_.view(), picture, window), .picture = picture, .window = window};
+  out.right = area_.width - window.width;
+  const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+  out.pixel = {1 / scale.x, 1 / scale.y};
+  return out;
+}
+
+Result<void> WindowApp::look_under_cursor() {
+  const auto at = cursor();
+  const Size picture = player_.images().picture;
+  const auto pixel = at && picture.area() > 0 ? pixel_at(player_.view(), picture, picture_window(), *at) : std::nullopt;
+  if (pixel == under_cursor_.pixel && under_cursor_.turn == turn_) return {};
+  under_cursor_ = {pixel, turn_, std::nullopt};
+  if (!pixel) return {};
+  AFTERGLOW_TRY(under_cursor_.probe, player_.probe(*pixel));
+  return {};
+}
+
+/// Reads the whole picture back: not for each frame while playing.
+Result<void> WindowApp::look_at_histogram() {
+  const double now = player_.now();
+  if (!interface_->ui().show_histogram || spread_.turn == turn_ || now < spread_.when + kHistogramPause) return {};
+  if (player_.images().result.binding.view == VK_NULL_HANDLE) return {};
+  AFTERGLOW_TRY(spread_.histogram, player_.histogram());
+  spread_.turn = turn_;
+  spread_.when = now;
+  return {};
+}
+
+}  // namespace afterglow

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// Ranges that a user exports from the window: what is written, with which look, and what is left of one that is
+// cancelled.
+#include "play_window_test.h"
+
+namespace afterglow {
+namespace {
+
+class PlayExport : public PlayWindow {
+ protected:
+  std::array<float, 4> pixel(const std::string& name) {
+    Diagnostics nowhere;
+    const auto picture = read_picture(folder_ / name, {}, nowhere);
+    if (!picture) {
+      ADD_FAILURE() << picture.error().text();
+      return {};
+    }
+    std::array<float, 4> out{};
+    std::copy_n(picture->color.at(10, 10), 4, out.begin());
+    return out;
+  }
+  /// Files whose names begin so.
+  int files(const std::string& begin) {
+    int count = 0;
+    for (const auto& file : fs::directory_iterator(folder_))
+      count += file.path().filename().string().starts_with(begin);
+    return count;
+  }
+  void open_many(int frames) {
+    write_preset("{ 1, 0, 0 }");
+    for (int frame = 4; frame <= frames; ++frame)
+      fs::create_hard_link(folder_ / "shot.0001.exr", folder_ / fmt_name(frame));
+    play({"look.lua", "shot.####.exr", "--paused"});
+    ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  }
+  static std::string fmt_name(int frame) {
+    std::string number = std::to_string(frame);
+    return "shot." + std::string(4 - number.size(), '0') + number + ".exr";
+  }
+  void begin_export(const std::string& name) {
+    ASSERT_TRUE(user("mousemove 400 300 key ctrl+r type " + name));
+    ASSERT_TRUE(user("key Return"));
+    ASSERT_TRUE(program_->wait_for("export: begun"));
+  }
+};
+
+TEST_F(PlayExport, TheRangeIsWrittenWithTheLookOfItsBeginning) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.####.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  ASSERT_TRUE(user("mousemove 400 300 key Right"));
+  ASSERT_TRUE(program_->wait_for("position 1"));
+  ASSERT_TRUE(user("key i"));
+  // The file is broken meanwhile: what was on screen is what is exported.
+  std::ofstream(folder_ / "look.lua") << "return {";
+  ASSERT_TRUE(program_->wait_for("reload: failed"));
+  ASSERT_NO_FATAL_FAILURE(begin_export("out.####.exr"));
+  write_preset("{ 0, 1, 0 }");
+  EXPECT_TRUE(program_->wait_for("export: 2 frames written to out.####.exr"));
+  EXPECT_EQ(files("out."), 2);
+  for (const char* name : {"out.0002.exr", "out.0003.exr"}) {
+    EXPECT_NEAR(pixel(name)[0], 0.5, 1e-3) << name;
+    EXPECT_NEAR(pixel(name)[1], 0, 1e-3) << name;
+  }
+  EXPECT_TRUE(until_color(kX, kY, kGreen)) << "and playing has gone on";
+  // A second one over it is asked about; Escape writes nothing.
+  ASSERT_TRUE(user("key ctrl+r type out.####.exr"));
+  ASSERT_TRUE(user("key Return"));
+  ASSERT_TRUE(user("key Escape"));
+  ASSERT_TRUE(user("key p"));
+  ASSERT_NO_FATAL_FAILURE(begin_export("all.####.exr"));
+  EXPECT_TRUE(program_->wait_for("export: 3 frames written to all.####.exr"));
+  EXPECT_NEAR(pixel("out.0002.exr")[0], 0.5, 1e-3) << "as it was";
+  EXPECT_NEAR(pixel("all.0001.exr")[1], 0.5, 1e-3);
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
+TEST_F(PlayExport, ChangesOfThePanelArePartOfIt) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.####.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  ASSERT_TRUE(user("mousemove 400 300 key Page_Down key Delete"));
+  ASSERT_TRUE(until_color(kX, kY, kGray));
+  ASSERT_NO_FATAL_FAILURE(begin_export("out.####.exr"));
+  EXPECT_TRUE(program_->wait_for("export: 3 frames written"));
+  EXPECT_NEAR(pixel("out.0001.exr")[1], 0.5, 1e-3);
+  ASSERT_TRUE(user("key q"));
+  ASSERT_TRUE(program_->wait_for("asked whether to save"));
+  ASSERT_TRUE(user("key d"));
+  expect_clean_end();
+}
+
+TEST_F(PlayExport, ClosingAsksAndLeavesNothingHalfWritten) {
+  ASSERT_NO_FATAL_FAILURE(open_many(3000));
+  ASSERT_NO_FATAL_FAILURE(begin_export("out.mp4"));
+  ASSERT_TRUE(program_->wait_for("frames done"));
+  ASSERT_TRUE(user("key q"));
+  ASSERT_TRUE(program_->wait_for("asked whether to save"));
+  ASSERT_TRUE(user("key d"));
+  expect_clean_end();
+  EXPECT_EQ(files("out"), 0) << "no video, and no part of one";
+  EXPECT_EQ(files(".out"), 0);
+}
+
+TEST_F(PlayExport, TheButtonCancels) {
+  ASSERT_NO_FATAL_FAILURE(open_many(3000));
+  ASSERT_NO_FATAL_FAILURE(begin_export("out.####.exr"));
+  ASSERT_TRUE(program_->wait_for("frames done"));
+  EXPECT_TRUE(until([&] {
+    return user("mousemove 860 677 click 1") && program_->printed().find("export cancelled") != std::string::npos;
+  }));
+  const int written = files("out.");
+  EXPECT_GT(written, 0);
+  EXPECT_LT(written, 3000);
+  for (const auto& file : fs::directory_iterator(folder_))
+    if (const std::string name = file.path().filename().string(); name.starts_with("out.")) {
+      Diagnostics nowhere;
+      EXPECT_TRUE(read_picture(file.path(), {}, nowhere)) << name << " is whole";
+    }
+  EXPECT_EQ(files(".out"), 0);
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
+}  // namespace
+}  // namespace afterglow
