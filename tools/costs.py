@@ -32,9 +32,9 @@ def entry(name):
 
 
 def picture_of(name, usual):
-    """The picture that the effect's example asks for by motion vectors; else the usual one."""
-    asked = re.search(r"^-- input: (\S*_move\S*)", example(name), re.M)
-    return os.path.join(HERE, asked[1]) if asked else usual
+    """A frame with motion vectors for effects whose example asks for the moving alley; else the usual picture."""
+    moves = re.search(r"^-- input: \S*alley_(move|shot)", example(name), re.M)
+    return os.path.join(HERE, "tests/images/showcase/alley_move.exr") if moves else usual
 
 
 def effects():

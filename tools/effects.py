@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """What each effect costs, how near its previews are, and what becomes of soft edges: one document, made by the program alone.
 
-    tools/effects.py PROGRAM [EFFECT ...] [-o docs/benchmarks/effects.md] [--repeat 7]
+    tools/effects.py PROGRAM [EFFECT ...] [-o docs/benchmarks/effects.md] [--repeat 7] [--rounds 2]
 
 It needs Python's own library and nothing else. Takes some minutes; costs mean something on a machine that does nothing besides.
 """
@@ -28,7 +28,7 @@ Made by `tools/effects.py PROGRAM -o docs/benchmarks/effects.md`, which needs th
 of [docs/effects](../effects).
 
 - **Cost**: time of a steady frame at 1920×1080 over that of a pass that copies the picture, on the alley at night (motion blur and taa: on the frame with
-  motion vectors); smallest and largest of {rounds} rounds.
+  motion vectors); smallest and largest of {rounds} rounds. Below 0.05 nothing ran.
 - **Preview**: RMS between a run at a third of the size (`run --size`) and the whole result scaled down, both behind a tone curve, over that of the curve alone on that
   picture ({alone:.4f} on the alley): 1 is as near as a picture that is scaled first can come. Grain and glitches are another pattern at another size.
 - **Alpha**: a picture with alpha from 1/64 to 1 goes through. *kept*: alpha comes out bit for bit. *colour*: for effects that work on each pixel by itself,
@@ -143,7 +143,7 @@ def main():
     parser.add_argument("effects", nargs="*")
     parser.add_argument("-o", "--output")
     parser.add_argument("--repeat", default="7")
-    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--rounds", type=int, default=2)
     a = parser.parse_args()
     names = a.effects or costs.effects()
     rounds = [costs.measure(a.program, names, WHOLE, a.repeat) for _ in range(a.rounds)]
@@ -167,10 +167,11 @@ def main():
             by_itself = look_of(name, costs.entry(name))
             kept, colour = soft_edges(a.program, by_itself, opaque, soft, folder, works_by_pixel(a.program, by_itself))
             least, most = min(r[name] for r in rounds), max(r[name] for r in rounds)
-            rows.append(f"| `{name}` | {least:.1f} to {most:.1f} | {'grain' if name in GRAIN else f'{near:.2f}'} | "
+            cost = f"{least:.1f}" if f"{least:.1f}" == f"{most:.1f}" else f"{least:.1f} to {most:.1f}"
+            rows.append(f"| `{name}` | {cost} | {'grain' if name in GRAIN else f'{near:.2f}'} | "
                         f"{'kept' if kept else 'changed'} | {'' if colour is None else f'{colour:.0e}'} |\n")
             print(rows[-1], end="", file=sys.stderr, flush=True)
-    text = HEAD.format(device=device, rounds=a.rounds, alone=alone.get(costs.PICTURE, 0)) + "".join(rows)
+    text = HEAD.format(device=f"{device[0]['name']}, {device[0]['driver']}", rounds=a.rounds, alone=alone.get(costs.PICTURE, 0)) + "".join(rows)
     if a.output:
         with open(a.output, "w", encoding="utf-8") as file:
             file.write(text)

@@ -80,6 +80,7 @@ void Panel::draw_windows(Ui& ui, PanelPort& port) {
   const auto effect = browser_.draw(ui, library_, {(area.x - size.x) / 2, (area.y - size.y) / 2}, size);
   if (effect) stack_.begin({StackEdit::Kind::add, *effect});
   if (const auto name = save_as_.draw(ui, area)) save_.save_as(port, copy_of(save_.file(), *name));
+  if (stack_.busy() || save_.busy()) ui.again();  // the next turn takes it on
 }
 
 void Panel::save_as() {

@@ -143,6 +143,7 @@ void RangeExport::begin(Player& player, Ui& ui, const std::string& output) {
   total_ = frames_of(player).size();
   running_ = std::async(std::launch::async, [this, request = std::move(*wanted)] { return run(request); });
   ui.say("exporting " + range_text(player) + " to " + output);
+  ui.again();
   diagnostics_.note("export: begun, to " + output);
 }
 
