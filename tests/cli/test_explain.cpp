@@ -88,6 +88,20 @@ TEST_F(Explain, AsJson) {
   EXPECT_EQ(out.at("entries").at(0).at("state"), "skipped");
 }
 
+TEST_F(Explain, WhatIsMadeOnce) {
+  write("dirt.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.lens_dirt {} }\n");
+  const Outcome outcome = run({"explain", "dirt.lua"});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
+  EXPECT_THAT(outcome.out, ContainsRegex("lens_dirt\\.spots +sample [^ ]+, runs, once: it depends on settings and "
+                                         "size alone\n"));
+  const json explained = parsed({"explain", "dirt.lua", "--format", "json"});
+  for (const json& pass : explained.at("entries").at(0).at("passes"))
+    EXPECT_EQ(pass.value("once", false), pass["name"] == "lens_dirt.spots") << pass["name"];
+  const json graph = parsed({"graph", "dirt.lua", "--format", "json"});
+  for (const json& kernel : graph.at("kernels"))
+    EXPECT_EQ(kernel.value("once", false), kernel["name"] == "lens_dirt.spots") << kernel["name"];
+}
+
 TEST_F(Explain, HowEntriesArePutOverWhatTheyWereGiven) {
   write("faded.lua",
         "local fx = require \"afterglow\"\n"
