@@ -159,9 +159,8 @@ afterglow_error* afterglow_stack_get_numbers(const afterglow_stack* stack, after
   return call([&]() -> Result<void> {
     if (!count || (!values && capacity > 0)) return usage("afterglow_stack_get_numbers: values or count is NULL");
     AFTERGLOW_TRY(const SettingValue value, value_of(stack, "afterglow_stack_get_numbers", name));
-    const int wanted = number_count(value.type);
-    if (wanted == 0) return wrong_type(name, "number, vector or colour");
-    *count = static_cast<std::size_t>(wanted);
+    *count = number_count(value.type);
+    if (*count == 0) return wrong_type(name, "number, vector or colour");
     std::copy_n(value.number.begin(), std::min(capacity, *count), values);
     return {};
   });

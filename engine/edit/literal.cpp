@@ -163,8 +163,7 @@ std::string literal_like(const LuaText& text, std::size_t first, std::size_t end
     case SettingType::vec2:
     case SettingType::vec3: {
       const auto numbers = list_numbers(text, first, end);
-      if (numbers.size() == static_cast<std::size_t>(number_count(value.type)))
-        return list_like(text, numbers, first, end, value);
+      if (numbers.size() == number_count(value.type)) return list_like(text, numbers, first, end, value);
       break;
     }
     case SettingType::boolean:
@@ -191,8 +190,7 @@ std::string literal_text(const SettingValue& value, char quote, bool spaced) {
       break;
   }
   std::string out;
-  for (int i = 0; i < number_count(value.type); ++i)
-    out += (i ? ", " : "") + decimal_text(value.number[static_cast<std::size_t>(i)]);
+  for (std::size_t i = 0; i < number_count(value.type); ++i) out += (i > 0 ? ", " : "") + decimal_text(value.number[i]);
   return spaced ? "{ " + out + " }" : "{" + out + "}";
 }
 

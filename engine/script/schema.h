@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -19,7 +20,7 @@ namespace afterglow {
 enum class SettingType { integer, number, boolean, enumeration, color, vec2, vec3, file, text };
 
 /// How many numbers a value is; 0: it is none.
-constexpr int number_count(SettingType type) {
+constexpr std::size_t number_count(SettingType type) {
   switch (type) {
     case SettingType::integer:
     case SettingType::number:

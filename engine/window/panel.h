@@ -60,7 +60,7 @@ class Panel {
   bool draw_entry_head(Ui& ui, PanelPort& port, const StackEntry& entry, const std::string* skipped);
   void draw_entry_end(Ui& ui, PanelPort& port, const StackEntry& entry, bool changed);
   void draw_entry_menu(Ui& ui, PanelPort& port, const StackEntry& entry);
-  void draw_mask_menu(PanelPort& port, const StackEntry& entry);
+  void draw_mask_menu(const StackEntry& entry);
   const StackEntry* entry_named(PanelPort& port, const std::string& name) const;
   void copy_settings(Ui& ui, PanelPort& port, const StackEntry& entry);
   void paste_settings(Ui& ui, PanelPort& port, const StackEntry& entry);

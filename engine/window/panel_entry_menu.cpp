@@ -122,13 +122,13 @@ void Panel::draw_entry_menu(Ui& ui, PanelPort& port, const StackEntry& entry) {
   item("Paste settings", Action::paste_settings, EntryAction::paste, !copied_.values.empty());
   ImGui::Separator();
   if (ImGui::BeginMenu("Mask")) {
-    draw_mask_menu(port, entry);
+    draw_mask_menu(entry);
     ImGui::EndMenu();
   }
   ImGui::EndPopup();
 }
 
-void Panel::draw_mask_menu(PanelPort& port, const StackEntry& entry) {
+void Panel::draw_mask_menu(const StackEntry& entry) {
   if (ImGui::MenuItem("None", nullptr, !entry.mask, entry.mask != nullptr)) stack_.begin({Kind::mask, entry.name, ""});
   if (library_.masks().empty()) ImGui::TextDisabled("Reading…");
   for (const EffectSchema& mask : library_.masks()) {
