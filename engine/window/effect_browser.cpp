@@ -73,7 +73,9 @@ std::optional<std::string> EffectBrowser::draw(Ui& ui, const EffectLibrary& libr
     const bool entered = ImGui::InputTextWithHint(
         "##effect", "Search effects; Up, Down, Enter", search_.data(), search_.size(),
         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackHistory, on_arrow, &step);
-    const bool left = ImGui::IsItemDeactivated() && !entered && !ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+    const bool lost = ImGui::IsItemDeactivated() && !entered && !ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+    const bool left = lost && escape_pressed();
+    if (lost && !left) begin_ = ui.field_opens = true;  // by no wish of the user: it goes on
     if (before != search_.data()) chosen_ = 0;
     if (step != 0 && !list.empty()) {
       const auto last = static_cast<int>(list.size()) - 1;

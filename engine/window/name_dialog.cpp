@@ -42,7 +42,9 @@ std::optional<std::string> NameDialog::draw(Ui& ui, ImVec2 area) {
     ImGui::SetNextItemWidth(width);
     const bool entered = ImGui::InputText("##file", text_.data(), text_.size(),
                                           ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-    const bool left = ImGui::IsItemDeactivated() && !entered && !ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+    const bool lost = ImGui::IsItemDeactivated() && !entered && !ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+    const bool left = lost && escape_pressed();
+    if (lost && !left) begin_ = ui.field_opens = true;  // by no wish of the user: it goes on
     const bool asks = !asked_.empty();
     const std::string note = asks ? fmt::format("{} exists: Enter again replaces it", over_) : question_.note;
     ImGui::PushTextWrapPos(width);

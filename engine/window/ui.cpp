@@ -15,6 +15,14 @@ void Ui::help(const std::string& text) const {
   ImGui::EndTooltip();
 }
 
+bool escape_pressed() {
+#if IMGUI_VERSION_NUM >= 18700
+  return ImGui::IsKeyPressed(ImGuiKey_Escape, false);
+#else
+  return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
+#endif
+}
+
 void focus_next_item() {
   ImGui::SetWindowFocus();  // Dear ImGui 1.90.1 gives it to items of the focused window alone
   ImGui::SetKeyboardFocusHere();

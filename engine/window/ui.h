@@ -65,6 +65,8 @@ struct Ui {
 
 /// Gives the keyboard to the item that is drawn next.
 void focus_next_item();
+/// Escape went down in this frame.
+bool escape_pressed();
 
 /// True in the frame of a double click: the fourth of four quick clicks is one too, as two of them are two double
 /// clicks.
