@@ -27,7 +27,7 @@ bool InputQueue::fits(const InputEvent& event, bool typing) const {
     case Kind::key:
       if (!event.down) return !(typing && frame_.special_key);  // the frame sees what is down, once
       if (frame_.buttons != 0) return false;
-      return !typing || !(frame_.special_key || (frame_.text && is_special(event)));
+      return !typing || !(frame_.special_key || ((frame_.text || frame_.special_up) && is_special(event)));
     case Kind::text:
       return frame_.buttons == 0 && !(typing && frame_.special_key);
     case Kind::focus:
@@ -44,7 +44,7 @@ std::optional<InputEvent> InputQueue::next(bool typing) {
   if (event.kind == Kind::button) frame_.buttons |= 1u << event.code;
   if (event.kind == Kind::wheel) frame_.wheel = true;
   if (event.kind == Kind::text) frame_.text = true;
-  if (event.kind == Kind::key && event.down && is_special(event)) frame_.special_key = true;
+  if (event.kind == Kind::key && is_special(event)) (event.down ? frame_.special_key : frame_.special_up) = true;
   return event;
 }
 

@@ -26,7 +26,8 @@ class InputQueue {
   bool fits(const InputEvent& event, bool typing) const;
   struct Frame {
     unsigned buttons = 0;  ///< that changed
-    bool wheel = false, special_key = false, text = false;
+    bool wheel = false, text = false;
+    bool special_key = false, special_up = false;  ///< pressed, let go: a key that is both in one frame is neither
   };
   std::deque<InputEvent> events_;
   Frame frame_;

@@ -106,10 +106,12 @@ Result<void> ViewPass::State::make_pipeline(VkFormat target) {
 }
 
 Result<void> ViewPass::State::make_sets(std::size_t count) {
-  const auto sets = static_cast<std::uint32_t>(count);
-  const VkDescriptorPoolSize size{kImageType, kImages * sets};
-  const VkDescriptorPoolCreateInfo info{
-      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = sets, .poolSizeCount = 1, .pPoolSizes = &size};
+  const auto number = static_cast<std::uint32_t>(count);
+  const VkDescriptorPoolSize size{kImageType, kImages * number};
+  const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                        .maxSets = number,
+                                        .poolSizeCount = 1,
+                                        .pPoolSizes = &size};
   VkDescriptorPool made = VK_NULL_HANDLE;
   AFTERGLOW_VK(device.vk().vkCreateDescriptorPool(device.handle(), &info, nullptr, &made),
                "cannot create descriptors of the view");

@@ -54,6 +54,11 @@ TEST(InputQueue, AFieldGetsKeysAndTextInTheirOrder) {
   EXPECT_EQ(frames({text('g'), key(GLFW_KEY_V, true, GLFW_MOD_CONTROL)}, true), (std::vector<int>{1, 1}));
   EXPECT_EQ(frames({key(GLFW_KEY_ESCAPE, true), key(GLFW_KEY_1, true)}, true), (std::vector<int>{1, 1}));
   EXPECT_EQ(frames({key(GLFW_KEY_ENTER, true), key(GLFW_KEY_ENTER, false)}, true), (std::vector<int>{1, 1}));
+  // Let go and pressed again in one frame would be held all along.
+  EXPECT_EQ(frames({key(GLFW_KEY_ENTER, true), key(GLFW_KEY_ENTER, false), key(GLFW_KEY_ENTER, true),
+                    key(GLFW_KEY_ENTER, false)},
+                   true),
+            (std::vector<int>{1, 1, 1, 1}));
 }
 
 TEST(Flow, WhatFindsNoRoomBeginsTheNextRow) {
