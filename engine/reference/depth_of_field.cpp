@@ -227,7 +227,8 @@ DoubleImage circles_of_confusion(const DoubleImage& depth, const DepthOfField& s
 
 DoubleImage depth_of_field(const DoubleImage& source, const DoubleImage& depth, const DepthOfField& s) {
   const DoubleImage circles = circles_of_confusion(depth, s);
-  const int least = source.width * source.height <= 1 << 18 ? 1 : 2;
+  const bool is_small = std::max(source.width, source.height) <= 1024 && source.width * source.height <= 1 << 18;
+  const int least = is_small ? 1 : 2;
   const int factor = glm::max(least, static_cast<int>(std::ceil(s.max_radius / 32)));
   const Pyramid pyramid = pyramid_of(source, circles, factor);
   const Iris iris{s};

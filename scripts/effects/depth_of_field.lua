@@ -43,7 +43,8 @@ return fx.effect {
       return g:pass(pass)
     end
     -- In the small picture no circle is wider than 32 pixels. One that is small already stays as it is: discs of few pixels would be squares.
-    local factor = math.max(source.width * source.height <= 1 << 18 and 1 or 2, math.ceil(radius / 32))
+    local is_small = math.max(source.width, source.height) <= 1024 and source.width * source.height <= 1 << 18
+    local factor = math.max(is_small and 1 or 2, math.ceil(radius / 32))
     local size = { (source.width + factor - 1) // factor, (source.height + factor - 1) // factor }
     local small = with_circles { shader = "depth_of_field/small", size = size, picture = source, factor = factor, name = "small" }
     -- What is in front is looked for no further than the widest circle of the tiles around.
