@@ -58,6 +58,9 @@ Interface::Interface(GLFWwindow* window) : pointer_(kElsewhere) {
   io.LogFilename = nullptr;
   io.ConfigWindowsMoveFromTitleBarOnly = true;
   io.ConfigWindowsResizeFromEdges = false;
+#if IMGUI_VERSION_NUM >= 18700
+  io.ConfigInputTrickleEventQueue = false;  // InputQueue spreads events over frames
+#endif
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
   if (window && ImGui_ImplGlfw_InitForVulkan(window, false)) window_ = window;
   set_scale(1);
