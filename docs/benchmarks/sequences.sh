@@ -96,7 +96,7 @@ same_picture() { # of both programs, in EXR without loss
   "$program" run "$look" "$work/in/0000.exr" -o "$work/out/a.exr" --compression zip -q
   OMP_NUM_THREADS=1 "$peer" exr "$work/in/0000.exr" "$work/out/b.exr"
   local off
-  off=$(oiiotool "$work/out/a.exr" "$work/out/b.exr" --ch R,G,B --swap --ch R,G,B --diff | awk '/Mean error/ { print $4 }')
+  off=$(oiiotool "$work/out/a.exr" "$work/out/b.exr" --ch R,G,B --swap --ch R,G,B --diff | awk '/Mean error/ { print $4 }' || true)
   awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-4) }' ||
     { echo "$peer makes another picture than $look: they differ by ${off:-?} in the mean" >&2; exit 1; }
 }
