@@ -34,6 +34,7 @@ pages=(
   "docs/benchmarks/README.md|Benchmarks"
   "docs/benchmarks/flicker.md|Flicker"
   "docs/benchmarks/stability.md|Steadiness"
+  "docs/benchmarks/effects.md|Effects in numbers"
   "CONTRIBUTING.md|Working on it"
   "tests/images/README.md|Test pictures"
   "CHANGELOG.md|Changes"
