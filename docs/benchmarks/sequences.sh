@@ -6,7 +6,7 @@
 #
 # Frames are made from the picture: enlarged, moved by a few pixels from one to the next, with a renderer's noise, RGB without alpha. PROGRAM of
 # --peer is called as `PROGRAM png|exr|dwaa IN OUT [IN OUT…]`, twice beside itself with half of the frames each and OMP_NUM_THREADS=1; kinds that
-# it refuses are left out. ffmpeg, where it is installed, can run no such look: it is measured against afterglow with a look that does nothing
+# it refuses are left out, and it must make the same picture: that of the first frame is compared. ffmpeg, where it is installed, can run no such look: it is measured against afterglow with a look that does nothing
 # ("convert"), both to the same picture with the same settings: sRGB without noise, PNG with filters chosen by row at level 1, EXR of half floats
 # in ZIP, H.264 of CRF 18 at the preset medium in the matrix of Rec. 709. Files lie in $TMPDIR (about 3 GB at a time), and go.
 # The table has medians of the rounds: frames a second, processor time a frame, how much of all processors was used, and the size of a frame.
@@ -91,6 +91,16 @@ measure() { # WHO KIND: frames a second, processor ms a frame, share of the proc
     '{ printf "%.2f %.0f %.0f %.0f\n", n / $1, 1000 * ($2 + $3) / n, 100 * ($2 + $3) / ($1 * cores), bytes / n / 1024 }' <<<"$times"
 }
 
+same_picture() { # of both programs, in EXR without loss
+  rm -rf "$work/out" && mkdir "$work/out"
+  "$program" run "$look" "$work/in/0000.exr" -o "$work/out/a.exr" --compression zip -q
+  OMP_NUM_THREADS=1 "$peer" exr "$work/in/0000.exr" "$work/out/b.exr"
+  local off
+  off=$(oiiotool "$work/out/a.exr" "$work/out/b.exr" --ch R,G,B --swap --ch R,G,B --diff | awk '/Mean error/ { print $4 }' || true)
+  awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-4) }' ||
+    { echo "$peer makes another picture than $look: they differ by ${off:-?} in the mean" >&2; exit 1; }
+}
+
 median() { # WHO COLUMN
   [[ -s $work/result.$1 ]] || { echo "–"; return; }
   cut -d' ' -f"$2" "$work/result.$1" | sort -n | awk '{ a[NR] = $0 } END { print a[int((NR + 1) / 2)] }'
@@ -106,6 +116,7 @@ for size in 1920x1080 3840x2160; do
   ((count > 0)) || continue
   rm -rf "${work:?}"/*
   make_frames "$size" "$count"
+  [[ -z $peer ]] || same_picture
   echo
   printf 'return require("afterglow").stack { name = "Nothing" }\n' >"$work/nothing.lua"
   echo "| $count frames $size, half ZIP EXR to | who | frames a second | ms of a processor a frame | processors used | KiB a frame | afterglow ÷ other |"

@@ -35,12 +35,13 @@ struct FrameJob {
 };
 
 struct FrameListRequest {
-  std::vector<std::string> inputs;  ///< files, patterns, folders that hold one sequence, videos; "-" alone: standard input
-  std::string output;               ///< file, pattern or folder; a video; "-": standard output
-  std::string extension;            ///< --format, for outputs in a folder; empty: that of the input
-  std::string raw;                  ///< --raw: how frames on standard input lie
-  SizeLimits limits{};              ///< of videos and of what comes on standard input
-  std::string frames;               ///< "1-24x2"; empty: all that exist
+  std::vector<std::string>
+      inputs;             ///< files, patterns, folders that hold one sequence, videos; "-" alone: standard input
+  std::string output;     ///< file, pattern or folder; a video; "-": standard output
+  std::string extension;  ///< --format, for outputs in a folder; empty: that of the input
+  std::string raw;        ///< --raw: how frames on standard input lie
+  SizeLimits limits{};    ///< of videos and of what comes on standard input
+  std::string frames;     ///< "1-24x2"; empty: all that exist
   LayerChoice depth, normal, motion;
 };
 

@@ -262,7 +262,7 @@ Result<void> FrameLoop::finish_running() {
   const SessionReport report = session_.report();
   frame.times = report.times.frame;
   non_finite_.add(frame.non_finite);
-  frame.skipped = report.skipped_now;
+  frame.skipped = share_skips(report.skipped_now);
   if (report.clamped > 0)
     events_.diagnostics.warn_once("clamped", fmt::format("{}: {} samples were held at ±65504, the largest half float",
                                                          frame.job.input.string(), report.clamped));
@@ -278,6 +278,18 @@ Result<void> FrameLoop::finish_running() {
   frame.steps.waited_write = milliseconds_since(waiting);
   writing_.add(frame, reading->index, std::move(picture));
   return {};
+}
+
+/// The list of one of the last frames, where it says the same.
+SharedSkips FrameLoop::share_skips(const std::vector<Skipped>& skips) {
+  constexpr std::size_t kMostLists = 8;
+  if (skips.empty()) return nullptr;
+  const auto same = [](const Skipped& a, const Skipped& b) { return a.name == b.name && a.reason == b.reason; };
+  for (const SharedSkips& known : skips_)
+    if (std::ranges::equal(*known, skips, same)) return known;
+  skips_.push_front(std::make_shared<const std::vector<Skipped>>(skips));
+  if (skips_.size() > kMostLists) skips_.pop_back();
+  return skips_.front();
 }
 
 /// The frame's result. One in which something was not finite, or more than half floats hold, is made once more from its

@@ -53,6 +53,7 @@ class FrameLoop {
   Result<void> begin(Reading& reading, Picture picture);
   Result<void> finish_running();
   Result<void> failed(const Reading& reading, Error error);
+  SharedSkips share_skips(const std::vector<Skipped>& skips);
   Result<void> make(Reading& reading, Picture& picture);
   Result<Trace> trace_again(const Reading& reading);
   Result<void> mend(Reading& reading, Picture& picture);
@@ -75,10 +76,11 @@ class FrameLoop {
   bool endless_ = false;  ///< nobody knows how many frames will come
   std::optional<Error> stream_error_;
   bool overlap_ = false;
-  std::size_t most_read_ = 1;     ///< frames that are being read beside the one that is processed
-  std::size_t most_written_ = 1;  ///< frames that are being written at a time
-  std::optional<int> last_;       ///< number of the frame that the next one follows
-  std::optional<int> begun_;      ///< number of the frame that was evaluated last
+  std::size_t most_read_ = 1;      ///< frames that are being read beside the one that is processed
+  std::size_t most_written_ = 1;   ///< frames that are being written at a time
+  std::optional<int> last_;        ///< number of the frame that the next one follows
+  std::optional<int> begun_;       ///< number of the frame that was evaluated last
+  std::deque<SharedSkips> skips_;  ///< of frames so far, the newest first
 };
 
 }  // namespace afterglow

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <thread>
 
 #include "core/json_text.h"
@@ -156,11 +157,15 @@ std::string passes_text(const FrameRecord& frame) {
   return how + table.text("  ");
 }
 
+std::span<const Skipped> skips_of(const FrameRecord& frame) {
+  return frame.skipped ? std::span<const Skipped>(*frame.skipped) : std::span<const Skipped>();
+}
+
 /// What single frames did not run, each reason once, with the number of frames.
 std::string skipped_in_frames_text(const RunReport& report) {
   std::vector<std::pair<Skipped, std::size_t>> found;
   for (const auto& frame : report.frames)
-    for (const auto& skipped : frame.skipped) {
+    for (const auto& skipped : skips_of(frame)) {
       auto at = std::ranges::find_if(
           found, [&](const auto& f) { return f.first.name == skipped.name && f.first.reason == skipped.reason; });
       if (at == found.end()) at = found.insert(found.end(), {skipped, 0});
@@ -200,7 +205,7 @@ Json frame_json(const FrameRecord& frame) {
                              {"waited_write", steps.waited_write}};
   for (const auto& kernel : frame.times.kernels)
     out["passes"].push_back(Json{{"name", kernel.name}, {"milliseconds", kernel.milliseconds}});
-  for (const auto& skipped : frame.skipped)
+  for (const auto& skipped : skips_of(frame))
     out["skipped"].push_back(Json{{"name", skipped.name}, {"reason", skipped.reason}});
   if (!frame.times.kernels.empty()) out["passes_submitted_alone"] = frame.times.separate_submissions;
   return out;

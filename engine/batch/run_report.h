@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,9 @@ struct FrameSteps {
   double waited_read = 0, waited_write = 0;
 };
 
+/// Null: nothing. Frames that skip the same have the same list, so that long sequences do not fill memory with it.
+using SharedSkips = std::shared_ptr<const std::vector<Skipped>>;
+
 /// What became of one frame.
 struct FrameRecord {
   FrameJob job;
@@ -34,7 +38,7 @@ struct FrameRecord {
   FrameSteps steps;
   FrameTimes times;
   FrameNonFinite non_finite;
-  std::vector<Skipped> skipped;  ///< what this frame did not run because of its content
+  SharedSkips skipped;  ///< what this frame did not run because of its content
 };
 
 /// Those of standard input grow in number, and others point at them.

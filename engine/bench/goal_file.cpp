@@ -62,7 +62,9 @@ Result<Goal> read_goal(const Json& json, const fs::path& folder) {
     const Json& command = json.at("command");
     goal.command = GoalCommand{.look = folder / command.at("look").get<std::string>(),
                                .frames = command.value("frames", 1),
-                               .cold = command.value("cold", false)};
+                               .cold = command.value("cold", false),
+                               .check = command.value("check", false),
+                               .step = command.value("step", "")};
     return goal;
   }
   AFTERGLOW_TRY(goal.over, read_sum(json.at("over"), folder));

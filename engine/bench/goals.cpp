@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "bench/command_time.h"
 #include "bench/picture.h"
+#include "core/file.h"
 #include "exec/timing.h"
 #include "image/writer.h"
 #include "session/session.h"
@@ -91,20 +93,45 @@ Result<double> measure_ratio(Device& device, const StackOptions& base, const Goa
   return over / under;
 }
 
-Result<double> measure_command(const Goal& goal, const GoalTools& tools, Diagnostics& diagnostics, const Step& step) {
-  const GoalCommand& command = *goal.command;
-  const Picture picture = make_picture(goal.size);
+/// Each another picture: frames that repeat one before are not run.
+Result<void> write_frames(const Goal& goal, const GoalTools& tools, Diagnostics& diagnostics) {
+  Picture picture = make_picture(goal.size);
   WriteOptions half;
   half.type = SampleType::half;
-  for (int i = 1; i <= command.frames; ++i)
+  for (int i = 1; i <= goal.command->frames; ++i) {
+    picture.color.pixels[0] = static_cast<float>(i) / 1024;
     AFTERGLOW_CHECK(write_picture(picture, tools.folder / fmt::format("in.{:04}.exr", i), half, diagnostics));
-  const std::vector<std::string> words{"run",
-                                       command.look.string(),
-                                       (tools.folder / "in.####.exr").string(),
-                                       "-o",
-                                       (tools.folder / "out.####.png").string(),
-                                       "--frames",
-                                       fmt::format("1-{}", command.frames)};
+  }
+  return {};
+}
+
+std::vector<std::string> words_of(const GoalCommand& command, const std::filesystem::path& folder) {
+  if (command.check) return {"check", command.look.string()};
+  std::vector<std::string> words{"run",
+                                 command.look.string(),
+                                 (folder / "in.####.exr").string(),
+                                 "-o",
+                                 (folder / "out.####.png").string(),
+                                 "--frames",
+                                 fmt::format("1-{}", command.frames)};
+  if (!command.step.empty()) words.insert(words.end(), {"--report", (folder / "report.json").string()});
+  return words;
+}
+
+/// Seconds that the report says of a step of the first frame.
+Result<double> step_of_report(const std::filesystem::path& file, const std::string& step) {
+  AFTERGLOW_TRY(const std::string text, read_file(file));
+  const auto report = nlohmann::json::parse(text, nullptr, false);
+  const nlohmann::json::json_pointer place("/frames/0/milliseconds");
+  if (!report.is_object() || !report.contains(place) || !report.at(place).contains(step))
+    return Error{ErrorKind::usage, fmt::format("reports have no step '{}'", step)};
+  return report.at(place).at(step).get<double>() / 1000;
+}
+
+Result<double> measure_command(const Goal& goal, const GoalTools& tools, Diagnostics& diagnostics, const Step& step) {
+  const GoalCommand& command = *goal.command;
+  if (!command.check) AFTERGLOW_CHECK(write_frames(goal, tools, diagnostics));
+  const std::vector<std::string> words = words_of(command, tools.folder);
   std::vector<double> samples;
   for (int round = 0; round <= goal.repeat; ++round) {
     AFTERGLOW_CHECK(step(fmt::format("{}: round {} of {}", goal.name, round, goal.repeat)));
@@ -113,7 +140,10 @@ Result<double> measure_command(const Goal& goal, const GoalTools& tools, Diagnos
       for (const char* name : {"AFTERGLOW_CACHE", "MESA_SHADER_CACHE_DIR"})
         environment[name] = (tools.folder / fmt::format("{}.{}", name, round)).string();
     }
-    AFTERGLOW_TRY(const double seconds, time_command(tools.program, words, environment));
+    AFTERGLOW_TRY(double seconds, time_command(tools.program, words, environment));
+    if (!command.step.empty()) {
+      AFTERGLOW_TRY(seconds, step_of_report(tools.folder / "report.json", command.step));
+    }
     if (round > 0) samples.push_back(seconds);
   }
   return Spread::of(std::move(samples)).median;

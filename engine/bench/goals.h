@@ -29,7 +29,9 @@ struct GoalTerm {
 struct GoalCommand {
   std::filesystem::path look;
   int frames = 1;
-  bool cold = false;  ///< with empty caches
+  bool cold = false;   ///< with empty caches
+  bool check = false;  ///< `check` instead of `run`
+  std::string step{};  ///< of its first frame alone, as --report names it: "execute"; empty: the whole
 };
 
 struct Goal {

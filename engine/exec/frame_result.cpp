@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstring>
 
+#include "core/large_pages.h"
 #include "exec/convert.h"
 
 namespace afterglow {
@@ -106,7 +107,7 @@ Result<std::uint64_t> FrameResult::download_looking(Staging& staging, const Rect
       return out.write_row(part.x, y, part.width, format, from);
     });
   if (format == VK_FORMAT_R8G8B8A8_UNORM) {
-    out.unorm8.resize(row_values * static_cast<std::size_t>(height));
+    resize_for_picture(out.unorm8, row_values * static_cast<std::size_t>(height));
     return over_rows_of(staging, part, [&](int y, const std::byte* from) {
       look(from, format);
       std::memcpy(out.unorm8.data() + first(y), from, static_cast<std::size_t>(part.width) * 4);
@@ -116,8 +117,7 @@ Result<std::uint64_t> FrameResult::download_looking(Staging& staging, const Rect
   const auto values = row_values * static_cast<std::size_t>(height);
   const bool keep_alpha = out.keep_alpha && out.pixels.size() == values;
   if (out.pixels.size() != values) {
-    std::vector<float>().swap(out.pixels);  // growing would keep the old ones while it copies them
-    out.pixels.resize(values);
+    resize_for_picture(out.pixels, values);
   }
   return over_rows_of(staging, part, [&](int y, const std::byte* from) {
     look(from, format);

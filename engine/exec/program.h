@@ -47,6 +47,8 @@ struct ProgramOptions {
   std::optional<Rect> region{};
   /// Each kernel draws one pixel alone: for exec/cpu/warm_up.h. What images hold is undefined.
   bool a_pixel_each = false;
+  /// With that: the last kernel first, where images between kernels are linear, as those of CPU devices are.
+  bool backwards = false;
   /// Images between kernels keep their pixels from run to run (they share no memory), so that `record` can run the
   /// kernels alone for which something has changed.
   bool keep_images = false;

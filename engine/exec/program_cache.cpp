@@ -170,6 +170,7 @@ void ProgramCache::State::drop_spares() {
   }
 }
 
+const std::shared_ptr<SharedKernels>& ProgramCache::kernels() const { return state_->shared; }
 ProgramOptions ProgramCache::program_options() const { return state_->program_options(); }
 
 Result<void> ProgramCache::find(FrameWork work, ShaderLibrary& shaders) {

@@ -120,6 +120,7 @@ class ProgramCache {
   /// histories. In full floats, unless the histories are half floats. Errors: those of `find`.
   Result<std::unique_ptr<Program>> by_passes(const Graph& graph, const std::optional<Rect>& region,
                                              ShaderLibrary& shaders) const;
+  const std::shared_ptr<SharedKernels>& kernels() const;
   /// As programs here are made, for WarmUp.
   ProgramOptions program_options() const;
 

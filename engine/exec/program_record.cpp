@@ -100,14 +100,15 @@ void Program::State::record_one(VkCommandBuffer commands, std::size_t kernel, Ke
 
 void Program::State::record_all(VkCommandBuffer commands, const std::function<void(std::size_t)>& stamp) const {
   const auto& all = kernels[static_cast<std::size_t>(parity())];
-  const bool anew = begins_anew();
+  const bool anew = begins_anew(), backwards = options.a_pixel_each && options.backwards && linear;
   afterglow::record_barriers(device, commands, begin);
-  for (std::size_t i = 0; i < all.size(); ++i) {
+  for (std::size_t turn = 0; turn < all.size(); ++turn) {
+    const std::size_t i = backwards ? all.size() - 1 - turn : turn;
     if (anew)
       record_one(commands, i, all[i].barriers);
     else
       record_kernel(device, commands, all[i], result);
-    stamp(i + 1);
+    stamp(turn + 1);
   }
 }
 

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 #include <set>
+#include <string_view>
 
 #include "core/file.h"
 #include "core/json_text.h"
@@ -138,6 +140,18 @@ Result<std::vector<std::string>> arrays_before_the_join(const Job& job, const Su
 }
 
 }  // namespace
+
+std::string why_it_ended(const std::string& state) {
+  static const std::map<std::string_view, std::string_view> kReasons{
+      {"TIMEOUT", "its time limit was over; `farm retry` with a longer --time goes on"},
+      {"OUT_OF_MEMORY", "it needed more memory than it had; `farm retry` with a larger --mem goes on"},
+      {"NODE_FAIL", "its node went down"},
+      {"BOOT_FAIL", "its node did not start"},
+      {"PREEMPTED", "another job took its place"},
+      {"DEADLINE", "its deadline was over"}};
+  const auto found = kReasons.find(state);
+  return found != kReasons.end() ? std::string(found->second) : fmt::format("Slurm: {}", lower(state));
+}
 
 bool TaskState::ended() const {
   constexpr std::array kEnds{"COMPLETED", "FAILED",        "CANCELLED", "TIMEOUT",   "NODE_FAIL",

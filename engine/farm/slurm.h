@@ -64,6 +64,8 @@ struct TaskState {
   std::string array{};  ///< that it is of
   bool ended() const;   ///< nothing more happens to it
 };
+/// Why a task ended without an end of its own, for people: of TIMEOUT, OUT_OF_MEMORY, NODE_FAIL, …
+std::string why_it_ended(const std::string& state);
 /// Of the chunks that Slurm still knows: its queue, and its accounting where there is one. Errors: io.
 Result<std::map<std::size_t, TaskState>> task_states(const Submissions& submissions);
 

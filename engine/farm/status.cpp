@@ -70,7 +70,7 @@ void take_task(ChunkStatus& chunk, const TaskState& task, bool cancelled) {
     chunk.state = State::failed;
   } else {
     chunk.state = State::lost;
-    chunk.why = fmt::format("Slurm: {}", lower(task.state));
+    chunk.why = why_it_ended(task.state);
   }
 }
 

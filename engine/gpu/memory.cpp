@@ -2,30 +2,15 @@
 #include "gpu/memory.h"
 
 #include <fmt/format.h>
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
 
 #include <cstdint>
 
+#include "core/large_pages.h"
 #include "gpu/error.h"
 
 namespace afterglow {
 
 namespace {
-
-/// Memory of a CPU device is the process's own: with large pages its first use costs hundreds of times fewer page
-/// faults, which else take longer than a frame. Only advice; nothing depends on it.
-void use_large_pages(std::byte* begin, VkDeviceSize size) {
-#if defined(__linux__)
-  constexpr std::uintptr_t kLarge = 2u << 20;
-  const auto address = reinterpret_cast<std::uintptr_t>(begin);
-  const std::uintptr_t first = (address + kLarge - 1) / kLarge * kLarge, last = (address + size) / kLarge * kLarge;
-  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
-#else
-  static_cast<void>(begin), static_cast<void>(size);
-#endif
-}
 
 bool is_visible(const Device& device, std::uint32_t type) {
   return device.memory().memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "core/parallel.h"
+#include "image/exr_dwa.h"
 #include "image/exr_zip.h"
 
 namespace afterglow {
@@ -29,6 +30,28 @@ bool has_long_names(const Imf::Header& header) {
   return false;
 }
 
+bool is_zip(const Imf::Header& header) {
+  return header.compression() == Imf::ZIP_COMPRESSION || header.compression() == Imf::ZIPS_COMPRESSION;
+}
+
+int chunk_lines(Imf::Compression compression) {
+  switch (compression) {
+    case Imf::ZIP_COMPRESSION:
+      return 16;
+    case Imf::DWAA_COMPRESSION:
+      return 32;
+    case Imf::DWAB_COMPRESSION:
+      return 256;
+    default:
+      return 1;
+  }
+}
+
+std::unique_ptr<ExrPacker> make_packer(const Imf::Header& header) {
+  if (is_zip(header)) return std::make_unique<ExrZip>(header.zipCompressionLevel());
+  return std::make_unique<ExrDwa>(header);
+}
+
 template <class Number>
 void put(OutputFile& out, Number value) {
   std::uint8_t bytes[sizeof(Number)];
@@ -38,8 +61,8 @@ void put(OutputFile& out, Number value) {
 
 }  // namespace
 
-bool has_zipped_lines(const Imf::Header& header) {
-  if (header.compression() != Imf::ZIP_COMPRESSION && header.compression() != Imf::ZIPS_COMPRESSION) return false;
+bool can_pack_lines(const Imf::Header& header) {
+  if (!is_zip(header) && !has_dwa_lines(header)) return false;
   if (header.lineOrder() != Imf::INCREASING_Y || header.hasTileDescription()) return false;
   const Imf::ChannelList& channels = header.channels();
   for (auto it = channels.begin(); it != channels.end(); ++it)
@@ -61,7 +84,7 @@ ExrLineWriter::ExrLineWriter(const Imf::Header& header, OutputFile& out) : out_(
   const Imath::Box2i& window = header.dataWindow();
   top_ = window.min.y;
   height_ = window.max.y - window.min.y + 1;
-  lines_ = header.compression() == Imf::ZIP_COMPRESSION ? 16 : 1;
+  lines_ = chunk_lines(header.compression());
   line_bytes_ = channel_place(header, {});  // no channel has this name: all of them
 
   put(out_, static_cast<std::uint32_t>(Imf::MAGIC));
@@ -74,17 +97,18 @@ ExrLineWriter::ExrLineWriter(const Imf::Header& header, OutputFile& out) : out_(
   out_.write(room.data(), room.size());
 
   const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 16u));
-  together_.resize(static_cast<std::size_t>(std::max(4 * threads, kLinesTogether / lines_)));
-  for (int i = 0; i < threads; ++i) zips_.push_back(std::make_unique<ExrZip>(header.zipCompressionLevel()));
+  const int together = lines_ > kLinesTogether ? threads : std::max(4 * threads, kLinesTogether / lines_);
+  together_.resize(static_cast<std::size_t>(together));
+  for (int i = 0; i < threads; ++i) packers_.push_back(make_packer(header));
 }
 
 int ExrLineWriter::lines_of(int chunk) const { return std::min(lines_, height_ - chunk * lines_); }
 
-void ExrLineWriter::pack(int number, Chunk& chunk, ExrZip& zip, const FillLine& fill) const {
+void ExrLineWriter::pack(int number, Chunk& chunk, ExrPacker& packer, const FillLine& fill) const {
   chunk.bytes.resize(line_bytes_ * static_cast<std::size_t>(lines_of(number)));
   std::uint8_t* line = chunk.bytes.data();
   for (int i = 0; i < lines_of(number); ++i, line += line_bytes_) fill(number * lines_ + i, line);
-  chunk.stored = zip.run(chunk.bytes, chunk.packed);
+  chunk.stored = packer.run(chunk.bytes, chunk.packed);
 }
 
 void ExrLineWriter::write(int count, const FillLine& fill) {
@@ -93,10 +117,11 @@ void ExrLineWriter::write(int count, const FillLine& fill) {
     const std::size_t chunks = std::min(end - begin, together_.size());
     const std::size_t bytes = line_bytes_ * static_cast<std::size_t>(lines_) * chunks;
     std::atomic<std::size_t> next = 0;
-    parallel_for(std::clamp<std::size_t>(bytes / kWorthAThread, 1, std::min(zips_.size(), chunks)), [&](std::size_t t) {
-      for (std::size_t i = next++; i < chunks; i = next++)
-        pack(static_cast<int>(begin + i), together_[i], *zips_[t], fill);
-    });
+    parallel_for(std::clamp<std::size_t>(bytes / kWorthAThread, 1, std::min(packers_.size(), chunks)),
+                 [&](std::size_t t) {
+                   for (std::size_t i = next++; i < chunks; i = next++)
+                     pack(static_cast<int>(begin + i), together_[i], *packers_[t], fill);
+                 });
     for (std::size_t i = 0; i < chunks; ++i) {
       const auto& stored = together_[i].stored;
       offsets_.push_back(out_.position());

@@ -75,16 +75,30 @@ ExrZip::ExrZip(int level) : deflate_(libdeflate_alloc_compressor(level)) {
 
 ExrZip::~ExrZip() { libdeflate_free_compressor(deflate_); }
 
-std::span<const std::uint8_t> ExrZip::run(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed) {
+std::span<const std::uint8_t> ExrZip::differences(std::span<const std::uint8_t> bytes) {
   apart_.resize(bytes.size());
   differences_.resize(bytes.size());
   put_apart(bytes, apart_);
   take_differences(apart_, differences_);
+  return differences_;
+}
+
+std::span<const std::uint8_t> ExrZip::run(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed) {
+  const auto from = differences(bytes);
   packed.resize(bytes.size());  // what needs more is not taken
-  packed.resize(
-      libdeflate_zlib_compress(deflate_, differences_.data(), differences_.size(), packed.data(), packed.size()));
+  packed.resize(libdeflate_zlib_compress(deflate_, from.data(), from.size(), packed.data(), packed.size()));
   if (packed.empty() || packed.size() >= bytes.size()) return bytes;
   return packed;
+}
+
+void ExrZip::append(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed) {
+  append_plain(differences(bytes), packed);
+}
+
+void ExrZip::append_plain(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed) {
+  const std::size_t at = packed.size(), room = libdeflate_zlib_compress_bound(deflate_, bytes.size());
+  packed.resize(at + room);
+  packed.resize(at + libdeflate_zlib_compress(deflate_, bytes.data(), bytes.size(), packed.data() + at, room));
 }
 
 ExrUnzip::ExrUnzip() : inflate_(libdeflate_alloc_decompressor()) {

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "image/exr_packer.h"
+
 struct libdeflate_compressor;
 struct libdeflate_decompressor;
 
@@ -30,18 +32,20 @@ class ExrUnzip {
 };
 
 /// The other way. One thread's.
-class ExrZip {
+class ExrZip : public ExrPacker {
  public:
   explicit ExrZip(int level);  ///< 0 to 9, as zlib's
-  ~ExrZip();
-  ExrZip(const ExrZip&) = delete;
-  ExrZip& operator=(const ExrZip&) = delete;
+  ~ExrZip() override;
 
-  /// What a file stores for a chunk of these bytes: `packed`, which is made as long as that is, or the bytes themselves
-  /// where packing makes them no shorter.
-  std::span<const std::uint8_t> run(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed);
+  std::span<const std::uint8_t> run(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed) override;
+  /// The same, behind what `packed` holds, and also where it makes the bytes longer.
+  void append(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed);
+  /// Deflated alone, neither put apart nor made differences, behind what `packed` holds.
+  void append_plain(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed);
 
  private:
+  std::span<const std::uint8_t> differences(std::span<const std::uint8_t> bytes);
+
   libdeflate_compressor* deflate_;
   std::vector<std::uint8_t> apart_, differences_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <utility>
 
+#include "core/large_pages.h"
 #include "image/reader.h"
 #include "image/writer.h"
 
@@ -24,7 +25,9 @@ std::vector<float> PixelMemory::take(std::size_t count) {
   }
   others.clear();
   other_codes.clear();
-  return std::vector<float>(count);
+  std::vector<float> pixels;
+  resize_for_picture(pixels, count);
+  return pixels;
 }
 
 std::vector<std::uint8_t> PixelMemory::take_codes() {

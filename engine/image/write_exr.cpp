@@ -29,7 +29,7 @@ Result<void> write_exr(const Picture& picture, OutputFile& out, const std::strin
   ExrColorRows rows(picture, {"R", "G", "B", picture.has_alpha ? "A" : ""},
                     sample_type(*format, options, picture.facts.get()));
   rows.add_channels(header);
-  if (has_zipped_lines(header)) {
+  if (can_pack_lines(header)) {
     rows.find_places(header);
     ExrLineWriter file(header, out);
     file.write(picture.color.height, [&](int y, std::uint8_t* line) { rows.put_row(y, line); });

@@ -217,7 +217,7 @@ Result<void> write_exr_with_layers(const Picture& picture, OutputFile& out, cons
   for (int part = 0; part < input.parts(); ++part) headers.push_back(input.header(part));
   headers[static_cast<std::size_t>(facts->part)] = color_header(input.header(facts->part), *facts, color, others);
   AFTERGLOW_CHECK(set_compression(headers[static_cast<std::size_t>(facts->part)], options.compression));
-  if (headers.size() == 1 && has_zipped_lines(headers[0])) {
+  if (headers.size() == 1 && can_pack_lines(headers[0])) {
     write_only_part(input, out, headers[0], color, others);
   } else {
     ExrOutput stream(out, name.c_str());

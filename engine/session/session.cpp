@@ -5,6 +5,7 @@
 #include <future>
 
 #include "core/stopwatch.h"
+#include "exec/cpu/warm_up.h"
 #include "session/picture_inputs.h"
 
 namespace afterglow {
@@ -56,7 +57,9 @@ struct Session::State {
   HostResult result;
   bool flagged = false;  ///< the last frame's result
   SessionTimes times;
+  std::future<void> warming_up;  ///< first to go: it is waited for
 
+  void warm_up();
   Result<void> submit(Picture& picture, FrameRequest request);
 };
 
@@ -94,10 +97,31 @@ int Session::frames() const { return state_->renderer->frames(); }
 int Session::in_flight() const { return static_cast<int>(state_->frames.size()); }
 
 Result<void> Session::prepare(FrameRequest frame) {
+  constexpr int kWorthIt = 2;
   AFTERGLOW_CHECK(state_->renderer->wait());
+  const KernelCompiler& compiler = state_->stack->programs()->kernels()->compiler;
+  const int before = compiler.counters().compiled;
   AFTERGLOW_CHECK(state_->stack->prepare(std::move(frame)));
   state_->skipped = state_->stack->skipped();
+  if (compiler.counters().compiled - before >= kWorthIt) state_->warm_up();
   return {};
+}
+
+/// Kernels that were compiled here are new to the driver too: in the first frame it compiles them one after the other,
+/// on one thread. Another one begins at their other end meanwhile. What goes wrong there goes wrong again in the frame.
+void Session::State::warm_up() {
+  const ProgramCache& programs = *stack->programs();
+  if (warming_up.valid() || options.stack.reference || !programs.program() || !WarmUp::helps(*device)) return;
+  ProgramOptions wanted = programs.program_options();
+  wanted.backwards = true;
+  warming_up =
+      std::async(std::launch::async, [&device = *device, kernels = programs.kernels(), path = stack->shaders().path(),
+                                      graph = programs.program()->graph(), wanted = std::move(wanted)] {
+        auto other = WarmUp::create(device);
+        if (!other) return;
+        ShaderLibrary shaders(path);  // that of the stack is looked for elsewhere as scripts say
+        (void)(*other)->draw(shaders, kernels->compiler, graph, wanted);
+      });
 }
 
 Result<void> Session::process(Picture& picture, const BuildContext& frame,

@@ -111,17 +111,24 @@ TEST_F(Bench, GoalsAreMeasuredAndStored) {
     {"name": "ratio", "sizes": ["32x18"], "over": [{"look": "look.lua", "choice": "plain16f"}, {"look": "look.lua", "frame": true}, {"look": "look.lua", "display": true}],
      "under": [{"copy": true}], "at_least": 1e-9, "repeat": 2},
     {"name": "command", "sizes": ["32x18"], "command": {"look": "look.lua", "frames": 2, "cold": true}, "at_most": 1e9, "repeat": 1},
+    {"name": "check", "sizes": ["32x18"], "command": {"look": "look.lua", "check": true}, "at_most": 1e9, "repeat": 1},
+    {"name": "step", "sizes": ["32x18"], "command": {"look": "look.lua", "step": "execute"}, "at_most": 1e9, "repeat": 1},
+    {"name": "no step", "sizes": ["32x18"], "command": {"look": "look.lua", "step": "dance"}, "at_most": 1e9, "repeat": 1},
     {"name": "broken", "sizes": ["32x18"], "over": [{"look": "none.lua"}], "under": [{"copy": true}], "at_most": 1}]})");
   const Outcome outcome = run({"bench", "--goals", "goals.json", "-o", "out"});
   ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
   const json goals = report("out/bench.json").at("goals");
-  ASSERT_EQ(goals.size(), 3u);
+  ASSERT_EQ(goals.size(), 6u);
   EXPECT_GT(goals.at(0).at("measured"), 0);
   EXPECT_EQ(goals.at(0).at("reached"), true);
   EXPECT_GT(goals.at(1).at("measured"), 0);
   EXPECT_EQ(goals.at(1).at("unit"), "s");
-  EXPECT_TRUE(goals.at(2).at("measured").is_null());
-  EXPECT_THAT(goals.at(2).at("note").get<std::string>(), HasSubstr("none.lua"));
+  EXPECT_GT(goals.at(2).at("measured"), 0);
+  EXPECT_GT(goals.at(3).at("measured"), 0);
+  EXPECT_TRUE(goals.at(4).at("measured").is_null());
+  EXPECT_THAT(goals.at(4).at("note").get<std::string>(), HasSubstr("no step 'dance'"));
+  EXPECT_TRUE(goals.at(5).at("measured").is_null());
+  EXPECT_THAT(goals.at(5).at("note").get<std::string>(), HasSubstr("none.lua"));
 }
 
 TEST_F(Bench, WhatCalibrateWritesRunTakes) {

@@ -178,6 +178,20 @@ TEST_F(Run, SmallestPicture) {
   EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
 }
 
+/// The driver compiles on two threads there.
+TEST_F(Run, AFrameWithEmptyCachesIsThatOfWarmOnes) {
+  make_exr("in.exr");
+  RunOptions options;
+  options.environment["AFTERGLOW_CACHE"] = text("cache");
+  options.environment["MESA_SHADER_CACHE_DIR"] = text("driver");
+  options.environment["AFTERGLOW_VALIDATE"] = "1";
+  for (const char* name : {"cold.exr", "warm.exr"}) {
+    const Outcome outcome = run({"run", preset("neon_night.lua").string(), "in.exr", "-o", name}, options);
+    ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  }
+  EXPECT_EQ(read("cold.exr"), read("warm.exr"));
+}
+
 TEST_F(Run, BrokenCacheIsRebuilt) {
   RunOptions options;
   options.environment["AFTERGLOW_CACHE"] = text("cache");

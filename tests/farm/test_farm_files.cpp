@@ -266,5 +266,13 @@ TEST(FarmText, OfAChunkTheLastArrayCounts) {
   EXPECT_TRUE(accounting.at(3).ended());
 }
 
+TEST(FarmText, TellsWhyATaskEnded) {
+  EXPECT_EQ(farm::why_it_ended("TIMEOUT"), "its time limit was over; `farm retry` with a longer --time goes on");
+  EXPECT_EQ(farm::why_it_ended("OUT_OF_MEMORY"),
+            "it needed more memory than it had; `farm retry` with a larger --mem goes on");
+  EXPECT_EQ(farm::why_it_ended("NODE_FAIL"), "its node went down");
+  EXPECT_EQ(farm::why_it_ended("SOMETHING_NEW"), "Slurm: something_new");
+}
+
 }  // namespace
 }  // namespace afterglow::test

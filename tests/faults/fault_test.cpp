@@ -3,6 +3,7 @@
 
 #include <link.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <numeric>
@@ -58,7 +59,17 @@ Outcome FaultTest::run_with(const std::vector<std::string>& arguments, const Fau
   return run(arguments, options_at(fault, place));
 }
 
+void FaultTest::fill_caches(const std::vector<std::string>& arguments) const {
+  const std::vector<std::string> before = files();
+  RunOptions options;
+  options.environment = environment_;
+  EXPECT_EQ(run(arguments, options).exit_code, kDone);
+  for (const auto& name : files())
+    if (std::ranges::find(before, name) == before.end()) fs::remove_all(path(name));
+}
+
 std::vector<long> FaultTest::distinct_places(const std::vector<std::string>& arguments, const Fault& fault) const {
+  if (!environment_.contains("AFTERGLOW_CACHE")) fill_caches(arguments);
   const fs::path log = path("places.log");
   fs::remove(log);
   RunOptions options = options_at(fault, 0);

@@ -56,6 +56,9 @@ class FaultTest : public CliTest {
 
  private:
   RunOptions options_at(const Fault& fault, long place) const;
+  /// Once without a fault: what is compiled for the first time is compiled on another device too, with calls of its
+  /// own. What it makes goes.
+  void fill_caches(const std::vector<std::string>& arguments) const;
   std::map<std::string, std::string> reference_;
 };
 

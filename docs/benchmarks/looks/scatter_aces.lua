@@ -3,6 +3,6 @@
 local fx = require "afterglow"
 return fx.stack {
   name = "Scatter bloom and ACES",
-  fx.bloom { mode = "scattering" },
+  fx.bloom { mode = "scattering", intensity = 0.5 },
   fx.tone_mapping { mode = "aces" },
 }

@@ -132,7 +132,7 @@ TEST(ExrLineWriter, FilesAreReadByOpenExrAsItsOwn) {
              {Imath::V2i(1, 1), {1, 40}, {3, 2}, {16, 15}, {17, 16}, {33, 17}, {700, 33}, {5, 300}}) {
           const Channels channels = make_channels({{-3, 7}, {size.x - 4, size.y + 6}}, *wanted, noise);
           const Imf::Header header = header_of(channels, compression);
-          ASSERT_TRUE(has_zipped_lines(header));
+          ASSERT_TRUE(can_pack_lines(header));
           std::filesystem::remove(folder / "here.exr");
           write_here(channels, header, folder / "here.exr", 48);
           write_by_openexr(channels, header, folder / "openexr.exr");
@@ -162,16 +162,16 @@ TEST(ExrLineWriter, PacksAsWellAsOpenExr) {
 
 TEST(ExrLineWriter, LeavesOtherKindsAlone) {
   const Channels channels = make_channels({{0, 0}, {9, 9}}, kHalves, false);
-  EXPECT_FALSE(has_zipped_lines(header_of(channels, Imf::PIZ_COMPRESSION)));
+  EXPECT_FALSE(can_pack_lines(header_of(channels, Imf::PIZ_COMPRESSION)));
   Imf::Header header = header_of(channels, Imf::ZIP_COMPRESSION);
   header.lineOrder() = Imf::DECREASING_Y;
-  EXPECT_FALSE(has_zipped_lines(header));
+  EXPECT_FALSE(can_pack_lines(header));
   header = header_of(channels, Imf::ZIP_COMPRESSION);
   header.channels().insert("RY", Imf::Channel(Imf::HALF, 2, 2));
-  EXPECT_FALSE(has_zipped_lines(header));
+  EXPECT_FALSE(can_pack_lines(header));
   header = header_of(channels, Imf::ZIP_COMPRESSION);
   header.setTileDescription(Imf::TileDescription(16, 16));
-  EXPECT_FALSE(has_zipped_lines(header));
+  EXPECT_FALSE(can_pack_lines(header));
 }
 
 TEST(ExrLineWriter, ADiskThatIsFullIsNoticed) {

@@ -189,9 +189,12 @@ TEST_F(LiveFrames, WarmingUpIsCleanVulkan) {
     ASSERT_TRUE((*stack)->prepare(context));
     const ProgramCache& programs = *(*stack)->programs();
     KernelCompiler compiler({});
-    const auto drawn =
-        (*warm_up)->draw((*stack)->shaders(), compiler, programs.work()->graph, programs.program_options());
-    EXPECT_TRUE(drawn) << drawn.error().text();
+    for (const bool backwards : {false, true}) {
+      ProgramOptions wanted = programs.program_options();
+      wanted.backwards = backwards;
+      const auto drawn = (*warm_up)->draw((*stack)->shaders(), compiler, programs.work()->graph, wanted);
+      EXPECT_TRUE(drawn) << drawn.error().text();
+    }
   }
   EXPECT_EQ((*warm_up)->validation_errors(), 0);
 }
