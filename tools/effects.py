@@ -171,7 +171,7 @@ def main():
             rows.append(f"| `{name}` | {cost} | {'grain' if name in GRAIN else f'{near:.2f}'} | "
                         f"{'kept' if kept else 'changed'} | {'' if colour is None else f'{colour:.0e}'} |\n")
             print(rows[-1], end="", file=sys.stderr, flush=True)
-    text = HEAD.format(device=f"{device[0]['name']}, {device[0]['driver']}", rounds=a.rounds, alone=alone.get(costs.PICTURE, 0)) + "".join(rows)
+    text = HEAD.format(device=f"{device[0]['name']}, {device[0]['driver']}", rounds="one round" if a.rounds == 1 else f"smallest and largest of {a.rounds} rounds", alone=alone.get(costs.PICTURE, 0)) + "".join(rows)
     if a.output:
         with open(a.output, "w", encoding="utf-8") as file:
             file.write(text)

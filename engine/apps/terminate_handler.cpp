@@ -9,6 +9,7 @@
 #include <new>
 
 #include "core/result.h"
+#include "core/temporary.h"
 
 namespace afterglow {
 namespace {
@@ -25,9 +26,15 @@ void on_no_memory() {
   throw std::bad_alloc();
 }
 
+/// Nothing is taken apart, but no half-written file stays.
+[[noreturn]] void end_at_once(ErrorKind kind) {
+  remove_own_temporaries();
+  std::_Exit(static_cast<int>(kind));
+}
+
 [[noreturn]] void end_without_memory() {
   say("error: out of memory\n");
-  std::_Exit(static_cast<int>(ErrorKind::io));
+  end_at_once(ErrorKind::io);
 }
 
 /// Takes no memory: there may be none.
@@ -46,7 +53,7 @@ void on_no_memory() {
   } catch (...) {
     say("error: internal error\n");
   }
-  std::_Exit(static_cast<int>(ErrorKind::other));
+  end_at_once(ErrorKind::other);
 }
 
 }  // namespace
