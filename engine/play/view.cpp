@@ -42,6 +42,24 @@ std::string compare_by_name(CompareBy by) {
   return kNames[static_cast<std::size_t>(by)];
 }
 
+std::string guides_name(Guides guides) {
+  constexpr const char* kNames[] = {"none", "thirds", "safe areas", "thirds and safe areas"};
+  return kNames[static_cast<std::size_t>(guides)];
+}
+
+PictureArea area_of_aspect(Size picture, double ratio) {
+  const double width = picture.width, height = picture.height;
+  const Point size =
+      ratio > 0 ? Point{std::min(width, height * ratio), std::min(height, width / ratio)} : Point{width, height};
+  return {{(width - size.x) / 2, (height - size.y) / 2}, {(width + size.x) / 2, (height + size.y) / 2}};
+}
+
+PictureArea middle_part(const PictureArea& area, double part) {
+  const Point middle{(area.from.x + area.to.x) / 2, (area.from.y + area.to.y) / 2};
+  const Point half{(area.to.x - area.from.x) / 2 * part, (area.to.y - area.from.y) / 2 * part};
+  return {{middle.x - half.x, middle.y - half.y}, {middle.x + half.x, middle.y + half.y}};
+}
+
 bool wipes(const View& view) { return view.compare != Compare::none && view.by == CompareBy::wipe; }
 
 Size picture_window(const View& view, Size window) {

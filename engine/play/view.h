@@ -27,12 +27,26 @@ enum class Compare { none, source, other };
 /// by channel.
 enum class CompareBy { wipe, flip, side_by_side, difference };
 
+/// Lines over the picture. thirds: of its width and height, and its middle. safe_areas: 93 % and 90 % of both (SMPTE ST
+/// 2046-1: action, titles).
+enum class Guides { none, thirds, safe_areas, both };
+
 /// "color", "red", …
 std::string view_channel_name(ViewChannel channel);
 /// "none", "source", "other".
 std::string compare_name(Compare compare);
 /// "wipe", "flip", "side by side", "difference".
 std::string compare_by_name(CompareBy by);
+/// "none", "thirds", "safe areas", "thirds and safe areas".
+std::string guides_name(Guides guides);
+
+/// A form that a picture is delivered in; 0: its own.
+struct Aspect {
+  double ratio = 0;  ///< width / height
+  const char* name = "none";
+};
+inline constexpr Aspect kAspects[] = {
+    {}, {2.39, "2.39:1"}, {1.85, "1.85:1"}, {16.0 / 9, "16:9"}, {4.0 / 3, "4:3"}, {1, "1:1"}, {9.0 / 16, "9:16"}};
 
 struct View {
   bool fit = true;      ///< the whole picture, as large as the window allows; `zoom` and `center` rest meanwhile
@@ -46,8 +60,19 @@ struct View {
   CompareBy by = CompareBy::wipe;
   double wipe = 0.5;           ///< where the border lies, 0…1 over the picture's width (or height)
   bool wipe_vertical = false;  ///< the border is horizontal: the compared picture lies above it
+  Guides guides = Guides::none;
+  std::size_t aspect = 0;  ///< of kAspects: what does not belong to it is darkened, and guides are its own
   friend bool operator==(const View&, const View&) = default;
 };
+
+/// Of a picture, in its coordinates.
+struct PictureArea {
+  Point from, to;
+};
+/// The largest area of that form in the middle of the picture. `ratio` 0: all of it.
+PictureArea area_of_aspect(Size picture, double ratio);
+/// `part` of an area's width and height, in its middle.
+PictureArea middle_part(const PictureArea& area, double part);
 
 /// Whether the border of a wipe is shown.
 bool wipes(const View& view);

@@ -41,6 +41,8 @@ void draw_stats_overlay(const Player& player, const Ui& ui, const OverlayArea& a
 void draw_histogram_overlay(const Histogram& histogram, const Ui& ui, const OverlayArea& area);
 /// A frame around the pixel whose values are told.
 void draw_pixel_mark(Pixel pixel, const Ui& ui, const OverlayPicture& place);
+/// Guides of the view, and what its form leaves out, over each picture that is shown.
+void draw_guides(const View& view, const Ui& ui, const OverlayPicture& place);
 /// Around the picture and above it: that it is not the frame that is asked for, because that is missing or unreadable.
 void draw_frame_mark(const Player& player, const Ui& ui, const OverlayPicture& place, const OverlayArea& area);
 /// Lower left: values of source and result. `above`: free this much below it.

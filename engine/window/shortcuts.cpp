@@ -56,6 +56,8 @@ constexpr Shortcut kShortcuts[] = {
     {Action::exposure_reset, GLFW_KEY_0, kNone, "0", "Picture", "Exposure as it is"},
     {Action::false_color, GLFW_KEY_X, kNone, "X", "Picture", "Mark values that are out of range or not finite"},
     {Action::background, GLFW_KEY_K, kShift, "Shift+K", "Picture", "Behind transparency: nothing, grey, checkers"},
+    {Action::guides, GLFW_KEY_G, kShift, "Shift+G", "Picture", "Lines: none, thirds, safe areas, both"},
+    {Action::aspect, GLFW_KEY_A, kShift, "Shift+A", "Picture", "Darken what lies beside a form: 2.39:1, 16:9, 1:1, …"},
     {Action::next_image, GLFW_KEY_N, kNone, "N", "Picture", "Next image between passes", true},
     {Action::previous_image, GLFW_KEY_N, kShift, "Shift+N", "Picture", "Image between passes before", true},
     {Action::result_image, GLFW_KEY_BACKSPACE, kNone, "Backspace", "Picture", "The result again"},

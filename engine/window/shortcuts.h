@@ -53,6 +53,8 @@ enum class Action {
   exposure_reset,
   false_color,
   background,
+  guides,
+  aspect,
   next_image,
   previous_image,
   result_image,

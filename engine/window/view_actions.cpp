@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What keys do to how the picture is looked at.
 #include <algorithm>
+#include <iterator>
+#include <string>
 
 #include "window/window_app.h"
 
@@ -118,6 +120,14 @@ bool WindowApp::act_on_picture(Action action) {
       return true;
     case Action::background:
       background_ = static_cast<ViewBackground>((static_cast<int>(background_) + 1) % 3);
+      return true;
+    case Action::guides:
+      view.guides = static_cast<Guides>((static_cast<int>(view.guides) + 1) % 4);
+      ui.say("lines: " + guides_name(view.guides));
+      return true;
+    case Action::aspect:
+      view.aspect = (view.aspect + 1) % std::size(kAspects);
+      ui.say(std::string("form: ") + kAspects[view.aspect].name);
       return true;
     case Action::next_image:
       show_neighbour(1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "window/view_controls.h"
 
+#include <iterator>
 #include <string>
 
 namespace afterglow {
@@ -44,6 +45,21 @@ void draw_comparison(const Ui& ui, PanelPort& port) {
   ui.help("Shift+W");
 }
 
+void draw_guide_controls(const Ui& ui, View& view) {
+  if (ImGui::BeginCombo("lines", guides_name(view.guides).c_str())) {
+    for (const Guides guides : {Guides::none, Guides::thirds, Guides::safe_areas, Guides::both})
+      if (ImGui::Selectable(guides_name(guides).c_str(), guides == view.guides)) view.guides = guides;
+    ImGui::EndCombo();
+  }
+  ui.help("Over the picture (Shift+G); safe areas: 93 % for what happens, 90 % for titles");
+  if (ImGui::BeginCombo("form", kAspects[view.aspect].name)) {
+    for (std::size_t i = 0; i < std::size(kAspects); ++i)
+      if (ImGui::Selectable(kAspects[i].name, i == view.aspect)) view.aspect = i;
+    ImGui::EndCombo();
+  }
+  ui.help("Darkens what lies beside that form (Shift+A); files stay whole");
+}
+
 }  // namespace
 
 void draw_view_controls(Ui& ui, PanelPort& port) {
@@ -61,6 +77,7 @@ void draw_view_controls(Ui& ui, PanelPort& port) {
   }
   ui.help("C, R, G, B, A, Y");
   draw_comparison(ui, port);
+  draw_guide_controls(ui, view);
   ImGui::PopItemWidth();
   ImGui::Checkbox("false colour", &view.false_color);
   ui.help("Marks values below 0, above 1, and what is not finite (X)");

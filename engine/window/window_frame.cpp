@@ -134,6 +134,7 @@ Result<void> WindowApp::draw_overlays() {
                          ImVec2(static_cast<float>(area_.width) / ImGui::GetIO().DisplayFramebufferScale.x,
                                 static_cast<float>(area_.height) / ImGui::GetIO().DisplayFramebufferScale.y)};
   const OverlayPicture place = overlay_picture();
+  draw_guides(player_.view(), ui, place);
   draw_frame_mark(player_, ui, place, area);
   if (under_cursor_.probe) draw_pixel_mark(under_cursor_.probe->pixel, ui, place);
   draw_state_overlay(player_, ui, area);

@@ -99,6 +99,42 @@ TEST_F(PlayWindow, TwoPresetsAreComparedInFourWays) {
   expect_clean_end();
 }
 
+/// Over 64×40 pixels: a form leaves those whose middle lies in it, lines stand where the picture's parts end, and the
+/// frame that is written has neither.
+TEST_F(PlayWindow, LinesAndFormsLieOverThePicture) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.0001.exr", "--export", "out.exr"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  ASSERT_TRUE(user("mousemove 400 300 key 1 key shift+a"));
+  const auto whole = [&](int pixels) { return until([&] { return count_color(shot(), kRed) == pixels; }); };
+  EXPECT_TRUE(whole(64 * 26)) << "2.39:1: 26.8 rows";
+  ASSERT_TRUE(user("key shift+a key shift+a"));
+  EXPECT_TRUE(whole(64 * 36)) << "16:9";
+  ASSERT_TRUE(user("key shift+a"));
+  EXPECT_TRUE(whole(54 * 40)) << "4:3: 53.3 columns";
+  ASSERT_TRUE(user("key shift+a"));
+  EXPECT_TRUE(whole(40 * 40)) << "1:1";
+  ASSERT_TRUE(user("key v"));
+  EXPECT_TRUE(whole(40 * 40)) << "what went in lies at the left";
+  EXPECT_TRUE(until([&] { return count_color(shot(), kGray) == 40 * 40; })) << "and has the form too";
+  ASSERT_TRUE(user("key v key shift+g"));
+  // Lines two pixels wide, light and dark: two columns and two rows that cross four times; in the middle a cross of
+  // 16 × 16, which each of them crosses.
+  constexpr int kLines = 4 * 2 * 40 - 4 * 2 * 2, kCross = 2 * 2 * 16 - 2 * 2 - 4 * 2 * 2;
+  EXPECT_TRUE(whole(40 * 40 - kLines - kCross)) << "thirds";
+  ASSERT_TRUE(user("key s"));
+  ASSERT_TRUE(program_->wait_for("out.exr"));
+  ASSERT_TRUE(until([&] { return fs::exists(folder_ / "out.exr"); }));
+  Diagnostics nowhere;
+  const auto written = read_picture(folder_ / "out.exr", {}, nowhere);
+  ASSERT_TRUE(written) << written.error().text();
+  for (std::size_t i = 0; i < written->color.pixels.size(); i += 4) {
+    ASSERT_NEAR(written->color.pixels[i], 0.5f, 1e-3f) << i;
+  }
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
 TEST_F(PlayWindow, FollowsItsSizeAndTheDesktopsWishToClose) {
   write_preset("{ 1, 0, 0 }");
   play({"look.lua", "shot.0001.exr"});

@@ -97,5 +97,23 @@ TEST(View, HalfOfTheWindowIsForEachOfTwoSideBySide) {
   EXPECT_EQ(picture_window(view, {901, 500}), (Size{901, 500}));
 }
 
+TEST(View, AFormIsTheLargestInTheMiddle) {
+  for (const Aspect& aspect : kAspects) {
+    const PictureArea area = area_of_aspect(kPicture, aspect.ratio);
+    const double width = area.to.x - area.from.x, height = area.to.y - area.from.y;
+    EXPECT_NEAR(width / height, aspect.ratio > 0 ? aspect.ratio : 1920.0 / 1080, 1e-12) << aspect.name;
+    EXPECT_TRUE(std::abs(width - 1920) < 1e-9 || std::abs(height - 1080) < 1e-9) << aspect.name << ": could be larger";
+    EXPECT_NEAR(area.from.x + area.to.x, 1920, 1e-9) << aspect.name;
+    EXPECT_NEAR(area.from.y + area.to.y, 1080, 1e-9) << aspect.name;
+    EXPECT_GE(area.from.x, -1e-9);
+    EXPECT_GE(area.from.y, -1e-9);
+  }
+  const PictureArea titles = middle_part(area_of_aspect(kPicture, 0), 0.9);
+  EXPECT_NEAR(titles.from.x, 96, 1e-9);
+  EXPECT_NEAR(titles.to.x, 1824, 1e-9);
+  EXPECT_NEAR(titles.from.y, 54, 1e-9);
+  EXPECT_NEAR(titles.to.y, 1026, 1e-9);
+}
+
 }  // namespace
 }  // namespace afterglow
