@@ -60,7 +60,7 @@ void draw_help_sheet(Ui& ui, ImVec2 area) {
     ImGui::EndGroup();
     ImGui::TextDisabled(
         "Wheel: zoom at the pointer. Drag: move the picture, or the wipe's border. Double click: between fit and 1:1.\n"
-        "Ctrl+click a slider: type a value. Right click a setting: as in the file, or its default.");
+        "Double click (or Ctrl+click) a slider: type a value. Right click a setting: as in the file, or its default.");
   }
   ImGui::End();
 }

@@ -115,8 +115,10 @@ TEST_F(PlayWindow, LinesAndFormsLieOverThePicture) {
   ASSERT_TRUE(user("key shift+a"));
   EXPECT_TRUE(whole(40 * 40)) << "1:1";
   ASSERT_TRUE(user("key v"));
-  EXPECT_TRUE(whole(40 * 40)) << "what went in lies at the left";
-  EXPECT_TRUE(until([&] { return count_color(shot(), kGray) == 40 * 40; })) << "and has the form too";
+  EXPECT_TRUE(until([&] {
+    const Screen both = shot();
+    return count_color(both, kGray) == 40 * 40 && count_color(both, kRed) == 40 * 40;
+  })) << "what went in at the left, the result at the right, each with the form";
   ASSERT_TRUE(user("key v key shift+g"));
   // Lines two pixels wide, light and dark: two columns and two rows that cross four times; in the middle a cross of
   // 16 × 16, which each of them crosses.
