@@ -6,9 +6,10 @@
 #
 # Frames are made from the picture: enlarged, moved by a few pixels from one to the next, with a renderer's noise, RGB without alpha. PROGRAM of
 # --peer is called as `PROGRAM png|exr|dwaa IN OUT [IN OUT…]`, twice beside itself with half of the frames each and OMP_NUM_THREADS=1; kinds that
-# it refuses are left out, and it must make the same picture: that of the first frame is compared. ffmpeg, where it is installed, can run no such look: it is measured against afterglow with a look that does nothing
-# ("convert"), both to the same picture with the same settings: sRGB without noise, PNG with filters chosen by row at level 1, EXR of half floats
-# in ZIP, H.264 of CRF 18 at the preset medium in the matrix of Rec. 709. Files lie in $TMPDIR (about 3 GB at a time), and go.
+# it refuses are left out, and it must make the same picture: that of the first frame is compared. ffmpeg, where it is installed, can run no such look:
+# it is measured against afterglow with a look that does nothing ("convert"), both to the same picture with the same settings: sRGB without noise,
+# PNG with filters chosen by row at level 1, EXR of half floats in ZIP, H.264 of CRF 18 at the preset medium in the matrix of Rec. 709.
+# Files lie in $TMPDIR (about 3 GB at a time), and go.
 # The table has medians of the rounds: frames a second, processor time a frame, how much of all processors was used, and the size of a frame.
 # Needs oiiotool (openimageio-tools) and a quiet machine.
 set -euo pipefail

@@ -35,8 +35,8 @@ struct FrameJob {
 };
 
 struct FrameListRequest {
-  std::vector<std::string>
-      inputs;             ///< files, patterns, folders that hold one sequence, videos; "-" alone: standard input
+  /// Files, patterns, folders that hold one sequence, videos; "-" alone: standard input.
+  std::vector<std::string> inputs;
   std::string output;     ///< file, pattern or folder; a video; "-": standard output
   std::string extension;  ///< --format, for outputs in a folder; empty: that of the input
   std::string raw;        ///< --raw: how frames on standard input lie

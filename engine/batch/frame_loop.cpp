@@ -284,9 +284,8 @@ Result<void> FrameLoop::finish_running() {
 SharedSkips FrameLoop::share_skips(const std::vector<Skipped>& skips) {
   constexpr std::size_t kMostLists = 8;
   if (skips.empty()) return nullptr;
-  const auto same = [](const Skipped& a, const Skipped& b) { return a.name == b.name && a.reason == b.reason; };
   for (const SharedSkips& known : skips_)
-    if (std::ranges::equal(*known, skips, same)) return known;
+    if (*known == skips) return known;
   skips_.push_front(std::make_shared<const std::vector<Skipped>>(skips));
   if (skips_.size() > kMostLists) skips_.pop_back();
   return skips_.front();

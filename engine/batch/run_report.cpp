@@ -166,8 +166,7 @@ std::string skipped_in_frames_text(const RunReport& report) {
   std::vector<std::pair<Skipped, std::size_t>> found;
   for (const auto& frame : report.frames)
     for (const auto& skipped : skips_of(frame)) {
-      auto at = std::ranges::find_if(
-          found, [&](const auto& f) { return f.first.name == skipped.name && f.first.reason == skipped.reason; });
+      auto at = std::ranges::find(found, skipped, [](const auto& f) -> const Skipped& { return f.first; });
       if (at == found.end()) at = found.insert(found.end(), {skipped, 0});
       ++at->second;
     }

@@ -116,9 +116,7 @@ Result<std::uint64_t> FrameResult::download_looking(Staging& staging, const Rect
   }
   const auto values = row_values * static_cast<std::size_t>(height);
   const bool keep_alpha = out.keep_alpha && out.pixels.size() == values;
-  if (out.pixels.size() != values) {
-    resize_for_picture(out.pixels, values);
-  }
+  if (out.pixels.size() != values) resize_for_picture(out.pixels, values);
   return over_rows_of(staging, part, [&](int y, const std::byte* from) {
     look(from, format);
     float* to = out.pixels.data() + first(y);

@@ -70,6 +70,7 @@ struct Pass {
 struct Skipped {
   std::string name;
   std::string reason;  ///< "intensity is 0", "no depth input", "nobody reads its image"
+  friend bool operator==(const Skipped&, const Skipped&) = default;
 };
 
 /// An effect whose output is exactly its input, bit for bit, as long as no red, green or blue of `image` is above

@@ -231,7 +231,7 @@ std::uint64_t ExrPart::pixel_bytes() const {
   return bytes;
 }
 
-int ExrPart::chunk_lines() const {
+int chunk_lines_of(int compression) {
   switch (compression) {
     case 3:
     case 5:
@@ -247,6 +247,8 @@ int ExrPart::chunk_lines() const {
       return 1;
   }
 }
+
+int ExrPart::chunk_lines() const { return chunk_lines_of(compression); }
 
 std::uint64_t ExrPart::chunks() const {
   const auto pieces = [](int side, int piece) {

@@ -23,6 +23,10 @@ struct ExrChannel {
   std::uint64_t sample_bytes() const { return type == ExrChannelType::half ? 2 : 4; }
 };
 
+/// Lines that one chunk of an image without tiles holds. `compression`: the number stored in the file; OpenEXR's
+/// enumeration has the same.
+int chunk_lines_of(int compression);
+
 struct ExrPart {
   std::string name;
   bool deep = false, tiled = false;

@@ -12,6 +12,7 @@
 
 #include "core/parallel.h"
 #include "image/exr_dwa.h"
+#include "image/exr_header.h"
 #include "image/exr_zip.h"
 
 namespace afterglow {
@@ -32,19 +33,6 @@ bool has_long_names(const Imf::Header& header) {
 
 bool is_zip(const Imf::Header& header) {
   return header.compression() == Imf::ZIP_COMPRESSION || header.compression() == Imf::ZIPS_COMPRESSION;
-}
-
-int chunk_lines(Imf::Compression compression) {
-  switch (compression) {
-    case Imf::ZIP_COMPRESSION:
-      return 16;
-    case Imf::DWAA_COMPRESSION:
-      return 32;
-    case Imf::DWAB_COMPRESSION:
-      return 256;
-    default:
-      return 1;
-  }
 }
 
 std::unique_ptr<ExrPacker> make_packer(const Imf::Header& header) {
@@ -84,7 +72,7 @@ ExrLineWriter::ExrLineWriter(const Imf::Header& header, OutputFile& out) : out_(
   const Imath::Box2i& window = header.dataWindow();
   top_ = window.min.y;
   height_ = window.max.y - window.min.y + 1;
-  lines_ = chunk_lines(header.compression());
+  lines_ = chunk_lines_of(header.compression());
   line_bytes_ = channel_place(header, {});  // no channel has this name: all of them
 
   put(out_, static_cast<std::uint32_t>(Imf::MAGIC));
