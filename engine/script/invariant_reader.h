@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/geometry.h"
 #include "script/lua.h"
 #include "script/schema.h"
 

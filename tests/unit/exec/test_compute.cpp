@@ -10,6 +10,7 @@
 
 #include "core/hash.h"
 #include "exec/barriers.h"
+#include "gpu/pipeline.h"
 #include "workshop.h"
 
 namespace afterglow {
