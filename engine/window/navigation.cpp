@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The mouse over the picture: wheel zooms at the pointer, a drag moves the picture or the wipe, a double click goes
-// between fit and 1:1.
+// between fit and 1:1. With Ctrl a drag makes a region, a click removes it.
 #include <cmath>
 
 #include "window/ui.h"
@@ -68,6 +68,16 @@ void WindowApp::navigate() {
     return;
   }
   const bool pressed = ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Middle);
+  if (pressed && io.KeyCtrl) {
+    drag_ = Drag::region;
+    drag_from_ = *at;
+    view.region.reset();
+  }
+  if (drag_ == Drag::region) {
+    const bool moved = std::abs(at->x - drag_from_.x) + std::abs(at->y - drag_from_.y) >= 2;
+    if (moved || view.region) view.region = region_between(view, picture, window, drag_from_, *at);
+    return;
+  }
   if (pressed) drag_ = wipe && !ImGui::IsMouseDown(ImGuiMouseButton_Middle) ? Drag::wipe : Drag::pan;
   if (drag_ == Drag::wipe) wipe_to(view, picture, window, *at);
   const ImVec2 moved = in_framebuffer(io.MouseDelta);

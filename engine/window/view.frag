@@ -6,7 +6,7 @@ layout(set = 0, binding = 1) uniform sampler2D shown;
 layout(set = 0, binding = 2) uniform sampler2D compared;
 
 layout(push_constant) uniform Push {
-  vec4 outside;         // beside the picture; linear, alpha unused
+  vec4 outside;         // beside the picture, linear; w: the power that light is taken to
   vec4 below;           // mark of values under 0; w: gain of the exposure
   vec4 above;           // mark of values over 1; w: where the border of the comparison lies, in pixels of the target
   vec4 not_finite;      // mark; w: half the width of the border's line, in pixels of the target
@@ -22,10 +22,17 @@ layout(push_constant) uniform Push {
 
 layout(location = 0) out vec4 result;
 
-const int kFalseColor = 1, kCompare = 2, kHorizontal = 4, kEncode = 8, kGray = 16, kChecker = 32, kDifference = 64, kSmooth = 128;
+const int kFalseColor = 1, kCompare = 2, kHorizontal = 4, kEncode = 8, kGray = 16, kChecker = 32, kDifference = 64, kSmooth = 128,
+          kZoned = 256, kGamma = 512;
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
 const float kTolerance = 1e-4;  // rounding may carry what a display can just show over its ends
 const float kLargest = 1e30;
+// As view_pass.h has them, sRGB-encoded; a test holds both together.
+const int kFirstZone = -6, kLastZone = 6;
+const vec3 kZones[13] = vec3[13](
+    vec3(0.06, 0.06, 0.09), vec3(0.25, 0.10, 0.35), vec3(0.38, 0.20, 0.68), vec3(0.16, 0.33, 0.80), vec3(0.10, 0.52, 0.76),
+    vec3(0.10, 0.58, 0.50), vec3(0.50, 0.50, 0.50), vec3(0.35, 0.68, 0.25), vec3(0.74, 0.80, 0.22), vec3(0.96, 0.76, 0.16),
+    vec3(0.95, 0.50, 0.14), vec3(0.90, 0.20, 0.16), vec3(1.0, 1.0, 1.0));
 const int kMarkBelow = 1, kMarkAbove = 2, kMarkNotFinite = 4;
 
 bool has(int flag) { return (push.flags & flag) != 0; }
@@ -45,7 +52,7 @@ int mark(float x) {
 
 // What of the pixel is looked at is out of range. Exposure moves the ends of the range, but not those of alpha.
 int marks(vec4 c) {
-  if (!has(kFalseColor)) return 0;
+  if (!has(kFalseColor) && !has(kZoned)) return 0;
   float gain = push.below.w;
   switch (push.channel) {
     case 0: return mark(c.r * gain) | mark(c.g * gain) | mark(c.b * gain);
@@ -127,12 +134,24 @@ vec3 over_background(vec4 c) {
   return c.rgb + vec3(background * clamp(1.0 - c.a, 0.0, 1.0));
 }
 
+vec3 decoded(vec3 c) { return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045))); }
+
+// How many stops a light lies from middle grey, to the nearest whole one.
+vec3 zone_of(float light) {
+  float stop = light > 0.0 ? floor(log2(light / 0.18) + 0.5) : float(kFirstZone);
+  return decoded(kZones[int(clamp(stop, float(kFirstZone), float(kLastZone))) - kFirstZone]);
+}
+
+vec3 with_gamma(vec3 c) { return has(kGamma) ? sign(c) * pow(abs(c), vec3(push.outside.w)) : c; }
+
 vec3 looked_at(Sample s) {
   if ((s.marks & kMarkNotFinite) != 0) return push.not_finite.rgb;
-  if ((s.marks & kMarkBelow) != 0) return push.below.rgb;
-  if ((s.marks & kMarkAbove) != 0) return push.above.rgb;
   vec4 c = s.color;
   c.rgb *= push.below.w;
+  if (has(kZoned)) return zone_of(push.channel == 0 ? dot(c.rgb, kLuminance) : with_channel(c).r);
+  if ((s.marks & kMarkBelow) != 0) return push.below.rgb;
+  if ((s.marks & kMarkAbove) != 0) return push.above.rgb;
+  c.rgb = with_gamma(c.rgb);
   if (has(kFalseColor)) return push.channel == 0 ? vec3(dot(c.rgb, kLuminance)) : with_channel(c);  // marks stand out
   return over_background(c);
 }

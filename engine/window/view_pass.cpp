@@ -36,7 +36,9 @@ enum Flag {
   kGray = 16,
   kChecker = 32,
   kDifference = 64,
-  kSmooth = 128
+  kSmooth = 128,
+  kZoned = 256,
+  kGamma = 512
 };
 
 float to_linear(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }
@@ -59,7 +61,7 @@ Push push_of(const ViewFrame& frame, bool encode) {
   const bool compare = view.compare != Compare::none && frame.compared.has_value();
   const bool difference = compare && view.by == CompareBy::difference;
   Push push{};
-  push.outside = color_and(frame.outside, 0);
+  push.outside = color_and(frame.outside, 1 / view.gamma);
   push.below = color_and(kMarkBelow, std::exp2(view.exposure));
   push.above = color_and(kMarkAbove, border_of(frame, place));
   push.not_finite = color_and(kMarkNotFinite, frame.pixel_scale);
@@ -70,7 +72,8 @@ Push push_of(const ViewFrame& frame, bool encode) {
   push.shown_size = pair_of(frame.shown.size);
   push.compared_size = pair_of(compare ? frame.compared->size : frame.shown.size);
   push.channel = static_cast<std::int32_t>(view.channel);
-  push.flags = (view.smooth ? kSmooth : 0) | (view.false_color ? kFalseColor : 0) |
+  push.flags = (view.smooth ? kSmooth : 0) | (view.marks == Marks::range ? kFalseColor : 0) |
+               (view.marks == Marks::stops ? kZoned : 0) | (view.gamma != 1 ? kGamma : 0) |
                (compare && !difference ? kCompare : 0) | (difference ? kDifference : 0) |
                (view.wipe_vertical ? kHorizontal : 0) | (encode ? kEncode : 0) |
                (frame.background == ViewBackground::gray ? kGray : 0) |
