@@ -79,11 +79,12 @@ void draw_help_sheet(Ui& ui, ImVec2 area) {
                          ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings;
   ImGui::SetNextWindowFocus();
   if (ImGui::Begin("Keys", &ui.show_help, kFlags)) {
+    ImGui::SetWindowFontScale(1);  // what follows is measured so
     const std::vector<HelpGroup> groups = help_groups();
     const int columns = std::clamp(static_cast<int>(area.x / ui.px(520)), 1, 3);  // what the longest words take
     const HelpLayout layout = help_layout(groups, columns);
     const float line = ImGui::GetTextLineHeight() + kCellSpacing * ui.scale;
-    const float room = area.y * 0.98f - 3 * ImGui::GetFrameHeightWithSpacing() - 2 * ImGui::GetTextLineHeight();
+    const float room = area.y * 0.98f - 2 * ImGui::GetFrameHeightWithSpacing() - 2 * ImGui::GetTextLineHeight();
     // Smaller words rather than a sheet that scrolls, as long as they can be read.
     ImGui::SetWindowFontScale(std::clamp(room / (static_cast<float>(layout.height) * line), 0.75f, 1.0f));
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, ImVec2(ui.px(4), kCellSpacing * ui.scale / 2));
@@ -97,8 +98,18 @@ void draw_help_sheet(Ui& ui, ImVec2 area) {
     }
     ImGui::PopStyleVar(2);
     ImGui::TextDisabled(
-        "Wheel: zoom at the pointer. Drag: move the picture, or the wipe's border. Double click: between fit and 1:1.\n"
+        "Wheel: zoom at the pointer. Drag: move the picture, or the wipe's border; with Ctrl: a region. Double click: "
+        "between fit "
+        "and 1:1.\n"
         "Double click (or Ctrl+click) a slider: type a value. Right click a setting: as in the file, or its default.");
+  }
+  // Tables and the sheet around them take a few frames to agree on their sizes.
+  constexpr int kFrames = 6;
+  if (ImGui::IsWindowAppearing() || area.x != ui.help_area.x || area.y != ui.help_area.y) ui.help_settles = kFrames;
+  ui.help_area = area;
+  if (ui.help_settles > 0) {
+    --ui.help_settles;
+    ui.again();
   }
   ImGui::End();
 }

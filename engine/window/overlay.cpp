@@ -13,8 +13,6 @@ namespace afterglow {
 
 namespace {
 
-constexpr float kProbeWidth = 390;  // with its distance from the border
-
 void wrapped(ImU32 color, const std::string& text, float width) {
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::PushTextWrapPos(width);

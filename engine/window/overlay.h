@@ -47,12 +47,14 @@ std::string comparison_text(const View& view);
 /// The message of a preset, picture or frame that fails, over the last good picture, with a button that copies it.
 /// Returns its height, 0 without a message.
 float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area);
+inline constexpr float kProbeWidth = 390, kProbeHeight = 92;  ///< of the lower left sheet, with its distances
 /// Upper left: what makes the picture look other than the result: image between passes, channel, exposure, marks.
 void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area);
 /// Upper right: frame rate, frame times, drops, and where the time of the last reload went.
 void draw_stats_overlay(const Player& player, const Ui& ui, const OverlayArea& area);
 /// Lower right: the scopes that the view asks for (Ui::cells has them), what does not fit, and means of the region.
-void draw_scopes_overlay(const ShownScopes& shown, const View& view, const Ui& ui, const OverlayArea& area);
+/// `probe`: values are told at the lower left; where both have no room beside each other, this lies above them.
+void draw_scopes_overlay(const ShownScopes& shown, const View& view, const Ui& ui, const OverlayArea& area, bool probe);
 /// A frame around the region of the view.
 void draw_region(const Rect& region, const Ui& ui, const OverlayPicture& place);
 /// A frame around the pixel whose values are told.

@@ -39,7 +39,7 @@ class Sheet {
 
 /// One pixel can be seen, and many do not hide how many they are.
 float brightness(std::uint32_t count, double most) {
-  return count == 0 ? 0.0f : static_cast<float>(std::min(1.0, 0.18 + std::sqrt(count / std::max(most, 1.0))));
+  return count == 0 ? 0.0f : static_cast<float>(std::min(1.0, 0.25 + 1.2 * std::sqrt(count / std::max(most, 1.0))));
 }
 
 void draw_histogram(Sheet& sheet, const Scopes& scopes) {

@@ -44,7 +44,13 @@ struct Frame {
 float label_width(const Ui& ui) { return ui.px(30); }
 
 void draw_levels(ImDrawList& list, const Ui& ui, const Frame& frame, ScopeScale scale, bool across) {
-  for (const Tick& tick : ticks_of(scale)) {
+  const std::vector<Tick> ticks = ticks_of(scale);
+  // In little room the ends and the middle have words.
+  const float room =
+      across ? (frame.to.x - frame.from.x) / label_width(ui) : (frame.to.y - frame.from.y) / ImGui::GetTextLineHeight();
+  const std::size_t every = room > 6 ? 1 : room > 3 ? 2 : 4;
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    const Tick tick{ticks[i].position, i % every == 0 ? ticks[i].text : ""};
     const ImVec2 text = ImGui::CalcTextSize(tick.text.c_str());
     if (across) {
       const float x = frame.x(tick.position);
@@ -154,14 +160,18 @@ void draw_means(const RegionMeans& means) {
 
 }  // namespace
 
-void draw_scopes_overlay(const ShownScopes& shown, const View& view, const Ui& ui, const OverlayArea& area) {
+void draw_scopes_overlay(const ShownScopes& shown, const View& view, const Ui& ui, const OverlayArea& area,
+                         bool probe) {
   const bool scopes = view.scope != ScopeKind::none && shown.scopes;
   if (!scopes && !shown.means) return;
-  begin_sheet("scopes", {area.at.x + area.size.x - ui.px(14), area.at.y + area.size.y - ui.px(14)}, {1, 1}, ui,
+  const ImVec2 size = scope_size(ui, area, view.scope == ScopeKind::all ? 2 : 1, view.scope == ScopeKind::all ? 2 : 1);
+  const float wide = view.scope == ScopeKind::all ? 2 * (size.x + label_width(ui)) + ui.px(46) : ui.px(400);
+  const bool told = probe && area.size.x >= ui.px(kProbeWidth);
+  const float raised = told && wide + ui.px(kProbeWidth) > area.size.x ? ui.px(kProbeHeight) : 0;
+  begin_sheet("scopes", {area.at.x + area.size.x - ui.px(14), area.at.y + area.size.y - ui.px(14) - raised}, {1, 1}, ui,
               ImGuiWindowFlags_NoInputs);
   ImGui::PushFont(ui.mono);
   if (scopes && view.scope == ScopeKind::all) {
-    const ImVec2 size = scope_size(ui, area, 2, 2);
     for (const ScopeKind kind :
          {ScopeKind::histogram, ScopeKind::waveform, ScopeKind::parade, ScopeKind::vectorscope}) {
       ImGui::BeginGroup();
@@ -170,9 +180,11 @@ void draw_scopes_overlay(const ShownScopes& shown, const View& view, const Ui& u
       if (kind == ScopeKind::histogram || kind == ScopeKind::parade) ImGui::SameLine(0, ui.px(12));
     }
   } else if (scopes) {
-    draw_scope(ui, view, view.scope, scope_size(ui, area, 1, 1));
+    draw_scope(ui, view, view.scope, size);
   }
+  ImGui::PushTextWrapPos(scopes ? std::max(size.x + label_width(ui), ui.px(140)) : 0.0f);
   if (scopes) draw_counts(*shown.scopes);
+  ImGui::PopTextWrapPos();
   if (shown.means) draw_means(*shown.means);
   ImGui::PopFont();
   end_sheet();
@@ -189,8 +201,9 @@ void draw_region(const Rect& region, const Ui& ui, const OverlayPicture& place) 
                       {static_cast<float>(right + place.window.width) * place.pixel.x,
                        static_cast<float>(place.window.height) * place.pixel.y},
                       true);
-    const ImVec2 from = corner(region.x, region.y, right);
-    const ImVec2 to = corner(region.x + region.width, region.y + region.height, right);
+    const auto whole = [](ImVec2 at) { return ImVec2(std::floor(at.x), std::floor(at.y)); };  // sharp lines
+    const ImVec2 from = whole(corner(region.x, region.y, right));
+    const ImVec2 to = whole(corner(region.x + region.width, region.y + region.height, right));
     const float line = ui.px(1);
     list.AddRect({from.x - 2 * line, from.y - 2 * line}, {to.x + 2 * line, to.y + 2 * line}, IM_COL32(0, 0, 0, 200), 0,
                  0, line);

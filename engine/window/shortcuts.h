@@ -100,7 +100,7 @@ struct Shortcut {
   int key;            ///< GLFW_KEY_…
   int mods;           ///< GLFW_MOD_…, exactly these
   const char* keys;   ///< as people read it: "Ctrl+S"
-  const char* group;  ///< "Play", "Look", "Picture", "Window", "Preset", "Stack"
+  const char* group;  ///< "Play", "Picture", "View", "Preset", "Stack", "Window"
   const char* doc;
   bool repeats = false;  ///< while the key is held
 };

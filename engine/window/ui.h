@@ -29,6 +29,8 @@ struct Ui {
   bool show_panel = true;
   bool show_transport = true;
   bool show_help = false;
+  ImVec2 help_area;      ///< that the help sheet was last drawn in
+  int help_settles = 0;  ///< frames that it still takes to find its size
   bool show_frame_field = false;
   bool show_stats = false;
 

@@ -144,7 +144,7 @@ Result<void> WindowApp::draw_overlays() {
   if (under_cursor_.probe) draw_pixel_mark(under_cursor_.probe->pixel, ui, place);
   draw_state_overlay(player_, ui, area);
   if (ui.show_stats) draw_stats_overlay(player_, ui, area);
-  draw_scopes_overlay(scopes_.found, player_.view(), ui, area);
+  draw_scopes_overlay(scopes_.found, player_.view(), ui, area, under_cursor_.probe.has_value());
   const float below = draw_error_overlay(player_, interface_->ui(), area);
   if (under_cursor_.probe) draw_probe_overlay(*under_cursor_.probe, ui, area, below);
   draw_message_overlay(ui, area);
@@ -214,6 +214,7 @@ Result<void> WindowApp::look_at_scopes() {
   if (view.region) {
     AFTERGLOW_TRY(scopes_.found.means, player_.means(*view.region));
   }
+  redraw_ = std::max(redraw_, kSettle);  // the sheet finds its size
   scopes_.turn = turn_;
   scopes_.when = now;
   scopes_.kind = view.scope;
