@@ -72,17 +72,26 @@ Result<ShaderModuleHandle> create_shader_module(const Device& device, std::span<
 }
 
 Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayout& layout, VkShaderModule vertex,
-                                            VkShaderModule fragment, DrawTargets targets, const std::string& name) {
-  const auto stage = [](VkShaderStageFlagBits bit, VkShaderModule module) {
+                                            VkShaderModule fragment, DrawTargets targets, const std::string& name,
+                                            std::span<const std::int32_t> constants) {
+  std::vector<VkSpecializationMapEntry> entries;
+  for (std::uint32_t i = 0; i < constants.size(); ++i)
+    entries.push_back({i, i * static_cast<std::uint32_t>(sizeof(std::int32_t)), sizeof(std::int32_t)});
+  const VkSpecializationInfo special{.mapEntryCount = static_cast<std::uint32_t>(entries.size()),
+                                     .pMapEntries = entries.data(),
+                                     .dataSize = constants.size_bytes(),
+                                     .pData = constants.data()};
+  const auto stage = [](VkShaderStageFlagBits bit, VkShaderModule module, const VkSpecializationInfo* values) {
     return VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                                            .pNext = nullptr,
                                            .flags = 0,
                                            .stage = bit,
                                            .module = module,
                                            .pName = "main",
-                                           .pSpecializationInfo = nullptr};
+                                           .pSpecializationInfo = values};
   };
-  const std::array stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex), stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
+  const std::array stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, nullptr),
+                          stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, constants.empty() ? nullptr : &special)};
   const VkPipelineVertexInputStateCreateInfo no_vertices{.sType =
                                                              VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   const VkPipelineInputAssemblyStateCreateInfo triangles{

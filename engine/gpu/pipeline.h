@@ -42,9 +42,10 @@ struct DrawTargets {
 };
 
 /// A pipeline that runs `fragment` on every pixel of its targets; viewport and scissor are dynamic. Goes through the
-/// device's pipeline cache. Thread-safe.
+/// device's pipeline cache. `constants`: values of the fragment shader's specialisation constants 0, 1, … Thread-safe.
 Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayout& layout, VkShaderModule vertex,
-                                            VkShaderModule fragment, DrawTargets targets, const std::string& name);
+                                            VkShaderModule fragment, DrawTargets targets, const std::string& name,
+                                            std::span<const std::int32_t> constants = {});
 
 /// Errors (device): workgroups of this size, or with so many bytes to share, are more than the device has.
 Result<void> check_workgroup(const Device& device, Size invocations, std::uint64_t shared_bytes,
