@@ -10,6 +10,7 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 program=${1:-$here/../../build/release/bin/afterglow} preset=${2:-$here/../../presets/neon_night.lua}
 work=$(mktemp -d)
+export XDG_CONFIG_HOME=$work XDG_STATE_HOME=$work  # settings and windows of whoever calls stay out of it
 exec {display_pipe}<> <(:)
 Xvfb -displayfd "$display_pipe" -screen 0 1920x1200x24 >/dev/null 2>&1 & server=$!
 trap 'kill $server 2>/dev/null; rm -rf "$work"' EXIT

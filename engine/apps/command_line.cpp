@@ -28,7 +28,8 @@ constexpr const char* kFooter =
     "Exit codes: 0 done, 2 usage, 3 preset or script, 4 input or output, 5 device, 130 interrupted, 1 anything else.\n"
     "Environment: AFTERGLOW_HOME installation to use, AFTERGLOW_PATH further folders with effects/ and shaders/ (':' "
     "between),\n"
-    "             AFTERGLOW_CACHE folder for caches, AFTERGLOW_VALIDATE=1 Vulkan validation, NO_COLOR no colours.\n"
+    "             AFTERGLOW_CACHE folder for caches, AFTERGLOW_VALIDATE=1 Vulkan validation, NO_COLOR no colours,\n"
+    "             AFTERGLOW_EDITOR what F4 of `play` calls, like 'code -g {file}:{line}'.\n"
     "`afterglow COMMAND --help` tells the rest.";
 
 std::vector<std::string> option_names(const CLI::App& command) {

@@ -123,6 +123,9 @@ class Player {
   void reset_all();
   bool undo();
   bool redo();
+  /// See SettingEdits::keep and recall.
+  void keep_snapshot(int snapshot);
+  bool recall_snapshot(int snapshot);
   const SettingEdits& edits() const;
   void end_gesture();
   /// See SettingEdits::rebase.

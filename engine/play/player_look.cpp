@@ -188,6 +188,14 @@ bool Player::redo() {
   return done;
 }
 
+void Player::keep_snapshot(int snapshot) { state_->edits.keep(snapshot); }
+
+bool Player::recall_snapshot(int snapshot) {
+  const bool done = state_->edits.recall(snapshot);
+  if (done) state_->apply_edits();
+  return done;
+}
+
 const SettingEdits& Player::edits() const { return state_->edits; }
 void Player::end_gesture() { state_->edits.end_gesture(); }
 

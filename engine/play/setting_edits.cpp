@@ -78,6 +78,18 @@ bool SettingEdits::reset_entry(const std::string& entry) {
 
 bool SettingEdits::reset_all() { return take({}, ""); }
 
+bool SettingEdits::recall(int snapshot) {
+  const auto& kept = snapshots_[static_cast<std::size_t>(snapshot)];
+  return kept && take(*kept, "");
+}
+
+template <class Change>
+void SettingEdits::for_all_steps(Change&& change) {
+  for (Step& step : history_) change(step);
+  for (auto& snapshot : snapshots_)
+    if (snapshot) change(*snapshot);
+}
+
 bool SettingEdits::undo() {
   if (!can_undo()) return false;
   --at_;
@@ -105,14 +117,15 @@ void SettingEdits::rebase(std::vector<SettingEdit>& edits, const std::vector<Bas
 
 void SettingEdits::rebase(const std::vector<BaseChange>& changes) {
   open_.clear();
-  for (Step& step : history_)
+  for_all_steps([&](Step& step) {
     if (!step.text) rebase(step.edits, changes);
+  });
 }
 
 void SettingEdits::rebase(const std::vector<BaseChange>& changes, const TextChange& text) {
   open_.clear();
   const auto before = std::make_shared<const std::string>(text.before);
-  for (Step& step : history_) {
+  for_all_steps([&](Step& step) {
     if (!step.text) {
       step.text = before;
     } else if (step.text == text.written) {
@@ -121,7 +134,7 @@ void SettingEdits::rebase(const std::vector<BaseChange>& changes, const TextChan
     } else if (*step.text == text.after) {
       step.text = nullptr;
     }
-  }
+  });
 }
 
 std::optional<SettingValue> SettingEdits::value(const std::string& entry, const std::string& setting) const {

@@ -2,6 +2,7 @@
 // What the panel has changed: the stack, and settings over those of the preset, with undo and redo. Plain data.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -60,13 +61,21 @@ class SettingEdits {
   /// The next change begins a new step, even of the same setting.
   void end_gesture() { open_.clear(); }
 
+  static constexpr int kSnapshots = 3;
+  /// Keeps stack and settings as they are now under a number, 0…kSnapshots − 1.
+  void keep(int snapshot) { snapshots_[static_cast<std::size_t>(snapshot)] = history_[at_]; }
+  bool has(int snapshot) const { return snapshots_[static_cast<std::size_t>(snapshot)].has_value(); }
+  /// Everything as it was kept, as one step. False when nothing was kept, or it is so already.
+  bool recall(int snapshot);
+
   bool can_undo() const { return at_ > 0; }
   bool can_redo() const { return at_ + 1 < history_.size(); }
   bool undo();  ///< false: there is nothing to undo
   bool redo();
 
-  /// The preset was saved with edits in it, or a save was taken back: every step of the history stays what it was on
-  /// screen. Steps that had the value from before get it as an edit; those that say what the preset says now need none.
+  /// The preset was saved with edits in it, or a save was taken back: every step of the history, and every snapshot,
+  /// stays what it was on screen. Steps that had the value from before get it as an edit; those that say what the
+  /// preset says now need none.
   void rebase(const std::vector<BaseChange>& changes);
   /// The same where stacks went into the file, or come out of it: steps that were as the file was keep its old text.
   void rebase(const std::vector<BaseChange>& changes, const TextChange& text);
@@ -90,7 +99,11 @@ class SettingEdits {
   bool take(Step step, const std::string& gesture);
   static void set(std::vector<SettingEdit>& edits, const SettingEdit& value);
   static void rebase(std::vector<SettingEdit>& edits, const std::vector<BaseChange>& changes);
+  /// Steps of the history, and snapshots.
+  template <class Change>
+  void for_all_steps(Change&& change);
   std::vector<Step> history_{Step{}};
+  std::array<std::optional<Step>, kSnapshots> snapshots_;
   std::size_t at_ = 0;
   std::string open_;  ///< the setting that the present gesture changes
 };

@@ -103,6 +103,7 @@ void draw_help_sheet(Ui& ui, ImVec2 area) {
         "and 1:1.\n"
         "Double click (or Ctrl+click) a slider: type a value. Right click a setting: as in the file, or its default.");
   }
+  ImGui::SetWindowFontScale(1);  // its title, and what it needs for that
   // Tables and the sheet around them take a few frames to agree on their sizes.
   constexpr int kFrames = 6;
   if (ImGui::IsWindowAppearing() || area.x != ui.help_area.x || area.y != ui.help_area.y) ui.help_settles = kFrames;

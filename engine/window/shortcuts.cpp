@@ -73,6 +73,12 @@ constexpr Shortcut kShortcuts[] = {
     {Action::undo, GLFW_KEY_Z, kControl, "Ctrl+Z", "Preset", "Undo", true},
     {Action::redo, GLFW_KEY_Z, kBoth, "Ctrl+Shift+Z", "Preset", "Redo", true},
     {Action::redo, GLFW_KEY_Y, kControl, "Ctrl+Y", "Preset", "Redo", true},
+    {Action::keep_1, GLFW_KEY_1, kBoth, "Ctrl+Shift+1", "Preset", "Keep stack and settings as snapshot 1"},
+    {Action::keep_2, GLFW_KEY_2, kBoth, "Ctrl+Shift+2", "Preset", "… as snapshot 2"},
+    {Action::keep_3, GLFW_KEY_3, kBoth, "Ctrl+Shift+3", "Preset", "… as snapshot 3"},
+    {Action::recall_1, GLFW_KEY_1, kControl, "Ctrl+1", "Preset", "Stack and settings of snapshot 1 again"},
+    {Action::recall_2, GLFW_KEY_2, kControl, "Ctrl+2", "Preset", "… of snapshot 2"},
+    {Action::recall_3, GLFW_KEY_3, kControl, "Ctrl+3", "Preset", "… of snapshot 3"},
     {Action::save, GLFW_KEY_S, kControl, "Ctrl+S", "Preset", "Write the changed settings into the preset"},
 
     {Action::save_as, GLFW_KEY_S, kBoth, "Ctrl+Shift+S", "Preset",

@@ -119,6 +119,21 @@ void WindowApp::edit_file(const std::string& file, int line) {
                               : opened.error().text());
 }
 
+void WindowApp::keep_snapshot(int snapshot) {
+  player_.end_gesture();
+  player_.keep_snapshot(snapshot);
+  interface_->ui().say(fmt::format("kept as snapshot {0}; Ctrl+{0} brings it back", snapshot + 1));
+}
+
+void WindowApp::recall_snapshot(int snapshot) {
+  Ui& ui = interface_->ui();
+  player_.end_gesture();
+  if (!player_.edits().has(snapshot))
+    return ui.say(fmt::format("nothing was kept as snapshot {0}: Ctrl+Shift+{0} does", snapshot + 1));
+  const bool changed = player_.recall_snapshot(snapshot);
+  ui.say(fmt::format("snapshot {}{}", snapshot + 1, changed ? "" : ": it is so already"));
+}
+
 bool WindowApp::act_on_preset(Action action) {
   Ui& ui = interface_->ui();
   switch (action) {
@@ -145,6 +160,16 @@ bool WindowApp::act_on_preset(Action action) {
       return true;
     case Action::redo:
       ui.say(player_.redo() ? "done again" : "nothing to do again");
+      return true;
+    case Action::keep_1:
+    case Action::keep_2:
+    case Action::keep_3:
+      keep_snapshot(static_cast<int>(action) - static_cast<int>(Action::keep_1));
+      return true;
+    case Action::recall_1:
+    case Action::recall_2:
+    case Action::recall_3:
+      recall_snapshot(static_cast<int>(action) - static_cast<int>(Action::recall_1));
       return true;
     case Action::save:
       if (options_.save) options_.save(player_, ui);

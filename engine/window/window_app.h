@@ -61,6 +61,8 @@ class WindowApp {
   void show_neighbour(int by);
   void next_wipe();
   void shuttle(int direction);
+  void keep_snapshot(int snapshot);
+  void recall_snapshot(int snapshot);
   void edit_file(const std::string& file, int line);
   void draw_frame_field();
   void compare_by(CompareBy by);

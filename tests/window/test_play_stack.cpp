@@ -11,10 +11,6 @@ class PlayStack : public PlayWindow {
  protected:
   const std::string begin = "local fx = require \"afterglow\"\n-- mine\nreturn fx.stack {\n  name = \"test look\",\n",
                     end = "}\n";
-  std::string text_of(const std::string& name) {
-    const auto text = read_file(folder_ / name);
-    return text ? *text : "";
-  }
   void open(const std::string& entries) {
     std::ofstream(folder_ / "look.lua") << begin << entries << end;
     play({"look.lua", "shot.0001.exr"});
@@ -86,6 +82,72 @@ TEST_F(PlayStack, EffectsAreMoved) {
   EXPECT_TRUE(saved(gray + red)) << text_of("look.lua");
   ASSERT_TRUE(user("key ctrl+Up"));
   EXPECT_TRUE(saved(red + gray)) << text_of("look.lua");
+  quit();
+}
+
+TEST_F(PlayStack, EffectsAreSwitchedAndTakeTheSettingsOfOthers) {
+  ASSERT_NO_FATAL_FAILURE(open(kDarker + "  fx.color_adjustments {},\n"));
+  ASSERT_TRUE(until_color(kX, kY, kHalved));
+  ASSERT_TRUE(user("key Page_Down key ctrl+e"));
+  EXPECT_TRUE(until_color(kX, kY, kGray)) << "off";
+  ASSERT_TRUE(user("key ctrl+e"));
+  EXPECT_TRUE(until_color(kX, kY, kHalved)) << "on";
+  ASSERT_TRUE(user("key ctrl+shift+c key Page_Down key ctrl+shift+v"));
+  EXPECT_TRUE(until_color(kX, kY, kQuartered)) << "both are darker";
+  EXPECT_TRUE(saved(kDarker + "  fx.color_adjustments { post_exposure = -1 },\n")) << text_of("look.lua");
+  quit();
+}
+
+TEST_F(PlayStack, SnapshotsAreFlippedBetween) {
+  ASSERT_NO_FATAL_FAILURE(open(kDarker));
+  ASSERT_TRUE(until_color(kX, kY, kHalved));
+  ASSERT_TRUE(user("key ctrl+shift+1 key Page_Down key ctrl+d"));
+  ASSERT_TRUE(until_color(kX, kY, kQuartered));
+  ASSERT_TRUE(user("key ctrl+shift+2 key ctrl+1"));
+  EXPECT_TRUE(until_color(kX, kY, kHalved));
+  ASSERT_TRUE(user("key ctrl+2"));
+  EXPECT_TRUE(until_color(kX, kY, kQuartered));
+  EXPECT_TRUE(saved(kDarker + "  fx.color_adjustments { post_exposure = -1 },\n")) << text_of("look.lua");
+  ASSERT_TRUE(user("key ctrl+1"));
+  EXPECT_TRUE(until_color(kX, kY, kHalved)) << "over a save";
+  EXPECT_TRUE(saved(kDarker)) << text_of("look.lua");
+  quit();
+}
+
+/// By the mouse: where the menu of the first effect lies in a window of 1280×800.
+TEST_F(PlayStack, TheMenuOfAnEffectCopiesItAndGivesItAMask) {
+  ASSERT_NO_FATAL_FAILURE(open(kDarker));
+  ASSERT_TRUE(until_color(kX, kY, kHalved));
+  const auto pixel = [](const Screen& screen, int x, int y) {
+    const std::uint8_t* rgb = screen.at(x, y);
+    return Color{rgb[0], rgb[1], rgb[2]};
+  };
+  const Color panel = pixel(shot(), 1240, 310);
+  const auto menu = [&] {
+    ASSERT_TRUE(user("mousemove 1245 142 click 1"));
+    ASSERT_TRUE(until([&] {
+      const Screen screen = shot();
+      return !screen.rgb.empty() && pixel(screen, 1240, 310) != panel;
+    }));
+  };
+  ASSERT_NO_FATAL_FAILURE(menu());
+  ASSERT_TRUE(user("mousemove 1086 202 click 1"));
+  EXPECT_TRUE(until_color(kX, kY, kQuartered)) << "twice";
+  ASSERT_TRUE(user("mousemove 400 300 key ctrl+z"));
+  EXPECT_TRUE(until_color(kX, kY, kHalved));
+  ASSERT_NO_FATAL_FAILURE(menu());
+  ASSERT_TRUE(user("mousemove 1072 298 click 1"));
+  ASSERT_TRUE(until([&] {  // the list of masks is read, and lies beside the menu
+    const Screen screen = shot();
+    return !screen.rgb.empty() && pixel(screen, 1042, 478) == pixel(screen, 1240, 310);
+  }));
+  ASSERT_TRUE(user("mousemove 948 445 click 1"));
+  ASSERT_TRUE(until([&] {
+    return user("mousemove 400 300 key ctrl+s") && text_of("look.lua").find("mask.luma") != std::string::npos;
+  })) << text_of("look.lua");
+  EXPECT_NE(text_of("look.lua").find("  -- darker\n"), std::string::npos);
+  ASSERT_TRUE(user("key ctrl+z"));
+  EXPECT_TRUE(saved(kDarker)) << text_of("look.lua");
   quit();
 }
 

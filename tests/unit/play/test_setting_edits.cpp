@@ -23,6 +23,40 @@ TEST(SettingEdits, ADragIsOneStepOfUndo) {
   EXPECT_EQ(edits.value("glow", "strength"), number(0.3));
 }
 
+TEST(SettingEdits, SnapshotsAreBroughtBackAsOneStep) {
+  SettingEdits edits;
+  EXPECT_FALSE(edits.has(0));
+  EXPECT_FALSE(edits.recall(0)) << "nothing was kept";
+  edits.set("glow", "strength", number(0.1));
+  edits.keep(0);
+  edits.set("glow", "strength", number(0.5));
+  edits.set_stack({std::make_shared<const std::string>("changed"), {{"glow", "glow"}}, "", ""});
+  edits.keep(1);
+  ASSERT_TRUE(edits.recall(0));
+  EXPECT_EQ(edits.value("glow", "strength"), number(0.1));
+  EXPECT_FALSE(edits.stack_text());
+  EXPECT_FALSE(edits.recall(0)) << "it is so already";
+  ASSERT_TRUE(edits.recall(1));
+  EXPECT_EQ(*edits.stack_text(), "changed");
+  EXPECT_EQ(edits.value("glow", "strength"), number(0.5));
+  ASSERT_TRUE(edits.undo());
+  EXPECT_EQ(edits.value("glow", "strength"), number(0.1)) << "undo goes back over it";
+}
+
+/// A save does not change what a snapshot shows.
+TEST(SettingEdits, SnapshotsStayWhatTheyWereOverASave) {
+  SettingEdits edits;
+  edits.keep(0);
+  edits.set("glow", "strength", number(0.5));
+  edits.keep(1);
+  edits.rebase({{"glow", "strength", number(0.1), number(0.5)}});
+  EXPECT_TRUE(edits.none()) << "it is in the file";
+  ASSERT_TRUE(edits.recall(0));
+  EXPECT_EQ(edits.value("glow", "strength"), number(0.1));
+  ASSERT_TRUE(edits.recall(1));
+  EXPECT_TRUE(edits.none());
+}
+
 TEST(SettingEdits, GesturesEndWhereTheyAreSaidTo) {
   SettingEdits edits;
   edits.set("glow", "strength", number(0.1));
