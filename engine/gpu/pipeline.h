@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,10 +42,19 @@ struct DrawTargets {
   int count = 1;
 };
 
+/// One of two draws into the same target, with a depth image of kDepthFormat that is cleared to 1: the first one marks
+/// the pixels that it makes, the second one makes those that are not marked. `value` is that of the fragment shader's
+/// specialisation constant 0 (int).
+struct DrawTurn {
+  bool marks = false;
+  std::int32_t value = 0;
+};
+
 /// A pipeline that runs `fragment` on every pixel of its targets; viewport and scissor are dynamic. Goes through the
 /// device's pipeline cache. Thread-safe.
 Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayout& layout, VkShaderModule vertex,
-                                            VkShaderModule fragment, DrawTargets targets, const std::string& name);
+                                            VkShaderModule fragment, DrawTargets targets, const std::string& name,
+                                            std::optional<DrawTurn> turn = {});
 
 /// Errors (device): workgroups of this size, or with so many bytes to share, are more than the device has.
 Result<void> check_workgroup(const Device& device, Size invocations, std::uint64_t shared_bytes,

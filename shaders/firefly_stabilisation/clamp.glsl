@@ -36,12 +36,16 @@ float past(ivec2 pixel) {
   return least;
 }
 
+// Up to this brightness its surroundings allow a pixel.
+float limit_at(ivec2 pixel) { return max(threshold, tolerance * surroundings(pixel)); }
+
+bool done_at(ivec2 pixel, out vec4 color) {
+  color = fetch(source, pixel);
+  return brightest(color.rgb) <= limit_at(pixel);
+}
+
 vec4 sample_at(ivec2 pixel) {
   vec4 color = fetch(source, pixel);
-  float b = brightest(color.rgb);
-  if (b <= threshold) return color;
-  float limit = max(threshold, tolerance * surroundings(pixel));
-  if (b <= limit) return color;
-  limit = max(limit, min(tolerance * past(pixel), kMaxLight));
+  float b = brightest(color.rgb), limit = max(limit_at(pixel), min(tolerance * past(pixel), kMaxLight));
   return b <= limit ? color : vec4(color.rgb * (limit / b), color.a);
 }
