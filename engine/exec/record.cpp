@@ -71,9 +71,8 @@ void draw(const Device& device, VkCommandBuffer commands, const KernelCommands& 
   const VkRenderingAttachmentInfo marks{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                         .imageView = kernel.marks ? kernel.marks->view() : VK_NULL_HANDLE,
                                         .imageLayout = VK_IMAGE_LAYOUT_GENERAL,
-                                        .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-                                        .storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
-                                        .clearValue = {.depthStencil = {1, 0}}};
+                                        .loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                                        .storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE};
   const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                                   .renderArea = area,
                                   .layerCount = 1,

@@ -344,7 +344,7 @@ class Assembler {
                            static_cast<int>(KernelDraw::all));
     body_ += fmt::format(
         "  bool ag_done = ag_draw != {1} && {2}(ag_pixel0, ag_color0);\n"
-        "  if (ag_draw == {0} && !ag_done) discard;\n"
+        "  if (ag_draw == {0}) gl_FragDepth = ag_done ? 0.0 : 1.0;\n"
         "  if (ag_draw != {0} && !ag_done) ag_color0 = {3}(ag_pixel0);\n",
         static_cast<int>(KernelDraw::done), static_cast<int>(KernelDraw::rest), done, entry);
   }

@@ -15,21 +15,13 @@ uniform vec3 stretch;      // of the iris, across and down; how soft its rim is
 uniform float cat_eye;
 uniform float samples;
 
-int level_of(vec4 own) { return min(level_for(abs(own.a), samples) + (own.a < 0.0 ? 1 : 0), 2); }  // what is seen around is read more sparsely
-float weight_of(vec4 own) { return max(blurred(abs(own.a) * factor, factor), 1.0 / 4096.0); }
-
-bool done_at(ivec2 pixel, out vec4 color) {
-  vec4 own = fetch(source, pixel);
-  color = vec4(own.rgb, 1.0) * weight_of(own);
-  return before_means(abs(own.a), level_of(own)) <= 0.0;
-}
-
 vec4 sample_at(ivec2 pixel) {
   vec4 own = fetch(source, pixel);
   bool hidden = own.a < 0.0;
-  float circle = abs(own.a), weight = weight_of(own);
-  int level = level_of(own);
+  float circle = abs(own.a), weight = max(blurred(circle * factor, factor), 1.0 / 4096.0);
+  int level = min(level_for(circle, samples) + (hidden ? 1 : 0), 2);  // what is seen around is read more sparsely
   float radius = before_means(circle, level);
+  if (radius <= 0.0) return vec4(own.rgb, 1.0) * weight;
   vec3 tube = tube_at(vec2(pixel) + 0.5, vec2(small), cat_eye);
   float texel = float(1 << level), soft = stretch.z, reach = radius + 0.5 * soft, own_area = disc_area(radius, soft), per_circle = 1.0 / circle;
   ivec2 last = last_texel(small, level), origin = origin_of(small, level), rows = rows_of(pixel, reach / stretch.y + 0.5 * (texel - 1.0), level);

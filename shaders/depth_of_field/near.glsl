@@ -17,16 +17,9 @@ uniform float cat_eye;
 uniform float samples;
 uniform float part;        // of a disc that the iris is
 
-float widest_around(ivec2 pixel) { return -fetch(widest, pixel / block).a; }
-
-bool done_at(ivec2 pixel, out vec4 color) {
-  color = vec4(0.0);
-  return blurred(widest_around(pixel) * factor, factor) <= 0.0;
-}
-
 vec4 sample_at(ivec2 pixel) {
-  float around = widest_around(pixel);
-  int coarsest = level_for(around, samples);
+  float around = -fetch(widest, pixel / block).a;
+  int coarsest = blurred(around * factor, factor) <= 0.0 ? -1 : level_for(around, samples);
   vec3 tube = tube_at(vec2(pixel) + 0.5, vec2(small), cat_eye);
   float soft = stretch.z, open = part * open_part(has_tube ? tube.z : 0.0);
   vec4 sum = vec4(0.0);
