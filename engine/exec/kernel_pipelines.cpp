@@ -2,6 +2,7 @@
 #include "exec/kernel_pipelines.h"
 
 #include <optional>
+#include <span>
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
@@ -57,17 +58,18 @@ Result<Made> make(const Device& device, const CompiledKernel& kernel, const Draw
     AFTERGLOW_TRY(made.pipeline, create_compute_pipeline(device, layout, module.get(), name));
     return made;
   }
-  const auto turn = [&](KernelDraw draw) {
-    return kernel.two_draws ? std::optional(DrawTurn{draw == KernelDraw::done, static_cast<std::int32_t>(draw)})
-                            : std::nullopt;
+  const auto draw = [&](const ShaderModuleHandle& shader, KernelDraw which, DrawMarks marks) {
+    const std::int32_t constant = static_cast<std::int32_t>(which);
+    return create_draw_pipeline(device, layout, vertex, shader.get(), {format, kernel.rows, marks}, name,
+                                which == KernelDraw::all ? std::span<const std::int32_t>() : std::span(&constant, 1));
   };
-  const DrawTargets targets{format, kernel.rows};
-  AFTERGLOW_TRY(made.pipeline,
-                create_draw_pipeline(device, layout, vertex, module.get(), targets, name, turn(KernelDraw::done)));
-  if (!kernel.two_draws) return made;
+  if (!kernel.two_draws) {
+    AFTERGLOW_TRY(made.pipeline, draw(module, KernelDraw::all, DrawMarks::none));
+    return made;
+  }
+  AFTERGLOW_TRY(made.pipeline, draw(module, KernelDraw::done, DrawMarks::writes));
   AFTERGLOW_TRY(const ShaderModuleHandle early, create_shader_module(device, tested_early(kernel.spirv), name));
-  AFTERGLOW_TRY(made.rest,
-                create_draw_pipeline(device, layout, vertex, early.get(), targets, name, turn(KernelDraw::rest)));
+  AFTERGLOW_TRY(made.rest, draw(early, KernelDraw::rest, DrawMarks::tests));
   return made;
 }
 

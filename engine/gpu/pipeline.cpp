@@ -74,21 +74,25 @@ Result<ShaderModuleHandle> create_shader_module(const Device& device, std::span<
 
 Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayout& layout, VkShaderModule vertex,
                                             VkShaderModule fragment, DrawTargets targets, const std::string& name,
-                                            std::optional<DrawTurn> turn) {
-  constexpr VkSpecializationMapEntry kConstant{0, 0, sizeof(std::int32_t)};
-  const std::int32_t value = turn ? turn->value : 0;
-  const VkSpecializationInfo constants{1, &kConstant, sizeof value, &value};
-  const auto stage = [&](VkShaderStageFlagBits bit, VkShaderModule module) {
-    return VkPipelineShaderStageCreateInfo{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-        .pNext = nullptr,
-        .flags = 0,
-        .stage = bit,
-        .module = module,
-        .pName = "main",
-        .pSpecializationInfo = turn && bit == VK_SHADER_STAGE_FRAGMENT_BIT ? &constants : nullptr};
+                                            std::span<const std::int32_t> constants) {
+  std::vector<VkSpecializationMapEntry> entries;
+  for (std::uint32_t i = 0; i < constants.size(); ++i)
+    entries.push_back({i, i * static_cast<std::uint32_t>(sizeof(std::int32_t)), sizeof(std::int32_t)});
+  const VkSpecializationInfo special{.mapEntryCount = static_cast<std::uint32_t>(entries.size()),
+                                     .pMapEntries = entries.data(),
+                                     .dataSize = constants.size_bytes(),
+                                     .pData = constants.data()};
+  const auto stage = [](VkShaderStageFlagBits bit, VkShaderModule module, const VkSpecializationInfo* values) {
+    return VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                           .pNext = nullptr,
+                                           .flags = 0,
+                                           .stage = bit,
+                                           .module = module,
+                                           .pName = "main",
+                                           .pSpecializationInfo = values};
   };
-  const std::array stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex), stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
+  const std::array stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, nullptr),
+                          stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, constants.empty() ? nullptr : &special)};
   const VkPipelineVertexInputStateCreateInfo no_vertices{.sType =
                                                              VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   const VkPipelineInputAssemblyStateCreateInfo triangles{
@@ -109,12 +113,13 @@ Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayo
   const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
                                                   .attachmentCount = count,
                                                   .pAttachments = overwrite.data()};
-  // Every triangle lies at depth 0.
+  // Every triangle lies at depth 0, unless its shader says something else.
   const VkPipelineDepthStencilStateCreateInfo depth{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
       .depthTestEnable = VK_TRUE,
-      .depthWriteEnable = turn && turn->marks ? VK_TRUE : VK_FALSE,
-      .depthCompareOp = turn && turn->marks ? VK_COMPARE_OP_ALWAYS : VK_COMPARE_OP_LESS};
+      .depthWriteEnable = targets.marks == DrawMarks::writes ? VK_TRUE : VK_FALSE,
+      .depthCompareOp = targets.marks == DrawMarks::writes ? VK_COMPARE_OP_ALWAYS : VK_COMPARE_OP_LESS};
+  const bool marked = targets.marks != DrawMarks::none;
   constexpr std::array kDynamic{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
   const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
                                                  .dynamicStateCount = static_cast<std::uint32_t>(kDynamic.size()),
@@ -122,7 +127,7 @@ Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayo
   const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
                                                 .colorAttachmentCount = count,
                                                 .pColorAttachmentFormats = formats.data(),
-                                                .depthAttachmentFormat = turn ? kDepthFormat : VK_FORMAT_UNDEFINED};
+                                                .depthAttachmentFormat = marked ? kDepthFormat : VK_FORMAT_UNDEFINED};
   const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
                                           .pNext = &rendering,
                                           .stageCount = static_cast<std::uint32_t>(stages.size()),
@@ -132,7 +137,7 @@ Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayo
                                           .pViewportState = &viewport,
                                           .pRasterizationState = &raster,
                                           .pMultisampleState = &one_sample,
-                                          .pDepthStencilState = turn ? &depth : nullptr,
+                                          .pDepthStencilState = marked ? &depth : nullptr,
                                           .pColorBlendState = &blend,
                                           .pDynamicState = &dynamic,
                                           .layout = layout.pipeline.get(),

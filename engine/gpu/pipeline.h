@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,25 +35,22 @@ Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface&
 Result<ShaderModuleHandle> create_shader_module(const Device& device, std::span<const std::uint32_t> spirv,
                                                 const std::string& name);
 
+/// Two draws into the same targets share a depth image of kDepthFormat: the first one's shader writes gl_FragDepth, 0
+/// where it is done and else 1, and the second one makes the pixels that are not done.
+enum class DrawMarks { none, writes, tests };
+
 /// Colour attachments of a draw: `count` of the same format.
 struct DrawTargets {
   VkFormat format = VK_FORMAT_UNDEFINED;
   int count = 1;
-};
-
-/// One of two draws into the same target, with a depth image of kDepthFormat that is cleared to 1: the first one marks
-/// the pixels that it makes, the second one makes those that are not marked. `value` is that of the fragment shader's
-/// specialisation constant 0 (int).
-struct DrawTurn {
-  bool marks = false;
-  std::int32_t value = 0;
+  DrawMarks marks = DrawMarks::none;
 };
 
 /// A pipeline that runs `fragment` on every pixel of its targets; viewport and scissor are dynamic. Goes through the
-/// device's pipeline cache. Thread-safe.
+/// device's pipeline cache. `constants`: values of the fragment shader's specialisation constants 0, 1, … Thread-safe.
 Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayout& layout, VkShaderModule vertex,
                                             VkShaderModule fragment, DrawTargets targets, const std::string& name,
-                                            std::optional<DrawTurn> turn = {});
+                                            std::span<const std::int32_t> constants = {});
 
 /// Errors (device): workgroups of this size, or with so many bytes to share, are more than the device has.
 Result<void> check_workgroup(const Device& device, Size invocations, std::uint64_t shared_bytes,

@@ -62,10 +62,10 @@ Result<void> Painter::record(VkCommandBuffer commands, const PresentTarget& targ
       .colorAttachmentCount = 1,
       .pColorAttachments = &color};
   device_.vk().vkCmdBeginRendering(commands, &rendering);
-  view_pass_->record(commands, target.slot, views);
+  const auto viewed = view_pass_->record(commands, target.slot, views);
   ui_->record(commands, target.slot, interface);
   device_.vk().vkCmdEndRendering(commands);
-  return {};
+  return viewed;
 }
 
 void Painter::record_copy(VkCommandBuffer commands, const PresentTarget& target, const Buffer& to) const {

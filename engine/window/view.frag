@@ -5,30 +5,35 @@
 layout(set = 0, binding = 1) uniform sampler2D shown;
 layout(set = 0, binding = 2) uniform sampler2D compared;
 
+// What is known when the pipeline is made: CPU drivers run through every branch that is left (view_pass.cpp has the same).
+layout(constant_id = 0) const int kFlags = 0;
+layout(constant_id = 1) const int kChannel = 0;          // ViewChannel
+layout(constant_id = 2) const int kShownReads = 0;       // how each image is read
+layout(constant_id = 3) const int kComparedReads = 0;
+const int kFalseColor = 1, kDifference = 2, kEncode = 4, kGray = 8, kChecker = 16, kFill = 32;
+const int kNearest = 0, kSmooth = 1, kMean = 2;
+
 layout(push_constant) uniform Push {
-  vec4 outside;         // beside the picture; linear, alpha unused
+  vec4 fill;            // the one colour of kFill; linear, alpha unused
   vec4 below;           // mark of values under 0; w: gain of the exposure
-  vec4 above;           // mark of values over 1; w: where the border of the comparison lies, in pixels of the target
-  vec4 not_finite;      // mark; w: half the width of the border's line, in pixels of the target
+  vec4 above;           // mark of values over 1
+  vec4 not_finite;      // mark
   vec2 origin;          // of the picture, in pixels of the target
   float scale;          // pixels of the target for each of the picture
   float checker;        // side of a square of the checker board, in pixels of the target
   ivec2 picture;        // the size that `scale` is about
   ivec2 shown_size;
   ivec2 compared_size;
-  int channel;          // ViewChannel
-  int flags;
 } push;
 
 layout(location = 0) out vec4 result;
 
-const int kFalseColor = 1, kCompare = 2, kHorizontal = 4, kEncode = 8, kGray = 16, kChecker = 32, kDifference = 64, kSmooth = 128;
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
 const float kTolerance = 1e-4;  // rounding may carry what a display can just show over its ends
 const float kLargest = 1e30;
 const int kMarkBelow = 1, kMarkAbove = 2, kMarkNotFinite = 4;
 
-bool has(int flag) { return (push.flags & flag) != 0; }
+bool has(int flag) { return (kFlags & flag) != 0; }
 
 // By its bits: compilers may take isnan() for false.
 bool is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
@@ -47,7 +52,7 @@ int mark(float x) {
 int marks(vec4 c) {
   if (!has(kFalseColor)) return 0;
   float gain = push.below.w;
-  switch (push.channel) {
+  switch (kChannel) {
     case 0: return mark(c.r * gain) | mark(c.g * gain) | mark(c.b * gain);
     case 1: return mark(c.r * gain);
     case 2: return mark(c.g * gain);
@@ -79,11 +84,11 @@ Sample between_pixels(sampler2D image, ivec2 last, vec2 at) {
 
 // The image pixels that lie under this pixel of the target: the nearest one when it is not smaller than that, else the mean
 // of all it covers, each by the area that is covered. `at` is a point of the image, `reach` the side lengths of the target's
-// pixel there.
-Sample sample_image(sampler2D image, ivec2 size, vec2 at, vec2 reach) {
+// pixel there; they are the same for all pixels, so that who makes the pipeline knows what `reads` is.
+Sample sample_image(sampler2D image, int reads, ivec2 size, vec2 at, vec2 reach) {
   ivec2 last = size - 1;
-  if (reach.x <= 1.0 && reach.y <= 1.0 && has(kSmooth)) return between_pixels(image, last, at - 0.5);
-  if (reach.x <= 1.0 && reach.y <= 1.0) {
+  if (reads == kSmooth) return between_pixels(image, last, at - 0.5);
+  if (reads == kNearest) {
     vec4 c = texelFetch(image, clamp(ivec2(floor(at)), ivec2(0), last), 0);
     return Sample(tamed(c), marks(c));
   }
@@ -107,7 +112,7 @@ Sample sample_image(sampler2D image, ivec2 size, vec2 at, vec2 reach) {
 }
 
 vec3 with_channel(vec4 c) {
-  switch (push.channel) {
+  switch (kChannel) {
     case 0: return c.rgb;
     case 1: return c.rrr;
     case 2: return c.ggg;
@@ -118,7 +123,7 @@ vec3 with_channel(vec4 c) {
 }
 
 vec3 over_background(vec4 c) {
-  if (push.channel != 0 || !(has(kGray) || has(kChecker))) return with_channel(c);
+  if (kChannel != 0 || !(has(kGray) || has(kChecker))) return with_channel(c);
   float background = 0.18;
   if (has(kChecker)) {
     ivec2 square = ivec2(floor(gl_FragCoord.xy / push.checker));
@@ -133,7 +138,7 @@ vec3 looked_at(Sample s) {
   if ((s.marks & kMarkAbove) != 0) return push.above.rgb;
   vec4 c = s.color;
   c.rgb *= push.below.w;
-  if (has(kFalseColor)) return push.channel == 0 ? vec3(dot(c.rgb, kLuminance)) : with_channel(c);  // marks stand out
+  if (has(kFalseColor)) return kChannel == 0 ? vec3(dot(c.rgb, kLuminance)) : with_channel(c);  // marks stand out
   return over_background(c);
 }
 
@@ -143,33 +148,27 @@ vec3 encoded(vec3 c) {
   return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
 }
 
+// `point`: of the picture, whatever the size of the image.
+Sample sample_shown(vec2 point) {
+  vec2 per_point = vec2(push.shown_size) / vec2(push.picture);
+  return sample_image(shown, kShownReads, push.shown_size, point * per_point, per_point / push.scale);
+}
+
+Sample sample_compared(vec2 point) {
+  vec2 per_point = vec2(push.compared_size) / vec2(push.picture);
+  return sample_image(compared, kComparedReads, push.compared_size, point * per_point, per_point / push.scale);
+}
+
 void main() {
-  vec2 point = (gl_FragCoord.xy - push.origin) / push.scale;
-  vec2 picture = vec2(push.picture);
-  if (any(lessThan(point, vec2(0.0))) || any(greaterThanEqual(point, picture))) {
-    result = vec4(encoded(push.outside.rgb), 1.0);
+  if (has(kFill)) {
+    result = vec4(encoded(push.fill.rgb), 1.0);
     return;
   }
-  float along = has(kHorizontal) ? gl_FragCoord.y : gl_FragCoord.x;
-  float distance = has(kCompare) ? along - push.above.w : 1e9;
-  vec2 to_shown = vec2(push.shown_size) / picture, to_compared = vec2(push.compared_size) / picture;
-  vec3 color;
+  vec2 point = (gl_FragCoord.xy - push.origin) / push.scale;
+  Sample s = sample_shown(point);
   if (has(kDifference)) {
-    Sample one = sample_image(shown, push.shown_size, point * to_shown, to_shown / push.scale);
-    Sample other = sample_image(compared, push.compared_size, point * to_compared, to_compared / push.scale);
-    color = looked_at(Sample(vec4(abs(one.color.rgb - other.color.rgb), 1.0), one.marks | other.marks));
-  } else if (distance < 0.0) {
-    color = looked_at(sample_image(compared, push.compared_size, point * to_compared, to_compared / push.scale));
-  } else {
-    color = looked_at(sample_image(shown, push.shown_size, point * to_shown, to_shown / push.scale));
+    Sample other = sample_compared(point);
+    s = Sample(vec4(abs(s.color.rgb - other.color.rgb), 1.0), s.marks | other.marks);
   }
-  color = encoded(color);
-  // A bright line between dark ones shows on any picture.
-  float half_width = push.not_finite.w;
-  if (abs(distance) < half_width) {
-    color = encoded(vec3(0.8));
-  } else if (abs(distance) < half_width + 1.0) {
-    color = encoded(vec3(0.02));
-  }
-  result = vec4(color, 1.0);
+  result = vec4(encoded(looked_at(s)), 1.0);
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "gpu/error.h"
@@ -16,28 +18,25 @@ namespace afterglow {
 namespace {
 
 constexpr std::uint32_t kImages = 2;
+constexpr std::size_t kSetsOfFrame = 2;  ///< what is shown; what it is compared with beside a border
 constexpr VkDescriptorType kImageType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 
 /// As view.frag declares it.
 struct Push {
-  std::array<float, 4> outside, below, above, not_finite;
+  std::array<float, 4> fill, below, above, not_finite;
   std::array<float, 2> origin;
   float scale, checker;
   std::array<std::int32_t, 2> picture, shown_size, compared_size;
-  std::int32_t channel, flags;
 };
-static_assert(sizeof(Push) == 112);
+static_assert(sizeof(Push) == 104);
 
-enum Flag {
-  kFalseColor = 1,
-  kCompare = 2,
-  kHorizontal = 4,
-  kEncode = 8,
-  kGray = 16,
-  kChecker = 32,
-  kDifference = 64,
-  kSmooth = 128
-};
+enum Flag { kFalseColor = 1, kDifference = 2, kEncode = 4, kGray = 8, kChecker = 16, kFill = 32 };
+enum Reads { kNearest, kSmooth, kMean };
+
+/// The shader's specialisation constants: flags, channel, how `shown` and `compared` are read.
+using Constants = std::array<std::int32_t, 4>;
+
+constexpr ViewColor kBorder{0.906332f, 0.906332f, 0.906332f}, kBesideBorder{0.151704f, 0.151704f, 0.151704f};
 
 float to_linear(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }
 
@@ -47,35 +46,84 @@ std::array<float, 4> color_and(const ViewColor& color, double w) {
 
 std::array<std::int32_t, 2> pair_of(Size size) { return {size.width, size.height}; }
 
-/// Where the border of a comparison lies, in pixels of the target.
-double border_of(const ViewFrame& frame, const ViewPlacement& place) {
-  const Point at = to_screen(place, {frame.view.wipe * frame.picture.width, frame.view.wipe * frame.picture.height});
-  return frame.view.wipe_vertical ? at.y + frame.area.y : at.x + frame.area.x;
+/// The pixels of the target whose middles lie from `from` to `to`, the first and the one behind the last.
+std::array<int, 2> middles_between(double from, double to) {
+  return {static_cast<int>(std::ceil(from - 0.5)), static_cast<int>(std::ceil(to - 0.5))};
 }
 
-Push push_of(const ViewFrame& frame, bool encode) {
-  const View& view = frame.view;
-  const ViewPlacement place = placement(view, frame.picture, frame.area.size());
-  const bool compare = view.compare != Compare::none && frame.compared.has_value();
-  const bool difference = compare && view.by == CompareBy::difference;
+Rect intersection(const Rect& a, const Rect& b) {
+  const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
+  return {x, y, std::max(std::min(a.x + a.width, b.x + b.width) - x, 0),
+          std::max(std::min(a.y + a.height, b.y + b.height) - y, 0)};
+}
+
+/// What a view shows, and where on the target.
+struct Place {
+  Point origin;  ///< of the picture
+  double scale = 1;
+  Rect pixels;        ///< of the picture, as far as they lie in the frame's area
+  double border = 0;  ///< of a wipe
+};
+
+Place place_of(const ViewFrame& frame) {
+  const ViewPlacement at = placement(frame.view, frame.picture, frame.area.size());
+  Place out{.origin = {at.origin.x + frame.area.x, at.origin.y + frame.area.y}, .scale = at.scale};
+  // Held near the area, so that a picture that is magnified beyond it stays within whole numbers.
+  const auto side = [](double origin, double length, int from, int size) {
+    return middles_between(std::max(origin, from - 1.0), std::min(origin + length, from + size + 1.0));
+  };
+  const auto [left, right] = side(out.origin.x, at.scale * frame.picture.width, frame.area.x, frame.area.width);
+  const auto [top, bottom] = side(out.origin.y, at.scale * frame.picture.height, frame.area.y, frame.area.height);
+  out.pixels = intersection({left, top, std::max(right - left, 0), std::max(bottom - top, 0)}, frame.area);
+  const bool across = frame.view.wipe_vertical;
+  const double length = at.scale * frame.view.wipe * (across ? frame.picture.height : frame.picture.width);
+  out.border = length + (across ? out.origin.y : out.origin.x);
+  return out;
+}
+
+/// The pixels whose middles lie between these two along the border's direction of a wipe.
+Rect strip(const Place& place, bool vertical, double from, double to) {
+  const Rect& all = place.pixels;
+  const int first = vertical ? all.y : all.x, length = vertical ? all.height : all.width;
+  const auto [begin, end] = middles_between(std::clamp<double>(from, first - 1, first + length + 1),
+                                            std::clamp<double>(to, first - 1, first + length + 1));
+  const Rect cut = vertical ? Rect{all.x, begin, all.width, end - begin} : Rect{begin, all.y, end - begin, all.height};
+  return intersection(cut, all);
+}
+
+/// What of `all` lies above, below, left and right of `hole`, which lies in it.
+std::array<Rect, 4> around(const Rect& all, const Rect& hole) {
+  if (hole.size().area() == 0) return {all};
+  const int right = hole.x + hole.width, bottom = hole.y + hole.height;
+  return {Rect{all.x, all.y, all.width, hole.y - all.y},
+          {all.x, bottom, all.width, all.y + all.height - bottom},
+          {all.x, hole.y, hole.x - all.x, hole.height},
+          {right, hole.y, all.x + all.width - right, hole.height}};
+}
+
+Push push_of(const ViewFrame& frame, const Place& place, Size shown, Size compared) {
   Push push{};
-  push.outside = color_and(frame.outside, 0);
-  push.below = color_and(kMarkBelow, std::exp2(view.exposure));
-  push.above = color_and(kMarkAbove, border_of(frame, place));
-  push.not_finite = color_and(kMarkNotFinite, frame.pixel_scale);
-  push.origin = {static_cast<float>(place.origin.x + frame.area.x), static_cast<float>(place.origin.y + frame.area.y)};
+  push.below = color_and(kMarkBelow, std::exp2(frame.view.exposure));
+  push.above = color_and(kMarkAbove, 0);
+  push.not_finite = color_and(kMarkNotFinite, 0);
+  push.origin = {static_cast<float>(place.origin.x), static_cast<float>(place.origin.y)};
   push.scale = static_cast<float>(place.scale);
   push.checker = 12 * frame.pixel_scale;
   push.picture = pair_of(frame.picture);
-  push.shown_size = pair_of(frame.shown.size);
-  push.compared_size = pair_of(compare ? frame.compared->size : frame.shown.size);
-  push.channel = static_cast<std::int32_t>(view.channel);
-  push.flags = (view.smooth ? kSmooth : 0) | (view.false_color ? kFalseColor : 0) |
-               (compare && !difference ? kCompare : 0) | (difference ? kDifference : 0) |
-               (view.wipe_vertical ? kHorizontal : 0) | (encode ? kEncode : 0) |
-               (frame.background == ViewBackground::gray ? kGray : 0) |
-               (frame.background == ViewBackground::checker ? kChecker : 0);
+  push.shown_size = pair_of(shown);
+  push.compared_size = pair_of(compared);
   return push;
+}
+
+Reads reads_of(const ViewFrame& frame, const Place& place, Size image) {
+  const auto reach = [&](int side, int of_picture) { return side / (place.scale * of_picture); };
+  const bool minified = reach(image.width, frame.picture.width) > 1 || reach(image.height, frame.picture.height) > 1;
+  return minified ? kMean : frame.view.smooth ? kSmooth : kNearest;
+}
+
+std::int32_t flags_of(const ViewFrame& frame) {
+  return (frame.view.false_color ? kFalseColor : 0) | (frame.background == ViewBackground::gray ? kGray : 0) |
+         (frame.background == ViewBackground::checker ? kChecker : 0);
 }
 
 }  // namespace
@@ -83,26 +131,44 @@ Push push_of(const ViewFrame& frame, bool encode) {
 struct ViewPass::State {
   const Device& device;
   bool encode = true;
+  VkFormat target = VK_FORMAT_UNDEFINED;
   DrawLayout layout;
-  PipelineHandle pipeline;
+  ShaderModuleHandle vertex, fragment;
+  std::map<Constants, PipelineHandle> pipelines;
   SamplerHandle sampler;
   DescriptorPoolHandle pool;
-  std::vector<VkDescriptorSet> sets;  // of each slot, kMostFrames in a row
+  std::vector<VkDescriptorSet> sets;  // of each slot, of each frame, kSetsOfFrame in a row
 
-  Result<void> make_pipeline(VkFormat target);
+  Result<void> make_shaders();
+  Result<VkPipeline> pipeline(Constants constants);
   Result<void> make_sets(std::size_t count);
   void bind(VkDescriptorSet set, const std::array<ViewImage, kImages>& images) const;
-  void draw(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame) const;
+  Result<void> draw(VkCommandBuffer commands, const Rect& pixels, const Constants& constants, const Push& push);
+  Result<void> fill(VkCommandBuffer commands, const Rect& pixels, const ViewColor& color);
+  Result<void> draw_images(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame, const Place& place,
+                           const Rect& pixels, const std::array<ViewImage, kImages>& images, bool difference);
+  Result<void> draw_frame(VkCommandBuffer commands, std::span<const VkDescriptorSet, kSetsOfFrame> own,
+                          const ViewFrame& frame);
 };
 
-Result<void> ViewPass::State::make_pipeline(VkFormat target) {
+Result<void> ViewPass::State::make_shaders() {
   AFTERGLOW_TRY(layout,
                 create_draw_layout(device, {.images = std::vector(kImages, kImageType), .push_bytes = sizeof(Push)}));
-  AFTERGLOW_TRY(const auto vertex, create_shader_module(device, kFullscreenVertex, "view"));
-  AFTERGLOW_TRY(const auto fragment, create_shader_module(device, kViewFrag, "view"));
-  AFTERGLOW_TRY(pipeline, create_draw_pipeline(device, layout, vertex.get(), fragment.get(), {target}, "view"));
+  AFTERGLOW_TRY(vertex, create_shader_module(device, kFullscreenVertex, "view"));
+  AFTERGLOW_TRY(fragment, create_shader_module(device, kViewFrag, "view"));
   AFTERGLOW_TRY(sampler, create_sampler(device, VK_FILTER_NEAREST));
   return {};
+}
+
+/// Made when a way of looking is first used.
+Result<VkPipeline> ViewPass::State::pipeline(Constants constants) {
+  if (encode) constants[0] |= kEncode;
+  PipelineHandle& made = pipelines[constants];
+  if (!made) {
+    AFTERGLOW_TRY(made,
+                  create_draw_pipeline(device, layout, vertex.get(), fragment.get(), {target}, "view", constants));
+  }
+  return made.get();
 }
 
 Result<void> ViewPass::State::make_sets(std::size_t count) {
@@ -145,40 +211,92 @@ void ViewPass::State::bind(VkDescriptorSet set, const std::array<ViewImage, kIma
   device.vk().vkUpdateDescriptorSets(device.handle(), kImages, writes.data(), 0, nullptr);
 }
 
-void ViewPass::State::draw(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame) const {
-  bind(set, {frame.shown, frame.compared.value_or(frame.shown)});
-  const auto x = static_cast<float>(frame.area.x), y = static_cast<float>(frame.area.y);
-  const auto width = static_cast<std::uint32_t>(frame.area.width);
-  const auto height = static_cast<std::uint32_t>(frame.area.height);
-  const VkViewport viewport{x, y, static_cast<float>(width), static_cast<float>(height), 0, 1};
-  const VkRect2D scissor{{frame.area.x, frame.area.y}, {width, height}};
+/// Of these pixels of the target, with the set that is bound.
+Result<void> ViewPass::State::draw(VkCommandBuffer commands, const Rect& pixels, const Constants& constants,
+                                   const Push& push) {
+  if (pixels.size().area() == 0) return {};
+  AFTERGLOW_TRY(const VkPipeline pipeline, this->pipeline(constants));
+  const auto width = static_cast<std::uint32_t>(pixels.width), height = static_cast<std::uint32_t>(pixels.height);
+  const VkViewport viewport{static_cast<float>(pixels.x),
+                            static_cast<float>(pixels.y),
+                            static_cast<float>(width),
+                            static_cast<float>(height),
+                            0,
+                            1};
+  const VkRect2D scissor{{pixels.x, pixels.y}, {width, height}};
   device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
   device.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
-  device.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.get());
-  device.vk().vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout.pipeline.get(), 0, 1, &set, 0,
-                                      nullptr);
-  const Push push = push_of(frame, encode);
+  device.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
   device.vk().vkCmdPushConstants(commands, layout.pipeline.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push, &push);
   device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
+  return {};
+}
+
+Result<void> ViewPass::State::fill(VkCommandBuffer commands, const Rect& pixels, const ViewColor& color) {
+  Push push{};
+  push.fill = color_and(color, 0);
+  return draw(commands, pixels, {kFill, 0, kNearest, kNearest}, push);
+}
+
+/// The first image, or how far both are apart.
+Result<void> ViewPass::State::draw_images(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame,
+                                          const Place& place, const Rect& pixels,
+                                          const std::array<ViewImage, kImages>& images, bool difference) {
+  bind(set, images);
+  device.vk().vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout.pipeline.get(), 0, 1, &set, 0,
+                                      nullptr);
+  const auto [shown, compared] = images;
+  return draw(commands, pixels,
+              {flags_of(frame) | (difference ? kDifference : 0), static_cast<std::int32_t>(frame.view.channel),
+               reads_of(frame, place, shown.size), difference ? reads_of(frame, place, compared.size) : kNearest},
+              push_of(frame, place, shown.size, compared.size));
+}
+
+Result<void> ViewPass::State::draw_frame(VkCommandBuffer commands, std::span<const VkDescriptorSet, kSetsOfFrame> own,
+                                         const ViewFrame& frame) {
+  const Place place = place_of(frame);
+  const bool compares = frame.view.compare != Compare::none && frame.compared.has_value();
+  const bool difference = compares && frame.view.by == CompareBy::difference, wipe = compares && !difference;
+  const bool vertical = frame.view.wipe_vertical;
+  constexpr double kFar = 1e9;
+  const ViewImage& other = compares ? *frame.compared : frame.shown;
+  const Rect rest = wipe ? strip(place, vertical, place.border, kFar) : place.pixels;
+  AFTERGLOW_CHECK(
+      draw_images(commands, own[0], frame, place, rest, {frame.shown, difference ? other : frame.shown}, difference));
+  for (const Rect& beside : around(frame.area, place.pixels)) AFTERGLOW_CHECK(fill(commands, beside, frame.outside));
+  if (!wipe) return {};
+  const Rect before = strip(place, vertical, -kFar, place.border);
+  AFTERGLOW_CHECK(draw_images(commands, own[1], frame, place, before, {other, other}, false));
+  // A bright line between dark ones shows on any picture.
+  const double half_width = frame.pixel_scale;
+  for (const auto& [half, color] : {std::pair(half_width + 1, kBesideBorder), std::pair(half_width, kBorder)})
+    AFTERGLOW_CHECK(fill(commands, strip(place, vertical, place.border - half, place.border + half), color));
+  return {};
 }
 
 Result<std::unique_ptr<ViewPass>> ViewPass::create(const Device& device, VkFormat target, std::size_t slots) {
   std::unique_ptr<State> state(new State{.device = device});
   state->encode = !encodes_srgb(target);
-  AFTERGLOW_CHECK(state->make_pipeline(target));
-  AFTERGLOW_CHECK(state->make_sets(slots * kMostFrames));
+  state->target = target;
+  AFTERGLOW_CHECK(state->make_shaders());
+  AFTERGLOW_CHECK(state->make_sets(slots * kMostFrames * kSetsOfFrame));
   return std::unique_ptr<ViewPass>(new ViewPass(std::move(state)));
 }
 
 ViewPass::ViewPass(std::unique_ptr<State> state) : state_(std::move(state)) {}
 ViewPass::~ViewPass() = default;
 
-void ViewPass::record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames) {
+Result<void> ViewPass::record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames) {
   State& s = *state_;
   s.device.begin_label(commands, "view");
   for (std::size_t i = 0; i < std::min(frames.size(), kMostFrames); ++i)
-    if (frames[i].area.size().area() > 0) s.draw(commands, s.sets[slot * kMostFrames + i], frames[i]);
+    if (frames[i].area.size().area() > 0) {
+      const VkDescriptorSet* sets = &s.sets[(slot * kMostFrames + i) * kSetsOfFrame];
+      AFTERGLOW_CHECK(
+          s.draw_frame(commands, std::span<const VkDescriptorSet, kSetsOfFrame>(sets, kSetsOfFrame), frames[i]));
+    }
   s.device.end_label(commands);
+  return {};
 }
 
 }  // namespace afterglow

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Draws source and result as a View says, into any colour target, in one full-screen pass.
+// Draws source and result as a View says, into any colour target: each pixel once, by a shader made for the way in
+// which one looks.
 #pragma once
 
 #include <array>
@@ -57,15 +58,15 @@ struct ViewFrame {
 /// Drawing thread alone.
 class ViewPass {
  public:
-  /// `target`: format of the colour target. `slots`: as many frames may be under way. Compiles nothing later. Errors:
-  /// device.
+  /// `target`: format of the colour target. `slots`: as many frames may be under way. Errors: device.
   static Result<std::unique_ptr<ViewPass>> create(const Device& device, VkFormat target, std::size_t slots);
   ~ViewPass();
 
   /// Pictures that one call records at most: two lie side by side.
   static constexpr std::size_t kMostFrames = 2;
-  /// Within vkCmdBeginRendering on one colour target. What was recorded with `slot` before must be done.
-  void record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames);
+  /// Within vkCmdBeginRendering on one colour target. What was recorded with `slot` before must be done. Makes a
+  /// pipeline when a way of looking (channel, marks, background, how pixels are read) comes first. Errors: device.
+  Result<void> record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames);
 
  private:
   struct State;

@@ -26,7 +26,9 @@ void expect_flat(const Held& before, std::size_t allowed) {
   std::cout << "memory " << (before.bytes >> 10) << " KiB, then " << (after.bytes >> 10) << " KiB; handles "
             << before.handles << ", " << after.handles << "; threads " << before.threads << ", " << after.threads
             << '\n';
+#ifndef __SANITIZE_THREAD__  // ThreadSanitizer's own memory grows with all that is touched
   EXPECT_LT(after.bytes, before.bytes + allowed);
+#endif
   EXPECT_LE(after.handles, before.handles);
   EXPECT_LE(after.threads, before.threads + 2) << "workers of a pool may begin late";
 }

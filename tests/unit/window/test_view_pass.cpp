@@ -116,7 +116,7 @@ class ViewPassTest : public testing::Test {
                                     .colorAttachmentCount = 1,
                                     .pColorAttachments = &color};
     device_->vk().vkCmdBeginRendering(commands, &rendering);
-    pass.record(commands, 0, {&frame, 1});
+    EXPECT_TRUE(pass.record(commands, 0, {&frame, 1}));
     device_->vk().vkCmdEndRendering(commands);
     const auto into = image_barrier(target.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
