@@ -129,7 +129,8 @@ struct AssembledKernel {
 };
 
 /// Which pixels a kernel makes, as the value of its specialisation constant kDrawConstant, which those with `two_draws`
-/// have: those that its sample shader is done with (it discards the others), or the others.
+/// have. `done`: those that its sample shader is done with, at depth 0; the others, which it leaves at depth 1, mean
+/// nothing. `rest`: the others.
 enum class KernelDraw { all = 0, done = 1, rest = 2 };
 inline constexpr std::uint32_t kDrawConstant = 0;
 /// `spirv` of such a kernel for the second draw: depth is tested before it runs, whatever it stores.
