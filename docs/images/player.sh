@@ -11,6 +11,7 @@ trap 'kill "${play:-}" "${display_server:-}" 2>/dev/null || true; rm -rf "$work"
 cp "$project/presets/neon_night.lua" "$work/look.lua"
 cp "$project/tests/images/neon.exr" "$work/neon.exr"
 cd "$work"
+export XDG_CONFIG_HOME=$work XDG_STATE_HOME=$work  # as for somebody new
 mkfifo number
 Xvfb -displayfd 3 -screen 0 1280x800x24 3>number 2>/dev/null & display_server=$!
 read -r number <number
@@ -25,3 +26,10 @@ xdotool type lens
 sleep 2
 import -window root "$work/player.png"
 convert "$work/player.png" -resize 1000x -quality 80 "$project/docs/images/player.jpg"
+xdotool key Escape
+sleep 1
+xdotool key h key h key h key h key h
+xdotool keydown ctrl mousemove 100 150 mousedown 1 mousemove 150 240 mousemove 270 300 mouseup 1 keyup ctrl
+sleep 3
+import -window root "$work/scopes.png"
+convert "$work/scopes.png" -resize 1000x -quality 80 "$project/docs/images/player_scopes.jpg"

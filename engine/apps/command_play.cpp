@@ -7,6 +7,7 @@
 #include "apps/play_arguments.h"
 #include "apps/play_headless.h"
 #include "apps/play_report.h"
+#include "apps/play_settings.h"
 #include "apps/play_window.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
@@ -52,7 +53,12 @@ Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& op
 }
 
 Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& options, Console& console) {
-  const PlayWindowOptions window{.scale = a.ui_scale,
+  std::optional<WindowPlace> place;
+  if (!a.geometry.empty()) {
+    AFTERGLOW_TRY(place, parse_geometry(a.geometry));
+  }
+  const PlayWindowOptions window{.place = place,
+                                 .scale = a.ui_scale,
                                  .full_screen = a.full_screen,
                                  .paused = a.paused,
                                  .stats = a.stats,
@@ -76,7 +82,17 @@ Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& optio
   return reported;
 }
 
-Result<void> play_command(const PlayArguments& a, Console& console) {
+/// What the user wants of every window. Runs without one are scripts', and the same for everybody.
+Result<void> take_settings(CLI::App& app, const PlayArguments& a) {
+  const auto file = play_settings_file();
+  std::error_code none;
+  if (a.headless || file.empty() || !std::filesystem::exists(file, none)) return {};
+  AFTERGLOW_TRY(const std::string text, read_file(file));
+  return apply_play_settings(app, text, file.string());
+}
+
+Result<void> play_command(CLI::App& app, const PlayArguments& a, Console& console) {
+  AFTERGLOW_CHECK(take_settings(app, a));
   AFTERGLOW_TRY(const PlayerOptions options, a.player());
   if (a.headless) return play_without_window(a, options, console);
   return play_with_window(a, options, console);
@@ -94,7 +110,7 @@ Command add_play_command(CLI::App& program) {
       "  afterglow play look.lua clip.mp4 --b other.lua --loop ping-pong\n"
       "  afterglow play look.lua shot.####.exr --headless --count 240 --stats --report play.json\n"
       "  afterglow play look.lua shot.####.exr --headless --fast --frames 12 --screenshot shot.0012.png");
-  return {app, [arguments](Console& console) { return play_command(*arguments, console); }};
+  return {app, [app, arguments](Console& console) { return play_command(*app, *arguments, console); }};
 }
 
 }  // namespace afterglow

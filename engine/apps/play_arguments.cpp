@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/window_place.h"
 #include "core/paths.h"
 #include "core/text.h"
 #include "image/writer.h"
@@ -52,7 +53,10 @@ void PlayArguments::add_playing(CLI::App& app) {
   app.add_flag("--poll", poll, "Look at files regularly instead of waiting for the system to tell of changes")
       ->group(group);
   const std::string window = "Window";
-  app.add_flag("--full-screen", full_screen, "Fill the screen")->group(window);
+  app.add_flag("--full-screen,--fullscreen", full_screen, "Fill the screen")->group(window);
+  app.add_option("--geometry", geometry, "Size of the window, and its place: 1280x720+100+50 (default: as it was left)")
+      ->type_name("WxH[+X+Y]")
+      ->group(window);
   app.add_flag("--paused", paused, "Begin with the first frame, standing still")->group(window);
   app.add_option("--ui-scale", ui_scale, "Size of the interface, 0.5 to 4 (default: the desktop's)")
       ->check(CLI::Range(0.5, 4.0))
@@ -80,6 +84,7 @@ void PlayArguments::add_playing(CLI::App& app) {
 Result<void> PlayArguments::check() const {
   if (!(std::abs(speed) >= Transport::kSlowest && std::abs(speed) <= Transport::kFastest))
     return Error{ErrorKind::usage, fmt::format("'{}' is no speed", speed), "--speed", 0, "0.1 to 8, -0.1 to -8"};
+  if (!geometry.empty()) AFTERGLOW_CHECK(parse_geometry(geometry));
   if (headless && !loop.empty() && loop != "once" && count == 0)
     return Error{ErrorKind::usage, fmt::format("--loop {} without a window needs an end: --count N", loop),
                  "afterglow play"};

@@ -19,6 +19,7 @@ struct PlayArguments {
   std::vector<std::string> inputs;
   LayerArguments layers;
   std::string frames;
+  std::string geometry;
   std::string other, show, loop, cache = "2G", screenshot, report, exports;
   std::optional<double> fps;
   double speed = 1;

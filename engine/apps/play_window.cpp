@@ -10,6 +10,8 @@ namespace afterglow {
 
 namespace {
 
+constexpr Size kFirstSize{1440, 900};  // pixels of a plain display
+
 WindowOptions window_options(const PlayWindowOptions& options) {
   WindowOptions out;
   if (options.scale) out.scale = static_cast<float>(*options.scale);
@@ -26,7 +28,10 @@ Result<void> play_in_window(
     const std::function<void(const Device&, Player&, const PlayedTimes&, const Result<void>& done)>& at_end) {
   const auto start = Clock::now();
   install_interrupt_handler();
-  AFTERGLOW_TRY(const auto window, DesktopWindow::create("Afterglow", options.size));
+  const auto place = options.place ? options.place : remembered_place();
+  AFTERGLOW_TRY(const auto window,
+                DesktopWindow::create("Afterglow", place ? place->size : kFirstSize, place.has_value()));
+  if (place && place->placed) window->move_to(place->x, place->y);
   const DeviceOptions export_device = device_options;  // no window is shown on that
   device_options.presentation = window->presentation();
   AFTERGLOW_TRY(const auto device, Device::create(device_options, console.diagnostics()));
@@ -53,6 +58,8 @@ Result<void> play_in_window(
     window->set_last_words([&] { tell(Error{ErrorKind::device, "the connection to the display was lost"}); });
     done = run_window(*window, *device, *player, shown, console.diagnostics());
     window->set_last_words(nullptr);
+    const Rect left = window->place();
+    if (done && !options.place && left.size().area() > 0) remember_place({left.size(), true, left.x, left.y});
     tell(done);
   }
   // Validation goes first: it says what a failure comes from.

@@ -7,14 +7,15 @@
 #include <optional>
 
 #include "apps/console.h"
+#include "apps/window_place.h"
 #include "gpu/device.h"
 #include "play/player.h"
 
 namespace afterglow {
 
 struct PlayWindowOptions {
-  Size size{1440, 900};
-  std::optional<double> scale;  ///< of the interface; none: the desktop's
+  std::optional<WindowPlace> place;  ///< none: as the last window was left
+  std::optional<double> scale;       ///< of the interface; none: the desktop's
   bool full_screen = false;
   bool paused = false;
   bool stats = false;

@@ -323,6 +323,7 @@ Player::~Player() = default;
 double Player::now() const { return state_->now(); }
 Transport& Player::transport() { return state_->transport; }
 View& Player::view() { return state_->view; }
+const std::filesystem::path& Player::preset_file() const { return state_->options.preset; }
 const Footage& Player::footage() const { return *state_->footage; }
 const FootageOptions& Player::footage_options() const { return state_->options.footage; }
 LiveStack& Player::live() { return state_->first->live(); }

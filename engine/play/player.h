@@ -14,8 +14,8 @@
 #include "exec/frame.h"
 #include "play/figures.h"
 #include "play/footage.h"
-#include "play/histogram.h"
 #include "play/read_ahead.h"
+#include "play/scopes.h"
 #include "play/setting_edits.h"
 #include "play/transport.h"
 #include "play/view.h"
@@ -75,6 +75,13 @@ struct Probe {
   std::optional<std::array<float, 4>> other;
 };
 
+/// Means over a region of the picture, linear.
+struct RegionMeans {
+  Rect region;
+  RegionMean source, result;
+  std::optional<RegionMean> other;
+};
+
 /// Drawing thread alone, but for `wake`'s callers. The device must outlive it.
 class Player {
  public:
@@ -96,6 +103,7 @@ class Player {
   Transport& transport();
   View& view();
   const Footage& footage() const;
+  const std::filesystem::path& preset_file() const;
   const FootageOptions& footage_options() const;  ///< what `footage` was opened with
   FrameState frame_state(int position) const;
   LiveStack& live();
@@ -134,8 +142,11 @@ class Player {
   /// None outside of the picture or without one. Reads one pixel of the result from the device. Errors: device.
   Result<std::optional<Probe>> probe(Pixel pixel);
   enum class Of { source, result, other };
-  /// Reads the whole result from the device: only when it is looked at. Errors: device.
-  Result<Histogram> histogram(Of of = Of::result);
+  /// Reads the whole result from the device: only when it is looked at. Of an image of another size than the picture,
+  /// the region is what lies under it. Errors: device.
+  Result<Scopes> scopes(const ScopeOptions& options = {}, Of of = Of::result);
+  /// None without a picture, or where nothing of the region lies in it. Errors: device.
+  Result<std::optional<RegionMeans>> means(Rect region);
   /// The frame that is shown, as `afterglow run` would make it, for writing. Errors: other (nothing is shown), device.
   Result<Picture> screenshot();
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What one asks a player about the frame on screen, and what one tells it to play.
 #include <algorithm>
-#include <cstring>
+#include <span>
 
 #include "image/metadata.h"
 #include "play/player.h"
@@ -17,6 +17,14 @@ Pixel scaled(Pixel pixel, Size from, Size to) {
     return std::min(static_cast<int>((at + 0.5) * other / length), other - 1);
   };
   return {along(pixel.x, from.width, to.width), along(pixel.y, from.height, to.height)};
+}
+
+/// Where a region of the picture lies in an image of another size.
+Rect scaled(Rect region, Size from, Size to) {
+  if (from == to || region.size().area() == 0) return region;
+  const Pixel first = scaled(Pixel{region.x, region.y}, from, to);
+  const Pixel last = scaled(Pixel{region.x + region.width - 1, region.y + region.height - 1}, from, to);
+  return {first.x, first.y, last.x - first.x + 1, last.y - first.y + 1};
 }
 
 std::array<float, 4> value_at(const Image& image, Pixel pixel) {
@@ -69,16 +77,47 @@ Result<std::optional<Probe>> Player::probe(Pixel pixel) {
   return std::optional<Probe>(probe);
 }
 
-Result<Histogram> Player::histogram(Of of) {
-  State& s = *state_;
-  if (!s.picture) return Histogram{};
-  const Image& source = s.picture->picture.color;
-  if (of == Of::other && !(s.second && s.second_runs)) return Histogram{};
-  LiveSession& session = of == Of::other ? *s.second : *s.first;
+/// What a preset made of the picture, whole. Holds until the next reading.
+struct Player::State::Looked {
+  std::span<const float> pixels;
+  Size size;
+};
+Result<Player::State::Looked> Player::State::look(Of of) {
+  const Image& source = picture->picture.color;
+  if (of == Of::source) return Looked{source.pixels, source.size()};
+  LiveSession& session = of == Of::other ? *second : *first;
   const DeviceImages images = session.images();
-  if (of == Of::source || !images.ran) return histogram_of(source.pixels, source.size());
-  AFTERGLOW_CHECK(session.read_result(s.result));
-  return histogram_of(s.result.pixels, images.result.binding.size);
+  if (!images.ran) return Looked{source.pixels, source.size()};
+  AFTERGLOW_CHECK(session.read_result(result));
+  return Looked{result.pixels, images.result.binding.size};
+}
+
+Result<Scopes> Player::scopes(const ScopeOptions& options, Of of) {
+  State& s = *state_;
+  if (!s.picture || (of == Of::other && !(s.second && s.second_runs))) return scopes_of({}, {}, options);
+  AFTERGLOW_TRY(const State::Looked looked, s.look(of));
+  ScopeOptions wanted = options;
+  const Size size = s.picture->picture.color.size();
+  if (wanted.region) wanted.region = scaled(within(*wanted.region, size), size, looked.size);
+  return scopes_of(looked.pixels, looked.size, wanted);
+}
+
+Result<std::optional<RegionMeans>> Player::means(Rect region) {
+  State& s = *state_;
+  if (!s.picture) return std::optional<RegionMeans>();
+  const Size size = s.picture->picture.color.size();
+  RegionMeans out{.region = within(region, size), .source = {}, .result = {}, .other = {}};
+  if (out.region.size().area() == 0) return std::optional<RegionMeans>();
+  const auto mean = [&](Of of) -> Result<RegionMean> {
+    AFTERGLOW_TRY(const State::Looked looked, s.look(of));
+    return mean_of(looked.pixels, looked.size, scaled(out.region, size, looked.size));
+  };
+  AFTERGLOW_TRY(out.source, mean(Of::source));
+  AFTERGLOW_TRY(out.result, mean(Of::result));
+  if (s.second && s.second_runs) {
+    AFTERGLOW_TRY(out.other, mean(Of::other));
+  }
+  return std::optional<RegionMeans>(out);
 }
 
 Result<Picture> Player::screenshot() {

@@ -72,6 +72,8 @@ struct Player::State {
   Result<bool> run(const std::shared_ptr<const ReadPicture>& read, const Transport::Due& due);
   BuildContext context(const Transport::Due& due) const;
   void apply_edits();
+  struct Looked;
+  Result<Looked> look(Of of);  ///< there is a picture, and what is asked for has run
 };
 
 }  // namespace afterglow

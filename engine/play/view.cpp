@@ -47,6 +47,17 @@ std::string guides_name(Guides guides) {
   return kNames[static_cast<std::size_t>(guides)];
 }
 
+std::string marks_name(Marks marks) {
+  static constexpr std::array<const char*, 3> kNames{"none", "out of range", "stops"};
+  return kNames[static_cast<std::size_t>(marks)];
+}
+
+std::string scope_kind_name(ScopeKind kind) {
+  static constexpr std::array<const char*, 6> kNames{"none",       "histogram",   "waveform",
+                                                     "RGB parade", "vectorscope", "all"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
 PictureArea area_of_aspect(Size picture, double ratio) {
   const double width = picture.width, height = picture.height;
   const Point size =
@@ -96,6 +107,19 @@ std::optional<Pixel> pixel_at(const View& view, Size picture, Size window, Point
   const double x = std::floor(at.x), y = std::floor(at.y);
   if (!(x >= 0 && y >= 0 && x < picture.width && y < picture.height)) return std::nullopt;
   return Pixel{static_cast<int>(x), static_cast<int>(y)};
+}
+
+std::optional<Rect> region_between(const View& view, Size picture, Size window, Point a, Point b) {
+  const ViewPlacement place = placement(view, picture, window);
+  const Point p = to_picture(place, {std::min(a.x, b.x), std::min(a.y, b.y)});
+  const Point q = to_picture(place, {std::max(a.x, b.x), std::max(a.y, b.y)});
+  const auto pixel = [](double at, int length) {
+    return static_cast<int>(std::floor(std::clamp(at, -1.0, length + 0.0)));
+  };
+  const int x0 = pixel(p.x, picture.width), y0 = pixel(p.y, picture.height);
+  const int x1 = pixel(q.x, picture.width), y1 = pixel(q.y, picture.height);
+  const Rect region = within({x0, y0, x1 - x0 + 1, y1 - y0 + 1}, picture);
+  return region.size().area() > 0 ? std::optional(region) : std::nullopt;
 }
 
 void fit(View& view) { view.fit = true; }

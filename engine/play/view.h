@@ -11,6 +11,7 @@
 
 #include "core/geometry.h"
 #include "core/result.h"
+#include "play/scopes.h"
 
 namespace afterglow {
 
@@ -31,6 +32,12 @@ enum class CompareBy { wipe, flip, side_by_side, difference };
 /// 2046-1: action, titles).
 enum class Guides { none, thirds, safe_areas, both };
 
+/// What is painted over colours, so that values can be read. range: what is below 0, above 1 or not finite. stops:
+/// zones of a stop each, of the luminance from middle grey (kZones).
+enum class Marks { none, range, stops };
+/// Which scopes lie over the picture.
+enum class ScopeKind { none, histogram, waveform, parade, vectorscope, all };
+
 /// "color", "red", …
 std::string view_channel_name(ViewChannel channel);
 /// "none", "source", "other".
@@ -39,6 +46,10 @@ std::string compare_name(Compare compare);
 std::string compare_by_name(CompareBy by);
 /// "none", "thirds", "safe areas", "thirds and safe areas".
 std::string guides_name(Guides guides);
+/// "none", "out of range", "stops".
+std::string marks_name(Marks marks);
+/// "none", "histogram", "waveform", "RGB parade", "vectorscope", "all".
+std::string scope_kind_name(ScopeKind kind);
 
 /// A form that a picture is delivered in; 0: its own.
 struct Aspect {
@@ -53,17 +64,23 @@ struct View {
   double zoom = 1;      ///< screen pixels for each pixel of the picture
   Point center;         ///< of the picture, in the middle of the window
   double exposure = 0;  ///< EV, in scene-linear light before encoding for the screen
+  double gamma = 1;     ///< light behind the exposure, to the power of 1/gamma; kLeastGamma…kMostGamma
   ViewChannel channel = ViewChannel::color;
-  bool smooth = false;       ///< magnified, pixels go over into each other; else each is a square
-  bool false_color = false;  ///< marks values below 0, above 1, and what is not finite
+  bool smooth = false;  ///< magnified, pixels go over into each other; else each is a square
+  Marks marks = Marks::none;
   Compare compare = Compare::none;
   CompareBy by = CompareBy::wipe;
   double wipe = 0.5;           ///< where the border lies, 0…1 over the picture's width (or height)
   bool wipe_vertical = false;  ///< the border is horizontal: the compared picture lies above it
   Guides guides = Guides::none;
   std::size_t aspect = 0;  ///< of kAspects: what does not belong to it is darkened, and guides are its own
+  ScopeKind scope = ScopeKind::none;
+  ScopeScale scope_scale = ScopeScale::code;
+  std::optional<Rect> region;  ///< of the picture: what scopes and means are about; none: all of it, and no means
   friend bool operator==(const View&, const View&) = default;
 };
+
+inline constexpr double kLeastGamma = 0.1, kMostGamma = 10;
 
 /// Of a picture, in its coordinates.
 struct PictureArea {
@@ -106,6 +123,8 @@ void one_to_one(View& view, Size picture, Size window);
 void zoom_at(View& view, Size picture, Size window, Point screen, double factor);
 /// Moves the picture by so many pixels of the screen; its middle stays over the picture.
 void pan(View& view, Size picture, Size window, Point by);
+/// The pixels between two points of the screen, both included, within the picture; none: nothing of it lies there.
+std::optional<Rect> region_between(const View& view, Size picture, Size window, Point a, Point b);
 /// Puts the border of the comparison under a point of the screen.
 void wipe_to(View& view, Size picture, Size window, Point screen);
 

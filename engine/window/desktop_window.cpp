@@ -80,7 +80,7 @@ DesktopWindow& self(GLFWwindow* window) { return *static_cast<DesktopWindow*>(gl
 
 }  // namespace
 
-Result<std::unique_ptr<DesktopWindow>> DesktopWindow::create(const std::string& title, Size size) {
+Result<std::unique_ptr<DesktopWindow>> DesktopWindow::create(const std::string& title, Size size, bool exact) {
   if (glfwInit() != GLFW_TRUE) return no_display(glfw_reason());
   std::unique_ptr<DesktopWindow> out(new DesktopWindow);  // from here on its destructor ends GLFW
   main_thread().id = std::this_thread::get_id();
@@ -89,7 +89,7 @@ Result<std::unique_ptr<DesktopWindow>> DesktopWindow::create(const std::string& 
   if (glfwVulkanSupported() != GLFW_TRUE) return no_display(glfw_reason());
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
-  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, exact ? GLFW_FALSE : GLFW_TRUE);
   glfwWindowHintString(GLFW_X11_CLASS_NAME, "afterglow");
   glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "afterglow");
   // No larger than the screen.
@@ -198,6 +198,25 @@ std::shared_ptr<const Presentation> DesktopWindow::presentation() const {
 }
 
 void DesktopWindow::show() { glfwShowWindow(window_); }
+void DesktopWindow::move_to(int x, int y) {
+  int count = 0;
+  GLFWmonitor** monitors = glfwGetMonitors(&count);
+  for (int i = 0; i < count; ++i) {
+    int left = 0, top = 0, width = 0, height = 0;
+    glfwGetMonitorWorkarea(monitors[i], &left, &top, &width, &height);
+    if (x >= left && y >= top && x < left + width && y < top + height) return glfwSetWindowPos(window_, x, y);
+  }
+}
+
+Rect DesktopWindow::place() const {
+  if (full_screen_) return windowed_;
+  if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) return {};
+  Rect out;
+  glfwGetWindowPos(window_, &out.x, &out.y);
+  glfwGetWindowSize(window_, &out.width, &out.height);
+  return out;
+}
+
 void DesktopWindow::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
 Size DesktopWindow::framebuffer() const {

@@ -28,8 +28,9 @@ struct WindowEvents {
 /// One at a time in a process; main thread alone, except where noted.
 class DesktopWindow {
  public:
-  /// Not visible until `show`. Errors: device (no display, no Vulkan in windows).
-  static Result<std::unique_ptr<DesktopWindow>> create(const std::string& title, Size size);
+  /// Not visible until `show`. `size` counts pixels of a plain display, or (`exact`) of this one. Errors: device (no
+  /// display, no Vulkan in windows).
+  static Result<std::unique_ptr<DesktopWindow>> create(const std::string& title, Size size, bool exact = false);
   ~DesktopWindow();
   DesktopWindow(const DesktopWindow&) = delete;
   DesktopWindow& operator=(const DesktopWindow&) = delete;
@@ -39,6 +40,10 @@ class DesktopWindow {
   GLFWwindow* handle() const { return window_; }
 
   void show();
+  /// Of its upper left corner, on the desktop. A place that no monitor shows is left to the desktop.
+  void move_to(int x, int y);
+  /// Where it is, or was before it filled the screen. On desktops that tell nobody, x and y are 0.
+  Rect place() const;
   void set_title(const std::string& title);
   /// Of the frame buffer, in pixels; empty while minimised.
   Size framebuffer() const;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Figures over the picture: frame times, reload latency, histogram.
+// Figures over the picture: frame times, reload latency.
 #include <fmt/format.h>
-
-#include <algorithm>
 
 #include "window/overlay.h"
 #include "window/sheet.h"
@@ -41,42 +39,6 @@ void draw_stats_overlay(const Player& player, const Ui& ui, const OverlayArea& a
     row("execute", fmt::format("{:.1f}", last.execute));
     row("present", fmt::format("{:.1f}", last.present));
   }
-  ImGui::PopFont();
-  end_sheet();
-}
-
-void draw_histogram_overlay(const Histogram& histogram, const Ui& ui, const OverlayArea& area) {
-  begin_sheet("histogram", {area.at.x + area.size.x - ui.px(14), area.at.y + area.size.y - ui.px(14)}, {1, 1}, ui,
-              ImGuiWindowFlags_NoInputs);
-  const ImVec2 size{ui.px(256), ui.px(110)}, at = ImGui::GetCursorScreenPos();
-  ImGui::Dummy(size);
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  // The ends hold all that is beyond them: they do not set the height.
-  std::uint32_t most = 1;
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (int i = 1; i + 1 < Histogram::kCodes; ++i)
-      most = std::max(most, histogram.display[c][static_cast<std::size_t>(i)]);
-  }
-  const ImU32 colors[] = {IM_COL32(235, 80, 70, 120), IM_COL32(90, 200, 90, 120), IM_COL32(80, 130, 250, 120)};
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (int i = 0; i < Histogram::kCodes; ++i) {
-      const float part = std::min(
-          1.0f, static_cast<float>(histogram.display[c][static_cast<std::size_t>(i)]) / static_cast<float>(most));
-      if (part <= 0) continue;
-      const float x0 = at.x + size.x * static_cast<float>(i) / Histogram::kCodes;
-      const float x1 = at.x + size.x * static_cast<float>(i + 1) / Histogram::kCodes;
-      list.AddRectFilled({x0, at.y + size.y * (1 - part)}, {x1, at.y + size.y}, colors[c]);
-    }
-  }
-  list.AddRect(at, {at.x + size.x, at.y + size.y}, ui_color::kLine);
-  ImGui::PushFont(ui.mono);
-  const auto count = [](const char* name, std::uint64_t n) {
-    if (n > 0) colored(ui_color::kWarning, fmt::format("{} {}", n, name));
-  };
-  count("below 0", histogram.negative);
-  count("above 1", histogram.above_one);
-  count("NaN", histogram.nan);
-  count("infinite", histogram.infinite);
   ImGui::PopFont();
   end_sheet();
 }

@@ -86,6 +86,7 @@ void Interface::load_fonts() {
   ui_.bold = add_font("DejaVuSans-Bold.ttf", kBodySize * ui_.scale);
   ui_.mono = add_font("DejaVuSansMono.ttf", kMonoSize * ui_.scale);
   io.FontDefault = ui_.body;
+  ui_.cells.reserve(*io.Fonts);
   io.Fonts->Build();
 }
 

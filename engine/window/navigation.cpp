@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The mouse over the picture: wheel zooms at the pointer, a drag moves the picture or the wipe, a double click goes
-// between fit and 1:1.
+// between fit and 1:1. With Ctrl a drag makes a region, a click removes it.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
 #include <cmath>
 
 #include "window/ui.h"
@@ -50,10 +53,15 @@ void WindowApp::navigate() {
   const Size picture = player_.images().picture;
   const auto at = cursor();
   const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
-  if (!held) drag_ = Drag::none;
-  if (!at || picture.area() == 0) return;
   View& view = player_.view();
   const Size window = picture_window();
+  // The last way of a drag may come with the button's release.
+  if (drag_ == Drag::region && at && picture.area() > 0) {
+    const bool moved = std::abs(at->x - drag_from_.x) + std::abs(at->y - drag_from_.y) >= 2;
+    if (moved || view.region) view.region = region_between(view, picture, window, drag_from_, *at);
+  }
+  if (!held) drag_ = Drag::none;
+  if (!at || picture.area() == 0 || drag_ == Drag::region) return;
 
   const bool wipe = drag_ == Drag::wipe || (drag_ == Drag::none && over_wipe(*at));
   if (wipe) ImGui::SetMouseCursor(view.wipe_vertical ? ImGuiMouseCursor_ResizeNS : ImGuiMouseCursor_ResizeEW);
@@ -68,6 +76,12 @@ void WindowApp::navigate() {
     return;
   }
   const bool pressed = ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Middle);
+  if (pressed && (interface_->press_mods() & GLFW_MOD_CONTROL)) {
+    drag_ = Drag::region;
+    drag_from_ = *at;
+    view.region.reset();
+    return;
+  }
   if (pressed) drag_ = wipe && !ImGui::IsMouseDown(ImGuiMouseButton_Middle) ? Drag::wipe : Drag::pan;
   if (drag_ == Drag::wipe) wipe_to(view, picture, window, *at);
   const ImVec2 moved = in_framebuffer(io.MouseDelta);

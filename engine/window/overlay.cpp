@@ -13,8 +13,6 @@ namespace afterglow {
 
 namespace {
 
-constexpr float kProbeWidth = 390;  // with its distance from the border
-
 void wrapped(ImU32 color, const std::string& text, float width) {
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::PushTextWrapPos(width);
@@ -26,6 +24,7 @@ void wrapped(ImU32 color, const std::string& text, float width) {
 /// The error that counts most: one of the preset hides what its last good stack makes of the picture.
 struct Message {
   std::string headline, where, what, line, allowed, nearest, full;
+  ErrorPlace place;
 };
 
 Message message_of(std::string headline, const Error& error, const std::string& line, std::string full) {
@@ -33,6 +32,7 @@ Message message_of(std::string headline, const Error& error, const std::string& 
   out.headline = std::move(headline);
   out.where = error.line > 0 ? fmt::format("{}:{}", error.file, error.line) : error.file;
   out.what = error.message;
+  out.place = {error.file, error.line};
   out.line = line;
   out.allowed = error.allowed;
   out.nearest = error.nearest;
@@ -84,6 +84,11 @@ std::string current_message(const Player& player) {
   return message ? message->full : "";
 }
 
+ErrorPlace current_place(const Player& player) {
+  const auto message = current(player);
+  return message && !message->place.file.empty() ? message->place : ErrorPlace{player.preset_file(), 0};
+}
+
 float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
   const auto message = current(player);
   if (!message) return 0;
@@ -98,6 +103,12 @@ float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
   ImGui::Indent(ui.px(6));
   const float wrap = width - ui.px(16);
   colored(ui_color::kDim, message->headline);
+  ImGui::SameLine(width - ui.px(120));
+  if (!message->place.file.empty() && ImGui::SmallButton("Open")) {
+    ui.edit_file(message->place.file.string(), message->place.line);
+    ui.again();
+  }
+  ui.help("In the editor that AFTERGLOW_EDITOR names (F4)");
   ImGui::SameLine(width - ui.px(70));
   if (ImGui::SmallButton("Copy")) {
     ui.copy(message->full);
@@ -122,6 +133,32 @@ float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
   return height + margin;
 }
 
+namespace {
+
+/// What marks mean, each by its colour and in words.
+void draw_legend(Marks marks) {
+  if (marks == Marks::none) return;
+  const auto entry = [](const ViewColor& c, const std::string& text) {
+    const float side = ImGui::GetTextLineHeight() * 0.7f;
+    ImGui::ColorButton(text.c_str(), {c[0], c[1], c[2], 1}, ImGuiColorEditFlags_NoTooltip, {side, side});
+    ImGui::SameLine();
+    ImGui::TextUnformatted(text.c_str());
+  };
+  if (marks == Marks::range) {
+    entry(kMarkBelow, "below 0: outside Rec.709");
+    entry(kMarkAbove, "above 1: clipped");
+  } else {
+    for (int zone = kLastZone; zone >= kFirstZone; --zone) {
+      const char* more = zone == kLastZone ? " EV and more" : zone == kFirstZone ? " EV and less" : " EV";
+      entry(kZones[static_cast<std::size_t>(zone - kFirstZone)],
+            zone == 0 ? "0 EV: 0.18, middle grey" : fmt::format("{:+d}{}", zone, more));
+    }
+  }
+  entry(kMarkNotFinite, "not finite");
+}
+
+}  // namespace
+
 void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area) {
   const View& view = player.view();
   std::vector<std::pair<ImU32, std::string>> lines;
@@ -129,24 +166,15 @@ void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area) {
     lines.emplace_back(ui_color::kAccent, "image: " + image);
   }
   if (view.channel != ViewChannel::color) lines.emplace_back(ui_color::kText, view_channel_name(view.channel));
+  if (view.gamma != 1) lines.emplace_back(ui_color::kText, fmt::format("view gamma {:.2f}", view.gamma));
   if (view.exposure != 0) lines.emplace_back(ui_color::kText, fmt::format("view {:+.2f} EV", view.exposure));
   if (view.compare != Compare::none) lines.emplace_back(ui_color::kText, comparison_text(view));
   const bool building = player.live().status().building;
-  if (lines.empty() && !view.false_color && !building) return;
+  if (lines.empty() && view.marks == Marks::none && !building) return;
 
   begin_sheet("state", {area.at.x + ui.px(14), area.at.y + ui.px(14)}, {0, 0}, ui, ImGuiWindowFlags_NoInputs);
   for (const auto& [color, text] : lines) colored(color, text);
-  if (view.false_color) {
-    const auto legend = [&](const ViewColor& c, const char* text) {
-      const float side = ImGui::GetTextLineHeight() * 0.7f;
-      ImGui::ColorButton(text, {c[0], c[1], c[2], 1}, ImGuiColorEditFlags_NoTooltip, {side, side});
-      ImGui::SameLine();
-      ImGui::TextUnformatted(text);
-    };
-    legend(kMarkBelow, "below 0");
-    legend(kMarkAbove, "above 1");
-    legend(kMarkNotFinite, "not finite");
-  }
+  draw_legend(view.marks);
   if (building) colored(ui_color::kAccent, "building …");
   end_sheet();
 }

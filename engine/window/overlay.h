@@ -4,6 +4,7 @@
 
 #include <imgui.h>
 
+#include <filesystem>
 #include <string>
 
 #include "play/player.h"
@@ -24,8 +25,21 @@ struct OverlayPicture {
   ImVec2 pixel{1, 1};    ///< of the frame buffer, in ImGui's coordinates
 };
 
+/// What has been found about the picture that is shown.
+struct ShownScopes {
+  std::optional<Scopes> scopes;
+  std::optional<RegionMeans> means;
+};
+
 /// What is wrong at the moment, as one would mail it to somebody; empty: nothing.
 std::string current_message(const Player& player);
+
+/// The file that is wrong, and its line; without an error the preset's.
+struct ErrorPlace {
+  std::filesystem::path file;
+  int line = 0;
+};
+ErrorPlace current_place(const Player& player);
 
 /// What is compared, in words: "before | after"; "result" when nothing is.
 std::string comparison_text(const View& view);
@@ -33,12 +47,16 @@ std::string comparison_text(const View& view);
 /// The message of a preset, picture or frame that fails, over the last good picture, with a button that copies it.
 /// Returns its height, 0 without a message.
 float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area);
+inline constexpr float kProbeWidth = 390, kProbeHeight = 92;  ///< of the lower left sheet, with its distances
 /// Upper left: what makes the picture look other than the result: image between passes, channel, exposure, marks.
 void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area);
 /// Upper right: frame rate, frame times, drops, and where the time of the last reload went.
 void draw_stats_overlay(const Player& player, const Ui& ui, const OverlayArea& area);
-/// Lower right: red, green and blue by display code, and what does not fit.
-void draw_histogram_overlay(const Histogram& histogram, const Ui& ui, const OverlayArea& area);
+/// Lower right: the scopes that the view asks for (Ui::cells has them), what does not fit, and means of the region.
+/// `probe`: values are told at the lower left; where both have no room beside each other, this lies above them.
+void draw_scopes_overlay(const ShownScopes& shown, const View& view, const Ui& ui, const OverlayArea& area, bool probe);
+/// A frame around the region of the view.
+void draw_region(const Rect& region, const Ui& ui, const OverlayPicture& place);
 /// A frame around the pixel whose values are told.
 void draw_pixel_mark(Pixel pixel, const Ui& ui, const OverlayPicture& place);
 /// Guides of the view, and what its form leaves out, over each picture that is shown.

@@ -46,8 +46,8 @@ Result<void> Painter::take_fonts() {
 }
 
 Result<void> Painter::record(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
-                             const ImDrawData& interface) {
-  AFTERGLOW_CHECK(ui_->prepare(commands, target.slot, interface));
+                             const ImDrawData& interface, std::span<const Rect> changed) {
+  AFTERGLOW_CHECK(ui_->prepare(commands, target.slot, interface, changed));
   const VkRenderingAttachmentInfo color{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                         .imageView = target.view,
                                         .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
@@ -92,13 +92,14 @@ void Painter::record_copy(VkCommandBuffer commands, const PresentTarget& target,
   device_.vk().vkCmdPipelineBarrier2(commands, &dependency);
 }
 
-Result<Swapchain::Drawn> Painter::paint(Size window, std::span<const ViewFrame> views, const ImDrawData& interface) {
+Result<Swapchain::Drawn> Painter::paint(Size window, std::span<const ViewFrame> views, const ImDrawData& interface,
+                                        std::span<const Rect> changed) {
   const bool capture = !capture_.empty() && code_order(swapchain_->format()).has_value();
   Result<void> recorded;
   Buffer pixels;
   Size size;
   AFTERGLOW_TRY(const auto drawn, swapchain_->draw(window, [&](VkCommandBuffer commands, const PresentTarget& target) {
-    recorded = record(commands, target, views, interface);
+    recorded = record(commands, target, views, interface, changed);
     if (!recorded || !capture || !swapchain_->readable()) return;
     auto buffer = Buffer::create(device_, static_cast<VkDeviceSize>(target.size.area()) * 4,
                                  VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::read, "capture");

@@ -24,7 +24,9 @@ class Painter {
   Result<void> finish() { return swapchain_->finish(); }
   /// One frame: the picture (none: background alone), then the interface over it. `window`: size of the frame buffer.
   /// Images of `view` must be readable by fragment shaders in what is submitted from here on. Errors: device.
-  Result<Swapchain::Drawn> paint(Size window, std::span<const ViewFrame> views, const ImDrawData& interface);
+  /// `changed`: parts of the interface's atlas.
+  Result<Swapchain::Drawn> paint(Size window, std::span<const ViewFrame> views, const ImDrawData& interface,
+                                 std::span<const Rect> changed = {});
   /// The next frame that is painted goes to this file too (PNG, or what else the writer knows).
   void capture(const std::filesystem::path& file) { capture_ = file; }
 
@@ -33,7 +35,7 @@ class Painter {
  private:
   explicit Painter(Device& device) : device_(device) {}
   Result<void> record(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
-                      const ImDrawData& interface);
+                      const ImDrawData& interface, std::span<const Rect> changed);
   void record_copy(VkCommandBuffer commands, const PresentTarget& target, const Buffer& to) const;
   Result<void> write_capture(const Buffer& pixels, Size size);
 

@@ -40,6 +40,7 @@ class PanelPort {
   virtual void rebase(const std::vector<BaseChange>& changes, const TextChange& text) = 0;
 
   virtual View& view() = 0;
+  virtual Rect middle_region() = 0;               ///< a third of the picture, in its middle
   virtual std::vector<std::string> images() = 0;  ///< that can be shown, see LiveStack::images
   virtual std::string shown_image() = 0;
   virtual void show(const std::string& image) = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "window/player_port.h"
 
+#include <algorithm>
+
 namespace afterglow {
 
 const Preset* PlayerPort::preset() {
@@ -11,6 +13,11 @@ const Preset* PlayerPort::preset() {
 const Build* PlayerPort::build() {
   Stack* stack = player_.live().stack();
   return stack ? stack->build().get() : nullptr;
+}
+
+Rect PlayerPort::middle_region() {
+  const Size size = player_.images().picture;
+  return {size.width / 3, size.height / 3, std::max(size.width / 3, 1), std::max(size.height / 3, 1)};
 }
 
 const std::vector<Skipped>& PlayerPort::skipped() {

@@ -36,6 +36,7 @@ class PlayerPort final : public PanelPort {
   }
 
   View& view() override { return player_.view(); }
+  Rect middle_region() override;
   std::vector<std::string> images() override { return player_.live().images(); }
   std::string shown_image() override { return player_.live().shown(); }
   void show(const std::string& image) override { player_.show(image); }

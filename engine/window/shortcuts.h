@@ -51,14 +51,18 @@ enum class Action {
   exposure_up,
   exposure_down,
   exposure_reset,
-  false_color,
+  gamma_up,
+  gamma_down,
+  marks,
   background,
   guides,
   aspect,
   next_image,
   previous_image,
   result_image,
-  histogram,
+  scope,
+  scope_scale,
+  clear_region,
   stats,
   panel,
   transport,
@@ -68,6 +72,7 @@ enum class Action {
   export_range,
   reload,
   copy_message,
+  edit_file,
   undo,
   redo,
   save,
@@ -95,7 +100,7 @@ struct Shortcut {
   int key;            ///< GLFW_KEY_…
   int mods;           ///< GLFW_MOD_…, exactly these
   const char* keys;   ///< as people read it: "Ctrl+S"
-  const char* group;  ///< "Play", "Look", "Picture", "Window", "Preset", "Stack"
+  const char* group;  ///< "Play", "Picture", "View", "Preset", "Stack", "Window"
   const char* doc;
   bool repeats = false;  ///< while the key is held
 };

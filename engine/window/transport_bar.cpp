@@ -15,9 +15,10 @@ namespace afterglow {
 namespace {
 
 /// From left to right. What does not fit goes to the next row, whole.
-enum Piece { kButtons, kLoop, kSpeed, kRate, kEvery, kZoom, kFilter, kCounter, kPace, kPieces };
+enum Piece { kFirst, kBack, kPlay, kOn, kLast, kLoop, kSpeed, kRate, kEvery, kZoom, kFilter, kCounter, kPace, kPieces };
 
-float gap(const Ui& ui) { return ui.px(8); }
+/// In front of a piece.
+float gap(const Ui& ui, int piece) { return ui.px(piece > kFirst && piece <= kLast ? 2 : 8); }
 
 /// Of figures that keep their width while their digits change.
 float mono_width(const Ui& ui, int characters) {
@@ -32,7 +33,7 @@ std::array<float, kPieces> widths_of(const Ui& ui) {
   const float frame = 2 * style.FramePadding.x;
   const auto text = [&](const char* longest) { return ImGui::CalcTextSize(longest).x + frame; };
   std::array<float, kPieces> widths{};
-  widths[kButtons] = 5 * icon_button_width(ui) + 4 * ui.px(2);
+  for (int button = kFirst; button <= kLast; ++button) widths[static_cast<std::size_t>(button)] = icon_button_width(ui);
   widths[kLoop] = text("ping-pong");
   widths[kSpeed] = text("-8.00x");
   widths[kRate] = text("23.976 fps");
@@ -44,18 +45,24 @@ std::array<float, kPieces> widths_of(const Ui& ui) {
   return widths;
 }
 
-void draw_buttons(const Ui& ui, Transport& transport, double now) {
-  const auto beside = [&] { ImGui::SameLine(0, ui.px(2)); };
-  if (icon_button(ui, "##first", Icon::first, "To the first frame of the range (Home)")) transport.go_to_first(now);
-  beside();
-  if (icon_button(ui, "##back", Icon::back, "One frame back (Left)")) transport.step(-1, now);
-  beside();
-  if (icon_button(ui, "##play", transport.playing() ? Icon::pause : Icon::play, "Play or pause (Space)"))
-    transport.toggle(now);
-  beside();
-  if (icon_button(ui, "##on", Icon::on, "One frame on (Right)")) transport.step(1, now);
-  beside();
-  if (icon_button(ui, "##last", Icon::last, "To the last frame of the range (End)")) transport.go_to_last(now);
+void draw_button(const Ui& ui, Transport& transport, double now, int piece) {
+  switch (piece) {
+    case kFirst:
+      if (icon_button(ui, "##first", Icon::first, "To the first frame of the range (Home)")) transport.go_to_first(now);
+      return;
+    case kBack:
+      if (icon_button(ui, "##back", Icon::back, "One frame back (Left)")) transport.step(-1, now);
+      return;
+    case kPlay:
+      if (icon_button(ui, "##play", transport.playing() ? Icon::pause : Icon::play, "Play or pause (Space)"))
+        transport.toggle(now);
+      return;
+    case kOn:
+      if (icon_button(ui, "##on", Icon::on, "One frame on (Right)")) transport.step(1, now);
+      return;
+    default:
+      if (icon_button(ui, "##last", Icon::last, "To the last frame of the range (End)")) transport.go_to_last(now);
+  }
 }
 
 void draw_speed(const Ui& ui, Transport& transport, double now) {
@@ -116,8 +123,12 @@ void draw_piece(const Ui& ui, TransportBarState& state, int piece, float width) 
   const double now = state.timeline.now;
   ImGui::SetNextItemWidth(width);
   switch (piece) {
-    case kButtons:
-      return draw_buttons(ui, transport, now);
+    case kFirst:
+    case kBack:
+    case kPlay:
+    case kOn:
+    case kLast:
+      return draw_button(ui, transport, now, piece);
     case kLoop:
       if (ImGui::Button(fmt::format("{}###loop", loop_mode_name(transport.loop())).c_str(), {width, 0}))
         transport.set_loop(static_cast<LoopMode>((static_cast<int>(transport.loop()) + 1) % 3), now);
@@ -147,7 +158,9 @@ void draw_piece(const Ui& ui, TransportBarState& state, int piece, float width) 
 }
 
 std::vector<int> rows_for(const std::array<float, kPieces>& widths, const Ui& ui, float width) {
-  return rows_of(widths, gap(ui), width - 2 * ImGui::GetStyle().WindowPadding.x);
+  std::array<float, kPieces> gaps{};
+  for (int piece = 0; piece < kPieces; ++piece) gaps[static_cast<std::size_t>(piece)] = gap(ui, piece);
+  return rows_of(widths, gaps, width - 2 * ImGui::GetStyle().WindowPadding.x);
 }
 
 }  // namespace
@@ -177,10 +190,11 @@ void draw_transport_bar(Ui& ui, TransportBarState& state, ImVec2 place, ImVec2 s
         x = left;
         y += ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.y;
       }
+      if (x > left) x += gap(ui, piece);
       ImGui::SetCursorPos({x, y});
       if (piece >= kCounter) ImGui::AlignTextToFramePadding();
       draw_piece(ui, state, piece, widths[i]);
-      x += widths[i] + gap(ui);
+      x += widths[i];
     }
   }
   ImGui::End();

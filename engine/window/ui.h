@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/geometry.h"
+#include "window/atlas_cells.h"
 #include "window/hover_help.h"
 #include "window/typed_value.h"
 
@@ -28,9 +29,10 @@ struct Ui {
   bool show_panel = true;
   bool show_transport = true;
   bool show_help = false;
+  ImVec2 help_area;      ///< that the help sheet was last drawn in
+  int help_settles = 0;  ///< frames that it still takes to find its size
   bool show_frame_field = false;
   bool show_stats = false;
-  bool show_histogram = false;
 
   Size picture_window;  ///< what one picture has of the window, in pixels of the frame buffer
   double now = 0;       ///< seconds of a clock that never goes backwards
@@ -38,6 +40,8 @@ struct Ui {
   std::function<void(const std::string&)> copy = [](const std::string&) {};
   /// Opens a preset, a picture or a sequence, as if it had been dropped on the window.
   std::function<void(const std::string&)> open = [](const std::string&) {};
+  /// Opens a file at a line in the user's editor, and says so when that fails.
+  std::function<void(const std::string& file, int line)> edit_file = [](const std::string&, int) {};
   /// Draws another frame soon, though nothing else will have changed.
   std::function<void()> again = [] {};
 
@@ -59,6 +63,7 @@ struct Ui {
     bool begin = false;  ///< it gets the keyboard with the next frame
   } frame_field;
   TypedValue typed;  ///< the setting that is being typed
+  AtlasCells cells;  ///< scopes are drawn into them
 
   float px(float size) const { return size * scale; }
 };

@@ -94,26 +94,62 @@ Result<void> UiRenderer::take_fonts() {
   return {};
 }
 
-void UiRenderer::upload_atlas(VkCommandBuffer commands) {
-  const auto into =
-      image_barrier(atlas_.get(), VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COPY_BIT,
-                    VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+void UiRenderer::copy_to_atlas(VkCommandBuffer commands, VkBuffer from, std::span<const VkBufferImageCopy> parts,
+                               VkImageLayout before) const {
+  const bool was_read = before == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  const auto into = image_barrier(
+      atlas_.get(), was_read ? VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT : VK_PIPELINE_STAGE_2_NONE, 0, before,
+      VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
   record_barriers(device_, commands, &into, 1);
-  const Size size = atlas_.desc().size;
-  const VkBufferImageCopy copy{
-      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-      .imageExtent = {static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height), 1}};
-  device_.vk().vkCmdCopyBufferToImage(commands, staging_.get(), atlas_.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                                      &copy);
+  device_.vk().vkCmdCopyBufferToImage(commands, from, atlas_.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                      static_cast<std::uint32_t>(parts.size()), parts.data());
   const auto ready = image_barrier(atlas_.get(), VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                                    VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   record_barriers(device_, commands, &ready, 1);
+}
+
+void UiRenderer::upload_atlas(VkCommandBuffer commands) {
+  const Size size = atlas_.desc().size;
+  const VkBufferImageCopy copy{
+      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+      .imageExtent = {static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height), 1}};
+  copy_to_atlas(commands, staging_.get(), {&copy, 1}, VK_IMAGE_LAYOUT_UNDEFINED);
   pending_ = false;
 }
 
-Result<void> UiRenderer::prepare(VkCommandBuffer commands, std::size_t slot_index, const ImDrawData& data) {
+Result<void> UiRenderer::upload_parts(VkCommandBuffer commands, Slot& slot, std::span<const Rect> changed) {
+  unsigned char* pixels = nullptr;
+  int width = 0, height = 0;
+  ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+  std::size_t bytes = 0;
+  for (const Rect& part : changed) bytes += static_cast<std::size_t>(part.size().area()) * 4;
+  AFTERGLOW_CHECK(make_room(device_, slot.parts, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
+  std::vector<VkBufferImageCopy> copies;
+  std::size_t at = 0;
+  for (const Rect& part : changed) {
+    copies.push_back(
+        {.bufferOffset = at,
+         .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+         .imageOffset = {part.x, part.y, 0},
+         .imageExtent = {static_cast<std::uint32_t>(part.width), static_cast<std::uint32_t>(part.height), 1}});
+    const auto row = static_cast<std::size_t>(part.width) * 4;
+    for (int y = part.y; y < part.y + part.height; ++y, at += row)
+      std::memcpy(
+          slot.parts.data() + at,
+          pixels +
+              (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(part.x)) * 4,
+          row);
+  }
+  slot.parts.memory().flush();
+  copy_to_atlas(commands, slot.parts.get(), copies, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  return {};
+}
+
+Result<void> UiRenderer::prepare(VkCommandBuffer commands, std::size_t slot_index, const ImDrawData& data,
+                                 std::span<const Rect> changed) {
   if (pending_) upload_atlas(commands);
+  if (!changed.empty()) AFTERGLOW_CHECK(upload_parts(commands, slots_[slot_index], changed));
   if (data.TotalVtxCount == 0) return {};
   Slot& slot = slots_[slot_index];
   const auto vertex_count = static_cast<std::size_t>(data.TotalVtxCount);

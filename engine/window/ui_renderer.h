@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "gpu/image.h"
@@ -25,18 +26,22 @@ class UiRenderer {
   /// drawn so far must be done. Errors: device.
   Result<void> take_fonts();
   /// Writes what `record` will draw; what was recorded with `slot` before must be done. Outside of rendering: also
-  /// uploads a new atlas. Errors: device.
-  Result<void> prepare(VkCommandBuffer commands, std::size_t slot, const ImDrawData& data);
+  /// uploads a new atlas, or those parts of it that have changed since. Errors: device.
+  Result<void> prepare(VkCommandBuffer commands, std::size_t slot, const ImDrawData& data,
+                       std::span<const Rect> changed = {});
   /// Within vkCmdBeginRendering on one colour target.
   void record(VkCommandBuffer commands, std::size_t slot, const ImDrawData& data) const;
 
  private:
   struct Slot {
-    Buffer vertices, indices;
+    Buffer vertices, indices, parts;
   };
   explicit UiRenderer(const Device& device) : device_(device) {}
   Result<void> make_set();
   void upload_atlas(VkCommandBuffer commands);
+  Result<void> upload_parts(VkCommandBuffer commands, Slot& slot, std::span<const Rect> changed);
+  void copy_to_atlas(VkCommandBuffer commands, VkBuffer from, std::span<const VkBufferImageCopy> parts,
+                     VkImageLayout before) const;
 
   const Device& device_;
   bool linear_ = false;

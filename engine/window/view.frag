@@ -10,11 +10,12 @@ layout(constant_id = 0) const int kFlags = 0;
 layout(constant_id = 1) const int kChannel = 0;          // ViewChannel
 layout(constant_id = 2) const int kShownReads = 0;       // how each image is read
 layout(constant_id = 3) const int kComparedReads = 0;
-const int kFalseColor = 1, kDifference = 2, kEncode = 4, kGray = 8, kChecker = 16, kFill = 32;
+const int kFalseColor = 1, kDifference = 2, kEncode = 4, kGray = 8, kChecker = 16, kFill = 32, kZoned = 64,
+          kGamma = 128;
 const int kNearest = 0, kSmooth = 1, kMean = 2;
 
 layout(push_constant) uniform Push {
-  vec4 fill;            // the one colour of kFill; linear, alpha unused
+  vec4 fill;            // the one colour of kFill, linear; w: the power of kGamma
   vec4 below;           // mark of values under 0; w: gain of the exposure
   vec4 above;           // mark of values over 1
   vec4 not_finite;      // mark
@@ -31,6 +32,12 @@ layout(location = 0) out vec4 result;
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
 const float kTolerance = 1e-4;  // rounding may carry what a display can just show over its ends
 const float kLargest = 1e30;
+// As view_pass.h has them, sRGB-encoded; a test holds both together.
+const int kFirstZone = -6, kLastZone = 6;
+const vec3 kZones[13] = vec3[13](
+    vec3(0.06, 0.06, 0.09), vec3(0.25, 0.10, 0.35), vec3(0.38, 0.20, 0.68), vec3(0.16, 0.33, 0.80), vec3(0.10, 0.52, 0.76),
+    vec3(0.10, 0.58, 0.50), vec3(0.50, 0.50, 0.50), vec3(0.35, 0.68, 0.25), vec3(0.74, 0.80, 0.22), vec3(0.96, 0.76, 0.16),
+    vec3(0.95, 0.50, 0.14), vec3(0.90, 0.20, 0.16), vec3(1.0, 1.0, 1.0));
 const int kMarkBelow = 1, kMarkAbove = 2, kMarkNotFinite = 4;
 
 bool has(int flag) { return (kFlags & flag) != 0; }
@@ -50,7 +57,7 @@ int mark(float x) {
 
 // What of the pixel is looked at is out of range. Exposure moves the ends of the range, but not those of alpha.
 int marks(vec4 c) {
-  if (!has(kFalseColor)) return 0;
+  if (!has(kFalseColor) && !has(kZoned)) return 0;
   float gain = push.below.w;
   switch (kChannel) {
     case 0: return mark(c.r * gain) | mark(c.g * gain) | mark(c.b * gain);
@@ -132,12 +139,24 @@ vec3 over_background(vec4 c) {
   return c.rgb + vec3(background * clamp(1.0 - c.a, 0.0, 1.0));
 }
 
+vec3 decoded(vec3 c) { return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045))); }
+
+// How many stops a light lies from middle grey, to the nearest whole one.
+vec3 zone_of(float light) {
+  float stop = light > 0.0 ? floor(log2(light / 0.18) + 0.5) : float(kFirstZone);
+  return decoded(kZones[int(clamp(stop, float(kFirstZone), float(kLastZone))) - kFirstZone]);
+}
+
+vec3 with_gamma(vec3 c) { return has(kGamma) ? sign(c) * pow(abs(c), vec3(push.fill.w)) : c; }
+
 vec3 looked_at(Sample s) {
   if ((s.marks & kMarkNotFinite) != 0) return push.not_finite.rgb;
-  if ((s.marks & kMarkBelow) != 0) return push.below.rgb;
-  if ((s.marks & kMarkAbove) != 0) return push.above.rgb;
   vec4 c = s.color;
   c.rgb *= push.below.w;
+  if (has(kZoned)) return zone_of(kChannel == 0 ? dot(c.rgb, kLuminance) : with_channel(c).r);
+  if ((s.marks & kMarkBelow) != 0) return push.below.rgb;
+  if ((s.marks & kMarkAbove) != 0) return push.above.rgb;
+  c.rgb = with_gamma(c.rgb);
   if (has(kFalseColor)) return kChannel == 0 ? vec3(dot(c.rgb, kLuminance)) : with_channel(c);  // marks stand out
   return over_background(c);
 }

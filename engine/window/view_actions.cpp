@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What keys do to how the picture is looked at.
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string>
 
@@ -10,7 +11,7 @@ namespace afterglow {
 
 namespace {
 
-constexpr double kExposureStep = 0.25, kMostExposure = 16;
+constexpr double kExposureStep = 0.25, kMostExposure = 16, kGammaStep = 0.1;
 
 }  // namespace
 
@@ -95,6 +96,10 @@ bool WindowApp::act_on_picture(Action action) {
     view.exposure = std::clamp(value, -kMostExposure, kMostExposure);
     return true;
   };
+  const auto bend = [&](double by) {
+    view.gamma = std::clamp(std::round((view.gamma + by) / kGammaStep) * kGammaStep, kLeastGamma, kMostGamma);
+    return true;
+  };
   switch (action) {
     case Action::color:
       view.channel = ViewChannel::color;
@@ -114,9 +119,15 @@ bool WindowApp::act_on_picture(Action action) {
     case Action::exposure_down:
       return expose(view.exposure - kExposureStep);
     case Action::exposure_reset:
+      view.gamma = 1;
       return expose(0);
-    case Action::false_color:
-      view.false_color = !view.false_color;
+    case Action::gamma_up:
+      return bend(kGammaStep);
+    case Action::gamma_down:
+      return bend(-kGammaStep);
+    case Action::marks:
+      view.marks = static_cast<Marks>((static_cast<int>(view.marks) + 1) % 3);
+      ui.say("marks: " + marks_name(view.marks));
       return true;
     case Action::background:
       background_ = static_cast<ViewBackground>((static_cast<int>(background_) + 1) % 3);
@@ -138,8 +149,17 @@ bool WindowApp::act_on_picture(Action action) {
     case Action::result_image:
       player_.show("");
       return true;
-    case Action::histogram:
-      ui.show_histogram = !ui.show_histogram;
+    case Action::scope:
+      view.scope = static_cast<ScopeKind>((static_cast<int>(view.scope) + 1) % 6);
+      ui.say("scope: " + scope_kind_name(view.scope));
+      return true;
+    case Action::scope_scale:
+      view.scope_scale = static_cast<ScopeScale>((static_cast<int>(view.scope_scale) + 1) % 3);
+      ui.say("levels of scopes: " + scope_scale_name(view.scope_scale));
+      return true;
+    case Action::clear_region:
+      ui.say(view.region ? "no region" : "there is no region: Ctrl+drag makes one");
+      view.region.reset();
       return true;
     default:
       return false;

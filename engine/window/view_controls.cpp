@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "window/view_controls.h"
 
+#include <algorithm>
 #include <iterator>
 #include <string>
 
@@ -60,6 +61,32 @@ void draw_guide_controls(const Ui& ui, View& view) {
   ui.help("Darkens what lies beside that form (Shift+A); files stay whole");
 }
 
+void draw_scope_controls(const Ui& ui, PanelPort& port) {
+  View& view = port.view();
+  if (ImGui::BeginCombo("scope", scope_kind_name(view.scope).c_str())) {
+    for (int i = 0; i <= static_cast<int>(ScopeKind::all); ++i) {
+      const auto kind = static_cast<ScopeKind>(i);
+      if (ImGui::Selectable(scope_kind_name(kind).c_str(), kind == view.scope)) view.scope = kind;
+    }
+    ImGui::EndCombo();
+  }
+  ui.help("Of the result, not of how it is viewed (H)");
+  if (ImGui::BeginCombo("levels", scope_scale_name(view.scope_scale).c_str())) {
+    for (const ScopeScale scale : {ScopeScale::code, ScopeScale::linear, ScopeScale::stops})
+      if (ImGui::Selectable(scope_scale_name(scale).c_str(), scale == view.scope_scale)) view.scope_scale = scale;
+    ImGui::EndCombo();
+  }
+  ui.help("Of scopes: sRGB codes, linear light, or stops from middle grey (Shift+H)");
+  bool on = view.region.has_value();
+  if (ImGui::Checkbox("region", &on)) view.region = on ? std::optional(port.middle_region()) : std::nullopt;
+  ui.help("Scopes and means are of this part of the picture alone (Ctrl+drag over the picture; Ctrl+H: none)");
+  if (!view.region) return;
+  int values[] = {view.region->x, view.region->y, view.region->width, view.region->height};
+  if (ImGui::DragInt4("x y w h", values, 1, 0, 1 << 20, "%d", ImGuiSliderFlags_AlwaysClamp))
+    view.region = Rect{values[0], values[1], std::max(values[2], 1), std::max(values[3], 1)};
+  ui.help("Pixels of the picture, from its upper left corner; double click to type");
+}
+
 }  // namespace
 
 void draw_view_controls(Ui& ui, PanelPort& port) {
@@ -70,6 +97,10 @@ void draw_view_controls(Ui& ui, PanelPort& port) {
   if (ImGui::SliderFloat("exposure", &exposure, -10, 10, "%+.2f EV")) view.exposure = exposure;
   if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) view.exposure = 0;
   ui.help("Of the view alone, before encoding for the screen (Up, Down, 0); right-click for 0");
+  float gamma = static_cast<float>(view.gamma);
+  if (ImGui::SliderFloat("gamma", &gamma, 0.25f, 4, "%.2f", ImGuiSliderFlags_AlwaysClamp)) view.gamma = gamma;
+  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) view.gamma = 1;
+  ui.help("Of the view alone, behind the exposure (Shift+Up, Shift+Down, 0); right-click for 1");
   if (ImGui::BeginCombo("channel", view_channel_name(view.channel).c_str())) {
     for (const ViewChannel channel : kChannels)
       if (ImGui::Selectable(view_channel_name(channel).c_str(), channel == view.channel)) view.channel = channel;
@@ -78,13 +109,14 @@ void draw_view_controls(Ui& ui, PanelPort& port) {
   ui.help("C, R, G, B, A, Y");
   draw_comparison(ui, port);
   draw_guide_controls(ui, view);
+  if (ImGui::BeginCombo("marks", marks_name(view.marks).c_str())) {
+    for (const Marks marks : {Marks::none, Marks::range, Marks::stops})
+      if (ImGui::Selectable(marks_name(marks).c_str(), marks == view.marks)) view.marks = marks;
+    ImGui::EndCombo();
+  }
+  ui.help("What is below 0, above 1 or not finite, or a colour for each stop of luminance (X)");
+  draw_scope_controls(ui, port);
   ImGui::PopItemWidth();
-  ImGui::Checkbox("false colour", &view.false_color);
-  ui.help("Marks values below 0, above 1, and what is not finite (X)");
-  ImGui::SameLine();
-  ImGui::Checkbox("histogram", &ui.show_histogram);
-  ui.help("H");
-  ImGui::SameLine();
   ImGui::Checkbox("figures", &ui.show_stats);
   ui.help("Frame times and reload latency (Shift+S)");
 }

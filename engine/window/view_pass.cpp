@@ -30,7 +30,16 @@ struct Push {
 };
 static_assert(sizeof(Push) == 104);
 
-enum Flag { kFalseColor = 1, kDifference = 2, kEncode = 4, kGray = 8, kChecker = 16, kFill = 32 };
+enum Flag {
+  kFalseColor = 1,
+  kDifference = 2,
+  kEncode = 4,
+  kGray = 8,
+  kChecker = 16,
+  kFill = 32,
+  kZoned = 64,
+  kGamma = 128
+};
 enum Reads { kNearest, kSmooth, kMean };
 
 /// The shader's specialisation constants: flags, channel, how `shown` and `compared` are read.
@@ -103,6 +112,7 @@ std::array<Rect, 4> around(const Rect& all, const Rect& hole) {
 
 Push push_of(const ViewFrame& frame, const Place& place, Size shown, Size compared) {
   Push push{};
+  push.fill[3] = static_cast<float>(1 / frame.view.gamma);
   push.below = color_and(kMarkBelow, std::exp2(frame.view.exposure));
   push.above = color_and(kMarkAbove, 0);
   push.not_finite = color_and(kMarkNotFinite, 0);
@@ -122,7 +132,8 @@ Reads reads_of(const ViewFrame& frame, const Place& place, Size image) {
 }
 
 std::int32_t flags_of(const ViewFrame& frame) {
-  return (frame.view.false_color ? kFalseColor : 0) | (frame.background == ViewBackground::gray ? kGray : 0) |
+  return (frame.view.marks == Marks::range ? kFalseColor : 0) | (frame.view.marks == Marks::stops ? kZoned : 0) |
+         (frame.view.gamma != 1 ? kGamma : 0) | (frame.background == ViewBackground::gray ? kGray : 0) |
          (frame.background == ViewBackground::checker ? kChecker : 0);
 }
 

@@ -31,6 +31,23 @@ using ViewColor = std::array<float, 3>;
 inline constexpr ViewColor kMarkNotFinite{1.0f, 0.0f, 1.0f}, kMarkBelow{0.15f, 0.4f, 1.0f},
     kMarkAbove{1.0f, 0.35f, 0.1f};
 
+/// Zones of Marks::stops: each is a stop of luminance, from half a stop below its own to half a stop above; the first
+/// and the last go on. Zone 0 lies about middle grey, 0.18.
+inline constexpr int kFirstZone = -6, kLastZone = 6;
+inline constexpr std::array<ViewColor, kLastZone - kFirstZone + 1> kZones{{{0.06f, 0.06f, 0.09f},
+                                                                           {0.25f, 0.10f, 0.35f},
+                                                                           {0.38f, 0.20f, 0.68f},
+                                                                           {0.16f, 0.33f, 0.80f},
+                                                                           {0.10f, 0.52f, 0.76f},
+                                                                           {0.10f, 0.58f, 0.50f},
+                                                                           {0.50f, 0.50f, 0.50f},
+                                                                           {0.35f, 0.68f, 0.25f},
+                                                                           {0.74f, 0.80f, 0.22f},
+                                                                           {0.96f, 0.76f, 0.16f},
+                                                                           {0.95f, 0.50f, 0.14f},
+                                                                           {0.90f, 0.20f, 0.16f},
+                                                                           {1.00f, 1.00f, 1.00f}}};
+
 struct ViewFrame {
   ViewImage shown;
   /// Left of (above) the wipe, or what the difference is taken from, when the view compares so. Flips and what lies
@@ -50,10 +67,12 @@ struct ViewFrame {
 /// the mean in linear light over what a screen
 ///    pixel covers, by area. NaN counts as 0, infinities as ±1e30.
 /// 2. A difference: by how much the two are apart, in red, green and blue; alpha is 1.
-/// 3. Exposure, c·2^EV; not on alpha.
+/// 3. Exposure, c·2^EV, then gamma, sign(c)·|c|^(1/gamma); not on alpha.
 /// 4. Channel: one of them or luminance (Rec.709 weights) as grey; colour over the background.
-/// 5. False colour: pixels are marked of which anything under the screen pixel is not finite, below 0 or above 1 (after
-///    exposure, by more than 1e-4), in what the channel view looks at; others are grey.
+/// 5. Marks. range: pixels are marked of which anything under the screen pixel is not finite, below 0 or above 1 (after
+///    exposure, by more than 1e-4), in what the channel view looks at; others are grey. stops: the zone of what the
+///    channel view looks at (of a colour its luminance) behind the exposure, without gamma; what is not finite is
+///    marked.
 /// 6. Clamped to 0…1 and sRGB-encoded, once: here, or by the target's format.
 /// Drawing thread alone.
 class ViewPass {

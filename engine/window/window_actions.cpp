@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "window/editor.h"
 #include "window/window_app.h"
 
 namespace afterglow {
@@ -112,6 +113,12 @@ void WindowApp::shuttle(int direction) {
   interface_->ui().say(fmt::format("speed {:g}×", t.speed()));
 }
 
+void WindowApp::edit_file(const std::string& file, int line) {
+  const auto opened = open_in_editor(file, line);
+  interface_->ui().say(opened ? fmt::format("{}:{} goes to the editor", file, std::max(line, 1))
+                              : opened.error().text());
+}
+
 bool WindowApp::act_on_preset(Action action) {
   Ui& ui = interface_->ui();
   switch (action) {
@@ -120,6 +127,11 @@ bool WindowApp::act_on_preset(Action action) {
       if (LiveStack* other = player_.other()) other->reload();
       player_.reload_pictures();
       return true;
+    case Action::edit_file: {
+      const ErrorPlace place = current_place(player_);
+      edit_file(place.file.string(), place.line);
+      return true;
+    }
     case Action::copy_message: {
       const std::string text = current_message(player_);
       if (!text.empty()) {

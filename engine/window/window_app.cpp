@@ -33,6 +33,7 @@ Result<std::unique_ptr<WindowApp>> WindowApp::create(DesktopWindow& window, Devi
   ui.copy = [&window](const std::string& text) { window.set_clipboard(text); };
   // Not within the frame that asks for it: what asks may be gone then.
   ui.open = [raw = app.get()](const std::string& path) { raw->to_open_.emplace_back(path); };
+  ui.edit_file = [raw = app.get()](const std::string& file, int line) { raw->edit_file(file, line); };
   ui.again = [raw = app.get()] { raw->redraw_ = std::max(raw->redraw_, 2); };
   return app;
 }
@@ -93,14 +94,14 @@ void WindowApp::wait(const Step& turn) {
     if (ui.message_until > now) until = std::min(until, ui.message_until);
     until = std::min(until, ui.hover.wake());
     if (interface_->wants_keyboard()) until = std::min(until, now + kBlink);
-    if (ui.show_histogram && spread_.turn != turn_) until = std::min(until, spread_.when + kHistogramPause);
+    if (scopes_due()) until = std::min(until, scopes_.when + kScopesPause);
   }
   window_.wait(std::clamp(until - now, 0.0, kLongest));
   const double later = player_.now();
   const Ui& ui = interface_->ui();
   const bool faded = !ui.message.empty() && ui.message_until <= later;
   const bool rested = ui.hover.wake() <= later;
-  if (faded || rested || interface_->wants_keyboard() || (ui.show_histogram && spread_.turn != turn_)) {
+  if (faded || rested || interface_->wants_keyboard() || scopes_due()) {
     redraw_ = std::max(redraw_, 1);
   }
 }

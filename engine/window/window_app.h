@@ -47,7 +47,7 @@ class WindowApp {
   void draw_parts(Size window);
   Result<void> draw_overlays();
   Result<void> look_under_cursor();
-  Result<void> look_at_histogram();
+  Result<void> look_at_scopes();
   std::vector<ViewFrame> view_frames() const;
   OverlayPicture overlay_picture() const;
 
@@ -61,6 +61,7 @@ class WindowApp {
   void show_neighbour(int by);
   void next_wipe();
   void shuttle(int direction);
+  void edit_file(const std::string& file, int line);
   void draw_frame_field();
   void compare_by(CompareBy by);
   Size picture_window() const;  ///< what one picture has of `area_`
@@ -83,12 +84,13 @@ class WindowApp {
   int field_awaited_ = 0;  ///< frames that a field has to get the keyboard; what is typed waits for it
 
   static constexpr int kSettle = 3;  ///< ImGui needs a frame to see an event and one to answer it
-  static constexpr double kHistogramPause = 0.1;
+  static constexpr double kScopesPause = 0.1;
 
   Rect area_;  ///< of the frame buffer that the picture has
   ViewBackground background_ = ViewBackground::none;
-  enum class Drag { none, pan, wipe } drag_ = Drag::none;
-  int redraw_ = 3;  ///< frames to draw though nothing new is there: interfaces settle in a few
+  enum class Drag { none, pan, wipe, region } drag_ = Drag::none;
+  Point drag_from_;  ///< of a region
+  int redraw_ = 3;   ///< frames to draw though nothing new is there: interfaces settle in a few
   double last_draw_ = -1;
   enum class Quitting { no, asked, saving } quitting_ = Quitting::no;
   bool quit_ = false, minimised_ = false, resume_ = false;
@@ -103,10 +105,17 @@ class WindowApp {
     std::optional<Probe> probe;
   } under_cursor_;
   struct {
-    std::optional<Histogram> histogram;
+    ShownScopes found;
     std::uint64_t turn = 0;
     double when = -1;
-  } spread_;
+    // What they were made for.
+    ScopeKind kind = ScopeKind::none;
+    ScopeScale scale = ScopeScale::code;
+    std::optional<Rect> region;
+    int cells = 0;
+  } scopes_;
+  bool scopes_due() const;         ///< what is shown of them is not about the picture and the view
+  std::vector<Rect> atlas_parts_;  ///< of the atlas, written and not yet drawn with
 };
 
 }  // namespace afterglow

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "window/frame_field.h"
+#include "window/scope_picture.h"
 #include "window/window_app.h"
 
 namespace afterglow {
@@ -46,7 +47,10 @@ Result<void> WindowApp::draw() {
   }
   if (options_.help && ui.show_help) options_.help(player_, ui, {0, 0}, ImGui::GetIO().DisplaySize);
   const ImDrawData& data = interface_->end();
-  AFTERGLOW_TRY(const auto drawn, painter_->paint(window, view_frames(), data));
+  const auto written = ui.cells.take_written();
+  atlas_parts_.insert(atlas_parts_.end(), written.begin(), written.end());
+  AFTERGLOW_TRY(const auto drawn, painter_->paint(window, view_frames(), data, atlas_parts_));
+  if (drawn == Swapchain::Drawn::yes) atlas_parts_.clear();
   last_draw_ = player_.now();
   if (drawn == Swapchain::Drawn::yes && redraw_ > 0) --redraw_;
   input_seen();
@@ -128,18 +132,19 @@ std::vector<ViewFrame> WindowApp::view_frames() const {
 
 Result<void> WindowApp::draw_overlays() {
   AFTERGLOW_CHECK(look_under_cursor());
-  AFTERGLOW_CHECK(look_at_histogram());
+  AFTERGLOW_CHECK(look_at_scopes());
   const Ui& ui = interface_->ui();
   const OverlayArea area{ImVec2(0, 0),
                          ImVec2(static_cast<float>(area_.width) / ImGui::GetIO().DisplayFramebufferScale.x,
                                 static_cast<float>(area_.height) / ImGui::GetIO().DisplayFramebufferScale.y)};
   const OverlayPicture place = overlay_picture();
   draw_guides(player_.view(), ui, place);
+  if (const auto& region = player_.view().region) draw_region(*region, ui, place);
   draw_frame_mark(player_, ui, place, area);
   if (under_cursor_.probe) draw_pixel_mark(under_cursor_.probe->pixel, ui, place);
   draw_state_overlay(player_, ui, area);
   if (ui.show_stats) draw_stats_overlay(player_, ui, area);
-  if (ui.show_histogram && spread_.histogram) draw_histogram_overlay(*spread_.histogram, ui, area);
+  draw_scopes_overlay(scopes_.found, player_.view(), ui, area, under_cursor_.probe.has_value());
   const float below = draw_error_overlay(player_, interface_->ui(), area);
   if (under_cursor_.probe) draw_probe_overlay(*under_cursor_.probe, ui, area, below);
   draw_message_overlay(ui, area);
@@ -185,14 +190,37 @@ Result<void> WindowApp::look_under_cursor() {
   return {};
 }
 
+bool WindowApp::scopes_due() const {
+  const View& view = player_.view();
+  if (view.scope == ScopeKind::none && !view.region) return false;
+  return scopes_.turn != turn_ || scopes_.kind != view.scope || scopes_.scale != view.scope_scale ||
+         scopes_.region != view.region || scopes_.cells != interface_->ui().cells.generation();
+}
+
 /// Reads the whole picture back: not for each frame while playing.
-Result<void> WindowApp::look_at_histogram() {
+Result<void> WindowApp::look_at_scopes() {
   const double now = player_.now();
-  if (!interface_->ui().show_histogram || spread_.turn == turn_ || now < spread_.when + kHistogramPause) return {};
+  const View& view = player_.view();
+  if (!view.region) scopes_.found.means.reset();
+  if (!scopes_due() || (now < scopes_.when + kScopesPause && scopes_.turn != turn_)) return {};
   if (player_.images().result.binding.view == VK_NULL_HANDLE) return {};
-  AFTERGLOW_TRY(spread_.histogram, player_.histogram());
-  spread_.turn = turn_;
-  spread_.when = now;
+  AtlasCells& cells = interface_->ui().cells;
+  if (view.scope != ScopeKind::none) {
+    AFTERGLOW_TRY(scopes_.found.scopes, player_.scopes({.scale = view.scope_scale, .region = view.region}));
+    for (const ScopeKind kind : {ScopeKind::histogram, ScopeKind::waveform, ScopeKind::parade, ScopeKind::vectorscope})
+      if (view.scope == kind || view.scope == ScopeKind::all)
+        cells.write(static_cast<int>(kind) - 1, scope_picture(*scopes_.found.scopes, kind));
+  }
+  if (view.region) {
+    AFTERGLOW_TRY(scopes_.found.means, player_.means(*view.region));
+  }
+  redraw_ = std::max(redraw_, kSettle);  // the sheet finds its size
+  scopes_.turn = turn_;
+  scopes_.when = now;
+  scopes_.kind = view.scope;
+  scopes_.scale = view.scope_scale;
+  scopes_.region = view.region;
+  scopes_.cells = cells.generation();
   return {};
 }
 

@@ -54,6 +54,12 @@ class PlayWindow : public testing::Test {
         << " },\n}\n";
   }
 
+  /// Of a file that may not be there.
+  std::string text_of(const std::string& name) {
+    const auto text = read_file(folder_ / name);
+    return text ? *text : "";
+  }
+
   void play(std::vector<std::string> arguments) {
     program_ = std::make_unique<PlayedWindow>(xvfb_.display(), folder_, std::move(arguments));
   }

@@ -43,6 +43,8 @@ PlayedWindow::PlayedWindow(const std::string& display, const std::filesystem::pa
   setenv("DISPLAY", display.c_str(), 1);
   unsetenv("WAYLAND_DISPLAY");
   setenv("AFTERGLOW_VALIDATE", "1", 1);
+  for (const char* folder : {"XDG_CONFIG_HOME", "XDG_STATE_HOME"}) setenv(folder, log_.parent_path().c_str(), 1);
+  setenv("AFTERGLOW_EDITOR", "./editor", 1);
   setenv("AFTERGLOW_HOME", AFTERGLOW_PROJECT_FOLDER, 1);
   if (chdir(folder.c_str()) != 0) _exit(1);
   execv(argv[0], argv.data());

@@ -125,4 +125,18 @@ std::string window_title(const std::string& name) {
   return out;
 }
 
+Rect window_place(const std::string& name) {
+  const DisplayPtr display(XOpenDisplay(name.c_str()));
+  if (!display) return {};
+  const Window window = find_window(display.get());
+  XWindowAttributes attributes;
+  Window child = 0;
+  Rect out;
+  if (!window || !XGetWindowAttributes(display.get(), window, &attributes)) return {};
+  XTranslateCoordinates(display.get(), window, attributes.root, 0, 0, &out.x, &out.y, &child);
+  out.width = attributes.width;
+  out.height = attributes.height;
+  return out;
+}
+
 }  // namespace afterglow

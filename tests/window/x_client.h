@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "core/geometry.h"
+
 namespace afterglow {
 
 /// Sends WM_DELETE_WINDOW to the program's window. False: there is no such window.
@@ -16,5 +18,8 @@ bool drop_file(const std::string& display, const std::filesystem::path& file);
 
 /// The title of the program's window.
 std::string window_title(const std::string& display);
+
+/// Where the program's window is on the screen; empty: there is none.
+Rect window_place(const std::string& display);
 
 }  // namespace afterglow

@@ -364,7 +364,7 @@ TEST_F(PlayerTest, ComparesTwoPresets) {
   const auto probe = player.probe({0, 0}).value();
   EXPECT_FLOAT_EQ(probe->result[0], 0.25f);
   EXPECT_FLOAT_EQ((*probe->other)[0], 0.5f);
-  EXPECT_EQ(player.histogram(Player::Of::other).value().most[0], 0.5f);
+  EXPECT_EQ(player.scopes({}, Player::Of::other).value().most[0], 0.5f);
 }
 
 TEST_F(PlayerTest, ShowsImagesBetweenPasses) {
@@ -385,10 +385,19 @@ TEST_F(PlayerTest, LooksAtValues) {
   turn();
   EXPECT_FALSE(player.probe({-1, 0}).value());
   EXPECT_FALSE(player.probe({kSize.width, 0}).value());
-  const Histogram result = player.histogram().value(), source = player.histogram(Player::Of::source).value();
+  const Scopes result = player.scopes().value(), source = player.scopes({}, Player::Of::source).value();
   EXPECT_EQ(result.pixels, static_cast<std::uint64_t>(kSize.area()));
   EXPECT_EQ(result.most[1], 0.25f);
   EXPECT_EQ(source.most[1], 0.125f);
+  EXPECT_EQ(player.scopes({.region = Rect{1, 1, 2, 3}}).value().pixels, 6u);
+  const auto means = player.means({-5, 0, 7, 2}).value();
+  ASSERT_TRUE(means);
+  EXPECT_EQ(means->region, (Rect{0, 0, 2, 2}));
+  EXPECT_EQ(means->source.mean[1], 0.125);
+  EXPECT_EQ(means->result.mean[1], 0.25);
+  EXPECT_EQ(means->result.pixels, 4u);
+  EXPECT_FALSE(means->other);
+  EXPECT_FALSE(player.means({kSize.width, 0, 4, 4}).value()) << "beside the picture";
   EXPECT_FLOAT_EQ(player.screenshot().value().color.pixels[0], 0.25f);
 }
 

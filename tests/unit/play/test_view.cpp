@@ -115,5 +115,18 @@ TEST(View, AFormIsTheLargestInTheMiddle) {
   EXPECT_NEAR(titles.to.y, 1026, 1e-9);
 }
 
+TEST(View, RegionsAreThePixelsBetweenTwoPoints) {
+  const Size picture{100, 50}, window{400, 200};
+  View view;  // fitted: four pixels of the screen for each
+  EXPECT_EQ(region_between(view, picture, window, {41, 22}, {79, 61}), (Rect{10, 5, 10, 11}));
+  EXPECT_EQ(region_between(view, picture, window, {79, 22}, {41, 61}), (Rect{10, 5, 10, 11})) << "any way around";
+  EXPECT_EQ(region_between(view, picture, window, {41, 22}, {41, 22}), (Rect{10, 5, 1, 1}));
+  EXPECT_EQ(region_between(view, picture, window, {-90, -90}, {4000, 4000}), (Rect{0, 0, 100, 50}));
+  view.fit = false;
+  view.zoom = 1;
+  view.center = {50, 25};
+  EXPECT_EQ(region_between(view, picture, window, {0, 0}, {20, 20}), std::nullopt) << "beside the picture";
+}
+
 }  // namespace
 }  // namespace afterglow

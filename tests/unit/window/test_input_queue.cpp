@@ -7,6 +7,7 @@
 
 #include "window/flow.h"
 #include "window/frame_field.h"
+#include "window/help_sheet.h"
 #include "window/hover_help.h"
 #include "window/input_queue.h"
 
@@ -62,10 +63,26 @@ TEST(InputQueue, AFieldGetsKeysAndTextInTheirOrder) {
 }
 
 TEST(Flow, WhatFindsNoRoomBeginsTheNextRow) {
-  const std::vector<float> widths{100, 50, 50, 200, 10};
-  EXPECT_EQ(rows_of(widths, 10, 220), (std::vector<int>{0, 0, 0, 1, 1}));
-  EXPECT_EQ(rows_of(widths, 10, 1000), (std::vector<int>{0, 0, 0, 0, 0}));
-  EXPECT_EQ(rows_of(widths, 10, 1), (std::vector<int>{0, 1, 2, 3, 4}));
+  const std::vector<float> widths{100, 50, 50, 200, 10}, gaps{10, 10, 10, 10, 10};
+  EXPECT_EQ(rows_of(widths, gaps, 220), (std::vector<int>{0, 0, 0, 1, 1}));
+  EXPECT_EQ(rows_of(widths, gaps, 1000), (std::vector<int>{0, 0, 0, 0, 0}));
+  EXPECT_EQ(rows_of(widths, gaps, 1), (std::vector<int>{0, 1, 2, 3, 4}));
+  const std::vector<float> near{99, 5, 5, 5, 5};
+  EXPECT_EQ(rows_of(widths, near, 210), (std::vector<int>{0, 0, 0, 1, 2})) << "200 and 10 are 5 apart";
+}
+
+TEST(HelpSheet, ColumnsAreAsShortAsTheyCanBe) {
+  const std::vector<HelpGroup> groups{{"a", 10}, {"b", 3}, {"c", 4}, {"d", 5}};
+  const HelpLayout two = help_layout(groups, 2);
+  EXPECT_EQ(two.column, (std::vector<int>{0, 1, 1, 1}));
+  EXPECT_EQ(two.height, 12);
+  const HelpLayout three = help_layout(groups, 3);
+  EXPECT_EQ(three.height, 10);
+  EXPECT_EQ(help_layout(groups, 1).height, 22);
+  int lines = 0;
+  for (const HelpGroup& group : help_groups()) lines += group.lines;
+  EXPECT_GT(lines, 80);
+  EXPECT_LE(help_layout(help_groups(), 2).height, lines * 6 / 10);
 }
 
 TEST(HoverHelp, ComesWhenThePointerRestsAndNeverWhileItDrags) {

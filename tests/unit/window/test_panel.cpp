@@ -12,8 +12,8 @@
 #include "core/file.h"
 #include "window/help_sheet.h"
 #include "window/interface.h"
-#include "window/panel.h"
 #include "window/name_dialog.h"
+#include "window/panel.h"
 #include "window/setting_widget.h"
 #include "window/shortcuts.h"
 #include "window/transport_bar.h"
@@ -73,6 +73,7 @@ class Port : public PanelPort {
   void set_stack(const StackChange& change) override { changes.set_stack(change); }
   void reset_stack() override { changes.reset_stack(); }
   View& view() override { return look; }
+  Rect middle_region() override { return {10, 20, 30, 40}; }
   std::vector<std::string> images() override { return {"source", "bloom.down[1]", "bloom.up[1]"}; }
   std::string shown_image() override { return image; }
   void show(const std::string& name) override { image = name; }
@@ -679,17 +680,29 @@ TEST_F(PanelTest, ViewControls) {
   ASSERT_TRUE(find({"##Combo_00", "bloom.up[1]"}));
   click();
   EXPECT_EQ(port->image, "bloom.up[1]");
-  ASSERT_TRUE(find({"Settings", "false colour"}));
+  ASSERT_TRUE(find({"Settings", "marks"}));
   click();
-  EXPECT_TRUE(port->look.false_color);
+  ASSERT_TRUE(find({"##Combo_00", "stops"}));
+  click();
+  EXPECT_EQ(port->look.marks, Marks::stops);
   ASSERT_TRUE(find({"Settings", "channel"}));
   click();
   ASSERT_TRUE(find({"##Combo_00", "luminance"}));
   click();
   EXPECT_EQ(port->look.channel, ViewChannel::luminance);
-  ASSERT_TRUE(find({"Settings", "histogram"}));
+  ASSERT_TRUE(find({"Settings", "scope"}));
   click();
-  EXPECT_TRUE(interface.ui().show_histogram);
+  ASSERT_TRUE(find({"##Combo_00", "vectorscope"}));
+  click();
+  EXPECT_EQ(port->look.scope, ScopeKind::vectorscope);
+  ASSERT_TRUE(find({"Settings", "levels"}));
+  click();
+  ASSERT_TRUE(find({"##Combo_00", "stops"}));
+  click();
+  EXPECT_EQ(port->look.scope_scale, ScopeScale::stops);
+  ASSERT_TRUE(find({"Settings", "region"}));
+  click();
+  EXPECT_EQ(port->look.region, (Rect{10, 20, 30, 40}));
 }
 
 TEST_F(PanelTest, WithoutAPreset) {

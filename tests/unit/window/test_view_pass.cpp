@@ -219,14 +219,15 @@ TEST_F(ViewPassTest, ChannelsExposureAndBackgrounds) {
   for (const auto channel : {ViewChannel::color, ViewChannel::red, ViewChannel::green, ViewChannel::blue,
                              ViewChannel::alpha, ViewChannel::luminance}) {
     for (const double exposure : {0.0, -2.5, 1.75}) {
-      for (const bool marks : {false, true}) {
+      for (const Marks marks : {Marks::none, Marks::range, Marks::stops}) {
         for (const double zoom : {0.4, 2.0}) {
           View view{.fit = false, .zoom = zoom, .center = {11.213, 8.347}};
           view.exposure = exposure;
           view.channel = channel;
-          view.false_color = marks;
+          view.marks = marks;
+          view.gamma = zoom < 1 ? 1.8 : 0.6;
           expect_same(frame_of({0, 0, 48, 36}, view), image, nullptr, {48, 36},
-                      (view_channel_name(channel) + (marks ? ", marked" : "")).c_str());
+                      (view_channel_name(channel) + ", marks: " + marks_name(marks)).c_str());
         }
       }
     }
@@ -243,7 +244,7 @@ TEST_F(ViewPassTest, FalseColorFindsOneBadPixelAtAnyZoom) {
   Image image(64, 64, 4);
   std::fill(image.pixels.begin(), image.pixels.end(), 0.5f);
   image.at(37, 21)[1] = std::numeric_limits<float>::quiet_NaN();
-  View view{.fit = false, .zoom = 1.0 / 32, .center = {32, 32}, .false_color = true};
+  View view{.fit = false, .zoom = 1.0 / 32, .center = {32, 32}, .marks = Marks::range};
   ViewFrame frame = frame_of({0, 0, 2, 2}, view);
   frame.picture = {64, 64};
   const GpuImage gpu = upload(image);
@@ -253,6 +254,32 @@ TEST_F(ViewPassTest, FalseColorFindsOneBadPixelAtAnyZoom) {
   EXPECT_NEAR(drawn.at(1, 0)[1], kMarkNotFinite[1], 1e-3);
   EXPECT_NEAR(drawn.at(0, 0)[0], drawn.at(0, 0)[1], 1e-6);  // grey: nothing is marked here
   EXPECT_GT(drawn.at(0, 0)[0], 0.5f);
+}
+
+/// A quarter of a stop above and below each zone's own: both are of its colour.
+TEST_F(ViewPassTest, EveryStopHasItsZone) {
+  const int zones = static_cast<int>(kZones.size());
+  Image image(zones, 2, 4);
+  for (int zone = 0; zone < zones; ++zone) {
+    for (int y = 0; y < 2; ++y) {
+      float* c = image.at(zone, y);
+      std::fill(c, c + 3, 0.18f * std::exp2(static_cast<float>(kFirstZone + zone) + (y == 0 ? 0.25f : -0.25f)));
+      c[3] = 1;
+    }
+  }
+  View view;
+  view.marks = Marks::stops;
+  view.gamma = 2.2;  // zones are of the light
+  one_to_one(view, image.size(), image.size());
+  ViewFrame frame = frame_of({0, 0, zones, 2}, view);
+  frame.picture = image.size();
+  const GpuImage gpu = upload(image);
+  frame.shown = {gpu.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, image.size()};
+  const Image drawn = draw(frame, image.size(), {gpu.get()});
+  for (int zone = 0; zone < zones; ++zone)
+    for (int y = 0; y < 2; ++y)
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(drawn.at(zone, y)[c], kZones[static_cast<std::size_t>(zone)][c], 1e-3) << kFirstZone + zone;
 }
 
 TEST_F(ViewPassTest, WipesBetweenImagesOfAnySize) {

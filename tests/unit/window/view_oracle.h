@@ -76,6 +76,17 @@ class ViewOracle {
     }
   }
 
+  Rgb zone(const std::array<double, 4>& c, double gain) const {
+    double light = (0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]) * gain;
+    if (frame_.view.channel == ViewChannel::red) light = c[0] * gain;
+    if (frame_.view.channel == ViewChannel::green) light = c[1] * gain;
+    if (frame_.view.channel == ViewChannel::blue) light = c[2] * gain;
+    if (frame_.view.channel == ViewChannel::alpha) light = c[3];
+    std::size_t at = 0;
+    while (at + 1 < kZones.size() && light >= 0.18 * std::exp2(kFirstZone + static_cast<int>(at) + 0.5)) ++at;
+    return coded(kZones[at]);
+  }
+
   Rgb looked_at(const Image& image, Point p, int x, int y) const {
     const double kx = static_cast<double>(image.width) / frame_.picture.width;
     const double ky = static_cast<double>(image.height) / frame_.picture.height;
@@ -111,11 +122,13 @@ class ViewOracle {
       }
     }
     for (double& v : sum) v /= total;
-    if (frame_.view.false_color && worst > 0) {
-      return coded(worst == 3 ? kMarkNotFinite : worst == 2 ? kMarkBelow : kMarkAbove);
-    }
+    const Marks marks = frame_.view.marks;
+    if (marks != Marks::none && worst == 3) return coded(kMarkNotFinite);
+    if (marks == Marks::range && worst > 0) return coded(worst == 2 ? kMarkBelow : kMarkAbove);
     const double gain = std::exp2(frame_.view.exposure);
-    const double r = sum[0] * gain, g = sum[1] * gain, b = sum[2] * gain;
+    if (marks == Marks::stops) return zone(sum, gain);
+    const auto toned = [&](double v) { return std::copysign(std::pow(std::abs(v * gain), 1 / frame_.view.gamma), v); };
+    const double r = toned(sum[0]), g = toned(sum[1]), b = toned(sum[2]);
     const auto gray = [](double v) { return encode({v, v, v}); };
     switch (frame_.view.channel) {
       case ViewChannel::red:
@@ -131,7 +144,7 @@ class ViewOracle {
       default:
         break;
     }
-    if (frame_.view.false_color) return gray(0.2126 * r + 0.7152 * g + 0.0722 * b);
+    if (marks == Marks::range) return gray(0.2126 * r + 0.7152 * g + 0.0722 * b);
     double background = 0;
     if (frame_.background == ViewBackground::gray) background = 0.18;
     if (frame_.background == ViewBackground::checker) {

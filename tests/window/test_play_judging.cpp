@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Scopes, marks, exposure and gamma of the view, regions; where the window is, and the editor; in a real window.
+#include "play_window_test.h"
+
+namespace afterglow {
+namespace {
+
+constexpr Color kScopePaper{13, 14, 16};  // of an empty scope
+constexpr Color kRegionLine{255, 158, 60};
+
+/// Of a look that keeps only red of 0.5, the luminance is 0.106: the zone of −1 stop.
+TEST_F(PlayWindow, MarksGammaAndExposureAreOfTheView) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.0001.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  ASSERT_TRUE(user("mousemove 400 300 key x"));
+  EXPECT_TRUE(until_color(kX, kY, {92, 92, 92}));  // nothing is out of range: grey by its luminance
+  ASSERT_TRUE(user("key x"));
+  EXPECT_TRUE(until_color(kX, kY, {26, 148, 128}));
+  ASSERT_TRUE(user("key Up key Up key Up key Up"));  // a stop
+  EXPECT_TRUE(until_color(kX, kY, {128, 128, 128}));
+  ASSERT_TRUE(user("key 0 key x"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  ASSERT_TRUE(user("key shift+Up"));  // 0.5 to the power of 1/1.1, as a code
+  EXPECT_TRUE(until_color(kX, kY, {193, 0, 0}));
+  ASSERT_TRUE(user("key 0"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
+TEST_F(PlayWindow, ScopesComeAndGoAndARegionIsDrawn) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.0001.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  EXPECT_EQ(count_color(shot(), kScopePaper), 0);
+  ASSERT_TRUE(user("mousemove 300 200"));
+  // histogram, waveform, parade, vectorscope: each mostly dark; then all of them
+  for (int kind = 0; kind < 4; ++kind) {
+    ASSERT_TRUE(user("key h"));
+    EXPECT_TRUE(until([&] {
+      const int dark = count_color(shot(), kScopePaper);
+      return dark > 15000 && dark < 60000;
+    })) << kind;
+  }
+  ASSERT_TRUE(user("key h"));
+  EXPECT_TRUE(until([&] { return count_color(shot(), kScopePaper) > 60000; }));
+  ASSERT_TRUE(user("key h"));
+  EXPECT_TRUE(until([&] { return count_color(shot(), kScopePaper) == 0; }));
+
+  const int before = count_color(shot(), kRegionLine);
+  ASSERT_TRUE(
+      user("keydown ctrl mousemove 300 200 mousedown 1 mousemove 350 240 mousemove 400 280 mouseup 1 keyup ctrl"));
+  EXPECT_TRUE(until([&] { return count_color(shot(), kRegionLine) > before + 300; }));
+  ASSERT_TRUE(user("key ctrl+h"));
+  EXPECT_TRUE(until([&] { return count_color(shot(), kRegionLine) == before; }));
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
+/// An editor that writes down how it was called.
+TEST_F(PlayWindow, AnErrorOpensTheEditorAtItsLine) {
+  std::ofstream(folder_ / "editor") << "#!/bin/sh\necho \"$@\" >> called.txt\n";
+  fs::permissions(folder_ / "editor", fs::perms::owner_all);
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.0001.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  const auto called = [&] { return text_of("called.txt"); };
+  ASSERT_TRUE(user("mousemove 400 300 key F4"));
+  EXPECT_TRUE(until([&] { return called() == "+1 look.lua\n"; })) << called();
+  std::ofstream(folder_ / "look.lua") << "local fx = require \"afterglow\"\n\nreturn fx.stack {\n  fx.bloomy {},\n}\n";
+  ASSERT_TRUE(program_->wait_for("reload: failed"));
+  ASSERT_TRUE(user("key F4"));
+  EXPECT_TRUE(until([&] { return called().ends_with("+4 look.lua\n"); })) << called();
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
+/// As --geometry says; without it as it was left.
+TEST_F(PlayWindow, TheWindowIsWhereItIsWanted) {
+  write_preset("{ 1, 0, 0 }");
+  const auto place = [&] { return window_place(xvfb_.display()); };
+  play({"look.lua", "shot.0001.exr", "--geometry", "700x500+30+20"});
+  ASSERT_TRUE(program_->wait_for("window 700x500"));
+  EXPECT_EQ(place(), (Rect{30, 20, 700, 500}));
+  ASSERT_TRUE(user("mousemove 200 200 key q"));
+  expect_clean_end();
+  EXPECT_FALSE(fs::exists(folder_ / "afterglow/window")) << "one that was asked for is not remembered";
+
+  fs::create_directories(folder_ / "afterglow");
+  std::ofstream(folder_ / "afterglow/window") << "800x600+10+40\n";
+  play({"look.lua", "shot.0001.exr"});
+  ASSERT_TRUE(program_->wait_for("window 800x600"));
+  EXPECT_EQ(place(), (Rect{10, 40, 800, 600}));
+  ASSERT_TRUE(user("search --class afterglow windowsize 760 520 windowmove 50 60"));
+  ASSERT_TRUE(until([&] { return place() == Rect{50, 60, 760, 520}; }));
+  ASSERT_TRUE(user("mousemove 300 300 key q"));
+  expect_clean_end();
+  EXPECT_EQ(text_of("afterglow/window"), "760x520+50+60\n");
+}
+
+TEST_F(PlayWindow, SettingsOfTheUserHoldForEveryWindow) {
+  write_preset("{ 1, 0, 0 }");
+  fs::create_directories(folder_ / "afterglow");
+  std::ofstream(folder_ / "afterglow/play.conf") << "# mine\ngeometry = 640x480+5+5\npaused = true  # begin so\n";
+  play({"look.lua", "shot.####.exr"});
+  ASSERT_TRUE(program_->wait_for("window 640x480"));
+  ASSERT_TRUE(user("mousemove 150 150 key q"));
+  expect_clean_end();
+  play({"look.lua", "shot.####.exr", "--geometry", "660x490"});
+  ASSERT_TRUE(program_->wait_for("window 660x490")) << "the command line counts more";
+  ASSERT_TRUE(user("mousemove 150 150 key q"));
+  expect_clean_end();
+  std::ofstream(folder_ / "afterglow/play.conf") << "\ngeometri = 640x480\n";
+  play({"look.lua", "shot.####.exr"});
+  EXPECT_EQ(program_->finish(), 2);
+  EXPECT_NE(program_->printed().find("play.conf:2: error: there is no setting 'geometri'"), std::string::npos);
+  EXPECT_NE(program_->printed().find("did you mean 'geometry'?"), std::string::npos);
+  std::ofstream(folder_ / "afterglow/play.conf") << "ui-scale = 9\n";
+  play({"look.lua", "shot.####.exr"});
+  EXPECT_EQ(program_->finish(), 2);
+  EXPECT_NE(program_->printed().find("play.conf:1: error: "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace afterglow
