@@ -2,6 +2,7 @@
 #include "exec/kernel_pipelines.h"
 
 #include <optional>
+#include <span>
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
@@ -43,13 +44,33 @@ VkFormat format_of(const CompiledKernel& kernel, VkFormat given) {
   return given != VK_FORMAT_UNDEFINED ? given : format_of(kernel.target);
 }
 
-Result<PipelineHandle> make(const Device& device, const CompiledKernel& kernel, const DrawLayout& layout,
-                            VkShaderModule vertex, VkFormat format, const std::string& name) {
+struct Made {
+  PipelineHandle pipeline, rest;
+};
+
+Result<Made> make(const Device& device, const CompiledKernel& kernel, const DrawLayout& layout, VkShaderModule vertex,
+                  VkFormat format, const std::string& name) {
+  Made made;
   if (const auto& group = kernel.workgroup)
     AFTERGLOW_CHECK(check_workgroup(device, group->invocations, kernel.shared_bytes, name));
   AFTERGLOW_TRY(const ShaderModuleHandle module, create_shader_module(device, kernel.spirv, name));
-  if (kernel.workgroup) return create_compute_pipeline(device, layout, module.get(), name);
-  return create_draw_pipeline(device, layout, vertex, module.get(), {format, kernel.rows}, name);
+  if (kernel.workgroup) {
+    AFTERGLOW_TRY(made.pipeline, create_compute_pipeline(device, layout, module.get(), name));
+    return made;
+  }
+  const auto draw = [&](const ShaderModuleHandle& shader, KernelDraw which, DrawMarks marks) {
+    const std::int32_t constant = static_cast<std::int32_t>(which);
+    return create_draw_pipeline(device, layout, vertex, shader.get(), {format, kernel.rows, marks}, name,
+                                which == KernelDraw::all ? std::span<const std::int32_t>() : std::span(&constant, 1));
+  };
+  if (!kernel.two_draws) {
+    AFTERGLOW_TRY(made.pipeline, draw(module, KernelDraw::all, DrawMarks::none));
+    return made;
+  }
+  AFTERGLOW_TRY(made.pipeline, draw(module, KernelDraw::done, DrawMarks::writes));
+  AFTERGLOW_TRY(const ShaderModuleHandle early, create_shader_module(device, tested_early(kernel.spirv), name));
+  AFTERGLOW_TRY(made.rest, draw(early, KernelDraw::rest, DrawMarks::tests));
+  return made;
 }
 
 }  // namespace
@@ -74,7 +95,7 @@ Result<KernelPipelines> KernelPipelines::create(const Device& device, const std:
   if (missing.empty()) return out;
   AFTERGLOW_TRY(const ShaderModuleHandle vertex,
                 create_shader_module(device, kFullscreenVertex, "full-screen triangle"));
-  std::vector<std::optional<Result<PipelineHandle>>> made(missing.size());
+  std::vector<std::optional<Result<Made>>> made(missing.size());
   parallel_for(made.size(), [&](std::size_t k) {
     const std::size_t i = missing[k];
     made[k].emplace(
@@ -84,7 +105,8 @@ Result<KernelPipelines> KernelPipelines::create(const Device& device, const std:
     if (!*made[k]) return std::move(*made[k]).error();
     const CompiledKernel& kernel = kernels[missing[k]];
     out.pipelines_[missing[k]] = pool->add(kernel, format_of(kernel, format),
-                                           {out.layouts_.at(interface_of(kernel)), std::move(*made[k]).value()});
+                                           {out.layouts_.at(interface_of(kernel)), std::move(made[k]->value().pipeline),
+                                            std::move(made[k]->value().rest)});
   }
   pool->add_time(milliseconds_since(start));
   return out;

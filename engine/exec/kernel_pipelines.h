@@ -27,6 +27,8 @@ class KernelPipelines {
   KernelPipelines() = default;
 
   VkPipeline pipeline(int kernel) const { return pipelines_[static_cast<std::size_t>(kernel)]->pipeline.get(); }
+  /// The second draw of a kernel that has one, else null.
+  VkPipeline rest(int kernel) const { return pipelines_[static_cast<std::size_t>(kernel)]->rest.get(); }
   const DrawLayout& layout(const CompiledKernel& kernel) const;
   int size() const { return static_cast<int>(pipelines_.size()); }
 

@@ -17,6 +17,7 @@ namespace afterglow {
 struct SharedPipeline {
   std::shared_ptr<const DrawLayout> layout;
   PipelineHandle pipeline;
+  PipelineHandle rest;  ///< of a kernel with two draws: the second
 };
 
 /// Keeps no pipeline alive: it goes with the last program that uses it. Layouts, which are few, stay. Thread-safe. Must

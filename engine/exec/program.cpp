@@ -32,6 +32,7 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
     state->identify();
     AFTERGLOW_CHECK(state->take_images(descs));
     AFTERGLOW_CHECK(state->make_pipelines());
+    AFTERGLOW_CHECK(state->make_marks());
     AFTERGLOW_CHECK(state->make_histories());
     AFTERGLOW_CHECK(state->make_descriptors());
     if (state->histories) AFTERGLOW_CHECK(state->use(state->histories));
@@ -146,8 +147,8 @@ std::optional<Program::Transient> Program::transient(ImageId image) const {
 Program::Counters Program::counters() const {
   const State& s = *state_;
   return {.pipelines = s.pipelines.size(),
-          .images = s.arena.images() + s.data.size(),
-          .allocations = s.arena.allocations() + (s.parameters.buffer() != VK_NULL_HANDLE ? 1 : 0)};
+          .images = s.arena.images() + s.data.size() + (s.marks ? 1 : 0),
+          .allocations = s.arena.allocations() + (s.marks ? 1 : 0) + (s.parameters.buffer() != VK_NULL_HANDLE ? 1 : 0)};
 }
 
 }  // namespace afterglow

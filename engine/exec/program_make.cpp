@@ -39,6 +39,7 @@ void Program::State::settle_config() {
       config.hardware_filter && filters(format) && (graph.histories.empty() || filters(VK_FORMAT_R32G32B32A32_SFLOAT));
   config.storage_reads = config.storage_reads && supports(device, format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
   if (device.is_cpu()) fit_to_cpu_driver(config);
+  config.two_draws = config.two_draws && !options.reference;
   config.guard_loops = config.guard_loops && device.stores_from_fragments();
 }
 
@@ -180,6 +181,22 @@ Result<void> Program::State::make_pipelines() {
   for (std::size_t i = plan.kernels.size(); i-- > 0;) names[compiled.index[i]] = plan.kernels[i].name;
   AFTERGLOW_TRY(pipelines,
                 KernelPipelines::create(device, compiled.unique, names, VK_FORMAT_UNDEFINED, options.pipelines));
+  return {};
+}
+
+/// One for all kernels with two draws: they run one after another.
+Result<void> Program::State::make_marks() {
+  Size size;
+  for (std::size_t i = 0; i < plan.kernels.size(); ++i) {
+    if (!compiled_of(i).two_draws) continue;
+    const Size target = graph.images[plan.kernels[i].output].size;
+    size = {std::max(size.width, target.width), std::max(size.height, target.height)};
+  }
+  if (size.width == 0) return {};
+  AFTERGLOW_TRY(marks, GpuImage::create(device, {.name = "marks",
+                                                 .size = size,
+                                                 .format = kDepthFormat,
+                                                 .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT}));
   return {};
 }
 

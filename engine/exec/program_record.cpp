@@ -61,6 +61,8 @@ void Program::State::make_commands() {
       commands.push_back(
           {.name = plan.kernels[i].name,
            .pipeline = pipelines.pipeline(compiled.index[i]),
+           .rest = pipelines.rest(compiled.index[i]),
+           .marks = compiled_of(i).two_draws ? &marks : nullptr,
            .layout = pipelines.layout(compiled_of(i)).pipeline.get(),
            .set = descriptors.set(set_index(histories ? parity : kEven, i)),
            .targets = std::move(targets),

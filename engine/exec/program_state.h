@@ -47,6 +47,7 @@ struct Program::State {
   Arena arena;
   DataImages data;
   KernelPipelines pipelines;  ///< of compiled.unique
+  GpuImage marks;             ///< for kernels with two draws, as large as the largest of them
   SamplerHandle sampler;
   Descriptors descriptors;
   /// By which of a history's two images is the previous one; alike without histories.
@@ -99,6 +100,7 @@ struct Program::State {
   std::vector<ImageId> reads_of(const std::vector<ImageId>& bound) const;
   Result<void> compile(KernelCompiler& compiler, const std::vector<KernelDesc>& descs);
   Result<void> make_pipelines();
+  Result<void> make_marks();
   Result<void> make_descriptors();
   Result<void> make_histories();
 

@@ -23,6 +23,18 @@ void bind(const Device& device, VkCommandBuffer commands, const KernelCommands& 
                                  sizes.data());
 }
 
+/// The image that tells two draws apart, wherever it was used last.
+void begin_marks(const Device& device, VkCommandBuffer commands, const GpuImage& marks) {
+  constexpr VkPipelineStageFlags2 kTests =
+      VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+  constexpr VkAccessFlags2 kWrite = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+  VkImageMemoryBarrier2 barrier =
+      image_barrier(marks.get(), kTests, kWrite, VK_IMAGE_LAYOUT_UNDEFINED, kTests,
+                    kWrite | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, VK_IMAGE_LAYOUT_GENERAL);
+  barrier.subresourceRange.aspectMask = VK_IMAGE_ASPECT_DEPTH_BIT;
+  record_barriers(device, commands, &barrier, 1);
+}
+
 /// Every workgroup that makes a pixel of the part.
 void dispatch(const Device& device, VkCommandBuffer commands, const KernelCommands& kernel) {
   record_compute_turn(device, commands, true);
@@ -55,17 +67,28 @@ void draw(const Device& device, VkCommandBuffer commands, const KernelCommands& 
                  .loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
                  .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
   }
+  if (kernel.marks) begin_marks(device, commands, *kernel.marks);
+  const VkRenderingAttachmentInfo marks{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                        .imageView = kernel.marks ? kernel.marks->view() : VK_NULL_HANDLE,
+                                        .imageLayout = VK_IMAGE_LAYOUT_GENERAL,
+                                        .loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                                        .storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE};
   const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                                   .renderArea = area,
                                   .layerCount = 1,
                                   .colorAttachmentCount = static_cast<std::uint32_t>(targets.size()),
-                                  .pColorAttachments = colors.data()};
+                                  .pColorAttachments = colors.data(),
+                                  .pDepthAttachment = kernel.marks ? &marks : nullptr};
   device.vk().vkCmdBeginRendering(commands, &rendering);
   const VkViewport viewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1};
   device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
   device.vk().vkCmdSetScissor(commands, 0, 1, &area);
   bind(device, commands, kernel);
   device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
+  if (kernel.rest != VK_NULL_HANDLE) {
+    device.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, kernel.rest);
+    device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
+  }
   device.vk().vkCmdEndRendering(commands);
 }
 

@@ -17,6 +17,8 @@ namespace afterglow {
 struct KernelCommands {
   std::string name;
   VkPipeline pipeline = VK_NULL_HANDLE;
+  VkPipeline rest = VK_NULL_HANDLE;  ///< the second draw of a kernel with two of them, else null
+  const GpuImage* marks = nullptr;   ///< with that: the depth image that tells them apart, at least as large
   VkPipelineLayout layout = VK_NULL_HANDLE;
   VkDescriptorSet set = VK_NULL_HANDLE;
   std::vector<VkImageView> targets;  ///< one for each row that an invocation makes; empty: the result

@@ -16,6 +16,8 @@ std::uint32_t bytes_per_pixel(VkFormat format) {
     case VK_FORMAT_R32_SFLOAT:
     case VK_FORMAT_R8G8B8A8_UNORM:
       return 4;
+    case kDepthFormat:
+      return 2;
     default:
       return 0;
   }
@@ -77,13 +79,16 @@ Result<UnboundImage> UnboundImage::create(const Device& device, const ImageDesc&
 
 Result<void> UnboundImage::bind(const Device& device, VkDeviceMemory memory, VkDeviceSize offset) {
   AFTERGLOW_VK(device.vk().vkBindImageMemory(device.handle(), image_.get(), memory, offset), desc_.name);
-  constexpr VkImageUsageFlags kViewed = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+  constexpr VkImageUsageFlags kViewed =
+      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  const VkImageAspectFlags aspect =
+      desc_.format == kDepthFormat ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
   if (!(desc_.usage & kViewed)) return {};
   const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
                                    .image = image_.get(),
                                    .viewType = VK_IMAGE_VIEW_TYPE_2D,
                                    .format = desc_.format,
-                                   .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+                                   .subresourceRange = {aspect, 0, 1, 0, 1}};
   VkImageView view = VK_NULL_HANDLE;
   AFTERGLOW_VK(device.vk().vkCreateImageView(device.handle(), &info, nullptr, &view), desc_.name);
   view_ = ImageViewHandle(device, view);

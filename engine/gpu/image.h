@@ -9,6 +9,9 @@
 
 namespace afterglow {
 
+/// Of images that draws are tested against; every device has it.
+inline constexpr VkFormat kDepthFormat = VK_FORMAT_D16_UNORM;
+
 struct ImageDesc {
   std::string name;  ///< for messages and debuggers
   Size size;
@@ -17,7 +20,7 @@ struct ImageDesc {
   VkImageTiling tiling = VK_IMAGE_TILING_OPTIMAL;
 };
 
-/// Bytes of one pixel of the formats used here (R32F, RGBA32F, RGBA16F, RGBA8).
+/// Bytes of one pixel of the formats used here (R32F, RGBA32F, RGBA16F, RGBA8, kDepthFormat).
 std::uint32_t bytes_per_pixel(VkFormat format);
 
 /// The layout of a new image: PREINITIALIZED for linear tiling, so that pixels written by the CPU stay; else UNDEFINED.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gpu/error.h"
+#include "gpu/image.h"
 
 namespace afterglow {
 
@@ -112,13 +113,21 @@ Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayo
   const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
                                                   .attachmentCount = count,
                                                   .pAttachments = overwrite.data()};
+  // Every triangle lies at depth 0, unless its shader says something else.
+  const VkPipelineDepthStencilStateCreateInfo depth{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+      .depthTestEnable = VK_TRUE,
+      .depthWriteEnable = targets.marks == DrawMarks::writes ? VK_TRUE : VK_FALSE,
+      .depthCompareOp = targets.marks == DrawMarks::writes ? VK_COMPARE_OP_ALWAYS : VK_COMPARE_OP_LESS};
+  const bool marked = targets.marks != DrawMarks::none;
   constexpr std::array kDynamic{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
   const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
                                                  .dynamicStateCount = static_cast<std::uint32_t>(kDynamic.size()),
                                                  .pDynamicStates = kDynamic.data()};
   const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
                                                 .colorAttachmentCount = count,
-                                                .pColorAttachmentFormats = formats.data()};
+                                                .pColorAttachmentFormats = formats.data(),
+                                                .depthAttachmentFormat = marked ? kDepthFormat : VK_FORMAT_UNDEFINED};
   const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
                                           .pNext = &rendering,
                                           .stageCount = static_cast<std::uint32_t>(stages.size()),
@@ -128,6 +137,7 @@ Result<PipelineHandle> create_draw_pipeline(const Device& device, const DrawLayo
                                           .pViewportState = &viewport,
                                           .pRasterizationState = &raster,
                                           .pMultisampleState = &one_sample,
+                                          .pDepthStencilState = marked ? &depth : nullptr,
                                           .pColorBlendState = &blend,
                                           .pDynamicState = &dynamic,
                                           .layout = layout.pipeline.get(),

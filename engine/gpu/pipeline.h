@@ -35,10 +35,15 @@ Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface&
 Result<ShaderModuleHandle> create_shader_module(const Device& device, std::span<const std::uint32_t> spirv,
                                                 const std::string& name);
 
+/// Two draws into the same targets share a depth image of kDepthFormat: the first one's shader writes gl_FragDepth, 0
+/// where it is done and else 1, and the second one makes the pixels that are not done.
+enum class DrawMarks { none, writes, tests };
+
 /// Colour attachments of a draw: `count` of the same format.
 struct DrawTargets {
   VkFormat format = VK_FORMAT_UNDEFINED;
   int count = 1;
+  DrawMarks marks = DrawMarks::none;
 };
 
 /// A pipeline that runs `fragment` on every pixel of its targets; viewport and scissor are dynamic. Goes through the

@@ -322,12 +322,31 @@ class Assembler {
     stages_ += fmt::format("#line 1 {}\n", file_index(source.path.string())) +
                rewrite(source.text, scanned, names, values, add_unset(scanned, source.path, prefix), readers);
     const std::string function = prefix + info_of(kind).entry;
-    if (info_of(kind).begins)
+    if (source.interface.done)
+      sample_rest(prefix + std::string(kDoneFunction), function);
+    else if (info_of(kind).begins)
       every_row("vec4 ag_color{0} = " + function + "(ag_pixel{0});");
     else
       row_ += fmt::format("  ag_color = {}({});\n", function, arguments) + (watches() ? add_light("ag_color") : "");
     ++stage_count_;
     return {};
+  }
+
+  /// The colour of a pixel that may be done without the shader's entry.
+  void sample_rest(const std::string& done, const std::string& entry) {
+    out_.two_draws = kernel_.config.two_draws && kernel_.config.rows == 1;
+    every_row("vec4 ag_color{0} = vec4(0.0);");
+    if (!out_.two_draws) {
+      every_row("if (!" + done + "(ag_pixel{0}, ag_color{0})) ag_color{0} = " + entry + "(ag_pixel{0});");
+      return;
+    }
+    images_ += fmt::format("layout(constant_id = {}) const int ag_draw = {};\n", kDrawConstant,
+                           static_cast<int>(KernelDraw::all));
+    body_ += fmt::format(
+        "  bool ag_done = ag_draw != {1} && {2}(ag_pixel0, ag_color0);\n"
+        "  if (ag_draw == {0}) gl_FragDepth = ag_done ? 0.0 : 1.0;\n"
+        "  if (ag_draw != {0} && !ag_done) ag_color0 = {3}(ag_pixel0);\n",
+        static_cast<int>(KernelDraw::done), static_cast<int>(KernelDraw::rest), done, entry);
   }
 
   /// Numbers the file's variables without a value; returns the first number.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <filesystem>
 #include <map>
@@ -20,6 +21,7 @@
 #include "shader/kernel_file.h"
 #include "shader/loop_places.h"
 #include "shader/reflect.h"
+#include "shader/spirv_module.h"
 #include "shader/weight.h"
 
 namespace afterglow {
@@ -173,6 +175,7 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   out.workgroup = assembled.workgroup;
   if (out.workgroup) out.shared_bytes = shared_bytes(out.spirv);
   out.target = desc.target;
+  out.two_draws = assembled.two_draws;
   for (const auto number : made->unset)
     if (number < assembled.unset.size()) out.warnings.push_back(unset_warning(assembled.unset[number]));
   for (std::size_t i = 0; i + 1 < made->loops.size(); i += 2) {
@@ -182,6 +185,19 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   }
   out.hash = assembled.hash;
   return out;
+}
+
+std::vector<std::uint32_t> tested_early(std::vector<std::uint32_t> spirv) {
+  constexpr std::size_t kHeader = 5;
+  for (std::size_t at = kHeader; at < spirv.size(); at += std::max(spirv[at] >> spv::WordCountShift, 1u)) {
+    if ((spirv[at] & spv::OpCodeMask) != static_cast<std::uint32_t>(spv::OpExecutionMode)) continue;
+    const std::array<std::uint32_t, 3> early{
+        3u << spv::WordCountShift | static_cast<std::uint32_t>(spv::OpExecutionMode), spirv[at + 1],
+        static_cast<std::uint32_t>(spv::ExecutionModeEarlyFragmentTests)};
+    spirv.insert(spirv.begin() + static_cast<std::ptrdiff_t>(at), early.begin(), early.end());
+    break;
+  }
+  return spirv;
 }
 
 KernelCompiler::Counters KernelCompiler::counters() const {

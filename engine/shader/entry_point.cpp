@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <string_view>
 #include <utility>
 
 namespace afterglow {
@@ -65,6 +67,18 @@ Result<EntryPoint> parse_entry_point(PassKind kind, const Token& result, const T
       return wrong(*list[i].type, fmt::format("argument '{}' of apply must be a vec4", list[i].name->text));
   for (std::size_t i = 1; i < colors; ++i) out.inputs.push_back(*list[i].name);
   return out;
+}
+
+Result<void> check_done_function(const Token& result, const Token& name, std::span<const Token* const> arguments,
+                                 const std::string& file) {
+  constexpr std::array<std::string_view, 6> kWanted{"ivec2", "", ",", "out", "vec4", ""};  // "": any name
+  bool fits = result.is("bool") && arguments.size() == kWanted.size();
+  for (std::size_t i = 0; fits && i < kWanted.size(); ++i)
+    fits = kWanted[i].empty() ? arguments[i]->is_identifier() : arguments[i]->is(kWanted[i]);
+  if (fits) return {};
+  Error error = shader_error(file, name.line, fmt::format("{} has other arguments or another result", kDoneFunction));
+  error.allowed = kDoneSignature;
+  return error;
 }
 
 }  // namespace afterglow

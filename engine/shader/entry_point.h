@@ -21,4 +21,8 @@ struct EntryPoint {
 Result<EntryPoint> parse_entry_point(PassKind kind, const Token& result, const Token& name,
                                      std::span<const Token* const> arguments, const std::string& file);
 
+/// The same for kDoneFunction.
+Result<void> check_done_function(const Token& result, const Token& name, std::span<const Token* const> arguments,
+                                 const std::string& file);
+
 }  // namespace afterglow

@@ -42,6 +42,10 @@ struct ExecutionConfig {
   bool defeat_uniform_inlining = false;
   /// Loops that may never end are ended, with an error (kernel.h, CompiledKernel::loops). Likewise without a word.
   bool guard_loops = false;
+  /// Sample shaders that tell where they are done (kDoneFunction) are drawn twice: what is done, then the rest. CPU
+  /// drivers take all pixels through both sides of a branch, but leave out groups of pixels that fail a depth test.
+  /// Likewise without a word.
+  bool two_draws = false;
   friend bool operator==(const ExecutionConfig&, const ExecutionConfig&) = default;
 };
 

@@ -14,6 +14,7 @@
 //
 //   uniform sampler2D depth;                  // an input image that is read freely
 //   vec4 sample_at(ivec2 pixel) { … }         // kind `sample`; `pixel` is the target's
+//   bool done_at(ivec2 pixel, out vec4 color) { … }   // beside it: true where `color` is the result already
 //
 //   layout(local_size_x = 8, local_size_y = 8) in;   // invocations that work together, and may share variables
 //   shared vec4 tile[64];                            // of a workgroup; begins as zeros
@@ -91,6 +92,12 @@ struct ShaderInterface {
       inputs;  ///< in order of declaration; for `apply` without its first argument (the colour that flows through)
   std::vector<ShaderParam> params;     ///< in order of declaration
   std::optional<Workgroup> workgroup;  ///< of a compute shader
+  bool done = false;                   ///< a sample shader that defines kDoneFunction too
 };
+
+/// What a sample shader may define beside its entry: where it is true, its colour is the pixel, and `sample_at` has
+/// nothing to do.
+inline constexpr std::string_view kDoneFunction = "done_at";
+inline constexpr std::string_view kDoneSignature = "bool done_at(ivec2 pixel, out vec4 color)";
 
 }  // namespace afterglow

@@ -124,8 +124,17 @@ struct AssembledKernel {
   };
   std::vector<UnsetVariable> unset;
   std::optional<Workgroup> workgroup;  ///< of a compute shader
+  bool two_draws = false;              ///< see KernelDraw
   Hash hash;                           ///< of glsl
 };
+
+/// Which pixels a kernel makes, as the value of its specialisation constant kDrawConstant, which those with `two_draws`
+/// have. `done`: those that its sample shader is done with, at depth 0; the others, which it leaves at depth 1, mean
+/// nothing. `rest`: the others.
+enum class KernelDraw { all = 0, done = 1, rest = 2 };
+inline constexpr std::uint32_t kDrawConstant = 0;
+/// `spirv` of such a kernel for the second draw: depth is tested before it runs, whatever it stores.
+std::vector<std::uint32_t> tested_early(std::vector<std::uint32_t> spirv);
 
 /// Push constants of every kernel (its one stage): ivec2 target size, ivec2 size of image 0.
 inline constexpr std::uint32_t kPushConstantBytes = 16;
@@ -139,6 +148,7 @@ struct CompiledKernel {
   std::optional<Workgroup> workgroup;  ///< of a compute shader; the target is then the last of the images to bind
   std::uint64_t shared_bytes = 0;      ///< that a workgroup shares
   KernelTarget target = KernelTarget::float32;
+  bool two_draws = false;  ///< see KernelDraw
   /// What authors should know, as FILE:LINE: TEXT: variables that may be read before they have a value (they are 0).
   std::vector<std::string> warnings;
   /// With `config.guard_loops`, where each loop stands, when one of them may be endless. The kernel then needs a

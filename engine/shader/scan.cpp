@@ -360,6 +360,11 @@ class ShaderScanner {
             name, fmt::format("'{}' is defined in an included file; an include is a library of functions", name.text));
       if (body) AFTERGLOW_CHECK(entry(*kind, name, result, arguments, arguments_end));
     }
+    if (name.is(kDoneFunction) && as_ == ScanAs::stage) {
+      AFTERGLOW_CHECK(check_done_function(
+          result, name, std::span(code_).subspan(arguments + 1, arguments_end - arguments - 1), file_));
+      if (body) done_line_ = name.line;
+    }
     return add_name(name, false);
   }
 
@@ -398,6 +403,9 @@ class ShaderScanner {
       return error;
     }
     AFTERGLOW_CHECK(groups());
+    out_.interface.done = done_line_.has_value();
+    if (done_line_ && out_.interface.kind != PassKind::sample)
+      return fail(*done_line_, fmt::format("{} stands beside sample_at alone", kDoneFunction));
     const bool pixel = out_.interface.kind == PassKind::pixel;
     for (const auto& input : out_.interface.inputs) AFTERGLOW_CHECK(pass_key(input.name, input.line, pixel));
     for (const auto& param : out_.interface.params) AFTERGLOW_CHECK(pass_key(param.name, param.line, true));
@@ -457,7 +465,7 @@ class ShaderScanner {
   std::size_t at_ = 0;              ///< index into code_
   std::size_t begin_ = 0;           ///< where the declaration begins
   std::set<std::string> constant_ids_, input_names_, seen_;
-  std::optional<int> entry_line_, workgroup_line_;
+  std::optional<int> entry_line_, workgroup_line_, done_line_;
 };
 
 }  // namespace

@@ -40,14 +40,25 @@ float way_to_end(vec2 pixel, vec2 direction, bool horizontal, float edge, float 
   return abs(change) < enough ? way + kGuess : way;
 }
 
-vec4 sample_at(ivec2 pixel) {
-  vec4 color = fetch(source, pixel);
-  float m = at(pixel);
-  float n = at(pixel + ivec2(0, -1)), s = at(pixel + ivec2(0, 1)), e = at(pixel + ivec2(1, 0)), w = at(pixel + ivec2(-1, 0));
-  float highest = max(max(max(n, s), max(e, w)), m);
-  float range = highest - min(min(min(n, s), min(e, w)), m);
-  if (range < max(fixed_threshold, relative_threshold * highest)) return color;
+/// Luma of a pixel and of those above, below, right and left of it.
+struct Cross { float m, n, s, e, w; };
 
+Cross cross_at(ivec2 pixel) {
+  return Cross(at(pixel), at(pixel + ivec2(0, -1)), at(pixel + ivec2(0, 1)), at(pixel + ivec2(1, 0)), at(pixel + ivec2(-1, 0)));
+}
+
+float highest_of(Cross c) { return max(max(max(c.n, c.s), max(c.e, c.w)), c.m); }
+float range_of(Cross c) { return highest_of(c) - min(min(min(c.n, c.s), min(c.e, c.w)), c.m); }
+
+bool done_at(ivec2 pixel, out vec4 color) {
+  color = fetch(source, pixel);
+  Cross c = cross_at(pixel);
+  return range_of(c) < max(fixed_threshold, relative_threshold * highest_of(c));
+}
+
+vec4 sample_at(ivec2 pixel) {
+  Cross c = cross_at(pixel);
+  float m = c.m, n = c.n, s = c.s, e = c.e, w = c.w, range = range_of(c);
   float ne = at(pixel + ivec2(1, -1)), nw = at(pixel + ivec2(-1, -1)), se = at(pixel + ivec2(1, 1)), sw = at(pixel + ivec2(-1, 1));
   float lone = clamp(abs((2.0 * (n + s + e + w) + ne + nw + se + sw) * (1.0 / 12.0) - m) / range, 0.0, 1.0);
   lone = lone * lone * (3.0 - 2.0 * lone);
@@ -71,5 +82,5 @@ vec4 sample_at(ivec2 pixel) {
   bool rising = (way_p <= way_n ? change_p : change_n) >= 0.0;
   float slant = rising == (m >= edge) ? 0.0 : 0.5 - min(way_p, way_n) / (way_p + way_n);
 
-  return vec4(fetch_linear(source, centre + max(subpixel, slant) * across).rgb, color.a);
+  return vec4(fetch_linear(source, centre + max(subpixel, slant) * across).rgb, fetch(source, pixel).a);
 }

@@ -61,10 +61,15 @@ void follow(inout vec4 behind, inout vec4 front, ivec2 pixel, vec2 way, vec4 own
   }
 }
 
+// Nothing around moves by a pixel.
+bool done_at(ivec2 pixel, out vec4 color) {
+  color = fetch(picture, pixel);
+  return longer(fetch(longest, pixel / block).xy) <= 0.5;
+}
+
 vec4 sample_at(ivec2 pixel) {
   vec4 color = fetch(picture, pixel);
   vec2 way = fetch(longest, pixel / block).xy;
-  if (longer(way) <= 0.5) return color;  // nothing around moves by a pixel
   vec4 own = fetch(source, pixel);
   vec4 behind = vec4(color.rgb, 1.0), front = vec4(0.0);
   bool two = unlike(way, own.xy) > 0.25;

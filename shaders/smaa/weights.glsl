@@ -80,6 +80,11 @@ vec2 weights_of(ivec2 pixel, bool upright) {
   return result * clamp(kept, 0.0, 1.0);
 }
 
+bool done_at(ivec2 pixel, out vec4 color) {
+  color = vec4(0.0);
+  return fetch(source, pixel).rg == vec2(0.0);
+}
+
 vec4 sample_at(ivec2 pixel) {
   vec2 edges = fetch(source, pixel).rg;
   vec4 result = vec4(0.0);

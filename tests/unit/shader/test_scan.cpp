@@ -84,6 +84,14 @@ TEST(Scan, SampleShader) {
   EXPECT_EQ(scan.interface.inputs[0].name, "source");
 }
 
+TEST(Scan, SampleShaderThatTellsWhereItIsDone) {
+  const std::string entry = "vec4 sample_at(ivec2 pixel) { return vec4(0.0); }\n";
+  EXPECT_FALSE(scanned(entry).interface.done);
+  EXPECT_FALSE(scanned("bool done_at(ivec2 pixel, out vec4 color);\n" + entry).interface.done) << "a prototype alone";
+  EXPECT_TRUE(
+      scanned("bool done_at(ivec2 p, out vec4 c) {\n  c = vec4(1.0);\n  return true;\n}\n" + entry).interface.done);
+}
+
 TEST(Scan, NamesAtFileScopeAndNoOthers) {
   const auto scan = scanned(R"(#include "lib/color.glsl"
 #define HALF 0.5
@@ -177,6 +185,11 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"float x = ag_push;\n" + kEnd, 1, "names that begin with 'ag_'"},
         Bad{"vec4 apply(vec4 c) {\n  discard;\n}\n", 2, "'discard' is not allowed"},
         Bad{"void main() {}\n", 1, "main is made by the engine"},
+        Bad{"\nbool done_at(ivec2 p) { return true; }\n" + kEnd, 2, "done_at has other arguments or another result",
+            "bool done_at(ivec2 pixel, out vec4 color)"},
+        Bad{"\nvec4 done_at(ivec2 p, out vec4 c) { return c; }\n" + kEnd, 2, "done_at has other arguments"},
+        Bad{"bool done_at(ivec2 p, out vec4 c) { c = vec4(0.0); return true; }\n" + kEnd, 1,
+            "done_at stands beside sample_at alone"},
         Bad{"uniform float size;\n" + kEnd, 1, "'size' is a key of g:pass"},
         Bad{"vec4 apply(vec4 c, vec4 source) { return c; }\n", 1, "'source' is a key of g:pass"},
         Bad{"int 5;\n" + kEnd, 1, "a declaration was expected"}, Bad{"float a, ;\n" + kEnd, 1, "a name was expected"},
