@@ -36,13 +36,13 @@ class OneThing : public FrameSink {
   bool overlaps_ = false;
 };
 
-constexpr std::size_t kFrames = 6;
+constexpr std::size_t kQueued = 6;
 
 std::vector<bool> results_of(OneThing& sink) {
   PixelMemory memory;
-  FrameRecords records(kFrames);
+  FrameRecords records(kQueued);
   WriteQueue queue(sink, memory);
-  for (std::size_t i = 0; i < kFrames; ++i) queue.add(records[i], i, {});
+  for (std::size_t i = 0; i < kQueued; ++i) queue.add(records[i], i, {});
   std::vector<bool> results;
   while (const auto done = queue.take()) {
     EXPECT_EQ(done->frame, &records[results.size()]);
@@ -52,8 +52,8 @@ std::vector<bool> results_of(OneThing& sink) {
 }
 
 TEST(WriteQueue, MakesFramesReadyBesideThoseBeforeAndWritesThemInOrder) {
-  OneThing sink(kFrames);
-  EXPECT_EQ(results_of(sink), std::vector<bool>(kFrames, true));
+  OneThing sink(kQueued);
+  EXPECT_EQ(results_of(sink), std::vector<bool>(kQueued, true));
   EXPECT_TRUE(sink.overlaps());
   EXPECT_EQ(sink.written, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5}));
 }
