@@ -20,7 +20,7 @@ class FileSink : public FrameSink {
   std::optional<DisplayCodes> codes(const FrameJob& job, bool has_alpha, const FileFacts* facts) const override {
     return display_codes(job.output, options_, has_alpha, facts);
   }
-  Result<void> write(const FrameJob& job, std::size_t, const Picture& picture) override {
+  Result<void> write(const FrameJob& job, std::size_t, const Picture& picture, const Turn&) override {
     AFTERGLOW_CHECK(write_picture(picture, job.output, options_, diagnostics_));
     return look_ ? record_made(job, *look_) : Result<void>();
   }

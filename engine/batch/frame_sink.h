@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -15,9 +16,12 @@
 
 namespace afterglow {
 
-/// Not thread-safe but for `write` where frames need no order. Errors: io, usage.
+/// Not thread-safe but for `write`. Errors: io, usage.
 class FrameSink {
  public:
+  /// Waits until all frames before have been written; the error of one that could not be.
+  using Turn = std::function<Result<void>()>;
+
   virtual ~FrameSink() = default;
 
   /// All frames go into one thing, in order: what cannot be written ends the run.
@@ -26,9 +30,10 @@ class FrameSink {
   virtual std::optional<DisplayCodes> codes(const FrameJob&, bool /*has_alpha*/, const FileFacts*) const {
     return std::nullopt;
   }
-  /// A frame; `index` is its place among those that the run was asked for, from 0. Where is_one(), one call at a time
-  /// and in order; the places of frames that failed are left out.
-  virtual Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture) = 0;
+  /// A frame; `index` is its place among those that the run was asked for, from 0; the places of frames that failed are
+  /// left out. Called from several threads. Where is_one(), what it does behind `turn` is done by one at a time and in
+  /// order.
+  virtual Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture, const Turn& turn) = 0;
   /// Memory that writing a frame takes besides the frame; what the sink holds of earlier frames. Bytes, for
   /// --max-memory.
   virtual std::uint64_t bytes_of_frame(const FrameJob&, Size, bool /*has_alpha*/, const FileFacts*) const { return 0; }

@@ -168,7 +168,8 @@ class StreamSink : public FrameSink {
   Result<void> open() { return out_.take(); }
 
   /// A stream has no times: the place of a frame that failed is held by the one before, or by the first one.
-  Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture) override {
+  Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture, const Turn& turn) override {
+    AFTERGLOW_CHECK(turn());
     if (next_ == 0) {
       AFTERGLOW_TRY(last_, bytes_->begin(picture, job.fps));
       AFTERGLOW_CHECK(out_.write(last_.data(), last_.size()));

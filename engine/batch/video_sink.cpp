@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <optional>
 #include <string_view>
 
 #include "batch/video_times.h"
@@ -33,14 +35,20 @@ class VideoSink : public FrameSink {
     return check_place(file_);
   }
 
-  Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture) override {
+  /// Once the video is open, a frame is packed while those before it are encoded.
+  Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture, const Turn& turn) override {
+    std::optional<Result<PackedFrame>> packed;
+    if (VideoWriter* const writer = opened_.load()) packed = writer->pack(picture);
+    AFTERGLOW_CHECK(turn());
     if (!writer_) AFTERGLOW_CHECK(begin(job, picture));
     if (picture.has_alpha && !writer_->plan().pack.layout->alpha)
       diagnostics_.warn_once("no alpha",
                              fmt::format("{}: {} as {} has no alpha; the pictures are put on black", file_.string(),
                                          writer_->plan().codec, writer_->plan().pack.layout->name));
     AFTERGLOW_TRY(const VideoTime time, times_.of(job, index));
-    return writer_->write(picture, time);
+    if (!packed) packed = writer_->pack(picture);
+    AFTERGLOW_TRY(PackedFrame frame, std::move(*packed));
+    return writer_->write(std::move(frame), time);
   }
 
   /// By what the encoders of Debian 12 were seen to take: those that look ahead keep some forty frames, in several
@@ -64,6 +72,7 @@ class VideoSink : public FrameSink {
     times_.begin(job, plan);
     if (options_.video.piece) plan.source.clear();
     AFTERGLOW_TRY(writer_, VideoWriter::open(file_, std::move(plan), diagnostics_));
+    opened_ = writer_.get();
     return {};
   }
 
@@ -72,6 +81,7 @@ class VideoSink : public FrameSink {
   VideoTimes times_;
   Diagnostics& diagnostics_;
   std::unique_ptr<VideoWriter> writer_;
+  std::atomic<VideoWriter*> opened_ = nullptr;  ///< the same, for frames whose turn has not come
 };
 
 }  // namespace

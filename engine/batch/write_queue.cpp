@@ -13,16 +13,20 @@ void WriteQueue::add(FrameRecord& frame, std::size_t index, Picture picture) {
   std::shared_future<Result<void>> before;
   if (sink_.is_one() && !writing_.empty()) before = writing_.back().written;
   auto write = [this, &frame, index, before, picture = std::move(picture)]() mutable -> Result<void> {
+    double waited = 0;
     // What came before could not be written: this would stand in a wrong place.
-    if (before.valid()) {
-      const Result<void> earlier = before.get();
+    const auto turn = [&before, &waited]() -> Result<void> {
+      if (!before.valid()) return {};
+      const auto start = Clock::now();
+      Result<void> earlier = before.get();
       before = {};  // else each would hold all that were before it
-      if (!earlier) return earlier;
-    }
+      waited += milliseconds_since(start);
+      return earlier;
+    };
     const auto start = Clock::now();
     const double files = FileTime::of_thread();
-    auto written = sink_.write(frame.job, index, picture);
-    frame.steps.write = milliseconds_since(start);
+    auto written = sink_.write(frame.job, index, picture, turn);
+    frame.steps.write = milliseconds_since(start) - waited;
     frame.steps.encode = std::max(0.0, frame.steps.write - (FileTime::of_thread() - files));
     memory_.give(std::move(picture));
     return written;

@@ -31,7 +31,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, Vid
   return writer;
 }
 
-Result<void> VideoWriter::write(const Picture& picture, VideoTime time) {
+Result<PackedFrame> VideoWriter::pack(const Picture& picture) {
   const Size size = picture.display_window.size();
   const std::string name = target_->file().string();
   if (size != plan_.size)
@@ -39,12 +39,29 @@ Result<void> VideoWriter::write(const Picture& picture, VideoTime time) {
                  fmt::format("a frame has {}x{} pixels, the first had {}x{}; a video has one size", size.width,
                              size.height, plan_.size.width, plan_.size.height),
                  name};
+  std::vector<std::uint8_t> memory;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!packed_.empty()) {
+      memory = std::move(packed_.back());
+      packed_.pop_back();
+    }
+  }
   try {
-    packed_ = pack_frame(picture, plan_.pack, std::move(packed_.bytes));
-    if (auto written = encoder_->write(packed_, time); !written) return target_->named(std::move(written).error());
-    if (target_->out().failure() != 0) return target_->named({});
+    return pack_frame(picture, plan_.pack, std::move(memory));
   } catch (const std::exception& error) {
     return Error{ErrorKind::io, "cannot be written: " + exception_text(error), name};
+  }
+}
+
+Result<void> VideoWriter::write(PackedFrame frame, VideoTime time) {
+  try {
+    if (auto written = encoder_->write(frame, time); !written) return target_->named(std::move(written).error());
+    if (target_->out().failure() != 0) return target_->named({});
+    const std::lock_guard lock(mutex_);
+    packed_.push_back(std::move(frame.bytes));
+  } catch (const std::exception& error) {
+    return Error{ErrorKind::io, "cannot be written: " + exception_text(error), target_->file().string()};
   }
   return {};
 }

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "image/video_output.h"
@@ -26,7 +27,7 @@ class VideoEncoder {
   virtual Result<void> finish(bool whole) = 0;
 };
 
-/// Not thread-safe.
+/// Not thread-safe but for `pack`.
 class VideoWriter {
  public:
   /// Nothing appears at `file` before finish(). Errors: io (no such encoder, the file cannot be made), usage (sides).
@@ -34,8 +35,11 @@ class VideoWriter {
                                                    Diagnostics& diagnostics);
 
   const VideoPlan& plan() const { return plan_; }
-  /// Frames come by rising times. Errors: io (disk full, …), usage (a frame of another size).
-  Result<void> write(const Picture& picture, VideoTime time);
+  /// The picture as a frame of this video; from any thread, beside all else. Errors: usage (of another size), io (no
+  /// memory).
+  Result<PackedFrame> pack(const Picture& picture);
+  /// Frames come by rising times. Errors: io (disk full, …).
+  Result<void> write(PackedFrame frame, VideoTime time);
   /// Ends the file and gives it its name.
   Result<void> finish(bool whole);
 
@@ -43,8 +47,9 @@ class VideoWriter {
   VideoWriter() = default;
 
   VideoPlan plan_;
-  PackedFrame packed_;                   ///< the last, for its memory
-  std::unique_ptr<VideoTarget> target_;  // outlives the encoder, which writes into it
+  std::mutex mutex_;                               // guards what follows
+  std::vector<std::vector<std::uint8_t>> packed_;  ///< memory of frames that have been written
+  std::unique_ptr<VideoTarget> target_;            // outlives the encoder, which writes into it
   std::unique_ptr<VideoEncoder> encoder_;
 };
 

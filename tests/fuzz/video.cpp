@@ -35,7 +35,10 @@ Result<void> write_beside(const std::filesystem::path& source, const std::filesy
   VideoPlan plan = plan_of(out);
   plan.source = source;
   AFTERGLOW_TRY(const auto writer, VideoWriter::open(out, std::move(plan), quiet));
-  for (int frame = 0; frame < kFrames; ++frame) AFTERGLOW_CHECK(writer->write(picture(), {frame, 1}));
+  for (int frame = 0; frame < kFrames; ++frame) {
+    AFTERGLOW_TRY(PackedFrame packed, writer->pack(picture()));
+    AFTERGLOW_CHECK(writer->write(std::move(packed), {frame, 1}));
+  }
   return writer->finish(true);
 }
 
