@@ -16,7 +16,15 @@
 namespace afterglow {
 namespace {
 
-Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& options, Console& console) {
+/// Writes the file of --report, once there are figures; `reported` then.
+Result<void> write_report(const PlayArguments& a, const std::string& text, bool& reported) {
+  if (a.report.empty()) return {};
+  reported = true;
+  return write_file_atomically(a.report, text);
+}
+
+Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& options, Console& console,
+                                 bool& reported) {
   const auto start = Clock::now();
   AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
   AFTERGLOW_TRY(const auto device, Device::create(asked, console.diagnostics()));
@@ -45,14 +53,11 @@ Result<void> play_without_window(const PlayArguments& a, const PlayerOptions& op
     done = picture ? write_picture(*picture, a.screenshot, {}, console.diagnostics()) : Result<void>(picture.error());
   }
   if (a.stats) output("{}", play_report_text(report, *player));
-  if (!a.report.empty()) {
-    auto written = write_file_atomically(a.report, play_report_json(report, *player));
-    if (done && !written) return written;
-  }
-  return done;
+  auto written = write_report(a, play_report_json(report, *player), reported);
+  return done ? written : done;
 }
 
-Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& options, Console& console) {
+Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& options, Console& console, bool& reported) {
   std::optional<WindowPlace> place;
   if (!a.geometry.empty()) {
     AFTERGLOW_TRY(place, parse_geometry(a.geometry));
@@ -64,7 +69,7 @@ Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& optio
                                  .stats = a.stats,
                                  .speed = a.speed,
                                  .exports = a.exports};
-  Result<void> reported;
+  Result<void> written;
   const auto report = [&](const Device& device, Player& player, const PlayedTimes& times, const Result<void>& done) {
     PlayReport figures{.preset = options.preset.string(),
                        .device = device.info().name,
@@ -75,11 +80,11 @@ Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& optio
                        .error = {}};
     if (!done) figures.error = done.error();
     if (a.stats) output("{}", play_report_text(figures, player));
-    if (!a.report.empty()) reported = write_file_atomically(a.report, play_report_json(figures, player));
+    written = write_report(a, play_report_json(figures, player), reported);
   };
   AFTERGLOW_TRY(const DeviceOptions asked, a.device.options());
   AFTERGLOW_CHECK(play_in_window(options, asked, window, console, report));
-  return reported;
+  return written;
 }
 
 /// What the user wants of every window. Runs without one are scripts', and the same for everybody.
@@ -94,8 +99,11 @@ Result<void> take_settings(CLI::App& app, const PlayArguments& a) {
 Result<void> play_command(CLI::App& app, const PlayArguments& a, Console& console) {
   AFTERGLOW_CHECK(take_settings(app, a));
   AFTERGLOW_TRY(const PlayerOptions options, a.player());
-  if (a.headless) return play_without_window(a, options, console);
-  return play_with_window(a, options, console);
+  bool reported = false;
+  auto done =
+      a.headless ? play_without_window(a, options, console, reported) : play_with_window(a, options, console, reported);
+  if (!done && !reported) (void)write_report(a, play_failure_json(options.preset.string(), done.error()), reported);
+  return done;
 }
 
 }  // namespace

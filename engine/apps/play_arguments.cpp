@@ -23,7 +23,7 @@ void PlayArguments::add(CLI::App& app) {
 
 void PlayArguments::add_input(CLI::App& app) {
   app.add_option("INPUT", inputs,
-                 "Pictures, sequences like shot.####.exr and shot.%04d.exr, videos (MP4, QuickTime, AVI)")
+                 "Pictures, sequences like shot.####.exr and shot.%04d.exr, folders that hold one, videos")
       ->required();
   const std::string group = "Input";
   app.add_option("--frames", frames,

@@ -124,4 +124,8 @@ std::string play_report_json(const PlayReport& report, Player& player) {
   return json_text(out);
 }
 
+std::string play_failure_json(const std::string& preset, const Error& error) {
+  return json_text(Json{{"afterglow", version()}, {"preset", preset}, {"error", error.text()}});
+}
+
 }  // namespace afterglow

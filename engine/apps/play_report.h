@@ -19,5 +19,7 @@ struct PlayReport {
 
 std::string play_report_text(const PlayReport& report, Player& player);
 std::string play_report_json(const PlayReport& report, Player& player);
+/// Of what failed, or was interrupted, before anything was played.
+std::string play_failure_json(const std::string& preset, const Error& error);
 
 }  // namespace afterglow

@@ -150,6 +150,13 @@ TEST_F(Play, CtrlCEndsCleanly) {
   EXPECT_TRUE(report().contains("error"));
 }
 
+/// Scripts find the reason in the report, whenever it comes.
+TEST_F(Play, TheReportSaysWhatCameBeforeThePlaying) {
+  const Outcome outcome = play({"nowhere.exr", "--headless", "--report", "play.json"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_THAT(report()["error"].get<std::string>(), HasSubstr("nowhere.exr"));
+}
+
 /// Passes that work at a part of the picture's size are shown like others.
 TEST_F(Play, ShowsImagesOfAnySize) {
   make_exr("a.exr", 64, 48);
