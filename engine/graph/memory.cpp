@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "graph/memory.h"
 
+#include <algorithm>
+
 #include "graph/history.h"
 #include "graph/plan.h"
 
@@ -21,6 +23,12 @@ std::uint64_t memory_needed(const Graph& graph, const ExecutionConfig& config) {
     blocks.push_back({pixels * bytes_per_pixel, 1, plan.lifetimes[i].first, plan.lifetimes[i].last});
   }
   std::uint64_t total = kept + place(blocks, config.share_memory).total;
+  // CPU devices may draw a sample pass twice, and mark in 16 bits a pixel what the first draw has done.
+  std::uint64_t marks = 0;
+  for (const auto& pass : graph.passes)
+    if (pass.kind == PassKind::sample)
+      marks = std::max(marks, static_cast<std::uint64_t>(graph.images[pass.output].size.area()) * 2);
+  total += marks;
   for (const auto& image : graph.images)
     if (image.producer < 0) total += static_cast<std::uint64_t>(image.size.area()) * bytes_per_pixel;
   return total;

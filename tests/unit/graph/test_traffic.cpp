@@ -35,6 +35,15 @@ TEST(Traffic, OneFusedKernelMovesWhatCannotBeSpared) {
   EXPECT_EQ(apart.excess(), 2);
 }
 
+/// What the first of two draws of a sample pass leaves behind takes 16 bits a pixel, of the largest one alone.
+TEST(MemoryNeeded, CountsWhatTwoDrawsMark) {
+  Builder pixels, samples;
+  pixels.pixel("b", pixels.pixel("a", pixels.graph.source));
+  samples.sample("b", {{"in", samples.sample("a", {{"in", samples.graph.source}}, {16, 8})}}, {16, 8});
+  const ExecutionConfig plain{.fusion = Fusion::none};
+  EXPECT_EQ(memory_needed(samples.graph, plain), memory_needed(pixels.graph, plain) + 2 * kPixels);
+}
+
 TEST(Traffic, PyramidsAreToldApartAndImagesReadTwiceByAKernelCountOnce) {
   Builder b;
   const ImageId down = b.filter("down", b.graph.source, {8, 4});
