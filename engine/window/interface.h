@@ -39,7 +39,7 @@ class Interface {
   Ui& ui() { return ui_; }
   bool wants_keyboard() const;  ///< a text is being typed, or is from the next frame on: keys are no shortcuts
   int press_mods() const { return pressed_.mods; }  ///< GLFW_MOD_… of the last press of a button
-  bool wants_mouse() const;     ///< the pointer is on the interface, or holds a part of it
+  bool wants_mouse() const;                         ///< the pointer is on the interface, or holds a part of it
 
  private:
   void load_fonts();

@@ -3,6 +3,8 @@
 
 namespace afterglow {
 
-void fit_to_cpu_driver(ExecutionConfig& config) { config.defeat_uniform_inlining = config.guard_loops = config.two_draws = true; }
+void fit_to_cpu_driver(ExecutionConfig& config) {
+  config.defeat_uniform_inlining = config.guard_loops = config.two_draws = true;
+}
 
 }  // namespace afterglow
