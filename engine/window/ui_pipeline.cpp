@@ -7,6 +7,7 @@
 
 #include "gpu/error.h"
 #include "gpu/pipeline.h"
+#include "gpu/swapchain_choice.h"
 #include "ui.frag.h"
 #include "ui.vert.h"
 
@@ -59,15 +60,20 @@ constexpr std::array<VkVertexInputAttributeDescription, 3> kAttributes{{
 Result<PipelineHandle> make_pipeline(const Device& device, VkPipelineLayout layout, VkFormat target) {
   AFTERGLOW_TRY(const auto vertex, create_shader_module(device, kUiVert, "interface"));
   AFTERGLOW_TRY(const auto fragment, create_shader_module(device, kUiFrag, "interface"));
+  const VkBool32 linear = encodes_srgb(target) ? VK_TRUE : VK_FALSE;
+  const VkSpecializationMapEntry entry{0, 0, sizeof linear};
+  const VkSpecializationInfo special{1, &entry, sizeof linear, &linear};
   const std::array<VkPipelineShaderStageCreateInfo, 2> stages{{
       {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
        .stage = VK_SHADER_STAGE_VERTEX_BIT,
        .module = vertex.get(),
-       .pName = "main"},
+       .pName = "main",
+       .pSpecializationInfo = &special},
       {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
        .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
        .module = fragment.get(),
-       .pName = "main"},
+       .pName = "main",
+       .pSpecializationInfo = &special},
   }};
   const VkPipelineVertexInputStateCreateInfo input{.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
                                                    .vertexBindingDescriptionCount = 1,

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 
 #include "gpu/device.h"
 #include "gpu/handle.h"
@@ -13,11 +12,10 @@ namespace afterglow {
 /// As ui.vert declares it.
 struct UiPush {
   std::array<float, 2> scale{}, shift{};
-  std::int32_t linear = 0;
 };
 
-/// Vertices are ImDrawVert, colours blend over the target; viewport and scissor are dynamic. Set 0, binding 0: the
-/// atlas.
+/// For one format of target: where its stores encode as sRGB, the shaders hand over linear values. Vertices are
+/// ImDrawVert, colours blend over the target; viewport and scissor are dynamic. Set 0, binding 0: the atlas.
 struct UiPipeline {
   SetLayoutHandle set;
   PipelineLayoutHandle layout;

@@ -43,7 +43,6 @@ Size target_size(const ImDrawData& data) {
 
 Result<std::unique_ptr<UiRenderer>> UiRenderer::create(const Device& device, VkFormat target, std::size_t slots) {
   std::unique_ptr<UiRenderer> out(new UiRenderer(device));
-  out->linear_ = encodes_srgb(target);
   AFTERGLOW_TRY(out->pipeline_, UiPipeline::create(device, target));
   AFTERGLOW_CHECK(out->make_set());
   out->slots_.resize(slots);
@@ -188,7 +187,7 @@ void UiRenderer::record(VkCommandBuffer commands, std::size_t slot_index, const 
                                     sizeof(ImDrawIdx) == 2 ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32);
   const VkViewport viewport{0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0, 1};
   device_.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
-  UiPush push{.linear = linear_ ? 1 : 0};
+  UiPush push;
   push.scale = {2 / data.DisplaySize.x, 2 / data.DisplaySize.y};
   push.shift = {-1 - data.DisplayPos.x * push.scale[0], -1 - data.DisplayPos.y * push.scale[1]};
   device_.vk().vkCmdPushConstants(commands, pipeline_.layout.get(), VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);

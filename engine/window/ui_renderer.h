@@ -44,7 +44,6 @@ class UiRenderer {
                      VkImageLayout before) const;
 
   const Device& device_;
-  bool linear_ = false;
   UiPipeline pipeline_;
   DescriptorPoolHandle pool_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;

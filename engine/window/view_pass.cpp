@@ -245,7 +245,11 @@ Result<void> ViewPass::State::draw(VkCommandBuffer commands, const Rect& pixels,
 
 Result<void> ViewPass::State::fill(VkCommandBuffer commands, const Rect& pixels, const ViewColor& color) {
   Push push{};
-  push.fill = color_and(color, 0);
+  if (encode) {
+    std::ranges::copy(color, push.fill.begin());
+  } else {
+    push.fill = color_and(color, 0);
+  }
   return draw(commands, pixels, {kFill, 0, kNearest, kNearest}, push);
 }
 

@@ -36,9 +36,11 @@ void WindowApp::deliver_input() {
       if (const auto answer = quit_answer_of(event->code)) answer_quit(*answer);
       continue;
     }
-    interface_->feed(*event);
-    if (!key || typing) continue;
-    if (const auto action = action_of({event->code, event->mods, event->repeat})) act(*action);
+    const auto action = key && !typing ? action_of({event->code, event->mods, event->repeat}) : std::nullopt;
+    if (action) act(*action);
+    // An action is all that its key does: Tab would choose a field too, which takes the keys that follow. Esc closes
+    // what ImGui opened.
+    if (!action || *action == Action::escape) interface_->feed(*event);
   }
   if (field_awaited_ || !input_.empty()) redraw_ = std::max(redraw_, 1);
 }

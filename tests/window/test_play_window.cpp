@@ -335,6 +335,18 @@ TEST_F(PlayWindow, WhatIsTypedIntoTheSearchIsNoShortcut) {
   expect_clean_end();
 }
 
+/// A key that does something is not a word to the interface too: Tab does not choose a field, which would take what follows.
+TEST_F(PlayWindow, TabHidesThePanelAndTheNextKeyTheBar) {
+  write_preset("{ 1, 0, 0 }");
+  play({"look.lua", "shot.0001.exr"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  ASSERT_TRUE(until_color(kX, kY, kRed));
+  ASSERT_TRUE(user("key Tab t"));
+  EXPECT_TRUE(until_color(0.5, 0.985, kRed)) << "the picture has the window's whole height";
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
 TEST_F(PlayWindow, ArgumentsAreDraggedInThePanel) {
   std::ofstream(folder_ / "look.lua")
       << "local fx = require \"afterglow\"\n"
