@@ -13,6 +13,7 @@ extern "C" {
 #include <cstring>
 #include <map>
 
+#include "core/large_pages.h"
 #include "core/text.h"
 #include "image/ffmpeg_log.h"
 #include "image/ffmpeg_video_file.h"
@@ -103,6 +104,7 @@ class FfmpegEncoder : public VideoEncoder {
     codec_->sample_aspect_ratio = {1, 1};
     codec_->bit_rate = plan_.bitrate;
     codec_->thread_count = 0;
+    use_small_pages();
     describe_colors();
     codec_->flags |= AV_CODEC_FLAG_BITEXACT;
     if (file_->wants_global_header()) codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;

@@ -80,8 +80,13 @@ __attribute__((target("avx2"))) std::size_t OutputSpace::encode_pairs(float* rgb
     const __m256i bits = _mm256_castps_si256(light);
     __m256i part = _mm256_sub_epi32(_mm256_srli_epi32(bits, kShift), first);
     part = _mm256_min_epi32(_mm256_max_epi32(part, _mm256_setzero_si256()), last);
-    const __m256 low = _mm256_i32gather_ps(table_.data(), part, 4);
-    const __m256 high = _mm256_i32gather_ps(table_.data() + 1, part, 4);
+    // Both ends of a part lie side by side: one read for the two. Parts 0 1 4 5 and 2 3 6 7, which the shuffles undo.
+    const __m128i some = _mm256_castsi256_si128(part), others = _mm256_extracti128_si256(part, 1);
+    const auto* ends = reinterpret_cast<const long long*>(table_.data());
+    const __m256 a = _mm256_castsi256_ps(_mm256_i32gather_epi64(ends, _mm_unpacklo_epi64(some, others), 4));
+    const __m256 b = _mm256_castsi256_ps(_mm256_i32gather_epi64(ends, _mm_unpackhi_epi64(some, others), 4));
+    const __m256 low = _mm256_shuffle_ps(a, b, _MM_SHUFFLE(2, 0, 2, 0));
+    const __m256 high = _mm256_shuffle_ps(a, b, _MM_SHUFFLE(3, 1, 3, 1));
     const __m256 t = _mm256_mul_ps(_mm256_cvtepi32_ps(_mm256_and_si256(bits, _mm256_set1_epi32(kMask))),
                                    _mm256_set1_ps(1.0f / (kMask + 1)));
     __m256 value = _mm256_min_ps(_mm256_add_ps(low, _mm256_mul_ps(_mm256_sub_ps(high, low), t)), one);
