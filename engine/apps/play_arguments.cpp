@@ -31,6 +31,9 @@ void PlayArguments::add_input(CLI::App& app) {
       ->type_name("LIST")
       ->group(group);
   layers.add(app);
+  app.add_option("--proxy", proxy, "Read pictures at 1/2, 1/4 or 1/8 of their sides; what is written is whole")
+      ->type_name("SIZE")
+      ->group(group);
   app.add_option("--cache", cache, "Memory for pictures read ahead (default 2G)")->type_name("SIZE")->group(group);
   app.add_option("--readers", readers, "Threads that read ahead (default 2)")
       ->check(CLI::Range(1, 64))
@@ -111,6 +114,7 @@ Result<PlayerOptions> PlayArguments::player() const {
   out.live.watch.poll = poll;
   out.footage.inputs = inputs;
   out.footage.frames = frames;
+  AFTERGLOW_TRY(out.footage.proxy, parse_proxy(proxy));
   out.footage.read.layer = layers.layer;
   out.footage.read.max_bytes = out.live.stack.max_memory;
   layers.choose(out.footage.read);

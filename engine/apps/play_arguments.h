@@ -20,7 +20,7 @@ struct PlayArguments {
   LayerArguments layers;
   std::string frames;
   std::string geometry;
-  std::string other, show, loop, cache = "2G", screenshot, report, exports;
+  std::string other, show, loop, cache = "2G", proxy = "1", screenshot, report, exports;
   std::optional<double> fps;
   double speed = 1;
   int readers = 2;

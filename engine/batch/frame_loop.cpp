@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "batch/crop.h"
-#include "batch/scale.h"
+#include "image/scale.h"
 #include "core/file_time.h"
 #include "core/stopwatch.h"
 #include "core/text.h"

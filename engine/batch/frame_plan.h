@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "batch/frame_sink.h"
-#include "batch/scale.h"
+#include "image/scale.h"
 #include "image/reader.h"
 #include "image/writer.h"
 #include "session/session.h"

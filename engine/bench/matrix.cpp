@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "batch/scale.h"
+#include "image/scale.h"
 #include "bench/picture.h"
 #include "core/text.h"
 #include "image/reader.h"

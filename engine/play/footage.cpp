@@ -11,12 +11,14 @@
 #include <unordered_map>
 
 #include "core/text.h"
+#include "image/scale.h"
 #include "image/sequence.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr int kProxies[] = {1, 2, 4, 8};
 constexpr std::size_t kMostFrames = 1'000'000;
 
 /// The frames of a sequence without gaps, in order; a list that was asked for is taken as it is.
@@ -139,6 +141,14 @@ Result<void> Footage::add(const std::string& input, const std::optional<std::vec
   return add_sequence(input, {});
 }
 
+Result<int> parse_proxy(const std::string& text) {
+  for (const int proxy : kProxies)
+    if (text == proxy_name(proxy)) return proxy;
+  return Error{ErrorKind::usage, fmt::format("'{}' is no size of proxies", text), "--proxy", 0, "1, 1/2, 1/4, 1/8"};
+}
+
+std::string proxy_name(int proxy) { return proxy == 1 ? "1" : fmt::format("1/{}", proxy); }
+
 Result<std::shared_ptr<const Footage>> Footage::open(const FootageOptions& options, Diagnostics& diagnostics) {
   std::shared_ptr<Footage> footage(new Footage());
   footage->there_ = [](const fs::path& file) {
@@ -177,6 +187,7 @@ void Footage::renumber(const Footage& before, const std::set<fs::path>& changed)
 
 Result<void> Footage::add_inputs(const FootageOptions& options, Diagnostics& diagnostics) {
   read_ = options.read;
+  proxy_ = options.proxy;
   std::optional<std::vector<int>> wanted;
   if (!options.frames.empty()) {
     AFTERGLOW_TRY(wanted, parse_frames(options.frames));
@@ -197,6 +208,12 @@ Result<void> Footage::add_inputs(const FootageOptions& options, Diagnostics& dia
   return {};
 }
 
+std::shared_ptr<const Footage> Footage::at_proxy(int proxy) const {
+  std::shared_ptr<Footage> other(new Footage(*this));
+  other->proxy_ = proxy;
+  return other;
+}
+
 std::vector<fs::path> Footage::files(int picture) const {
   const Source& source = pictures_[static_cast<std::size_t>(picture)];
   std::vector<fs::path> out{source.file};
@@ -212,6 +229,15 @@ std::string Footage::picture_name(int picture) const {
 }
 
 Result<Picture> Footage::read(int picture, const std::vector<std::string>& auxiliary, Diagnostics& diagnostics) const {
+  auto read = read_whole(picture, auxiliary, diagnostics);
+  if (!read) return read;
+  if (proxy_ > 1) scale_picture(*read, {SizeWish{.share = 1.0 / proxy_}.of(read->display_window.size())});
+  note_content(*read);
+  return read;
+}
+
+Result<Picture> Footage::read_whole(int picture, const std::vector<std::string>& auxiliary,
+                                    Diagnostics& diagnostics) const {
   const Source& source = pictures_[static_cast<std::size_t>(picture)];
   ReadOptions options = read_;
   options.auxiliary = auxiliary;
@@ -221,7 +247,6 @@ Result<Picture> Footage::read(int picture, const std::vector<std::string>& auxil
   options.movie = source.movie;
   options.movie_frame = source.movie_frame;
   auto read = read_picture(source.file, options, diagnostics);
-  if (read) note_content(*read);
   if (!read && read.error().file.empty()) {
     Error error = std::move(read).error();
     error.file = source.file.string();

@@ -24,7 +24,13 @@ struct FootageOptions {
   std::string frames;               ///< "1-24x2", for numbered inputs and videos; empty: all there are
   /// Layers and limits; depth and normal may be patterns. `auxiliary` is given to `read`.
   ReadOptions read;
+  int proxy = 1;  ///< pictures are read at one part in this of their sides: 1, 2, 4 or 8
 };
+
+/// "1/2" is 2, "1" is 1. Errors: usage (not 1, 1/2, 1/4 or 1/8).
+Result<int> parse_proxy(const std::string& text);
+/// "1/2".
+std::string proxy_name(int proxy);
 
 /// One frame of the row. A missing file of a sequence holds the picture before it (or, at the start, the one behind).
 struct FootageFrame {
@@ -66,10 +72,16 @@ class Footage {
   /// Pictures in order are read much faster than others.
   bool is_video() const { return video_; }
   bool variable_rate() const { return variable_rate_; }
+  int proxy() const { return proxy_; }
+  /// The same frames and pictures, read at another size.
+  std::shared_ptr<const Footage> at_proxy(int proxy) const;
 
-  /// Reads a picture, with its content hashes noted. `auxiliary`: "depth", "normal", as the stack asks for them.
-  /// Errors: io, naming the file.
+  /// Reads a picture, with its content hashes noted. `auxiliary`: "depth", "normal", as the stack asks for them. A
+  /// proxy has the mean of what each of its pixels covers, of depth and normals the nearest (image/scale.h). Errors:
+  /// io, naming the file.
   Result<Picture> read(int picture, const std::vector<std::string>& auxiliary, Diagnostics& diagnostics) const;
+  /// The same whole, where `read` gives proxies.
+  Result<Picture> read_whole(int picture, const std::vector<std::string>& auxiliary, Diagnostics& diagnostics) const;
 
  private:
   struct Source {
@@ -94,6 +106,7 @@ class Footage {
   std::vector<int> missing_;
   std::optional<double> fps_;
   bool video_ = false, variable_rate_ = false;
+  int proxy_ = 1;
 };
 
 /// "3, 7-9, 12".

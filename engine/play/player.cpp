@@ -133,9 +133,11 @@ void Player::State::tell_errors() {
   if (!error.empty() && first->live().stack()) diagnostics.warn("the last good version plays on: " + error);
 }
 
-BuildContext Player::State::context(const Transport::Due& due) const {
-  const FootageFrame& frame = footage->frame(due.position);
+/// What runs at a part of its size has lengths of that part (docs/math.md, 23).
+BuildContext Player::State::context(int position, int proxy) const {
+  const FootageFrame& frame = footage->frame(position);
   BuildContext context;
+  context.length_scale = 1.0 / proxy;
   context.frame = frame.number;
   context.fps = transport.fps();
   context.time = frame.time.value_or(frame.number / context.fps);
@@ -146,7 +148,8 @@ BuildContext Player::State::context(const Transport::Due& due) const {
 Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, const Transport::Due& due) {
   const auto start = Clock::now();
   const bool compare = second && view.compare == Compare::other;
-  BuildContext frame = context(due);
+  const int proxy = read == picture ? picture_proxy : footage->proxy();
+  BuildContext frame = context(due.position, proxy);
   if (read->picture.facts) frame.position = camera_position(read->picture.facts->metadata);
   // Effects that look back go on over frames that were dropped; after a jump they begin anew.
   if (transport.playing() && ran && due.tick > ran->tick && frame.frame > ran->number)
@@ -165,10 +168,12 @@ Result<bool> Player::State::run(const std::shared_ptr<const ReadPicture>& read, 
     return true;
   }
   picture = read;
+  picture_proxy = proxy;
   ran = {due.tick, frame.frame};
   second_runs = compare;
   dirty = false;
-  shown.size = read->picture.color.size();
+  const Size size = read->picture.color.size();
+  shown.size = {size.width * proxy, size.height * proxy};
   const double work = milliseconds_since(start);
   if (first->times().kernels_run == 0) ++figures.kept;
   figures.frame_shown(now(), work, transport.playing());

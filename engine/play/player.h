@@ -53,7 +53,7 @@ struct ShownFrame {
   int number = 0;     ///< in its sequence
   bool held = false;  ///< its file is missing; it shows the one before
   std::string name;   ///< of the picture
-  Size size;
+  Size size;  ///< of the whole picture; where a proxy is shown, of a proxy's pixels as many times as they are smaller
   std::optional<Error> unreadable;  ///< why it could not be read: the picture before stays
   std::optional<Error> failed;      ///< why the stack could not be run on it: the picture before stays
 };
@@ -136,6 +136,10 @@ class Player {
   void show(const std::string& image);
   /// Reads the pictures again.
   void reload_pictures();
+  /// Reads pictures at one part in `proxy` of their sides, and runs the look so that lengths are those of the whole.
+  /// Zoom, region and place stay. 1: whole pictures.
+  void set_proxy(int proxy);
+  int proxy() const;
   /// Plays something else; zoom and settings stay. Errors: usage, io; then everything stays as it is.
   Result<void> open_footage(const std::vector<std::string>& inputs);
   /// Another preset in place of the first; its panel edits are forgotten. Errors: io.
@@ -150,7 +154,8 @@ class Player {
   Result<Scopes> scopes(const ScopeOptions& options = {}, Of of = Of::result);
   /// None without a picture, or where nothing of the region lies in it. Errors: device.
   Result<std::optional<RegionMeans>> means(Rect region);
-  /// The frame that is shown, as `afterglow run` would make it, for writing. Errors: other (nothing is shown), device.
+  /// The frame that is shown, as `afterglow run` would make it, for writing. Of a proxy the whole picture is read and
+  /// run for it: nothing that draws `images` may be in flight. Errors: other (nothing is shown), device, io.
   Result<Picture> screenshot();
 
   /// The window has handed the frame of the last turn to the screen.

@@ -34,11 +34,12 @@ std::array<float, 4> value_at(const Image& image, Pixel pixel) {
 }
 
 /// One pixel of what a preset made of the picture.
-Result<std::array<float, 4>> result_at(LiveSession& session, HostResult& result, const Picture& picture, Pixel pixel) {
+Result<std::array<float, 4>> result_at(LiveSession& session, HostResult& result, const Picture& picture, Size whole,
+                                       Pixel pixel) {
   const DeviceImages images = session.images();
-  if (!images.ran) return value_at(picture.color, pixel);
+  if (!images.ran) return value_at(picture.color, scaled(pixel, whole, picture.color.size()));
   const Size size = images.result.binding.size;
-  const Pixel at = scaled(pixel, picture.color.size(), size);
+  const Pixel at = scaled(pixel, whole, size);
   AFTERGLOW_CHECK(session.read_result(result, Rect{at.x, at.y, 1, 1}));
   std::array<float, 4> out{};
   const std::size_t first =
@@ -69,10 +70,14 @@ Result<std::optional<Probe>> Player::probe(Pixel pixel) {
   if (!s.picture || pixel.x < 0 || pixel.y < 0 || pixel.x >= s.shown.size.width || pixel.y >= s.shown.size.height)
     return std::optional<Probe>();
   const Picture& picture = s.picture->picture;
-  Probe probe{.pixel = pixel, .source = value_at(picture.color, pixel), .result = {}, .other = {}};
-  AFTERGLOW_TRY(probe.result, result_at(*s.first, s.result, picture, pixel));
+  const Size whole = s.shown.size;
+  Probe probe{.pixel = pixel,
+              .source = value_at(picture.color, scaled(pixel, whole, picture.color.size())),
+              .result = {},
+              .other = {}};
+  AFTERGLOW_TRY(probe.result, result_at(*s.first, s.result, picture, whole, pixel));
   if (s.second && s.second_runs) {
-    AFTERGLOW_TRY(probe.other, result_at(*s.second, s.result, picture, pixel));
+    AFTERGLOW_TRY(probe.other, result_at(*s.second, s.result, picture, whole, pixel));
   }
   return std::optional<Probe>(probe);
 }
@@ -97,7 +102,7 @@ Result<Scopes> Player::scopes(const ScopeOptions& options, Of of) {
   if (!s.picture || (of == Of::other && !(s.second && s.second_runs))) return scopes_of({}, {}, options);
   AFTERGLOW_TRY(const State::Looked looked, s.look(of));
   ScopeOptions wanted = options;
-  const Size size = s.picture->picture.color.size();
+  const Size size = s.shown.size;
   if (wanted.region) wanted.region = scaled(within(*wanted.region, size), size, looked.size);
   return scopes_of(looked.pixels, looked.size, wanted);
 }
@@ -105,7 +110,7 @@ Result<Scopes> Player::scopes(const ScopeOptions& options, Of of) {
 Result<std::optional<RegionMeans>> Player::means(Rect region) {
   State& s = *state_;
   if (!s.picture) return std::optional<RegionMeans>();
-  const Size size = s.picture->picture.color.size();
+  const Size size = s.shown.size;
   RegionMeans out{.region = within(region, size), .source = {}, .result = {}, .other = {}};
   if (out.region.size().area() == 0) return std::optional<RegionMeans>();
   const auto mean = [&](Of of) -> Result<RegionMean> {
@@ -120,10 +125,32 @@ Result<std::optional<RegionMeans>> Player::means(Rect region) {
   return std::optional<RegionMeans>(out);
 }
 
+/// Runs the whole picture once, where a proxy is shown; the next turn shows the proxy again.
+Result<Picture> Player::State::whole_frame() {
+  std::vector<std::string> needs;
+  {
+    const std::lock_guard lock(mutex);
+    needs = auxiliary;
+  }
+  AFTERGLOW_TRY(Picture whole, footage->read_whole(footage->frame(shown.position).picture, needs, diagnostics));
+  BuildContext frame = context(shown.position, 1);
+  if (whole.facts) frame.position = camera_position(whole.facts->metadata);
+  first->build_aside(false);
+  dirty = true;
+  ran.reset();
+  AFTERGLOW_CHECK(first->process(whole, frame));
+  return whole;
+}
+
 Result<Picture> Player::screenshot() {
   State& s = *state_;
   if (!s.picture) return Error{ErrorKind::other, "no picture is shown"};
-  Picture out = s.picture->picture;
+  Picture out;
+  if (s.picture_proxy > 1 && s.shown.position >= 0) {
+    AFTERGLOW_TRY(out, s.whole_frame());
+  } else {
+    out = s.picture->picture;
+  }
   out.content.clear();
   const DeviceImages images = s.first->images();
   if (!images.ran) return out;
@@ -210,6 +237,19 @@ void Player::rebase(const std::vector<BaseChange>& changes, const TextChange& te
 }
 
 void Player::show(const std::string& image) { state_->first->live().show(image); }
+
+void Player::set_proxy(int proxy) {
+  State& s = *state_;
+  if (proxy == s.footage->proxy()) return;
+  s.options.footage.proxy = proxy;
+  s.footage = s.footage->at_proxy(proxy);
+  s.begin_reading();
+  s.want_pictures();
+  s.reread = true;
+  s.ran.reset();
+}
+
+int Player::proxy() const { return state_->footage->proxy(); }
 
 void Player::reload_pictures() {
   State& s = *state_;

@@ -36,6 +36,7 @@ struct Player::State {
 
   std::unique_ptr<LiveSession> first, second;
   std::shared_ptr<const ReadPicture> picture;  ///< that the images on the device were made of
+  int picture_proxy = 1;                       ///< that it was read at
   ShownFrame shown;
   HostResult result;      ///< what was read back of the first's
   bool dirty = true;      ///< the picture on screen has to be run again
@@ -70,7 +71,8 @@ struct Player::State {
   Result<bool> show_due(double now);
   Result<bool> time_a_kernel(bool changed, Step& step);
   Result<bool> run(const std::shared_ptr<const ReadPicture>& read, const Transport::Due& due);
-  BuildContext context(const Transport::Due& due) const;
+  BuildContext context(int position, int proxy) const;
+  Result<Picture> whole_frame();
   void apply_edits();
   struct Looked;
   Result<Looked> look(Of of);  ///< there is a picture, and what is asked for has run

@@ -49,6 +49,7 @@ constexpr Shortcut kShortcuts[] = {
     {Action::previous_image, GLFW_KEY_N, kShift, "Shift+N", "Picture", "Image between passes before", true},
     {Action::result_image, GLFW_KEY_BACKSPACE, kNone, "Backspace", "Picture", "The result again"},
     {Action::scope, GLFW_KEY_H, kNone, "H", "Picture", "Scopes: histogram, waveform, parade, vectorscope, all"},
+    {Action::proxy, GLFW_KEY_P, kShift, "Shift+P", "Picture", "Proxies (half size, or --proxy), whole pictures"},
     {Action::scope_scale, GLFW_KEY_H, kShift, "Shift+H", "Picture", "Levels of scopes: codes, linear, stops"},
     {Action::clear_region, GLFW_KEY_H, kControl, "Ctrl+H", "Picture", "No region (Ctrl+drag makes one)"},
 

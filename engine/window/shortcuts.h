@@ -70,6 +70,7 @@ enum class Action {
   screenshot,
   export_frame,
   export_range,
+  proxy,
   reload,
   copy_message,
   edit_file,

@@ -142,6 +142,14 @@ bool WindowApp::act_on_preset(Action action) {
       if (LiveStack* other = player_.other()) other->reload();
       player_.reload_pictures();
       return true;
+    case Action::proxy: {
+      (void)painter_->finish();  // its pictures may be on their way to the screen
+      const int now = player_.proxy();
+      player_.set_proxy(now > 1 ? 1 : proxy_);
+      if (now > 1) proxy_ = now;
+      ui.say(now > 1 ? "whole pictures" : "proxy " + proxy_name(player_.proxy()) + ": Shift+P shows whole pictures");
+      return true;
+    }
     case Action::edit_file: {
       const ErrorPlace place = current_place(player_);
       edit_file(place.file.string(), place.line);
@@ -234,6 +242,7 @@ bool WindowApp::act_on_window(Action action) {
       return true;
     }
     case Action::export_frame:
+      if (player_.proxy() > 1) (void)painter_->finish();  // the whole picture runs in its place
       if (options_.export_frame) options_.export_frame(player_, ui);
       return true;
     case Action::export_range:

@@ -92,6 +92,7 @@ class WindowApp {
   ViewBackground background_ = ViewBackground::none;
   enum class Drag { none, pan, wipe, region } drag_ = Drag::none;
   Point drag_from_;  ///< of a region
+  int proxy_ = 2;    ///< that Shift+P takes
   int redraw_ = 3;   ///< frames to draw though nothing new is there: interfaces settle in a few
   double last_draw_ = -1;
   enum class Quitting { no, asked, saving } quitting_ = Quitting::no;

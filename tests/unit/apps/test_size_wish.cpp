@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "batch/scale.h"
+#include "image/scale.h"
 
 namespace afterglow {
 namespace {

@@ -484,6 +484,64 @@ TEST_F(PlayerTest, KernelsAreTimedWhenNothingElseIsToDo) {
   EXPECT_EQ(result(), before);
 }
 
+TEST_F(PlayerTest, ProxiesAreMeansRunWithTheirLengthsAndWrittenWhole) {
+  Picture picture;
+  picture.color = Image(16, 8, 4);
+  const auto value = [](int x, int y) { return static_cast<float>(x + 16 * y) / 64; };
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 16; ++x)
+      for (int c = 0; c < 4; ++c) picture.color.at(x, y)[c] = c == 3 ? 1.0f : value(x, y);
+  picture.data_window = picture.display_window = {0, 0, 16, 8};
+  ASSERT_TRUE(write_picture(picture, path("s.1.exr"), {.type = SampleType::float32}, diagnostics_));
+  fs::create_directories(folder_ / "effects");
+  fs::create_directories(folder_ / "shaders");
+  write("effects/length.lua",
+        "local fx = require \"afterglow\"\nreturn fx.effect { name = \"length\", doc = \"Adds what a pixel is long.\", "
+        "at = "
+        "\"post_process\",\n  build = function(g, s, source)\n"
+        "    return g:pass { shader = \"length\", source = source, pixel = g.length_scale }\n  end }\n");
+  write("shaders/length.glsl",
+        "uniform float pixel;\nvec4 apply(vec4 color) { return color + vec4(vec3(pixel), 0); }\n");
+  write("look.lua", "local fx = require \"afterglow\"\nreturn fx.stack { name = \"Look\", fx.length {} }\n");
+  PlayerOptions options;
+  options.footage.proxy = 2;
+  Player& player = open(options);
+  turn();
+  EXPECT_EQ(player.shown().size, (Size{16, 8})) << "places are those of the whole picture";
+  EXPECT_EQ(player.session().images().result.binding.size, (Size{8, 4}));
+  const float mean = (value(6, 2) + value(7, 2) + value(6, 3) + value(7, 3)) / 4;
+  for (const Pixel pixel : {Pixel{6, 2}, Pixel{7, 3}}) {
+    const auto probe = player.probe(pixel).value();
+    EXPECT_FLOAT_EQ(probe->source[0], mean);
+    EXPECT_FLOAT_EQ(probe->result[0], mean + 0.5f);
+  }
+  const auto region = player.means({6, 2, 2, 2}).value();
+  EXPECT_FLOAT_EQ(region->source.mean[0], mean);
+
+  const auto written = player.screenshot();
+  ASSERT_TRUE(written) << written.error().text();
+  ASSERT_EQ(written->color.size(), (Size{16, 8}));
+  EXPECT_FLOAT_EQ(written->color.at(6, 2)[0], value(6, 2) + 1);
+  EXPECT_TRUE(turn().changed) << "the proxy comes back";
+  EXPECT_FLOAT_EQ(player.probe({6, 2}).value()->result[0], mean + 0.5f);
+
+  player.set_proxy(1);
+  turn();
+  EXPECT_FLOAT_EQ(player.probe({6, 2}).value()->source[0], value(6, 2));
+  EXPECT_FLOAT_EQ(player.probe({6, 2}).value()->result[0], value(6, 2) + 1);
+  EXPECT_EQ(player.shown().size, (Size{16, 8}));
+}
+
+TEST_F(PlayerTest, ProxiesHaveFourSizes) {
+  EXPECT_EQ(parse_proxy("1").value(), 1);
+  EXPECT_EQ(parse_proxy("1/8").value(), 8);
+  for (const char* wrong : {"1/3", "2", "", "1/16", "half"}) {
+    const auto parsed = parse_proxy(wrong);
+    ASSERT_FALSE(parsed) << wrong;
+    EXPECT_THAT(parsed.error().text(), HasSubstr("1, 1/2, 1/4, 1/8"));
+  }
+}
+
 TEST_F(PlayerTest, PlaysSomethingElse) {
   write_sequence(2);
   Player& player = open();

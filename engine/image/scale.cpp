@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "batch/scale.h"
+#include "image/scale.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// --size: pictures made smaller (or larger) before the stack, for a quick look.
+// Pictures made smaller (or larger) before the stack, for a quick look: --size, proxies.
 #pragma once
 
 #include <string>
