@@ -7,7 +7,7 @@
 
 #include "gpu/error.h"
 #include "gpu/pipeline.h"
-#include "gpu/swapchain_choice.h"
+#include "gpu/swapchain.h"
 #include "ui.frag.h"
 #include "ui.vert.h"
 
