@@ -75,6 +75,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field compute? string              of a `sample_at` shader: a `compute_at` shader with the same inputs and parameters that makes the same image
 ---@field source? afterglow.Image     the colour of a pixel shader (`apply`); the sampler of that name of the others
 ---@field size? afterglow.Image|integer[]  of the new image, for `sample_at` and `compute_at` shaders; default: that of `source`
+---@field channels? 1|2|4             of the new image: the others are 0, alpha 1, and take no memory; default: 4
 ---@field reach? number               of `sample_at` and `compute_at` shaders: how many texels from the pixel's own place it reads at most; default: anywhere
 ---@field name? string                default: the last part of the shader's name
 ---@field [string] any
@@ -83,6 +84,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field source afterglow.Image
 ---@field filter afterglow.Filter
 ---@field size? afterglow.Image|integer[]  of the new image; default: that of `source`
+---@field channels? 1|2|4                  of the new image; default: those of `source`
 ---@field name? string                     default: "filter"
 
 ---An image that one frame makes for the next. A frame that follows none (the first, after a seek, after a change of the effect)

@@ -33,7 +33,8 @@ std::string as_json(const std::vector<DeviceInfo>& devices, const Calibration& c
                          {"driver", device.driver},
                          {"uuid", device.uuid},
                          {"vulkan", version_text(device.api_version)},
-                         {"usable", device.usable}};
+                         {"usable", device.usable},
+                         {"few_channels", device.few_channels}};
     if (!device.usable) entry["why_not"] = device.why_not;
     const auto found = calibration.find(device, kDefaultError);
     entry["choice"] = execution_name(found.choice);

@@ -59,8 +59,9 @@ int kernel_of(const Plan& plan, int pass) {
 }
 
 std::string size_text(const Graph& graph, const Pass& pass) {
-  const Size size = graph.images[static_cast<std::size_t>(pass.output)].size;
-  return fmt::format("{}×{}", size.width, size.height);
+  const GraphImage& image = graph.images[static_cast<std::size_t>(pass.output)];
+  const char* channels = image.channels == 1 ? ", 1 channel" : image.channels == 2 ? ", 2 channels" : "";
+  return fmt::format("{}×{}{}", image.size.width, image.size.height, channels);
 }
 
 std::string graph_dot(const Graph& graph, const Plan& plan, const std::string& title, const Notes& notes) {

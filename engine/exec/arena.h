@@ -14,7 +14,9 @@
 namespace afterglow {
 
 struct ArenaOptions {
-  VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
+  bool half = false;  ///< images hold 16-bit floats
+  /// Channels that each image of the graph stores, by its id. Empty: four.
+  std::vector<int> channels{};
   bool share = true;
   bool readable = false;     ///< images may be copied from
   bool storage = false;      ///< images may be read as storage images

@@ -52,7 +52,34 @@ std::uint64_t pack_row(const float* from, int channels, int width, VkFormat form
   return held;
 }
 
+namespace {
+
+/// Of formats with fewer than four channels; 0: no such format.
+int few_channels(VkFormat format) {
+  if (format == VK_FORMAT_R32_SFLOAT || format == VK_FORMAT_R16_SFLOAT) return 1;
+  return format == VK_FORMAT_R32G32_SFLOAT || format == VK_FORMAT_R16G16_SFLOAT ? 2 : 0;
+}
+
+std::uint64_t unpack_few(const std::byte* from, VkFormat format, int channels, int width, float* rgba) {
+  const bool half = format == VK_FORMAT_R16_SFLOAT || format == VK_FORMAT_R16G16_SFLOAT;
+  std::array<float, kChunk * 2> chunk;
+  std::uint64_t held = 0;
+  for (int x = 0; x < width; x += kChunk) {
+    const int count = std::min(kChunk, width - x);
+    const auto first = static_cast<std::size_t>(x) * channels, values = static_cast<std::size_t>(count) * channels;
+    if (half)
+      held += floats_from_halves(reinterpret_cast<const std::uint16_t*>(from) + first, values, chunk.data());
+    else
+      std::memcpy(chunk.data(), from + first * sizeof(float), values * sizeof(float));
+    widen(chunk.data(), channels, count, rgba + static_cast<std::ptrdiff_t>(x) * 4);
+  }
+  return held;
+}
+
+}  // namespace
+
 std::uint64_t unpack_row(const std::byte* from, VkFormat format, int width, float* rgba) {
+  if (const int channels = few_channels(format)) return unpack_few(from, format, channels, width, rgba);
   const auto values = static_cast<std::size_t>(width) * 4;
   if (format == VK_FORMAT_R16G16B16A16_SFLOAT) {
     return floats_from_halves(reinterpret_cast<const std::uint16_t*>(from), values, rgba);

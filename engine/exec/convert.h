@@ -14,7 +14,8 @@ namespace afterglow {
 /// 0, missing alpha is 1). Returns how many values were held at ±65504.
 std::uint64_t pack_row(const float* from, int channels, int width, VkFormat format, std::byte* to);
 
-/// Reads `width` pixels of RGBA32F or RGBA16F into RGBA. Returns how many half values are ±65504.
+/// Reads `width` pixels of 1, 2 or 4 channels of floats or halves into RGBA, missing ones as above. Returns how many
+/// half values are ±65504.
 std::uint64_t unpack_row(const std::byte* from, VkFormat format, int width, float* rgba);
 
 /// The same, but leaves the alphas in `rgba` as they are.

@@ -64,6 +64,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
   desc.config.rows = 1;
   const bool half = options.config.storage == Storage::fp16 && !is_precise(graph, kernel.output);
   desc.target = half ? KernelTarget::float16 : KernelTarget::float32;
+  desc.target_channels = stored_channels(graph, kernel.output, options.config);
   if (options.unorm8 && kernel.output == graph.result) desc.target = KernelTarget::unorm8;
   const long long pixels = graph.images[kernel.output].size.area();
   const Pass& anchor = graph.passes[kernel.passes.front()];
@@ -71,6 +72,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
   if (anchor.kind == PassKind::filter) {
     const Size source = graph.images[anchor.inputs.front().image].size, target = graph.images[anchor.output].size;
     desc.filter = anchor.filter;
+    desc.filter_channels = graph.images[anchor.output].channels;
     if (pixels >= options.worth.ratio) {
       desc.ratio_x = axis_ratio(source.width, target.width);
       desc.ratio_y = axis_ratio(source.height, target.height);
@@ -79,6 +81,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
     }
   } else if (info_of(anchor.kind).begins) {
     AFTERGLOW_TRY(desc.sample, stage_of(shaders, anchor, kernel.compute));
+    desc.sample->channels = graph.images[anchor.output].channels;
   } else {
     first_stage = 0;
   }
@@ -86,6 +89,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
   for (std::size_t i = first_stage; i < kernel.passes.size(); ++i) {
     const Pass& pass = graph.passes[kernel.passes[i]];
     AFTERGLOW_TRY(KernelStage stage, stage_of(shaders, pass));
+    stage.channels = graph.images[pass.output].channels;
     connect(graph, kernel, pass, static_cast<int>(desc.stages.size()) + (desc.sample ? 1 : 0), own_reads, stage);
     desc.stages.push_back(std::move(stage));
   }

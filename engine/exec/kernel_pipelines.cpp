@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gpu/fullscreen_vertex.h"
+#include "gpu/image.h"
 
 namespace afterglow {
 
@@ -22,17 +23,6 @@ std::vector<VkDescriptorType> descriptor_types(const CompiledKernel& kernel) {
 
 namespace {
 
-VkFormat format_of(KernelTarget target) {
-  switch (target) {
-    case KernelTarget::float16:
-      return VK_FORMAT_R16G16B16A16_SFLOAT;
-    case KernelTarget::unorm8:
-      return VK_FORMAT_R8G8B8A8_UNORM;
-    default:
-      return VK_FORMAT_R32G32B32A32_SFLOAT;
-  }
-}
-
 DrawInterface interface_of(const CompiledKernel& kernel) {
   return {.block = kernel.block_size > 0,
           .images = descriptor_types(kernel),
@@ -41,7 +31,9 @@ DrawInterface interface_of(const CompiledKernel& kernel) {
 }
 
 VkFormat format_of(const CompiledKernel& kernel, VkFormat given) {
-  return given != VK_FORMAT_UNDEFINED ? given : format_of(kernel.target);
+  if (given != VK_FORMAT_UNDEFINED) return given;
+  if (kernel.target == KernelTarget::unorm8) return VK_FORMAT_R8G8B8A8_UNORM;
+  return float_format(kernel.target_channels, kernel.target == KernelTarget::float16);
 }
 
 struct Made {

@@ -38,9 +38,27 @@ void Program::State::settle_config() {
   config.hardware_filter =
       config.hardware_filter && filters(format) && (graph.histories.empty() || filters(VK_FORMAT_R32G32B32A32_SFLOAT));
   config.storage_reads = config.storage_reads && supports(device, format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
+  config.four_channels = config.four_channels || !has_few_channels(config);
   if (device.is_cpu()) fit_to_cpu_driver(config);
   config.two_draws = config.two_draws && !options.reference;
   config.guard_loops = config.guard_loops && device.stores_from_fragments();
+}
+
+/// Whether the device can do with images of one and two channels what these of four are used for; true where there are
+/// none. Linear ones are another matter (can_be_linear).
+bool Program::State::has_few_channels(const ExecutionConfig& config) const {
+  const bool half = config.storage == Storage::fp16;
+  VkFormatFeatureFlags wanted = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
+  if (config.hardware_filter) wanted |= VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  const bool computed = std::ranges::any_of(
+      graph.passes, [](const Pass& pass) { return pass.kind == PassKind::compute || !pass.by_workgroups.empty(); });
+  const bool stored = config.storage_reads || computed;
+  if (stored) wanted |= VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
+  return std::ranges::all_of(graph.images, [&](const GraphImage& image) {
+    if (image.channels == 4) return true;
+    const VkFormat wish = float_format(image.channels, half);
+    return supports(device, wish, wanted) && (!stored || wish == VK_FORMAT_R32_SFLOAT || device.stores_few_channels());
+  });
 }
 
 /// The linear image that a result by rows is.
@@ -60,7 +78,9 @@ VkImageLayout Program::State::target_layout(ImageId output) const {
 
 VkFormat Program::State::image_format(ImageId image) const {
   if (image == graph.result) return result_format();
-  return is_precise(graph, image) ? VK_FORMAT_R32G32B32A32_SFLOAT : format;
+  return is_precise(graph, image)
+             ? VK_FORMAT_R32G32B32A32_SFLOAT
+             : float_format(stored_channels(graph, image, options.config), options.config.storage == Storage::fp16);
 }
 
 /// What the device must be able to do, before anything is made.
@@ -90,13 +110,16 @@ Result<std::vector<KernelDesc>> Program::State::describe(ShaderLibrary& shaders)
 }
 
 ArenaOptions Program::State::arena_options(const std::vector<KernelDesc>& descs) const {
-  ArenaOptions wanted{.format = format,
+  ArenaOptions wanted{.half = options.config.storage == Storage::fp16,
+                      .channels = {},
                       .share = options.config.share_memory && !options.keep_images,
                       .readable = options.reference,
                       .storage = options.config.storage_reads,
                       .stored = {},
                       .rows = {},
                       .max_memory = options.max_memory};
+  for (std::size_t id = 0; id < graph.images.size(); ++id)
+    wanted.channels.push_back(stored_channels(graph, static_cast<ImageId>(id), options.config));
   for (const auto& kernel : plan.kernels)
     if (kernel.compute) wanted.stored.insert(kernel.output);
   if (linear)

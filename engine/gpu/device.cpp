@@ -14,13 +14,22 @@ namespace afterglow {
 
 namespace {
 
+VkPhysicalDeviceFeatures features_of(const VulkanFunctions& vk, VkPhysicalDevice device) {
+  VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+  vk.vkGetPhysicalDeviceFeatures2(device, &features);
+  return features.features;
+}
+
 /// What CPU devices are asked for besides: see stores_from_fragments.
 bool can_store_from_fragments(const VulkanFunctions& vk, VkPhysicalDevice device) {
   VkPhysicalDeviceProperties properties{};
   vk.vkGetPhysicalDeviceProperties(device, &properties);
-  VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
-  vk.vkGetPhysicalDeviceFeatures2(device, &features);
-  return properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && features.features.fragmentStoresAndAtomics;
+  return properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && features_of(vk, device).fragmentStoresAndAtomics;
+}
+
+/// What all devices are asked for that have it: see stores_few_channels.
+bool can_store_few_channels(const VulkanFunctions& vk, VkPhysicalDevice device) {
+  return features_of(vk, device).shaderStorageImageExtendedFormats;
 }
 
 Result<VkDevice> open_device(const VulkanFunctions& vk, const PhysicalDevice& chosen, bool present) {
@@ -36,7 +45,8 @@ Result<VkDevice> open_device(const VulkanFunctions& vk, const PhysicalDevice& ch
       .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES,
       .pNext = &synchronization,
       .dynamicRendering = VK_TRUE};
-  const VkPhysicalDeviceFeatures wanted{.fragmentStoresAndAtomics = can_store_from_fragments(vk, chosen.handle)};
+  const VkPhysicalDeviceFeatures wanted{.fragmentStoresAndAtomics = can_store_from_fragments(vk, chosen.handle),
+                                        .shaderStorageImageExtendedFormats = can_store_few_channels(vk, chosen.handle)};
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = &features,
                                 .queueCreateInfoCount = 1,
@@ -107,6 +117,7 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options, Dia
   device->forced_ = options.forced;
   device->physical_ = chosen.handle;
   device->stores_from_fragments_ = can_store_from_fragments(device->functions_, chosen.handle);
+  device->stores_few_channels_ = can_store_few_channels(device->functions_, chosen.handle);
   device->queue_family_ = chosen.queue_family;
   device->info_ = chosen.info;
   AFTERGLOW_CHECK(device->finish());

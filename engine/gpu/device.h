@@ -20,6 +20,8 @@ struct DeviceInfo {
   std::uint32_t api_version = 0;
   bool usable = false;
   std::string why_not;  ///< what it lacks, when not usable
+  /// It can draw to and sample images of one and two channels of floats; most can, and Vulkan asks it of none.
+  bool few_channels = false;
 };
 
 /// Devices in the order in which `--device auto` prefers them: discrete, integrated, virtual, cpu. Errors: device (no
@@ -112,6 +114,8 @@ class Device {
   const ForcedWays& forced() const { return forced_; }
   /// Fragment shaders may write buffers: on CPU devices that were opened here and can.
   bool stores_from_fragments() const { return stores_from_fragments_; }
+  /// Storage images may have formats of one and two channels beside R32F: on devices that were opened here and can.
+  bool stores_few_channels() const { return stores_few_channels_; }
   /// Pixels are best written into images themselves, and read from there.
   bool maps_images() const { return is_cpu() && !forced_.staging && !forced_.unmapped; }
   /// Timestamps around draws mean something (false on CPU devices, where rasterisation is deferred), or have to serve.
@@ -154,6 +158,7 @@ class Device {
   std::uint64_t timestamp_mask_ = 0;
   bool owned_ = false;
   bool stores_from_fragments_ = false;
+  bool stores_few_channels_ = false;
   ForcedWays forced_;
   std::string cache_file_;
   std::size_t cached_bytes_ = 0;

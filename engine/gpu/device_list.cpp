@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <set>
 
@@ -182,6 +183,9 @@ PhysicalDevice describe_device(const VulkanFunctions& vk, VkPhysicalDevice devic
   out.info.api_version = plain.apiVersion;
   out.info.why_not = what_it_lacks(vk, device, plain.apiVersion, surface);
   out.info.usable = out.info.why_not.empty();
+  out.info.few_channels = std::ranges::all_of(
+      std::array{VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R16G16_SFLOAT},
+      [&](VkFormat format) { return can_draw_and_sample(vk, device, format); });
   return out;
 }
 

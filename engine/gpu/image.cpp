@@ -12,15 +12,24 @@ std::uint32_t bytes_per_pixel(VkFormat format) {
     case VK_FORMAT_R32G32B32A32_SFLOAT:
       return 16;
     case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R32G32_SFLOAT:
       return 8;
     case VK_FORMAT_R32_SFLOAT:
+    case VK_FORMAT_R16G16_SFLOAT:
     case VK_FORMAT_R8G8B8A8_UNORM:
       return 4;
     case kDepthFormat:
+    case VK_FORMAT_R16_SFLOAT:
       return 2;
     default:
       return 0;
   }
+}
+
+VkFormat float_format(int channels, bool half) {
+  if (channels == 1) return half ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT;
+  if (channels == 2) return half ? VK_FORMAT_R16G16_SFLOAT : VK_FORMAT_R32G32_SFLOAT;
+  return half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
 Result<void> check_image(const Device& device, const ImageDesc& desc) {

@@ -22,6 +22,8 @@ struct ImageDesc {
 
 /// Bytes of one pixel of the formats used here (R32F, RGBA32F, RGBA16F, RGBA8, kDepthFormat).
 std::uint32_t bytes_per_pixel(VkFormat format);
+/// Of 1, 2 or 4 channels of 16-bit or 32-bit floats.
+VkFormat float_format(int channels, bool half);
 
 /// The layout of a new image: PREINITIALIZED for linear tiling, so that pixels written by the CPU stay; else UNDEFINED.
 VkImageLayout initial_layout(const ImageDesc& desc);

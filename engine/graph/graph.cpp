@@ -25,6 +25,9 @@ Result<void> validate_images(const Graph& graph) {
       return Error{ErrorKind::script,
                    fmt::format("image '{}' has no pixels ({}×{})", image.name, image.size.width, image.size.height)};
   for (const auto& image : graph.images)
+    if (image.channels != 4 && (image.producer < 0 || (image.channels != 1 && image.channels != 2)))
+      return Error{ErrorKind::script, fmt::format("image '{}' cannot have {} channels", image.name, image.channels)};
+  for (const auto& image : graph.images)
     if (image.data && (image.producer >= 0 || image.data->size != image.size ||
                        image.data->pixels.size() != static_cast<std::size_t>(image.size.area()) * 4))
       return Error{ErrorKind::script, fmt::format("image '{}' does not fit the data it is made of", image.name)};
@@ -63,6 +66,8 @@ Result<void> validate_conditions(const Graph& graph) {
       return wrong("it looks at an image that is made after the one it replaces");
     if (graph.images[condition.image].size != graph.images[condition.output].size)
       return wrong("the two images have different sizes");
+    if (graph.images[condition.image].channels != graph.images[condition.output].channels)
+      return wrong("the two images have different channels");
     if (!std::isfinite(condition.limit)) return wrong("its limit is not finite");
   }
   return {};
@@ -146,6 +151,11 @@ std::optional<int> known_channels(const std::string& input) {
   return std::nullopt;
 }
 
+int stored_channels(const Graph& graph, ImageId image, const ExecutionConfig& config) {
+  const bool kept = image == graph.result || history_of_next(graph, image) != nullptr;
+  return kept || config.four_channels ? 4 : graph.images[image].channels;
+}
+
 std::vector<std::string> shaders_of(const Pass& pass) {
   std::vector<std::string> out;
   for (const auto& name : {pass.shader, pass.by_workgroups})
@@ -182,7 +192,7 @@ bool same_structure(const Graph& a, const Graph& b) {
   if (!same_conditions(a, b) || !same_histories(a, b)) return false;
   for (std::size_t i = 0; i < a.images.size(); ++i)
     if (a.images[i].size != b.images[i].size || a.images[i].producer != b.images[i].producer ||
-        !same_data(a.images[i].data, b.images[i].data))
+        a.images[i].channels != b.images[i].channels || !same_data(a.images[i].data, b.images[i].data))
       return false;
   for (std::size_t i = 0; i < a.passes.size(); ++i) {
     const Pass &p = a.passes[i], &q = b.passes[i];

@@ -14,6 +14,7 @@
 #include "core/geometry.h"
 #include "core/image_data.h"
 #include "core/result.h"
+#include "shader/execution_config.h"
 #include "shader/interface.h"
 
 namespace afterglow {
@@ -28,6 +29,9 @@ struct GraphImage {
   /// Of an image that the look brings along (tables, pictures from files): its pixels. Such an image is no input of a
   /// frame; the program holds it.
   std::shared_ptr<const ImageData> data = {};
+  /// Of an image that a pass makes: 1, 2 or 4. Readers find (r, 0, 0, 1), (r, g, 0, 1) or all four, whatever its pass
+  /// says of the others and however many are stored (stored_channels).
+  int channels = 4;
 };
 
 /// A value for a shader parameter: up to 4 components (bool as 0/1).
@@ -114,6 +118,10 @@ bool is_computed(const Graph& graph, ImageId image);
 /// How many channels an auxiliary image holds, where its name tells: of "depth" 1, of "motion" 2, of "normal" 3. Others
 /// hold what a frame brings.
 std::optional<int> known_channels(const std::string& input);
+
+/// How many channels the memory of a pass's image holds: as many as it has, but four of the result, of what a history
+/// keeps, and where `config` wants no fewer.
+int stored_channels(const Graph& graph, ImageId image, const ExecutionConfig& config);
 
 /// Names of the shaders that a pass may run.
 std::vector<std::string> shaders_of(const Pass& pass);

@@ -149,6 +149,7 @@ Hash history_part(const Graph& graph, const History& history) {
     // Effects before this one may change: their pictures flow through the same images.
     hasher.add(own || history_of_previous(graph, id) ? image.name : "from outside");
     hasher.add(static_cast<std::uint64_t>(image.size.width)).add(static_cast<std::uint64_t>(image.size.height));
+    hasher.add(static_cast<std::uint64_t>(image.channels));
   };
   hasher.add(history.name).add(static_cast<std::uint64_t>(history.precise));
   add_image(history.previous);

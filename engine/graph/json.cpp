@@ -31,6 +31,7 @@ Json pass_json(const Graph& graph, const Pass& pass) {
   if (pass.reach) out["reach"] = *pass.reach;
   const auto& image = graph.images[pass.output];
   out["output"] = {{"image", image.name}, {"width", image.size.width}, {"height", image.size.height}};
+  if (image.channels != 4) out["output"]["channels"] = image.channels;
   out["from"] = {{"file", pass.file}, {"line", pass.line}};
   return out;
 }

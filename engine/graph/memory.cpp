@@ -20,7 +20,8 @@ std::uint64_t memory_needed(const Graph& graph, const ExecutionConfig& config) {
       kept += pixels * (is_precise(graph, plan.transient[i]) ? 32 - bytes_per_pixel : bytes_per_pixel);
       continue;
     }
-    blocks.push_back({pixels * bytes_per_pixel, 1, plan.lifetimes[i].first, plan.lifetimes[i].last});
+    const auto channels = static_cast<std::uint64_t>(stored_channels(graph, plan.transient[i], config));
+    blocks.push_back({pixels * bytes_per_pixel / 4 * channels, 1, plan.lifetimes[i].first, plan.lifetimes[i].last});
   }
   std::uint64_t total = kept + place(blocks, config.share_memory).total;
   // CPU devices may draw a sample pass twice, and mark in 16 bits a pixel what the first draw has done.

@@ -13,7 +13,7 @@
 
 namespace afterglow {
 
-/// Bytes, with the inputs and the result. Of `config` it reads `fusion`, `storage` and `share_memory`.
+/// Bytes, with the inputs and the result. Of `config` it reads `fusion`, `storage`, `four_channels` and `share_memory`.
 std::uint64_t memory_needed(const Graph& graph, const ExecutionConfig& config);
 
 /// Of a steady frame: kernels that run once move nothing.
@@ -37,7 +37,8 @@ struct Traffic {
   double milliseconds(double bandwidth) const { return static_cast<double>(total) / bandwidth * 1e3; }
 };
 
-/// Of `config` it reads `storage`. `parts`: what is drawn and read, when that is not all (regions()); else null.
+/// Of `config` it reads `storage` and `four_channels`. `parts`: what is drawn and read, when that is not all
+/// (regions()); else null.
 Traffic traffic_of(const Graph& graph, const Plan& plan, const ExecutionConfig& config, const Regions* parts = nullptr);
 
 }  // namespace afterglow

@@ -19,12 +19,13 @@ std::set<ImageId> read_by(const Graph& graph, const PlanKernel& kernel) {
 }  // namespace
 
 Traffic traffic_of(const Graph& graph, const Plan& plan, const ExecutionConfig& config, const Regions* parts) {
-  const std::uint64_t stored = config.storage == Storage::fp16 ? 8 : 16;
+  const std::uint64_t channel = config.storage == Storage::fp16 ? 2 : 4;
   const auto bytes_per_pixel = [&](ImageId image) -> std::uint64_t {
     const GraphImage& made = graph.images[static_cast<std::size_t>(image)];
     const bool given = made.producer < 0 && image != graph.source;
     if (given && known_channels(made.name) == 1) return 4;
-    return given || is_precise(graph, image) ? 16 : stored;
+    if (given || is_precise(graph, image)) return 16;
+    return channel * static_cast<std::uint64_t>(stored_channels(graph, image, config));
   };
   const auto area = [&](ImageId image) -> std::uint64_t {
     const auto at = static_cast<std::size_t>(image);

@@ -64,6 +64,9 @@ DoubleImage ssao_surface(const DoubleImage& depth, const DoubleImage* normal, co
   });
 }
 
+/// What is farther is as far, once light has been found: distances then lie where half floats have them.
+constexpr double kFarthest = 65504;
+
 DoubleImage ssao_occlusion(const DoubleImage& surface, Size picture, const Ssao& s) {
   const double tan = tangent_of(s), aspect = static_cast<double>(picture.width) / picture.height;
   const Size size = surface.size();
@@ -71,10 +74,10 @@ DoubleImage ssao_occlusion(const DoubleImage& surface, Size picture, const Ssao&
   return generate(size, [&](int x, int y) {
     const Rgba& here = surface.at(x, y);
     const double z = here.a;
-    if (z >= 1e9 || z <= 0) return Rgba(1, 1, 1, z);
+    if (z >= 1e9 || z <= 0) return Rgba(1, 1, 1, glm::min(z, kFarthest));
     const Vec at = seen_at(x + 0.5, y + 0.5, z, size, tan, aspect);
     const double far = glm::min(0.5 * size.height * s.radius / (tan * z), most);
-    if (far < 0.5) return Rgba(1, 1, 1, z);
+    if (far < 0.5) return Rgba(1, 1, 1, glm::min(z, kFarthest));
     const double within = glm::min(s.radius, 2 * far * tan * z / size.height);
     const Words chance = pcg3d({static_cast<std::uint32_t>(x & 3), static_cast<std::uint32_t>(y & 3), 17});
     double sum = 0;
@@ -90,7 +93,7 @@ DoubleImage ssao_occlusion(const DoubleImage& surface, Size picture, const Ssao&
       const double rise = (glm::dot(way, Vec(here)) - 3e-4 * z) / within - s.bias;
       sum += std::pow(glm::max(1 - apart, 0.0), 3) * glm::max(rise, 0.0) / (apart + 0.01);
     }
-    return Rgba(Rgb(glm::max(0.0, 1 - 4 * s.intensity * sum / s.samples)), z);
+    return Rgba(Rgb(glm::max(0.0, 1 - 4 * s.intensity * sum / s.samples)), glm::min(z, kFarthest));
   });
 }
 
@@ -99,7 +102,7 @@ DoubleImage ssao(const DoubleImage& source, const DoubleImage& depth, const Doub
   light = smooth_along(smooth_along(light, 1, 0), 0, 1);
   return generate(source.size(), [&](int x, int y) {
     const Rgba& p = source.at(x, y);
-    const double z = held_distance(depth.at(x, y).r), fx = x % 2 * 0.5, fy = y % 2 * 0.5;
+    const double z = glm::min(held_distance(depth.at(x, y).r), kFarthest), fx = x % 2 * 0.5, fy = y % 2 * 0.5;
     double sum = 0, weights = 0;
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i) {

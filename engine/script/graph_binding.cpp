@@ -78,11 +78,12 @@ int graph_pass(lua_State* lua) {
   request.by_workgroups = table.text("compute", 200).value_or("");
   request.size = read_size(table, lua);
   request.reach = table.number("reach");
+  request.channels = table.number("channels");
   if (request.shader.empty() && !table.failed())
     table.fail(failure(fmt::format("{} needs 'shader', the name of a shader", table.what())));
   for (const auto& key : table.keys()) {
-    if (key.name == "compute" || key.name == "name" || key.name == "reach" || key.name == "shader" ||
-        key.name == "size")
+    if (key.name == "channels" || key.name == "compute" || key.name == "name" || key.name == "reach" ||
+        key.name == "shader" || key.name == "size")
       continue;
     if (key.position > 0) {
       table.fail(
@@ -106,10 +107,11 @@ int graph_pass(lua_State* lua) {
 int graph_filter(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:filter { … }");
   TableReader table(lua, 2, call_name(lua, graph, "g:filter"));
-  table.allow({"filter", "name", "size", "source"}, false);
+  table.allow({"channels", "filter", "name", "size", "source"}, false);
   FilterRequest request;
   request.name = table.text("name", 80);
   request.size = read_size(table, lua);
+  request.channels = table.number("channels");
   table.push("source");
   if (const ImageRef* image = to_image(lua, -1))
     request.source = *image;

@@ -96,9 +96,17 @@ Pass GraphBuilder::start(std::string name, const std::optional<std::string>& giv
   return pass;
 }
 
-ImageRef GraphBuilder::add(Pass pass, Size size) {
+int GraphBuilder::channels_of(const Pass& pass, std::optional<double> wanted, int otherwise) const {
+  if (!wanted) return otherwise;
+  if (*wanted != 1 && *wanted != 2 && *wanted != 4)
+    fail(pass, fmt::format("channels = {} is no number of channels", *wanted), {"channels"}, "1, 2, 4");
+  return static_cast<int>(*wanted);
+}
+
+ImageRef GraphBuilder::add(Pass pass, Size size, int channels) {
   names_.try_emplace(pass.name, 1);
   pass.output = add_image(pass.name, size, static_cast<int>(graph_.passes.size()));
+  graph_.images.back().channels = channels;
   graph_.passes.push_back(std::move(pass));
   return ref(graph_.passes.back().output);
 }
@@ -163,7 +171,8 @@ ImageRef GraphBuilder::pass(const PassRequest& request, const CallPlace& place) 
                        size_text(size)),
            {input.name}, size_text(size));
   }
-  return add(std::move(pass), size);
+  const int channels = channels_of(pass, request.channels, 4);
+  return add(std::move(pass), size, channels);
 }
 
 std::shared_ptr<const ShaderSource> GraphBuilder::find_shader(const Pass& pass, const std::string& name,
@@ -314,7 +323,9 @@ ImageRef GraphBuilder::filter(FilterRequest request, const CallPlace& place) {
   if (request.size) check_size(pass, *request.size);
   pass.inputs.push_back({"source", request.source->id, false});
   pass.filter = std::move(request.filter);
-  return add(std::move(pass), request.size.value_or(request.source->size));
+  const int channels =
+      channels_of(pass, request.channels, graph_.images[static_cast<std::size_t>(request.source->id)].channels);
+  return add(std::move(pass), request.size.value_or(request.source->size), channels);
 }
 
 }  // namespace afterglow::script

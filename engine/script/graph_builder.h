@@ -39,6 +39,7 @@ struct PassRequest {
   std::string by_workgroups;  ///< see Pass::by_workgroups
   std::optional<Size> size;
   std::optional<double> reach;      ///< see Pass::reach
+  std::optional<double> channels;   ///< see GraphImage::channels
   std::vector<Argument> arguments;  ///< "source" among them
 };
 
@@ -46,6 +47,7 @@ struct FilterRequest {
   std::optional<std::string> name;
   std::optional<ImageRef> source;
   std::optional<Size> size;
+  std::optional<double> channels;  ///< default: those of the source
   Filter filter;
 };
 
@@ -111,7 +113,8 @@ class GraphBuilder {
   ImageRef ref(ImageId id) const { return {build_, id, graph_.images[static_cast<std::size_t>(id)].size}; }
   ImageId add_image(std::string name, Size size, int producer);
   Pass start(std::string name, const std::optional<std::string>& given, const CallPlace& place);
-  ImageRef add(Pass pass, Size size);
+  ImageRef add(Pass pass, Size size, int channels);
+  int channels_of(const Pass& pass, std::optional<double> wanted, int otherwise) const;
   void check_image(const Pass& pass, const std::string& key, const ImageRef& image) const;
   void check_size(const Pass& pass, const Size& size) const;
   History* history_of(const ImageRef& image);

@@ -84,7 +84,8 @@ ImageId GraphBuilder::copy_of(ImageId image, const CallPlace& place) {
   pass.kind = PassKind::filter;
   pass.filter.interpolation = Interpolation::nearest;
   pass.inputs.push_back({"source", image, false});
-  return add(std::move(pass), graph_.images[static_cast<std::size_t>(image)].size).id;
+  const auto at = static_cast<std::size_t>(image);
+  return add(std::move(pass), graph_.images[at].size, graph_.images[at].channels).id;
 }
 
 void GraphBuilder::keep(const ImageRef& image, const ImageRef& next, const CallPlace& place) {

@@ -18,8 +18,8 @@ namespace {
 
 constexpr ExecutionConfig kReference{.fusion = Fusion::none, .share_memory = false};
 
-StackChoice choose(const Device& device, const StackOptions& options, const Calibration& calibration,
-                   double max_error) {
+StackChoice choose_way(const Device& device, const StackOptions& options, const Calibration& calibration,
+                       double max_error) {
   if (options.reference) return {kReference, "--reference", max_error};
   if (options.choice) return {*options.choice, "given", max_error};
   StackChoice choice{{}, {}, max_error};
@@ -35,6 +35,16 @@ StackChoice choose(const Device& device, const StackOptions& options, const Cali
     if (const auto forced = parse_execution(words, choice.execution)) choice.execution = *forced;
     choice.from += "; forced";
   }
+  return choice;
+}
+
+/// What the device cannot do is told where the way is.
+StackChoice choose(const Device& device, const StackOptions& options, const Calibration& calibration,
+                   double max_error) {
+  StackChoice choice = choose_way(device, options, calibration, max_error);
+  if (device.info().few_channels || choice.execution.four_channels) return choice;
+  choice.execution.four_channels = true;
+  choice.from += "; the device has no images of one and two channels";
   return choice;
 }
 

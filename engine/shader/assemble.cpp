@@ -41,6 +41,25 @@ vec4 ag_round_to_half(vec4 v) {
 /// comparison until the end.
 std::string add_light(const std::string& color) { return fmt::format("  ag_light += {0}.r + {0}.g + {0}.b;\n", color); }
 
+/// GLSL's word for a storage image.
+const char* format_word(int channels, bool half) {
+  if (channels == 1) return half ? "r16f" : "r32f";
+  if (channels == 2) return half ? "rg16f" : "rg32f";
+  return half ? "rgba16f" : "rgba32f";
+}
+const char* format_word(ImageRead read) {
+  switch (read) {
+    case ImageRead::storage_r32f:
+    case ImageRead::storage_r16f:
+      return format_word(1, read == ImageRead::storage_r16f);
+    case ImageRead::storage_rg32f:
+    case ImageRead::storage_rg16f:
+      return format_word(2, read == ImageRead::storage_rg16f);
+    default:
+      return format_word(4, read == ImageRead::storage_rgba16f);
+  }
+}
+
 class Assembler {
  public:
   explicit Assembler(const KernelDesc& kernel) : kernel_(kernel) {}
@@ -56,6 +75,7 @@ class Assembler {
       return Error{ErrorKind::other, "a compute shader makes no codes"};
     out_.file_names = {"", "lib/prelude.glsl"};
     AFTERGLOW_CHECK(anchor());
+    row_ += held_to(anchor_channels());
     if (watches()) row_ += "  float ag_light = 0.0;\n" + add_light("ag_color");
     keep(0);
     for (std::size_t i = 0; i < kernel_.stages.size(); ++i) AFTERGLOW_CHECK(pixel_stage(i));
@@ -69,6 +89,7 @@ class Assembler {
     if (kernel_.config.defeat_uniform_inlining)
       out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
     if (kernel_.config.guard_loops) out_.glsl += "// loops are guarded\n";
+    if (kernel_.target_channels != 4) out_.glsl += fmt::format("// {} channels are stored\n", kernel_.target_channels);
     out_.glsl += targets();
     if (!block_.empty()) out_.glsl += "layout(set = 0, binding = 0, std140) uniform ag_Block {\n" + block_ + "};\n";
     out_.glsl += images_;
@@ -123,7 +144,8 @@ class Assembler {
   /// A pixel stage, with division and multiplication by alpha around each run of those that want straight colour.
   Result<void> pixel_stage(std::size_t i) {
     const auto flows_on = [&](std::size_t at) {  // from the stage before it alone
-      return at < kernel_.stages.size() && color_of(at) == static_cast<int>(at) && !is_kept(at);
+      return at < kernel_.stages.size() && color_of(at) == static_cast<int>(at) && !is_kept(at) &&
+             kernel_.stages[at - 1].channels == 4;
     };
     const auto straight = [&](std::size_t at) { return kernel_.stages[at].straight; };
     const KernelStage& stage = kernel_.stages[i];
@@ -134,9 +156,24 @@ class Assembler {
     }
     if (straight(i) && !(i > 0 && straight(i - 1) && flows_on(i))) divide();
     AFTERGLOW_CHECK(add_stage(stage, PassKind::pixel));
+    if (stage.channels != 4 && !straight(i)) row_ += held_to(stage.channels);
+    if (watches()) row_ += add_light("ag_color");
     if (straight(i) && !(i + 1 < kernel_.stages.size() && straight(i + 1) && flows_on(i + 1))) multiply();
+    if (straight(i)) row_ += held_to(stage.channels);
     keep(i + 1);
     return {};
+  }
+
+  int anchor_channels() const {
+    if (kernel_.sample) return kernel_.sample->channels;
+    return kernel_.filter ? kernel_.filter_channels : 4;
+  }
+
+  /// Of a colour whose image has so many channels: the others as readers of that image find them.
+  static std::string held_to(int channels) {
+    return channels == 1   ? "  ag_color = vec4(ag_color.r, 0.0, 0.0, 1.0);\n"
+           : channels == 2 ? "  ag_color = vec4(ag_color.rg, 0.0, 1.0);\n"
+                           : "";
   }
 
   /// The colour of the next stage is an image's.
@@ -194,7 +231,7 @@ class Assembler {
           "layout(local_size_x = {}, local_size_y = {}) in;\n"
           "layout(set = 0, binding = {}, {}) uniform restrict writeonly image2D ag_target;\n",
           size.width, size.height, out_.images.size() + 1,
-          kernel_.target == KernelTarget::float16 ? "rgba16f" : "rgba32f");
+          format_word(kernel_.target_channels, kernel_.target == KernelTarget::float16));
     }
     for (int row = 0; row < kernel_.config.rows; ++row)
       out += fmt::format("layout(location = {0}) out vec4 ag_result{0};\n", row);
@@ -254,10 +291,7 @@ class Assembler {
       images_ += fmt::format("layout(set = 0, binding = {}) uniform sampler2D {};\n", slot + 1, variable);
     } else {
       images_ += fmt::format("layout(set = 0, binding = {}, {}) uniform readonly image2D {};\n", slot + 1,
-                             read == ImageRead::storage_rgba16f ? "rgba16f"
-                             : read == ImageRead::storage_r32f  ? "r32f"
-                                                                : "rgba32f",
-                             variable);
+                             format_word(read), variable);
     }
     return read;
   }
@@ -327,7 +361,7 @@ class Assembler {
     else if (info_of(kind).begins)
       every_row("vec4 ag_color{0} = " + function + "(ag_pixel{0});");
     else
-      row_ += fmt::format("  ag_color = {}({});\n", function, arguments) + (watches() ? add_light("ag_color") : "");
+      row_ += fmt::format("  ag_color = {}({});\n", function, arguments);
     ++stage_count_;
     return {};
   }

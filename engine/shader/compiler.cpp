@@ -175,6 +175,7 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   out.workgroup = assembled.workgroup;
   if (out.workgroup) out.shared_bytes = shared_bytes(out.spirv);
   out.target = desc.target;
+  out.target_channels = desc.target_channels;
   out.two_draws = assembled.two_draws;
   for (const auto number : made->unset)
     if (number < assembled.unset.size()) out.warnings.push_back(unset_warning(assembled.unset[number]));

@@ -33,6 +33,9 @@ struct ExecutionConfig {
   bool storage_reads = false;
   /// Passes that have a second way, by a compute shader, take it: faster where many invocations run at once.
   bool compute = false;
+  /// Images that have one or two channels (graph/graph.h) are stored in four all the same. Devices that cannot draw or
+  /// read the formats of fewer do so anyway.
+  bool four_channels = false;
   bool share_memory = true;  ///< images whose lifetimes do not overlap share bytes
   /// Rows of its target that one invocation of a kernel may make where neighbouring rows read the same texels
   /// (1 … kMaxRows): faster on CPU devices. More than 1 makes the images between kernels linear.

@@ -40,6 +40,8 @@ struct KernelStage {
   /// Pixel-wise inputs ("source": the colour) whose image an earlier stage has read at the own pixel: that stage, as in
   /// KernelParam::stage, and its input's name. They need no slot of their own.
   std::map<std::string, std::pair<int, std::string>> again = {};
+  /// What it makes has so many channels, 1, 2 or 4: those behind them are 0, alpha 1, whatever it says.
+  int channels = 4;
 };
 
 /// How source and target sizes of a filter anchor relate on an axis; the executor picks it from the sizes, the
@@ -48,10 +50,18 @@ enum class AxisRatio { any, same, half, twice, fourfold };  // n_dst = n_src · 
 
 /// How the engine reads an image: through a sampler, or as a storage image of a format, which some devices do much
 /// faster (lavapipe: 0.6 against 1.8 ns a texel of four floats).
-enum class ImageRead { sampled, storage_rgba32f, storage_rgba16f, storage_r32f };
+enum class ImageRead {
+  sampled,
+  storage_rgba32f,
+  storage_rgba16f,
+  storage_r32f,
+  storage_rg32f,
+  storage_r16f,
+  storage_rg16f
+};
 
-/// What a kernel writes: RGBA32F; RGBA16F (held to ±65504 and rounded); RGBA8 of codes that the last stage gives as
-/// 0…1.
+/// What a kernel writes: 32-bit floats; 16-bit floats (held to ±65504 and rounded); 8 bits of codes that the last stage
+/// gives as 0…1.
 enum class KernelTarget { float32, float16, unorm8 };
 
 /// What a kernel does where a colour on its way is not finite: that of the anchor, one that a stage reads at its own
@@ -68,6 +78,7 @@ struct KernelDesc {
   /// image 0.
   std::optional<Filter> filter;
   AxisRatio ratio_x = AxisRatio::any, ratio_y = AxisRatio::any;
+  int filter_channels = 4;            ///< of what the filter makes, as KernelStage::channels
   std::optional<KernelStage> sample;  ///< a shader with sample_at, or with compute_at: then this is a compute shader
   std::vector<KernelStage> stages;    ///< pixel stages, in order
   /// As the program that it is of; but `rows` are those that one invocation of this kernel makes, each its own output
@@ -75,6 +86,7 @@ struct KernelDesc {
   /// read is read once.
   ExecutionConfig config{};
   KernelTarget target = KernelTarget::float32;
+  int target_channels = 4;  ///< that its image stores: 1, 2 or 4
   FiniteCheck finite_check = FiniteCheck::none;
   /// Wished for each image slot, in the order of AssembledKernel::images; those beyond the end are sampled. An input
   /// that an author's shader uses in any other way than by the prelude's functions stays sampled.
@@ -148,6 +160,7 @@ struct CompiledKernel {
   std::optional<Workgroup> workgroup;  ///< of a compute shader; the target is then the last of the images to bind
   std::uint64_t shared_bytes = 0;      ///< that a workgroup shares
   KernelTarget target = KernelTarget::float32;
+  int target_channels = 4;
   bool two_draws = false;  ///< see KernelDraw
   /// What authors should know, as FILE:LINE: TEXT: variables that may be read before they have a value (they are 0).
   std::vector<std::string> warnings;

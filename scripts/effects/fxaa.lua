@@ -21,7 +21,7 @@ return fx.effect {
       g:skip("the preview's pixels are coarser than the steps of edges")
       return source
     end
-    local luma = g:pass { shader = "fxaa/luma", source = source, reach = 1, name = "luma" }
+    local luma = g:pass { shader = "fxaa/luma", source = source, channels = 1, name = "luma" }
     return g:pass { shader = "fxaa/smooth_edges", source = source, luma = luma, quality = ({ low = 0, medium = 1, high = 2 })[s.quality],
                     fixed_threshold = s.fixed_threshold, relative_threshold = s.relative_threshold, subpixel_blending = s.subpixel_blending }
   end,

@@ -34,7 +34,7 @@ return fx.effect {
                             scale = { s.motion_scale[1] * shutter, s.motion_scale[2] * shutter }, max_radius = radius }
     local rows = g:pass { shader = "motion_blur/longest", source = motion, size = { across, source.height }, block = tile, down = false, name = "rows" }
     local tiles = g:pass { shader = "motion_blur/longest", source = rows, size = { across, down }, block = tile, down = true, name = "tiles" }
-    local neighbours = g:pass { shader = "motion_blur/neighbours", source = tiles }
+    local neighbours = g:pass { shader = "motion_blur/neighbours", source = tiles, channels = 2 }
     return g:pass { shader = "motion_blur/gather", source = motion, picture = source, longest = neighbours, block = tile, samples = s.samples,
                     softness = depth and s.depth_softness or 1 }
   end,

@@ -20,8 +20,8 @@ return fx.effect {
       g:skip("the preview's pixels are coarser than the steps of edges")
       return source
     end
-    local luma = g:pass { shader = "fxaa/luma", source = source, name = "luma" }
-    local edges = g:pass { shader = "smaa/edges", source = luma, threshold = s.threshold, reach = 2, name = "edges" }
+    local luma = g:pass { shader = "fxaa/luma", source = source, channels = 1, name = "luma" }
+    local edges = g:pass { shader = "smaa/edges", source = luma, threshold = s.threshold, reach = 2, channels = 2, name = "edges" }
     local search = math.max(1, math.floor(s.search + 0.5))
     local weights = g:pass { shader = "smaa/weights", source = edges, search = search, rounding = 1 - s.corner_rounding / 100, reach = search + 3, name = "weights" }
     return g:pass { shader = "smaa/blend", source = source, weights = weights, reach = 1, name = "blend" }

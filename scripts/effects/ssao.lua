@@ -55,9 +55,9 @@ return fx.effect {
       inverse_clip = { 1 / s.near, 1 / s.far }, view = view, right = right, up = up, forward = forward,
     }
     local image = g:pass { shader = "ssao/occlusion", source = surface, size = size, name = "occlusion", samples = s.samples, radius = s.radius, bias = s.bias, view = view,
-                           most = s.max_radius * size[2], strength = s.intensity }
-    image = g:pass { shader = "ssao/smooth", source = image, size = size, along = { 1, 0 }, reach = 3, name = "across" }
-    image = g:pass { shader = "ssao/smooth", source = image, size = size, along = { 0, 1 }, reach = 3, name = "down" }
+                           most = s.max_radius * size[2], strength = s.intensity, channels = 2 }
+    image = g:pass { shader = "ssao/smooth", source = image, size = size, along = { 1, 0 }, reach = 3, channels = 2, name = "across" }
+    image = g:pass { shader = "ssao/smooth", source = image, size = size, along = { 0, 1 }, reach = 3, channels = 2, name = "down" }
     return g:pass { shader = "ssao/shade", source = source, occlusion = image, depth = depth, size = source, name = "shade", shadow = s.color, spare = s.spare,
                     device_input = s.depth_space == "device", reversed_z = s.reversed_z, inverse_clip = { 1 / s.near, 1 / s.far } }
   end,

@@ -3,7 +3,7 @@
 layout(constant_id = 0) const int quality = 2;
 
 uniform sampler2D source;
-uniform sampler2D luma;  // by pixel, and means with the next ones: see luma.glsl
+uniform sampler2D luma;
 uniform float fixed_threshold;
 uniform float relative_threshold;
 uniform float subpixel_blending;
@@ -22,11 +22,10 @@ float at(ivec2 pixel) { return fetch(luma, pixel).r; }
 
 /// Luma on the line between two rows or columns, `way` pixels along it from `pixel`; both are whole or halves.
 float beside(vec2 pixel, float way, vec2 direction, bool horizontal) {
-  vec2 to = floor(pixel + way * direction);
-  vec4 means = fetch(luma, ivec2(to));
-  // Before the picture is its first pixel, not the mean of the first two.
-  bool whole = way == floor(way) || (horizontal ? to.x : to.y) < 0.0;
-  return whole ? (horizontal ? means.b : means.g) : means.a;
+  ivec2 to = ivec2(floor(pixel + way * direction));
+  ivec2 next = way == floor(way) ? ivec2(0) : horizontal ? ivec2(1, 0) : ivec2(0, 1), over = horizontal ? ivec2(0, 1) : ivec2(1, 0);
+  float own = at(to), ahead = at(to + next), other = at(to + over), both = at(to + next + over);
+  return 0.25 * (horizontal ? (own + ahead) + (other + both) : (own + other) + (ahead + both));
 }
 
 /// Way along `direction` until luma leaves that of the edge by `enough`; `change` is by how much it did.

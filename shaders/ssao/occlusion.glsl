@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Share of the light that is left (r), and the distance along the viewing axis (a).
+// Share of the light that is left (r), and the distance along the viewing axis (g).
 #include "lib/angle.glsl"
 #include "lib/noise.glsl"
 
@@ -11,18 +11,19 @@ uniform float most;  // pixels
 uniform vec2 view;
 
 const float kFar = 1e9;
+const float kFarthest = 65504.0;  // whatever is farther is that far in the image: half floats hold no more
 const float kTurns = 7.0;  // of the spiral
 
 vec3 place(vec2 at, vec2 size, float z) { return vec3((2.0 * at / size - 1.0) * vec2(view.x, -view.y) * z, -z); }
 
 vec4 sample_at(ivec2 pixel) {
   vec4 surface = fetch(source, pixel);
-  float z = surface.a;
-  if (z >= kFar || z <= 0.0) return vec4(1.0, 1.0, 1.0, z);
+  float z = surface.a, told = min(z, kFarthest);
+  if (z >= kFar || z <= 0.0) return vec4(1.0, told, 0.0, 1.0);
   vec2 size = vec2(image_size(source));
   vec3 here = place(vec2(pixel) + 0.5, size, z);
   float far = min(0.5 * size.y * radius / (view.y * z), most);
-  if (far < 0.5) return vec4(1.0, 1.0, 1.0, z);
+  if (far < 0.5) return vec4(1.0, told, 0.0, 1.0);
   float within = min(radius, 2.0 * far * view.y * z / size.y);  // metres that the reads cover
   vec3 chance = unit_of(pcg3d(uvec3(pixel & 3, 17u)));
   float sum = 0.0;
@@ -37,5 +38,5 @@ vec4 sample_at(ivec2 pixel) {
     float near = max(1.0 - apart, 0.0);
     sum += near * near * near * max(rise, 0.0) / (apart + 0.01);
   }
-  return vec4(vec3(max(0.0, 1.0 - strength * 4.0 * sum / float(samples))), z);
+  return vec4(max(0.0, 1.0 - strength * 4.0 * sum / float(samples)), told, 0.0, 1.0);
 }

@@ -16,7 +16,7 @@ uniform float spare;
 vec4 sample_at(ivec2 pixel) {
   vec4 color = fetch(source, pixel);
   float d = fetch(depth, pixel).r;
-  float z = clamp(device_input ? view_distance(d, inverse_clip, reversed_z) : d, 0.0, 1e10);
+  float z = clamp(device_input ? view_distance(d, inverse_clip, reversed_z) : d, 0.0, 65504.0);
   ivec2 base = pixel / 2;
   vec2 f = vec2(pixel - 2 * base) * 0.5;
   float sum = 0.0, weights = 0.0;
@@ -24,7 +24,7 @@ vec4 sample_at(ivec2 pixel) {
     ivec2 by = ivec2(i & 1, i >> 1);
     vec4 there = fetch(occlusion, base + by);
     vec2 share = mix(1.0 - f, f, vec2(by));
-    float w = share.x * share.y / (1e-3 + abs(there.a - z) / max(0.02 * z, 1e-6));
+    float w = share.x * share.y / (1e-3 + abs(there.g - z) / max(0.02 * z, 1e-6));
     sum += w * there.r;
     weights += w;
   }

@@ -117,6 +117,12 @@ bool needs_optimal(VkImageTiling tiling, VkImageUsageFlags usage) {
          (usage & (VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT)) != 0;
 }
 
+/// With AFTERGLOW_GPU_FOUR_CHANNELS=1, images of two channels of floats cannot be drawn to or stored to.
+bool lacks(VkFormat format) {
+  static const char* text = std::getenv("AFTERGLOW_GPU_FOUR_CHANNELS");
+  return text && *text == '1' && (format == VK_FORMAT_R16G16_SFLOAT || format == VK_FORMAT_R32G32_SFLOAT);
+}
+
 constexpr VkFormatFeatureFlags kNotLinear = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT |
                                             VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT |
                                             VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
@@ -343,11 +349,13 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties(VkPhysicalDevice ph
                                                              VkFormatProperties* out) {
   next.GetPhysicalDeviceFormatProperties(physical, format, out);
   out->linearTilingFeatures &= ~kNotLinear;
+  if (lacks(format)) out->optimalTilingFeatures &= ~kNotLinear;
 }
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties2(VkPhysicalDevice physical, VkFormat format,
                                                               VkFormatProperties2* out) {
   next.GetPhysicalDeviceFormatProperties2(physical, format, out);
   out->formatProperties.linearTilingFeatures &= ~kNotLinear;
+  if (lacks(format)) out->formatProperties.optimalTilingFeatures &= ~kNotLinear;
   for (auto* more = static_cast<VkBaseOutStructure*>(out->pNext); more; more = more->pNext)
     if (more->sType == VK_STRUCTURE_TYPE_FORMAT_PROPERTIES_3)
       reinterpret_cast<VkFormatProperties3*>(more)->linearTilingFeatures &= ~VkFormatFeatureFlags2{kNotLinear};
@@ -360,7 +368,8 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysical
                                                                       VkImageType type, VkImageTiling tiling,
                                                                       VkImageUsageFlags usage, VkImageCreateFlags flags,
                                                                       VkImageFormatProperties* out) {
-  if (needs_optimal(tiling, usage)) return VK_ERROR_FORMAT_NOT_SUPPORTED;
+  if (needs_optimal(tiling, usage) || (lacks(format) && needs_optimal(VK_IMAGE_TILING_LINEAR, usage)))
+    return VK_ERROR_FORMAT_NOT_SUPPORTED;
   const VkResult result =
       next.GetPhysicalDeviceImageFormatProperties(physical, format, type, tiling, usage, flags, out);
   if (result == VK_SUCCESS) limit_sides(*out);
@@ -369,7 +378,9 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysical
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(VkPhysicalDevice physical,
                                                                        const VkPhysicalDeviceImageFormatInfo2* info,
                                                                        VkImageFormatProperties2* out) {
-  if (needs_optimal(info->tiling, info->usage)) return VK_ERROR_FORMAT_NOT_SUPPORTED;
+  if (needs_optimal(info->tiling, info->usage) ||
+      (lacks(info->format) && needs_optimal(VK_IMAGE_TILING_LINEAR, info->usage)))
+    return VK_ERROR_FORMAT_NOT_SUPPORTED;
   const VkResult result = next.GetPhysicalDeviceImageFormatProperties2(physical, info, out);
   if (result == VK_SUCCESS) limit_sides(out->imageFormatProperties);
   return result;

@@ -56,6 +56,18 @@ TEST_F(ForcedWays, MakeThePictureOfTheUsualWay) {
       compare(words, error, {"run", preset(look).string(), neon().string(), "--size", "320x180"});
 }
 
+/// Edges in two channels, brightness in one (smaa): the bits that four hold.
+TEST_F(ForcedWays, FewChannelsMakeThePictureOfFour) {
+  for (const char* words : {"four-channels", "four-channels fp16", "four-channels staging"})
+    for (const char* size : {"320x180", "101x57", "1x1"}) {
+      const std::string rest = std::string(words).substr(std::string(words).find(' ') + 1);
+      std::vector<std::string> arguments{"run", preset("toon.lua").string(), neon().string(), "--size", size};
+      if (rest == "fp16") arguments.insert(arguments.end(), {"--precision", "fp16"});
+      compare(words, 0, arguments);
+      EXPECT_NE(report().at("session").at("choice").get<std::string>().find("four-channels"), std::string::npos);
+    }
+}
+
 TEST_F(ForcedWays, SequencesThatLookBackAreTheSame) {
   for (int frame = 1; frame <= 4; ++frame) make_exr("in/a.000" + std::to_string(frame) + ".exr", 96, 54);
   write("look.lua",

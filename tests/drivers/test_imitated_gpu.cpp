@@ -63,6 +63,26 @@ TEST_F(ImitatedGpu, RowsAreForDevicesThatCanWriteThem) {
   }
 }
 
+/// Where images of two channels cannot be drawn to, all hold four, which the report says; the picture is the same.
+TEST_F(ImitatedGpu, FewChannelsAreForDevicesThatDrawThem) {
+  RunOptions without = on_gpu();
+  without.environment["AFTERGLOW_GPU_FOUR_CHANNELS"] = "1";
+  EXPECT_TRUE(json::parse(done({"devices", "--json"}).out).at(0).at("few_channels"));
+  EXPECT_FALSE(json::parse(done({"devices", "--json"}, without).out).at(0).at("few_channels"));
+  for (const char* precision : {"fp32", "fp16"}) {
+    std::vector<std::string> arguments{"run", preset("toon.lua").string(), neon().string(), "--size", "320x180"};
+    arguments.insert(arguments.end(), {"--type", "float", "--precision", precision, "--report", "report.json"});
+    arguments.insert(arguments.end(), {"-o", "few.exr"});
+    done(arguments);
+    const auto way = [&] { return json::parse(read("report.json")).at("session").at("choice").get<std::string>(); };
+    EXPECT_EQ(way().find("four-channels"), std::string::npos);
+    arguments.back() = "four.exr";
+    done(arguments, without);
+    EXPECT_NE(way().find("four-channels"), std::string::npos);
+    EXPECT_EQ(pixels_of("few.exr"), pixels_of("four.exr"));
+  }
+}
+
 TEST_F(ImitatedGpu, HistoriesRegionsLayersAndDisplayFiles) {
   for (int frame = 1; frame <= 3; ++frame) make_exr("in/a.000" + std::to_string(frame) + ".exr", 96, 54);
   write("look.lua",

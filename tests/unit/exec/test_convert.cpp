@@ -143,5 +143,37 @@ TEST(OverRows, EveryRowOnceWhateverTheSize) {
   }
 }
 
+/// Across chunks, from floats and halves; what is not there is as readers of such an image find it.
+TEST(Convert, FewChannelsAreWidened) {
+  constexpr int kWidth = 601;
+  const auto value = [](int i) { return static_cast<float>(i % 2048) * 0.25f - 100; };
+  std::vector<float> floats(2 * kWidth);
+  std::vector<std::uint16_t> halves(floats.size());
+  for (std::size_t i = 0; i < floats.size(); ++i) floats[i] = value(static_cast<int>(i));
+  halves_from_floats(floats.data(), floats.size(), halves.data());
+  struct Case {
+    VkFormat format;
+    int channels;
+    const void* from;
+  };
+  for (const Case& of :
+       {Case{VK_FORMAT_R32_SFLOAT, 1, floats.data()}, Case{VK_FORMAT_R32G32_SFLOAT, 2, floats.data()},
+        Case{VK_FORMAT_R16_SFLOAT, 1, halves.data()}, Case{VK_FORMAT_R16G16_SFLOAT, 2, halves.data()}}) {
+    std::vector<float> rgba(4 * kWidth, -1);
+    EXPECT_EQ(unpack_row(static_cast<const std::byte*>(of.from), of.format, kWidth, rgba.data()), 0u);
+    for (int x = 0; x < kWidth; ++x) {
+      const float* pixel = &rgba[static_cast<std::size_t>(x) * 4];
+      EXPECT_EQ(pixel[0], value(of.channels * x));
+      EXPECT_EQ(pixel[1], of.channels == 2 ? value(2 * x + 1) : 0);
+      EXPECT_EQ(pixel[2], 0);
+      EXPECT_EQ(pixel[3], 1);
+    }
+  }
+  halves[5] = 0xfbff;  // -65504
+  std::vector<float> rgba(4 * kWidth);
+  EXPECT_EQ(unpack_row(reinterpret_cast<const std::byte*>(halves.data()), VK_FORMAT_R16_SFLOAT, kWidth, rgba.data()),
+            1u);
+}
+
 }  // namespace
 }  // namespace afterglow

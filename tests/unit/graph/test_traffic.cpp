@@ -44,6 +44,38 @@ TEST(MemoryNeeded, CountsWhatTwoDrawsMark) {
   EXPECT_EQ(memory_needed(samples.graph, plain), memory_needed(pixels.graph, plain) + 2 * kPixels);
 }
 
+/// A channel that is not stored moves nothing; of the result, and where four are wanted, all four are.
+TEST(Traffic, FewerChannelsAreFewerBytes) {
+  Builder b;
+  const ImageId edges = b.sample("edges", {{"in", b.graph.source}}, {16, 8});
+  const ImageId weights = b.sample("weights", {{"in", edges}}, {16, 8});
+  b.sample("blend", {{"in", b.graph.source}, {"weights", weights}}, {16, 8});
+  b.graph.images[static_cast<std::size_t>(edges)].channels = 1;
+  b.graph.images[static_cast<std::size_t>(weights)].channels = 2;
+  b.graph.images[static_cast<std::size_t>(b.graph.result)].channels = 2;
+  for (const Storage storage : {Storage::fp32, Storage::fp16}) {
+    const std::uint64_t channel = storage == Storage::fp16 ? 2 : 4;
+    EXPECT_EQ(of(b.graph, {.storage = storage}).total, kPixels * channel * (4 + 1 + 1 + 2 + 4 + 2 + 4));
+    EXPECT_EQ(of(b.graph, {.storage = storage, .four_channels = true}).total, kPixels * channel * 7 * 4);
+    // The most is alive when weights are read and the result is written: 2 + 4 in place of 4 + 4.
+    const std::uint64_t few = memory_needed(b.graph, {.storage = storage});
+    EXPECT_EQ(memory_needed(b.graph, {.storage = storage, .four_channels = true}) - few, kPixels * channel * 2);
+  }
+}
+
+/// What a frame hands on is in full floats of four channels.
+TEST(Traffic, HistoriesHaveFourChannels) {
+  Builder b;
+  const ImageId kept = b.sample("kept", {{"in", b.graph.source}}, {16, 8});
+  b.sample("out", {{"in", kept}}, {16, 8});
+  b.graph.images[static_cast<std::size_t>(kept)].channels = 1;
+  EXPECT_EQ(stored_channels(b.graph, kept, {}), 1);
+  b.graph.images.push_back({"before", {16, 8}, -1});
+  b.graph.histories.push_back(
+      {.name = "past", .previous = static_cast<ImageId>(b.graph.images.size()) - 1, .next = kept});
+  EXPECT_EQ(stored_channels(b.graph, kept, {}), 4);
+}
+
 TEST(Traffic, PyramidsAreToldApartAndImagesReadTwiceByAKernelCountOnce) {
   Builder b;
   const ImageId down = b.filter("down", b.graph.source, {8, 4});

@@ -51,6 +51,15 @@ TEST_F(BuildMessages, UnknownNames) {
             "effects/probe.lua:4: error: effect 'probe': g:pass has a value without a name at position 1");
 }
 
+TEST_F(BuildMessages, Channels) {
+  for (const std::string value : {"3", "0", "1.5", "-1"})
+    EXPECT_EQ(gain(kRest + ", gain = 1, channels = " + value),
+              kAt5 + "channels = " + value + " is no number of channels; allowed: 1, 2, 4");
+  EXPECT_EQ(error("return g:filter { source = source, filter = {},\nchannels = 3 }"),
+            "effects/probe.lua:5: error: pass 'glow.filter' of effect 'probe': channels = 3 is no number of channels; "
+            "allowed: 1, 2, 4");
+}
+
 TEST_F(BuildMessages, MissingInputsAndParameters) {
   EXPECT_EQ(gain(""), kAt4 + "shader 'gain' needs 'high', an image");
   EXPECT_EQ(gain("high = source"), kAt4 + "shader 'gain' needs the parameter 'gain'; allowed: a number");
@@ -152,7 +161,8 @@ TEST_F(BuildMessages, Filters) {
   EXPECT_EQ(error("return g:filter { source = 5, filter = {} }"),
             "effects/probe.lua:4: error: effect 'probe': g:filter: source = 5 is not an image");
   EXPECT_EQ(error("return g:filter { source = source, filter = {}, siez = 1 }"),
-            "effects/probe.lua:4: error: effect 'probe': g:filter has no 'siez'; allowed: filter, name, size, source; "
+            "effects/probe.lua:4: error: effect 'probe': g:filter has no 'siez'; allowed: channels, filter, name, "
+            "size, source; "
             "did you mean 'size'?");
   EXPECT_EQ(error("local fx = require \"afterglow\"\nreturn fx.filters.gausian_vertical()"),
             "effects/probe.lua:5: error: unknown filter \"gausian_vertical\"; allowed: area, bilinear, box, bspline, "
@@ -175,9 +185,10 @@ TEST_F(BuildMessages, Inputs) {
 TEST_F(BuildMessages, TheGraphAndImages) {
   EXPECT_EQ(error("g.pass { shader = \"plain\" }"),
             "effects/probe.lua:4: error: the first argument is a table, not the graph; allowed: g:pass { … }");
-  EXPECT_EQ(error("g:pas {}"),
-            "effects/probe.lua:4: error: the graph has no \"pas\"; allowed: cryptomatte, filter, fps, frame, "
-            "frame_time, history, image, input, keep, length_scale, lookup, ocio, pass, skip, time; did you mean 'pass'?");
+  EXPECT_EQ(
+      error("g:pas {}"),
+      "effects/probe.lua:4: error: the graph has no \"pas\"; allowed: cryptomatte, filter, fps, frame, "
+      "frame_time, history, image, input, keep, length_scale, lookup, ocio, pass, skip, time; did you mean 'pass'?");
   EXPECT_EQ(error("local w = source.widht"),
             "effects/probe.lua:4: error: an image has no \"widht\"; allowed: width, height; did you mean 'width'?");
   EXPECT_EQ(error("source.width = 5"), "effects/probe.lua:4: error: attempt to index a image value (local 'source')");

@@ -130,6 +130,34 @@ TEST_F(Binding, Filters) {
   EXPECT_EQ(graph.images[static_cast<std::size_t>(graph.result)].size, (Size{64, 32}));
 }
 
+/// A filter's image has as many channels as its source.
+TEST_F(Binding, Channels) {
+  const Graph graph = this->graph(R"(
+    local edges = g:pass { shader = "lone", depth = source, size = source, channels = 2, name = "edges" }
+    local small = g:filter { source = edges, size = { 8, 8 }, filter = {}, name = "small" }
+    local less = g:filter { source = edges, filter = {}, channels = 1, name = "less" }
+    local all = g:filter { source = less, filter = {}, channels = 4, name = "all" }
+    return g:pass { shader = "edges", depth = small, source = all })");
+  const auto channels = [&](std::size_t pass) {
+    return graph.images[static_cast<std::size_t>(graph.passes[pass].output)].channels;
+  };
+  ASSERT_EQ(graph.passes.size(), 5u);
+  EXPECT_EQ(channels(0), 2);
+  EXPECT_EQ(channels(1), 2);
+  EXPECT_EQ(channels(2), 1);
+  EXPECT_EQ(channels(3), 4);
+  EXPECT_EQ(channels(4), 4);
+  Graph other = graph;
+  other.images[static_cast<std::size_t>(graph.passes[0].output)].channels = 1;
+  EXPECT_FALSE(same_structure(graph, other));
+  EXPECT_THAT(to_json(graph), testing::HasSubstr("\"channels\": 2"));
+  other.images[static_cast<std::size_t>(graph.passes[0].output)].channels = 3;
+  EXPECT_FALSE(validate(other));
+  other = graph;
+  other.images[static_cast<std::size_t>(graph.source)].channels = 1;
+  EXPECT_FALSE(validate(other));  // pictures are what they are
+}
+
 TEST_F(Binding, FilterLibrary) {
   const Graph graph = this->graph(R"(
     local fx = require "afterglow"
