@@ -17,6 +17,9 @@
 namespace afterglow {
 namespace {
 
+/// Of lines that are fetched before they are unpacked side by side, which starts threads.
+constexpr std::size_t kFetchedBytes = 4 << 20;
+
 /// The samples of one channel in one line.
 void take_samples(const std::uint8_t* stored, ExrChannelType type, std::size_t width, std::vector<float>& line,
                   float* base, std::size_t stride) {
@@ -48,7 +51,9 @@ class LineReader {
   void run() {
     const int chunks = static_cast<int>(part_.chunks());
     const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 16u));
-    const int most = std::min(chunks, std::max(2 * threads, 32 / lines_));
+    const int chunk_bytes = static_cast<int>(std::min<std::size_t>(line_bytes_ * lines_, kFetchedBytes));
+    const int most =
+        std::min(chunks, std::max(2 * threads, static_cast<int>(kFetchedBytes) / std::max(chunk_bytes, 1)));
     std::vector<std::vector<std::uint8_t>> packed(static_cast<std::size_t>(most));
     for (int first = 0; first < chunks; first += most) {
       const int count = std::min(most, chunks - first);

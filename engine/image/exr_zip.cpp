@@ -14,35 +14,51 @@ namespace {
 
 constexpr std::uint8_t kMiddle = 128;  // differences are stored around it
 
+#if defined(__SSE2__)
+__m128i load_bytes(const std::uint8_t* from) { return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from)); }
+void store_bytes(std::uint8_t* to, __m128i bytes) { _mm_storeu_si128(reinterpret_cast<__m128i*>(to), bytes); }
+
+/// Its last byte in all of them.
+__m128i last_everywhere(__m128i bytes) {
+  const __m128i pairs = _mm_unpackhi_epi8(bytes, bytes);
+  return _mm_shuffle_epi32(_mm_shufflehi_epi16(pairs, 0xff), 0xff);
+}
+#endif
+
 /// Each byte plus all before it.
 void add_up(std::span<std::uint8_t> bytes) {
+  if (bytes.empty()) return;
   std::size_t i = 1;
-  std::uint8_t last = bytes.empty() ? std::uint8_t{0} : bytes[0];
 #if defined(__SSE2__)
+  // Sums within 16 bytes wait for nothing; only their totals are added one after the other.
   const __m128i middle = _mm_set1_epi8(static_cast<char>(kMiddle));
+  __m128i before = _mm_set1_epi8(static_cast<char>(bytes[0]));
   for (; i + 16 <= bytes.size(); i += 16) {
-    auto* at = reinterpret_cast<__m128i*>(bytes.data() + i);
-    __m128i sum = _mm_sub_epi8(_mm_loadu_si128(at), middle);
+    __m128i sum = _mm_sub_epi8(load_bytes(&bytes[i]), middle);
     sum = _mm_add_epi8(sum, _mm_slli_si128(sum, 1));
     sum = _mm_add_epi8(sum, _mm_slli_si128(sum, 2));
     sum = _mm_add_epi8(sum, _mm_slli_si128(sum, 4));
     sum = _mm_add_epi8(sum, _mm_slli_si128(sum, 8));
-    sum = _mm_add_epi8(sum, _mm_set1_epi8(static_cast<char>(last)));
-    _mm_storeu_si128(at, sum);
-    last = bytes[i + 15];
+    store_bytes(&bytes[i], _mm_add_epi8(sum, before));
+    before = _mm_add_epi8(before, last_everywhere(sum));
   }
 #endif
-  for (; i < bytes.size(); ++i) {
-    last = static_cast<std::uint8_t>(last + bytes[i] - kMiddle);
-    bytes[i] = last;
-  }
+  for (; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(bytes[i - 1] + bytes[i] - kMiddle);
 }
 
 void put_together(std::span<const std::uint8_t> apart, std::span<std::uint8_t> bytes) {
   const std::size_t pairs = bytes.size() / 2;
   const std::uint8_t *even = apart.data(), *odd = apart.data() + (bytes.size() + 1) / 2;
   std::uint8_t* out = bytes.data();
-  for (std::size_t i = 0; i < pairs; ++i) {
+  std::size_t i = 0;
+#if defined(__SSE2__)
+  for (; i + 16 <= pairs; i += 16) {
+    const __m128i a = load_bytes(even + i), b = load_bytes(odd + i);
+    store_bytes(out + 2 * i, _mm_unpacklo_epi8(a, b));
+    store_bytes(out + 2 * i + 16, _mm_unpackhi_epi8(a, b));
+  }
+#endif
+  for (; i < pairs; ++i) {
     out[2 * i] = even[i];
     out[2 * i + 1] = odd[i];
   }
@@ -53,7 +69,16 @@ void put_apart(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> apar
   const std::size_t pairs = bytes.size() / 2;
   std::uint8_t *even = apart.data(), *odd = apart.data() + (bytes.size() + 1) / 2;
   const std::uint8_t* from = bytes.data();
-  for (std::size_t i = 0; i < pairs; ++i) {
+  std::size_t i = 0;
+#if defined(__SSE2__)
+  const __m128i low = _mm_set1_epi16(0xff);
+  for (; i + 16 <= pairs; i += 16) {
+    const __m128i a = load_bytes(from + 2 * i), b = load_bytes(from + 2 * i + 16);
+    store_bytes(even + i, _mm_packus_epi16(_mm_and_si128(a, low), _mm_and_si128(b, low)));
+    store_bytes(odd + i, _mm_packus_epi16(_mm_srli_epi16(a, 8), _mm_srli_epi16(b, 8)));
+  }
+#endif
+  for (; i < pairs; ++i) {
     even[i] = from[2 * i];
     odd[i] = from[2 * i + 1];
   }
@@ -64,7 +89,13 @@ void take_differences(std::span<const std::uint8_t> bytes, std::span<std::uint8_
   const std::uint8_t* from = bytes.data();
   std::uint8_t* to = out.data();
   if (!bytes.empty()) to[0] = from[0];
-  for (std::size_t i = 1; i < bytes.size(); ++i) to[i] = static_cast<std::uint8_t>(from[i] - from[i - 1] + kMiddle);
+  std::size_t i = 1;
+#if defined(__SSE2__)
+  const __m128i middle = _mm_set1_epi8(static_cast<char>(kMiddle));
+  for (; i + 16 <= bytes.size(); i += 16)
+    store_bytes(to + i, _mm_add_epi8(_mm_sub_epi8(load_bytes(from + i), load_bytes(from + i - 1)), middle));
+#endif
+  for (; i < bytes.size(); ++i) to[i] = static_cast<std::uint8_t>(from[i] - from[i - 1] + kMiddle);
 }
 
 }  // namespace
