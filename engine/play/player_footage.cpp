@@ -28,4 +28,9 @@ void Player::State::take_footage() {
   reread = true;
 }
 
+std::shared_ptr<const Picture> Player::source() const {
+  const auto& read = state_->picture;
+  return read ? std::shared_ptr<const Picture>(read, &read->picture) : nullptr;
+}
+
 }  // namespace afterglow

@@ -2,11 +2,14 @@
 // Panel, transport bar and help sheet of a window that plays.
 #pragma once
 
+#include <atomic>
+#include <memory>
 #include <optional>
 
 #include "window/frame_export.h"
 #include "window/panel.h"
 #include "window/player_port.h"
+#include "window/preset_browser.h"
 #include "window/range_export.h"
 #include "window/run_window.h"
 
@@ -33,6 +36,14 @@ class PlayParts {
   FrameExport export_;
   RangeExport range_export_;
   NameDialog range_name_;
+  PresetBrowser presets_;
+  ThumbnailFrame thumbnail_frame() const;
+  void browse_presets();
+  void draw_presets(Ui& ui);
+  std::filesystem::path preset_;  ///< that is played
+  int thumbnails_of_ = -1;        ///< position of the frame that they are of
+  std::atomic<bool> news_ = false;
+  std::unique_ptr<Thumbnails> thumbnails_;  // last: its thread says `news_`
 };
 
 }  // namespace afterglow

@@ -70,7 +70,8 @@ constexpr Shortcut kShortcuts[] = {
 
     {Action::reload, GLFW_KEY_F5, kNone, "F5", "Preset", "Look at the files now"},
     {Action::copy_message, GLFW_KEY_C, kControl, "Ctrl+C", "Preset", "Copy the error message"},
-    {Action::edit_file, GLFW_KEY_F4, kNone, "F4", "Preset", "Open the line of the error in $AFTERGLOW_EDITOR"},
+    {Action::edit_file, GLFW_KEY_F4, kNone, "F4", "Preset",
+     "Open the line of the error in $AFTERGLOW_EDITOR; again: of the next one"},
     {Action::undo, GLFW_KEY_Z, kControl, "Ctrl+Z", "Preset", "Undo", true},
     {Action::redo, GLFW_KEY_Z, kBoth, "Ctrl+Shift+Z", "Preset", "Redo", true},
     {Action::redo, GLFW_KEY_Y, kControl, "Ctrl+Y", "Preset", "Redo", true},
@@ -82,6 +83,7 @@ constexpr Shortcut kShortcuts[] = {
     {Action::recall_3, GLFW_KEY_3, kControl, "Ctrl+3", "Preset", "… of snapshot 3"},
     {Action::save, GLFW_KEY_S, kControl, "Ctrl+S", "Preset", "Write the changed settings into the preset"},
 
+    {Action::browse_presets, GLFW_KEY_O, kControl, "Ctrl+O", "Preset", "Open a preset, or with Shift+Enter as B"},
     {Action::save_as, GLFW_KEY_S, kBoth, "Ctrl+Shift+S", "Preset",
      "Write the preset to another file, and go on with that"},
     {Action::undo_save, GLFW_KEY_S, kControl | GLFW_MOD_ALT, "Ctrl+Alt+S", "Preset",

@@ -86,6 +86,7 @@ enum class Action {
   undo_save,
   reset_all,
   save_as,
+  browse_presets,
   search,
   add_effect,
   next_entry,

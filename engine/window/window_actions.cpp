@@ -119,6 +119,15 @@ void WindowApp::edit_file(const std::string& file, int line) {
                               : opened.error().text());
 }
 
+/// The first error; while the message stays, each time the next one.
+void WindowApp::edit_next_place() {
+  const std::string message = current_message(player_);
+  if (message != edited_.message) edited_ = {message, 0};
+  const auto places = current_places(player_);
+  const ErrorPlace& place = places[edited_.next++ % places.size()];
+  edit_file(place.file.string(), place.line);
+}
+
 void WindowApp::keep_snapshot(int snapshot) {
   player_.end_gesture();
   player_.keep_snapshot(snapshot);
@@ -151,8 +160,7 @@ bool WindowApp::act_on_preset(Action action) {
       return true;
     }
     case Action::edit_file: {
-      const ErrorPlace place = current_place(player_);
-      edit_file(place.file.string(), place.line);
+      edit_next_place();
       return true;
     }
     case Action::copy_message: {
@@ -192,6 +200,9 @@ bool WindowApp::act_on_preset(Action action) {
       ui.say(edited ? "stack and settings as the file has them" : "nothing was changed");
       return true;
     }
+    case Action::browse_presets:
+      browse_presets();
+      return true;
     case Action::save_as:
     case Action::add_effect:
     case Action::next_entry:
