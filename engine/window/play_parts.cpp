@@ -21,12 +21,14 @@ PlayParts::PlayParts(Player& player, const ExportSetup& setup, Diagnostics& diag
   panel_.emplace(setup.preset, preset_options_);
 }
 
-void PlayParts::draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) const {
+void PlayParts::draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) {
   TransportBarState state{.timeline = {.transport = player.transport(),
                                        .now = player.now(),
                                        .shown = player.shown().position,
                                        .number = [&player](int at) { return player.footage().frame(at).number; },
-                                       .state = [&player](int at) { return player.frame_state(at); }},
+                                       .state = [&player](int at) { return player.frame_state(at); },
+                                       .footage = player.footage(),
+                                       .markers = marks_.markers(player)},
                           .view = player.view(),
                           .picture = player.images().picture,
                           .window = ui.picture_window,
@@ -91,6 +93,7 @@ void PlayParts::draw_presets(Ui& ui) {
 
 void PlayParts::draw_dialogs(Ui& ui) {
   draw_presets(ui);
+  marks_.draw(player_, ui);
   if (const auto name = range_name_.draw(ui, ImGui::GetIO().DisplaySize)) range_export_.begin(player_, ui, *name);
 }
 
@@ -174,13 +177,15 @@ void PlayParts::add_to(WindowOptions& options) {
     panel_->undo_save(port_);
   };
   options.edit_stack = [this](Player&, Ui& ui, Action action) { return edit_stack(ui, action); };
+  options.marks = [this](Player& player, Ui& ui, Action action) { return marks_.act(player, ui, action); };
   options.close_windows = [this] {
     const bool open = range_name_.is_open();
     range_name_.close();
     const bool browsed = presets_.is_open();
     if (browsed) thumbnails_->rest();
     presets_.close();
-    return panel_->close_windows() || open || browsed;
+    const bool marks = marks_.close_windows();
+    return panel_->close_windows() || open || browsed || marks;
   };
   options.browse_presets = [this](Player&, Ui&) { browse_presets(); };
   options.news = [this] { return news_.exchange(false); };

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "window/frame_export.h"
+#include "window/mark_keys.h"
 #include "window/panel.h"
 #include "window/player_port.h"
 #include "window/preset_browser.h"
@@ -23,7 +24,7 @@ class PlayParts {
   void add_to(WindowOptions& options);
 
  private:
-  void draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) const;
+  void draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size);
   bool edit_stack(Ui& ui, Action action);
   void ask_for_range(Ui& ui);
   void draw_dialogs(Ui& ui);
@@ -36,6 +37,7 @@ class PlayParts {
   FrameExport export_;
   RangeExport range_export_;
   NameDialog range_name_;
+  MarkKeys marks_;
   PresetBrowser presets_;
   ThumbnailFrame thumbnail_frame() const;
   void browse_presets();

@@ -61,6 +61,18 @@ bool WindowApp::act_on_transport(Action action) {
       ui.frame_field.text.fill(0);
       await_field();
       return true;
+    case Action::mark:
+    case Action::name_mark:
+    case Action::next_mark:
+    case Action::previous_mark:
+      if (options_.marks && options_.marks(player_, ui, action)) await_field();
+      return true;
+    case Action::next_clip:
+      go_to_clip(1);
+      return true;
+    case Action::previous_clip:
+      go_to_clip(-1);
+      return true;
     case Action::step_forward:
       t.step(1, now);
       return true;
@@ -101,6 +113,20 @@ bool WindowApp::act_on_transport(Action action) {
     default:
       return false;
   }
+}
+
+/// Backwards it stops at the first frame of the clip that is shown.
+void WindowApp::go_to_clip(int by) {
+  Transport& t = player_.transport();
+  const auto& clips = player_.footage().clips();
+  const int here = player_.footage().clip_at(t.position());
+  const bool to_begin = by < 0 && t.position() > clips[static_cast<std::size_t>(here)].first;
+  const int there = std::clamp(to_begin ? here : here + by, 0, static_cast<int>(clips.size()) - 1);
+  if (by > 0 && there == here)
+    return interface_->ui().say(clips.size() > 1 ? "this is the last clip" : "there is one clip");
+  const auto& clip = clips[static_cast<std::size_t>(there)];
+  t.go_to(clip.first, player_.now());
+  interface_->ui().say(fmt::format("clip {} of {}: {}", there + 1, clips.size(), clip.label));
 }
 
 /// One way at the speed of the clock; pressed again, twice as fast.
