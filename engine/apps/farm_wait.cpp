@@ -5,12 +5,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <set>
 #include <thread>
 
 #include "apps/interrupt.h"
 #include "core/stopwatch.h"
-#include "core/text.h"
 #include "farm/status.h"
 
 namespace afterglow {
@@ -28,17 +26,6 @@ bool pause(milliseconds length) {
   return !interrupted();
 }
 
-std::string label(const farm::JobStatus& status) {
-  std::set<std::string> nodes;
-  for (const auto& chunk : status.chunks)
-    if (chunk.state == farm::ChunkStatus::State::running && !chunk.node.empty()) nodes.insert(chunk.node);
-  constexpr std::size_t kMostNamed = 4;
-  std::string out = farm::status_line(status);
-  if (nodes.size() > kMostNamed) return fmt::format("{} on {} nodes", out, nodes.size());
-  if (!nodes.empty()) out += " on " + join(std::vector<std::string>(nodes.begin(), nodes.end()), " ");
-  return out;
-}
-
 }  // namespace
 
 Result<void> wait_for_job(const farm::Job& job, Console& console) {
@@ -46,7 +33,8 @@ Result<void> wait_for_job(const farm::Job& job, Console& console) {
   Clock::time_point other_than_ending = start;  // when a chunk was last seen to wait or run
   for (milliseconds length = kFirstPause;; length = std::min(length * 3 / 2, kLongestPause)) {
     AFTERGLOW_TRY(const farm::JobStatus status, farm::status_of(job));
-    console.progress(status.frames_done, status.frames, label(status), milliseconds_since(start) / 1000);
+    console.progress(status.frames_done, status.frames, farm::waiting_line(job, status),
+                     milliseconds_since(start) / 1000);
     const bool ending = status.count(farm::ChunkStatus::State::ending) > 0 &&
                         status.count(farm::ChunkStatus::State::running) == 0 &&
                         status.count(farm::ChunkStatus::State::waiting) == 0;

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "core/patience.h"
 #include "core/temporary.h"
 
 namespace afterglow {
@@ -27,6 +28,7 @@ volatile std::sig_atomic_t g_grace = 1;  // seconds between being asked to stop 
 void on_signal(int signal) {
   if (g_interrupted != 0) end_at_once(signal);
   g_interrupted = 1;
+  give_up_waiting();
   alarm(static_cast<unsigned>(g_grace));
 }
 

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "batch/crop.h"
-#include "image/scale.h"
 #include "core/file_time.h"
 #include "core/stopwatch.h"
 #include "core/text.h"
+#include "image/scale.h"
 
 namespace afterglow {
 namespace {
@@ -104,6 +104,8 @@ Result<void> FrameLoop::finish_sink(const Result<void>& result) {
 
 /// Waits for the last output and sums up.
 Result<void> FrameLoop::close(Result<void> result) {
+  // Waiting for a stream's next frame was given up: what came before it is no whole run.
+  if (result && stream_error_ && stream_error_->kind == ErrorKind::interrupted) result = *stream_error_;
   while (result && !running_.empty()) result = finish_running();
   running_.clear();
   auto last = finish_writing(0);

@@ -58,6 +58,7 @@ Result<void> join_parts(const BatchRequest& request, const std::vector<FrameJob>
                         const std::vector<VideoPart>& parts, const RunEvents& events) {
   AFTERGLOW_TRY(const WholeVideo video, whole_video(request, frames));
   VideoPieces pieces{.pieces = {}, .whole = video.whole, .interrupted = events.interrupted};
+  AFTERGLOW_TRY(pieces.patience, patience_of_process());
   auto next = video.times.begin();
   for (const VideoPart& part : parts) {
     if (part.frames > static_cast<std::size_t>(video.times.end() - next)) break;

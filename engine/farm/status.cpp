@@ -163,6 +163,23 @@ std::string status_line(const JobStatus& status) {
   return join(parts);
 }
 
+std::string waiting_line(const Job& job, const JobStatus& status) {
+  JobStatus frames;
+  std::set<std::string> nodes;
+  for (std::size_t i = 0; i < job.chunks.size() && i < status.chunks.size(); ++i) {
+    const ChunkStatus& chunk = frames.chunks.emplace_back(status.chunks[i]);
+    if (chunk.state == State::running && !chunk.node.empty()) nodes.insert(chunk.node);
+  }
+  constexpr std::size_t kMostNamed = 4;
+  std::string out = fmt::format("frames; of {} chunks {}", frames.chunks.size(), status_line(frames));
+  if (nodes.size() > kMostNamed)
+    out += fmt::format(" ({} nodes)", nodes.size());
+  else if (!nodes.empty())
+    out += fmt::format(" ({})", join(std::vector<std::string>(nodes.begin(), nodes.end()), " "));
+  if (!job.video.empty()) out += fmt::format("; the join is {}", word_of(status.chunks.back().state));
+  return out;
+}
+
 std::string status_text(const Job& job, const JobStatus& status, bool all) {
   std::string out =
       fmt::format("{}: {}, {} of {} frames, {} chunks{}: {}\n", job.id, job.look, status.frames_done, status.frames,

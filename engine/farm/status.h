@@ -48,6 +48,9 @@ std::vector<std::size_t> tasks_to_retry(const Job& job, const JobStatus& status)
 std::string status_text(const Job& job, const JobStatus& status, bool all);
 /// "6 done, 2 running on n1 n2, 1 failed".
 std::string status_line(const JobStatus& status);
+/// What stands behind a count of frames while they are made: "frames; of 9 chunks 6 done, 2 running, 1 waiting (n1 n2);
+/// the join is waiting".
+std::string waiting_line(const Job& job, const JobStatus& status);
 /// What a program that waited for the job ends with: nothing when all is done, else an error that says how much is not.
 Result<void> outcome_of(const Job& job, const JobStatus& status);
 

@@ -146,6 +146,7 @@ Result<MovieIndex> index_movie(FfmpegInput& input) {
   bool cut_short = false;
   for (int errors = 0; errors < kMostErrors;) {
     const int got = input.read(*packet);
+    if (auto reason = input.given_up()) return *std::move(reason);
     if (got == AVERROR_EOF) break;
     if (got < 0) {
       ++errors;

@@ -7,7 +7,6 @@ extern "C" {
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -58,24 +57,32 @@ int FfmpegInput::read_bytes(void* opaque, std::uint8_t* to, int size) {
     bytes.given += count;
     return static_cast<int>(count);
   }
-  const int descriptor = bytes.from->get();
-  while (true) {
-    if (bytes.cancelled) {
-      constexpr int kLook = 50;  // milliseconds, after which it is seen that nobody waits any more
-      pollfd waiting{.fd = descriptor, .events = POLLIN, .revents = 0};
-      const int ready = poll(&waiting, 1, kLook);
-      if (*bytes.cancelled) return AVERROR_EXIT;
-      if (ready == 0) continue;
-    }
-    const ssize_t got = ::read(descriptor, to, static_cast<std::size_t>(size));
-    if (got > 0) return static_cast<int>(got);
-    if (got == 0) return AVERROR_EOF;
-    if (errno != EINTR && errno != EAGAIN) return AVERROR(errno);
+  if (bytes.given_up) return AVERROR_EXIT;
+  const auto got = bytes.reader->read(to, static_cast<std::size_t>(size));
+  if (!got) {
+    bytes.given_up = got.error();
+    return AVERROR_EXIT;
   }
+  // A look at the end counts too: nobody may look there for ever.
+  constexpr std::uint64_t kLeast = 4096;
+  bytes.spent += std::max<std::uint64_t>(*got, kLeast);
+  if (bytes.spent > bytes.most) {
+    bytes.given_up = Error{ErrorKind::io, fmt::format("has no frame within {} MiB that were read", bytes.most >> 20)};
+    return AVERROR_EXIT;
+  }
+  return *got > 0 ? static_cast<int>(*got) : AVERROR_EOF;
+}
+
+std::optional<Error> FfmpegInput::given_up() const {
+  std::optional<Error> out = bytes_.given_up;
+  if (out) out->file = name_;
+  return out;
 }
 
 std::int64_t FfmpegInput::seek_bytes(void* opaque, std::int64_t to, int whence) {
-  const int descriptor = static_cast<const Bytes*>(opaque)->from->get();
+  const Bytes& bytes = *static_cast<const Bytes*>(opaque);
+  if (bytes.given_up) return AVERROR_EXIT;
+  const int descriptor = bytes.reader->descriptor();
   if ((whence & AVSEEK_SIZE) != 0) {
     struct stat status {};
     return fstat(descriptor, &status) == 0 ? status.st_size : AVERROR(errno);
@@ -90,25 +97,42 @@ FfmpegInput::~FfmpegInput() {
   avio_context_free(&io_);
 }
 
-Error FfmpegInput::failed(const std::string& why) const { return {ErrorKind::io, why, name_}; }
+Error FfmpegInput::failed(const std::string& why) const {
+  if (auto reason = given_up()) return *std::move(reason);
+  return {ErrorKind::io, why, name_};
+}
 
 Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(const std::filesystem::path& file, const std::string& format,
-                                                       const SizeLimits& limits, const std::string& options) {
+                                                       const SizeLimits& limits, const Patience& patience) {
   auto descriptor = std::make_shared<FileDescriptor>(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   if (descriptor->get() < 0)
     return Error{ErrorKind::io, fmt::format("cannot be opened: {}", std::strerror(errno)), file.string()};
-  return open(std::move(descriptor), file.string(), format, limits, options);
+  // Who seeks reads some bytes twice; nobody needs to read all of them many times before the next packet.
+  constexpr std::uint64_t kTurns = 4, kLeast = 64 << 20;
+  struct stat status {};
+  const bool known = fstat(descriptor->get(), &status) == 0 && status.st_size > 0;
+  Bytes bytes;
+  bytes.reader = std::make_unique<PatientReader>(std::move(descriptor), patience);
+  bytes.most = kLeast + (known ? kTurns * static_cast<std::uint64_t>(status.st_size) : 0);
+  return open(std::move(bytes), true, file.string(), format, limits, {});
 }
 
-Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(std::shared_ptr<FileDescriptor> from, const std::string& name,
+Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(const StreamRequest& request) {
+  Bytes bytes;
+  bytes.reader = std::make_unique<PatientReader>(request.from, request.patience, request.cancelled);
+  bytes.head = request.head;
+  bytes.most = request.limits.max_bytes;
+  return open(std::move(bytes), false, request.name, request.format, request.limits, request.options);
+}
+
+Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(Bytes bytes, bool seekable, const std::string& name,
                                                        const std::string& format, const SizeLimits& limits,
-                                                       const std::string& options, const std::string& head,
-                                                       const std::atomic<bool>* cancelled) {
+                                                       const std::string& options) {
   std::unique_ptr<FfmpegInput> input(new FfmpegInput());
   input->name_ = name;
   input->limits_ = limits;
-  input->bytes_ = {std::move(from), head, 0, cancelled};
-  input->seekable_ = cancelled == nullptr;
+  input->bytes_ = std::move(bytes);
+  input->seekable_ = seekable;
   static_cast<void>(ffmpeg_said());
   AFTERGLOW_CHECK(input->open_container(format, options));
   AFTERGLOW_CHECK(input->choose_stream());
@@ -129,10 +153,14 @@ Result<void> FfmpegInput::open_container(const std::string& format, const std::s
   container_->codec_whitelist = av_strdup(kCodecs);
   AVDictionary* given = nullptr;
   av_dict_parse_string(&given, options.c_str(), "=", ":", 0);
+  // Loops of FFmpeg that read nothing hear of it too.
+  container_->interrupt_callback = {
+      .callback = [](void* opaque) { return static_cast<const Bytes*>(opaque)->given_up ? 1 : 0; }, .opaque = &bytes_};
   const int opened = avformat_open_input(&container_, "", demuxer, &given);  // frees the container when it fails
   const bool unknown = opened >= 0 && av_dict_count(given) > 0;
   av_dict_free(&given);
   if (opened < 0) return failed("is no video that can be read: " + ffmpeg_error(opened));
+  bytes_.spent = 0;
   if (unknown) return failed("is of a kind that has no such options: " + options);
   return {};
 }
@@ -144,6 +172,7 @@ Result<void> FfmpegInput::choose_stream() {
       container_->streams[i]->discard = AVDISCARD_ALL;
   if (const int found = avformat_find_stream_info(container_, nullptr); found < 0)
     return failed("is no video that can be read: " + ffmpeg_error(found));
+  if (bytes_.given_up) return failed("");
   stream_ = av_find_best_stream(container_, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   if (stream_ < 0) return failed("holds no video stream");
   for (unsigned i = 0; i < container_->nb_streams; ++i)
@@ -187,7 +216,10 @@ int FfmpegInput::read(AVPacket& packet) {
     const int got = av_read_frame(container_, &packet);
     if (got < 0) return got;
     // Empty packets are frames that an encoder left out; to a decoder they would be the end.
-    if (packet.stream_index == stream_ && packet.size > 0) return 0;
+    if (packet.stream_index == stream_ && packet.size > 0) {
+      bytes_.spent = 0;
+      return 0;
+    }
     av_packet_unref(&packet);
   }
 }

@@ -4,12 +4,15 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/file_descriptor.h"
+#include "core/patient_reader.h"
 #include "core/result.h"
 #include "image/ffmpeg_handles.h"
 #include "image/ffmpeg_log.h"
+#include "image/movie_source.h"
 #include "image/size_limits.h"
 
 namespace afterglow {
@@ -19,14 +22,11 @@ class FfmpegInput {
  public:
   /// Reads the header and what is needed to know the stream. `format`: see MovieRequest. `options` are the demuxer's
   /// own, as "name=value:name=value". Errors: io (no such file, malformed, no video stream, a codec that is not read,
-  /// sides beyond the limits).
+  /// sides beyond the limits, no bytes come), interrupted.
   static Result<std::unique_ptr<FfmpegInput>> open(const std::filesystem::path& file, const std::string& format,
-                                                   const SizeLimits& limits, const std::string& options = {});
-  /// The same from a descriptor that cannot seek; see StreamRequest.
-  static Result<std::unique_ptr<FfmpegInput>> open(std::shared_ptr<FileDescriptor> from, const std::string& name,
-                                                   const std::string& format, const SizeLimits& limits,
-                                                   const std::string& options = {}, const std::string& head = {},
-                                                   const std::atomic<bool>* cancelled = nullptr);
+                                                   const SizeLimits& limits, const Patience& patience);
+  /// The same from a descriptor that cannot seek.
+  static Result<std::unique_ptr<FfmpegInput>> open(const StreamRequest& request);
   ~FfmpegInput();
 
   AVFormatContext& container() { return *container_; }
@@ -37,6 +37,9 @@ class FfmpegInput {
   Result<CodecHandle> open_decoder(FfmpegErrors& errors, bool careful) const;
   /// The next packet of the stream: 0, AVERROR_EOF, or another error of FFmpeg.
   int read(AVPacket& packet);
+  /// Why there is no use in reading on, when that is so: no bytes come, nobody waits for them any more, or the demuxer
+  /// reads on and on and finds no packet. It stays so.
+  std::optional<Error> given_up() const;
 
  private:
   FfmpegInput() = default;
@@ -47,11 +50,16 @@ class FfmpegInput {
   std::string name_;
   SizeLimits limits_;
   struct Bytes {
-    std::shared_ptr<FileDescriptor> from;
-    std::string head;       ///< comes first
-    std::size_t given = 0;  ///< of it
-    const std::atomic<bool>* cancelled = nullptr;
+    std::unique_ptr<PatientReader> reader;
+    std::string head;         ///< comes first
+    std::size_t given = 0;    ///< of it
+    std::uint64_t spent = 0;  ///< read since the last packet
+    std::uint64_t most = 0;   ///< of them
+    std::optional<Error> given_up;
   } bytes_;
+  static Result<std::unique_ptr<FfmpegInput>> open(Bytes bytes, bool seekable, const std::string& name,
+                                                   const std::string& format, const SizeLimits& limits,
+                                                   const std::string& options);
   static int read_bytes(void* opaque, std::uint8_t* to, int size);
   static std::int64_t seek_bytes(void* opaque, std::int64_t to, int whence);
   bool seekable_ = true;

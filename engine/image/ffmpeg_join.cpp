@@ -51,14 +51,20 @@ class FfmpegJoin {
     if (const unsigned tag = file_->codec_tag(); tag != 0) parameters_->codec_tag = tag;
     AFTERGLOW_CHECK(file_->begin(*parameters_, alpha_, name, diagnostics));
     for (const VideoPiece& piece : pieces_.pieces) AFTERGLOW_CHECK(copy(piece));
+    AFTERGLOW_CHECK(go_on());
     return file_->finish(pieces_.whole, times_.back().pts + times_.back().duration);
   }
 
  private:
+  Result<void> go_on() const {
+    const bool stop = pieces_.interrupted && pieces_.interrupted();
+    return stop ? Error{ErrorKind::interrupted, "interrupted"} : Result<void>();
+  }
+
   Result<std::unique_ptr<FfmpegInput>> open(const VideoPiece& piece) const {
-    if (pieces_.interrupted && pieces_.interrupted()) return Error{ErrorKind::interrupted, "interrupted"};
+    AFTERGLOW_CHECK(go_on());
     const bool mov = plan_.container == "mov" || plan_.container == "mp4";
-    return FfmpegInput::open(piece.file, mov ? "mov" : "matroska", SizeLimits{});
+    return FfmpegInput::open(piece.file, mov ? "mov" : "matroska", SizeLimits{}, pieces_.patience);
   }
 
   /// In which order its packets show, and whether they can follow those before.
@@ -69,7 +75,11 @@ class FfmpegJoin {
     if (!packet) return Error{ErrorKind::io, "there is no memory to join it"};
     std::vector<std::int64_t> stamps;
     int code = 0;
-    for (; (code = input->read(*packet)) == 0; av_packet_unref(packet.get())) stamps.push_back(packet->pts);
+    for (; (code = input->read(*packet)) == 0; av_packet_unref(packet.get())) {
+      AFTERGLOW_CHECK(go_on());
+      stamps.push_back(packet->pts);
+    }
+    if (auto reason = input->given_up()) return *std::move(reason);
     if (code != AVERROR_EOF) return Error{ErrorKind::io, "is damaged: " + ffmpeg_error(code), piece.file.string()};
     if (stamps.size() != piece.times.size())
       return Error{ErrorKind::io, fmt::format("has {} frames, not {}", stamps.size(), piece.times.size()),
@@ -111,7 +121,10 @@ class FfmpegJoin {
     const PacketHandle packet(av_packet_alloc());
     if (!packet) return Error{ErrorKind::io, "there is no memory to join it"};
     for (std::size_t i = 0; i < piece.times.size(); ++i) {
-      if (input->read(*packet) != 0) return Error{ErrorKind::io, "changed while it was read", piece.file.string()};
+      AFTERGLOW_CHECK(go_on());
+      const int code = input->read(*packet);
+      if (auto reason = input->given_up()) return *std::move(reason);
+      if (code != 0) return Error{ErrorKind::io, "changed while it was read", piece.file.string()};
       const VideoTime& time = times_[rank_[next_]];
       packet->pts = time.pts;
       packet->dts = decoded_at(next_);

@@ -48,7 +48,7 @@ class FfmpegMovie : public MovieSource {
 
  private:
   static Result<std::unique_ptr<FfmpegInput>> reopen(const MovieRequest& request) {
-    return FfmpegInput::open(request.file, request.format, request.limits);
+    return FfmpegInput::open(request.file, request.format, request.limits, request.patience);
   }
 
   void begin(std::unique_ptr<FfmpegInput> input) {

@@ -43,7 +43,7 @@ bool FfmpegPackets::take(AVPacket& packet) {
   for (int errors = 0; errors < kMostStrangers;) {
     const int got = input_->read(packet);
     if (got == 0) return true;
-    if (got == AVERROR_EOF) return false;
+    if ((given_up_ = input_->given_up()) || got == AVERROR_EOF) return false;
     ++errors;
   }
   return false;
@@ -77,16 +77,22 @@ bool FfmpegPackets::try_seek(std::int64_t stamp, int packet) {
 Result<void> FfmpegPackets::begin_anew(int packet) {
   holds_ = false;
   av_packet_unref(held_.get());
-  AFTERGLOW_TRY(input_, reopen_());
+  auto again = reopen_();
+  if (!again) {
+    given_up_ = again.error();
+    return *given_up_;
+  }
+  input_ = *std::move(again);
   for (next_ = 0; next_ < packet; ++next_) {
     av_packet_unref(held_.get());
-    if (!take(*held_)) return Error{ErrorKind::io, "changed while it was read"};
+    if (!take(*held_)) return not_there();
   }
   av_packet_unref(held_.get());
   return {};
 }
 
 Result<void> FfmpegPackets::seek(int packet) {
+  if (given_up_) return not_there();
   if (packet == next_) return {};
   const MoviePacket& wanted = index_.packets[static_cast<std::size_t>(packet)];
   const AVRational base = input_->stream().time_base;
@@ -94,12 +100,17 @@ Result<void> FfmpegPackets::seek(int packet) {
   const bool found = packet > 0 && (try_seek(wanted.pts, packet) || try_seek(wanted.dts, packet) ||
                                     (wanted.dts != AV_NOPTS_VALUE && try_seek(wanted.dts - second, packet)));
   static_cast<void>(ffmpeg_said());
+  if (given_up_) return not_there();
   return found ? Result<void>() : begin_anew(packet);
+}
+
+Error FfmpegPackets::not_there() const {
+  return given_up_ ? *given_up_ : Error{ErrorKind::io, "changed while it was read"};
 }
 
 Result<void> FfmpegPackets::read(AVPacket& packet) {
   const MoviePacket& expected = index_.packets[static_cast<std::size_t>(next_)];
-  if (!take(packet) || packet.size != expected.size) return Error{ErrorKind::io, "changed while it was read"};
+  if (!take(packet) || packet.size != expected.size) return not_there();
   packet.pts = packet.dts = next_;
   ++next_;
   return {};

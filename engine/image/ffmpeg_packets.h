@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "image/ffmpeg_index.h"
@@ -33,6 +34,7 @@ class FfmpegPackets {
   Result<void> begin_anew(int packet);
   int find(const AVPacket& packet) const;
   bool take(AVPacket& packet);
+  Error not_there() const;
 
   std::unique_ptr<FfmpegInput> input_;
   const MovieIndex& index_;
@@ -41,6 +43,7 @@ class FfmpegPackets {
   PacketHandle held_;          ///< the packet `next_`, when it was read already
   bool holds_ = false;
   int next_ = 0;
+  std::optional<Error> given_up_;  ///< it stays so: not every frame waits for bytes that do not come
 };
 
 }  // namespace afterglow

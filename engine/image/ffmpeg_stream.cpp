@@ -31,8 +31,7 @@ class StreamFrame : public MovieSource {
 class FfmpegStream : public MovieFrames {
  public:
   Result<void> open(const StreamRequest& request) {
-    AFTERGLOW_TRY(input_, FfmpegInput::open(request.from, request.name, request.format, request.limits, request.options,
-                                            request.head, request.cancelled));
+    AFTERGLOW_TRY(input_, FfmpegInput::open(request));
     AFTERGLOW_TRY(codec_, input_->open_decoder(errors_, true));
     name_ = request.name;
     return {};
@@ -57,11 +56,12 @@ class FfmpegStream : public MovieFrames {
 
   Result<void> feed() {
     const int read = input_->read(*packet_);
-    if (read == AVERROR_EOF) {
+    if (read == AVERROR_EOF && !input_->given_up()) {
       draining_ = true;
       avcodec_send_packet(codec_.get(), nullptr);
       return {};
     }
+    if (auto reason = input_->given_up()) return *std::move(reason);
     if (read < 0) return broken("is cut off: the stream ends in it");
     if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) return broken("is cut off: the stream ends in it");
     const int sent = avcodec_send_packet(codec_.get(), packet_.get());

@@ -124,7 +124,8 @@ Result<std::shared_ptr<Movie>> Movie::open(const std::filesystem::path& file, co
                                            Diagnostics& diagnostics) {
   std::shared_ptr<Movie> movie(new Movie());
   movie->file_ = file;
-  AFTERGLOW_TRY(movie->source_, open_source({file, movie_format(file), limits}));
+  AFTERGLOW_TRY(const Patience patience, patience_of_process());
+  AFTERGLOW_TRY(movie->source_, open_source({file, movie_format(file), limits, patience}));
   tell(*movie, diagnostics);
   return movie;
 }

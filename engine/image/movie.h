@@ -21,7 +21,7 @@ class Movie {
  public:
   /// Reads the file once, for an index of its frames. Notes what is assumed where it says nothing, warns of what is
   /// damaged or missing. Errors: io (no video that can be read, with what can be done about it; sides beyond the
-  /// limits).
+  /// limits; no bytes come, see core/patience.h), interrupted (give_up_waiting), usage (AFTERGLOW_INPUT_TIMEOUT).
   static Result<std::shared_ptr<Movie>> open(const std::filesystem::path& file, const SizeLimits& limits,
                                              Diagnostics& diagnostics);
 

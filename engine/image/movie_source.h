@@ -12,6 +12,7 @@
 
 #include "core/file_descriptor.h"
 #include "core/geometry.h"
+#include "core/patience.h"
 #include "core/result.h"
 #include "image/metadata.h"
 #include "image/size_limits.h"
@@ -73,6 +74,7 @@ struct MovieRequest {
   std::filesystem::path file;
   std::string format;
   SizeLimits limits;
+  Patience patience{};
 };
 
 /// Frames as they come; from one thread at a time.
@@ -92,6 +94,7 @@ struct StreamRequest {
   std::string format;
   std::string options;
   SizeLimits limits;
+  Patience patience{};
   const std::atomic<bool>* cancelled = nullptr;
 };
 

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/patient_reader.h"
 #include "core/text.h"
 #include "image/ffmpeg_module.h"
 #include "image/movie.h"
@@ -69,28 +70,27 @@ Result<std::string> raw_options(const std::string& raw) {
                      parts.size() == 3 ? parts[2] : "24");
 }
 
-ssize_t read_some(int descriptor, char* to, std::size_t size) {
-  ssize_t got = 0;
-  do got = ::read(descriptor, to, size);
-  while (got < 0 && errno == EINTR);
-  return got;
+/// An error of a reader, of this input.
+Error of_stream(Error error) {
+  error.file = kName;
+  return error;
 }
 
 /// As many bytes as tell what it is, or all that there are.
-Result<std::string> first_bytes(int descriptor) {
+Result<std::string> first_bytes(PatientReader& from) {
   std::array<char, 400> bytes{};
   std::size_t have = 0;
   while (have < bytes.size()) {
-    const ssize_t got = read_some(descriptor, bytes.data() + have, bytes.size() - have);
-    if (got < 0) return in_stream(fmt::format("cannot be read: {}", std::strerror(errno)));
-    if (got == 0) break;
-    have += static_cast<std::size_t>(got);
+    const auto got = from.read(bytes.data() + have, bytes.size() - have);
+    if (!got) return of_stream(got.error());
+    if (*got == 0) break;
+    have += *got;
   }
   if (have == 0) return in_stream("nothing comes on standard input");
   return std::string(bytes.data(), have);
 }
 
-Result<std::shared_ptr<const MemoryFile>> whole_file(int descriptor, const std::string& head,
+Result<std::shared_ptr<const MemoryFile>> whole_file(PatientReader& from, const std::string& head,
                                                      const SizeLimits& limits) {
   AFTERGLOW_TRY(MemoryFile file, MemoryFile::create());
   const FileDescriptor out(::open(file.name().c_str(), O_WRONLY | O_CLOEXEC));
@@ -110,10 +110,10 @@ Result<std::shared_ptr<const MemoryFile>> whole_file(int descriptor, const std::
   AFTERGLOW_CHECK(put(head.data(), head.size()));
   std::vector<char> buffer(1 << 16);
   while (true) {
-    const ssize_t got = read_some(descriptor, buffer.data(), buffer.size());
-    if (got < 0) return in_stream(fmt::format("cannot be read: {}", std::strerror(errno)));
-    if (got == 0) break;
-    AFTERGLOW_CHECK(put(buffer.data(), static_cast<std::size_t>(got)));
+    const auto got = from.read(buffer.data(), buffer.size());
+    if (!got) return of_stream(got.error());
+    if (*got == 0) break;
+    AFTERGLOW_CHECK(put(buffer.data(), *got));
   }
   return std::make_shared<const MemoryFile>(std::move(file));
 }
@@ -139,7 +139,9 @@ Result<std::unique_ptr<MovieStream>> MovieStream::open(std::shared_ptr<FileDescr
                         .format = "rawvideo",
                         .options = {},
                         .limits = limits,
+                        .patience = {},
                         .cancelled = &stream->state_->cancelled};
+  AFTERGLOW_TRY(request.patience, patience_of_process());
   if (!raw.empty()) {
     AFTERGLOW_TRY(request.options, raw_options(raw));
   } else {
@@ -192,13 +194,15 @@ Result<StandardInput> open_standard_input(const std::string& raw, const SizeLimi
   if (descriptor->get() < 0) return in_stream("standard input is closed");
   StandardInput input;
   std::string head;
+  AFTERGLOW_TRY(const Patience patience, patience_of_process());
+  PatientReader reader(descriptor, patience);
   if (raw.empty()) {
-    AFTERGLOW_TRY(head, first_bytes(descriptor->get()));
+    AFTERGLOW_TRY(head, first_bytes(reader));
   }
   if (!raw.empty() || !stream_format(head).empty()) {
     AFTERGLOW_TRY(input.stream, MovieStream::open(std::move(descriptor), std::move(head), raw, limits, diagnostics));
   } else {
-    AFTERGLOW_TRY(input.file, whole_file(descriptor->get(), head, limits));
+    AFTERGLOW_TRY(input.file, whole_file(reader, head, limits));
   }
   return input;
 }

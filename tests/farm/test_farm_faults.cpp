@@ -111,6 +111,34 @@ TEST_F(FarmFaults, AnUrgentJobTakesTheNodesAndGivesThemBack) {
   expect_nothing_half_written("out");
 }
 
+/// A task that hangs: Slurm's own clock ends it. Its limit is a minute at least; the end of that is brought nearer.
+TEST_F(FarmFaults, AChunkBeyondItsTimeIsEndedSaidSoAndRetried) {
+  AFTERGLOW_NEEDS_CLUSTER();
+  make_truth(160);
+  ASSERT_EQ(submit({"--chunk", "160", "--time", "1"}).exit_code, kDone);
+  const auto caught = catch_a_chunk(160);
+  const int process = caught["process"].get<int>();
+  ASSERT_EQ(kill(process, SIGSTOP), 0);
+  const std::string task = caught["task"];
+  EXPECT_THAT(slurm("scontrol", {"show", "job", task}).out, HasSubstr("TimeLimit=00:01:00"));
+  const Outcome nearer = slurm("scontrol", {"update", "jobid=" + task, "EndTime=now+1"});
+  ASSERT_EQ(nearer.exit_code, 0) << nearer.err;
+  const auto there = times();
+  const Outcome waited = farm({"status", "out", "--wait"});
+  EXPECT_EQ(waited.exit_code, kOther) << waited.err;
+  EXPECT_THAT(waited.err, HasSubstr("1 of 1 chunks are not done (1 lost)"));
+  EXPECT_THAT(waited.err, HasSubstr("its time limit was over; `farm retry` with a longer --time goes on"));
+  expect_nothing_half_written("out");
+  EXPECT_LT(times().size(), 160u);
+  const Outcome said = farm({"status", "out"});
+  EXPECT_THAT(said.out, HasSubstr("its time limit was over"));
+  EXPECT_EQ(attempts("out", "").size(), 1u) << "no other try before somebody gives it more time";
+  const Outcome retried = farm({"retry", "out", "--time", "10", "--wait"});
+  EXPECT_EQ(retried.exit_code, kDone) << retried.err;
+  expect_as_one_run("out", "one");
+  expect_untouched(there);
+}
+
 TEST_F(FarmFaults, CancelEndsAndRetryGoesOn) {
   AFTERGLOW_NEEDS_CLUSTER();
   make_truth(120);

@@ -266,6 +266,30 @@ TEST(FarmText, OfAChunkTheLastArrayCounts) {
   EXPECT_TRUE(accounting.at(3).ended());
 }
 
+TEST(FarmText, WhileOneWaitsFramesAreCountedAndChunksNamed) {
+  using State = farm::ChunkStatus::State;
+  farm::Job job;
+  job.chunks.resize(4);
+  farm::JobStatus status;
+  const auto add = [&](State state, const char* node) {
+    status.chunks.push_back({.state = state, .tries = 0, .exit_code = {}, .node = node, .why = {}});
+  };
+  add(State::done, "n4");
+  add(State::running, "n2");
+  add(State::running, "n1");
+  add(State::waiting, "");
+  EXPECT_EQ(farm::waiting_line(job, status), "frames; of 4 chunks 1 done, 2 running, 1 waiting (n1 n2)");
+  job.video = "/a.mov";
+  add(State::waiting, "");
+  EXPECT_EQ(farm::waiting_line(job, status),
+            "frames; of 4 chunks 1 done, 2 running, 1 waiting (n1 n2); the join is waiting");
+  job.chunks.resize(6);
+  status.chunks.clear();
+  for (const char* node : {"n1", "n2", "n3", "n4", "n5", "n1"}) add(State::running, node);
+  add(State::waiting, "");
+  EXPECT_EQ(farm::waiting_line(job, status), "frames; of 6 chunks 6 running (5 nodes); the join is waiting");
+}
+
 TEST(FarmText, TellsWhyATaskEnded) {
   EXPECT_EQ(farm::why_it_ended("TIMEOUT"), "its time limit was over; `farm retry` with a longer --time goes on");
   EXPECT_EQ(farm::why_it_ended("OUT_OF_MEMORY"),

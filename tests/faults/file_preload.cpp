@@ -6,6 +6,9 @@
 //                                full: from the Nth write on the disk is full
 //                                kill: the process dies before the Nth call
 //                                interrupt: it gets a SIGINT before the Nth call, as from Ctrl-C
+//                                terminate: it gets a SIGTERM there, as from a scheduler
+//                                stall: from the Nth read on none comes back, as on a network that is gone
+//                                circle: the file never ends: its last 188 bytes come again and again
 //                                writes, reads: such calls do a few bytes each, and every third is interrupted first
 //                                cut: at the Nth read the file becomes half as long
 //                                swap: at the Nth read every byte of the file becomes another
@@ -34,7 +37,7 @@
 namespace {
 
 enum class What { other, read, write };
-enum class Kind { none, error, full, kill, interrupt, writes, reads, cut, swap };
+enum class Kind { none, error, full, kill, interrupt, terminate, stall, circle, writes, reads, cut, swap };
 
 /// The next definition of a function behind ours.
 template <typename Function>
@@ -57,6 +60,9 @@ struct Wanted {
            : name == "full"      ? Kind::full
            : name == "kill"      ? Kind::kill
            : name == "interrupt" ? Kind::interrupt
+           : name == "terminate" ? Kind::terminate
+           : name == "stall"     ? Kind::stall
+           : name == "circle"    ? Kind::circle
            : name == "writes"    ? Kind::writes
            : name == "reads"     ? Kind::reads
            : name == "cut"       ? Kind::cut
@@ -96,6 +102,7 @@ bool counts(What what) {
     case Kind::full:
       return what == What::write;
     case Kind::cut:
+    case Kind::stall:
     case Kind::swap:
       return what == What::read;
     default:
@@ -134,10 +141,12 @@ int strike(const char* name, const std::string& path, What what) {
   }
   if (wanted().call == 0 || number < wanted().call) return 0;
   if (wanted().kind == Kind::full) return ENOSPC;
+  while (wanted().kind == Kind::stall) pause();
   if (number > wanted().call) return 0;
   if (wanted().kind == Kind::error) return EIO;
   if (wanted().kind == Kind::kill) syscall(SYS_kill, getpid(), SIGKILL);
   if (wanted().kind == Kind::interrupt) syscall(SYS_kill, getpid(), SIGINT);
+  if (wanted().kind == Kind::terminate) syscall(SYS_kill, getpid(), SIGTERM);
   if (wanted().kind == Kind::cut || wanted().kind == Kind::swap) damage(path);
   return 0;
 }
@@ -210,8 +219,21 @@ EXPORT std::FILE* fopen(const char* path, const char* mode) { return open_stream
 EXPORT std::FILE* fopen64(const char* path, const char* mode) { return open_stream("fopen64", path, mode); }
 
 EXPORT ssize_t read(int file, void* data, std::size_t size) {
-  return transfer("read", file, size, What::read, [&](std::size_t n) { return syscall(SYS_read, file, data, n); });
+  const auto go = [&](std::size_t n) { return syscall(SYS_read, file, data, n); };
+  const ssize_t got = transfer("read", file, size, What::read, go);
+  constexpr off_t kPacket = 188;  // of MPEG transport streams
+  const bool again = got == 0 && wanted().kind == Kind::circle && is_ours(path_of(file)) &&
+                     syscall(SYS_lseek, file, -kPacket, SEEK_END) >= 0;
+  return again ? go(size) : got;
 }
+/// Whether it lies in memory is the system's to know, not ours.
+#define PREADV2(name)                                                                        \
+  EXPORT ssize_t name(int file, const iovec* parts, int count, off64_t at, int flags) {      \
+    if (is_ours(path_of(file))) return failed<ssize_t>(EOPNOTSUPP, -1);                      \
+    return syscall(SYS_preadv2, file, parts, count, static_cast<long>(at), at >> 63, flags); \
+  }
+PREADV2(preadv2)
+PREADV2(preadv64v2)
 EXPORT ssize_t write(int file, const void* data, std::size_t size) {
   return transfer("write", file, size, What::write, [&](std::size_t n) { return syscall(SYS_write, file, data, n); });
 }
