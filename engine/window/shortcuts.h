@@ -59,6 +59,7 @@ enum class Action {
   exposure_reset,
   gamma_up,
   gamma_down,
+  as_display,
   marks,
   background,
   guides,
