@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfRationalAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfStringVectorAttribute.h>
+#include <OpenEXR/ImfTimeCodeAttribute.h>
 #include <OpenEXR/ImfVecAttribute.h>
 
 #include <algorithm>
@@ -17,10 +18,13 @@
 #include <string_view>
 #include <vector>
 
+#include "core/text.h"
+#include "image/kept_values.h"
+
 namespace afterglow {
 namespace {
 
-enum class Kind { text, number };
+enum class Kind { text, number, rate };
 struct NamePair {
   const char* exr;
   const char* general;
@@ -36,6 +40,8 @@ constexpr std::array kNames{
     NamePair{"aperture", "FNumber", Kind::number},
     NamePair{"isoSpeed", "Exif:ISOSpeedRatings", Kind::number},
     NamePair{"focus", "Exif:SubjectDistance", Kind::number},
+    NamePair{"isoSpeed", "Exif:PhotographicSensitivity", Kind::number},
+    NamePair{"framesPerSecond", "FramesPerSecond", Kind::rate},
     NamePair{"pixelAspectRatio", "PixelAspectRatio", Kind::number},
 };
 
@@ -123,12 +129,47 @@ void insert(Imf::Header& header, const std::string& name, const MetadataValue& v
   }
 }
 
+/// Pixels per inch; 0: they do not say, or of what.
+float density_of(const Metadata& metadata) {
+  const MetadataValue *x = find_metadata(metadata, "XResolution"), *unit = find_metadata(metadata, "ResolutionUnit");
+  const std::string name = unit ? lower(metadata_text(*unit)) : "";
+  const float inches = name.starts_with("in") ? 1 : name.starts_with("cm") ? 2.54f : name == "m" ? 0.0254f : 0;
+  const float density = x ? metadata_number(*x, 0) * inches : 0;
+  return std::isfinite(density) && density > 0 ? density : 0;
+}
+
+/// `ratio`: width of a pixel to its height.
+void add_density(Metadata& list, float density, float ratio) {
+  if (!(density > 0) || !std::isfinite(density)) return;
+  list.push_back({"XResolution", density});
+  list.push_back({"YResolution", ratio > 0 && std::isfinite(ratio) ? density * ratio : density});
+  list.push_back({"ResolutionUnit", std::string("in")});
+}
+
+void insert_pair(Imf::Header& header, const NamePair& pair, const MetadataValue& value) {
+  switch (pair.kind) {
+    case Kind::text:
+      header.insert(pair.exr, Imf::StringAttribute(metadata_text(value)));
+      break;
+    case Kind::number:
+      if (const float number = metadata_number(value, 0); std::isfinite(number) && number > 0)
+        header.insert(pair.exr, Imf::FloatAttribute(number));
+      break;
+    case Kind::rate:
+      if (const auto rate = rate_of(value))
+        header.insert(pair.exr,
+                      Imf::RationalAttribute(Imf::Rational(rate->numerator, static_cast<unsigned>(rate->denominator))));
+      break;
+  }
+}
+
 }  // namespace
 
 Metadata metadata_of(const Imf::Header& header) {
   Metadata list;
   for (auto it = header.begin(); it != header.end(); ++it) {
     const Imf::Attribute& attribute = it.attribute();
+    if (std::string_view(it.name()) == "xDensity") continue;
     MetadataEntry entry{general_name(it.name()), {}};
     if (const auto* text = as<Imf::StringAttribute>(attribute)) {
       entry.value = text->value();
@@ -146,24 +187,35 @@ Metadata metadata_of(const Imf::Header& header) {
       entry.value = floats_of(&v3f->value().x, 3);
     } else if (const auto* m44f = as<Imf::M44fAttribute>(attribute)) {
       entry.value = floats_of(m44f->value().getValue(), 16);
+    } else if (const auto* time = as<Imf::TimeCodeAttribute>(attribute)) {
+      std::string code = time_code_text(time->value().timeAndFlags());
+      if (code.empty() || std::string_view(it.name()) != "timeCode") continue;
+      entry = {kTimeCodeName, std::move(code)};
     } else {
       continue;
     }
     list.push_back(std::move(entry));
   }
+  if (const auto* density = header.findTypedAttribute<Imf::FloatAttribute>("xDensity"))
+    add_density(list, density->value(), header.pixelAspectRatio());
   return list;
 }
 
 void add_metadata(Imf::Header& header, const Metadata& metadata) {
+  const float density = density_of(metadata);
+  if (density > 0) header.insert("xDensity", Imf::FloatAttribute(density));
   for (const auto& [name, value] : metadata) {
     if (const NamePair* pair = pair_of(name)) {
-      if (pair->kind == Kind::text) {
-        header.insert(pair->exr, Imf::StringAttribute(metadata_text(value)));
-      } else if (const float number = metadata_number(value, 0); std::isfinite(number) && number > 0) {
-        header.insert(pair->exr, Imf::FloatAttribute(number));
-      }
+      insert_pair(header, *pair, value);
       continue;
     }
+    if (name == kTimeCodeName) {
+      if (const auto* text = std::get_if<std::string>(&value))
+        if (const auto coded = time_code_of(*text))
+          header.insert("timeCode", Imf::TimeCodeAttribute(Imf::TimeCode(*coded)));
+      continue;
+    }
+    if (density > 0 && (name == "XResolution" || name == "YResolution" || name == "ResolutionUnit")) continue;
     const bool reserved = std::find(kReserved.begin(), kReserved.end(), name) != kReserved.end();
     if (name.empty() || name.size() > 255 || reserved || header.find(name) != header.end()) continue;
     insert(header, name, value);

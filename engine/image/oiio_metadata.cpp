@@ -1,7 +1,36 @@
 // SPDX-License-Identifier: MIT
 #include "image/oiio_metadata.h"
 
+#include "image/kept_values.h"
+
 namespace afterglow {
+namespace {
+
+constexpr const char* kDpxRate = "dpx:FrameRate";
+
+/// True: it has a form of its own in some format.
+bool add_special(OIIO::ParamValueList& list, const std::string& name, const MetadataValue& value) {
+  if (name == kTimeCodeName) {
+    const auto* text = std::get_if<std::string>(&value);
+    const auto coded = text ? time_code_of(*text) : std::nullopt;
+    if (!coded) return false;
+    const std::uint32_t parts[2] = {*coded, 0};  // no bits of users
+    list.attribute(name, OIIO::TypeTimeCode, parts);
+    return true;
+  }
+  if (name == "ResolutionUnit") {
+    const std::string unit = metadata_text(value);
+    list.attribute(name,
+                   unit.starts_with("in") ? "in" : unit);  // PNG's reader says "inch", which JPEG's writer ignores
+    return true;
+  }
+  if (name == "FramesPerSecond")
+    if (const auto rate = rate_of(value))
+      list.attribute(kDpxRate, static_cast<float>(rate->numerator) / static_cast<float>(rate->denominator));
+  return false;
+}
+
+}  // namespace
 
 Metadata metadata_of(const OIIO::ParamValueList& list) {
   Metadata metadata;
@@ -11,6 +40,12 @@ Metadata metadata_of(const OIIO::ParamValueList& list) {
     MetadataEntry entry{param.name().string(), {}};
     if (type == OIIO::TypeString) {
       entry.value = param.get_string();
+      if (is_kept_as_text(entry.name))
+        if (auto number = number_of_text(std::get<std::string>(entry.value))) entry.value = *std::move(number);
+    } else if (type == OIIO::TypeTimeCode) {
+      std::string code = time_code_text(*static_cast<const std::uint32_t*>(param.data()));
+      if (code.empty()) continue;
+      entry.value = std::move(code);
     } else if (type == OIIO::TypeRational) {
       const auto* parts = static_cast<const int*>(param.data());
       entry.value = Rational{parts[0], parts[1]};
@@ -26,6 +61,8 @@ Metadata metadata_of(const OIIO::ParamValueList& list) {
     } else {
       entry.value = param.get_int();
     }
+    if (entry.name == kDpxRate && !find_metadata(metadata, "FramesPerSecond"))
+      if (const auto rate = rate_of(entry.value)) metadata.push_back({"FramesPerSecond", *rate});
     metadata.push_back(std::move(entry));
   }
   return metadata;
@@ -34,6 +71,7 @@ Metadata metadata_of(const OIIO::ParamValueList& list) {
 OIIO::ParamValueList param_list(const Metadata& metadata) {
   OIIO::ParamValueList list;
   for (const auto& [name, value] : metadata) {
+    if (add_special(list, name, value)) continue;
     if (const auto* text = std::get_if<std::string>(&value)) {
       list.attribute(name, *text);
     } else if (const auto* integer = std::get_if<int>(&value)) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
 #include "core/text.h"
 #include "image/exr_metadata.h"
@@ -54,6 +55,15 @@ constexpr std::array<std::string_view, 35> kDropped{"compression",
 constexpr std::array<std::string_view, 9> kDroppedFamilies{
     "oiio:", "openexr:", "png:", "jpeg:", "tiff:", "iccprofile:", "thumbnail", "gif:", "webp:"};
 
+/// What libraries write once more by themselves, beside the first name.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kTwice{
+    {{"Artist", "IPTC:Creator"}, {"Copyright", "IPTC:CopyrightNotice"}, {"ImageDescription", "IPTC:Caption"}}};
+
+bool is_said_twice(const Metadata& metadata, const std::string& name) {
+  return std::ranges::any_of(
+      kTwice, [&](const auto& pair) { return pair.second == name && find_metadata(metadata, pair.first); });
+}
+
 /// PNG's limit for a keyword, and a size above which a text is no description any more.
 constexpr std::size_t kLongestName = 79, kLongestText = 64 << 10;
 
@@ -68,11 +78,19 @@ bool keeps_metadata(std::string_view name) {
 Metadata kept_metadata(const FileFacts& facts) {
   Metadata kept;
   for (MetadataEntry entry : facts.metadata) {
-    if (!keeps_metadata(entry.name) || entry.name.empty() || entry.name.size() > kLongestName) continue;
+    if (!keeps_metadata(entry.name) || is_said_twice(facts.metadata, entry.name) || entry.name.empty() ||
+        entry.name.size() > kLongestName)
+      continue;
     if (const auto* text = std::get_if<std::string>(&entry.value); text && text->size() > kLongestText) continue;
     if (entry.name == "PixelAspectRatio" && swaps_axes(facts.orientation)) {
       const float ratio = metadata_number(entry.value, 1);
       entry.value = ratio > 0 ? 1 / ratio : 1.0f;
+    }
+    if (swaps_axes(facts.orientation)) {
+      if (entry.name == "XResolution")
+        entry.name = "YResolution";
+      else if (entry.name == "YResolution")
+        entry.name = "XResolution";
     }
     kept.push_back(std::move(entry));
   }

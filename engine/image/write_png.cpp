@@ -14,6 +14,7 @@
 
 #include "core/parallel.h"
 #include "core/text.h"
+#include "image/kept_values.h"
 #include "image/metadata.h"
 #include "image/output_metadata.h"
 #include "image/png_filter.h"
@@ -98,7 +99,8 @@ bool write_time(OutputFile& out, const std::string& text) {
 
 void write_texts(OutputFile& out, const Metadata& metadata) {
   for (const auto& [name, value] : metadata) {
-    const auto* text = std::get_if<std::string>(&value);
+    const std::string number = is_kept_as_text(name) ? text_of_number(value) : "";
+    const auto* text = number.empty() ? std::get_if<std::string>(&value) : &number;
     if (!text || name == "ResolutionUnit" || (name == "DateTime" && write_time(out, *text))) continue;
     const std::string keyword = keyword_of(name);
     if (keyword.empty() || keyword.size() > 79 || !printable(keyword, false) || keyword.front() == ' ' ||

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "image/kept_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/parse_number.h"
+#include "core/text.h"
+
+namespace afterglow {
+namespace {
+
+constexpr std::array<std::string_view, 9> kNumbers{"ExposureTime",         "FNumber",
+                                                   "Exif:ISOSpeedRatings", "Exif:PhotographicSensitivity",
+                                                   "Exif:FocalLength",     "Exif:FocalLengthIn35mmFilm",
+                                                   "Exif:SubjectDistance", "GPS:Altitude",
+                                                   "FramesPerSecond"};
+
+/// A part of a time code: its bits, and what it may be.
+struct Digits {
+  int shift = 0;
+  std::uint32_t mask = 0, most = 0;
+};
+constexpr std::array kParts{Digits{24, 0x3f, 23}, Digits{16, 0x7f, 59}, Digits{8, 0x7f, 59}, Digits{0, 0x3f, 39}};
+constexpr std::uint32_t kDropFrame = 1 << 6;
+
+std::optional<Rational> fraction(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  if (slash == std::string_view::npos) return std::nullopt;
+  const auto above = parse_number<int>(text.substr(0, slash)), below = parse_number<int>(text.substr(slash + 1));
+  if (!above || !below || *below <= 0) return std::nullopt;
+  return Rational{*above, *below};
+}
+
+}  // namespace
+
+std::string time_code_text(std::uint32_t coded) {
+  std::array<std::uint32_t, 4> values{};
+  for (std::size_t i = 0; i < kParts.size(); ++i) {
+    const std::uint32_t digits = coded >> kParts[i].shift & kParts[i].mask;
+    values[i] = (digits >> 4) * 10 + (digits & 15);
+    if ((digits & 15) > 9 || values[i] > kParts[i].most) return "";
+  }
+  return fmt::format("{:02}:{:02}:{:02}{}{:02}", values[0], values[1], values[2], (coded & kDropFrame) != 0 ? ';' : ':',
+                     values[3]);
+}
+
+std::optional<std::uint32_t> time_code_of(std::string_view text) {
+  constexpr std::size_t kLength = 11;
+  if (text.size() != kLength || text[2] != ':' || text[5] != ':' || (text[8] != ':' && text[8] != ';'))
+    return std::nullopt;
+  std::uint32_t coded = text[8] == ';' ? kDropFrame : 0;
+  for (std::size_t i = 0; i < kParts.size(); ++i) {
+    const auto number = parse_number<std::uint32_t>(text.substr(3 * i, 2));
+    if (!number || *number > kParts[i].most) return std::nullopt;
+    coded |= (*number / 10 << 4 | *number % 10) << kParts[i].shift;
+  }
+  return coded;
+}
+
+std::optional<Rational> rate_of(const MetadataValue& value) {
+  constexpr double kMost = 10'000;
+  const MetadataValue* from = &value;
+  std::optional<MetadataValue> read;
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    read = number_of_text(*text);
+    if (!read) return std::nullopt;
+    from = &*read;
+  }
+  if (const auto* rational = std::get_if<Rational>(from))
+    return rational->numerator > 0 && rational->denominator > 0 ? std::optional(*rational) : std::nullopt;
+  const double rate = metadata_number(*from, 0);
+  if (!(rate > 0) || rate > kMost) return std::nullopt;
+  // Whole numbers, those of television, and else thousandths.
+  constexpr double kNear = 5e-4;
+  if (std::abs(rate - std::round(rate)) < kNear) return Rational{static_cast<int>(std::lround(rate)), 1};
+  const auto television = static_cast<int>(std::lround(rate * 1.001));
+  if (std::abs(rate - television / 1.001) < kNear) return Rational{television * 1000, 1001};
+  return Rational{static_cast<int>(std::lround(rate * 1000)), 1000};
+}
+
+bool is_kept_as_text(std::string_view name) { return std::ranges::find(kNumbers, name) != kNumbers.end(); }
+
+std::optional<MetadataValue> number_of_text(std::string_view text) {
+  if (const auto rational = fraction(text)) return *rational;
+  if (const auto integer = parse_number<int>(text)) return *integer;
+  const auto number = parse_number<float>(text);
+  return number && std::isfinite(*number) ? std::optional<MetadataValue>(*number) : std::nullopt;
+}
+
+std::string text_of_number(const MetadataValue& value) {
+  if (const auto* rational = std::get_if<Rational>(&value))
+    return fmt::format("{}/{}", rational->numerator, rational->denominator);
+  return metadata_text(value);
+}
+
+}  // namespace afterglow

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// Time codes, rates and numbers from each format into each that has a place for them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "image/kept_values.h"
+#include "image/writer.h"
+#include "make_files.h"
+#include "temporary_folder.h"
+
+namespace afterglow {
+namespace {
+
+TEST(KeptValues, TimeCodesAreTextThatIsReadBack) {
+  EXPECT_EQ(time_code_text(0x01020304), "01:02:03:04");
+  EXPECT_EQ(time_code_text(0x23595929), "23:59:59:29");
+  EXPECT_EQ(time_code_text(0x01020344), "01:02:03;04") << "frames are dropped";
+  EXPECT_EQ(time_code_text(0xc1828384), "01:02:03:04") << "bits of fields and groups are none of the time";
+  for (const std::uint32_t wrong : {0x24000000u, 0x00600000u, 0x00006000u, 0x0a000000u, 0xffffffffu})
+    EXPECT_EQ(time_code_text(wrong), "") << wrong;
+  for (const std::uint32_t code : {0u, 0x01020304u, 0x23595929u, 0x10000029u, 0x01020344u})
+    EXPECT_EQ(time_code_of(time_code_text(code)), code);
+  for (const char* wrong : {"", "01:02:03", "24:00:00:00", "01:60:00:00", "01:02:03:40", "01-02-03-04", "-1:02:03:04",
+                            "01:02:03:4 ", "01:02:03:044"})
+    EXPECT_FALSE(time_code_of(wrong)) << wrong;
+}
+
+TEST(KeptValues, RatesAreThoseOfTelevisionWhereTheyAreNear) {
+  const auto text = [](const MetadataValue& value) {
+    const auto rate = rate_of(value);
+    return rate ? std::to_string(rate->numerator) + "/" + std::to_string(rate->denominator) : "";
+  };
+  EXPECT_EQ(text(24.0f), "24/1");
+  EXPECT_EQ(text(23.976f), "24000/1001");
+  EXPECT_EQ(text(29.97f), "30000/1001");
+  EXPECT_EQ(text(59.94006f), "60000/1001");
+  EXPECT_EQ(text(12.5f), "12500/1000");
+  EXPECT_EQ(text(Rational{25, 1}), "25/1");
+  EXPECT_EQ(text(std::string("24000/1001")), "24000/1001");
+  EXPECT_EQ(text(std::string("25")), "25/1");
+  for (const MetadataValue& wrong : {MetadataValue(0.0f), MetadataValue(-24.0f), MetadataValue(INFINITY),
+                                     MetadataValue(std::string("soon")), MetadataValue(Rational{24, 0})})
+    EXPECT_EQ(text(wrong), "");
+}
+
+TEST(KeptValues, NumbersAreTextThatIsReadBack) {
+  EXPECT_EQ(text_of_number(Rational{1, 50}), "1/50");
+  EXPECT_EQ(std::get<Rational>(*number_of_text("1/50")).denominator, 50);
+  EXPECT_EQ(std::get<int>(*number_of_text(text_of_number(800))), 800);
+  EXPECT_EQ(std::get<float>(*number_of_text(text_of_number(2.8f))), 2.8f);
+  for (const char* wrong : {"", "f/2.8", "1/0", "inf", "2,8"}) EXPECT_FALSE(number_of_text(wrong)) << wrong;
+}
+
+class KeptBetween : public testing::Test {
+ protected:
+  void SetUp() override {
+    OIIO::ImageSpec spec = make_spec(8, 8, {"R", "G", "B"}, OIIO::TypeHalf);
+    const std::uint32_t code[2] = {0x01020304, 0};
+    const int rate[2] = {24000, 1001};
+    spec.attribute("smpte:TimeCode", OIIO::TypeTimeCode, code);
+    spec.attribute("FramesPerSecond", OIIO::TypeRational, rate);
+    spec.attribute("Artist", "Me");
+    spec.attribute("ExposureTime", 0.25f);
+    spec.attribute("FNumber", 2.8f);
+    spec.attribute("Exif:ISOSpeedRatings", 800.0f);
+    spec.attribute("XResolution", 300.0f);
+    spec.attribute("YResolution", 300.0f);
+    spec.attribute("ResolutionUnit", "in");
+    make_file(folder_ / "in.exr", {spec}, {marks(8, 8, 3)});
+  }
+  /// Through files with these endings, one after the other; what the last one says.
+  OIIO::ImageSpec through(const std::vector<std::string>& endings) const {
+    std::string from = "in.exr";
+    for (const auto& ending : endings) {
+      const std::string to = "by." + from + ending;
+      Diagnostics silent;
+      const auto written = write_picture(read_or_fail(folder_ / from), folder_ / to, {}, silent);
+      EXPECT_TRUE(written) << written.error().text();
+      from = to;
+    }
+    const auto input = OIIO::ImageInput::open((folder_ / from).string());
+    EXPECT_TRUE(input) << from;
+    return input ? input->spec() : OIIO::ImageSpec();
+  }
+  static std::uint32_t code_of(const OIIO::ImageSpec& spec) {
+    const auto* found = spec.find_attribute("smpte:TimeCode", OIIO::TypeTimeCode);
+    return found ? *static_cast<const std::uint32_t*>(found->data()) : 0;
+  }
+  static std::pair<int, int> rate_in(const OIIO::ImageSpec& spec) {
+    const auto* found = spec.find_attribute("FramesPerSecond", OIIO::TypeRational);
+    const auto* parts = found ? static_cast<const int*>(found->data()) : nullptr;
+    return parts ? std::pair(parts[0], parts[1]) : std::pair(0, 0);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(KeptBetween, ExrAndPng) {
+  const auto png = through({".png"});
+  EXPECT_EQ(png.get_string_attribute("smpte:TimeCode"), "01:02:03:04");
+  EXPECT_EQ(png.get_string_attribute("FramesPerSecond"), "24000/1001");
+  EXPECT_EQ(png.get_string_attribute("FNumber"), "2.8");
+  EXPECT_NEAR(png.get_float_attribute("XResolution"), 300, 0.01);
+  for (const auto& way : {std::vector<std::string>{".png", ".exr"}, {".exr"}, {".png", ".png", ".exr"}}) {
+    const auto exr = through(way);
+    EXPECT_EQ(code_of(exr), 0x01020304u);
+    EXPECT_EQ(rate_in(exr), std::pair(24000, 1001));
+    EXPECT_EQ(exr.get_string_attribute("Artist"), "Me");
+    EXPECT_EQ(exr.get_float_attribute("FNumber"), 2.8f);
+    EXPECT_EQ(exr.get_float_attribute("ExposureTime"), 0.25f);
+    EXPECT_EQ(exr.get_float_attribute("isoSpeed", exr.get_float_attribute("Exif:ISOSpeedRatings")), 800);
+    EXPECT_NEAR(exr.get_float_attribute("XResolution"), 300, 0.01);
+    EXPECT_NEAR(exr.get_float_attribute("YResolution"), 300, 0.01);
+  }
+}
+
+TEST_F(KeptBetween, ExrAndDpx) {
+  EXPECT_EQ(code_of(through({".dpx"})), 0x01020304u);
+  EXPECT_NEAR(through({".dpx"}).get_float_attribute("dpx:FrameRate"), 23.976, 1e-3);
+  const auto exr = through({".dpx", ".exr"});
+  EXPECT_EQ(code_of(exr), 0x01020304u);
+  EXPECT_EQ(rate_in(exr), std::pair(24000, 1001));
+}
+
+TEST_F(KeptBetween, ResolutionGoesIntoAllThatHaveIt) {
+  for (const auto& way : {std::vector<std::string>{".jpg"},
+                          {".tif"},
+                          {".png", ".jpg"},
+                          {".png", ".tif"},
+                          {".jpg", ".exr"},
+                          {".tif", ".exr"}}) {
+    const auto spec = through(way);
+    EXPECT_NEAR(spec.get_float_attribute("XResolution"), 300, 0.01) << way.front() << way.back();
+    EXPECT_EQ(spec.get_string_attribute("ResolutionUnit").substr(0, 2), "in") << way.front() << way.back();
+  }
+}
+
+TEST_F(KeptBetween, ResolutionTurnsWithThePixels) {
+  OIIO::ImageSpec spec = make_spec(8, 4, {"R", "G", "B"}, OIIO::TypeUInt8);
+  spec.attribute("Orientation", 6);
+  spec.attribute("XResolution", 300.0f);
+  spec.attribute("YResolution", 150.0f);
+  spec.attribute("ResolutionUnit", "in");
+  make_file(folder_ / "turned.tif", {spec}, {marks(8, 4, 3)});
+  Diagnostics silent;
+  ASSERT_TRUE(write_picture(read_or_fail(folder_ / "turned.tif"), folder_ / "o.tif", {}, silent));
+  const auto written = OIIO::ImageInput::open((folder_ / "o.tif").string());
+  ASSERT_TRUE(written);
+  EXPECT_EQ(written->spec().width, 4);
+  EXPECT_EQ(written->spec().get_float_attribute("XResolution"), 150);
+  EXPECT_EQ(written->spec().get_float_attribute("YResolution"), 300);
+}
+
+TEST_F(KeptBetween, WhatJpegSaysTwiceIsNotDoubled) {
+  EXPECT_EQ(through({".jpg", ".jpg", ".jpg"}).get_string_attribute("IPTC:Creator"), "Me");
+}
+
+}  // namespace
+}  // namespace afterglow
