@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // `afterglow play`: footage through a preset that is being edited.
+#include <fmt/format.h>
+
 #include <memory>
+#include <utility>
 
 #include "apps/command.h"
 #include "apps/output.h"
@@ -62,12 +65,17 @@ Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& optio
   if (!a.geometry.empty()) {
     AFTERGLOW_TRY(place, parse_geometry(a.geometry));
   }
+  AFTERGLOW_TRY(auto display, a.shown_on.table(options.preset, a.preset.paths));
+  if (display)
+    console.diagnostics().note(fmt::format("view: {}, within {:.1f} codes of 8 bits (mean {:.2f})", display->name,
+                                           display->largest_error, display->mean_error));
   const PlayWindowOptions window{.place = place,
                                  .scale = a.ui_scale,
                                  .full_screen = a.full_screen,
                                  .paused = a.paused,
                                  .stats = a.stats,
                                  .speed = a.speed,
+                                 .display = std::move(display),
                                  .exports = a.exports};
   Result<void> written;
   const auto report = [&](const Device& device, Player& player, const PlayedTimes& times, const Result<void>& done) {

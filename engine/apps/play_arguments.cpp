@@ -65,6 +65,7 @@ void PlayArguments::add_playing(CLI::App& app) {
       ->check(CLI::Range(0.5, 4.0))
       ->type_name("X")
       ->group(window);
+  shown_on.add(app);
   app.add_option(
          "--export", exports,
          "Where S writes the frame, and Ctrl+R the range, full size: a file, a pattern like out.####.png, a folder "
@@ -93,6 +94,9 @@ Result<void> PlayArguments::check() const {
                  "afterglow play"};
   if (!headless && (count > 0 || fast || real_time || !screenshot.empty()))
     return Error{ErrorKind::usage, "--count, --fast, --real-time and --screenshot go with --headless",
+                 "afterglow play"};
+  if (headless && shown_on.any())
+    return Error{ErrorKind::usage, "--view-ocio and --view-icc are of the window: what is written stays without them",
                  "afterglow play"};
   std::error_code none;
   if (!exports.empty() && !std::filesystem::is_directory(exports, none)) AFTERGLOW_CHECK(check_output(exports, {}));

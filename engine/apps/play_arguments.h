@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/display_arguments.h"
 #include "apps/options.h"
 #include "play/player.h"
 
@@ -18,6 +19,7 @@ struct PlayArguments {
   ExecutionArguments execution;
   std::vector<std::string> inputs;
   LayerArguments layers;
+  DisplayArguments shown_on;
   std::string frames;
   std::string geometry;
   std::string other, show, loop, cache = "2G", proxy = "1", screenshot, report, exports;

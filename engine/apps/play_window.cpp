@@ -17,6 +17,7 @@ WindowOptions window_options(const PlayWindowOptions& options) {
   if (options.scale) out.scale = static_cast<float>(*options.scale);
   out.full_screen = options.full_screen;
   out.stats = options.stats;
+  out.display = options.display;
   out.interrupted = [] { return interrupted(); };
   return out;
 }

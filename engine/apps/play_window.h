@@ -9,6 +9,7 @@
 #include "apps/console.h"
 #include "apps/window_place.h"
 #include "gpu/device.h"
+#include "image/display_table.h"
 #include "play/player.h"
 
 namespace afterglow {
@@ -20,7 +21,8 @@ struct PlayWindowOptions {
   bool paused = false;
   bool stats = false;
   double speed = 1;
-  std::filesystem::path exports;  ///< see FrameExport; empty: beside where the program was called
+  std::optional<DisplayTable> display;  ///< that pictures are shown on; none: sRGB
+  std::filesystem::path exports;        ///< see FrameExport; empty: beside where the program was called
 };
 
 /// In milliseconds.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/printable.h"
 #include "image/srgb.h"
 
 namespace afterglow {
@@ -138,6 +139,30 @@ Result<void> use_icc_profile(std::span<const std::uint8_t> bytes, int channels, 
   if (!transform) return refused("has an ICC profile that cannot be used");
   encoding.transform = std::make_shared<LittleTransform>(std::move(context), std::move(transform));
   return {};
+}
+
+Result<DisplayProfile> display_profile(std::span<const std::uint8_t> bytes) {
+  Context context(cmsCreateContext(nullptr, nullptr));
+  if (!context) return refused("there is no memory for the ICC profile");
+  const Profile profile(
+      cmsOpenProfileFromMemTHR(context.get(), bytes.data(), static_cast<cmsUInt32Number>(bytes.size())));
+  if (!profile) return refused("is no ICC profile, or a damaged one");
+  if (cmsGetColorSpace(profile.get()) != cmsSigRgbData) return refused("is an ICC profile that is not of RGB");
+  if (!cmsIsIntentSupported(profile.get(), INTENT_RELATIVE_COLORIMETRIC, LCMS_USED_AS_OUTPUT))
+    return refused("is an ICC profile for reading alone: it does not say what a display is to be sent");
+  const Profile source = linear_rec709(context.get());
+  if (!source) return refused("there is no memory for the ICC profile");
+  Transform transform(cmsCreateTransformTHR(context.get(), source.get(), TYPE_RGB_FLT, profile.get(), TYPE_RGB_FLT,
+                                            INTENT_RELATIVE_COLORIMETRIC,
+                                            cmsFLAGS_NOCACHE | cmsFLAGS_NOOPTIMIZE | cmsFLAGS_BLACKPOINTCOMPENSATION));
+  if (!transform) return refused("is an ICC profile that cannot be used");
+  DisplayProfile out;
+  std::array<char, 128> name{};
+  cmsGetProfileInfoASCII(profile.get(), cmsInfoDescription, "en", "US", name.data(), name.size());
+  out.name = tidy_message(name.data(), 60);
+  const auto made = std::make_shared<LittleTransform>(std::move(context), std::move(transform));
+  out.apply = [made](float* rgb, std::size_t pixels) { made->apply(rgb, pixels); };
+  return out;
 }
 
 std::vector<std::uint8_t> srgb_icc_profile() {

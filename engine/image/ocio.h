@@ -2,7 +2,9 @@
 // What OpenColorIO reads: look-up tables as steps (lut_file.h), views and colour spaces of configurations as shaders.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,5 +58,17 @@ struct OcioShader {
 
 /// Errors: as above, and tables that cannot be read.
 Result<OcioShader> ocio_shader(const OcioRequest& request);
+
+/// Brings RGB triples from one space to another, in place. Thread-safe.
+using ColorFunction = std::function<void(float* rgb, std::size_t pixels)>;
+
+/// What a request does, by OpenColorIO on the processor, without approximations.
+struct OcioFunction {
+  ColorFunction apply;
+  std::string display, view;  ///< those that are meant, where the request leaves them to the configuration
+};
+
+/// Errors: as above.
+Result<OcioFunction> ocio_function(const OcioRequest& request);
 
 }  // namespace afterglow

@@ -29,4 +29,9 @@ Result<OcioShader> ocio_shader(const OcioRequest& request) {
   return module->shader(request);
 }
 
+Result<OcioFunction> ocio_function(const OcioRequest& request) {
+  AFTERGLOW_TRY(const OcioModule* module, ocio_module());
+  return module->function(request);
+}
+
 }  // namespace afterglow

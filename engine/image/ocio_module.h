@@ -24,6 +24,7 @@ struct OcioModule {
   std::vector<std::string> (*extensions)();
   Result<OcioSurvey> (*survey)(const OcioRequest& request);
   Result<OcioShader> (*shader)(const OcioRequest& request);
+  Result<OcioFunction> (*function)(const OcioRequest& request);
 };
 
 /// Loads it on the first call; thread-safe. Errors: io (not installed).

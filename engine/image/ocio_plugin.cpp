@@ -79,7 +79,9 @@ void check_files(const OCIO::Processor& processor, const std::vector<OcioSurvey:
   }
 }
 
-Result<OcioShader> shader(const OcioRequest& request) {
+/// What `make` makes of the request's configuration and processor.
+template <class Made, class Make>
+Result<Made> with_processor(const OcioRequest& request, const Make& make) {
   const std::lock_guard lock(mutex);
   OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);
   try {
@@ -89,7 +91,7 @@ Result<OcioShader> shader(const OcioRequest& request) {
     const auto files = ocio_files(*config, *chain);
     const auto processor = config->getProcessor(chain);
     check_files(*processor, files);
-    return ocio_glsl(*processor);
+    return make(*config, *processor);
   } catch (const OcioFault& wrong) {
     return Error{ErrorKind::script,       wrong.fault.key + ": " + wrong.fault.what,
                  request.config.string(), 0,
@@ -99,6 +101,27 @@ Result<OcioShader> shader(const OcioRequest& request) {
   } catch (const std::exception& error) {
     return error_of(request.config.string(), exception_text(error));
   }
+}
+
+Result<OcioShader> shader(const OcioRequest& request) {
+  return with_processor<OcioShader>(
+      request, [](const OCIO::Config&, const OCIO::Processor& processor) { return ocio_glsl(processor); });
+}
+
+Result<OcioFunction> function(const OcioRequest& request) {
+  return with_processor<OcioFunction>(request, [&](const OCIO::Config& config, const OCIO::Processor& processor) {
+    OcioFunction out;
+    if (!request.to_space) {
+      out.display = request.display.empty() ? config.getDefaultDisplay() : request.display;
+      out.view = request.view.empty() ? config.getDefaultView(out.display.c_str()) : request.view;
+    }
+    const auto cpu = processor.getOptimizedCPUProcessor(OCIO::OPTIMIZATION_LOSSLESS);
+    out.apply = [cpu](float* rgb, std::size_t pixels) {
+      OCIO::PackedImageDesc image(rgb, static_cast<long>(pixels), 1, 3);
+      cpu->apply(image);
+    };
+    return out;
+  });
 }
 
 std::vector<std::string> extensions() {
@@ -119,6 +142,6 @@ std::vector<std::string> extensions() {
 
 extern "C" __attribute__((visibility("default"))) const afterglow::OcioModule* afterglow_ocio_module() {
   static constexpr afterglow::OcioModule module{&afterglow::read, &afterglow::extensions, &afterglow::survey,
-                                                &afterglow::shader};
+                                                &afterglow::shader, &afterglow::function};
   return &module;
 }

@@ -66,7 +66,8 @@ struct View {
   double exposure = 0;  ///< EV, in scene-linear light before encoding for the screen
   double gamma = 1;     ///< light behind the exposure, to the power of 1/gamma; kLeastGamma…kMostGamma
   ViewChannel channel = ViewChannel::color;
-  bool smooth = false;  ///< magnified, pixels go over into each other; else each is a square
+  bool as_display = true;  ///< where a display is named, light is shown as its table says; else as sRGB
+  bool smooth = false;     ///< magnified, pixels go over into each other; else each is a square
   Marks marks = Marks::none;
   Compare compare = Compare::none;
   CompareBy by = CompareBy::wipe;

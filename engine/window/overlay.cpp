@@ -166,6 +166,8 @@ void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area) {
     lines.emplace_back(ui_color::kAccent, "image: " + image);
   }
   if (player.proxy() > 1) lines.emplace_back(ui_color::kAccent, "proxy " + proxy_name(player.proxy()));
+  if (!ui.display.empty())
+    lines.emplace_back(ui_color::kText, view.as_display ? "view: " + ui.display : "view: sRGB, not " + ui.display);
   if (view.channel != ViewChannel::color) lines.emplace_back(ui_color::kText, view_channel_name(view.channel));
   if (view.gamma != 1) lines.emplace_back(ui_color::kText, fmt::format("view gamma {:.2f}", view.gamma));
   if (view.exposure != 0) lines.emplace_back(ui_color::kText, fmt::format("view {:+.2f} EV", view.exposure));

@@ -45,9 +45,15 @@ Result<void> Painter::take_fonts() {
   return ui_->take_fonts();
 }
 
+Result<void> Painter::take_display(const DisplayTable& table) {
+  AFTERGLOW_CHECK(swapchain_->finish());
+  return view_pass_->take_table(table);
+}
+
 Result<void> Painter::record(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
                              const ImDrawData& interface, std::span<const Rect> changed) {
   AFTERGLOW_CHECK(ui_->prepare(commands, target.slot, interface, changed));
+  view_pass_->prepare(commands);
   const VkRenderingAttachmentInfo color{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                         .imageView = target.view,
                                         .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,

@@ -20,6 +20,8 @@ class Painter {
 
   /// After the interface's fonts have changed; waits for the frames before. Errors: device.
   Result<void> take_fonts();
+  /// The display that pictures are shown on from here on; waits for the frames before. Errors: device.
+  Result<void> take_display(const DisplayTable& table);
   /// Waits until the frames drawn so far are done: what they read may be written then. Errors: device.
   Result<void> finish() { return swapchain_->finish(); }
   /// One frame: the picture (none: background alone), then the interface over it. `window`: size of the frame buffer.

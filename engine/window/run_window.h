@@ -10,6 +10,7 @@
 #include "core/diagnostics.h"
 #include "core/geometry.h"
 #include "gpu/device.h"
+#include "image/display_table.h"
 #include "play/player.h"
 #include "window/desktop_window.h"
 #include "window/shortcuts.h"
@@ -21,6 +22,7 @@ struct WindowOptions {
   std::optional<float> scale;  ///< of the interface; none: the desktop's
   bool full_screen = false;
   bool stats = false;                    ///< shown from the start
+  std::optional<DisplayTable> display;   ///< that pictures are shown on; none: sRGB
   bool tearing = false;                  ///< see SwapchainOptions
   std::filesystem::path captures = ".";  ///< folder for screenshots by key
   /// A part of the interface, drawn as an ImGui window at `place`. Without one, its place is the picture's.

@@ -41,6 +41,8 @@ constexpr Shortcut kShortcuts[] = {
     {Action::exposure_reset, GLFW_KEY_0, kNone, "0", "Picture", "Exposure and gamma as they are"},
     {Action::gamma_up, GLFW_KEY_UP, kShift, "Shift+Up", "Picture", "More gamma (the view alone)", true},
     {Action::gamma_down, GLFW_KEY_DOWN, kShift, "Shift+Down", "Picture", "Less gamma", true},
+    {Action::as_display, GLFW_KEY_V, kShift, "Shift+V", "Picture",
+     "As --view-ocio or --view-icc say, or as sRGB (the view alone)"},
     {Action::marks, GLFW_KEY_X, kNone, "X", "Picture", "Marks: none, what is out of range, zones of a stop each"},
     {Action::background, GLFW_KEY_K, kShift, "Shift+K", "Picture", "Behind transparency: nothing, grey, checkers"},
     {Action::guides, GLFW_KEY_G, kShift, "Shift+G", "Picture", "Lines: none, thirds, safe areas, both"},

@@ -53,6 +53,7 @@ enum class Action {
   exposure_reset,
   gamma_up,
   gamma_down,
+  as_display,
   marks,
   background,
   guides,

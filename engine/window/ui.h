@@ -34,6 +34,7 @@ struct Ui {
   bool show_frame_field = false;
   bool show_stats = false;
 
+  std::string display;  ///< that pictures are shown on; empty: none is named, and it is sRGB
   Size picture_window;  ///< what one picture has of the window, in pixels of the frame buffer
   double now = 0;       ///< seconds of a clock that never goes backwards
   /// Puts text on the clipboard.

@@ -4,6 +4,7 @@
 
 layout(set = 0, binding = 1) uniform sampler2D shown;
 layout(set = 0, binding = 2) uniform sampler2D compared;
+layout(set = 0, binding = 3) uniform sampler2D table;  // of a display (image/display_table.h); with kTable alone
 
 // What is known when the pipeline is made: CPU drivers run through every branch that is left (view_pass.cpp has the same).
 layout(constant_id = 0) const int kFlags = 0;
@@ -11,7 +12,7 @@ layout(constant_id = 1) const int kChannel = 0;          // ViewChannel
 layout(constant_id = 2) const int kShownReads = 0;       // how each image is read
 layout(constant_id = 3) const int kComparedReads = 0;
 const int kFalseColor = 1, kDifference = 2, kEncode = 4, kGray = 8, kChecker = 16, kFill = 32, kZoned = 64,
-          kGamma = 128;
+          kGamma = 128, kTable = 256;
 const int kNearest = 0, kSmooth = 1, kMean = 2;
 
 layout(push_constant) uniform Push {
@@ -25,6 +26,8 @@ layout(push_constant) uniform Push {
   ivec2 picture;        // the size that `scale` is about
   ivec2 shown_size;
   ivec2 compared_size;
+  int planes;           // of the table
+  vec4 shaper;          // of it: bend, cells above and below 0, the plane of 0
 } push;
 
 layout(location = 0) out vec4 result;
@@ -149,7 +152,9 @@ vec3 zone_of(float light) {
 
 vec3 with_gamma(vec3 c) { return has(kGamma) ? sign(c) * pow(abs(c), vec3(push.fill.w)) : c; }
 
-vec3 looked_at(Sample s) {
+// `as_light`: a display shows the colour as its table says. Marks, differences and alpha are no light.
+vec3 looked_at(Sample s, out bool as_light) {
+  as_light = false;
   if ((s.marks & kMarkNotFinite) != 0) return push.not_finite.rgb;
   vec4 c = s.color;
   c.rgb *= push.below.w;
@@ -157,6 +162,7 @@ vec3 looked_at(Sample s) {
   if ((s.marks & kMarkBelow) != 0) return push.below.rgb;
   if ((s.marks & kMarkAbove) != 0) return push.above.rgb;
   c.rgb = with_gamma(c.rgb);
+  as_light = has(kTable) && kChannel != 4;
   if (has(kFalseColor)) return kChannel == 0 ? vec3(dot(c.rgb, kLuminance)) : with_channel(c);  // marks stand out
   return over_background(c);
 }
@@ -174,6 +180,32 @@ vec3 encoded(vec3 c) {
   curve = curve * root + 0.1620262245;
   curve = curve * root - 0.0613402120;
   return mix(curve, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
+}
+
+const int kTableTiles = 8;  // slices beside each other
+
+vec3 table_at(ivec3 plane) {
+  ivec2 tile = ivec2(plane.b % kTableTiles, plane.b / kTableTiles);
+  return texelFetch(table, plane.rg + push.planes * tile, 0).rgb;
+}
+
+// Codes of the display between the planes of its table (DisplayTable has the formulas): tetrahedral.
+vec3 displayed(vec3 light) {
+  vec3 root = sqrt(sqrt(sqrt(min(abs(light), vec3(kLargest)))));
+  vec3 bent = log2(1.0 + push.shaper.x * root * root * root);
+  vec3 at = push.shaper.w + bent * mix(vec3(push.shaper.y), vec3(-push.shaper.z), lessThan(light, vec3(0.0)));
+  at = clamp(at, vec3(0.0), vec3(float(push.planes - 1)));
+  ivec3 low = min(ivec3(at), ivec3(push.planes - 2));
+  vec3 part = at - vec3(low);
+  float most = max(max(part.r, part.g), part.b), least = min(min(part.r, part.g), part.b);
+  float middle = max(min(part.r, part.g), min(max(part.r, part.g), part.b));
+  // Along the axis of the largest part, then of the middle one, then of the least.
+  ivec3 first = part.r >= part.g && part.r >= part.b ? ivec3(1, 0, 0) : part.g >= part.b ? ivec3(0, 1, 0) : ivec3(0, 0, 1);
+  ivec3 last = part.b <= part.r && part.b <= part.g ? ivec3(0, 0, 1) : part.g <= part.r ? ivec3(0, 1, 0) : ivec3(1, 0, 0);
+  vec3 c = (1.0 - most) * table_at(low) + (most - middle) * table_at(low + first) +
+           (middle - least) * table_at(low + 1 - last) + least * table_at(low + 1);
+  c = clamp(c, vec3(0.0), vec3(1.0));
+  return has(kEncode) ? c : decoded(c);
 }
 
 // `point`: of the picture, whatever the size of the image.
@@ -198,5 +230,7 @@ void main() {
     Sample other = sample_compared(point);
     s = Sample(vec4(abs(s.color.rgb - other.color.rgb), 1.0), s.marks | other.marks);
   }
-  result = vec4(encoded(looked_at(s)), 1.0);
+  bool as_light;
+  vec3 color = looked_at(s, as_light);
+  result = vec4(as_light && !has(kDifference) ? displayed(color) : encoded(color), 1.0);
 }

@@ -125,6 +125,14 @@ bool WindowApp::act_on_picture(Action action) {
       return bend(kGammaStep);
     case Action::gamma_down:
       return bend(-kGammaStep);
+    case Action::as_display:
+      if (ui.display.empty()) {
+        ui.say("no display is named: --view-ocio or --view-icc do");
+      } else {
+        view.as_display = !view.as_display;
+        ui.say("view: " + (view.as_display ? ui.display : "sRGB"));
+      }
+      return true;
     case Action::marks:
       view.marks = static_cast<Marks>((static_cast<int>(view.marks) + 1) % 3);
       ui.say("marks: " + marks_name(view.marks));

@@ -107,6 +107,10 @@ void draw_view_controls(Ui& ui, PanelPort& port) {
     ImGui::EndCombo();
   }
   ui.help("C, R, G, B, A, Y");
+  if (!ui.display.empty()) {
+    ImGui::Checkbox("as the display has it", &view.as_display);
+    ui.help(ui.display + " (Shift+V); files stay without it");
+  }
   draw_comparison(ui, port);
   draw_guide_controls(ui, view);
   if (ImGui::BeginCombo("marks", marks_name(view.marks).c_str())) {

@@ -12,13 +12,14 @@
 #include "gpu/pipeline.h"
 #include "gpu/swapchain.h"
 #include "view.frag.h"
+#include "window/view_table.h"
 
 namespace afterglow {
 
 namespace {
 
-constexpr std::uint32_t kImages = 2;
-constexpr std::size_t kSetsOfFrame = 2;  ///< what is shown; what it is compared with beside a border
+constexpr std::uint32_t kImages = 2, kBindings = 3;  ///< pictures; and the table of a display
+constexpr std::size_t kSetsOfFrame = 2;              ///< what is shown; what it is compared with beside a border
 constexpr VkDescriptorType kImageType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 
 /// As view.frag declares it.
@@ -27,8 +28,10 @@ struct Push {
   std::array<float, 2> origin;
   float scale, checker;
   std::array<std::int32_t, 2> picture, shown_size, compared_size;
+  std::int32_t planes, unused;
+  std::array<float, 4> shaper;
 };
-static_assert(sizeof(Push) == 104);
+static_assert(sizeof(Push) == 128);  // devices have no more for sure
 
 enum Flag {
   kFalseColor = 1,
@@ -38,7 +41,8 @@ enum Flag {
   kChecker = 16,
   kFill = 32,
   kZoned = 64,
-  kGamma = 128
+  kGamma = 128,
+  kTable = 256
 };
 enum Reads { kNearest, kSmooth, kMean };
 
@@ -148,6 +152,7 @@ struct ViewPass::State {
   std::map<Constants, PipelineHandle> pipelines;
   SamplerHandle sampler;
   DescriptorPoolHandle pool;
+  ViewTable table;
   std::vector<VkDescriptorSet> sets;  // of each slot, of each frame, kSetsOfFrame in a row
 
   Result<void> make_shaders();
@@ -164,7 +169,7 @@ struct ViewPass::State {
 
 Result<void> ViewPass::State::make_shaders() {
   AFTERGLOW_TRY(layout,
-                create_draw_layout(device, {.images = std::vector(kImages, kImageType), .push_bytes = sizeof(Push)}));
+                create_draw_layout(device, {.images = std::vector(kBindings, kImageType), .push_bytes = sizeof(Push)}));
   AFTERGLOW_TRY(vertex, create_shader_module(device, kFullscreenVertex, "view"));
   AFTERGLOW_TRY(fragment, create_shader_module(device, kViewFrag, "view"));
   AFTERGLOW_TRY(sampler, create_sampler(device, VK_FILTER_NEAREST));
@@ -184,7 +189,7 @@ Result<VkPipeline> ViewPass::State::pipeline(Constants constants) {
 
 Result<void> ViewPass::State::make_sets(std::size_t count) {
   const auto number = static_cast<std::uint32_t>(count);
-  const VkDescriptorPoolSize size{kImageType, kImages * number};
+  const VkDescriptorPoolSize size{kImageType, kBindings * number};
   const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                         .maxSets = number,
                                         .poolSizeCount = 1,
@@ -208,10 +213,13 @@ Result<void> ViewPass::State::make_sets(std::size_t count) {
 
 /// Always written: an image that took the place of another may have got the same handle.
 void ViewPass::State::bind(VkDescriptorSet set, const std::array<ViewImage, kImages>& images) const {
-  std::array<VkDescriptorImageInfo, kImages> infos{};
-  std::array<VkWriteDescriptorSet, kImages> writes{};
-  for (std::uint32_t i = 0; i < kImages; ++i) {
-    infos[i] = {sampler.get(), images[i].view, images[i].layout};
+  std::array<VkDescriptorImageInfo, kBindings> infos{};
+  std::array<VkWriteDescriptorSet, kBindings> writes{};
+  for (std::uint32_t i = 0; i < kBindings; ++i) {
+    const ViewImage& image = images[std::min(i, kImages - 1)];
+    infos[i] = {sampler.get(), image.view, image.layout};
+    if (i >= kImages && table.planes() > 0)
+      infos[i] = {sampler.get(), table.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                  .dstSet = set,
                  .dstBinding = i + 1,
@@ -219,7 +227,7 @@ void ViewPass::State::bind(VkDescriptorSet set, const std::array<ViewImage, kIma
                  .descriptorType = kImageType,
                  .pImageInfo = &infos[i]};
   }
-  device.vk().vkUpdateDescriptorSets(device.handle(), kImages, writes.data(), 0, nullptr);
+  device.vk().vkUpdateDescriptorSets(device.handle(), kBindings, writes.data(), 0, nullptr);
 }
 
 /// Of these pixels of the target, with the set that is bound.
@@ -261,10 +269,15 @@ Result<void> ViewPass::State::draw_images(VkCommandBuffer commands, VkDescriptor
   device.vk().vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout.pipeline.get(), 0, 1, &set, 0,
                                       nullptr);
   const auto [shown, compared] = images;
+  const bool by_table = table.planes() > 0 && frame.view.as_display;
+  Push push = push_of(frame, place, shown.size, compared.size);
+  push.planes = table.planes();
+  push.shaper = table.shaper();
   return draw(commands, pixels,
-              {flags_of(frame) | (difference ? kDifference : 0), static_cast<std::int32_t>(frame.view.channel),
-               reads_of(frame, place, shown.size), difference ? reads_of(frame, place, compared.size) : kNearest},
-              push_of(frame, place, shown.size, compared.size));
+              {flags_of(frame) | (difference ? kDifference : 0) | (by_table ? kTable : 0),
+               static_cast<std::int32_t>(frame.view.channel), reads_of(frame, place, shown.size),
+               difference ? reads_of(frame, place, compared.size) : kNearest},
+              push);
 }
 
 Result<void> ViewPass::State::draw_frame(VkCommandBuffer commands, std::span<const VkDescriptorSet, kSetsOfFrame> own,
@@ -297,6 +310,10 @@ Result<std::unique_ptr<ViewPass>> ViewPass::create(const Device& device, VkForma
   AFTERGLOW_CHECK(state->make_sets(slots * kMostFrames * kSetsOfFrame));
   return std::unique_ptr<ViewPass>(new ViewPass(std::move(state)));
 }
+
+Result<void> ViewPass::take_table(const DisplayTable& table) { return state_->table.take(state_->device, table); }
+
+void ViewPass::prepare(VkCommandBuffer commands) { state_->table.upload(state_->device, commands); }
 
 ViewPass::ViewPass(std::unique_ptr<State> state) : state_(std::move(state)) {}
 ViewPass::~ViewPass() = default;

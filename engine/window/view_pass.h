@@ -10,6 +10,7 @@
 
 #include "core/geometry.h"
 #include "gpu/device.h"
+#include "image/display_table.h"
 #include "play/view.h"
 
 namespace afterglow {
@@ -73,13 +74,20 @@ struct ViewFrame {
 ///    exposure, by more than 1e-4), in what the channel view looks at; others are grey. stops: the zone of what the
 ///    channel view looks at (of a colour its luminance) behind the exposure, without gamma; what is not finite is
 ///    marked.
-/// 6. Clamped to 0…1 and sRGB-encoded, once: here, or by the target's format.
+/// 6. Clamped to 0…1 and sRGB-encoded, once: here, or by the target's format. With a table of a display, and while the
+///    view wants it (View::as_display): codes that it has for light. Marks, differences, alpha, and what is beside the
+///    picture stay sRGB.
 /// Drawing thread alone.
 class ViewPass {
  public:
   /// `target`: format of the colour target. `slots`: as many frames may be under way. Errors: device.
   static Result<std::unique_ptr<ViewPass>> create(const Device& device, VkFormat target, std::size_t slots);
   ~ViewPass();
+
+  /// The display that is shown on; read until the next one. What was recorded before must be done. Errors: device.
+  Result<void> take_table(const DisplayTable& table);
+  /// Outside of rendering, before `record`: brings a new table to the device.
+  void prepare(VkCommandBuffer commands);
 
   /// Pictures that one call records at most: two lie side by side.
   static constexpr std::size_t kMostFrames = 2;

@@ -30,6 +30,10 @@ Result<std::unique_ptr<WindowApp>> WindowApp::create(DesktopWindow& window, Devi
   AFTERGLOW_TRY(app->painter_, Painter::create(device, {.tearing = options.tearing, .readback = true}));
   Ui& ui = app->interface_->ui();
   ui.show_stats = options.stats;
+  if (options.display) {
+    AFTERGLOW_CHECK(app->painter_->take_display(*options.display));
+    ui.display = options.display->name;
+  }
   ui.copy = [&window](const std::string& text) { window.set_clipboard(text); };
   // Not within the frame that asks for it: what asks may be gone then.
   ui.open = [raw = app.get()](const std::string& path) { raw->to_open_.emplace_back(path); };

@@ -150,6 +150,42 @@ TEST_F(Play, CtrlCEndsCleanly) {
   EXPECT_TRUE(report().contains("error"));
 }
 
+/// Before any window is opened.
+TEST_F(Play, DisplaysThatCannotBeHadSayWhy) {
+  const auto refused = [&](std::vector<std::string> more, int code, const std::string& text) {
+    more.insert(more.begin(), "in/shot.0001.exr");
+    const Outcome outcome = play(more, {.environment = {{"OCIO", ""}}});
+    EXPECT_EQ(outcome.exit_code, code) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(text));
+  };
+  refused({"--view-ocio", "ocio/acess.ocio"}, kUsage, "did you mean 'ocio/aces.ocio'?");
+  const std::vector<std::string> aces{"--view-ocio", "ocio/aces.ocio"};
+  const auto of_aces = [&](const std::string& option, const std::string& name) {
+    return std::vector<std::string>{aces[0], aces[1], option, name};
+  };
+  refused(of_aces("--view-display", "sRGB - Displai"), kUsage,
+          "--view-display: error: the configuration has no display of that name (aces.ocio); allowed: ");
+  refused(of_aces("--view-display", "sRGB - Displai"), kUsage, "did you mean 'sRGB - Display'?");
+  refused(of_aces("--view-name", "Un-tone-maped"), kUsage, "did you mean 'Un-tone-mapped'?");
+  refused(of_aces("--view-icc", "monitor.icc"), kUsage, "it goes without a profile");
+  refused(of_aces("--headless", "--fast"), kUsage, "--view-ocio and --view-icc are of the window");
+  refused({"--view-icc", "monitor.icc"}, kFiles, "monitor.icc: ");
+  write("monitor.icc", "no profile");
+  refused({"--view-icc", "monitor.icc"}, kFiles, "monitor.icc: error: is no ICC profile, or a damaged one");
+  refused({"--view-name", "Film"}, kUsage, "--view-ocio is not given");
+  write("studio.ocio", "ocio_profile_version: 2\n  odd");
+  refused({"--view-ocio", "studio.ocio"}, kScript, "studio.ocio:");
+  write("studio.ocio",
+        "ocio_profile_version: 2\nroles: {default: lin_rec709}\n"
+        "file_rules: [!<Rule> {name: Default, colorspace: lin_rec709}]\n"
+        "displays:\n  Wall:\n    - !<View> {name: Film, colorspace: film}\n"
+        "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n"
+        "  - !<ColorSpace> {name: film, from_scene_reference: !<FileTransform> {src: film.cube}}\n");
+  refused({"--view-ocio", "studio.ocio"}, kScript, "'film.cube': there is no such file");
+  write("film.cube", "LUT_3D_SIZE 2\n0 0 0\n");
+  refused({"--view-ocio", "studio.ocio"}, kScript, "film.cube:");
+}
+
 /// Scripts find the reason in the report, whenever it comes.
 TEST_F(Play, TheReportSaysWhatCameBeforeThePlaying) {
   const Outcome outcome = play({"nowhere.exr", "--headless", "--report", "play.json"});

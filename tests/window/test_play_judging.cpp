@@ -60,6 +60,36 @@ TEST_F(PlayWindow, ScopesComeAndGoAndARegionIsDrawn) {
   expect_clean_end();
 }
 
+/// A configuration whose view halves the codes of red light and takes green's place with blue.
+TEST_F(PlayWindow, PicturesAreShownAsADisplayHasThem) {
+  write_preset("{ 1, 1, 0 }");
+  std::ofstream(folder_ / "studio.ocio") << "ocio_profile_version: 2\nroles: {default: lin_rec709}\nfile_rules: "
+                                            "[!<Rule> {name: Default, colorspace: lin_rec709}]\n"
+                                            "displays:\n  Wall:\n    - !<View> {name: Swapped, colorspace: swapped}\n"
+                                            "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n"
+                                            "  - !<ColorSpace>\n    name: swapped\n    from_scene_reference: "
+                                            "!<MatrixTransform> {matrix: [0.5, 0, 0, 0, 0, 0, 1, "
+                                            "0, 0, 1, 0, 0, 0, 0, 0, 1]}\n";
+  play({"look.lua", "shot.0001.exr", "--paused", "--view-ocio", "studio.ocio", "--export", "out.exr"});
+  ASSERT_TRUE(program_->wait_for("view: Wall, Swapped, within"));
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  constexpr Color kWall{64, 0, 128};
+  EXPECT_TRUE(until_color(kX, kY, kWall));
+  ASSERT_TRUE(user("mousemove 400 300 key shift+v"));
+  EXPECT_TRUE(until_color(kX, kY, {188, 188, 0}));
+  ASSERT_TRUE(user("key shift+v"));
+  EXPECT_TRUE(until_color(kX, kY, kWall));
+  ASSERT_TRUE(user("key s"));  // the frame that is written knows nothing of the display
+  ASSERT_TRUE(program_->wait_for("frame written to out.exr"));
+  Diagnostics nowhere;
+  const auto written = read_picture(folder_ / "out.exr", {}, nowhere);
+  ASSERT_TRUE(written) << written.error().text();
+  const float* pixel = written->color.at(10, 10);
+  EXPECT_TRUE(std::abs(pixel[0] - 0.5f) < 1e-3f && std::abs(pixel[1] - 0.5f) < 1e-3f && pixel[2] == 0);
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
 /// An editor that writes down how it was called.
 TEST_F(PlayWindow, AnErrorOpensTheEditorAtItsLine) {
   std::ofstream(folder_ / "editor") << "#!/bin/sh\necho \"$@\" >> called.txt\n";

@@ -81,6 +81,9 @@ class ViewPassTest : public testing::Test {
     auto buffer = Buffer::create(*device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::read, "pixels");
     auto pass = ViewPass::create(*device_, format, 1);
     EXPECT_TRUE(pass) << pass.error().text();
+    if (display_) {
+      EXPECT_TRUE((*pass)->take_table(*display_));
+    }
     auto submitter = Submitter::create(*device_);
     EXPECT_TRUE(submitter->submit(
         [&](VkCommandBuffer commands) { record(commands, **pass, frame, target_size, *target, *buffer, sources); }));
@@ -115,6 +118,7 @@ class ViewPassTest : public testing::Test {
                                     .layerCount = 1,
                                     .colorAttachmentCount = 1,
                                     .pColorAttachments = &color};
+    pass.prepare(commands);
     device_->vk().vkCmdBeginRendering(commands, &rendering);
     EXPECT_TRUE(pass.record(commands, 0, {&frame, 1}));
     device_->vk().vkCmdEndRendering(commands);
@@ -148,7 +152,7 @@ class ViewPassTest : public testing::Test {
       sources.push_back(gpu_compared.get());
     }
     const Image drawn = draw(frame, target, sources);
-    const ViewOracle oracle(frame, shown, compared);
+    const ViewOracle oracle(frame, shown, compared, display_);
     int wrong = 0, inside = 0;
     for (int y = 0; y < target.height; ++y) {
       for (int x = 0; x < target.width; ++x) {
@@ -175,8 +179,10 @@ class ViewPassTest : public testing::Test {
   }
 
   static Device* device_;
+  static const DisplayTable* display_;  ///< that the pass is given
 };
 Device* ViewPassTest::device_ = nullptr;
+const DisplayTable* ViewPassTest::display_ = nullptr;
 
 const Size kPicture{23, 17};
 
@@ -305,6 +311,66 @@ TEST_F(ViewPassTest, ShowsHowFarTwoImagesAreApart) {
     view.by = CompareBy::difference;
     expect_same(frame_of({4, 2, 48, 36}, view), after, &before, {56, 40}, "difference");
   }
+}
+
+/// A small table with a shaper of its own, whose codes lie beyond 0…1 too: what is read in it shows at once.
+DisplayTable odd_table() {
+  DisplayTable out{.name = "odd", .planes = 11, .zero = 3, .bend = 2, .cells = 3, .cells_below = 4};
+  out.size = {out.planes * kDisplayTiles, out.planes * 2};
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> noise(-0.2f, 1.2f);
+  for (long long i = 0; i < out.size.area() * 4; ++i) out.codes.push_back(noise(random));
+  return out;
+}
+
+TEST_F(ViewPassTest, LightIsShownAsTheDisplayHasIt) {
+  const DisplayTable table = odd_table();
+  Image image = picture({40, 30}, 7), other = picture({40, 30}, 8);
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> wide(-0.6f, 4);
+  for (std::size_t i = 0; i < 600; ++i) image.pixels[i * 4 + i % 3] = wide(random);
+  for (float* equal : {image.at(5, 5), image.at(6, 5)}) equal[0] = equal[1] = equal[2] = 0.3f;
+  display_ = &table;
+  for (const auto channel : {ViewChannel::color, ViewChannel::green, ViewChannel::alpha, ViewChannel::luminance})
+    for (const Marks marks : {Marks::none, Marks::range, Marks::stops})
+      for (const bool as_display : {true, false}) {
+        View view;
+        one_to_one(view, image.size(), image.size());
+        view.channel = channel;
+        view.marks = marks;
+        view.exposure = 0.5;
+        view.as_display = as_display;
+        ViewFrame frame = frame_of({0, 0, 40, 30}, view);
+        frame.picture = image.size();
+        expect_same(frame, image, nullptr, {40, 30}, (view_channel_name(channel) + ", " + marks_name(marks)).c_str());
+      }
+  View view;
+  view.compare = Compare::other;
+  for (const CompareBy by : {CompareBy::wipe, CompareBy::difference}) {
+    view.by = by;
+    ViewFrame frame = frame_of({2, 1, 40, 30}, view);
+    frame.picture = image.size();
+    expect_same(frame, image, &other, {44, 33}, compare_by_name(by).c_str());
+  }
+  display_ = nullptr;
+}
+
+/// Of the table's codes, targets that encode make the same codes again.
+TEST_F(ViewPassTest, TargetsThatEncodeShowTheDisplaysCodes) {
+  const DisplayTable table = odd_table();
+  Image image(1, 1, 4);
+  for (float& v : image.pixels) v = 0.214f;
+  const GpuImage gpu = upload(image);
+  ViewFrame frame = frame_of({0, 0, 2, 2}, {});
+  frame.picture = {1, 1};
+  frame.shown = {gpu.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, image.size()};
+  display_ = &table;
+  const Image drawn = draw(frame, {2, 2}, {gpu.get()}, VK_FORMAT_R8G8B8A8_SRGB);
+  display_ = nullptr;
+  std::array<std::uint8_t, 4> texel{};
+  std::memcpy(texel.data(), drawn.pixels.data(), texel.size());
+  const auto wanted = read_display_table(table, {0.214, 0.214, 0.214});
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(texel[c], 255 * wanted[c], 1);
 }
 
 TEST_F(ViewPassTest, TargetsThatEncodeAreNotEncodedTwice) {

@@ -16,13 +16,15 @@ using Rgb = std::array<double, 3>;
 
 class ViewOracle {
  public:
-  ViewOracle(const ViewFrame& frame, const Image& shown, const Image* compared)
+  /// `display`: the pass has this table.
+  ViewOracle(const ViewFrame& frame, const Image& shown, const Image* compared, const DisplayTable* display = nullptr)
       : frame_(frame),
         place_(placement(frame.view, frame.picture, frame.area.size())),
         shown_(shown),
-        compared_(compared) {}
+        compared_(compared),
+        display_(display) {}
 
-  /// sRGB codes in 0…1 of a pixel of the target, which lies within the area.
+  /// Codes in 0…1 of a pixel of the target, which lies within the area.
   Rgb at(int x, int y) const {
     const double sx = x - frame_.area.x + 0.5, sy = y - frame_.area.y + 0.5;
     const Point p = to_picture(place_, {sx, sy});
@@ -53,6 +55,12 @@ class ViewOracle {
       v = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
     }
     return c;
+  }
+  /// As light is shown.
+  Rgb lit(const Rgb& c) const {
+    const bool apart = frame_.view.compare != Compare::none && compared_ && frame_.view.by == CompareBy::difference;
+    if (!display_ || !frame_.view.as_display || apart) return encode(c);
+    return read_display_table(*display_, c);
   }
   static double luminance(const float* c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
 
@@ -129,7 +137,7 @@ class ViewOracle {
     if (marks == Marks::stops) return zone(sum, gain);
     const auto toned = [&](double v) { return std::copysign(std::pow(std::abs(v * gain), 1 / frame_.view.gamma), v); };
     const double r = toned(sum[0]), g = toned(sum[1]), b = toned(sum[2]);
-    const auto gray = [](double v) { return encode({v, v, v}); };
+    const auto gray = [this](double v) { return lit({v, v, v}); };
     switch (frame_.view.channel) {
       case ViewChannel::red:
         return gray(r);
@@ -138,7 +146,7 @@ class ViewOracle {
       case ViewChannel::blue:
         return gray(b);
       case ViewChannel::alpha:
-        return gray(sum[3]);
+        return encode({sum[3], sum[3], sum[3]});
       case ViewChannel::luminance:
         return gray(0.2126 * r + 0.7152 * g + 0.0722 * b);
       default:
@@ -154,13 +162,14 @@ class ViewOracle {
       background = square % 2 == 0 ? 0.08 : 0.25;
     }
     const double through = background * std::clamp(1 - sum[3], 0.0, 1.0);
-    return encode({r + through, g + through, b + through});
+    return lit({r + through, g + through, b + through});
   }
 
   const ViewFrame& frame_;
   ViewPlacement place_;
   const Image& shown_;
   const Image* compared_;
+  const DisplayTable* display_;
 };
 
 }  // namespace afterglow
