@@ -39,6 +39,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   KernelDesc fused;
   fused.target = size % 2 == 0 ? KernelTarget::unorm8 : KernelTarget::float16;
   fused.config.rows = 1 + static_cast<int>(size % 2);
+  if ((*shader)->interface.kind == PassKind::compute) {  // plans make neither codes nor rows of these
+    fused.target = KernelTarget::float16;
+    fused.config.rows = 1;
+  }
   const KernelStage stage{*shader, {}, "x"};
   if (info_of((*shader)->interface.kind).begins)
     fused.sample = stage;
