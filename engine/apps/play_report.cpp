@@ -49,6 +49,10 @@ Json json_of(const ReloadLatency& latency) {
           {"total", latency.total()}};
 }
 
+double bytes_a_pixel(const ReadAhead::Stats& cache) {
+  return cache.pixels > 0 ? static_cast<double>(cache.bytes) / static_cast<double>(cache.pixels) : 0;
+}
+
 std::string line_of(const Percentiles& p) {
   return fmt::format("median {:.1f}, p95 {:.1f}, p99 {:.1f}, longest {:.1f} ms", p.median, p.p95, p.p99, p.most);
 }
@@ -64,9 +68,11 @@ std::string play_report_text(const PlayReport& report, Player& player) {
                   stats.kept, stats.dropped, stats.unreadable, report.mode, transport.fps(), transport.speed());
   out += fmt::format("between frames: {}\n", line_of(stats.interval));
   out += fmt::format("work a frame:   {}\n", line_of(stats.work));
-  out += fmt::format("cache: {} of {} in {} pictures, {:.1f} ms to read one; {} turns came before their picture\n",
-                     memory_text(stats.cache.bytes), memory_text(stats.cache.max_bytes), stats.cache.pictures,
-                     stats.cache.milliseconds, stats.late);
+  out += fmt::format(
+      "cache: {} of {} in {} pictures, {:.3g} bytes a pixel, {:.1f} ms to read one; {} turns came before their "
+      "picture\n",
+      memory_text(stats.cache.bytes), memory_text(stats.cache.max_bytes), stats.cache.pictures,
+      bytes_a_pixel(stats.cache), stats.cache.milliseconds, stats.late);
   if (stats.rebuilding > 0)
     out += fmt::format("passes of {} frames were being built while they were due: the frame before stayed\n",
                        stats.rebuilding);
@@ -112,9 +118,13 @@ std::string play_report_json(const PlayReport& report, Player& player) {
                              {"interval", json_of(stats.interval)},
                              {"work", json_of(stats.work)},
                              {"read", stats.cache.milliseconds}};
-  out["cache"] = Json{{"bytes", stats.cache.bytes},         {"most_bytes", stats.cache.most_bytes},
-                      {"max_bytes", stats.cache.max_bytes}, {"pictures", stats.cache.pictures},
-                      {"read", stats.cache.read},           {"evicted", stats.cache.evicted}};
+  out["cache"] = Json{{"bytes", stats.cache.bytes},
+                      {"most_bytes", stats.cache.most_bytes},
+                      {"max_bytes", stats.cache.max_bytes},
+                      {"pictures", stats.cache.pictures},
+                      {"bytes_per_pixel", bytes_a_pixel(stats.cache)},
+                      {"read", stats.cache.read},
+                      {"evicted", stats.cache.evicted}};
   out["reloads"] = Json::array();
   for (const ReloadLatency& latency : stats.latencies) out["reloads"].push_back(json_of(latency));
   const LiveStatus status = player.live().status();

@@ -261,7 +261,7 @@ FrameState Player::frame_state(int position) const {
     if (state_->unreadable.contains(frame.picture)) return FrameState::unreadable;
   }
   if (frame.held) return FrameState::missing;
-  return state_->ahead->find(frame.picture) ? FrameState::cached : FrameState::unread;
+  return state_->ahead->has(frame.picture) ? FrameState::cached : FrameState::unread;
 }
 
 Result<Step> Player::step() {

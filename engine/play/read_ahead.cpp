@@ -10,19 +10,29 @@
 #include <mutex>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "core/stopwatch.h"
+#include "play/packed_picture.h"
 
 namespace afterglow {
-namespace {
+/// A picture as it is kept.
+struct KeptPicture {
+  int key = 0;
+  /// Of what is not smaller when it is packed, and of errors.
+  std::shared_ptr<const ReadPicture> whole;
+  PackedPicture packed;
+  double milliseconds = 0;  ///< that reading took
+  std::uint64_t bytes = 0, pixels = 0;
+  bool failed = false;
+  mutable std::weak_ptr<const ReadPicture> opened;  ///< with State::mutex held
+};
 
-std::uint64_t bytes_of(const Picture& picture) {
-  std::uint64_t bytes = picture.color.bytes() + picture.unorm8.size();
-  for (const auto& [name, image] : picture.auxiliary) bytes += image.bytes();
-  return bytes;
-}
-
-}  // namespace
+/// Memory of pictures that nobody looks at any more: new memory costs more than a picture's way into it.
+struct SpareMemory {
+  std::mutex mutex;
+  std::vector<float> pixels;
+};
 
 struct ReadAhead::State {
   Read read;
@@ -32,7 +42,7 @@ struct ReadAhead::State {
   mutable std::mutex mutex;
   std::condition_variable work, done;
   std::vector<int> wanted;
-  std::map<int, std::shared_ptr<const ReadPicture>> pictures;
+  std::map<int, std::shared_ptr<const KeptPicture>> pictures;
   std::list<int> used;  ///< keys of `pictures`, the one used last at the front
   std::set<int> reading;
   std::uint64_t bytes = 0, expected = 0;  ///< of the pictures; of one that has yet to be read
@@ -41,6 +51,10 @@ struct ReadAhead::State {
   double total_milliseconds = 0;
   bool ending = false;
   std::vector<std::thread> threads;
+  std::shared_ptr<SpareMemory> spare = std::make_shared<SpareMemory>();
+
+  /// Without `mutex`.
+  std::shared_ptr<const ReadPicture> open(const std::shared_ptr<const KeptPicture>& kept);
 
   // All of these with `mutex` held.
   std::optional<int> next() const;
@@ -48,7 +62,7 @@ struct ReadAhead::State {
   std::size_t rank(int key) const { return static_cast<std::size_t>(std::ranges::find(wanted, key) - wanted.begin()); }
   bool make_room(std::uint64_t more, std::size_t before);
   void drop(int key);
-  void take(std::shared_ptr<const ReadPicture> picture);
+  void take(std::shared_ptr<const KeptPicture> picture);
   void read_next(std::unique_lock<std::mutex>& lock, int key);
   void run();
 };
@@ -101,14 +115,70 @@ bool ReadAhead::State::make_room(std::uint64_t more, std::size_t before) {
   return true;
 }
 
-void ReadAhead::State::take(std::shared_ptr<const ReadPicture> picture) {
+namespace {
+
+std::shared_ptr<const KeptPicture> kept_picture(int key, Result<Picture> result, double milliseconds) {
+  auto out = std::make_shared<KeptPicture>();
+  out->key = key;
+  out->milliseconds = milliseconds;
+  auto whole = std::make_shared<ReadPicture>();
+  whole->key = key;
+  whole->milliseconds = milliseconds;
+  if (result) {
+    out->pixels = static_cast<std::uint64_t>(result->color.size().area());
+    PackedPicture packed(std::move(result).value());
+    out->bytes = packed.bytes();
+    if (packed.smaller()) {
+      out->packed = std::move(packed);
+      return out;
+    }
+    whole->picture = std::move(packed).whole();
+  } else {
+    out->failed = true;
+    whole->error = std::move(result).error();
+  }
+  out->whole = std::move(whole);
+  return out;
+}
+
+}  // namespace
+
+std::shared_ptr<const ReadPicture> ReadAhead::State::open(const std::shared_ptr<const KeptPicture>& kept) {
+  if (kept->whole) return kept->whole;
+  {
+    const std::lock_guard lock(mutex);
+    if (auto opened = kept->opened.lock()) return opened;
+  }
+  std::vector<float> memory;
+  {
+    const std::lock_guard lock(spare->mutex);
+    memory.swap(spare->pixels);
+  }
+  const auto give_back = [to = spare](ReadPicture* gone) {
+    {
+      const std::lock_guard lock(to->mutex);
+      to->pixels.swap(gone->picture.color.pixels);
+    }
+    delete gone;
+  };
+  std::shared_ptr<ReadPicture> made(new ReadPicture, give_back);
+  made->key = kept->key;
+  made->milliseconds = kept->milliseconds;
+  made->picture = kept->packed.open(std::move(memory));
+  const std::lock_guard lock(mutex);
+  if (auto opened = kept->opened.lock()) return opened;
+  kept->opened = made;
+  return made;
+}
+
+void ReadAhead::State::take(std::shared_ptr<const KeptPicture> picture) {
   const int key = picture->key;
   ++stats.read;
-  if (picture->error) ++stats.failed;
+  if (picture->failed) ++stats.failed;
   total_milliseconds += picture->milliseconds;
   expected = std::max(expected, picture->bytes);
   // Nobody waits for it any more: kept where that costs nothing.
-  if (!is_wanted(key) && (picture->error || bytes + picture->bytes > options.max_bytes)) return;
+  if (!is_wanted(key) && (picture->failed || bytes + picture->bytes > options.max_bytes)) return;
   if (!make_room(picture->bytes, rank(key)) && rank(key) > 0) return;
   bytes += picture->bytes;
   stats.most_bytes = std::max(stats.most_bytes, bytes);
@@ -139,17 +209,9 @@ void ReadAhead::State::read_next(std::unique_lock<std::mutex>& lock, int key) {
   // Before it is read, so that the bound holds while both exist.
   make_room(expected * reading.size(), rank(key));
   lock.unlock();
-  auto made = std::make_shared<ReadPicture>();
-  made->key = key;
   const auto start = Clock::now();
   auto result = read(key);
-  made->milliseconds = milliseconds_since(start);
-  if (result) {
-    made->picture = std::move(result).value();
-    made->bytes = bytes_of(made->picture);
-  } else {
-    made->error = std::move(result).error();
-  }
+  auto made = kept_picture(key, std::move(result), milliseconds_since(start));
   lock.lock();
   if (began_in == epoch) {
     reading.erase(key);
@@ -187,7 +249,7 @@ void ReadAhead::want(const std::vector<int>& keys) {
     s.wanted = keys;
     std::vector<int> stale;  // errors that nobody looks at: the file may be better when it is wanted again
     for (const auto& [key, picture] : s.pictures)
-      if (picture->error && !s.is_wanted(key)) stale.push_back(key);
+      if (picture->failed && !s.is_wanted(key)) stale.push_back(key);
     for (const int key : stale) s.drop(key);
     for (auto key = keys.rbegin(); key != keys.rend(); ++key)
       if (s.pictures.contains(*key)) {
@@ -199,20 +261,35 @@ void ReadAhead::want(const std::vector<int>& keys) {
 }
 
 std::shared_ptr<const ReadPicture> ReadAhead::find(int key) const {
+  std::shared_ptr<const KeptPicture> kept;
+  {
+    const std::lock_guard lock(state_->mutex);
+    const auto found = state_->pictures.find(key);
+    if (found == state_->pictures.end()) return nullptr;
+    kept = found->second;
+  }
+  return state_->open(kept);
+}
+
+bool ReadAhead::has(int key) const {
   const std::lock_guard lock(state_->mutex);
-  const auto found = state_->pictures.find(key);
-  return found == state_->pictures.end() ? nullptr : found->second;
+  return state_->pictures.contains(key);
 }
 
 std::shared_ptr<const ReadPicture> ReadAhead::wait(int key) {
-  std::unique_lock lock(state_->mutex);
   State& s = *state_;
-  if (const auto found = s.pictures.find(key); found != s.pictures.end()) return found->second;
-  std::erase(s.wanted, key);
-  s.wanted.insert(s.wanted.begin(), key);
-  s.work.notify_all();
-  s.done.wait(lock, [&] { return s.pictures.contains(key); });
-  return s.pictures.at(key);
+  std::shared_ptr<const KeptPicture> kept;
+  {
+    std::unique_lock lock(s.mutex);
+    if (!s.pictures.contains(key)) {
+      std::erase(s.wanted, key);
+      s.wanted.insert(s.wanted.begin(), key);
+      s.work.notify_all();
+      s.done.wait(lock, [&] { return s.pictures.contains(key); });
+    }
+    kept = s.pictures.at(key);
+  }
+  return s.open(kept);
 }
 
 void ReadAhead::forget() {
@@ -234,6 +311,7 @@ ReadAhead::Stats ReadAhead::stats() const {
   stats.bytes = state_->bytes;
   stats.max_bytes = state_->options.max_bytes;
   stats.pictures = static_cast<int>(state_->pictures.size());
+  for (const auto& [key, picture] : state_->pictures) stats.pixels += picture->pixels;
   for (const int key : state_->wanted) {
     if (!state_->pictures.contains(key)) break;
     ++stats.ahead;

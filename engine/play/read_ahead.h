@@ -14,7 +14,9 @@
 namespace afterglow {
 
 struct ReadAheadOptions {
-  std::uint64_t max_bytes = 2ull << 30;  ///< of pictures in memory; the one that is due is read even beyond it
+  /// Of pictures in memory, which are kept in the smallest form that loses nothing (play/packed_picture.h). The one
+  /// that is due is read even beyond it; those that are being read or are held by others are whole, and not part of it.
+  std::uint64_t max_bytes = 2ull << 30;
   int threads = 2;
 };
 
@@ -24,7 +26,6 @@ struct ReadPicture {
   Picture picture;  ///< empty when there is an error
   std::optional<Error> error;
   double milliseconds = 0;  ///< that reading took
-  std::uint64_t bytes = 0;
 };
 
 /// Reads by key; what a key means is the caller's. Thread-safe.
@@ -42,8 +43,11 @@ class ReadAhead {
   /// What is wanted, the most urgent first: in place of everything wanted before. What is being read is finished;
   /// what merely waits is forgotten. Pictures that are no longer wanted stay while there is room.
   void want(const std::vector<int>& keys);
-  /// The picture, when it is there. Errors are kept until the key is no longer wanted; then it is tried again.
+  /// The picture, when it is there: the same object as long as somebody holds it. Errors are kept until the key is no
+  /// longer wanted; then it is tried again.
   std::shared_ptr<const ReadPicture> find(int key) const;
+  /// Whether it is there.
+  bool has(int key) const;
   /// Blocks until it is there; wants it before all others.
   std::shared_ptr<const ReadPicture> wait(int key);
   /// Throws everything away; what is being read too. The pictures that others hold stay theirs.
@@ -52,6 +56,7 @@ class ReadAhead {
   struct Stats {
     std::uint64_t bytes = 0, most_bytes = 0, max_bytes = 0;
     int pictures = 0;           ///< in memory
+    std::uint64_t pixels = 0;   ///< of these
     int ahead = 0;              ///< of what is wanted, from its beginning without a gap
     std::uint64_t read = 0;     ///< since the beginning
     std::uint64_t failed = 0;   ///< of these

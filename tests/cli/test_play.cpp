@@ -150,6 +150,24 @@ TEST_F(Play, CtrlCEndsCleanly) {
   EXPECT_TRUE(report().contains("error"));
 }
 
+/// Pictures wait in the memory that they take in their files; what is shown of them is as exact as what is written.
+TEST_F(Play, PicturesThatWaitAreTheSame) {
+  ASSERT_EQ(run({"run", "look.lua", "in/shot.0001.exr", "-o", "codes.png"}).exit_code, kDone);
+  const struct {
+    const char* file;
+    double bytes;
+  } kFiles[] = {{"in/shot.0001.exr", 8}, {"codes.png", 3}};
+  for (const auto& [file, bytes] : kFiles) {
+    const Outcome outcome = run({"play", "look.lua", file, "--headless", "--fast", "--stats", "--report", "play.json",
+                                 "--screenshot", "played.exr"});
+    ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+    EXPECT_EQ(report().at("cache").at("bytes_per_pixel"), bytes) << file;
+    EXPECT_THAT(outcome.out, HasSubstr(std::to_string(static_cast<int>(bytes)) + " bytes a pixel"));
+    ASSERT_EQ(run({"run", "look.lua", file, "-o", "run.exr"}).exit_code, kDone);
+    EXPECT_EQ(pixels_of("played.exr"), pixels_of("run.exr")) << file;
+  }
+}
+
 /// Before any window is opened.
 TEST_F(Play, DisplaysThatCannotBeHadSayWhy) {
   const auto refused = [&](std::vector<std::string> more, int code, const std::string& text) {
