@@ -140,6 +140,7 @@ TEST_F(KeptBetween, ResolutionTurnsWithThePixels) {
   spec.attribute("Orientation", 6);
   spec.attribute("XResolution", 300.0f);
   spec.attribute("YResolution", 150.0f);
+  spec.attribute("PixelAspectRatio", 0.5f);
   spec.attribute("ResolutionUnit", "in");
   make_file(folder_ / "turned.tif", {spec}, {marks(8, 4, 3)});
   Diagnostics silent;
