@@ -53,8 +53,9 @@ std::size_t texel_of(const DisplayTable& table, int r, int g, int b) {
 }
 
 void fill(DisplayTable& table, const ColorFunction& exact) {
-  std::vector<float> light;
-  for (int plane = 0; plane < table.planes; ++plane) light.push_back(static_cast<float>(light_at(table, plane)));
+  std::vector<float> light(static_cast<std::size_t>(table.planes));
+  for (int plane = 0; plane < table.planes; ++plane)
+    light[static_cast<std::size_t>(plane)] = static_cast<float>(light_at(table, plane));
   parallel_for(static_cast<std::size_t>(table.planes), [&](std::size_t slice) {
     std::vector<float> colors;
     colors.reserve(light.size() * light.size() * 3);
