@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "core/parse_number.h"
@@ -25,9 +26,9 @@ Result<Patience> parse_patience(const std::string& seconds) {
   if (!number || !(*number >= 0) || *number > kLongest)
     return Error{ErrorKind::usage, fmt::format("'{}' is no number of seconds", seconds), "AFTERGLOW_INPUT_TIMEOUT", 0,
                  "0 (for ever) to 1000000"};
-  out.most = std::chrono::milliseconds(static_cast<long long>(*number * 1000));
+  const std::chrono::milliseconds most(static_cast<long long>(*number * 1000));
   // Less than a unit is still a limit.
-  if (*number > 0 && out.most.count() == 0) out.most = std::chrono::milliseconds(1);
+  out.most = *number > 0 ? std::max(most, std::chrono::milliseconds(1)) : most;
   return out;
 }
 

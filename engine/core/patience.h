@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "core/result.h"
@@ -12,7 +13,9 @@ namespace afterglow {
 
 /// Of one reader. `given_up` may be set by anyone, at any time; it outlives the reader.
 struct Patience {
-  std::chrono::milliseconds most{300'000};  ///< without a byte; 0: for ever
+  /// Without a byte; 0: for ever. Nothing said: five minutes for files, which are there or on a network that is gone;
+  /// for ever for pipes, whose writer may need hours for a frame.
+  std::optional<std::chrono::milliseconds> most = {};
   const std::atomic<bool>* given_up = nullptr;
 };
 

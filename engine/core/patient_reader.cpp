@@ -23,6 +23,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
+constexpr milliseconds kFilesWait{300'000};
 constexpr milliseconds kLook{50};  // after which it is seen that nobody waits any more
 constexpr std::size_t kMostBytes = 1 << 18;
 
@@ -39,7 +40,7 @@ class PatientReader::Wait {
     const auto is_set = [](const std::atomic<bool>* flag) { return flag && *flag; };
     if (is_set(reader_.cancelled_) || is_set(reader_.patience_.given_up))
       return Error{ErrorKind::interrupted, "interrupted"};
-    const milliseconds most = reader_.patience_.most;
+    const milliseconds most = reader_.patience_.most.value_or(reader_.is_file_ ? kFilesWait : milliseconds(0));
     if (most.count() == 0 || std::chrono::steady_clock::now() - begin_ < most) return std::nullopt;
     return Error{ErrorKind::io,
                  fmt::format("has given no bytes for {} s (AFTERGLOW_INPUT_TIMEOUT says how long to wait, 0: for ever)",
