@@ -36,12 +36,15 @@ Result<void> play_in_window(
   const DeviceOptions export_device = device_options;  // no window is shown on that
   device_options.presentation = window->presentation();
   AFTERGLOW_TRY(const auto device, Device::create(device_options, console.diagnostics()));
+  player_options.footage.whole_sequences = true;
   player_options.wake = &DesktopWindow::wake;
   Result<void> done;
   {
     AFTERGLOW_TRY(const auto player, Player::open(*device, player_options, console.diagnostics()));
     player->transport().set_speed(options.speed, player->now());
-    if (!options.paused && player->footage().frames() > 1) player->transport().play(player->now());
+    // A frame that was asked for is what is looked at.
+    const bool stands = player->footage_options().inputs != player_options.footage.inputs;
+    if (!options.paused && !stands && player->footage().frames() > 1) player->transport().play(player->now());
     WindowOptions shown = window_options(options);
     PlayParts parts(*player,
                     {.preset = player_options.preset,

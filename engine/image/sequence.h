@@ -34,6 +34,13 @@ Result<std::vector<FrameFile>> find_frames(const Pattern& pattern, const std::op
 
 /// The pattern of the one sequence of pictures in a folder: "shots/shot.####.exr". Errors: io (none, several: named).
 Result<std::string> sequence_in(const std::filesystem::path& folder);
+/// The sequence around a picture: its pattern, and which of its frames that is.
+struct SequenceFrame {
+  std::string pattern;
+  int frame = 0;
+};
+/// None: the name has no number, or no picture with the number before or behind it lies beside it.
+std::optional<SequenceFrame> sequence_around(const std::filesystem::path& file);
 /// Inputs with the sequences of the folders among them.
 Result<std::vector<std::string>> with_sequences(std::vector<std::string> inputs);
 

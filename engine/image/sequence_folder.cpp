@@ -47,6 +47,10 @@ std::string with_percents(const std::string& text) {
   return out;
 }
 
+std::string pattern_of(const fs::path& folder, const std::pair<std::string, std::string>& name, std::size_t digits) {
+  return with_percents((folder / name.first).string()) + std::string(digits, '#') + with_percents(name.second);
+}
+
 bool is_picture(const fs::path& file) {
   return !picture_format(file).empty() || lower(file.extension().string()) == ".exr";
 }
@@ -62,9 +66,7 @@ Result<std::string> sequence_in(const fs::path& folder) {
   if (ec) return Error{ErrorKind::io, fmt::format("cannot be read: {}", ec.message()), folder.string()};
   std::vector<std::string> found;
   for (const auto& [name, group] : groups)
-    if (is_picture(group.example))
-      found.push_back(with_percents((folder / name.first).string()) + std::string(group.digits, '#') +
-                      with_percents(name.second));
+    if (is_picture(group.example)) found.push_back(pattern_of(folder, name, group.digits));
   if (found.size() == 1) return found.front();
   constexpr std::size_t kMostNamed = 4;
   Error error{ErrorKind::io,
@@ -73,6 +75,25 @@ Result<std::string> sequence_in(const fs::path& folder) {
   if (found.size() > kMostNamed) found.resize(kMostNamed), found.emplace_back("…");
   error.allowed = found.empty() ? "a folder with files like shot.0001.exr" : join(found);
   return error;
+}
+
+std::optional<SequenceFrame> sequence_around(const fs::path& file) {
+  std::error_code none;
+  NumberedGroups own;
+  note_name(own, file);
+  if (own.empty() || !is_picture(file) || !fs::is_regular_file(file, none)) return std::nullopt;
+  const auto& [name, group] = *own.begin();
+  const std::string written = file.filename().string().substr(name.first.size(), group.digits);
+  const int frame = std::stoi(written);
+  // A number that begins with 0 tells how many digits all have; others may come from 9 or from 99.
+  for (std::size_t digits = written.size(); digits >= 1; --digits) {
+    const std::string text = pattern_of(file.parent_path(), name, digits);
+    const auto pattern = parse_pattern(text);
+    if (!pattern || pattern->file(frame).filename() != file.filename()) continue;
+    const bool follows = frame > 0 && fs::is_regular_file(pattern->file(frame - 1), none);
+    if (follows || fs::is_regular_file(pattern->file(frame + 1), none)) return SequenceFrame{text, frame};
+  }
+  return std::nullopt;
 }
 
 Result<std::vector<std::string>> with_sequences(std::vector<std::string> inputs) {

@@ -41,6 +41,15 @@ Result<LayerChoice> resolved(const LayerChoice& choice, int frame) {
   return LayerChoice{pattern.file(frame), choice.name};
 }
 
+/// The same for shot.####.exr and shot.%04d.exr.
+std::string clip_key(const std::string& input) {
+  std::string name = input;
+  if (const auto pattern = parse_pattern(input); pattern && pattern->numbered)
+    name = pattern->prefix + std::string(static_cast<std::size_t>(std::max(pattern->digits, 1)), '#') + pattern->suffix;
+  std::error_code ignored;
+  return fs::absolute(name, ignored).lexically_normal().string();
+}
+
 }  // namespace
 
 std::string frames_text(const std::vector<int>& frames) {
@@ -195,7 +204,12 @@ Result<void> Footage::add_inputs(const FootageOptions& options, Diagnostics& dia
   AFTERGLOW_TRY(const auto inputs, with_sequences(options.inputs));
   for (const std::string& input : inputs) {
     const std::size_t before = missing_.size();
+    const int first = frames();
     AFTERGLOW_CHECK(add(input, wanted, diagnostics));
+    clips_.push_back({.label = fs::path(input).filename().string(),
+                      .key = clip_key(input),
+                      .first = first,
+                      .frames = frames() - first});
     const std::vector<int> missing(missing_.begin() + static_cast<std::ptrdiff_t>(before), missing_.end());
     if (!missing.empty())
       diagnostics.warn(fmt::format("{}: {} {} missing, the picture before is held: {}", input, missing.size(),
@@ -212,6 +226,11 @@ std::shared_ptr<const Footage> Footage::at_proxy(int proxy) const {
   std::shared_ptr<Footage> other(new Footage(*this));
   other->proxy_ = proxy;
   return other;
+}
+
+int Footage::clip_at(int position) const {
+  const auto behind = std::ranges::upper_bound(clips_, position, {}, [](const Clip& clip) { return clip.first; });
+  return std::max(0, static_cast<int>(behind - clips_.begin()) - 1);
 }
 
 std::vector<fs::path> Footage::files(int picture) const {

@@ -25,6 +25,8 @@ struct FootageOptions {
   /// Layers and limits; depth and normal may be patterns. `auxiliary` is given to `read`.
   ReadOptions read;
   int proxy = 1;  ///< pictures are read at one part in this of their sides: 1, 2, 4 or 8
+  /// Player: one picture that is a frame of a sequence opens that, and stands at the frame.
+  bool whole_sequences = false;
 };
 
 /// "1/2" is 2, "1" is 1. Errors: usage (not 1, 1/2, 1/4 or 1/8).
@@ -42,7 +44,7 @@ struct FootageFrame {
 };
 
 /// Immutable once opened; thread-safe.
-class Footage {
+class Footage : public std::enable_shared_from_this<Footage> {
  public:
   /// Looks at names and the headers of videos; reads no picture. Errors: usage (patterns, frame lists), io (nothing
   /// matches, a video that cannot be read, a frame list that names no frame that exists).
@@ -55,6 +57,18 @@ class Footage {
   static Result<std::shared_ptr<const Footage>> anew(const FootageOptions& options, const Footage& before,
                                                      const std::set<std::filesystem::path>& changed,
                                                      const There& there);
+
+  /// One of the inputs in the row.
+  struct Clip {
+    std::string label;  ///< for people: "shot.####.exr", "clip.mp4"
+    std::string key;    ///< its absolute path: the same clip has the same key wherever it is played
+    int first = 0;      ///< position of its first frame
+    int frames = 0;
+  };
+  /// In the order of the row, which they fill.
+  const std::vector<Clip>& clips() const { return clips_; }
+  /// Which of `clips` a position lies in.
+  int clip_at(int position) const;
 
   int frames() const { return static_cast<int>(frames_.size()); }
   int pictures() const { return static_cast<int>(pictures_.size()); }
@@ -104,6 +118,7 @@ class Footage {
   std::vector<FootageFrame> frames_;
   std::vector<Source> pictures_;
   std::vector<int> missing_;
+  std::vector<Clip> clips_;
   std::optional<double> fps_;
   bool video_ = false, variable_rate_ = false;
   int proxy_ = 1;

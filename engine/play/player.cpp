@@ -306,13 +306,13 @@ Result<std::unique_ptr<Player>> Player::open(Device& device, const PlayerOptions
   auto state = std::make_unique<State>(device, options, diagnostics);
   State& s = *state;
   if (!s.options.clock) s.options.clock = steady_seconds;
-  AFTERGLOW_TRY(s.footage, Footage::open(options.footage, diagnostics));
+  AFTERGLOW_CHECK(s.open_row(options.footage));
   const std::vector<Override> overrides = options.live.stack.preset.overrides;
   AFTERGLOW_TRY(s.first, LiveSession::open(device, options.preset, s.live_options(overrides), diagnostics));
   if (!options.other_preset.empty()) {
     AFTERGLOW_TRY(s.second, LiveSession::open(device, options.other_preset, s.live_options(overrides), diagnostics));
   }
-  s.transport = Transport(s.footage->frames(), options.fps.value_or(s.footage->fps().value_or(24)));
+  s.transport.set_fps(options.fps.value_or(s.footage->fps().value_or(24)), s.now());
   s.transport.set_loop(options.loop, s.now());
   s.transport.set_pacing(options.pacing, s.now());
   if (!options.show.empty()) s.first->live().show(options.show);

@@ -110,6 +110,8 @@ class Player {
   LiveStack* other();  ///< null without a second preset
   const ShownFrame& shown() const;
   PlayerImages images() const;
+  /// The picture of `shown` as it was read, scene-linear; null: none yet.
+  std::shared_ptr<const Picture> source() const;
   const FrameTimes& last_times() const;
   /// What runs the first preset: its kernels, memory, what the last frame left out.
   const LiveSession& session() const;

@@ -262,16 +262,15 @@ Result<void> Player::open_footage(const std::vector<std::string>& inputs) {
   FootageOptions wanted = s.options.footage;
   wanted.inputs = inputs;
   wanted.frames.clear();
-  AFTERGLOW_TRY(s.footage, Footage::open(wanted, s.diagnostics));
-  s.options.footage = std::move(wanted);
   const bool was_playing = s.transport.playing();
-  s.transport.set_frames(s.footage->frames());
+  AFTERGLOW_CHECK(s.open_row(std::move(wanted)));
+  const bool stands = s.options.footage.inputs != inputs;  // at the frame of a sequence that was asked for
   if (!s.options.fps && s.footage->fps()) s.transport.set_fps(*s.footage->fps(), s.now());
   s.begin_reading();
   s.want_pictures();
   s.shown.position = -1;
   s.dirty = true;
-  if (was_playing) s.transport.play(s.now());
+  if (was_playing && !stands) s.transport.play(s.now());
   return {};
 }
 

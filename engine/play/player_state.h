@@ -63,6 +63,7 @@ struct Player::State {
   LiveOptions live_options(const std::vector<Override>& overrides);
   void begin_reading();
   void take_footage();
+  Result<void> open_row(FootageOptions wanted);
   std::shared_ptr<const Footage> readable();
   void want_pictures();
   void take_builds();

@@ -6,6 +6,7 @@
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 
+#include <algorithm>
 #include <charconv>
 #include <mutex>
 #include <optional>
@@ -19,7 +20,7 @@
 namespace afterglow {
 namespace {
 
-constexpr std::size_t kMaxTrail = 8;      ///< further errors that are shown
+constexpr std::size_t kMaxTrail = 31;     ///< further errors that are shown
 constexpr std::size_t kMaxMessage = 300;  ///< characters of one error
 
 std::string shortened(std::string text) {
@@ -31,6 +32,7 @@ struct LogLine {
   std::size_t file = 0;
   int line = 0;
   std::string message;
+  friend bool operator==(const LogLine&, const LogLine&) = default;
 };
 
 /// "ERROR: FILE:LINE: 'token' : message" with FILE a number.
@@ -63,6 +65,8 @@ Error compile_error(const char* log, const std::vector<std::string>& file_names)
     if (!line || line->message.find("compilation errors.") != std::string::npos ||
         line->message.find("compilation terminated") != std::string::npos)
       continue;
+    // A stage that stands in a kernel twice has each of its errors twice.
+    if (std::ranges::find(lines, *line) != lines.end()) continue;
     if (lines.size() <= kMaxTrail) {
       lines.push_back(std::move(*line));
     } else {
@@ -75,10 +79,23 @@ Error compile_error(const char* log, const std::vector<std::string>& file_names)
   if (lines.empty()) return shader_error("", 0, "the shader does not compile: " + shortened(trim(log)));
   Error error = shader_error(file(lines[0]), lines[0].line, lines[0].message);
   if (error.file.empty()) error.line = 0;  // the engine's own text: the line would mean nothing to an author
-  for (std::size_t i = 1; i < lines.size(); ++i)
-    error.trail.push_back(fmt::format("{}:{}: {}", file(lines[i]), lines[i].line, lines[i].message));
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::string in = file(lines[i]);
+    error.trail.push_back(in.empty() ? lines[i].message
+                                     : fmt::format("{}:{}: {}", in, lines[i].line, lines[i].message));
+  }
   if (more > 0) error.trail.push_back(fmt::format("and {} more", more));
   return error;
+}
+
+bool parse(glslang::TShader& shader, EShLanguage language, const std::string& glsl, EShMessages rules) {
+  const char* text = glsl.data();
+  const int length = static_cast<int>(glsl.size());
+  shader.setStringsWithLengths(&text, &length, 1);
+  shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
+  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
+  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
+  return shader.parse(GetDefaultResources(), 460, false, rules);
 }
 
 }  // namespace
@@ -98,15 +115,14 @@ Result<std::vector<std::uint32_t>> compile_glsl(const std::string& glsl, const s
   if (!initialised) return Error{ErrorKind::other, "the GLSL compiler cannot be initialised"};
 
   const EShLanguage language = stage == GlslStage::compute ? EShLangCompute : EShLangFragment;
+  constexpr auto rules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+  constexpr auto all_errors = static_cast<EShMessages>(rules | EShMsgCascadingErrors);
   glslang::TShader shader(language);
-  const char* text = glsl.data();
-  const int length = static_cast<int>(glsl.size());
-  shader.setStringsWithLengths(&text, &length, 1);
-  shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
-  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
-  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
-  const auto rules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-  if (!shader.parse(GetDefaultResources(), 460, false, rules)) return compile_error(shader.getInfoLog(), file_names);
+  if (!parse(shader, language, glsl, rules)) {
+    glslang::TShader again(language);  // the first time it stops at the first error
+    const bool more = !parse(again, language, glsl, all_errors);
+    return compile_error((more ? again : shader).getInfoLog(), file_names);
+  }
   glslang::TProgram program;
   program.addShader(&shader);
   if (!program.link(rules)) return compile_error(program.getInfoLog(), file_names);

@@ -6,7 +6,10 @@
 namespace afterglow {
 
 void AtlasCells::reserve(ImFontAtlas& atlas) {
-  for (int& id : ids_) id = atlas.AddCustomRectRegular(kSide, kSide);
+  for (int cell = 0; cell < kCells; ++cell)
+    ids_[static_cast<std::size_t>(cell)] = cell < kScopes
+                                               ? atlas.AddCustomRectRegular(kSide, kSide)
+                                               : atlas.AddCustomRectRegular(kThumbnailWidth, kThumbnailHeight);
   written_.fill(false);
   ++generation_;
 }
@@ -21,12 +24,12 @@ void AtlasCells::write(int cell, std::span<const ImU32> pixels) {
   int width = 0, height = 0;
   ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&atlas, &width, &height);
   const Rect to = place(cell);
-  if (!atlas || to.size().area() == 0) return;
-  constexpr std::size_t kRow = kSide * sizeof(ImU32);
-  for (int y = 0; y < kSide; ++y) {
+  const auto row = static_cast<std::size_t>(to.width);
+  if (!atlas || to.size().area() == 0 || pixels.size() < row * static_cast<std::size_t>(to.height)) return;
+  for (int y = 0; y < to.height; ++y) {
     const auto first =
         static_cast<std::size_t>(to.y + y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(to.x);
-    std::memcpy(atlas + first * sizeof(ImU32), &pixels[static_cast<std::size_t>(y) * kSide], kRow);
+    std::memcpy(atlas + first * sizeof(ImU32), &pixels[static_cast<std::size_t>(y) * row], row * sizeof(ImU32));
   }
   written_[static_cast<std::size_t>(cell)] = true;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Small pictures that the interface draws itself (scopes): cells of the atlas that has the glyphs.
+// Small pictures that the interface draws itself (scopes, thumbnails): cells of the atlas that has the glyphs.
 #pragma once
 
 #include <imgui.h>
@@ -15,11 +15,14 @@ namespace afterglow {
 /// Drawing thread alone.
 class AtlasCells {
  public:
-  static constexpr int kCells = 4, kSide = 256;  // pixels
+  static constexpr int kScopes = 4, kThumbnails = 16;  ///< the first cells are scopes', the others thumbnails'
+  static constexpr int kCells = kScopes + kThumbnails;
+  static constexpr int kSide = 256;                                   ///< of a scope's cell, in pixels
+  static constexpr int kThumbnailWidth = 128, kThumbnailHeight = 72;  ///< of a thumbnail's
 
   /// Before the atlas is built, each time.
   void reserve(ImFontAtlas& atlas);
-  /// `pixels`: kSide rows of kSide, from the top. Shown from the next frame on. The atlas has been built.
+  /// `pixels`: all of the cell, row by row from the top. Shown from the next frame on. The atlas has been built.
   void write(int cell, std::span<const ImU32> pixels);
   /// `to` and `from` are corners on the screen.
   void draw(ImDrawList& list, int cell, ImVec2 from, ImVec2 to) const;

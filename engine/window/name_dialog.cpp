@@ -56,7 +56,7 @@ std::optional<std::string> NameDialog::draw(Ui& ui, ImVec2 area) {
     ImGui::SameLine();
     if (ImGui::Button("Go back (Esc)") || left) open_ = false;
     const std::string name = trim(text_.data());
-    if ((entered || pressed) && !name.empty()) {
+    if ((entered || pressed) && (question_.may_be_empty || !name.empty())) {
       const auto over = question_.in_the_way ? question_.in_the_way(name) : std::nullopt;
       if (over && name != asked_) {
         asked_ = name;

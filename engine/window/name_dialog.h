@@ -21,6 +21,7 @@ class NameDialog {
     std::string button;       ///< what Enter does: "Save"
     /// What a name would write over, by its name; none: nothing. It is asked about first.
     std::function<std::optional<std::string>(const std::string& name)> in_the_way;
+    bool may_be_empty = false;
   };
   /// Opens with the keyboard in its field.
   void open(Question question);

@@ -25,6 +25,8 @@ void wrapped(ImU32 color, const std::string& text, float width) {
 struct Message {
   std::string headline, where, what, line, allowed, nearest, full;
   ErrorPlace place;
+  std::vector<ErrorLine> further;
+  std::vector<ErrorPlace> places;
 };
 
 Message message_of(std::string headline, const Error& error, const std::string& line, std::string full) {
@@ -37,6 +39,8 @@ Message message_of(std::string headline, const Error& error, const std::string& 
   out.allowed = error.allowed;
   out.nearest = error.nearest;
   out.full = std::move(full);
+  out.further = further_lines(error);
+  out.places = error_places(error);
   return out;
 }
 
@@ -84,10 +88,33 @@ std::string current_message(const Player& player) {
   return message ? message->full : "";
 }
 
-ErrorPlace current_place(const Player& player) {
+std::vector<ErrorPlace> current_places(const Player& player) {
   const auto message = current(player);
-  return message && !message->place.file.empty() ? message->place : ErrorPlace{player.preset_file(), 0};
+  if (message && !message->places.empty()) return message->places;
+  return {ErrorPlace{player.preset_file(), 0}};
 }
+
+namespace {
+
+/// A shader's further errors, each with its place; a click opens it.
+void draw_further(const std::vector<ErrorLine>& lines, Ui& ui, float wrap) {
+  if (lines.empty()) return;
+  ImGui::Separator();
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const ErrorLine& line = lines[i];
+    ImGui::BeginGroup();
+    if (!line.where.empty()) wrapped(ui_color::kError, line.where, wrap);
+    wrapped(line.where.empty() ? ui_color::kDim : ui_color::kText, line.what, wrap);
+    ImGui::EndGroup();
+    if (line.place.file.empty()) continue;
+    ui.help("A click opens it in the editor (F4 again: the next one)");
+    if (!ImGui::IsItemHovered() || !ImGui::IsMouseClicked(ImGuiMouseButton_Left)) continue;
+    ui.edit_file(line.place.file.string(), line.place.line);
+    ui.again();
+  }
+}
+
+}  // namespace
 
 float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
   const auto message = current(player);
@@ -102,13 +129,16 @@ float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
   ImGui::PopClipRect();
   ImGui::Indent(ui.px(6));
   const float wrap = width - ui.px(16);
-  colored(ui_color::kDim, message->headline);
+  const auto shader_errors =
+      std::ranges::count_if(message->further, [](const ErrorLine& e) { return !e.where.empty(); });
+  colored(ui_color::kDim,
+          message->headline + (shader_errors > 0 ? fmt::format(" ({} errors)", shader_errors + 1) : ""));
   ImGui::SameLine(width - ui.px(120));
   if (!message->place.file.empty() && ImGui::SmallButton("Open")) {
     ui.edit_file(message->place.file.string(), message->place.line);
     ui.again();
   }
-  ui.help("In the editor that AFTERGLOW_EDITOR names (F4)");
+  ui.help("In the editor that AFTERGLOW_EDITOR names (F4; again: the next error)");
   ImGui::SameLine(width - ui.px(70));
   if (ImGui::SmallButton("Copy")) {
     ui.copy(message->full);
@@ -128,6 +158,7 @@ float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
   }
   if (!message->nearest.empty()) wrapped(ui_color::kGood, fmt::format("did you mean '{}'?", message->nearest), wrap);
   if (!message->allowed.empty()) wrapped(ui_color::kDim, "allowed: " + message->allowed, wrap);
+  draw_further(message->further, ui, wrap);
   const float height = ImGui::GetWindowSize().y;
   end_sheet();
   return height + margin;

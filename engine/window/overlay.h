@@ -4,10 +4,11 @@
 
 #include <imgui.h>
 
-#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "play/player.h"
+#include "window/error_lines.h"
 #include "window/ui.h"
 
 namespace afterglow {
@@ -34,12 +35,8 @@ struct ShownScopes {
 /// What is wrong at the moment, as one would mail it to somebody; empty: nothing.
 std::string current_message(const Player& player);
 
-/// The file that is wrong, and its line; without an error the preset's.
-struct ErrorPlace {
-  std::filesystem::path file;
-  int line = 0;
-};
-ErrorPlace current_place(const Player& player);
+/// The places that it is about, the first error's first; without an error the preset's file.
+std::vector<ErrorPlace> current_places(const Player& player);
 
 /// What is compared, in words: "before | after"; "result" when nothing is.
 std::string comparison_text(const View& view);

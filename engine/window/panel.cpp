@@ -145,6 +145,8 @@ void Panel::draw_head(Ui& ui, PanelPort& port) {
   if (small_button(ui, "Save as…", "Write the preset as it is now to another file, and go on with that (Ctrl+Shift+S)",
                    port.build() && !save_.busy()))
     save_as();
+  beside("Open…");
+  if (small_button(ui, "Open…", "The presets there are, each with this frame (Ctrl+O)")) ui.browse_presets();
   beside("Undo save");
   if (small_button(ui, "Undo save", "The file as it was before the last save", save_.can_undo())) undo_save(port);
   if (small_button(ui, "Undo", "Ctrl+Z", edits.can_undo())) port.undo();

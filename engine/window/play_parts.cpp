@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "window/play_parts.h"
 
+#include "window/desktop_window.h"
 #include "window/help_sheet.h"
 #include "window/transport_bar.h"
 
@@ -11,16 +12,23 @@ PlayParts::PlayParts(Player& player, const ExportSetup& setup, Diagnostics& diag
       port_(player),
       preset_options_(setup.stack.preset),
       export_(setup.to, diagnostics),
-      range_export_(setup, diagnostics) {
+      range_export_(setup, diagnostics),
+      preset_(setup.preset),
+      thumbnails_(std::make_unique<Thumbnails>(setup.device, setup.stack, [this] {
+        news_ = true;
+        DesktopWindow::wake();
+      })) {
   panel_.emplace(setup.preset, preset_options_);
 }
 
-void PlayParts::draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) const {
+void PlayParts::draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) {
   TransportBarState state{.timeline = {.transport = player.transport(),
                                        .now = player.now(),
                                        .shown = player.shown().position,
                                        .number = [&player](int at) { return player.footage().frame(at).number; },
-                                       .state = [&player](int at) { return player.frame_state(at); }},
+                                       .state = [&player](int at) { return player.frame_state(at); },
+                                       .footage = player.footage(),
+                                       .markers = marks_.markers(player)},
                           .view = player.view(),
                           .picture = player.images().picture,
                           .window = ui.picture_window,
@@ -45,7 +53,47 @@ void PlayParts::ask_for_range(Ui& ui) {
   range_name_.open(std::move(question));
 }
 
+/// As it was read, without the look; the preset is told what it is told while it is played.
+ThumbnailFrame PlayParts::thumbnail_frame() const {
+  const ShownFrame& shown = player_.shown();
+  ThumbnailFrame out{.picture = player_.source(), .context = {}};
+  out.context.frame = shown.number;
+  out.context.fps = player_.transport().fps();
+  const auto time = shown.position >= 0 ? player_.footage().frame(shown.position).time : std::nullopt;
+  out.context.time = time.value_or(shown.number / out.context.fps);
+  return out;
+}
+
+void PlayParts::browse_presets() {
+  PresetBrowser::Source source;
+  source.find = [this](const std::filesystem::path& file) { return thumbnails_->find(file); };
+  source.want = [this](std::vector<std::filesystem::path> files) { thumbnails_->want(std::move(files)); };
+  thumbnails_of_ = -1;
+  presets_.open(list_presets(preset_, preset_options_), preset_, std::move(source));
+}
+
+/// Thumbnails are of the frame at which the browser was opened, and of another once that stands.
+void PlayParts::draw_presets(Ui& ui) {
+  const bool was_open = presets_.is_open();
+  const int position = player_.shown().position;
+  if (was_open && player_.source() && position != thumbnails_of_ &&
+      (thumbnails_of_ < 0 || !player_.transport().playing())) {
+    thumbnails_of_ = position;
+    thumbnails_->set_frame(thumbnail_frame());
+  }
+  const auto choice = presets_.draw(ui, was_open ? panel_->unsaved(port_) : "", ImGui::GetIO().DisplaySize);
+  if (was_open && !presets_.is_open()) thumbnails_->rest();
+  if (!choice) return;
+  if (choice->other) {
+    ui.open_other(choice->file.string());
+  } else {
+    ui.open(choice->file.string());
+  }
+}
+
 void PlayParts::draw_dialogs(Ui& ui) {
+  draw_presets(ui);
+  marks_.draw(player_, ui);
   if (const auto name = range_name_.draw(ui, ImGui::GetIO().DisplaySize)) range_export_.begin(player_, ui, *name);
 }
 
@@ -129,15 +177,23 @@ void PlayParts::add_to(WindowOptions& options) {
     panel_->undo_save(port_);
   };
   options.edit_stack = [this](Player&, Ui& ui, Action action) { return edit_stack(ui, action); };
+  options.marks = [this](Player& player, Ui& ui, Action action) { return marks_.act(player, ui, action); };
   options.close_windows = [this] {
     const bool open = range_name_.is_open();
     range_name_.close();
-    return panel_->close_windows() || open;
+    const bool browsed = presets_.is_open();
+    if (browsed) thumbnails_->rest();
+    presets_.close();
+    const bool marks = marks_.close_windows();
+    return panel_->close_windows() || open || browsed || marks;
   };
+  options.browse_presets = [this](Player&, Ui&) { browse_presets(); };
+  options.news = [this] { return news_.exchange(false); };
   options.search = [this](Player&, Ui&) { panel_->search(); };
   options.preset_opened = [this](const std::filesystem::path& preset) {
     panel_.emplace(preset, preset_options_);
     range_export_.preset_opened(preset);
+    preset_ = preset;
   };
 }
 

@@ -2,11 +2,15 @@
 // Panel, transport bar and help sheet of a window that plays.
 #pragma once
 
+#include <atomic>
+#include <memory>
 #include <optional>
 
 #include "window/frame_export.h"
+#include "window/mark_keys.h"
 #include "window/panel.h"
 #include "window/player_port.h"
+#include "window/preset_browser.h"
 #include "window/range_export.h"
 #include "window/run_window.h"
 
@@ -20,7 +24,7 @@ class PlayParts {
   void add_to(WindowOptions& options);
 
  private:
-  void draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) const;
+  void draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size);
   bool edit_stack(Ui& ui, Action action);
   void ask_for_range(Ui& ui);
   void draw_dialogs(Ui& ui);
@@ -33,6 +37,15 @@ class PlayParts {
   FrameExport export_;
   RangeExport range_export_;
   NameDialog range_name_;
+  MarkKeys marks_;
+  PresetBrowser presets_;
+  ThumbnailFrame thumbnail_frame() const;
+  void browse_presets();
+  void draw_presets(Ui& ui);
+  std::filesystem::path preset_;  ///< that is played
+  int thumbnails_of_ = -1;        ///< position of the frame that they are of
+  std::atomic<bool> news_ = false;
+  std::unique_ptr<Thumbnails> thumbnails_;  // last: its thread says `news_`
 };
 
 }  // namespace afterglow

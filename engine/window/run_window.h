@@ -45,6 +45,11 @@ struct WindowOptions {
   std::function<void(Player&, Ui&)> search;     ///< the keyboard goes to the panel's search
   /// Keys that are about the stack, and Save as. True: a field is about to get the keyboard.
   std::function<bool(Player&, Ui&, Action)> edit_stack;
+  std::function<void(Player&, Ui&)> browse_presets;  ///< Ctrl+O: asks which; a field gets the keyboard
+  /// Asked in each turn: true once when something that is drawn came from elsewhere, and a frame is due.
+  std::function<bool()> news;
+  /// Keys that are about markers. True: a field is about to get the keyboard.
+  std::function<bool(Player&, Ui&, Action)> marks;
   std::function<bool()> close_windows;             ///< Esc; false: nothing was open
   std::function<void(Player&, Ui&)> hidden_panel;  ///< called in place of `panel` while that is hidden
   /// Another preset is being played from here on.

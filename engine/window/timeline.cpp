@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "window/timeline_marks.h"
+
 namespace afterglow {
 namespace {
 
@@ -90,7 +92,7 @@ const char* words_of(FrameState state) {
 void draw_hint(const Ui& ui, const Bar& bar, const TimelineState& state, int under) {
   const float x = std::clamp(ImGui::GetIO().MousePos.x, bar.begin.x, bar.end.x);
   ImGui::SetNextWindowPos({x, bar.begin.y - ui.px(4)}, ImGuiCond_Always, {0.5f, 1});
-  ImGui::SetTooltip("%s", fmt::format("frame {}{}", state.number(under), words_of(state.state(under))).c_str());
+  ImGui::SetTooltip("%s", (hint_of(ui, state, bar.width(), under) + words_of(state.state(under))).c_str());
 }
 
 void move(TimelineState& state, int under) {
@@ -112,14 +114,14 @@ int position_in_bar(float x, float left, float width, int frames) {
   return static_cast<int>(std::clamp(place, 0.0, static_cast<double>(frames - 1)));
 }
 
-float timeline_height(const Ui& ui) { return ui.px(24); }
+float timeline_height(const Ui& ui) { return ui.px(24) + ruler_height(ui); }
 
 void draw_timeline(const Ui& ui, TimelineState& state) {
   Transport& transport = state.transport;
   const ImVec2 begin = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("scrub", {std::max(ImGui::GetContentRegionAvail().x, 1.0f), timeline_height(ui)},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
-  const Bar bar{begin, ImGui::GetItemRectMax(), transport.frames()};
+  const Bar bar{{begin.x, begin.y + ruler_height(ui)}, ImGui::GetItemRectMax(), transport.frames()};
   const int under = position_in_bar(ImGui::GetIO().MousePos.x, begin.x, bar.width(), bar.frames);
   if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) move(state, under);
   if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) transport.clear_range(state.now);
@@ -128,11 +130,14 @@ void draw_timeline(const Ui& ui, TimelineState& state) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   draw_range(list, ui, bar, transport);
   draw_frames(list, ui, bar, state);
+  draw_ruler(list, ui, state, begin, bar.width());
+  draw_clips(list, ui, state, bar.begin, bar.end);
   const int at = state.shown >= 0 ? state.shown : transport.position();
   const float left = bar.left(at), right = std::max(bar.left(at + 1), left + ui.px(2));
   list.AddRect({left, bar.begin.y}, {right, bar.end.y}, ui_color::kAccent, 0, 0, ui.px(2));
   const float width = std::min(right - left, ui.px(6)), middle = (left + right) / 2;
   list.AddRectFilled({middle - width / 2, bar.begin.y}, {middle + width / 2, bar.end.y}, ui_color::kAccent);
+  draw_markers(list, ui, state, bar.begin, bar.end);  // last: one of the frame that is shown is seen too
 }
 
 }  // namespace afterglow

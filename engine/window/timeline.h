@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// All frames as a bar: what is shown, the range, what is in memory, what is missing or cannot be read. Scrubs.
+// All frames as a bar: what is shown, the range, what is in memory, what is missing or cannot be read, clips and
+// markers; numbers stand over it. Scrubs.
 #pragma once
 
 #include <functional>
 
 #include "play/player.h"
+#include "window/markers.h"
 #include "window/ui.h"
 
 namespace afterglow {
@@ -16,6 +18,8 @@ struct TimelineState {
   int shown = 0;                         ///< position that is on screen; −1: none
   std::function<int(int)> number;        ///< of the frame at a position, in its sequence
   std::function<FrameState(int)> state;  ///< of the frame at a position
+  const Footage& footage;
+  const Markers& markers;  ///< that follow `footage`
 };
 
 /// As wide as the window of ImGui that it is drawn into.

@@ -41,6 +41,10 @@ struct Ui {
   std::function<void(const std::string&)> copy = [](const std::string&) {};
   /// Opens a preset, a picture or a sequence, as if it had been dropped on the window.
   std::function<void(const std::string&)> open = [](const std::string&) {};
+  /// Opens a preset as B.
+  std::function<void(const std::string&)> open_other = [](const std::string&) {};
+  /// Shows the presets that can be opened.
+  std::function<void()> browse_presets = [] {};
   /// Opens a file at a line in the user's editor, and says so when that fails.
   std::function<void(const std::string& file, int line)> edit_file = [](const std::string&, int) {};
   /// Draws another frame soon, though nothing else will have changed.

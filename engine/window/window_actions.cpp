@@ -61,6 +61,18 @@ bool WindowApp::act_on_transport(Action action) {
       ui.frame_field.text.fill(0);
       await_field();
       return true;
+    case Action::mark:
+    case Action::name_mark:
+    case Action::next_mark:
+    case Action::previous_mark:
+      if (options_.marks && options_.marks(player_, ui, action)) await_field();
+      return true;
+    case Action::next_clip:
+      go_to_clip(1);
+      return true;
+    case Action::previous_clip:
+      go_to_clip(-1);
+      return true;
     case Action::step_forward:
       t.step(1, now);
       return true;
@@ -103,6 +115,20 @@ bool WindowApp::act_on_transport(Action action) {
   }
 }
 
+/// Backwards it stops at the first frame of the clip that is shown.
+void WindowApp::go_to_clip(int by) {
+  Transport& t = player_.transport();
+  const auto& clips = player_.footage().clips();
+  const int here = player_.footage().clip_at(t.position());
+  const bool to_begin = by < 0 && t.position() > clips[static_cast<std::size_t>(here)].first;
+  const int there = std::clamp(to_begin ? here : here + by, 0, static_cast<int>(clips.size()) - 1);
+  if (by > 0 && there == here)
+    return interface_->ui().say(clips.size() > 1 ? "this is the last clip" : "there is one clip");
+  const auto& clip = clips[static_cast<std::size_t>(there)];
+  t.go_to(clip.first, player_.now());
+  interface_->ui().say(fmt::format("clip {} of {}: {}", there + 1, clips.size(), clip.label));
+}
+
 /// One way at the speed of the clock; pressed again, twice as fast.
 void WindowApp::shuttle(int direction) {
   Transport& t = player_.transport();
@@ -117,6 +143,15 @@ void WindowApp::edit_file(const std::string& file, int line) {
   const auto opened = open_in_editor(file, line);
   interface_->ui().say(opened ? fmt::format("{}:{} goes to the editor", file, std::max(line, 1))
                               : opened.error().text());
+}
+
+/// The first error; while the message stays, each time the next one.
+void WindowApp::edit_next_place() {
+  const std::string message = current_message(player_);
+  if (message != edited_.message) edited_ = {message, 0};
+  const auto places = current_places(player_);
+  const ErrorPlace& place = places[edited_.next++ % places.size()];
+  edit_file(place.file.string(), place.line);
 }
 
 void WindowApp::keep_snapshot(int snapshot) {
@@ -151,8 +186,7 @@ bool WindowApp::act_on_preset(Action action) {
       return true;
     }
     case Action::edit_file: {
-      const ErrorPlace place = current_place(player_);
-      edit_file(place.file.string(), place.line);
+      edit_next_place();
       return true;
     }
     case Action::copy_message: {
@@ -192,6 +226,9 @@ bool WindowApp::act_on_preset(Action action) {
       ui.say(edited ? "stack and settings as the file has them" : "nothing was changed");
       return true;
     }
+    case Action::browse_presets:
+      browse_presets();
+      return true;
     case Action::save_as:
     case Action::add_effect:
     case Action::next_entry:

@@ -37,6 +37,8 @@ Result<std::unique_ptr<WindowApp>> WindowApp::create(DesktopWindow& window, Devi
   ui.copy = [&window](const std::string& text) { window.set_clipboard(text); };
   // Not within the frame that asks for it: what asks may be gone then.
   ui.open = [raw = app.get()](const std::string& path) { raw->to_open_.emplace_back(path); };
+  ui.open_other = [raw = app.get()](const std::string& path) { raw->others_to_open_.emplace_back(path); };
+  ui.browse_presets = [raw = app.get()] { raw->browse_presets(); };
   ui.edit_file = [raw = app.get()](const std::string& file, int line) { raw->edit_file(file, line); };
   ui.again = [raw = app.get()] { raw->redraw_ = std::max(raw->redraw_, 2); };
   return app;
@@ -112,6 +114,7 @@ void WindowApp::wait(const Step& turn) {
 
 /// What scripts and tests that watch us want to know.
 void WindowApp::note_step(const Step& turn) {
+  if (options_.news && options_.news()) redraw_ = std::max(redraw_, 2);  // the atlas, then what is drawn of it
   if (turn.reloaded || turn.changed) redraw_ = std::max(redraw_, 1);
   const LiveStatus status = player_.live().status();
   const std::string error = status.error ? status.error->text() : "";

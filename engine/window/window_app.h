@@ -39,6 +39,8 @@ class WindowApp {
   void input_seen();
   void await_field();
   void open_dropped(const std::filesystem::path& path);
+  void open_other(const std::filesystem::path& path);
+  void browse_presets();
   void note_step(const Step& step);
   void update_title();
 
@@ -61,9 +63,11 @@ class WindowApp {
   void show_neighbour(int by);
   void next_wipe();
   void shuttle(int direction);
+  void go_to_clip(int by);
   void keep_snapshot(int snapshot);
   void recall_snapshot(int snapshot);
   void edit_file(const std::string& file, int line);
+  void edit_next_place();
   void draw_frame_field();
   void compare_by(CompareBy by);
   Size picture_window() const;  ///< what one picture has of `area_`
@@ -82,7 +86,7 @@ class WindowApp {
   std::unique_ptr<Painter> painter_;
 
   InputQueue input_;
-  std::vector<std::filesystem::path> to_open_;
+  std::vector<std::filesystem::path> to_open_, others_to_open_;
   int field_awaited_ = 0;  ///< frames that a field has to get the keyboard; what is typed waits for it
 
   static constexpr int kSettle = 3;  ///< ImGui needs a frame to see an event and one to answer it
@@ -100,6 +104,10 @@ class WindowApp {
   bool step_shown_ = true;  ///< the last changed turn was presented
   std::uint64_t noted_generation_ = 0;
   std::string noted_error_, noted_picture_, title_;
+  struct {
+    std::string message;  ///< whose places F4 steps through
+    std::size_t next = 0;
+  } edited_;
 
   std::uint64_t turn_ = 0;  ///< grows with each changed picture
   struct {

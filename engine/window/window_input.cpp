@@ -23,6 +23,7 @@ void WindowApp::take_events() {
   deliver_input();
   for (const auto& path : events.dropped) open_dropped(path);
   for (const auto& path : std::exchange(to_open_, {})) open_dropped(path);
+  for (const auto& path : std::exchange(others_to_open_, {})) open_other(path);
 }
 
 /// As much as the next frame can tell apart. Keys act at once where no text is typed.
@@ -105,6 +106,23 @@ void WindowApp::open_dropped(const std::filesystem::path& path) {
   if (opened && preset && options_.preset_opened) options_.preset_opened(path);
   ui.say(opened ? fmt::format("opened {}", path.filename().string()) : opened.error().text());
   diagnostics_.note(opened ? fmt::format("opened {}", path.string()) : opened.error().text());
+  redraw_ = kSettle;
+}
+
+void WindowApp::browse_presets() {
+  redraw_ = kSettle;
+  if (!options_.browse_presets) return;
+  options_.browse_presets(player_, interface_->ui());
+  await_field();
+}
+
+/// A preset becomes B, and is seen beside the first.
+void WindowApp::open_other(const std::filesystem::path& path) {
+  (void)painter_->finish();  // see open_dropped
+  const Result<void> opened = player_.open_other(path);
+  if (opened) player_.view().compare = Compare::other;
+  interface_->ui().say(opened ? fmt::format("opened {} as B", path.filename().string()) : opened.error().text());
+  diagnostics_.note(opened ? fmt::format("opened {} as B", path.string()) : opened.error().text());
   redraw_ = kSettle;
 }
 

@@ -76,6 +76,18 @@ class PresetErrors : public CliTest {
   }
 };
 
+TEST_F(PresetErrors, EveryGlslErrorHasItsFileAndLine) {
+  make_effect("vec4 apply(vec4 color) {\n  color.r = one;\n  color.g = two;\n  return three;\n}\n");
+  make_exr("a.exr");
+  for (const auto& command :
+       {std::vector<std::string>{"check", "look.lua"}, {"run", "look.lua", "a.exr", "-o", "b.exr"}}) {
+    const Outcome outcome = run(command);
+    EXPECT_EQ(outcome.exit_code, kScript);
+    for (const char* place : {"mine.glsl:2: error: 'one'", "mine.glsl:3: 'two'", "mine.glsl:4: 'three'"})
+      EXPECT_THAT(outcome.err, HasSubstr(place)) << command[0];
+  }
+}
+
 TEST_F(PresetErrors, GlslErrorNamesTheAuthorsFileAndLine) {
   make_effect("// a comment\nvec4 apply(vec4 color) {\n  return colour;\n}\n");
   make_exr("a.exr");

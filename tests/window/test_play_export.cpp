@@ -108,7 +108,7 @@ TEST_F(PlayExport, TheButtonCancels) {
   ASSERT_NO_FATAL_FAILURE(begin_export("out.####.exr"));
   ASSERT_TRUE(program_->wait_for("frames done"));
   EXPECT_TRUE(until([&] {
-    return user("mousemove 860 677 click 1") && program_->printed().find("export cancelled") != std::string::npos;
+    return user("mousemove 860 661 click 1") && program_->printed().find("export cancelled") != std::string::npos;
   }));
   const int written = files("out.");
   EXPECT_GT(written, 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Scopes, marks, exposure and gamma of the view, regions; where the window is, and the editor; in a real window.
+#include "core/text.h"
 #include "play_window_test.h"
 
 namespace afterglow {
@@ -105,6 +106,46 @@ TEST_F(PlayWindow, AnErrorOpensTheEditorAtItsLine) {
   ASSERT_TRUE(program_->wait_for("reload: failed"));
   ASSERT_TRUE(user("key F4"));
   EXPECT_TRUE(until([&] { return called().ends_with("+4 look.lua\n"); })) << called();
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
+/// All that the compiler says stands over the picture; F4 steps through the places.
+TEST_F(PlayWindow, EachErrorOfAShaderIsListedAndOpens) {
+  std::ofstream(folder_ / "editor") << "#!/bin/sh\necho \"$@\" >> called.txt\n";
+  fs::permissions(folder_ / "editor", fs::perms::owner_all);
+  fs::create_directories(folder_ / "effects");
+  fs::create_directories(folder_ / "shaders" / "mine");
+  std::ofstream(folder_ / "effects" / "mine.lua")
+      << "local fx = require \"afterglow\"\nreturn fx.effect { name = \"mine\", settings = {},\n"
+      << "  build = function(g, s, source) return g:pass { shader = \"mine/mine\", source = source } end }\n";
+  const auto shader = [&](const std::string& lines) {
+    std::ofstream(folder_ / "shaders" / "mine" / "mine.glsl") << "vec4 apply(vec4 c) {\n"
+                                                              << lines << "  return vec4(c.r, 0.0, 0.0, c.a);\n}\n";
+  };
+  shader("");
+  std::ofstream(folder_ / "look.lua") << "local fx = require \"afterglow\"\nreturn fx.stack { fx.mine {} }\n";
+  play({"look.lua", "shot.0001.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  EXPECT_TRUE(until_color(kX, kY, kRed));
+  const auto edge = [&] { return count_color(shot(), {255, 107, 97}); };  // of the error's sheet, and names of places
+  shader("  c.g = one;\n");
+  ASSERT_TRUE(program_->wait_for("reload: failed"));
+  EXPECT_TRUE(until([&] { return edge() > 100; }));
+  const int of_one = edge();
+  shader("  c.g = one;\n  c.b = two;\n  c.g = three;\n");
+  EXPECT_TRUE(until([&] { return edge() > of_one + 100; })) << "the sheet has grown by two errors";
+  const auto called = [&] { return text_of("called.txt"); };
+  std::string opened;
+  for (const char* line : {"+2 ", "+3 ", "+4 ", "+2 "}) {
+    opened += line;
+    ASSERT_TRUE(user("mousemove 400 300 key F4"));
+    EXPECT_TRUE(until([&] {
+      std::string lines;
+      for (const auto& one : split(called(), '\n')) lines += one.substr(0, 3);
+      return lines == opened;
+    })) << called();
+  }
   ASSERT_TRUE(user("key q"));
   expect_clean_end();
 }

@@ -91,5 +91,26 @@ TEST(Pattern, AFileThatOnlyLooksLikeAPattern) {
   EXPECT_FALSE(parse_pattern((folder / "take#2.exr").string()).value().numbered);
 }
 
+TEST(Pattern, AFrameHasItsSequenceAroundIt) {
+  const TemporaryFolder folder;
+  for (const char* name :
+       {"s.0001.exr", "s.0002.exr", "s.0007.exr", "n_9.exr", "n_10.exr", "100%_08.exr", "100%_09.exr", "still.exr",
+        "alone.0004.exr", "a.0005.txt", "a.0006.txt", "m.0003.exr", "m.0004.png"})
+    std::ofstream(folder / name) << "x";
+  const auto around = [&](const char* name) {
+    const auto found = sequence_around(folder / name);
+    if (!found) return std::string("none");
+    EXPECT_EQ(parse_pattern(found->pattern).value().file(found->frame), folder / name);
+    return std::filesystem::path(found->pattern).filename().string() + " " + std::to_string(found->frame);
+  };
+  EXPECT_EQ(around("s.0002.exr"), "s.####.exr 2");
+  EXPECT_EQ(around("s.0001.exr"), "s.####.exr 1");
+  EXPECT_EQ(around("n_9.exr"), "n_#.exr 9");
+  EXPECT_EQ(around("n_10.exr"), "n_#.exr 10");
+  EXPECT_EQ(around("100%_09.exr"), "100%%_##.exr 9");
+  for (const char* name : {"still.exr", "alone.0004.exr", "a.0005.txt", "m.0003.exr", "s.0007.exr", "s.0003.exr"})
+    EXPECT_EQ(around(name), "none") << name;
+}
+
 }  // namespace
 }  // namespace afterglow

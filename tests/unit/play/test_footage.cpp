@@ -150,5 +150,18 @@ TEST(Frames, AreWrittenAsRanges) {
   EXPECT_THAT(frames_text({}), IsEmpty());
 }
 
+TEST_F(FootageTest, EachInputIsAClip) {
+  for (const char* name : {"a.01.exr", "a.02.exr", "a.04.exr", "b.1.exr", "still.exr"}) write(name, 0);
+  const auto footage = open({path("a.##.exr"), path("still.exr"), path("b.%d.exr")}).value();
+  ASSERT_EQ(footage->clips().size(), 3u);
+  EXPECT_EQ(footage->clips()[0].label, "a.##.exr");
+  EXPECT_EQ(footage->clips()[0].frames, 4);
+  EXPECT_EQ(footage->clips()[1].first, 4);
+  EXPECT_EQ(footage->clips()[2].key, path("b.#.exr"));
+  std::vector<int> clips;
+  for (int at = 0; at < footage->frames(); ++at) clips.push_back(footage->clip_at(at));
+  EXPECT_THAT(clips, ElementsAre(0, 0, 0, 0, 1, 2));
+}
+
 }  // namespace
 }  // namespace afterglow

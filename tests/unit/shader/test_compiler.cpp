@@ -199,6 +199,27 @@ TEST_F(KernelCache, FailuresAreNotCached) {
   EXPECT_FALSE(fs::exists(folder_));
 }
 
+TEST(KernelCompiler, EveryErrorOfAShaderIsToldOnce) {
+  ShaderFiles files;
+  const auto bad = files.stage("t/bad", "vec4 apply(vec4 c) {\n  c.r = d;\n  c.g = e;\n  c.b = f;\n  return c;\n}\n");
+  const auto places = [](const Error& error) {
+    std::vector<std::string> out{error.message};
+    for (const std::string& line : error.trail) out.push_back(line.substr(line.rfind('/') + 1));
+    return out;
+  };
+  const auto all = ElementsAre("'d': undeclared identifier", "bad.glsl:3: 'e': undeclared identifier",
+                               "bad.glsl:4: 'f': undeclared identifier");
+  KernelCompiler compiler{fs::path()};
+  const auto alone = compiler.compile(one(bad));
+  ASSERT_FALSE(alone.ok());
+  EXPECT_THAT(places(alone.error()), all);
+  KernelDesc twice = one(bad);
+  twice.stages.push_back(bad);
+  const auto fused = compiler.compile(twice);
+  ASSERT_FALSE(fused.ok());
+  EXPECT_THAT(places(fused.error()), all) << "the same stage behind itself";
+}
+
 TEST(KernelCompiler, EightThreadsShareOneCompiler) {
   ShaderFiles files;
   constexpr int kThreads = 8, kShaders = 6;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The interface without a window: frames of Dear ImGui with a pointer and keys that are moved by hand, on a real
 // preset.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <imgui_internal.h>
@@ -721,12 +722,14 @@ TEST_F(PanelTest, WithoutAPreset) {
 class TransportBar : public PanelTest {
  protected:
   TransportBar() : transport(100) {
+    markers.follow(footage);
     what_ = [this] {
-      TransportBarState state{.timeline = {transport, now, transport.position(), [](int at) { return at + 1001; },
-                                           [](int at) { return at < 50 ? FrameState::cached : FrameState::unread; }},
-                              .view = look,
-                              .picture = {640, 360},
-                              .window = {640, 180}};
+      TransportBarState state{
+          .timeline = {transport, now, transport.position(), [](int at) { return at + 1001; },
+                       [](int at) { return at < 50 ? FrameState::cached : FrameState::unread; }, *footage, markers},
+          .view = look,
+          .picture = {640, 360},
+          .window = {640, 180}};
       draw_transport_bar(interface.ui(), state, {0, 0}, {wide, transport_bar_height(interface.ui(), wide)});
     };
     frame();
@@ -736,6 +739,18 @@ class TransportBar : public PanelTest {
     const float padding = ImGui::GetStyle().WindowPadding.x;
     return padding + (static_cast<float>(position) + 0.5f) * (kWidth * 2 - 2 * padding) / 100;
   }
+  /// Frames 1001 to 1100, by their names alone.
+  static std::shared_ptr<const Footage> hundred_frames() {
+    const auto folder = fs::temp_directory_path() / ("afterglow-bar-" + std::to_string(getpid()));
+    fs::create_directories(folder);
+    for (int number = 1001; number <= 1100; ++number) std::ofstream(folder / fmt::format("shot.{}.exr", number)) << "x";
+    Diagnostics nowhere;
+    auto opened = Footage::open({.inputs = {(folder / "shot.####.exr").string()}, .frames = {}, .read = {}}, nowhere);
+    fs::remove_all(folder);
+    return std::move(opened).value();
+  }
+  std::shared_ptr<const Footage> footage = hundred_frames();
+  Markers markers{fs::path()};
   Transport transport;
   View look;
   float wide = kWidth * 2;

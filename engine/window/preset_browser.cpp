@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+#include "window/preset_browser.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "window/panel_row.h"
+
+namespace afterglow {
+namespace {
+
+constexpr float kRowGap = 8;
+
+static_assert(Thumbnail::kWidth == AtlasCells::kThumbnailWidth && Thumbnail::kHeight == AtlasCells::kThumbnailHeight);
+
+float row_height(const Ui& ui) { return ui.px(Thumbnail::kHeight + kRowGap); }
+
+}  // namespace
+
+void PresetBrowser::open(std::vector<ListedPreset> presets, const std::filesystem::path& present, Source source) {
+  open_ = begin_ = scroll_ = true;
+  search_.fill(0);
+  presets_ = std::move(presets);
+  present_ = present;
+  source_ = std::move(source);
+  wanted_.clear();
+  asked_.reset();
+  const auto same = [&](const ListedPreset& one) {
+    std::error_code none;
+    return std::filesystem::equivalent(one.file, present_, none);
+  };
+  const auto at = std::ranges::find_if(presets_, same);
+  chosen_ = at == presets_.end() ? 0 : static_cast<std::size_t>(at - presets_.begin());
+}
+
+std::optional<PresetChoice> PresetBrowser::draw(Ui& ui, const std::string& unsaved, ImVec2 area) {
+  if (!open_) return std::nullopt;
+  const auto found = found_presets(presets_, search_.data());
+  std::optional<PresetChoice> choice;
+  // No more rows are seen at once than the atlas has cells.
+  const float most = row_height(ui) * (AtlasCells::kThumbnails - 2) + 4 * ImGui::GetFrameHeightWithSpacing();
+  const ImVec2 size{std::min(ui.px(680), area.x * 0.95f), std::min({ui.px(640), area.y * 0.92f, most})};
+  ImGui::SetNextWindowPos({(area.x - size.x) / 2, (area.y - size.y) / 2});
+  ImGui::SetNextWindowSize(size);
+  constexpr int kFlags = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                         ImGuiWindowFlags_NoSavedSettings;
+  if (ImGui::Begin("Open a preset", &open_, kFlags)) {
+    bool entered = false, left = false;
+    draw_search(ui, found, entered, left);
+    chosen_ = std::min(chosen_, found.empty() ? 0 : found.size() - 1);
+    draw_list(ui, found, entered);
+    const bool any = !found.empty();
+    bool other = entered && ImGui::GetIO().KeyShift;
+    if (asked_) {
+      ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kWarning);
+      ImGui::TextUnformatted((unsaved + " would be lost.").c_str());
+      ImGui::PopStyleColor();
+      ImGui::SameLine();
+    }
+    if (small_button(ui, asked_ ? "Open all the same###open" : "Open###open", "Enter", any)) entered = true;
+    ImGui::SameLine();
+    if (small_button(ui, "Open as B", "Shift+Enter: it is compared with the present one", any)) entered = other = true;
+    ImGui::SameLine();
+    if (small_button(ui, "Cancel", "Esc")) left = true;
+    if (!asked_) {
+      ImGui::SameLine();
+      ImGui::TextDisabled("%s", fmt::format("{} of {}", found.size(), presets_.size()).c_str());
+    }
+    if (entered && any) {
+      const auto& file = found[chosen_]->file;
+      if (other || unsaved.empty() || asked_ == file) {
+        choice = {file, other};
+      } else {
+        asked_ = file;
+        begin_ = ui.field_opens = true;
+      }
+    }
+    if (left && asked_ && !choice) {
+      asked_.reset();  // the first Escape takes the question back
+      begin_ = ui.field_opens = true;
+    } else if (left) {
+      open_ = false;
+    }
+  }
+  ImGui::End();
+  if (choice) open_ = false;
+  return choice;
+}
+
+void PresetBrowser::draw_search(Ui& ui, const Found& found, bool& entered, bool& left) {
+  if (std::exchange(begin_, false)) focus_next_item();
+  ImGui::SetNextItemWidth(-1);
+  const std::string before = search_.data();
+  int step = 0;  // by Up and Down, which stay in the field
+  const auto on_arrow = [](ImGuiInputTextCallbackData* data) {
+    *static_cast<int*>(data->UserData) = data->EventKey == ImGuiKey_UpArrow ? -1 : 1;
+    return 0;
+  };
+  entered = ImGui::InputTextWithHint(
+      "##preset", "Search presets; Up, Down, Enter; Shift+Enter: as B", search_.data(), search_.size(),
+      ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackHistory, on_arrow, &step);
+  const bool lost = ImGui::IsItemDeactivated() && !entered && !ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+  left = lost && escape_pressed();
+  if (lost && !left) begin_ = ui.field_opens = true;  // by no wish of the user: it goes on
+  if (before != search_.data()) {
+    chosen_ = 0;
+    scroll_ = true;
+    asked_.reset();
+  }
+  if (step == 0 || found.empty()) return;
+  const auto last = static_cast<int>(found.size()) - 1;
+  chosen_ = static_cast<std::size_t>(std::clamp(static_cast<int>(chosen_) + step, 0, last));
+  scroll_ = true;
+  asked_.reset();
+}
+
+void PresetBrowser::draw_list(Ui& ui, const Found& found, bool& entered) {
+  const float height = row_height(ui);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ui.px(8), 0));
+  ImGui::BeginChild("list", {0, -ImGui::GetFrameHeightWithSpacing() - ui.px(4)}, true);
+  const float shown = ImGui::GetWindowHeight() - 2 * ImGui::GetStyle().WindowPadding.y;
+  if (found.empty()) ImGui::TextDisabled("No preset is called so");
+  if (std::exchange(scroll_, false)) {
+    const float at = static_cast<float>(chosen_) * height;
+    if (at < ImGui::GetScrollY()) ImGui::SetScrollY(at);
+    if (at + height > ImGui::GetScrollY() + shown) ImGui::SetScrollY(at + height - shown);
+  }
+  const float width = ImGui::GetContentRegionAvail().x;
+  const auto count = static_cast<int>(found.size());
+  const int first = std::clamp(static_cast<int>(ImGui::GetScrollY() / height), 0, count);
+  const int last = std::min(first + static_cast<int>(shown / height) + 2, count);
+  want_thumbnails(found, first, last);
+  const ImVec2 begin = ImGui::GetCursorPos();
+  for (int row = first; row < last; ++row) {
+    const ListedPreset& preset = *found[static_cast<std::size_t>(row)];
+    ImGui::SetCursorPos({begin.x, begin.y + static_cast<float>(row) * height});
+    const ImVec2 at = ImGui::GetCursorPos();
+    ImGui::PushID(row);
+    if (ImGui::Selectable("##row", static_cast<std::size_t>(row) == chosen_, ImGuiSelectableFlags_AllowDoubleClick,
+                          {0, height})) {
+      if (chosen_ != static_cast<std::size_t>(row)) asked_.reset();
+      chosen_ = static_cast<std::size_t>(row);
+      begin_ = ui.field_opens = true;  // Enter and the arrows go on from here
+      if (double_clicked()) entered = true;
+    }
+    ui.help(preset.file.string());
+    ImGui::SetCursorPos(at);
+    draw_row(ui, preset, row % AtlasCells::kThumbnails, width);
+    ImGui::PopID();
+  }
+  // All rows have their room, also those that are not drawn.
+  ImGui::SetCursorPos({begin.x, begin.y + static_cast<float>(count) * height});
+  ImGui::Dummy({1, 0});
+  ImGui::EndChild();
+  ImGui::PopStyleVar();
+}
+
+/// A thumbnail, the name, the story; what is wrong in place of the story.
+void PresetBrowser::draw_row(Ui& ui, const ListedPreset& preset, int cell, float width) {
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImVec2 from{corner.x + ui.px(4), corner.y + ui.px(kRowGap / 2)};
+  const ImVec2 to{from.x + ui.px(Thumbnail::kWidth), from.y + ui.px(Thumbnail::kHeight)};
+  const auto thumbnail = source_.find ? source_.find(preset.file) : nullptr;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(from, to, IM_COL32(10, 11, 12, 255));
+  if (thumbnail && !thumbnail->error) {
+    fill_cell(ui, thumbnail, cell);
+    ui.cells.draw(list, AtlasCells::kScopes + cell, from, to);
+  }
+  list.AddRect(from, to, ui_color::kLine);
+  if (source_.find && !thumbnail) list.AddText({from.x + ui.px(8), from.y + ui.px(8)}, ui_color::kDim, "…");
+
+  const float left = ui.px(Thumbnail::kWidth + 16);
+  ImGui::PushClipRect(corner, {corner.x + width, to.y}, true);
+  ImGui::SetCursorScreenPos({corner.x + left, from.y});
+  ImGui::BeginGroup();
+  std::error_code none;
+  ImGui::PushFont(ui.bold);
+  ImGui::TextUnformatted(preset.name.c_str());
+  ImGui::PopFont();
+  if (std::filesystem::equivalent(preset.file, present_, none)) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("is played");
+  }
+  const bool wrong = thumbnail && thumbnail->error;
+  ImGui::PushStyleColor(ImGuiCol_Text, wrong ? ui_color::kError : ui_color::kDim);
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + std::max(width - left - ui.px(4), ui.px(40)));
+  const std::string text = wrong ? "Error: " + thumbnail->error->text() : preset.story;
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+  ImGui::EndGroup();
+  ImGui::PopClipRect();
+}
+
+/// A cell is written when another thumbnail takes it, and with each new atlas.
+void PresetBrowser::fill_cell(Ui& ui, const std::shared_ptr<const Thumbnail>& thumbnail, int cell) {
+  Cell& now = cells_[static_cast<std::size_t>(cell)];
+  if (now.thumbnail == thumbnail && now.generation == ui.cells.generation()) return;
+  ui.cells.write(AtlasCells::kScopes + cell, thumbnail->pixels);
+  now = {thumbnail, ui.cells.generation()};
+}
+
+/// Those that are seen first, then the chosen one's neighbours: the whole list, as it goes on from there.
+void PresetBrowser::want_thumbnails(const Found& found, int first, int last) {
+  if (!source_.want) return;
+  std::vector<std::filesystem::path> wanted;
+  const auto add = [&](int from, int to) {
+    for (int row = from; row < to; ++row) wanted.push_back(found[static_cast<std::size_t>(row)]->file);
+  };
+  add(first, last);
+  add(last, static_cast<int>(found.size()));
+  add(0, first);
+  if (wanted.size() > Thumbnails::kMostKept) wanted.resize(Thumbnails::kMostKept);
+  if (wanted == wanted_) return;
+  wanted_ = wanted;
+  source_.want(std::move(wanted));
+}
+
+}  // namespace afterglow

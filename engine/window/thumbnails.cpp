@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+#include "window/thumbnails.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "image/scale.h"
+#include "image/srgb.h"
+#include "session/live_session.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::uint64_t kMostDeviceMemory = 256u << 20;
+constexpr int kNice = 15;  // Linux keeps it by thread; those that the device makes are born with it
+
+/// A frame made small, with what presets are told about it.
+struct SmallFrame {
+  Picture picture;
+  BuildContext context;
+};
+
+SmallFrame small_frame(const ThumbnailFrame& frame) {
+  SmallFrame out{*frame.picture, frame.context};
+  const Size display = out.picture.display_window.size();
+  const double scale = std::min({static_cast<double>(Thumbnail::kWidth) / std::max(display.width, 1),
+                                 static_cast<double>(Thumbnail::kHeight) / std::max(display.height, 1), 1.0});
+  const Size to{std::max(static_cast<int>(display.width * scale), 1),
+                std::max(static_cast<int>(display.height * scale), 1)};
+  out.picture.content.clear();
+  if (scale < 1) scale_picture(out.picture, {.display = to});
+  out.context.length_scale = scale;
+  note_content(out.picture);
+  return out;
+}
+
+/// In the middle of a thumbnail, as the window shows it: linear light clamped and sRGB-encoded, alpha ignored.
+std::vector<std::uint32_t> encoded(const float* rgba, Size size) {
+  std::vector<std::uint32_t> out(static_cast<std::size_t>(Thumbnail::kWidth) * Thumbnail::kHeight);
+  const CodeEncoder& code = CodeEncoder::srgb(255);
+  const int left = (Thumbnail::kWidth - size.width) / 2, top = (Thumbnail::kHeight - size.height) / 2;
+  for (int y = std::max(-top, 0); y < size.height && y + top < Thumbnail::kHeight; ++y)
+    for (int x = std::max(-left, 0); x < size.width && x + left < Thumbnail::kWidth; ++x) {
+      const float* from =
+          rgba + (static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x)) * 4;
+      out[static_cast<std::size_t>(y + top) * Thumbnail::kWidth + static_cast<std::size_t>(x + left)] =
+          code(from[0]) | code(from[1]) << 8 | code(from[2]) << 16 | 255u << 24;
+    }
+  return out;
+}
+
+Result<std::vector<std::uint32_t>> make(Device& device, const fs::path& preset, const StackOptions& stack,
+                                        const SmallFrame& frame) {
+  Diagnostics silent;  // warnings are told when it is opened
+  LiveOptions options{.stack = stack};
+  options.follow = false;
+  AFTERGLOW_TRY(const auto session, LiveSession::open(device, preset, options, silent));
+  AFTERGLOW_CHECK(session->process(frame.picture, frame.context));
+  const LiveStatus status = session->live().status();
+  if (status.error) return *status.error;
+  if (!session->images().ran) return encoded(frame.picture.color.pixels.data(), frame.picture.color.size());
+  HostResult result;
+  AFTERGLOW_CHECK(session->read_result(result));
+  return encoded(result.pixels.data(), session->images().result.binding.size);
+}
+
+}  // namespace
+
+struct Thumbnails::State {
+  DeviceOptions device_options;
+  StackOptions stack;
+  std::function<void()> made;
+
+  mutable std::mutex mutex;
+  std::condition_variable changed;
+  bool ends = false, rests = false;
+  std::uint64_t generation = 0;  ///< of the frame
+  std::optional<ThumbnailFrame> frame;
+  std::vector<fs::path> wanted;
+  std::map<fs::path, std::shared_ptr<const Thumbnail>> kept;
+  std::thread thread;  // last: it uses the rest
+
+  std::optional<fs::path> next() const {
+    if (!frame) return std::nullopt;
+    for (const fs::path& preset : wanted)
+      if (!kept.contains(preset)) return preset;
+    return std::nullopt;
+  }
+  void run();
+  void make_all(std::unique_lock<std::mutex>& lock);
+};
+
+/// With a device, until there is nothing more to do with it.
+void Thumbnails::State::make_all(std::unique_lock<std::mutex>& lock) {
+  std::unique_ptr<Device> device;
+  std::optional<SmallFrame> small;
+  std::uint64_t small_of = 0;
+  while (!ends && !rests) {
+    const auto preset = next();
+    if (!preset) {
+      changed.wait(lock);
+      continue;
+    }
+    const std::uint64_t of = generation;
+    const ThumbnailFrame source = *frame;
+    lock.unlock();
+    if (!small || small_of != of) {
+      small = small_frame(source);
+      small_of = of;
+    }
+    Thumbnail out;
+    Diagnostics silent;
+    if (!device) {
+      auto opened = Device::create(device_options, silent);
+      if (opened) {
+        device = std::move(*opened);
+      } else {
+        out.error = opened.error();
+      }
+    }
+    if (device) {
+      auto pixels = make(*device, *preset, stack, *small);
+      if (pixels) {
+        out.pixels = std::move(*pixels);
+      } else {
+        out.error = pixels.error();
+        if (out.error->kind == ErrorKind::device) device.reset();  // lost: the next one begins anew
+      }
+    }
+    lock.lock();
+    const bool still = of == generation && std::ranges::find(wanted, *preset) != wanted.end();
+    if (!still || rests || ends) continue;
+    kept[*preset] = std::make_shared<const Thumbnail>(std::move(out));
+    lock.unlock();
+    made();
+    lock.lock();
+  }
+  lock.unlock();
+  small.reset();
+  device.reset();
+  lock.lock();
+}
+
+void Thumbnails::State::run() {
+  // A priority that cannot be lowered is no error.
+  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
+  std::unique_lock lock(mutex);
+  while (!ends) {
+    if (next() && !rests) make_all(lock);
+    rests = false;
+    if (!ends && !next()) changed.wait(lock);
+  }
+}
+
+Thumbnails::Thumbnails(DeviceOptions device, StackOptions stack, std::function<void()> made)
+    : state_(std::make_unique<State>()) {
+  state_->device_options = std::move(device);
+  state_->device_options.presentation = nullptr;
+  state_->stack = std::move(stack);
+  state_->stack.keep_images = false;
+  state_->stack.spare_programs = 0;
+  state_->stack.max_memory = std::min(state_->stack.max_memory, kMostDeviceMemory);
+  state_->stack.preset.text.reset();
+  state_->stack.preset.leave_out_unfit = true;
+  state_->made = std::move(made);
+  state_->thread = std::thread([state = state_.get()] { state->run(); });
+}
+
+Thumbnails::~Thumbnails() {
+  {
+    const std::lock_guard lock(state_->mutex);
+    state_->ends = true;
+  }
+  state_->changed.notify_all();
+  state_->thread.join();
+}
+
+void Thumbnails::set_frame(ThumbnailFrame frame) {
+  {
+    const std::lock_guard lock(state_->mutex);
+    ++state_->generation;
+    state_->frame = std::move(frame);
+    state_->kept.clear();
+  }
+  state_->changed.notify_all();
+}
+
+void Thumbnails::want(std::vector<fs::path> presets) {
+  if (presets.size() > kMostKept) presets.resize(kMostKept);
+  {
+    const std::lock_guard lock(state_->mutex);
+    state_->wanted = std::move(presets);
+    std::erase_if(state_->kept, [&](const auto& one) {
+      return std::ranges::find(state_->wanted, one.first) == state_->wanted.end();
+    });
+  }
+  state_->changed.notify_all();
+}
+
+std::shared_ptr<const Thumbnail> Thumbnails::find(const fs::path& preset) const {
+  const std::lock_guard lock(state_->mutex);
+  const auto found = state_->kept.find(preset);
+  return found == state_->kept.end() ? nullptr : found->second;
+}
+
+void Thumbnails::rest() {
+  {
+    const std::lock_guard lock(state_->mutex);
+    ++state_->generation;
+    state_->rests = true;
+    state_->frame.reset();
+    state_->wanted.clear();
+    state_->kept.clear();
+  }
+  state_->changed.notify_all();
+}
+
+bool Thumbnails::busy() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->next().has_value();
+}
+
+}  // namespace afterglow
