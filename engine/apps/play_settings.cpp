@@ -49,8 +49,9 @@ std::filesystem::path play_settings_file() {
 }
 
 const std::vector<std::string>& play_settings() {
-  static const std::vector<std::string> kNames{"cache", "device", "export", "full-screen", "geometry", "loop",
-                                               "poll",  "paused", "proxy",  "readers",     "stats",    "ui-scale"};
+  static const std::vector<std::string> kNames{"cache",   "device", "export",   "full-screen", "geometry",
+                                               "loop",    "mute",   "poll",     "paused",      "proxy",
+                                               "readers", "stats",  "ui-scale", "volume"};
   return kNames;
 }
 
