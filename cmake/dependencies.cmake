@@ -29,5 +29,9 @@ pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(LCMS2 REQUIRED IMPORTED_TARGET lcms2)
 # Videos: 5.1 (Debian 12) to 7.1 (Debian 13).
 if(AFTERGLOW_FFMPEG)
-  pkg_check_modules(FFMPEG REQUIRED IMPORTED_TARGET libavformat>=59.27 libavcodec>=59.37 libavutil>=57.28 libswscale>=6.7 zimg>=3.0.4)
+  pkg_check_modules(FFMPEG REQUIRED IMPORTED_TARGET libavformat>=59.27 libavcodec>=59.37 libavutil>=57.28 libswscale>=6.7 libswresample>=4.7 zimg>=3.0.4)
+endif()
+# The sound of videos in the player.
+if(AFTERGLOW_SOUND)
+  pkg_check_modules(ALSA REQUIRED IMPORTED_TARGET alsa>=1.2.8)
 endif()

@@ -60,6 +60,11 @@ void PlayArguments::add_playing(CLI::App& app) {
   app.add_option("--geometry", geometry, "Size of the window, and its place: 1280x720+100+50 (default: as it was left)")
       ->type_name("WxH[+X+Y]")
       ->group(window);
+  app.add_flag("--mute", mute, "Videos are silent; U lets them be heard")->group(window);
+  app.add_option("--volume", volume, "How loud videos are, 0 to 100 (default 100)")
+      ->check(CLI::Range(0.0, 100.0))
+      ->type_name("PERCENT")
+      ->group(window);
   app.add_flag("--paused", paused, "Begin with the first frame, standing still")->group(window);
   app.add_option("--ui-scale", ui_scale, "Size of the interface, 0.5 to 4 (default: the desktop's)")
       ->check(CLI::Range(0.5, 4.0))
@@ -130,6 +135,7 @@ Result<PlayerOptions> PlayArguments::player() const {
   }
   out.read_ahead = {memory.value(), readers};
   out.fps = fps;
+  if (!headless) out.sound = SoundOptions{.mute = mute, .volume = volume / 100, .open_device = {}};
   if (!loop.empty()) {
     AFTERGLOW_TRY(out.loop, parse_loop_mode(loop));
   }

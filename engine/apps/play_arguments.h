@@ -24,10 +24,10 @@ struct PlayArguments {
   std::string geometry;
   std::string other, show, loop, cache = "2G", proxy = "1", screenshot, report, exports;
   std::optional<double> fps;
-  double speed = 1;
+  double speed = 1, volume = 100;
   int readers = 2;
   std::uint64_t count = 0;
-  bool full_screen = false, paused = false;
+  bool full_screen = false, paused = false, mute = false;
   std::optional<double> ui_scale;
   bool headless = false, fast = false, real_time = false, stats = false, poll = false;
 

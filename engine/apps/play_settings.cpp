@@ -50,8 +50,8 @@ std::filesystem::path play_settings_file() {
 
 const std::vector<std::string>& play_settings() {
   static const std::vector<std::string> kNames{
-      "cache", "device",  "export", "full-screen", "geometry",     "loop",     "poll",      "paused",
-      "proxy", "readers", "stats",  "ui-scale",    "view-display", "view-icc", "view-name", "view-ocio"};
+      "cache", "device",  "export", "full-screen", "geometry",     "loop",     "mute",      "poll",      "paused",
+      "proxy", "readers", "stats",  "ui-scale",    "view-display", "view-icc", "view-name", "view-ocio", "volume"};
   return kNames;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/result.h"
 #include "image/movie_source.h"
+#include "image/sound.h"
 #include "image/video_writer.h"
 
 namespace afterglow {
@@ -26,6 +27,8 @@ struct FfmpegModule {
   /// See ffmpeg_join.h.
   Result<void> (*join)(const VideoPlan& plan, const VideoPieces& pieces, OutputFile& out,
                        const std::filesystem::path& path, const std::string& name, Diagnostics& diagnostics);
+  /// See ffmpeg_sound.h.
+  Result<std::unique_ptr<SoundTrack>> (*sound)(const MovieRequest& request, double start);
 };
 
 /// Loads it on the first call; thread-safe. Errors: io (not installed, built without it).

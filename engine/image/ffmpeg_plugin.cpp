@@ -12,6 +12,7 @@ extern "C" {
 #include "image/ffmpeg_log.h"
 #include "image/ffmpeg_module.h"
 #include "image/ffmpeg_movie.h"
+#include "image/ffmpeg_sound.h"
 #include "image/ffmpeg_stream.h"
 
 namespace afterglow {
@@ -29,9 +30,10 @@ std::string ffmpeg_versions() {
 }  // namespace afterglow
 
 extern "C" __attribute__((visibility("default"))) const afterglow::FfmpegModule* afterglow_ffmpeg_module() {
-  static constexpr afterglow::FfmpegModule module{&afterglow::ffmpeg_versions,    &afterglow::open_with_ffmpeg,
-                                                  &afterglow::stream_with_ffmpeg, &afterglow::has_ffmpeg_encoder,
-                                                  &afterglow::encode_with_ffmpeg, &afterglow::join_with_ffmpeg};
+  static constexpr afterglow::FfmpegModule module{&afterglow::ffmpeg_versions,       &afterglow::open_with_ffmpeg,
+                                                  &afterglow::stream_with_ffmpeg,    &afterglow::has_ffmpeg_encoder,
+                                                  &afterglow::encode_with_ffmpeg,    &afterglow::join_with_ffmpeg,
+                                                  &afterglow::open_sound_with_ffmpeg};
   static const bool quiet = (afterglow::take_ffmpeg_log(), true);
   static_cast<void>(quiet);
   return &module;

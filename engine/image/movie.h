@@ -13,6 +13,7 @@
 #include "image/movie_container.h"
 #include "image/movie_source.h"
 #include "image/picture_file.h"
+#include "image/sound.h"
 
 namespace afterglow {
 

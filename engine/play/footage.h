@@ -76,6 +76,8 @@ class Footage : public std::enable_shared_from_this<Footage> {
   /// For people: "shot.0007.exr", "clip.mp4, frame 7".
   std::string picture_name(int picture) const;
   const std::filesystem::path& file(int picture) const { return pictures_[static_cast<std::size_t>(picture)].file; }
+  /// The video that the picture is of; null: it is of none.
+  std::shared_ptr<Movie> movie(int picture) const { return pictures_[static_cast<std::size_t>(picture)].movie; }
   /// Every file that the picture is read from.
   std::vector<std::filesystem::path> files(int picture) const;
   /// Turns a second, where the footage says it (videos). Of a video whose rate varies each frame stays for as many

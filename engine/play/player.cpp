@@ -277,6 +277,7 @@ Result<Step> Player::step() {
   s.tell_errors();
   step.reloaded = std::exchange(s.reloaded, false);
   if (!s.transport.playing()) s.figures.stop();
+  if (s.sound) s.sound_follower.follow(s.transport, *s.footage, *s.sound, now);
   AFTERGLOW_TRY(step.changed, s.show_due(now));
   step.next = s.transport.next_due();
   AFTERGLOW_TRY(step.timed, s.time_a_kernel(step.changed, step));
@@ -315,6 +316,11 @@ Result<std::unique_ptr<Player>> Player::open(Device& device, const PlayerOptions
   s.transport.set_fps(options.fps.value_or(s.footage->fps().value_or(24)), s.now());
   s.transport.set_loop(options.loop, s.now());
   s.transport.set_pacing(options.pacing, s.now());
+  if (options.sound)
+    s.sound = std::make_unique<Sound>(*options.sound, s.options.clock, [state = &s](const std::string& why) {
+      state->diagnostics.warn(why);
+      state->wake();
+    });
   if (!options.show.empty()) s.first->live().show(options.show);
   s.follow_needs();
   s.begin_reading();
@@ -331,6 +337,7 @@ View& Player::view() { return state_->view; }
 const std::filesystem::path& Player::preset_file() const { return state_->options.preset; }
 const Footage& Player::footage() const { return *state_->footage; }
 const FootageOptions& Player::footage_options() const { return state_->options.footage; }
+Sound* Player::sound() { return state_->sound.get(); }
 LiveStack& Player::live() { return state_->first->live(); }
 LiveStack* Player::other() { return state_->second ? &state_->second->live() : nullptr; }
 const ShownFrame& Player::shown() const { return state_->shown; }

@@ -17,6 +17,7 @@
 #include "play/read_ahead.h"
 #include "play/scopes.h"
 #include "play/setting_edits.h"
+#include "play/sound.h"
 #include "play/transport.h"
 #include "play/view.h"
 #include "session/live_session.h"
@@ -33,10 +34,11 @@ struct PlayerOptions {
   LoopMode loop = LoopMode::loop;
   Pacing pacing = Pacing::real_time;
   KernelTiming timing = KernelTiming::none;
-  bool warm_up = true;            ///< LiveOptions::warm_up of both
-  std::string show;               ///< image between passes to show; empty: the result
-  std::function<double()> clock;  ///< seconds, never backwards; empty: the system's steady clock
-  std::function<void()> wake;     ///< called on any thread when `step` has something to do before `Step::next`
+  std::optional<SoundOptions> sound;  ///< of videos; none: all is silent
+  bool warm_up = true;                ///< LiveOptions::warm_up of both
+  std::string show;                   ///< image between passes to show; empty: the result
+  std::function<double()> clock;      ///< seconds, never backwards; empty: the system's steady clock
+  std::function<void()> wake;         ///< called on any thread when `step` has something to do before `Step::next`
 };
 
 /// What a turn came to.
@@ -104,6 +106,7 @@ class Player {
   View& view();
   const Footage& footage() const;
   const std::filesystem::path& preset_file() const;
+  Sound* sound();                                 ///< null without PlayerOptions::sound
   const FootageOptions& footage_options() const;  ///< what `footage` was opened with
   FrameState frame_state(int position) const;
   LiveStack& live();

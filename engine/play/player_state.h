@@ -8,6 +8,7 @@
 
 #include "play/footage_watch.h"
 #include "play/player.h"
+#include "play/sound_follower.h"
 #include "session/live_session.h"
 
 namespace afterglow {
@@ -57,6 +58,9 @@ struct Player::State {
   std::uint64_t measured = 0;               ///< generation of the stack whose first frame was measured
   std::unique_ptr<ReadAhead> ahead;         // its threads use the rest, as that of the next does
   std::unique_ptr<FootageWatch> rendering;  ///< null: files stay as they are
+
+  std::unique_ptr<Sound> sound;  ///< null: all is silent
+  SoundFollower sound_follower;
 
   double now() const { return options.clock(); }
   void wake();

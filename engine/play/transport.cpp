@@ -120,6 +120,23 @@ void Transport::anchor(double now, bool keep_fraction) {
   anchor_tick_ = tick_;
 }
 
+double Transport::fraction(double now) const {
+  if (!playing_ || pacing_ == Pacing::every_frame) return 0;
+  const double passed = std::max(0.0, now - anchor_time_) * fps_ * std::abs(speed_) + anchor_fraction_;
+  return std::clamp(passed - static_cast<double>(tick_ - anchor_tick_), 0.0, 1.0);
+}
+
+double Transport::nudge(double seconds, double now) {
+  if (!playing_ || pacing_ == Pacing::every_frame || !std::isfinite(seconds)) return 0;
+  settle(now);
+  if (!playing_) return 0;
+  anchor(now, true);
+  const double turn = fps_ * std::abs(speed_);
+  const double by = std::max(seconds, -anchor_fraction_ / turn);
+  anchor_fraction_ += by * turn;
+  return by;
+}
+
 void Transport::jump(int position, bool returning, double now) {
   position_ = std::clamp(position, 0, frames_ - 1);
   line_ = unfold(position_, returning);

@@ -41,6 +41,8 @@ class Transport {
   int first() const { return first_; }  ///< of the range
   int last() const { return last_; }
   int position() const { return position_; }  ///< as of the last call
+  /// How much of the present frame's time has passed, 0…1; 0 where no clock counts.
+  double fraction(double now) const;
   /// +1 or −1: where the next frame lies. With ping-pong it turns at the ends.
   int heading() const;
 
@@ -64,6 +66,10 @@ class Transport {
   void set_pacing(Pacing pacing, double now);
   /// Other footage: paused at its start, without a range.
   void set_frames(int frames);
+
+  /// While it plays by the clock: frames are due that many seconds earlier, or later (below 0; the present frame stays,
+  /// it is the next one that waits). No jump, nothing is dropped for it. Returns what was done of it.
+  double nudge(double seconds, double now);
 
   /// The same footage, longer or shorter: all stays as it is, as far as it can. A range of all of it stays one.
   void resize(int frames, double now);

@@ -36,6 +36,9 @@ constexpr Shortcut kShortcuts[] = {
     {Action::range_clear, GLFW_KEY_P, kNone, "P", "Play", "Play the whole sequence again"},
     {Action::slower, GLFW_KEY_COMMA, kNone, ",", "Play", "Half the speed", true},
     {Action::faster, GLFW_KEY_PERIOD, kNone, ".", "Play", "Twice the speed", true},
+    {Action::sound, GLFW_KEY_U, kNone, "U", "Play", "Sound of videos off, on"},
+    {Action::quieter, GLFW_KEY_LEFT_BRACKET, kNone, "[", "Play", "Quieter", true},
+    {Action::louder, GLFW_KEY_RIGHT_BRACKET, kNone, "]", "Play", "Louder", true},
 
     {Action::color, GLFW_KEY_C, kNone, "C", "Picture", "All channels"},
     {Action::red, GLFW_KEY_R, kNone, "R", "Picture", "Red alone"},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "window/editor.h"
 #include "window/window_app.h"
@@ -104,6 +105,11 @@ bool WindowApp::act_on_transport(Action action) {
     case Action::range_clear:
       t.clear_range(now);
       return true;
+    case Action::sound:
+    case Action::louder:
+    case Action::quieter:
+      change_sound(action);
+      return true;
     case Action::slower:
       faster(0.5);
       return true;
@@ -127,6 +133,21 @@ void WindowApp::go_to_clip(int by) {
   const auto& clip = clips[static_cast<std::size_t>(there)];
   t.go_to(clip.first, player_.now());
   interface_->ui().say(fmt::format("clip {} of {}: {}", there + 1, clips.size(), clip.label));
+}
+
+void WindowApp::change_sound(Action action) {
+  Sound* sound = player_.sound();
+  Ui& ui = interface_->ui();
+  if (!sound) return ui.say("there is no sound");
+  if (const std::string why = sound->failure(); !why.empty()) return ui.say(why);
+  constexpr double kStep = 0.1;
+  if (action == Action::sound) {
+    sound->set_mute(!sound->mute());
+  } else {
+    sound->set_volume(std::round((sound->volume() + (action == Action::louder ? kStep : -kStep)) / kStep) * kStep);
+    sound->set_mute(false);
+  }
+  ui.say(sound->mute() ? "silent: U lets it be heard" : fmt::format("sound {:.0f} %", sound->volume() * 100));
 }
 
 /// One way at the speed of the clock; pressed again, twice as fast.

@@ -63,6 +63,7 @@ class WindowApp {
   void show_neighbour(int by);
   void next_wipe();
   void shuttle(int direction);
+  void change_sound(Action action);
   void go_to_clip(int by);
   void keep_snapshot(int snapshot);
   void recall_snapshot(int snapshot);

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "play/sound.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace afterglow {
+namespace {
+
+constexpr int kBlock = SoundTrack::kRate / 100;  // frames of samples that are written at a time
+constexpr double kAhead = 0.2 * SoundTrack::kRate;
+/// No device is further off than this; one that takes everything at once (a file, nothing at all) is held to it.
+constexpr double kFastest = 1.01;
+
+std::string without_sound(const Error& error) {
+  return "there is no sound: " + (error.file.empty() ? "" : error.file + ": ") + error.message;
+}
+
+}  // namespace
+
+Sound::Sound(SoundOptions options, std::function<double()> clock, std::function<void(const std::string&)> tell)
+    : options_(std::move(options)), clock_(std::move(clock)), tell_(std::move(tell)) {
+  if (!options_.open_device) options_.open_device = open_sound_device;
+  set_volume(options_.volume);
+}
+
+Sound::~Sound() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  woken_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Sound::play(const std::string& key, double seconds, const OpenSoundTrack& open) {
+  const std::lock_guard lock(mutex_);
+  if (broken_) return;
+  wish_ = {wish_.number + 1, key, seconds, clock_(), open};
+  moment_.reset();
+  if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+  woken_.notify_all();
+}
+
+void Sound::stop() {
+  const std::lock_guard lock(mutex_);
+  if (wish_.key.empty()) return;
+  wish_ = {wish_.number + 1, {}, 0, 0, {}};
+  moment_.reset();
+  woken_.notify_all();
+}
+
+std::optional<double> Sound::heard(double now) const {
+  const std::lock_guard lock(mutex_);
+  if (!moment_ || moment_->wish != wish_.number) return std::nullopt;
+  return moment_->seconds + (now - moment_->at);
+}
+
+std::string Sound::playing() const {
+  const std::lock_guard lock(mutex_);
+  return wish_.key;
+}
+
+bool Sound::mute() const {
+  const std::lock_guard lock(mutex_);
+  return options_.mute;
+}
+
+void Sound::set_mute(bool mute) {
+  const std::lock_guard lock(mutex_);
+  options_.mute = mute;
+}
+
+double Sound::volume() const {
+  const std::lock_guard lock(mutex_);
+  return options_.volume;
+}
+
+void Sound::set_volume(double volume) {
+  const std::lock_guard lock(mutex_);
+  options_.volume = std::isfinite(volume) ? std::clamp(volume, 0.0, 1.0) : 1;
+}
+
+std::string Sound::failure() const {
+  const std::lock_guard lock(mutex_);
+  return failure_;
+}
+
+/// A track that cannot be read leaves the others; without a device nothing will be heard.
+void Sound::fail(const std::string& why, bool for_good) {
+  bool first = false;
+  {
+    const std::lock_guard lock(mutex_);
+    failure_ = why;
+    broken_ = broken_ || for_good;
+    first = !std::exchange(told_, true);
+  }
+  if (first && tell_) tell_(why);
+}
+
+void Sound::run() {
+  std::uint64_t taken = 0;
+  bool sounds = false;
+  while (true) {
+    Wish wish;
+    {
+      std::unique_lock lock(mutex_);
+      if (!sounds) woken_.wait(lock, [&] { return ends_ || wish_.number != taken; });
+      if (ends_) return;
+      wish = wish_;
+    }
+    if (wish.number != taken) {
+      taken = wish.number;
+      if (device_) device_->drop();
+      sounds = begin(wish);
+    }
+    if (sounds) sounds = write_some(wish);
+  }
+}
+
+bool Sound::begin(const Wish& wish) {
+  if (wish.key.empty()) return false;
+  if (track_key_ != wish.key) {
+    track_key_ = wish.key;
+    auto opened = wish.open();
+    track_ = opened ? std::move(opened).value() : nullptr;
+    if (!opened) fail(without_sound(opened.error()), false);
+  }
+  if (!track_) return false;
+  if (!device_) {
+    auto opened = options_.open_device();
+    if (!opened) {
+      fail(without_sound(opened.error()), true);
+      return false;
+    }
+    device_ = std::move(opened).value();
+  }
+  // Opening took its time: it goes on where the picture is by now.
+  cursor_ = std::llround((wish.seconds + clock_() - wish.at) * SoundTrack::kRate);
+  gain_ = 0;  // without a click
+  pace_ = {clock_(), kAhead};
+  return true;
+}
+
+/// One block; false: the device is gone.
+bool Sound::write_some(const Wish& wish) {
+  const double now = clock_();
+  pace_.frames = std::min(kAhead, pace_.frames + (now - pace_.at) * kFastest * SoundTrack::kRate);
+  pace_.at = now;
+  if (pace_.frames < kBlock) {
+    std::unique_lock lock(mutex_);
+    const double wait = (kBlock - pace_.frames) / SoundTrack::kRate;
+    woken_.wait_for(lock, std::chrono::duration<double>(std::clamp(wait, 1e-3, 1e-2)),
+                    [&] { return ends_ || wish_.number != wish.number; });
+    return true;
+  }
+  std::array<float, std::size_t{kBlock} * SoundTrack::kChannels> samples{};
+  if (auto read = track_->read(cursor_, samples); !read) {
+    fail(without_sound(read.error()), false);
+    return false;
+  }
+  float gain = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    gain = options_.mute ? 0 : static_cast<float>(options_.volume);
+  }
+  const float step = (gain - gain_) / kBlock;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i] *= gain == gain_ ? gain : gain_ + step * static_cast<float>(i / SoundTrack::kChannels + 1);
+  gain_ = gain;
+  if (auto written = device_->write(samples); !written) {
+    fail(without_sound(written.error()), true);
+    return false;
+  }
+  cursor_ += kBlock;
+  pace_.frames -= kBlock;
+  const double delay = device_->delay();
+  const std::lock_guard lock(mutex_);
+  moment_ = {wish.number, (static_cast<double>(cursor_) - delay) / SoundTrack::kRate, clock_()};
+  return true;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: MIT
+// The sound of clips: samples are those of a decode from the beginning, pictures follow them, and what reaches ALSA is
+// what belongs there.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <random>
+
+#include "clips.h"
+#include "core/file.h"
+#include "image/sound.h"
+#include "play/sound_follower.h"
+
+namespace afterglow {
+namespace {
+
+constexpr int kRate = SoundTrack::kRate;
+
+/// Left counts samples up to 30,000 and begins anew, right is half of it.
+const std::string kCounting = "-f lavfi -i \"aevalsrc=mod(n\\,30000)/32768|mod(n\\,30000)/65536:s=48000\" ";
+/// Noise: no two places of it are alike. Without high tones, so that half a sample makes no great difference.
+const std::string kNoise = "-f lavfi -i \"anoisesrc=r=48000:a=0.9:seed=3,lowpass=f=800,lowpass=f=800\" ";
+/// Samples of the half millisecond that stamps of Matroska are off by, at most, at either end.
+constexpr int kStampRound = 49;
+
+std::vector<float> samples_of(SoundTrack& track, std::int64_t first, int frames) {
+  std::vector<float> out(static_cast<std::size_t>(frames) * SoundTrack::kChannels);
+  const auto read = track.read(first, out);
+  EXPECT_TRUE(read) << read.error().text();
+  return out;
+}
+
+/// Of `some` and that place of `all`, or one near it, which is as far off as stamps are.
+float least_difference(const std::vector<float>& some, const std::vector<float>& all, std::size_t place, int lag) {
+  float least = 1;
+  for (int by = -lag; by <= lag; ++by) {
+    const std::ptrdiff_t from = (static_cast<std::ptrdiff_t>(place) + by) * SoundTrack::kChannels;
+    if (from < 0 || from + static_cast<std::ptrdiff_t>(some.size()) > static_cast<std::ptrdiff_t>(all.size())) continue;
+    float most = 0;
+    for (std::size_t i = 0; i < some.size(); ++i)
+      most = std::max(most, std::abs(some[i] - all[static_cast<std::size_t>(from) + i]));
+    least = std::min(least, most);
+  }
+  return least;
+}
+
+class Sounds : public Clips {
+ protected:
+  /// A clip of 24 frames a second with sound: `sound` are inputs of the program ffmpeg, `codec` what follows them.
+  std::string sounding(const std::string& name, const std::string& sound, const std::string& codec, int seconds) {
+    ffmpeg(fmt::format("-f lavfi -i color=c=gray:s=64x36:r=24:d={0} {1} -map 0:v -map 1:a {2} -t {0} \"{3}\"", seconds,
+                       sound, codec, path(name)));
+    return path(name);
+  }
+  std::unique_ptr<SoundTrack> track_of(const std::string& file) {
+    movies_.push_back(open(file));
+    auto track = SoundTrack::open(*movies_.back());
+    EXPECT_TRUE(track) << track.error().text();
+    return track ? std::move(track).value() : nullptr;
+  }
+  std::vector<std::shared_ptr<Movie>> movies_;
+};
+
+TEST_F(Sounds, EverySampleIsWhereItBelongs) {
+  for (const char* name : {"a.mov", "b.mkv", "c.avi"}) {
+    const auto track = track_of(sounding(name, kCounting, "-c:v mjpeg -c:a pcm_s16le", 6));
+    ASSERT_TRUE(track) << name;
+    const float off = name == std::string("b.mkv") ? kStampRound / 32768.0f : 0;
+    for (const std::int64_t first : {0, 1, 100'000, 250'000, 99'999, 480, 287'000}) {
+      const auto samples = samples_of(*track, first, 480);
+      for (std::size_t i = 0; i < 480; ++i) {
+        const auto expected = static_cast<float>((first + static_cast<std::int64_t>(i)) % 30'000) / 32768;
+        ASSERT_NEAR(samples[2 * i], expected, 1e-4 + off) << name << " " << first << "+" << i;
+        ASSERT_NEAR(samples[2 * i + 1], samples[2 * i] / 2, 1e-4) << name << " " << first << "+" << i;
+      }
+    }
+    for (const float sample : samples_of(*track, 6 * kRate + 4800, 480)) EXPECT_EQ(sample, 0) << "behind the end";
+    for (const float sample : samples_of(*track, -4800, 480)) EXPECT_EQ(sample, 0) << "before the beginning";
+  }
+}
+
+TEST_F(Sounds, CodecsGiveAfterASeekWhatTheyGiveInOrder) {
+  struct Kind {
+    const char *name, *codec;
+    int lag;  ///< samples that stamps may be off by
+    double most = 0.01;
+  };
+  for (const Kind& kind :
+       {Kind{"a.mp4", "-c:v mpeg4 -c:a aac -b:a 192k", 0},
+        Kind{"b.mkv", "-c:v mpeg4 -c:a libopus -b:a 160k", kStampRound, 0.05 /* its decoder remembers long */},
+        Kind{"c.webm", "-c:v libvpx -c:a libvorbis", kStampRound}, Kind{"d.mkv", "-c:v mpeg4 -c:a flac", kStampRound},
+        Kind{"e.mkv", "-c:v mpeg4 -c:a libmp3lame -b:a 192k", kStampRound},
+        Kind{"f.mp4", "-c:v mpeg4 -c:a aac -ar 44100 -ac 1", 0}}) {
+    const std::string file = sounding(kind.name, kNoise, kind.codec, 8);
+    const auto in_order = track_of(file), jumping = track_of(file);
+    ASSERT_TRUE(in_order && jumping) << kind.name;
+    std::vector<float> all;
+    for (int block = 0; block < 780; ++block) {
+      const auto some = samples_of(*in_order, block * 480, 480);
+      all.insert(all.end(), some.begin(), some.end());
+    }
+    std::mt19937 random(5);
+    for (int i = 0; i < 20; ++i) {
+      const std::size_t first = random() % (779 * 480);
+      const auto there = samples_of(*jumping, static_cast<std::int64_t>(first), 480);
+      EXPECT_LT(least_difference(there, all, first, kind.lag), kind.most) << kind.name << " at " << first;
+    }
+  }
+}
+
+TEST_F(Sounds, SoundThatBeginsLaterAndNone) {
+  const auto late = track_of(sounding("late.mkv", "-itsoffset 0.5 " + kCounting, "-c:v mjpeg -c:a pcm_s16le", 3));
+  ASSERT_TRUE(late);
+  EXPECT_EQ(samples_of(*late, kRate / 4, 100), std::vector<float>(200));
+  EXPECT_NEAR(samples_of(*late, kRate / 2 + 1000, 1)[0], 1000.0 / 32768, 2e-3);
+  EXPECT_EQ(samples_of(*late, kRate / 4, 100), std::vector<float>(200));
+  EXPECT_FALSE(track_of(clip("silent.mp4", "-c:v mpeg4", 8)));
+}
+
+/// Hears what it is given by a clock of its own, which runs `rate` times as fast as the test's.
+struct Listener {
+  std::mutex mutex;
+  std::condition_variable changed;
+  double now = 0, rate = 1;
+  double began = 0;          ///< when what is in the device began to be heard
+  std::int64_t written = 0;  ///< since then
+  int drops = 0;
+  bool ends = false;
+  static constexpr double kHolds = 0.1 * kRate;
+
+  double left() const { return std::max(0.0, static_cast<double>(written) - (now - began) * rate * kRate); }
+  double clock() {
+    const std::lock_guard lock(mutex);
+    return now;
+  }
+  /// Time goes on, until the device is full again.
+  void advance(double seconds) {
+    std::unique_lock lock(mutex);
+    now += seconds;
+    changed.notify_all();
+    changed.wait(lock, [&] { return left() + 480 > kHolds || ends; });
+  }
+};
+
+class ListeningDevice : public SoundDevice {
+ public:
+  explicit ListeningDevice(Listener& listener) : to_(listener) {}
+  Result<void> write(std::span<const float> samples) override {
+    std::unique_lock lock(to_.mutex);
+    const auto frames = static_cast<std::int64_t>(samples.size()) / SoundTrack::kChannels;
+    to_.changed.notify_all();
+    to_.changed.wait(lock, [&] { return to_.ends || to_.left() + static_cast<double>(frames) <= Listener::kHolds; });
+    if (to_.left() <= 0) {
+      to_.began = to_.now;
+      to_.written = 0;
+    }
+    to_.written += frames;
+    to_.changed.notify_all();
+    return {};
+  }
+  double delay() override {
+    const std::lock_guard lock(to_.mutex);
+    return to_.left();
+  }
+  void drop() override {
+    const std::lock_guard lock(to_.mutex);
+    to_.began = to_.now;
+    to_.written = 0;
+    ++to_.drops;
+  }
+
+ private:
+  Listener& to_;
+};
+
+class Following : public Sounds {
+ protected:
+  void begin(const std::string& file, double rate) {
+    auto opened = Footage::open({.inputs = {file}, .frames = {}, .read = {}}, none_);
+    ASSERT_TRUE(opened) << opened.error().text();
+    footage_ = *opened;
+    listener_.rate = rate;
+    sound_ = std::make_unique<Sound>(
+        SoundOptions{.open_device = [this]() -> Result<std::unique_ptr<SoundDevice>> {
+          return std::unique_ptr<SoundDevice>(std::make_unique<ListeningDevice>(listener_));
+        }},
+        [this] { return listener_.clock(); }, nullptr);
+    transport_ = Transport(footage_->frames(), footage_->fps().value_or(0));
+  }
+  void TearDown() override {
+    {
+      const std::lock_guard lock(listener_.mutex);
+      listener_.ends = true;
+      listener_.changed.notify_all();
+    }
+    sound_.reset();
+    Clips::TearDown();
+  }
+  void turn(double seconds) {
+    listener_.advance(seconds);
+    follower_.follow(transport_, *footage_, *sound_, listener_.now);
+  }
+  /// Seconds by which the picture is behind what is heard.
+  double off() {
+    const auto heard = sound_->heard(listener_.now);
+    EXPECT_TRUE(heard);
+    const double picture = (transport_.position() + transport_.fraction(listener_.now)) / transport_.fps();
+    return heard.value_or(0) - picture;
+  }
+
+  Diagnostics none_;
+  Listener listener_;
+  std::shared_ptr<const Footage> footage_;
+  std::unique_ptr<Sound> sound_;
+  SoundFollower follower_;
+  Transport transport_{1};
+};
+
+TEST_F(Following, PicturesStayWithASoundCardThatIsFasterOrSlower) {
+  const std::string file = sounding("minute.mkv", kCounting, "-c:v mjpeg -c:a pcm_s16le", 62);
+  begin(file, 1.003);  // 180 ms in a minute, if nobody followed
+  transport_.play(0);
+  follower_.follow(transport_, *footage_, *sound_, 0);
+  double most = 0;
+  for (int i = 0; i < 60 * 60; ++i) {
+    turn(1.0 / 60);
+    if (i > 30) most = std::max(most, std::abs(off()));
+  }
+  EXPECT_LT(most, 0.5 / 24) << "half a frame";
+  EXPECT_EQ(listener_.drops, 0) << "it never began anew";
+  EXPECT_NEAR(transport_.position(), 60 * 24 * 1.003, 1);
+  EXPECT_EQ(transport_.dropped(), 0u);
+}
+
+TEST_F(Following, ASeekMovesTheSoundAndOtherSpeedsAreSilent) {
+  begin(sounding("ten.mkv", kCounting, "-c:v mjpeg -c:a pcm_s16le", 10), 1);
+  transport_.play(0);
+  follower_.follow(transport_, *footage_, *sound_, 0);
+  turn(0.1);
+  EXPECT_FALSE(sound_->playing().empty());
+  transport_.go_to(120, listener_.now);
+  turn(0.05);
+  turn(0.05);
+  EXPECT_NEAR(off(), 0, 0.02);
+  EXPECT_NEAR(*sound_->heard(listener_.now), 5.1, 0.08);
+  for (const double speed : {2.0, -1.0, 0.5}) {
+    transport_.set_speed(speed, listener_.now);
+    follower_.follow(transport_, *footage_, *sound_, listener_.now);
+    EXPECT_TRUE(sound_->playing().empty()) << speed;
+    EXPECT_FALSE(sound_->heard(listener_.now));
+  }
+  transport_.set_speed(1, listener_.now);
+  follower_.follow(transport_, *footage_, *sound_, listener_.now);
+  EXPECT_FALSE(sound_->playing().empty());
+  transport_.pause(listener_.now);
+  follower_.follow(transport_, *footage_, *sound_, listener_.now);
+  EXPECT_TRUE(sound_->playing().empty());
+}
+
+TEST_F(Following, FramesAtAnotherRateThanTheFileAreSilent) {
+  const std::string file = sounding("ten.mkv", kCounting, "-c:v mjpeg -c:a pcm_s16le", 4);
+  begin(file, 1);
+  EXPECT_NEAR(sound_moment(*footage_, 48, 0.5, 24).value_or(0), 48.5 / 24, 2e-3);
+  EXPECT_FALSE(sound_moment(*footage_, 48, 0.5, 25));
+  const auto second = Footage::open({.inputs = {file}, .frames = "1-90x2", .read = {}}, none_);
+  ASSERT_TRUE(second);
+  EXPECT_FALSE(sound_moment(**second, 3, 0, 24));
+  const auto part = Footage::open({.inputs = {file}, .frames = "49-90", .read = {}}, none_);
+  ASSERT_TRUE(part);
+  EXPECT_NEAR(sound_moment(**part, 0, 0, 24).value_or(0), 2, 2e-3);
+}
+
+#ifdef AFTERGLOW_HAS_SOUND
+/// ALSA itself, into a file. The clock stands: exactly what is kept ahead is written.
+TEST_F(Sounds, AlsaGetsTheSamplesOfEachPlace) {
+  const std::string raw = path("heard.raw"), config = path("asound.conf");
+  std::ofstream(config) << "pcm.!default { type file slave.pcm { type null } file \"" << raw << "\" format raw }\n";
+  setenv("ALSA_CONFIG_PATH", config.c_str(), 1);
+  const auto movie = open(sounding("a.mov", kCounting, "-c:v mjpeg -c:a pcm_s16le", 6));
+  ASSERT_TRUE(movie);
+  std::string said;
+  {
+    Sound sound(
+        {}, [] { return 10.0; }, [&](const std::string& why) { said = why; });
+    for (const double from : {2.0, 5.0}) {
+      sound.play("a.mov", from, [&] { return SoundTrack::open(*movie); });
+      while (sound.heard(10.0).value_or(0) < from + 0.199 && sound.failure().empty()) std::this_thread::yield();
+    }
+  }
+  ASSERT_EQ(said, "");
+  const std::string bytes = read_file(raw).value();
+  ASSERT_EQ(bytes.size() % 8, 0u);
+  std::vector<int> numbers;
+  for (std::size_t at = 0; at < bytes.size(); at += 8) {
+    float left = 0;
+    std::memcpy(&left, bytes.data() + at, 4);
+    numbers.push_back(static_cast<int>(std::lround(left * 32768)));
+  }
+  // The first block comes in softly.
+  ASSERT_EQ(numbers.size(), 2u * 9600);
+  for (int i = 480; i < 9600; ++i) {
+    ASSERT_EQ(numbers[static_cast<std::size_t>(i)], (2 * kRate + i) % 30'000);
+    ASSERT_EQ(numbers[static_cast<std::size_t>(9600 + i)], (5 * kRate + i) % 30'000);
+  }
+}
+
+TEST_F(Sounds, NoSoundDeviceIsToldOnce) {
+  const std::string config = path("asound.conf");
+  std::ofstream(config) << "pcm.!default { type hw card 31 }\n";
+  setenv("ALSA_CONFIG_PATH", config.c_str(), 1);
+  const auto movie = open(sounding("a.mov", kCounting, "-c:v mjpeg -c:a pcm_s16le", 2));
+  std::vector<std::string> said;
+  Sound sound(
+      {}, [] { return 10.0; }, [&](const std::string& why) { said.push_back(why); });
+  for (int i = 0; i < 3; ++i) {
+    sound.play("a.mov", 0, [&] { return SoundTrack::open(*movie); });
+    while (sound.failure().empty()) std::this_thread::yield();
+  }
+  EXPECT_THAT(said, testing::ElementsAre(testing::StartsWith("there is no sound: ALSA's device 'default': ")));
+  EXPECT_FALSE(sound.heard(10.0));
+}
+#endif
+
+}  // namespace
+}  // namespace afterglow
