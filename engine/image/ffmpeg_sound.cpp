@@ -46,7 +46,7 @@ class FfmpegSound : public SoundTrack {
   /// False: there is no sound.
   Result<bool> open(const MovieRequest& request, double start) {
     name_ = request.file.string();
-    AFTERGLOW_TRY(input_, FfmpegInput::open(request.file, request.format, request.limits));
+    AFTERGLOW_TRY(input_, FfmpegInput::open(request.file, request.format, request.limits, request.patience));
     AVFormatContext& container = input_->container();
     stream_ = av_find_best_stream(&container, AVMEDIA_TYPE_AUDIO, -1, -1, nullptr, 0);
     if (stream_ < 0) return false;

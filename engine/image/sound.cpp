@@ -14,7 +14,8 @@ Result<std::unique_ptr<SoundTrack>> SoundTrack::open(const Movie& movie) {
   AFTERGLOW_TRY(const FfmpegModule* module, ffmpeg_module());
   const double start = static_cast<double>(facts.pts.front()) * static_cast<double>(facts.time_base.numerator) /
                        static_cast<double>(facts.time_base.denominator);
-  return module->sound({movie.file(), format, {}}, start);
+  AFTERGLOW_TRY(const Patience patience, patience_of_process());
+  return module->sound({movie.file(), format, {}, patience}, start);
 }
 
 }  // namespace afterglow

@@ -10,7 +10,7 @@
 namespace afterglow {
 namespace {
 
-constexpr int kBlock = SoundTrack::kRate / 100;  // frames of samples that are written at a time
+constexpr int kSoundBlock = SoundTrack::kRate / 100;  // frames of samples that are written at a time
 constexpr double kAhead = 0.2 * SoundTrack::kRate;
 /// No device is further off than this; one that takes everything at once (a file, nothing at all) is held to it.
 constexpr double kFastest = 1.01;
@@ -150,14 +150,14 @@ bool Sound::write_some(const Wish& wish) {
   const double now = clock_();
   pace_.frames = std::min(kAhead, pace_.frames + (now - pace_.at) * kFastest * SoundTrack::kRate);
   pace_.at = now;
-  if (pace_.frames < kBlock) {
+  if (pace_.frames < kSoundBlock) {
     std::unique_lock lock(mutex_);
-    const double wait = (kBlock - pace_.frames) / SoundTrack::kRate;
+    const double wait = (kSoundBlock - pace_.frames) / SoundTrack::kRate;
     woken_.wait_for(lock, std::chrono::duration<double>(std::clamp(wait, 1e-3, 1e-2)),
                     [&] { return ends_ || wish_.number != wish.number; });
     return true;
   }
-  std::array<float, std::size_t{kBlock} * SoundTrack::kChannels> samples{};
+  std::array<float, std::size_t{kSoundBlock} * SoundTrack::kChannels> samples{};
   if (auto read = track_->read(cursor_, samples); !read) {
     fail(without_sound(read.error()), false);
     return false;
@@ -167,7 +167,7 @@ bool Sound::write_some(const Wish& wish) {
     const std::lock_guard lock(mutex_);
     gain = options_.mute ? 0 : static_cast<float>(options_.volume);
   }
-  const float step = (gain - gain_) / kBlock;
+  const float step = (gain - gain_) / kSoundBlock;
   for (std::size_t i = 0; i < samples.size(); ++i)
     samples[i] *= gain == gain_ ? gain : gain_ + step * static_cast<float>(i / SoundTrack::kChannels + 1);
   gain_ = gain;
@@ -175,8 +175,8 @@ bool Sound::write_some(const Wish& wish) {
     fail(without_sound(written.error()), true);
     return false;
   }
-  cursor_ += kBlock;
-  pace_.frames -= kBlock;
+  cursor_ += kSoundBlock;
+  pace_.frames -= kSoundBlock;
   const double delay = device_->delay();
   const std::lock_guard lock(mutex_);
   moment_ = {wish.number, (static_cast<double>(cursor_) - delay) / SoundTrack::kRate, clock_()};
