@@ -25,10 +25,10 @@ RAMP = (96, 64)  # pixels of the picture with soft edges
 HEAD = """# Effects in numbers
 
 Made by `tools/effects.py PROGRAM -o docs/benchmarks/effects.md`, which needs the program alone. {device}. Each effect runs by itself, with the settings
-of [docs/effects](../effects).
+of [effects.md](../effects.md).
 
 - **Cost**: time of a steady frame at 1920×1080 over that of a pass that copies the picture, on the alley at night (motion blur and taa: on the frame with
-  motion vectors); smallest and largest of {rounds} rounds. Below 0.05 nothing ran.
+  motion vectors); {rounds}. Below 0.05 nothing ran.
 - **Preview**: RMS between a run at a third of the size (`run --size`) and the whole result scaled down, both behind a tone curve, over that of the curve alone on that
   picture ({alone:.4f} on the alley): 1 is as near as a picture that is scaled first can come. Grain and glitches are another pattern at another size.
 - **Alpha**: a picture with alpha from 1/64 to 1 goes through. *kept*: alpha comes out bit for bit. *colour*: for effects that work on each pixel by itself,
