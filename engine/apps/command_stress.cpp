@@ -68,6 +68,8 @@ Result<void> run_stress(const StressArguments& a, Console& console) {
   AFTERGLOW_TRY(const auto first, a.request(devices.front()));
   if (!a.repeat.empty()) return repeat(a, first, console);
   if (!a.digests_of.empty()) return print_digests(a, first, console);
+  constexpr unsigned kSecondsToEndATrial = 30;  // a case that fails is being made small: hours of work end in a report
+  allow_to_end(kSecondsToEndATrial);
   std::uint64_t failures = 0;
   bool clean = true;
   for (const auto& device : devices) {

@@ -215,20 +215,26 @@ void decode_color(const ColorEncoding& encoding, float* rgba, std::size_t pixels
   decode_rows(encoding, CurveDecoder(encoding), rgba, pixels, counts);
 }
 
-void decode_color(const ColorEncoding& encoding, Image& rgba, SanitizeCounts& counts, NonFinite* found) {
-  const CurveDecoder curve(encoding);
-  std::mutex mutex;
-  parallel_rows(rgba.height, static_cast<long long>(rgba.pixels.size()), [&](int begin, int end) {
+std::function<void(int begin, int end)> decoder_of_rows(const ColorEncoding& encoding, Image& rgba,
+                                                        SanitizeCounts& counts, NonFinite* found) {
+  const auto curve = std::make_shared<const CurveDecoder>(encoding);
+  const auto mutex = std::make_shared<std::mutex>();
+  return [&encoding, &rgba, &counts, found, curve, mutex](int begin, int end) {
     SanitizeCounts own;
     NonFinite own_found;
     for (int y = begin; y < end; ++y) {
       if (found) note_non_finite(rgba.at(0, y), rgba.channels, rgba.width, y, own_found);
-      decode_rows(encoding, curve, rgba.at(0, y), static_cast<std::size_t>(rgba.width), own);
+      decode_rows(encoding, *curve, rgba.at(0, y), static_cast<std::size_t>(rgba.width), own);
     }
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(*mutex);
     counts += own;
     if (found) *found += own_found;
-  });
+  };
+}
+
+void decode_color(const ColorEncoding& encoding, Image& rgba, SanitizeCounts& counts, NonFinite* found) {
+  parallel_rows(rgba.height, static_cast<long long>(rgba.pixels.size()),
+                decoder_of_rows(encoding, rgba, counts, found));
 }
 
 void sanitize_depth(Image& depth, SanitizeCounts& counts) {

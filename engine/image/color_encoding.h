@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,7 +35,7 @@ struct ColorEncoding {
   std::optional<Matrix3> matrix;               ///< to Rec.709, when the primaries are others
   std::shared_ptr<const ProfileTransform> transform;  ///< replaces curve and matrix
   AlphaKind alpha = AlphaKind::none;
-  int max_code = 0;   ///< 255 or 65535 for integers of that many codes; 0: any value
+  int max_code = 0;  ///< 255 or 65535 for integers of that many codes; 0: any value
   /// Stored values lie anywhere between codes, most of them in −0.25…1.25: curves are taken from a fine table there.
   bool dense = false;
   bool grey = false;  ///< only the first sample of a pixel was read; it stands for all three
@@ -45,6 +46,9 @@ struct ColorEncoding {
 void decode_color(const ColorEncoding& encoding, float* rgba, std::size_t pixels, SanitizeCounts& counts);
 /// The same for a whole image, on several threads. `found`: what of the stored values was not finite, added up.
 void decode_color(const ColorEncoding& encoding, Image& rgba, SanitizeCounts& counts, NonFinite* found = nullptr);
+/// The same for rows [begin, end) of an image at a time, from several threads. What it was given has to outlive it.
+std::function<void(int begin, int end)> decoder_of_rows(const ColorEncoding& encoding, Image& rgba,
+                                                        SanitizeCounts& counts, NonFinite* found);
 
 void sanitize_depth(Image& depth, SanitizeCounts& counts);
 void sanitize_normal(Image& normal, SanitizeCounts& counts);

@@ -77,7 +77,7 @@ void encode_in_space(const CodeRules& rules, const float* rgba, int width, int x
     for (std::size_t i = 0; i < row.size(); i += 4)
       if (const float alpha = row[i + 3]; alpha > 0 && alpha != 1)
         for (std::size_t c = 0; c < 3; ++c) row[i + c] /= alpha;
-  rules.space->encode(row.data(), static_cast<std::size_t>(width));
+  rules.space->encode(row.data(), static_cast<std::size_t>(width), row.data());
   for (int x = 0; x < width; ++x) {
     const float* pixel = &row[static_cast<std::size_t>(x) * 4];
     for (int c = 0; c < 3; ++c)

@@ -94,12 +94,13 @@ class ExrFile : public PictureFile {
     return header_[static_cast<std::size_t>(part)].buffer_bytes(Imf::globalThreadCount());
   }
 
-  Result<void> read(int part, std::span<const ReadTarget> targets) override {
+  Result<bool> read_targets(int part, std::span<const ReadTarget> targets, const RowsArrived& rows) override {
     try {
       AFTERGLOW_CHECK(open());
-      read_plain(part, targets);
-      read_chroma(part, targets);
-      return {};
+      const auto chroma = chroma_targets(part, targets);
+      const bool told = read_plain(part, targets, chroma.empty() ? rows : RowsArrived());
+      read_chroma(part, chroma);
+      return told;
     } catch (const std::exception& error) {
       return failed("cannot be read: " + exception_text(error));
     }
@@ -233,12 +234,15 @@ class ExrFile : public PictureFile {
     return lines;
   }
 
-  void read_plain(int part, std::span<const ReadTarget> targets) {
+  /// Whether it called `rows`.
+  bool read_plain(int part, std::span<const ReadTarget> targets, const RowsArrived& rows) {
     Imf::InputPart input(*file_, part);
     const ExrPart& header = header_[static_cast<std::size_t>(part)];
     const PartSlots& slots = slots_[static_cast<std::size_t>(part)];
-    if (const auto lines = line_targets(header, slots, targets); has_zipped_lines(header, lines))
-      return read_zipped_lines(input, header, lines);
+    if (const auto lines = line_targets(header, slots, targets); has_zipped_lines(header, lines)) {
+      read_zipped_lines(input, header, lines, rows);
+      return rows != nullptr;
+    }
     const Imath::Box2i window = input.header().dataWindow();
     Imf::FrameBuffer buffer;
     for (const ReadTarget& target : targets) {
@@ -247,16 +251,23 @@ class ExrFile : public PictureFile {
       buffer.insert(slot.stored, Imf::Slice::Make(Imf::FLOAT, target.base, window, target.pixel_stride * sizeof(float),
                                                   target.row_stride * sizeof(float)));
     }
-    if (buffer.begin() == buffer.end()) return;
+    if (buffer.begin() == buffer.end()) return false;
     input.setFrameBuffer(buffer);
     input.readPixels(window.min.y, window.max.y);
+    return false;
   }
 
-  void read_chroma(int part, std::span<const ReadTarget> targets) {
+  std::vector<ReadTarget> chroma_targets(int part, std::span<const ReadTarget> targets) const {
     const PartSlots& slots = slots_[static_cast<std::size_t>(part)];
-    std::vector<ReadTarget> wanted;
-    for (const ReadTarget& target : targets)
-      if (slots.channels[static_cast<std::size_t>(target.channel)].chroma >= 0) wanted.push_back(target);
+    std::vector<ReadTarget> chroma;
+    std::ranges::copy_if(targets, std::back_inserter(chroma), [&](const ReadTarget& target) {
+      return slots.channels[static_cast<std::size_t>(target.channel)].chroma >= 0;
+    });
+    return chroma;
+  }
+
+  void read_chroma(int part, const std::vector<ReadTarget>& wanted) {
+    const PartSlots& slots = slots_[static_cast<std::size_t>(part)];
     if (wanted.empty()) return;
     Imf::RgbaInputFile input(path_.c_str(), *slots.chroma_layer);
     const Imath::Box2i window = input.dataWindow();

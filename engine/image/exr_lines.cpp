@@ -8,6 +8,9 @@
 #include <cstring>
 #include <stdexcept>
 #include <thread>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 #include "core/file_time.h"
 #include "core/parallel.h"
@@ -20,25 +23,73 @@ namespace {
 /// Of lines that are fetched before they are unpacked side by side, which starts threads.
 constexpr std::size_t kFetchedBytes = 4 << 20;
 
-/// The samples of one channel in one line.
-void take_samples(const std::uint8_t* stored, ExrChannelType type, std::size_t width, std::vector<float>& line,
-                  float* base, std::size_t stride) {
-  float* to = stride == 1 ? base : line.data();
+/// The samples of one channel in one line, as floats that lie side by side.
+void take_samples(const std::uint8_t* stored, ExrChannelType type, std::size_t width, float* to) {
   if (type == ExrChannelType::half) {
     from_half(stored, to, width);
   } else {
     std::memcpy(to, stored, width * sizeof(float));
   }
-  if (stride == 1) return;
-  for (std::size_t x = 0; x < width; ++x) base[x * stride] = to[x];
+}
+
+/// Channels that go to neighbouring floats of the same pixels are written together.
+struct TargetGroup {
+  float* base = nullptr;
+  std::size_t pixel_stride = 1, row_stride = 0;
+  std::vector<std::size_t> channels;
+
+  bool goes_on_with(const ExrLineTarget& target) const {
+    return channels.size() < 4 && target.pixel_stride == pixel_stride && target.row_stride == row_stride &&
+           target.base == base + channels.size() && channels.size() < pixel_stride;
+  }
+};
+
+std::vector<TargetGroup> grouped(std::span<const ExrLineTarget> targets) {
+  std::vector<TargetGroup> groups;
+  for (const ExrLineTarget& target : targets) {
+    if (groups.empty() || !groups.back().goes_on_with(target))
+      groups.push_back({target.base, target.pixel_stride, target.row_stride, {}});
+    groups.back().channels.push_back(target.channel);
+  }
+  return groups;
+}
+
+#if defined(__x86_64__)
+/// Four pixels of three or four channels at a time; how many pixels that were.
+std::size_t interleave_quads(const float* lines, std::size_t lanes, std::size_t width, float* pixels) {
+  if (lanes < 3) return 0;
+  const __m128 taken = _mm_castsi128_ps(_mm_set_epi32(lanes == 4 ? -1 : 0, -1, -1, -1));
+  std::size_t x = 0;
+  for (; x + 4 <= width; x += 4, pixels += 16) {
+    __m128 a = _mm_loadu_ps(lines + x), b = _mm_loadu_ps(lines + width + x), c = _mm_loadu_ps(lines + 2 * width + x);
+    __m128 d = lanes == 4 ? _mm_loadu_ps(lines + 3 * width + x) : _mm_setzero_ps();
+    _MM_TRANSPOSE4_PS(a, b, c, d);
+    const auto put = [&](float* pixel, __m128 value) {
+      _mm_storeu_ps(pixel, _mm_or_ps(_mm_and_ps(taken, value), _mm_andnot_ps(taken, _mm_loadu_ps(pixel))));
+    };
+    put(pixels, a), put(pixels + 4, b), put(pixels + 8, c), put(pixels + 12, d);
+  }
+  return x;
+}
+#endif
+
+/// Lines of `lanes` channels, one after the other, into pixels of `stride` floats; what lies between them stays.
+void interleave(const float* lines, std::size_t lanes, std::size_t width, float* pixels, std::size_t stride) {
+  std::size_t first = 0;
+#if defined(__x86_64__)
+  if (stride == 4) first = interleave_quads(lines, lanes, width, pixels);
+#endif
+  for (std::size_t c = 0; c < lanes; ++c)
+    for (std::size_t x = first; x < width; ++x) pixels[x * stride + c] = lines[c * width + x];
 }
 
 class LineReader {
  public:
-  LineReader(Imf::InputPart& input, const ExrPart& part, std::span<const ExrLineTarget> targets)
+  LineReader(Imf::InputPart& input, const ExrPart& part, std::span<const ExrLineTarget> targets, const RowsArrived& rows)
       : input_(input),
         part_(part),
-        targets_(targets),
+        groups_(grouped(targets)),
+        rows_(rows),
         width_(static_cast<std::size_t>(part.data_window.width)),
         lines_(part.chunk_lines()) {
     for (const ExrChannel& channel : part.channels) {
@@ -65,8 +116,8 @@ class LineReader {
       parallel_rows(count, samples, [&](int begin, int end) {
         ExrUnzip unzip;
         std::vector<std::uint8_t> bytes(line_bytes_ * static_cast<std::size_t>(lines_));
-        std::vector<float> line(width_);
-        for (int i = begin; i < end; ++i) unpack(first + i, packed[static_cast<std::size_t>(i)], unzip, bytes, line);
+        std::vector<float> lines(width_ * 4);
+        for (int i = begin; i < end; ++i) unpack(first + i, packed[static_cast<std::size_t>(i)], unzip, bytes, lines);
       });
     }
   }
@@ -84,7 +135,7 @@ class LineReader {
   }
 
   void unpack(int chunk, std::span<const std::uint8_t> packed, ExrUnzip& unzip, std::vector<std::uint8_t>& bytes,
-              std::vector<float>& line) const {
+              std::vector<float>& lines) const {
     const std::size_t length = line_bytes_ * static_cast<std::size_t>(lines_of(chunk));
     const std::uint8_t* stored = packed.data();
     if (packed.size() != length) {
@@ -92,10 +143,15 @@ class LineReader {
       stored = bytes.data();
     }
     for (int y = 0; y < lines_of(chunk); ++y, stored += line_bytes_)
-      for (const ExrLineTarget& target : targets_)
-        take_samples(stored + offsets_[target.channel], part_.channels[target.channel].type, width_, line,
-                     target.base + static_cast<std::size_t>(chunk * lines_ + y) * target.row_stride,
-                     target.pixel_stride);
+      for (const TargetGroup& group : groups_) {
+        float* out = group.base + static_cast<std::size_t>(chunk * lines_ + y) * group.row_stride;
+        float* line = group.pixel_stride == 1 ? out : lines.data();
+        for (std::size_t i = 0; i < group.channels.size(); ++i)
+          take_samples(stored + offsets_[group.channels[i]], part_.channels[group.channels[i]].type, width_,
+                       line + i * width_);
+        if (line != out) interleave(line, group.channels.size(), width_, out, group.pixel_stride);
+      }
+    if (rows_) rows_(chunk * lines_, chunk * lines_ + lines_of(chunk));
   }
 
   std::runtime_error damaged(int chunk) const {
@@ -104,7 +160,8 @@ class LineReader {
 
   Imf::InputPart& input_;
   const ExrPart& part_;
-  std::span<const ExrLineTarget> targets_;
+  std::vector<TargetGroup> groups_;
+  const RowsArrived& rows_;
   std::size_t width_, line_bytes_ = 0;
   std::vector<std::size_t> offsets_;  // of channels within a line
   int lines_;
@@ -122,8 +179,9 @@ bool has_zipped_lines(const ExrPart& part, std::span<const ExrLineTarget> target
          });
 }
 
-void read_zipped_lines(Imf::InputPart& input, const ExrPart& part, std::span<const ExrLineTarget> targets) {
-  LineReader(input, part, targets).run();
+void read_zipped_lines(Imf::InputPart& input, const ExrPart& part, std::span<const ExrLineTarget> targets,
+                       const RowsArrived& rows) {
+  LineReader(input, part, targets, rows).run();
 }
 
 }  // namespace afterglow

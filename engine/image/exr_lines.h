@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "image/exr_header.h"
+#include "image/picture_file.h"
 
 namespace afterglow {
 
@@ -23,7 +24,9 @@ struct ExrLineTarget {
 bool has_zipped_lines(const ExrPart& part, std::span<const ExrLineTarget> targets);
 
 /// All lines of the part, on several threads. Besides what ExrPart::buffer_bytes counts it holds up to 32 packed lines
-/// of ZIPS. Throws what OpenEXR throws, and std::runtime_error when a chunk is damaged.
-void read_zipped_lines(Imf::InputPart& input, const ExrPart& part, std::span<const ExrLineTarget> targets);
+/// of ZIPS. `rows`, if given, is called for the lines of each chunk. Throws what OpenEXR throws, and std::runtime_error
+/// when a chunk is damaged.
+void read_zipped_lines(Imf::InputPart& input, const ExrPart& part, std::span<const ExrLineTarget> targets,
+                       const RowsArrived& rows = {});
 
 }  // namespace afterglow

@@ -33,7 +33,7 @@ class MovieFrameFile : public PictureFile {
     return static_cast<std::uint64_t>(facts.stored.area()) * kSamples * kPlanes * sizeof(std::uint16_t);
   }
 
-  Result<void> read(int, std::span<const ReadTarget> targets) override {
+  Result<bool> read_targets(int, std::span<const ReadTarget> targets, const RowsArrived&) override {
     const Size size = parts_.front().data_window.size();
     const std::size_t row = static_cast<std::size_t>(size.width) * 4;
     // What the reader asks for as a rule: all channels of RGBA at once.
@@ -41,8 +41,10 @@ class MovieFrameFile : public PictureFile {
       return target.pixel_stride == 4 && target.row_stride == row &&
              target.base - target.channel == targets[0].base - targets[0].channel;
     });
-    if (together && targets[0].channel == 0 && targets.size() == parts_.front().channels.size())
-      return read_into(targets[0].base, row);
+    if (together && targets[0].channel == 0 && targets.size() == parts_.front().channels.size()) {
+      AFTERGLOW_CHECK(read_into(targets[0].base, row));
+      return false;
+    }
     Image whole(size.width, size.height, 4);
     AFTERGLOW_CHECK(read_into(whole.pixels.data(), row));
     for (const ReadTarget& target : targets)
@@ -50,7 +52,7 @@ class MovieFrameFile : public PictureFile {
         for (int x = 0; x < size.width; ++x)
           target.base[static_cast<std::size_t>(y) * target.row_stride +
                       static_cast<std::size_t>(x) * target.pixel_stride] = whole.at(x, y)[target.channel];
-    return {};
+    return false;
   }
 
   ColorEncoding color_encoding(const ChannelChoice&, Diagnostics&) const override {

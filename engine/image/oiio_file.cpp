@@ -60,7 +60,7 @@ class OiioFile : public PictureFile {
                           container_.decoder_bytes});
   }
 
-  Result<void> read(int part, std::span<const ReadTarget> targets) override {
+  Result<bool> read_targets(int part, std::span<const ReadTarget> targets, const RowsArrived&) override {
     std::vector<ReadTarget> sorted(targets.begin(), targets.end());
     std::sort(sorted.begin(), sorted.end(),
               [](const ReadTarget& a, const ReadTarget& b) { return a.channel < b.channel; });
@@ -77,7 +77,7 @@ class OiioFile : public PictureFile {
     } catch (const std::exception& error) {
       return failed("cannot be read: " + exception_text(error));
     }
-    return {};
+    return false;
   }
 
   ColorEncoding color_encoding(const ChannelChoice& color, Diagnostics& diagnostics) const override {
@@ -167,8 +167,8 @@ class OiioFile : public PictureFile {
     // Looking for further pages of a TIFF leaves its reader in a state in which it keeps silent when a disk fails.
     if (format_ == "tiff" && !std::exchange(opened_for_pixels_, true)) AFTERGLOW_CHECK(open_input(format_));
     static_cast<void>(input_->geterror());  // of earlier calls that succeeded another way
-    const bool read = input_->read_image(part, 0, first.channel, first.channel + channels, OIIO::TypeFloat,
-                                         first.base, x_stride, y_stride, y_stride * spec.height);
+    const bool read = input_->read_image(part, 0, first.channel, first.channel + channels, OIIO::TypeFloat, first.base,
+                                         x_stride, y_stride, y_stride * spec.height);
     // OpenImageIO 2.4 returns true, and black, for strips of a TIFF that are damaged or missing; but it says so.
     const std::string why = input_->geterror();
     if (!read || !why.empty()) return failed(message_of(why));

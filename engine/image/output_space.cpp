@@ -59,7 +59,7 @@ const OutputSpace& OutputSpace::of(const InputSpace& space) {
   return *one;
 }
 
-float OutputSpace::stored(float light) const {
+float OutputSpace::stored_value(float light) const {
   if (!(light > kSmallest)) return light > 0 ? of_zero_ + (table_.front() - of_zero_) * (light / kSmallest) : of_zero_;
   if (light >= kLargest) return 1;
   const std::size_t part = part_of(light) - part_of(kSmallest);
@@ -68,8 +68,9 @@ float OutputSpace::stored(float light) const {
 }
 
 #if defined(__x86_64__)
-/// `stored` of two pixels at a time, the same bits; how many pixels that were.
-__attribute__((target("avx2"))) std::size_t OutputSpace::encode_pairs(float* rgba, std::size_t pixels) const {
+/// `stored_value` of two pixels at a time, the same bits; how many pixels that were.
+__attribute__((target("avx2"))) std::size_t OutputSpace::encode_pairs(const float* rgba, std::size_t pixels,
+                                                                      float* stored) const {
   const __m256i first = _mm256_set1_epi32(static_cast<int>(part_of(kSmallest)));
   const __m256i last = _mm256_set1_epi32(static_cast<int>(table_.size()) - 2);
   const __m256 of_zero = _mm256_set1_ps(of_zero_), rise = _mm256_set1_ps(table_.front() - of_zero_);
@@ -82,7 +83,7 @@ __attribute__((target("avx2"))) std::size_t OutputSpace::encode_pairs(float* rgb
     return _mm_loadh_pi(ends(parts), reinterpret_cast<const __m64*>(at(static_cast<std::uint64_t>(parts) >> 32)));
   };
   std::size_t i = 0;
-  for (; i + 2 <= pixels; i += 2, rgba += 8) {
+  for (; i + 2 <= pixels; i += 2, rgba += 8, stored += 8) {
     const __m256 light = _mm256_loadu_ps(rgba);
     const __m256i bits = _mm256_castps_si256(light);
     __m256i part = _mm256_sub_epi32(_mm256_srli_epi32(bits, kShift), first);
@@ -102,27 +103,30 @@ __attribute__((target("avx2"))) std::size_t OutputSpace::encode_pairs(float* rgb
     const __m256 dark = _mm256_div_ps(_mm256_max_ps(light, _mm256_setzero_ps()), smallest);
     const __m256 near_zero = _mm256_add_ps(of_zero, _mm256_mul_ps(rise, dark));
     value = _mm256_blendv_ps(near_zero, value, _mm256_cmp_ps(light, smallest, _CMP_GT_OQ));
-    _mm256_storeu_ps(rgba, _mm256_blend_ps(value, light, 0x88));  // alpha stays
+    _mm256_storeu_ps(stored, _mm256_blend_ps(value, light, 0x88));  // alpha stays
   }
   return i;
 }
 #endif
 
-void OutputSpace::encode(float* rgba, std::size_t pixels) const {
+void OutputSpace::encode(const float* rgba, std::size_t pixels, float* stored) const {
 #if defined(__x86_64__)
   if (!matrix_ && has_avx2()) {
-    const std::size_t done = encode_pairs(rgba, pixels);
+    const std::size_t done = encode_pairs(rgba, pixels, stored);
     rgba += 4 * done;
+    stored += 4 * done;
     pixels -= done;
   }
 #endif
-  for (std::size_t i = 0; i < pixels; ++i, rgba += 4) {
+  for (std::size_t i = 0; i < pixels; ++i, rgba += 4, stored += 4) {
+    std::array<float, 4> pixel{rgba[0], rgba[1], rgba[2], rgba[3]};
     if (matrix_) {
       const Matrix3& m = *matrix_;
-      const double r = rgba[0], g = rgba[1], b = rgba[2];
-      for (std::size_t c = 0; c < 3; ++c) rgba[c] = static_cast<float>(m[c][0] * r + m[c][1] * g + m[c][2] * b);
+      const double r = pixel[0], g = pixel[1], b = pixel[2];
+      for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(m[c][0] * r + m[c][1] * g + m[c][2] * b);
     }
-    for (int c = 0; c < 3; ++c) rgba[c] = stored(rgba[c]);
+    for (std::size_t c = 0; c < 3; ++c) stored[c] = stored_value(pixel[c]);
+    stored[3] = pixel[3];
   }
 }
 

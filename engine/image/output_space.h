@@ -20,13 +20,13 @@ class OutputSpace {
 
   const char* name() const { return name_; }
   /// Colours of RGBA pixels, linear Rec.709, become stored values 0…1; alpha stays. Light beyond what the space holds
-  /// is held at its ends, NaN at that of 0.
-  void encode(float* rgba, std::size_t pixels) const;
+  /// is held at its ends, NaN at that of 0. `stored` may be `rgba` itself.
+  void encode(const float* rgba, std::size_t pixels, float* stored) const;
 
  private:
   explicit OutputSpace(const InputSpace& space);
-  float stored(float light) const;
-  std::size_t encode_pairs(float* rgba, std::size_t pixels) const;
+  float stored_value(float light) const;
+  std::size_t encode_pairs(const float* rgba, std::size_t pixels, float* stored) const;
 
   const char* name_;
   std::optional<Matrix3> matrix_;  ///< from Rec.709, when the primaries are others

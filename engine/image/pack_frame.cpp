@@ -52,12 +52,14 @@ class StoredRows {
   void row(int y, std::vector<float>& rgba) const {
     const auto width = static_cast<std::size_t>(picture_.display_window.width);
     rgba.resize(width * 4);
+    if (!rules_.layout->alpha && picture_.data_window == picture_.display_window)  // as it lies, without a copy
+      return rules_.space->encode(picture_.color.at(0, y), width, rgba.data());
     display_row(picture_, y, picture_.has_alpha ? 0.0f : 1.0f, rgba.data());
     if (rules_.layout->alpha)
       for (std::size_t i = 0; i < rgba.size(); i += 4)
         if (const float alpha = rgba[i + 3]; alpha > 0 && alpha != 1)
           for (std::size_t c = 0; c < 3; ++c) rgba[i + c] /= alpha;
-    rules_.space->encode(rgba.data(), width);
+    rules_.space->encode(rgba.data(), width, rgba.data());
   }
   float noise(std::size_t x, int y) const { return rules_.dither ? 1 - blue_noise(static_cast<int>(x), y) : 0.5f; }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/parallel.h"
 #include "core/saturated.h"
 #include "image/container_check.h"
 #include "image/exr_file.h"
@@ -45,6 +46,14 @@ Result<std::unique_ptr<PictureFile>> open_checked_exr(const std::filesystem::pat
 }
 
 }  // namespace
+
+Result<void> PictureFile::read(int part, std::span<const ReadTarget> targets, const RowsArrived& rows) {
+  AFTERGLOW_TRY(const bool told, read_targets(part, targets, rows));
+  if (told || !rows) return {};
+  const Size size = parts_[static_cast<std::size_t>(part)].data_window.size();
+  parallel_rows(size.height, static_cast<long long>(size.area()) * static_cast<long long>(targets.size()), rows);
+  return {};
+}
 
 Result<std::unique_ptr<PictureFile>> open_picture(const std::filesystem::path& file, const SizeLimits& limits) {
   AFTERGLOW_TRY(const ContainerFacts container, check_container(file));

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -27,6 +28,9 @@ struct ReadTarget {
   std::size_t pixel_stride = 1, row_stride = 0;  ///< in floats
 };
 
+/// Rows [begin, end) of all targets are whole. Called once for each row, from several threads.
+using RowsArrived = std::function<void(int begin, int end)>;
+
 /// Not thread-safe. Errors: io, naming the file.
 class PictureFile {
  public:
@@ -39,14 +43,17 @@ class PictureFile {
   /// Memory for decoding this part, besides the targets.
   virtual std::uint64_t buffer_bytes(int part) const = 0;
   /// All rows of the part; each channel at most once. Integers are scaled to 0…1, except those of EXR, which are plain
-  /// numbers. A file that ends too early is an error, though some rows may have been written.
-  virtual Result<void> read(int part, std::span<const ReadTarget> targets) = 0;
+  /// numbers. A file that ends too early is an error, though some rows may have been written. `rows`, if given, is told
+  /// of rows as they come, while they lie in the processor's caches.
+  Result<void> read(int part, std::span<const ReadTarget> targets, const RowsArrived& rows = {});
   /// How the chosen colour channels are encoded. `warnings` that matter to users are passed on.
   virtual ColorEncoding color_encoding(const ChannelChoice& color, Diagnostics& diagnostics) const = 0;
   /// What a writer keeps, for these colour channels.
   virtual FileFacts facts(const ChannelChoice& color) const = 0;
 
  protected:
+  /// Whether it called `rows`; else they are told of when all are read.
+  virtual Result<bool> read_targets(int part, std::span<const ReadTarget> targets, const RowsArrived& rows) = 0;
   Error failed(const std::string& why) const { return Error{ErrorKind::io, why, path_.string()}; }
 
   std::filesystem::path path_;

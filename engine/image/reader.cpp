@@ -322,31 +322,33 @@ Result<Picture> read_planned(Plan& plan, const ReadOptions& options, Diagnostics
       AFTERGLOW_CHECK(plan.file_of(extra).read(extra.choice.part, own));
     }
   }
-  AFTERGLOW_CHECK(plan.file->read(plan.color.part, targets));
-
-  // Turned first: what is found has the place where the picture shows it.
-  picture.color = upright(std::move(picture.color), part.orientation);
-  {
-    NonFinite found;
+  NonFinite found;
+  if (part.orientation <= 1 && policy != NanPolicy::neighbour) {
+    AFTERGLOW_CHECK(
+        plan.file->read(plan.color.part, targets, decoder_of_rows(encoding, picture.color, picture.sanitized, &found)));
+  } else {
+    AFTERGLOW_CHECK(plan.file->read(plan.color.part, targets));
+    // Turned first: what is found has the place where the picture shows it.
+    picture.color = upright(std::move(picture.color), part.orientation);
     if (policy == NanPolicy::neighbour) {
       found = find_non_finite(picture.color);
       if (found.count() > 0) repair_from_neighbours(picture.color);
     }
     decode_color(encoding, picture.color, picture.sanitized, policy == NanPolicy::neighbour ? nullptr : &found);
-    note_layer(picture, "color", found);
   }
+  note_layer(picture, "color", found);
   for (std::size_t i = 0; i < auxiliary.size(); ++i) {
     const AuxiliaryPlan& extra = plan.auxiliary[i];
     const FilePart& from = plan.part_of(extra);
     Image image = upright(std::move(auxiliary[i]), from.orientation);
     const Rect window = extra.other ? picture.data_window : upright_data(from);
-    NonFinite found = find_non_finite(image);
-    if (found.count() > 0 && policy == NanPolicy::neighbour) repair_from_neighbours(image);
-    if (found.first) {  // its own window may lie elsewhere
-      found.first->x += window.x - picture.data_window.x;
-      found.first->y += window.y - picture.data_window.y;
+    NonFinite in_layer = find_non_finite(image);
+    if (in_layer.count() > 0 && policy == NanPolicy::neighbour) repair_from_neighbours(image);
+    if (in_layer.first) {  // its own window may lie elsewhere
+      in_layer.first->x += window.x - picture.data_window.x;
+      in_layer.first->y += window.y - picture.data_window.y;
     }
-    note_layer(picture, extra.name, found);
+    note_layer(picture, extra.name, in_layer);
     if (extra.kind == &kMotion) image = motion_of(image);
     image = placed(std::move(image), window, picture.data_window, extra.kind ? extra.kind->background : 0.0f);
     if (extra.kind == &kDepth) sanitize_depth(image, picture.sanitized);

@@ -16,7 +16,7 @@ shift
 ledger=$work/fuzz-ledger.tsv
 TMPDIR=$([[ -w /dev/shm ]] && echo /dev/shm || echo "${TMPDIR:-/tmp}")
 export TMPDIR
-export LSAN_OPTIONS=suppressions=$here/leaks.supp:print_suppressions=0
+export LSAN_OPTIONS=suppressions=$here/../suppressions/leak.supp:print_suppressions=0
 export AFTERGLOW_HOME=$here/../.. XDG_RUNTIME_DIR=${XDG_RUNTIME_DIR:-$work}
 
 # Limits by harness: longest input, bytes of one allocation. The image reader is told that a picture may take 32 MiB.

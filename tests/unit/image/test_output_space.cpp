@@ -30,7 +30,7 @@ TEST_P(Spaces, GoThereAndBack) {
       const double slope = (space.to_linear(v + step) - space.to_linear(v)) / step;
       return 3e-6 + most * 4e-7 / std::max(slope, 1e-9);
     };
-    out.encode(pixel, 1);
+    out.encode(pixel, 1, pixel);
     ASSERT_NEAR(pixel[0], stored, off(stored)) << i;
     ASSERT_NEAR(pixel[1], other, off(other)) << i;
     ASSERT_EQ(pixel[3], 0.25f);
@@ -43,13 +43,13 @@ INSTANTIATE_TEST_SUITE_P(All, Spaces, testing::ValuesIn(input_spaces().begin(), 
 TEST(OutputSpace, HoldsWhatIsBeyond) {
   for (const InputSpace& space : input_spaces()) {
     float pixels[8] = {1e30f, INFINITY, 1e30f, 1, NAN, -3, 0, 1};
-    OutputSpace::of(space).encode(pixels, 2);
+    OutputSpace::of(space).encode(pixels, 2, pixels);
     for (const float value : pixels) EXPECT_TRUE(value >= 0 && value <= 1) << space.name << " " << value;
     EXPECT_TRUE(space.primaries.red != kRec709.red || pixels[0] == 1) << space.name;
   }
 }
 
-/// Pixels beside each other are made together; alone they are not.
+/// Pixels beside each other are made together; alone they are not. Into other memory they are the same too.
 TEST(OutputSpace, ManyPixelsAreTheSameBitsAsOne) {
   std::vector<float> light;
   for (const float special : {0.0f, -0.0f, 1e-45f, 1e-38f, 0x1p-40f, 0x1.000002p-40f, 0x1p10f, 1023.99f, 1e30f, -1e30f,
@@ -59,9 +59,11 @@ TEST(OutputSpace, ManyPixelsAreTheSameBitsAsOne) {
   light.resize(light.size() / 4 * 4);
   for (const InputSpace& space : input_spaces()) {
     const OutputSpace& out = OutputSpace::of(space);
-    std::vector<float> together = light, alone = light;
-    out.encode(together.data(), together.size() / 4);
-    for (std::size_t i = 0; i < alone.size(); i += 4) out.encode(&alone[i], 1);
+    std::vector<float> together = light, alone = light, elsewhere(light.size());
+    out.encode(light.data(), light.size() / 4, elsewhere.data());
+    out.encode(together.data(), together.size() / 4, together.data());
+    EXPECT_EQ(std::memcmp(elsewhere.data(), together.data(), light.size() * sizeof(float)), 0) << space.name;
+    for (std::size_t i = 0; i < alone.size(); i += 4) out.encode(&alone[i], 1, &alone[i]);
     EXPECT_EQ(std::memcmp(together.data(), alone.data(), alone.size() * sizeof(float)), 0) << space.name;
   }
 }
@@ -69,7 +71,7 @@ TEST(OutputSpace, ManyPixelsAreTheSameBitsAsOne) {
 TEST(OutputSpace, CineonIsKodaks) {
   const OutputSpace* cineon = find_output_space("cineon").value();
   float pixels[8] = {0, 0.18f, 1, 1, 13.5f, 0, 0, 1};
-  cineon->encode(pixels, 2);
+  cineon->encode(pixels, 2, pixels);
   EXPECT_NEAR(pixels[0] * 1023, 95, 0.01);
   EXPECT_NEAR(pixels[1] * 1023, 685 + 300 * std::log10(0.18 + 0.82 * std::pow(10, -590.0 / 300)), 0.01);
   EXPECT_NEAR(pixels[2] * 1023, 685, 0.01);

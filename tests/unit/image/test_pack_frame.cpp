@@ -84,6 +84,25 @@ TEST_P(Yuv, IsTheNearestCode) { expect_nearest_codes(*find_pixel_layout(GetParam
 /// Made in several bands, whose rows of chroma look over their edges.
 TEST_P(Yuv, LargeOnesAreTheNearestCodesToo) { expect_nearest_codes(*find_pixel_layout(GetParam()), 402, 301); }
 
+/// What the file holds may be smaller than what is shown, or larger.
+TEST_P(Yuv, AnotherDataWindowIsFilledOrCut) {
+  const PackRules rules{find_pixel_layout(GetParam()), find_output_space("srgb").value(), kBt709Luma, false};
+  const bool alpha = rules.layout->alpha;
+  Picture part = picture_of(9, 7, alpha);
+  part.data_window = {3, -2, 9, 7};
+  part.display_window = {0, 0, 10, 8};
+  Picture whole = part;
+  whole.data_window = whole.display_window;
+  whole.color = Image(10, 8, 4);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 10; ++x) {
+      const bool held = x >= 3 && y < 5;
+      for (std::size_t c = 0; c < 4; ++c)
+        whole.color.at(x, y)[c] = held ? part.color.at(x - 3, y + 2)[c] : c == 3 && !alpha ? 1.0f : 0.0f;
+    }
+  EXPECT_EQ(pack_frame(part, rules, {}).bytes, pack_frame(whole, rules, {}).bytes);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Yuv,
                          testing::Values("yuv420p", "yuv422p", "yuv444p", "yuv420p10", "yuv422p12", "yuv444p16",
                                          "yuva420p", "yuva444p10"));
