@@ -198,9 +198,7 @@ TEST_F(Sequence, MemoryDoesNotGrowWithTheFrames) {
           "run",      "look.lua",   "many/####.exr", "-o", output, "--frames", fmt::format("0-{}", frames - 1),
           "--report", "report.json"};
       if (output.ends_with("mkv")) arguments.insert(arguments.end(), {"--codec", "ffv1"});
-      RunOptions options;
-      options.environment["ASAN_OPTIONS"] = "quarantine_size_mb=4";  // AddressSanitizer keeps what was freed
-      const Outcome outcome = run(arguments, options);
+      const Outcome outcome = run(arguments);
       EXPECT_EQ(outcome.exit_code, kDone) << outcome.err;
       return nlohmann::json::parse(read("report.json")).at("memory").at("peak");
     };
