@@ -29,6 +29,7 @@ Result<WholeVideo> whole_video(const BatchRequest& request, const std::vector<Fr
   AFTERGLOW_TRY(out.plan, plan_video(file, request.loop.write, false, false));
   VideoTimes times(file, frame_rate(request.loop.fps));
   times.begin(frames.front(), out.plan);
+  AFTERGLOW_TRY(out.plan.patience, patience_of_process());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     AFTERGLOW_TRY(const VideoTime time, times.of(frames[i], i));
     out.times.push_back(time);
@@ -58,7 +59,6 @@ Result<void> join_parts(const BatchRequest& request, const std::vector<FrameJob>
                         const std::vector<VideoPart>& parts, const RunEvents& events) {
   AFTERGLOW_TRY(const WholeVideo video, whole_video(request, frames));
   VideoPieces pieces{.pieces = {}, .whole = video.whole, .interrupted = events.interrupted};
-  AFTERGLOW_TRY(pieces.patience, patience_of_process());
   auto next = video.times.begin();
   for (const VideoPart& part : parts) {
     if (part.frames > static_cast<std::size_t>(video.times.end() - next)) break;

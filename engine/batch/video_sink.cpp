@@ -70,6 +70,7 @@ class VideoSink : public FrameSink {
     AFTERGLOW_TRY(VideoPlan plan, plan_video(file_, options_, is_deep(picture.facts.get()), picture.has_alpha));
     plan.size = picture.display_window.size();
     times_.begin(job, plan);
+    if (picture.facts) keep_facts(*picture.facts, plan);
     if (options_.video.piece) plan.source.clear();
     AFTERGLOW_TRY(writer_, VideoWriter::open(file_, std::move(plan), diagnostics_));
     opened_ = writer_.get();

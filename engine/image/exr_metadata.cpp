@@ -20,6 +20,7 @@
 
 #include "core/text.h"
 #include "image/kept_values.h"
+#include "image/time_code.h"
 
 namespace afterglow {
 namespace {

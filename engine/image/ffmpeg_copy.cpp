@@ -12,6 +12,7 @@ extern "C" {
 #include <string_view>
 
 #include "core/text.h"
+#include "image/ffmpeg_facts.h"
 #include "image/ffmpeg_log.h"
 
 namespace afterglow {
@@ -21,8 +22,6 @@ namespace {
 constexpr const char* kFormats =
     "mov,mp4,matroska,webm,avi,mpegts,mpeg,ogg,flac,wav,w64,mp3,aac,ac3,eac3,aiff,caf,flv,mxf,opus,srt,ass,webvtt,gif,"
     "apng,yuv4mpegpipe,asf";
-
-int refuse_other_file(AVFormatContext*, AVIOContext**, const char*, int, AVDictionary**) { return AVERROR(EPERM); }
 
 constexpr AVRational kMicroseconds{1, AV_TIME_BASE};
 
@@ -50,22 +49,32 @@ FfmpegCopy::~FfmpegCopy() {
 
 Result<std::unique_ptr<FfmpegCopy>> FfmpegCopy::open(const std::filesystem::path& file, bool sound_only,
                                                      FfmpegOutput& output, const CopyRange& range,
-                                                     const std::string& name, Diagnostics& diagnostics) {
+                                                     const Patience& patience, const std::string& name,
+                                                     Diagnostics& diagnostics) {
   std::unique_ptr<FfmpegCopy> copy(new FfmpegCopy(output));
   copy->file_ = file;
   copy->range_ = range;
+  AFTERGLOW_TRY(copy->bytes_, FfmpegBytes::open(file, patience));
+  copy->input_ = copy->bytes_->container();
+  if (!copy->input_) return Error{ErrorKind::io, "there is no memory to open it", file.string()};
   AVDictionary* options = nullptr;
-  av_dict_set(&options, "protocol_whitelist", "file", 0);
   av_dict_set(&options, "format_whitelist", kFormats, 0);
-  int code = avformat_open_input(&copy->input_, ("file:" + file.string()).c_str(), nullptr, &options);
+  int code = avformat_open_input(&copy->input_, file.c_str(), nullptr, &options);  // the name tells of the format
   av_dict_free(&options);
-  if (code < 0) return Error{ErrorKind::io, "cannot be read: " + ffmpeg_error(code), file.string()};
-  copy->input_->io_open = refuse_other_file;
+  if (code < 0) return copy->cannot_be_read(code);
   code = avformat_find_stream_info(copy->input_, nullptr);
-  if (code < 0) return Error{ErrorKind::io, "cannot be read: " + ffmpeg_error(code), file.string()};
+  if (code < 0 || copy->bytes_->given_up()) return copy->cannot_be_read(code);
   AFTERGLOW_CHECK(copy->add_streams(sound_only, name, diagnostics));
   if (!sound_only) copy->add_chapters();
   return copy;
+}
+
+Error FfmpegCopy::cannot_be_read(int code) const {
+  if (auto reason = bytes_->given_up()) {
+    reason->file = file_.string();
+    return *std::move(reason);
+  }
+  return {ErrorKind::io, "cannot be read: " + ffmpeg_error(code), file_.string()};
 }
 
 /// As it is, or as other text; null where the container holds neither.
@@ -115,12 +124,7 @@ Result<void> FfmpegCopy::add_streams(bool sound_only, const std::string& name, D
   return {};
 }
 
-std::string FfmpegCopy::timecode() const {
-  const AVDictionaryEntry* found = av_dict_get(input_->metadata, "timecode", nullptr, 0);
-  for (unsigned i = 0; !found && i < input_->nb_streams; ++i)
-    found = av_dict_get(input_->streams[i]->metadata, "timecode", nullptr, 0);
-  return found ? found->value : "";
-}
+std::string FfmpegCopy::time_code() const { return first_time_code(*input_); }
 
 /// As far as they lie in the range.
 void FfmpegCopy::add_chapters() {
@@ -165,9 +169,10 @@ Result<void> FfmpegCopy::copy(std::int64_t until) {
       const int code = av_read_frame(input_, waiting_.get());
       if (code < 0) {
         ended_ = true;
-        if (code == AVERROR_EOF) return {};
-        return Error{ErrorKind::io, "cannot be read: " + ffmpeg_error(code), file_.string()};
+        if (code == AVERROR_EOF && !bytes_->given_up()) return {};
+        return cannot_be_read(code);
       }
+      bytes_->packet_came();
     }
     const auto stream = static_cast<std::size_t>(waiting_->stream_index);
     const std::int64_t stamp = waiting_->dts != AV_NOPTS_VALUE ? waiting_->dts : waiting_->pts;

@@ -10,6 +10,7 @@
 
 #include "core/diagnostics.h"
 #include "core/result.h"
+#include "image/ffmpeg_bytes.h"
 #include "image/ffmpeg_handles.h"
 #include "image/ffmpeg_output.h"
 #include "image/ffmpeg_subtitles.h"
@@ -17,18 +18,19 @@
 
 namespace afterglow {
 
-/// Not thread-safe. Errors: io.
+/// Not thread-safe. Errors: io (also: no bytes come), interrupted (nobody waits for them any more).
 class FfmpegCopy {
  public:
   /// Adds to `output` a stream for each of `file` that it can hold; others are named in a warning. `sound_only`: no
   /// subtitles, chapters and texts.
   static Result<std::unique_ptr<FfmpegCopy>> open(const std::filesystem::path& file, bool sound_only,
-                                                  FfmpegOutput& output, const CopyRange& range, const std::string& name,
+                                                  FfmpegOutput& output, const CopyRange& range,
+                                                  const Patience& patience, const std::string& name,
                                                   Diagnostics& diagnostics);
   ~FfmpegCopy();
 
   /// Of the first picture in the file; empty: it has none.
-  std::string timecode() const;
+  std::string time_code() const;
   /// Writes what comes before `until` (microseconds of the output's clock).
   Result<void> copy(std::int64_t until);
 
@@ -38,9 +40,11 @@ class FfmpegCopy {
   Result<void> add_streams(bool sound_only, const std::string& name, Diagnostics& diagnostics);
   void add_chapters();
   Result<void> put(AVPacket& packet);
+  Error cannot_be_read(int code) const;
 
   FfmpegOutput& output_;
   std::filesystem::path file_;
+  std::unique_ptr<FfmpegBytes> bytes_;
   AVFormatContext* input_ = nullptr;
   std::vector<int> target_;                              ///< of each stream; −1: none
   std::vector<std::unique_ptr<FfmpegSubtitles>> texts_;  ///< of streams that become others

@@ -102,6 +102,13 @@ MovieColor color_of(const AVFrame& frame, AVCodecID codec) {
 
 }  // namespace
 
+std::string first_time_code(const AVFormatContext& container) {
+  const AVDictionaryEntry* found = av_dict_get(container.metadata, "timecode", nullptr, 0);
+  for (unsigned i = 0; !found && i < container.nb_streams; ++i)
+    found = av_dict_get(container.streams[i]->metadata, "timecode", nullptr, 0);
+  return found ? found->value : "";
+}
+
 MovieFacts facts_of(FfmpegInput& input, const AVFrame& first) {
   MovieFacts facts;
   AVStream& stream = input.stream();
@@ -111,6 +118,7 @@ MovieFacts facts_of(FfmpegInput& input, const AVFrame& first) {
   facts.interlaced = is_interlaced(first);
   facts.rate = rational(stream.avg_frame_rate);
   facts.time_base = rational(stream.time_base);
+  facts.time_code = first_time_code(input.container());
   if (const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(first.format))) {
     const bool palette = (format->flags & AV_PIX_FMT_FLAG_PAL) != 0;
     facts.pixel_format = format->name;

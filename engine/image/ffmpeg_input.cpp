@@ -5,13 +5,9 @@ extern "C" {
 #include <libavutil/opt.h>
 }
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <thread>
 
@@ -20,15 +16,11 @@ extern "C" {
 namespace afterglow {
 namespace {
 
-constexpr int kIoBuffer = 1 << 18;
 /// Decoders that strangers' files may reach: the ones people use, each fuzzed by FFmpeg's own project for years.
 constexpr const char* kCodecs =
     "h264,hevc,vp8,vp9,libvpx,libvpx-vp9,libdav1d,libaom-av1,av1,prores,dnxhd,ffv1,mjpeg,gif,apng,png,mpeg1video,"
     "mpeg2video,mpeg4,rawvideo,wrapped_avframe,v210,v410,r210,cfhd,huffyuv,ffvhuff,utvideo,qtrle,theora,dvvideo,"
     "jpeg2000,tiff,bmp,ppm,pgm,pam,pfm,hap,magicyuv";
-
-/// Playlists, external tracks and the like would read other files.
-int refuse_other_files(AVFormatContext*, AVIOContext**, const char*, int, AVDictionary**) { return AVERROR(EPERM); }
 
 /// Native decoders of FFmpeg know nothing of VP8's and VP9's second stream of alpha.
 const AVCodec* decoder_of(const AVStream& stream) {
@@ -49,52 +41,14 @@ bool is_allowed(const AVCodec& codec) {
 
 }  // namespace
 
-int FfmpegInput::read_bytes(void* opaque, std::uint8_t* to, int size) {
-  Bytes& bytes = *static_cast<Bytes*>(opaque);
-  if (bytes.given < bytes.head.size()) {
-    const std::size_t count = std::min(bytes.head.size() - bytes.given, static_cast<std::size_t>(size));
-    std::memcpy(to, bytes.head.data() + bytes.given, count);
-    bytes.given += count;
-    return static_cast<int>(count);
-  }
-  if (bytes.given_up) return AVERROR_EXIT;
-  const auto got = bytes.reader->read(to, static_cast<std::size_t>(size));
-  if (!got) {
-    bytes.given_up = got.error();
-    return AVERROR_EXIT;
-  }
-  // A look at the end counts too: nobody may look there for ever.
-  constexpr std::uint64_t kLeast = 4096;
-  bytes.spent += std::max<std::uint64_t>(*got, kLeast);
-  if (bytes.spent > bytes.most) {
-    bytes.given_up = Error{ErrorKind::io, fmt::format("has no frame within {} MiB that were read", bytes.most >> 20)};
-    return AVERROR_EXIT;
-  }
-  return *got > 0 ? static_cast<int>(*got) : AVERROR_EOF;
-}
-
 std::optional<Error> FfmpegInput::given_up() const {
-  std::optional<Error> out = bytes_.given_up;
+  std::optional<Error> out = bytes_->given_up();
   if (out) out->file = name_;
   return out;
 }
 
-std::int64_t FfmpegInput::seek_bytes(void* opaque, std::int64_t to, int whence) {
-  const Bytes& bytes = *static_cast<const Bytes*>(opaque);
-  if (bytes.given_up) return AVERROR_EXIT;
-  const int descriptor = bytes.reader->descriptor();
-  if ((whence & AVSEEK_SIZE) != 0) {
-    struct stat status {};
-    return fstat(descriptor, &status) == 0 ? status.st_size : AVERROR(errno);
-  }
-  const off_t at = lseek(descriptor, to, whence & ~AVSEEK_FORCE);
-  return at < 0 ? AVERROR(errno) : at;
-}
-
 FfmpegInput::~FfmpegInput() {
   if (container_) avformat_close_input(&container_);
-  if (io_) av_freep(&io_->buffer);
-  avio_context_free(&io_);
 }
 
 Error FfmpegInput::failed(const std::string& why) const {
@@ -104,35 +58,23 @@ Error FfmpegInput::failed(const std::string& why) const {
 
 Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(const std::filesystem::path& file, const std::string& format,
                                                        const SizeLimits& limits, const Patience& patience) {
-  auto descriptor = std::make_shared<FileDescriptor>(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  if (descriptor->get() < 0)
-    return Error{ErrorKind::io, fmt::format("cannot be opened: {}", std::strerror(errno)), file.string()};
-  // Who seeks reads some bytes twice; nobody needs to read all of them many times before the next packet.
-  constexpr std::uint64_t kTurns = 4, kLeast = 64 << 20;
-  struct stat status {};
-  const bool known = fstat(descriptor->get(), &status) == 0 && status.st_size > 0;
-  Bytes bytes;
-  bytes.reader = std::make_unique<PatientReader>(std::move(descriptor), patience);
-  bytes.most = kLeast + (known ? kTurns * static_cast<std::uint64_t>(status.st_size) : 0);
-  return open(std::move(bytes), true, file.string(), format, limits, {});
+  AFTERGLOW_TRY(auto bytes, FfmpegBytes::open(file, patience));
+  return open(std::move(bytes), file.string(), format, limits, {});
 }
 
 Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(const StreamRequest& request) {
-  Bytes bytes;
-  bytes.reader = std::make_unique<PatientReader>(request.from, request.patience, request.cancelled);
-  bytes.head = request.head;
-  bytes.most = request.limits.max_bytes;
-  return open(std::move(bytes), false, request.name, request.format, request.limits, request.options);
+  auto reader = std::make_unique<PatientReader>(request.from, request.patience, request.cancelled);
+  return open(std::make_unique<FfmpegBytes>(std::move(reader), request.head, request.limits.max_bytes), request.name,
+              request.format, request.limits, request.options);
 }
 
-Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(Bytes bytes, bool seekable, const std::string& name,
+Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(std::unique_ptr<FfmpegBytes> bytes, const std::string& name,
                                                        const std::string& format, const SizeLimits& limits,
                                                        const std::string& options) {
   std::unique_ptr<FfmpegInput> input(new FfmpegInput());
   input->name_ = name;
   input->limits_ = limits;
   input->bytes_ = std::move(bytes);
-  input->seekable_ = seekable;
   static_cast<void>(ffmpeg_said());
   AFTERGLOW_CHECK(input->open_container(format, options));
   AFTERGLOW_CHECK(input->choose_stream());
@@ -142,25 +84,17 @@ Result<std::unique_ptr<FfmpegInput>> FfmpegInput::open(Bytes bytes, bool seekabl
 Result<void> FfmpegInput::open_container(const std::string& format, const std::string& options) {
   const AVInputFormat* demuxer = av_find_input_format(format.c_str());
   if (!demuxer) return failed(fmt::format("FFmpeg {} cannot read '{}' files", av_version_info(), format));
-  auto* buffer = static_cast<std::uint8_t*>(av_malloc(kIoBuffer));
-  io_ = avio_alloc_context(buffer, kIoBuffer, 0, &bytes_, read_bytes, nullptr, seekable_ ? seek_bytes : nullptr);
-  container_ = avformat_alloc_context();
-  if (!buffer || !io_ || !container_) return failed("there is no memory to open it");
-  container_->pb = io_;
-  container_->io_open = refuse_other_files;
-  container_->flags |= AVFMT_FLAG_CUSTOM_IO;
+  container_ = bytes_->container();
+  if (!container_) return failed("there is no memory to open it");
   container_->max_streams = 64;
   container_->codec_whitelist = av_strdup(kCodecs);
   AVDictionary* given = nullptr;
   av_dict_parse_string(&given, options.c_str(), "=", ":", 0);
-  // Loops of FFmpeg that read nothing hear of it too.
-  container_->interrupt_callback = {
-      .callback = [](void* opaque) { return static_cast<const Bytes*>(opaque)->given_up ? 1 : 0; }, .opaque = &bytes_};
   const int opened = avformat_open_input(&container_, "", demuxer, &given);  // frees the container when it fails
   const bool unknown = opened >= 0 && av_dict_count(given) > 0;
   av_dict_free(&given);
   if (opened < 0) return failed("is no video that can be read: " + ffmpeg_error(opened));
-  bytes_.spent = 0;
+  bytes_->packet_came();
   if (unknown) return failed("is of a kind that has no such options: " + options);
   return {};
 }
@@ -172,7 +106,7 @@ Result<void> FfmpegInput::choose_stream() {
       container_->streams[i]->discard = AVDISCARD_ALL;
   if (const int found = avformat_find_stream_info(container_, nullptr); found < 0)
     return failed("is no video that can be read: " + ffmpeg_error(found));
-  if (bytes_.given_up) return failed("");
+  if (bytes_->given_up()) return failed("");
   stream_ = av_find_best_stream(container_, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   if (stream_ < 0) return failed("holds no video stream");
   for (unsigned i = 0; i < container_->nb_streams; ++i)
@@ -217,7 +151,7 @@ int FfmpegInput::read(AVPacket& packet) {
     if (got < 0) return got;
     // Empty packets are frames that an encoder left out; to a decoder they would be the end.
     if (packet.stream_index == stream_ && packet.size > 0) {
-      bytes_.spent = 0;
+      bytes_->packet_came();
       return 0;
     }
     av_packet_unref(&packet);

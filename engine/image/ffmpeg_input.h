@@ -7,9 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "core/file_descriptor.h"
-#include "core/patient_reader.h"
 #include "core/result.h"
+#include "image/ffmpeg_bytes.h"
 #include "image/ffmpeg_handles.h"
 #include "image/ffmpeg_log.h"
 #include "image/movie_source.h"
@@ -43,27 +42,16 @@ class FfmpegInput {
 
  private:
   FfmpegInput() = default;
+  static Result<std::unique_ptr<FfmpegInput>> open(std::unique_ptr<FfmpegBytes> bytes, const std::string& name,
+                                                   const std::string& format, const SizeLimits& limits,
+                                                   const std::string& options);
   Result<void> open_container(const std::string& format, const std::string& options);
   Result<void> choose_stream();
   Error failed(const std::string& why) const;
 
   std::string name_;
   SizeLimits limits_;
-  struct Bytes {
-    std::unique_ptr<PatientReader> reader;
-    std::string head;         ///< comes first
-    std::size_t given = 0;    ///< of it
-    std::uint64_t spent = 0;  ///< read since the last packet
-    std::uint64_t most = 0;   ///< of them
-    std::optional<Error> given_up;
-  } bytes_;
-  static Result<std::unique_ptr<FfmpegInput>> open(Bytes bytes, bool seekable, const std::string& name,
-                                                   const std::string& format, const SizeLimits& limits,
-                                                   const std::string& options);
-  static int read_bytes(void* opaque, std::uint8_t* to, int size);
-  static std::int64_t seek_bytes(void* opaque, std::int64_t to, int whence);
-  bool seekable_ = true;
-  AVIOContext* io_ = nullptr;
+  std::unique_ptr<FfmpegBytes> bytes_;
   AVFormatContext* container_ = nullptr;
   int stream_ = 0;
   const AVCodec* codec_ = nullptr;

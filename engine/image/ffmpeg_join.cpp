@@ -64,7 +64,7 @@ class FfmpegJoin {
   Result<std::unique_ptr<FfmpegInput>> open(const VideoPiece& piece) const {
     AFTERGLOW_CHECK(go_on());
     const bool mov = plan_.container == "mov" || plan_.container == "mp4";
-    return FfmpegInput::open(piece.file, mov ? "mov" : "matroska", SizeLimits{}, pieces_.patience);
+    return FfmpegInput::open(piece.file, mov ? "mov" : "matroska", SizeLimits{}, plan_.patience);
   }
 
   /// In which order its packets show, and whether they can follow those before.

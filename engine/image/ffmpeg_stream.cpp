@@ -8,6 +8,7 @@
 #include "image/ffmpeg_facts.h"
 #include "image/ffmpeg_input.h"
 #include "image/movie_color.h"
+#include "image/time_code.h"
 
 namespace afterglow {
 namespace {
@@ -81,6 +82,7 @@ class FfmpegStream : public MovieFrames {
     MovieFacts facts = facts_;
     const bool timed = frame->best_effort_timestamp != AV_NOPTS_VALUE;
     facts.pts = {timed ? frame->best_effort_timestamp : count_};
+    facts.time_code = time_code_after(facts_.time_code, count_, facts_.rate);
     ++count_;
     return std::shared_ptr<MovieSource>(std::make_shared<StreamFrame>(std::move(frame), std::move(facts), planes_));
   }

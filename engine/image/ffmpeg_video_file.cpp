@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "image/ffmpeg_video_file.h"
 
-extern "C" {
-#include <libavutil/timecode.h>
-}
-
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "image/ffmpeg_log.h"
+#include "image/time_code.h"
 
 namespace afterglow {
 namespace {
@@ -45,7 +41,7 @@ Result<void> FfmpegVideoFile::begin(const AVCodecParameters& frames, bool alpha,
   stream_->sample_aspect_ratio = stream_->codecpar->sample_aspect_ratio = {1, 1};
   if (plan_.codec == "vp9" && alpha) av_dict_set(&stream_->metadata, "alpha_mode", "1", 0);
   AFTERGLOW_CHECK(add_copies(name, diagnostics));
-  if (copy_ && plan_.audio.empty()) add_timecode(copy_->timecode());
+  add_time_code();
   return write_head();
 }
 
@@ -53,20 +49,21 @@ Result<void> FfmpegVideoFile::add_copies(const std::string& name, Diagnostics& d
   const bool sound_only = !plan_.audio.empty();
   const auto& from = sound_only ? plan_.audio : plan_.source;
   if (from.empty()) return {};
-  AFTERGLOW_TRY(copy_, FfmpegCopy::open(from, sound_only, *output_, plan_.range, name, diagnostics));
+  AFTERGLOW_TRY(copy_, FfmpegCopy::open(from, sound_only, *output_, plan_.range, plan_.patience, name, diagnostics));
   return {};
 }
 
-/// That of the first picture that is written. `text`: of the source's first.
-void FfmpegVideoFile::add_timecode(const std::string& text) {
-  AVTimecode first{};
+/// That of the first picture that is written.
+void FfmpegVideoFile::add_time_code() {
+  const bool from_source = plan_.time_code.empty() && copy_ && plan_.audio.empty();
+  const std::string text = from_source ? copy_->time_code() : plan_.time_code;
   const AVRational rate = rational(plan_.rate);
-  if (text.empty() || av_timecode_init_from_string(&first, rate, text.c_str(), nullptr) < 0) return;
-  const auto frames = static_cast<int>(av_rescale_q(std::max(0LL, plan_.range.shift), kCopyClock, av_inv_q(rate)));
-  std::array<char, AV_TIMECODE_STR_SIZE> out{};
-  av_timecode_make_string(&first, out.data(), plan_.range.begin < 0 ? 0 : frames);
+  const bool later = from_source && plan_.range.begin >= 0;
+  const long long frames = later ? av_rescale_q(std::max(0LL, plan_.range.shift), kCopyClock, av_inv_q(rate)) : 0;
+  const std::string first = time_code_after(text, frames, plan_.rate);
+  if (first.empty()) return;
   av_dict_set(&output_->container().metadata, "timecode", nullptr, 0);
-  av_dict_set(&stream_->metadata, "timecode", out.data(), 0);
+  av_dict_set(&stream_->metadata, "timecode", first.c_str(), 0);
 }
 
 Result<void> FfmpegVideoFile::write_head() {

@@ -39,7 +39,7 @@ class FfmpegVideoFile {
  private:
   explicit FfmpegVideoFile(const VideoPlan& plan) : plan_(plan) {}
   Result<void> add_copies(const std::string& name, Diagnostics& diagnostics);
-  void add_timecode(const std::string& text);
+  void add_time_code();
   Result<void> write_head();
 
   const VideoPlan& plan_;

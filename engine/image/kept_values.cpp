@@ -19,14 +19,6 @@ constexpr std::array<std::string_view, 9> kNumbers{"ExposureTime",         "FNum
                                                    "Exif:SubjectDistance", "GPS:Altitude",
                                                    "FramesPerSecond"};
 
-/// A part of a time code: its bits, and what it may be.
-struct Digits {
-  int shift = 0;
-  std::uint32_t mask = 0, most = 0;
-};
-constexpr std::array kParts{Digits{24, 0x3f, 23}, Digits{16, 0x7f, 59}, Digits{8, 0x7f, 59}, Digits{0, 0x3f, 39}};
-constexpr std::uint32_t kDropFrame = 1 << 6;
-
 std::optional<Rational> fraction(std::string_view text) {
   const std::size_t slash = text.find('/');
   if (slash == std::string_view::npos) return std::nullopt;
@@ -36,30 +28,6 @@ std::optional<Rational> fraction(std::string_view text) {
 }
 
 }  // namespace
-
-std::string time_code_text(std::uint32_t coded) {
-  std::array<std::uint32_t, 4> values{};
-  for (std::size_t i = 0; i < kParts.size(); ++i) {
-    const std::uint32_t digits = coded >> kParts[i].shift & kParts[i].mask;
-    values[i] = (digits >> 4) * 10 + (digits & 15);
-    if ((digits & 15) > 9 || values[i] > kParts[i].most) return "";
-  }
-  return fmt::format("{:02}:{:02}:{:02}{}{:02}", values[0], values[1], values[2], (coded & kDropFrame) != 0 ? ';' : ':',
-                     values[3]);
-}
-
-std::optional<std::uint32_t> time_code_of(std::string_view text) {
-  constexpr std::size_t kLength = 11;
-  if (text.size() != kLength || text[2] != ':' || text[5] != ':' || (text[8] != ':' && text[8] != ';'))
-    return std::nullopt;
-  std::uint32_t coded = text[8] == ';' ? kDropFrame : 0;
-  for (std::size_t i = 0; i < kParts.size(); ++i) {
-    const auto number = parse_number<std::uint32_t>(text.substr(3 * i, 2));
-    if (!number || *number > kParts[i].most) return std::nullopt;
-    coded |= (*number / 10 << 4 | *number % 10) << kParts[i].shift;
-  }
-  return coded;
-}
 
 std::optional<Rational> rate_of(const MetadataValue& value) {
   constexpr double kMost = 10'000;

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "image/ffmpeg_module.h"
 #include "image/movie_color.h"
 #include "image/oiio_module.h"
+#include "image/time_code.h"
 
 namespace afterglow {
 
@@ -70,10 +72,24 @@ class MovieFrameFile : public PictureFile {
     for (std::size_t i = 0; i < 4; ++i)
       if (color.channels[i] >= 0)
         facts.color_channels[i] = parts_.front().channels[static_cast<std::size_t>(color.channels[i])];
+    facts.metadata = metadata();
     return facts;
   }
 
  private:
+  /// A time code and the rate that it counts by; by the frame's time, as numbers of frames tell nothing where the rate
+  /// changes.
+  Metadata metadata() const {
+    const MovieFacts& movie = movie_->facts();
+    const auto at = static_cast<std::size_t>(frame_);
+    if (movie.time_code.empty() || movie.rate.denominator <= 0 || at >= movie.pts.size()) return {};
+    const double seconds = static_cast<double>(movie.pts[at] - movie.pts.front()) * movie.time_base.numerator /
+                           movie.time_base.denominator;
+    const auto frames = std::llround(seconds * movie.rate.numerator / movie.rate.denominator);
+    std::string code = time_code_after(movie.time_code, frames, movie.rate);
+    if (code.empty()) return {};
+    return {{kTimeCodeName, std::move(code)}, {"FramesPerSecond", movie.rate}};
+  }
   Result<void> read_into(float* rgba, std::size_t row) {
     auto read = movie_->source_->read(frame_, rgba, row);
     if (read) return read;

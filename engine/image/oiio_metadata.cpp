@@ -2,6 +2,7 @@
 #include "image/oiio_metadata.h"
 
 #include "image/kept_values.h"
+#include "image/time_code.h"
 
 namespace afterglow {
 namespace {

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "core/text.h"
+#include "image/time_code.h"
 
 namespace afterglow {
 namespace {
@@ -249,6 +250,11 @@ Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptio
   plan.pack.dither = options.dither.value_or(codec->exact && plan.pack.layout->bits == 8);
   if (!options.video.piece) plan.audio = options.video.audio;
   return plan;
+}
+
+void keep_facts(const FileFacts& first, VideoPlan& plan) {
+  const MetadataValue* code = find_metadata(first.metadata, kTimeCodeName);
+  plan.time_code = code ? metadata_text(*code) : "";
 }
 
 Result<void> check_video_size(const VideoPlan& plan, Size size, const std::filesystem::path& file) {

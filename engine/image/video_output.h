@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/diagnostics.h"
+#include "core/patience.h"
 #include "core/result.h"
 #include "image/metadata.h"
 #include "image/output_space.h"
@@ -44,12 +45,17 @@ struct VideoPlan {
   std::filesystem::path audio;   ///< sound from here: --audio
   CopyRange range;               ///< of both
   std::filesystem::path source;  ///< the video that is worked on: its other streams are copied; empty: none
+  std::string time_code;         ///< of the first picture; empty: the source's, if it has one
+  Patience patience{};           ///< with these and with pieces
 };
 
 /// Codec, pixel format and settings for this output. `deep`: the picture had more than 8 bits; `has_alpha`: it has
 /// alpha. Errors (usage), each naming what is allowed and the nearest: no such codec or not in this container, a pixel
 /// format that the codec does not have, options that it does not take.
 Result<VideoPlan> plan_video(const std::filesystem::path& file, const WriteOptions& options, bool deep, bool has_alpha);
+
+/// What a video keeps of the file of its first picture: the time code.
+void keep_facts(const FileFacts& first, VideoPlan& plan);
 
 /// Sides that the pixel format cannot hold. Errors (usage).
 Result<void> check_video_size(const VideoPlan& plan, Size size, const std::filesystem::path& file);

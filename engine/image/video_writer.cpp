@@ -23,6 +23,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, Vid
   AFTERGLOW_TRY(const FfmpegModule* module, ffmpeg_module());
   std::unique_ptr<VideoWriter> writer(new VideoWriter());
   writer->plan_ = std::move(plan);
+  AFTERGLOW_TRY(writer->plan_.patience, patience_of_process());
   AFTERGLOW_TRY(writer->target_, VideoTarget::open(file));
   VideoTarget& target = *writer->target_;
   auto encoder = module->encode(writer->plan_, target.out(), target.temporary(), file.string(), diagnostics);

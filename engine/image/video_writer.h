@@ -7,7 +7,6 @@
 #include <mutex>
 #include <vector>
 
-#include "core/patience.h"
 #include "image/video_output.h"
 #include "image/video_target.h"
 
@@ -67,7 +66,6 @@ struct VideoPieces {
   std::vector<VideoPiece> pieces;
   bool whole = true;  ///< as VideoEncoder::finish
   std::function<bool()> interrupted;
-  Patience patience{};  ///< with files that give no bytes
 };
 
 /// One file of all pieces, whose packets go into it as they are; with sound and all else as `plan` says, of which size,

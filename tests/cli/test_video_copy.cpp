@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What a video that is written takes from other files: sound, subtitles, chapters, attachments, times.
 
+#include <cstring>
+
 #include "video_out_test.h"
 
 namespace afterglow::test {
@@ -127,6 +129,35 @@ TEST_F(VideoOut, TheTimecodeIsThatOfTheFirstPicture) {
     EXPECT_THAT(outcome.err, IsEmpty());
     EXPECT_EQ(stream_of("out.mov").at("tags").at("timecode"), first);
   }
+}
+
+/// Pictures have it in their files: into a video goes that of the first, out of one each gets its own.
+TEST_F(VideoOut, TimecodesGoBetweenPicturesAndVideos) {
+  make_frames(30);
+  ASSERT_EQ(shell("ffmpeg -v error -framerate 30000/1001 -start_number 1001 -i in/%04d.ppm -c:v prores_ks -timecode "
+                  "'00:59:59;20' in.mov")
+                .exit_code,
+            0);
+  ASSERT_EQ(run({"run", "look.lua", "in.mov", "-o", "out.####.exr"}).exit_code, kDone);
+  // As EXR keeps it: decimal digits, and a bit that numbers are dropped.
+  const auto code_of = [&](const std::string& name) {
+    const std::string bytes = read(name), head("timecode\0\10\0\0\0", 13);
+    std::uint32_t code = 0;
+    if (const auto at = bytes.find(head); at != std::string::npos) std::memcpy(&code, &bytes[at + head.size()], 4);
+    return code;
+  };
+  EXPECT_EQ(code_of("out.0001.exr"), 0x00595960u) << "00:59:59;20";
+  EXPECT_EQ(code_of("out.0010.exr"), 0x00595969u) << "00:59:59;29";
+  EXPECT_EQ(code_of("out.0011.exr"), 0x01000040u) << "01:00:00;00";
+  for (const auto& [output, frames, first] :
+       {std::tuple{"again.mov", "1-30", "00:59:59;20"}, std::tuple{"later.mp4", "11-30", "01:00:00;00"}}) {
+    ASSERT_EQ(run({"run", "look.lua", "out.####.exr", "-o", output, "--frames", frames, "--fps", "29.97"}).exit_code,
+              kDone);
+    EXPECT_EQ(stream_of(output).at("tags").at("timecode"), first);
+  }
+  // At a rate at which no numbers are dropped it means nothing.
+  ASSERT_EQ(run({"run", "look.lua", "out.####.exr", "-o", "other.mov", "--fps", "24"}).exit_code, kDone);
+  EXPECT_FALSE(stream_of("other.mov").at("tags").contains("timecode"));
 }
 
 }  // namespace

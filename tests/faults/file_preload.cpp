@@ -72,7 +72,7 @@ struct Wanted {
 };
 
 const Wanted& wanted() {
-  static const Wanted wanted;
+  static const Wanted& wanted = *new Wanted;  // files are read after the last destructor too
   return wanted;
 }
 

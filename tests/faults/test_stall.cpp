@@ -140,6 +140,27 @@ TEST_F(Stall, AFileWhoseReadsDoNotComeBackIsGivenUp) {
   expect_nothing_left_over();
 }
 
+TEST_F(Stall, SoundWhoseReadsDoNotComeBackIsGivenUp) {
+  if (std::system("command -v ffmpeg >/dev/null") != 0) GTEST_SKIP() << "the program ffmpeg is not installed";
+  // Long enough to be read while frames are written.
+  ASSERT_EQ(
+      shell("ffmpeg -v error -f lavfi -i sine=duration=8:sample_rate=48000 -c:a pcm_f32le -y sound.wav").exit_code, 0);
+  make_exr("in.0001.exr");
+  const Fault fault = file_fault("stall", path("sound.wav"));
+  const std::vector<std::string> command{"run",  "look.lua", "in.0001.exr", "-o",    "out.mkv", "--codec",
+                                         "ffv1", "--audio",  "sound.wav",   "--fps", "1"};
+  const long last = places(command, fault);
+  environment_[kTimeout] = "0.2";
+  for (const long place : {1L, last}) {
+    fs::remove(path("out.mkv"));
+    const Outcome outcome = run_with(command, fault, place);
+    EXPECT_EQ(outcome.exit_code, kFiles) << place;
+    EXPECT_THAT(outcome.err, HasSubstr("sound.wav: error: has given no bytes for 0.2 s"));
+    EXPECT_FALSE(fs::exists(path("out.mkv")));
+    expect_nothing_left_over();
+  }
+}
+
 TEST_F(Stall, AFileThatNeverEndsIsGivenUp) {
   make_clip("-c:v libx264 -pix_fmt yuv420p -f mpegts -y in.ts");
   // Packets of nothing, behind the pictures: what is left of it when it comes again and again.

@@ -24,6 +24,11 @@ void* operator new(std::size_t bytes) {
   live_bytes += static_cast<long long>(malloc_usable_size(memory));
   return memory;
 }
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  void* memory = std::malloc(bytes);
+  if (memory != nullptr) live_bytes += static_cast<long long>(malloc_usable_size(memory));
+  return memory;
+}
 void operator delete(void* memory) noexcept {
   live_bytes -= static_cast<long long>(malloc_usable_size(memory));
   std::free(memory);

@@ -29,7 +29,8 @@ TEST(Spread, OutliersDoNotMoveTheMedian) { EXPECT_DOUBLE_EQ(Spread::of({1, 1, 1,
 
 std::vector<bool> fronts(std::vector<Point> points) {
   std::vector<bool> out;
-  for (const auto& p : test::report(std::move(points)).cells[0].points) out.push_back(p.front);
+  const auto report = test::report(std::move(points));
+  for (const auto& p : report.cells[0].points) out.push_back(p.front);
   return out;
 }
 

@@ -5,26 +5,13 @@
 #include <cmath>
 
 #include "image/kept_values.h"
+#include "image/time_code.h"
 #include "image/writer.h"
 #include "make_files.h"
 #include "temporary_folder.h"
 
 namespace afterglow {
 namespace {
-
-TEST(KeptValues, TimeCodesAreTextThatIsReadBack) {
-  EXPECT_EQ(time_code_text(0x01020304), "01:02:03:04");
-  EXPECT_EQ(time_code_text(0x23595929), "23:59:59:29");
-  EXPECT_EQ(time_code_text(0x01020344), "01:02:03;04") << "frames are dropped";
-  EXPECT_EQ(time_code_text(0xc1828384), "01:02:03:04") << "bits of fields and groups are none of the time";
-  for (const std::uint32_t wrong : {0x24000000u, 0x00600000u, 0x00006000u, 0x0a000000u, 0xffffffffu})
-    EXPECT_EQ(time_code_text(wrong), "") << wrong;
-  for (const std::uint32_t code : {0u, 0x01020304u, 0x23595929u, 0x10000029u, 0x01020344u})
-    EXPECT_EQ(time_code_of(time_code_text(code)), code);
-  for (const char* wrong : {"", "01:02:03", "24:00:00:00", "01:60:00:00", "01:02:03:40", "01-02-03-04", "-1:02:03:04",
-                            "01:02:03:4 ", "01:02:03:044"})
-    EXPECT_FALSE(time_code_of(wrong)) << wrong;
-}
 
 TEST(KeptValues, RatesAreThoseOfTelevisionWhereTheyAreNear) {
   const auto text = [](const MetadataValue& value) {

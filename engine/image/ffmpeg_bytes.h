@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// The bytes of one file for FFmpeg's demuxers, read with patience: what gives none is given up, and with it everything
+// that waits for it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/file_descriptor.h"
+#include "core/patient_reader.h"
+#include "core/result.h"
+#include "image/ffmpeg_handles.h"
+
+namespace afterglow {
+
+/// Not thread-safe. Outlives the container that reads it.
+class FfmpegBytes {
+ public:
+  /// Errors: io (the file cannot be opened).
+  static Result<std::unique_ptr<FfmpegBytes>> open(const std::filesystem::path& file, const Patience& patience);
+  /// Of a descriptor that cannot seek. `head` comes first; `most`: bytes between two packets.
+  FfmpegBytes(std::unique_ptr<PatientReader> reader, std::string head, std::uint64_t most);
+  ~FfmpegBytes();
+  FfmpegBytes(const FfmpegBytes&) = delete;
+  FfmpegBytes& operator=(const FfmpegBytes&) = delete;
+
+  /// A container that reads from here alone, to be opened with this demuxer's format; no other file is opened by it.
+  /// Null: no memory.
+  AVFormatContext* container();
+  /// A packet has come: the bytes up to the next are counted anew.
+  void packet_came() { spent_ = 0; }
+  /// Why there is no use in reading on, when that is so: no bytes come, nobody waits for them any more, or the demuxer
+  /// reads on and on and finds no packet. It stays so. Without a file.
+  const std::optional<Error>& given_up() const { return given_up_; }
+
+ private:
+  static int read(void* opaque, std::uint8_t* to, int size);
+  static std::int64_t seek(void* opaque, std::int64_t to, int whence);
+
+  std::unique_ptr<PatientReader> reader_;
+  bool seekable_ = false;
+  std::string head_;
+  std::size_t given_ = 0;    ///< of the head
+  std::uint64_t spent_ = 0;  ///< read since the last packet
+  std::uint64_t most_ = 0;   ///< of them
+  std::optional<Error> given_up_;
+  AVIOContext* io_ = nullptr;
+};
+
+}  // namespace afterglow
