@@ -53,6 +53,7 @@ namespace afterglow {
   F(vkCmdCopyBuffer)                  \
   F(vkCmdCopyBufferToImage)           \
   F(vkCmdCopyImage)                   \
+  F(vkCmdClearAttachments)            \
   F(vkCmdCopyImageToBuffer)           \
   F(vkCmdDispatch)                    \
   F(vkCmdDispatchBase)                \

@@ -13,6 +13,7 @@
 #include "gpu/swapchain.h"
 #include "view.frag.h"
 #include "window/view_table.h"
+#include "window/window_tiles.h"
 
 namespace afterglow {
 
@@ -64,12 +65,6 @@ std::array<int, 2> middles_between(double from, double to) {
   return {static_cast<int>(std::ceil(from - 0.5)), static_cast<int>(std::ceil(to - 0.5))};
 }
 
-Rect intersection(const Rect& a, const Rect& b) {
-  const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
-  return {x, y, std::max(std::min(a.x + a.width, b.x + b.width) - x, 0),
-          std::max(std::min(a.y + a.height, b.y + b.height) - y, 0)};
-}
-
 /// What a view shows, and where on the target.
 struct Place {
   Point origin;  ///< of the picture
@@ -87,7 +82,7 @@ Place place_of(const ViewFrame& frame) {
   };
   const auto [left, right] = side(out.origin.x, at.scale * frame.picture.width, frame.area.x, frame.area.width);
   const auto [top, bottom] = side(out.origin.y, at.scale * frame.picture.height, frame.area.y, frame.area.height);
-  out.pixels = intersection({left, top, std::max(right - left, 0), std::max(bottom - top, 0)}, frame.area);
+  out.pixels = common_part({left, top, std::max(right - left, 0), std::max(bottom - top, 0)}, frame.area);
   const bool across = frame.view.wipe_vertical;
   const double length = at.scale * frame.view.wipe * (across ? frame.picture.height : frame.picture.width);
   out.border = length + (across ? out.origin.y : out.origin.x);
@@ -101,17 +96,7 @@ Rect strip(const Place& place, bool vertical, double from, double to) {
   const auto [begin, end] = middles_between(std::clamp<double>(from, first - 1, first + length + 1),
                                             std::clamp<double>(to, first - 1, first + length + 1));
   const Rect cut = vertical ? Rect{all.x, begin, all.width, end - begin} : Rect{begin, all.y, end - begin, all.height};
-  return intersection(cut, all);
-}
-
-/// What of `all` lies above, below, left and right of `hole`, which lies in it.
-std::array<Rect, 4> around(const Rect& all, const Rect& hole) {
-  if (hole.size().area() == 0) return {all};
-  const int right = hole.x + hole.width, bottom = hole.y + hole.height;
-  return {Rect{all.x, all.y, all.width, hole.y - all.y},
-          {all.x, bottom, all.width, all.y + all.height - bottom},
-          {all.x, hole.y, hole.x - all.x, hole.height},
-          {right, hole.y, all.x + all.width - right, hole.height}};
+  return common_part(cut, all);
 }
 
 Push push_of(const ViewFrame& frame, const Place& place, Size shown, Size compared) {
@@ -154,6 +139,11 @@ struct ViewPass::State {
   DescriptorPoolHandle pool;
   ViewTable table;
   std::vector<VkDescriptorSet> sets;  // of each slot, of each frame, kSetsOfFrame in a row
+  std::vector<Rect> only;             // pixels that are recorded now
+
+  bool reached(const Rect& pixels) const {
+    return std::ranges::any_of(only, [&](const Rect& r) { return common_part(r, pixels).size().area() > 0; });
+  }
 
   Result<void> make_shaders();
   Result<VkPipeline> pipeline(Constants constants);
@@ -233,21 +223,25 @@ void ViewPass::State::bind(VkDescriptorSet set, const std::array<ViewImage, kIma
 /// Of these pixels of the target, with the set that is bound.
 Result<void> ViewPass::State::draw(VkCommandBuffer commands, const Rect& pixels, const Constants& constants,
                                    const Push& push) {
-  if (pixels.size().area() == 0) return {};
+  if (!reached(pixels)) return {};
   AFTERGLOW_TRY(const VkPipeline pipeline, this->pipeline(constants));
-  const auto width = static_cast<std::uint32_t>(pixels.width), height = static_cast<std::uint32_t>(pixels.height);
-  const VkViewport viewport{static_cast<float>(pixels.x),
-                            static_cast<float>(pixels.y),
-                            static_cast<float>(width),
-                            static_cast<float>(height),
-                            0,
-                            1};
-  const VkRect2D scissor{{pixels.x, pixels.y}, {width, height}};
-  device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
-  device.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
   device.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
   device.vk().vkCmdPushConstants(commands, layout.pipeline.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push, &push);
-  device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
+  for (const Rect& part : only) {
+    const Rect at = common_part(part, pixels);
+    if (at.size().area() == 0) continue;
+    const auto width = static_cast<std::uint32_t>(at.width), height = static_cast<std::uint32_t>(at.height);
+    const VkViewport viewport{static_cast<float>(at.x),
+                              static_cast<float>(at.y),
+                              static_cast<float>(width),
+                              static_cast<float>(height),
+                              0,
+                              1};
+    const VkRect2D scissor{{at.x, at.y}, {width, height}};
+    device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
+    device.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
+    device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
+  }
   return {};
 }
 
@@ -265,7 +259,7 @@ Result<void> ViewPass::State::fill(VkCommandBuffer commands, const Rect& pixels,
 Result<void> ViewPass::State::draw_images(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame,
                                           const Place& place, const Rect& pixels,
                                           const std::array<ViewImage, kImages>& images, bool difference) {
-  bind(set, images);
+  bind(set, images);  // whatever is drawn: fills need a set too
   device.vk().vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout.pipeline.get(), 0, 1, &set, 0,
                                       nullptr);
   const auto [shown, compared] = images;
@@ -291,7 +285,8 @@ Result<void> ViewPass::State::draw_frame(VkCommandBuffer commands, std::span<con
   const Rect rest = wipe ? strip(place, vertical, place.border, kFar) : place.pixels;
   AFTERGLOW_CHECK(
       draw_images(commands, own[0], frame, place, rest, {frame.shown, difference ? other : frame.shown}, difference));
-  for (const Rect& beside : around(frame.area, place.pixels)) AFTERGLOW_CHECK(fill(commands, beside, frame.outside));
+  for (const Rect& beside : parts_beside(frame.area, place.pixels))
+    AFTERGLOW_CHECK(fill(commands, beside, frame.outside));
   if (!wipe) return {};
   const Rect before = strip(place, vertical, -kFar, place.border);
   AFTERGLOW_CHECK(draw_images(commands, own[1], frame, place, before, {other, other}, false));
@@ -318,11 +313,15 @@ void ViewPass::prepare(VkCommandBuffer commands) { state_->table.upload(state_->
 ViewPass::ViewPass(std::unique_ptr<State> state) : state_(std::move(state)) {}
 ViewPass::~ViewPass() = default;
 
-Result<void> ViewPass::record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames) {
+Rect picture_pixels(const ViewFrame& frame) { return place_of(frame).pixels; }
+
+Result<void> ViewPass::record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames,
+                              std::span<const Rect> only) {
   State& s = *state_;
   s.device.begin_label(commands, "view");
+  s.only.assign(only.begin(), only.end());
   for (std::size_t i = 0; i < std::min(frames.size(), kMostFrames); ++i)
-    if (frames[i].area.size().area() > 0) {
+    if (s.reached(frames[i].area)) {
       const VkDescriptorSet* sets = &s.sets[(slot * kMostFrames + i) * kSetsOfFrame];
       AFTERGLOW_CHECK(
           s.draw_frame(commands, std::span<const VkDescriptorSet, kSetsOfFrame>(sets, kSetsOfFrame), frames[i]));
