@@ -53,7 +53,6 @@ namespace afterglow {
   F(vkCmdCopyBuffer)                  \
   F(vkCmdCopyBufferToImage)           \
   F(vkCmdCopyImage)                   \
-  F(vkCmdClearAttachments)            \
   F(vkCmdCopyImageToBuffer)           \
   F(vkCmdDispatch)                    \
   F(vkCmdDispatchBase)                \

@@ -30,11 +30,11 @@ std::optional<std::array<std::size_t, 3>> code_order(VkFormat format) {
 
 }  // namespace
 
-Result<std::unique_ptr<Painter>> Painter::create(Device& device, const SwapchainOptions& options) {
+Result<std::unique_ptr<Painter>> Painter::create(Device& device, const SwapchainOptions& options, bool check) {
   std::unique_ptr<Painter> out(new Painter(device));
   AFTERGLOW_TRY(out->swapchain_, Swapchain::create(device, options));
   const VkFormat format = out->swapchain_->format();
-  if (device.validation_log() && code_order(format)) out->check_ = std::make_unique<PaintCheck>();
+  if (check && code_order(format)) out->check_ = std::make_unique<PaintCheck>();
   const std::size_t slots = Swapchain::kFramesInFlight * (out->check_ ? 2 : 1);
   AFTERGLOW_TRY(out->view_pass_, ViewPass::create(device, format, slots));
   AFTERGLOW_TRY(out->ui_, UiRenderer::create(device, format, slots));
@@ -110,28 +110,10 @@ Result<void> Painter::record_parts(VkCommandBuffer commands, const PresentTarget
       .colorAttachmentCount = 1,
       .pColorAttachments = &color};
   device_.vk().vkCmdBeginRendering(commands, &rendering);
-  clear(commands, views.empty() ? Rect{} : views.front().area, only);
-  const auto viewed = view_pass_->record(commands, target.slot, views, only);
+  const auto viewed = view_pass_->record(commands, target.slot, views, only, {0.1f, 0.1f, 0.1f});
   ui_->record(commands, target.slot, interface);
   device_.vk().vkCmdEndRendering(commands);
   return viewed;
-}
-
-/// What lies beside the picture's area.
-void Painter::clear(VkCommandBuffer commands, const Rect& area, std::span<const Rect> only) const {
-  std::vector<VkClearRect> rects;
-  for (const Rect& part : only) {
-    for (const Rect& beside : parts_beside(part, common_part(part, area))) {
-      if (beside.size().area() == 0) continue;
-      const VkExtent2D extent{static_cast<std::uint32_t>(beside.width), static_cast<std::uint32_t>(beside.height)};
-      rects.push_back({{{beside.x, beside.y}, extent}, 0, 1});
-    }
-  }
-  if (rects.empty()) return;
-  const VkClearAttachment clear{.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT,
-                                .colorAttachment = 0,
-                                .clearValue = {.color = {.float32 = {0.1f, 0.1f, 0.1f, 1}}}};
-  device_.vk().vkCmdClearAttachments(commands, 1, &clear, static_cast<std::uint32_t>(rects.size()), rects.data());
 }
 
 /// The same frame, drawn wholly, beside the one that is shown.

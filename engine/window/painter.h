@@ -18,8 +18,9 @@ namespace afterglow {
 /// Drawing thread alone. The Device (with a Presentation) must outlive it.
 class Painter {
  public:
-  /// Errors: device.
-  static Result<std::unique_ptr<Painter>> create(Device& device, const SwapchainOptions& options);
+  /// `check`: each frame that keeps pixels is drawn wholly too, beside the window, and compared byte by byte; one that
+  /// differs is an error. It takes `readback`. Errors: device.
+  static Result<std::unique_ptr<Painter>> create(Device& device, const SwapchainOptions& options, bool check = false);
 
   /// After the interface's fonts have changed; waits for the frames before. Errors: device.
   Result<void> take_fonts();
@@ -28,15 +29,11 @@ class Painter {
   /// Waits until the frames drawn so far are done: what they read may be written then. Errors: device.
   Result<void> finish() { return swapchain_->finish(); }
   /// One frame: the picture (none: background alone), then the interface over it. `window`: size of the frame buffer.
-  /// Where an image of the window has just that already, it is left alone (see `keep`).
+  /// Devices on the CPU leave alone what an image of the window shows already; the pixels are the same.
   /// Images of `view` must be readable by fragment shaders in what is submitted from here on. Errors: device.
   /// `written`: parts of the interface's atlas that have changed.
   Result<Swapchain::Drawn> paint(Size window, std::span<const ViewFrame> views, const ImDrawData& interface,
                                  std::span<const Rect> written = {});
-  /// Whether frames draw only what is another thing than in the last frame of the same image, or all of it. The pixels
-  /// are the same (under validation that is compared, frame by frame; one that differs is an error). On for drivers
-  /// on the CPU, where a pixel costs more than finding out.
-  void keep(bool on) { keeps_ = on; }
   /// The next frame that is painted goes to this file too (PNG, or what else the writer knows).
   void capture(const std::filesystem::path& file) { capture_ = file; }
 
@@ -50,7 +47,6 @@ class Painter {
             std::span<const Rect> written);
   Result<void> record_parts(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
                             const ImDrawData& interface, std::span<const Rect> only);
-  void clear(VkCommandBuffer commands, const Rect& area, std::span<const Rect> only) const;
   Result<void> record_check(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
                             const ImDrawData& interface);
   Result<void> write_capture(const Buffer& pixels, Size size);
@@ -59,13 +55,13 @@ class Painter {
   std::unique_ptr<ViewPass> view_pass_;
   std::unique_ptr<UiRenderer> ui_;
   std::filesystem::path capture_;
-  bool keeps_ = false;
-  WindowTiles tiles_;                              ///< of the frame that is painted
+  const bool keeps_;   ///< drivers on the CPU: there a pixel costs more than finding out that it need not be drawn
+  WindowTiles tiles_;  ///< of the frame that is painted
   std::vector<std::vector<std::uint64_t>> shown_;  ///< what each image of the window has
   std::vector<ViewFrame> views_;                   ///< of the frame before, without what changes with each picture
   std::uint64_t look_ = 0;                         ///< another number when `views_` are others
   std::uint64_t glyphs_ = 0;                       ///< another number when all that the window shows may look different
-  std::unique_ptr<PaintCheck> check_;              ///< of devices that are validated
+  std::unique_ptr<PaintCheck> check_;              ///< none: nobody asked for it
   std::unique_ptr<Swapchain> swapchain_;           // last: it waits before what its frames use goes
 };
 

@@ -102,7 +102,7 @@ class ViewPass {
   /// pixel in common). What was recorded with `slot` before must be done. Makes a pipeline when a way of looking
   /// (channel, marks, background, how pixels are read) comes first. Errors: device.
   Result<void> record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames,
-                      std::span<const Rect> only);
+                      std::span<const Rect> only, const ViewColor& background);
 
  private:
   struct State;

@@ -38,7 +38,7 @@ class PainterTest : public testing::Test {
     ASSERT_TRUE(device) << device.error().text();
     device_ = std::move(*device);
     interface_ = std::make_unique<Interface>(window_->handle());
-    auto painter = Painter::create(*device_, {.readback = true});
+    auto painter = Painter::create(*device_, {.readback = true}, true);
     ASSERT_TRUE(painter) << painter.error().text();
     painter_ = std::move(*painter);
     window_->show();
@@ -197,8 +197,8 @@ TEST_F(PainterTest, WritesWhatTheWindowShows) {
   EXPECT_EQ(out, "640x400");
 }
 
-/// Under validation each frame that draws only what has changed is held against one that is drawn wholly: `paint` fails
-/// where a pixel differs.
+/// The painter holds each frame that draws only what has changed against one that is drawn wholly: `paint` fails where
+/// a pixel differs.
 class PainterPartsTest : public PainterTest {
  protected:
   /// What an interface may do from frame to frame.
