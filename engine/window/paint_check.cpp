@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <cstring>
 
 namespace afterglow {
@@ -73,9 +74,15 @@ Result<void> PaintCheck::compare() {
     if (std::memcmp(parts, whole, row) == 0) continue;
     std::size_t at = 0;
     while (parts[at] == whole[at]) ++at;
+    at -= at % 4;
+    const auto code = [&](const std::byte* pixels) {
+      std::uint32_t out = 0;
+      std::memcpy(&out, pixels + at, sizeof out);
+      return out;
+    };
     return Error{ErrorKind::device,
-                 fmt::format("the window of {}x{} has another pixel at {}, {} than a frame that is drawn wholly",
-                             size_.width, size_.height, at / 4, y)};
+                 fmt::format("the window of {}x{} has {:08x} at {}, {}, a frame that is drawn wholly {:08x}",
+                             size_.width, size_.height, code(parts), at / 4, y, code(whole))};
   }
   return {};
 }

@@ -33,6 +33,10 @@ std::uint64_t bits(ImVec2 v) {
   return std::uint64_t{std::bit_cast<std::uint32_t>(v.x)} << 32 | std::bit_cast<std::uint32_t>(v.y);
 }
 
+/// Of a draw. Mesa takes longer ones apart into 341 triangles each, through the middle of rectangles, and the two
+/// halves of one round the places of texels in another way than the whole.
+constexpr std::uint32_t kMostIndices = 1020;
+
 /// As ImGui writes rectangles, glyphs and pictures: a b c, a c d.
 bool is_rectangle(const ImDrawIdx* i) { return i[0] == i[3] && i[2] == i[4]; }
 
@@ -140,7 +144,8 @@ void UiPieces::write(std::span<const Rect> only, std::vector<UiDraw>& draws, std
       for (std::size_t i = command.first; i < command.end; ++i) {
         const Piece& piece = pieces_[i];
         if (common_part(piece.pixels, scissor).size().area() == 0) continue;
-        if (fresh || draws.back().scissor != scissor || draws.back().vertex_offset != command.vertex_offset) {
+        if (fresh || draws.back().scissor != scissor || draws.back().vertex_offset != command.vertex_offset ||
+            draws.back().count + piece.count > kMostIndices) {
           draws.push_back({scissor, static_cast<std::uint32_t>(indices.size()), 0, command.vertex_offset});
           fresh = false;
         }

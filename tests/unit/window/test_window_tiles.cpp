@@ -162,5 +162,33 @@ TEST_F(UiPiecesTest, OnlyTrianglesOfThePartsAreWritten) {
   EXPECT_EQ(indices.size(), 18u);
 }
 
+/// A driver that takes a draw apart takes no rectangle apart.
+TEST_F(UiPiecesTest, LongDrawsEndBetweenRectangles) {
+  numbers([](ImDrawList& list) {
+    list.AddTriangleFilled({1, 1}, {9, 1}, {5, 9}, IM_COL32_WHITE);
+    for (int i = 0; i < 900; ++i) {
+      const auto x = static_cast<float>(10 * (i % 30)), y = static_cast<float>(6 * (i / 30));
+      list.AddRectFilled({x, y}, {x + 9, y + 5}, IM_COL32_WHITE);
+    }
+  });
+  std::vector<UiDraw> draws;
+  std::vector<ImDrawIdx> indices;
+  const Rect all{0, 0, 320, 200};
+  pieces_.write({&all, 1}, draws, indices);
+  EXPECT_GT(draws.size(), 5u);
+  std::uint32_t first = 0;
+  for (const UiDraw& draw : draws) {
+    EXPECT_LE(draw.count, 1020u);
+    EXPECT_EQ(draw.first_index, first);
+    first += draw.count;
+    // Of rectangles, both triangles: the last one has three of the four corners of its own.
+    if (const ImDrawIdx* last = &indices[first - 6]; draw.count >= 6) {
+      EXPECT_EQ(last[0], last[3]);
+      EXPECT_EQ(last[2], last[4]);
+    }
+  }
+  EXPECT_EQ(first, indices.size());
+}
+
 }  // namespace
 }  // namespace afterglow
