@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "window/sheet.h"
 
+#include <algorithm>
+
 namespace afterglow {
 
 namespace {
@@ -17,6 +19,9 @@ void begin_sheet(const char* name, ImVec2 at, ImVec2 pivot, const Ui& ui, ImGuiW
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, ui.px(5));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui.px(10), ui.px(8)));
   ImGui::Begin(name, nullptr, kOverlay | more);
+  // Larger than its place: its title is what stays to be read.
+  const ImVec2 from = ImGui::GetWindowPos();
+  if (from.x < 0 || from.y < 0) ImGui::SetWindowPos({std::max(from.x, 0.0f), std::max(from.y, 0.0f)});
 }
 
 void end_sheet() {
