@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "window/sheet.h"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 
 namespace afterglow {
@@ -14,14 +16,16 @@ constexpr ImGuiWindowFlags kOverlay = ImGuiWindowFlags_NoDecoration | ImGuiWindo
 }  // namespace
 
 void begin_sheet(const char* name, ImVec2 at, ImVec2 pivot, const Ui& ui, ImGuiWindowFlags more) {
+  // Larger than its place: its title is what stays to be read.
+  if (const ImGuiWindow* known = ImGui::FindWindowByName(name)) {
+    at.x = std::max(at.x, pivot.x * known->Size.x);
+    at.y = std::max(at.y, pivot.y * known->Size.y);
+  }
   ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
   ImGui::PushStyleColor(ImGuiCol_WindowBg, ui_color::kOverlay);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, ui.px(5));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui.px(10), ui.px(8)));
   ImGui::Begin(name, nullptr, kOverlay | more);
-  // Larger than its place: its title is what stays to be read.
-  const ImVec2 from = ImGui::GetWindowPos();
-  if (from.x < 0 || from.y < 0) ImGui::SetWindowPos({std::max(from.x, 0.0f), std::max(from.y, 0.0f)});
 }
 
 void end_sheet() {
