@@ -37,7 +37,7 @@ echo "|---|---|---|---|"
 for size in 900x600 1280x720 1440x900 1920x1080; do
   "$program" play "$preset" "$work/####.exr" --stats >"$work/stats" 2>&1 & player=$!
   window=
-  while [[ -z $window ]]; do window=$(xdotool search --class afterglow 2>/dev/null | tail -n1 || true); done
+  while [[ -z $window ]] && kill -0 $player; do window=$(xdotool search --class afterglow 2>/dev/null | tail -n1 || true); done
   xdotool windowsize "$window" "${size%x*}" "${size#*x}"
   sleep 3
   first=$(ticks $player)

@@ -46,6 +46,7 @@ Result<void> play_in_window(
     const bool stands = player->footage_options().inputs != player_options.footage.inputs;
     if (!options.paused && !stands && player->footage().frames() > 1) player->transport().play(player->now());
     WindowOptions shown = window_options(options);
+    shown.check = device_options.validate;
     PlayParts parts(*player,
                     {.preset = player_options.preset,
                      .device = export_device,

@@ -17,6 +17,7 @@ std::uint32_t bytes_per_pixel(VkFormat format) {
     case VK_FORMAT_R32_SFLOAT:
     case VK_FORMAT_R16G16_SFLOAT:
     case VK_FORMAT_R8G8B8A8_UNORM:
+    case VK_FORMAT_B8G8R8A8_UNORM:
       return 4;
     case kDepthFormat:
     case VK_FORMAT_R16_SFLOAT:

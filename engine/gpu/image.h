@@ -20,7 +20,7 @@ struct ImageDesc {
   VkImageTiling tiling = VK_IMAGE_TILING_OPTIMAL;
 };
 
-/// Bytes of one pixel of the formats used here (R32F, RGBA32F, RGBA16F, RGBA8, kDepthFormat).
+/// Bytes of one pixel of the formats used here (R32F, RGBA32F, RGBA16F, RGBA8, BGRA8, kDepthFormat).
 std::uint32_t bytes_per_pixel(VkFormat format);
 /// Of 1, 2 or 4 channels of 16-bit or 32-bit floats.
 VkFormat float_format(int channels, bool half);

@@ -137,7 +137,7 @@ Result<bool> Swapchain::make_chain(Size window) {
       .preTransform = surface.currentTransform,
       .compositeAlpha = choose_alpha(surface.supportedCompositeAlpha),
       .presentMode = choose_present_mode(modes, options_.tearing),
-      .clipped = VK_TRUE,
+      .clipped = VK_FALSE,  // images keep what was drawn into them, under other windows too
       .oldSwapchain = chain_ ? chain_->swapchain.get() : VK_NULL_HANDLE};
   VkSwapchainKHR swapchain = VK_NULL_HANDLE;
   AFTERGLOW_VK(device_.vk().vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &swapchain),
@@ -197,7 +197,7 @@ Result<Swapchain::Drawn> Swapchain::draw(Size window, const Draw& draw) {
     }
     Image& image = chain_->images[*index];
     if (image.presented) slot.proves_chain = chain_number_;
-    AFTERGLOW_CHECK(submit(slot, image, draw));
+    AFTERGLOW_CHECK(submit(slot, image, *index, draw));
     next_slot_ = (next_slot_ + 1) % slots_.size();
     AFTERGLOW_CHECK(present(image, *index));
     return Drawn::yes;
@@ -230,18 +230,20 @@ Result<std::optional<std::uint32_t>> Swapchain::acquire(Slot& slot) {
   }
 }
 
-Result<void> Swapchain::submit(Slot& slot, const Image& image, const Draw& draw) {
+Result<void> Swapchain::submit(Slot& slot, const Image& image, std::size_t index, const Draw& draw) {
   AFTERGLOW_VK(device_.vk().vkResetCommandPool(device_.handle(), slot.pool.get(), 0), "cannot reset commands");
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
   AFTERGLOW_VK(device_.vk().vkBeginCommandBuffer(slot.commands, &begin), "cannot record commands");
   // Behind the semaphore's wait, which is for the same stage.
   const auto into = image_barrier(image.image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0,
-                                  VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                  image.presented ? VK_IMAGE_LAYOUT_PRESENT_SRC_KHR : VK_IMAGE_LAYOUT_UNDEFINED,
+                                  VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                   VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT,
                                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
   record_barriers(device_, slot.commands, &into, 1);
-  draw(slot.commands, {image.image, image.view.get(), format_.format, chain_->size, next_slot_});
+  draw(slot.commands,
+       {image.image, image.view.get(), format_.format, chain_->size, next_slot_, index, image.presented});
   const auto out_of = image_barrier(image.image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                                     VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);

@@ -30,6 +30,8 @@ struct PresentTarget {
   /// Below Swapchain::kFramesInFlight: nothing that was drawn in this slot before is still running, so that what a
   /// drawer keeps for each slot may be written.
   std::size_t slot = 0;
+  std::size_t index = 0;  ///< of the image among those of the window
+  bool kept = false;      ///< the image has the pixels that were drawn into it last, with the same size; else anything
 };
 
 /// Drawing thread alone. Draws at most kFramesInFlight frames ahead of the device. The Device (which must have a
@@ -44,7 +46,7 @@ class Swapchain {
   Swapchain(const Swapchain&) = delete;
   Swapchain& operator=(const Swapchain&) = delete;
 
-  /// Records the frame: `target.image` arrives and must be left in COLOR_ATTACHMENT_OPTIMAL, its content undefined.
+  /// Records the frame: `target.image` arrives and must be left in COLOR_ATTACHMENT_OPTIMAL.
   using Draw = std::function<void(VkCommandBuffer, const PresentTarget&)>;
   enum class Drawn {
     yes,
@@ -106,7 +108,7 @@ class Swapchain {
   Result<void> fill_chain(Chain& chain);
   Result<void> wait(Slot& slot);
   Result<std::optional<std::uint32_t>> acquire(Slot& slot);
-  Result<void> submit(Slot& slot, const Image& image, const Draw& draw);
+  Result<void> submit(Slot& slot, const Image& image, std::size_t index, const Draw& draw);
   Result<void> present(Image& image, std::uint32_t index);
   Result<void> lose_surface();
   void note_suboptimal();

@@ -240,7 +240,7 @@ Result<bool> Player::State::show_due(double now) {
 /// One at a time, so that no frame is held up for long.
 Result<bool> Player::State::time_a_kernel(bool changed, Step& step) {
   if (!time_kernels || !picture) return false;
-  constexpr int kEvery = 2;  // frames while playing
+  constexpr int kEvery = 6;  // frames while playing: a kernel that is timed is one that runs twice
   if (transport.playing()) {
     if (changed && first->times().kernels_run > 0) ++frames_untimed;
     if (frames_untimed < kEvery) return false;

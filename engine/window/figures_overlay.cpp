@@ -26,6 +26,9 @@ void draw_stats_overlay(const Player& player, const Ui& ui, const OverlayArea& a
   row("late", fmt::format("{}", stats.late), stats.late > 0 ? ui_color::kWarning : ui_color::kText);
   if (stats.rebuilding > 0) row("building", fmt::format("{}", stats.rebuilding), ui_color::kWarning);
   row("reloads", fmt::format("{}", stats.reloads));
+  if (stats.cache.pixels > 0)
+    row("cache", fmt::format("{} MiB, {:.3g} B a pixel", stats.cache.bytes >> 20,
+                             static_cast<double>(stats.cache.bytes) / static_cast<double>(stats.cache.pixels)));
   if (!stats.latencies.empty()) {
     const ReloadLatency& last = stats.latencies.back();
     ImGui::Separator();

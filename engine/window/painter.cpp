@@ -30,36 +30,78 @@ std::optional<std::array<std::size_t, 3>> code_order(VkFormat format) {
 
 }  // namespace
 
-Result<std::unique_ptr<Painter>> Painter::create(Device& device, const SwapchainOptions& options) {
+Result<std::unique_ptr<Painter>> Painter::create(Device& device, const SwapchainOptions& options, bool check) {
   std::unique_ptr<Painter> out(new Painter(device));
   AFTERGLOW_TRY(out->swapchain_, Swapchain::create(device, options));
   const VkFormat format = out->swapchain_->format();
-  AFTERGLOW_TRY(out->view_pass_, ViewPass::create(device, format, Swapchain::kFramesInFlight));
-  AFTERGLOW_TRY(out->ui_, UiRenderer::create(device, format, Swapchain::kFramesInFlight));
+  if (check && code_order(format)) out->check_ = std::make_unique<PaintCheck>();
+  const std::size_t slots = Swapchain::kFramesInFlight * (out->check_ ? 2 : 1);
+  AFTERGLOW_TRY(out->view_pass_, ViewPass::create(device, format, slots));
+  AFTERGLOW_TRY(out->ui_, UiRenderer::create(device, format, slots));
   AFTERGLOW_CHECK(out->ui_->take_fonts());
   return out;
 }
 
 Result<void> Painter::take_fonts() {
   AFTERGLOW_CHECK(swapchain_->finish());
+  ++glyphs_;
   return ui_->take_fonts();
 }
 
 Result<void> Painter::take_display(const DisplayTable& table) {
   AFTERGLOW_CHECK(swapchain_->finish());
+  ++glyphs_;
   return view_pass_->take_table(table);
 }
 
+/// What the frame shows, in `tiles_`.
+void Painter::look(const PresentTarget& target, std::span<const ViewFrame> views, const ImDrawData& interface,
+                   std::span<const Rect> written) {
+  std::vector<ViewFrame> now(views.begin(), views.end());
+  for (ViewFrame& frame : now) {
+    frame.content = 0;
+    frame.shown.view = VK_NULL_HANDLE;  // pictures that follow each other may lie in turn in several images
+    if (frame.compared) frame.compared->view = VK_NULL_HANDLE;
+  }
+  if (now != views_) {
+    ++look_;
+    views_ = std::move(now);
+  }
+  tiles_.begin(target.size, glyphs_);
+  for (const ViewFrame& frame : views) {
+    const auto handle = [](VkImageView view) { return reinterpret_cast<std::uint64_t>(view); };
+    tiles_.add(frame.area, look_);
+    std::uint64_t content = mixed(frame.content, handle(frame.shown.view));
+    if (frame.compared) content = mixed(content, handle(frame.compared->view));
+    tiles_.add(picture_pixels(frame), content);
+  }
+  ui_->look(interface, written, tiles_);
+}
+
 Result<void> Painter::record(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
-                             const ImDrawData& interface, std::span<const Rect> changed) {
-  AFTERGLOW_CHECK(ui_->prepare(commands, target.slot, interface, changed));
+                             const ImDrawData& interface, std::span<const Rect> written) {
+  look(target, views, interface, written);
+  if (shown_.size() <= target.index) shown_.resize(target.index + 1);
+  std::vector<std::uint64_t>& shown = shown_[target.index];
+  if (!target.kept || !keeps_) shown.clear();
+  const std::vector<Rect> only = tiles_.changed(shown);
+  shown.clear();  // until all of it is recorded
+  AFTERGLOW_CHECK(ui_->prepare(commands, target.slot, interface, written, only));
   view_pass_->prepare(commands);
-  const VkRenderingAttachmentInfo color{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                        .imageView = target.view,
-                                        .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                        .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-                                        .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
-                                        .clearValue = {.color = {.float32 = {0.1f, 0.1f, 0.1f, 1}}}};
+  if (!only.empty()) AFTERGLOW_CHECK(record_parts(commands, target, views, interface, only));
+  shown = tiles_.numbers();
+  return {};
+}
+
+Result<void> Painter::record_parts(VkCommandBuffer commands, const PresentTarget& target,
+                                   std::span<const ViewFrame> views, const ImDrawData& interface,
+                                   std::span<const Rect> only) {
+  const VkRenderingAttachmentInfo color{
+      .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+      .imageView = target.view,
+      .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+      .loadOp = target.kept ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+      .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
   const VkRenderingInfo rendering{
       .sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
       .renderArea = {{0, 0},
@@ -68,44 +110,34 @@ Result<void> Painter::record(VkCommandBuffer commands, const PresentTarget& targ
       .colorAttachmentCount = 1,
       .pColorAttachments = &color};
   device_.vk().vkCmdBeginRendering(commands, &rendering);
-  const auto viewed = view_pass_->record(commands, target.slot, views);
+  const auto viewed = view_pass_->record(commands, target.slot, views, only, {0.1f, 0.1f, 0.1f});
   ui_->record(commands, target.slot, interface);
   device_.vk().vkCmdEndRendering(commands);
   return viewed;
 }
 
-void Painter::record_copy(VkCommandBuffer commands, const PresentTarget& target, const Buffer& to) const {
-  const auto into =
-      image_barrier(target.image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                    VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-  record_barriers(device_, commands, &into, 1);
-  const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                               .imageExtent = {static_cast<std::uint32_t>(target.size.width),
-                                               static_cast<std::uint32_t>(target.size.height), 1}};
-  device_.vk().vkCmdCopyImageToBuffer(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.get(), 1, &copy);
-  const auto back = image_barrier(target.image, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                  0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-  record_barriers(device_, commands, &back, 1);
-  const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                 .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                 .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                 .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
-                                 .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
-  const VkDependencyInfo dependency{
-      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &to_host};
-  device_.vk().vkCmdPipelineBarrier2(commands, &dependency);
+/// The same frame, drawn wholly, beside the one that is shown.
+Result<void> Painter::record_check(VkCommandBuffer commands, const PresentTarget& target,
+                                   std::span<const ViewFrame> views, const ImDrawData& interface) {
+  AFTERGLOW_TRY(PresentTarget whole, check_->begin(device_, commands, target));
+  whole.slot += Swapchain::kFramesInFlight;
+  const Rect all{0, 0, target.size.width, target.size.height};
+  AFTERGLOW_CHECK(ui_->prepare(commands, whole.slot, interface, {}, {&all, 1}));
+  AFTERGLOW_CHECK(record_parts(commands, whole, views, interface, {&all, 1}));
+  return check_->end(device_, commands, target);
 }
 
 Result<Swapchain::Drawn> Painter::paint(Size window, std::span<const ViewFrame> views, const ImDrawData& interface,
-                                        std::span<const Rect> changed) {
+                                        std::span<const Rect> written) {
   const bool capture = !capture_.empty() && code_order(swapchain_->format()).has_value();
   Result<void> recorded;
   Buffer pixels;
   Size size;
+  bool checked = false;
   AFTERGLOW_TRY(const auto drawn, swapchain_->draw(window, [&](VkCommandBuffer commands, const PresentTarget& target) {
-    recorded = record(commands, target, views, interface, changed);
+    recorded = record(commands, target, views, interface, written);
+    checked = recorded && check_ && target.kept && keeps_ && swapchain_->readable();
+    if (checked) recorded = record_check(commands, target, views, interface);
     if (!recorded || !capture || !swapchain_->readable()) return;
     auto buffer = Buffer::create(device_, static_cast<VkDeviceSize>(target.size.area()) * 4,
                                  VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::read, "capture");
@@ -115,9 +147,13 @@ Result<Swapchain::Drawn> Painter::paint(Size window, std::span<const ViewFrame> 
     }
     pixels = std::move(*buffer);
     size = target.size;
-    record_copy(commands, target, pixels);
+    copy_target(device_, commands, target.image, target.size, pixels);
   }));
   AFTERGLOW_CHECK(std::move(recorded));
+  if (checked) {
+    AFTERGLOW_CHECK(swapchain_->finish());
+    AFTERGLOW_CHECK(check_->compare());
+  }
   if (size.area() > 0) AFTERGLOW_CHECK(write_capture(pixels, size));
   return drawn;
 }

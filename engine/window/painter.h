@@ -5,18 +5,22 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "gpu/swapchain.h"
+#include "window/paint_check.h"
 #include "window/ui_renderer.h"
 #include "window/view_pass.h"
+#include "window/window_tiles.h"
 
 namespace afterglow {
 
 /// Drawing thread alone. The Device (with a Presentation) must outlive it.
 class Painter {
  public:
-  /// Errors: device.
-  static Result<std::unique_ptr<Painter>> create(Device& device, const SwapchainOptions& options);
+  /// `check`: each frame that keeps pixels is drawn wholly too, beside the window, and compared byte by byte; one that
+  /// differs is an error. It takes `readback`. Errors: device.
+  static Result<std::unique_ptr<Painter>> create(Device& device, const SwapchainOptions& options, bool check = false);
 
   /// After the interface's fonts have changed; waits for the frames before. Errors: device.
   Result<void> take_fonts();
@@ -25,27 +29,40 @@ class Painter {
   /// Waits until the frames drawn so far are done: what they read may be written then. Errors: device.
   Result<void> finish() { return swapchain_->finish(); }
   /// One frame: the picture (none: background alone), then the interface over it. `window`: size of the frame buffer.
+  /// Devices on the CPU leave alone what an image of the window shows already; the pixels are the same.
   /// Images of `view` must be readable by fragment shaders in what is submitted from here on. Errors: device.
-  /// `changed`: parts of the interface's atlas.
+  /// `written`: parts of the interface's atlas that have changed.
   Result<Swapchain::Drawn> paint(Size window, std::span<const ViewFrame> views, const ImDrawData& interface,
-                                 std::span<const Rect> changed = {});
+                                 std::span<const Rect> written = {});
   /// The next frame that is painted goes to this file too (PNG, or what else the writer knows).
   void capture(const std::filesystem::path& file) { capture_ = file; }
 
   const Swapchain& swapchain() const { return *swapchain_; }
 
  private:
-  explicit Painter(Device& device) : device_(device) {}
+  explicit Painter(Device& device) : device_(device), keeps_(device.is_cpu()) {}
   Result<void> record(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
-                      const ImDrawData& interface, std::span<const Rect> changed);
-  void record_copy(VkCommandBuffer commands, const PresentTarget& target, const Buffer& to) const;
+                      const ImDrawData& interface, std::span<const Rect> written);
+  void look(const PresentTarget& target, std::span<const ViewFrame> views, const ImDrawData& interface,
+            std::span<const Rect> written);
+  Result<void> record_parts(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
+                            const ImDrawData& interface, std::span<const Rect> only);
+  Result<void> record_check(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
+                            const ImDrawData& interface);
   Result<void> write_capture(const Buffer& pixels, Size size);
 
   Device& device_;
   std::unique_ptr<ViewPass> view_pass_;
   std::unique_ptr<UiRenderer> ui_;
   std::filesystem::path capture_;
-  std::unique_ptr<Swapchain> swapchain_;  // last: it waits before what its frames use goes
+  const bool keeps_;   ///< drivers on the CPU: there a pixel costs more than finding out that it need not be drawn
+  WindowTiles tiles_;  ///< of the frame that is painted
+  std::vector<std::vector<std::uint64_t>> shown_;  ///< what each image of the window has
+  std::vector<ViewFrame> views_;                   ///< of the frame before, without what changes with each picture
+  std::uint64_t look_ = 0;                         ///< another number when `views_` are others
+  std::uint64_t glyphs_ = 0;                       ///< another number when all that the window shows may look different
+  std::unique_ptr<PaintCheck> check_;              ///< none: nobody asked for it
+  std::unique_ptr<Swapchain> swapchain_;           // last: it waits before what its frames use goes
 };
 
 }  // namespace afterglow

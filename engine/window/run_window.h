@@ -24,6 +24,7 @@ struct WindowOptions {
   bool stats = false;                    ///< shown from the start
   std::optional<DisplayTable> display;   ///< that pictures are shown on; none: sRGB
   bool tearing = false;                  ///< see SwapchainOptions
+  bool check = false;                    ///< each frame is drawn wholly too, and compared (window/paint_check.h)
   std::filesystem::path captures = ".";  ///< folder for screenshots by key
   /// A part of the interface, drawn as an ImGui window at `place`. Without one, its place is the picture's.
   using Part = std::function<void(Player&, Ui&, ImVec2 place, ImVec2 size)>;

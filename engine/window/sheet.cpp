@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "window/sheet.h"
 
+#include <imgui_internal.h>
+
+#include <algorithm>
+
 namespace afterglow {
 
 namespace {
@@ -12,6 +16,11 @@ constexpr ImGuiWindowFlags kOverlay = ImGuiWindowFlags_NoDecoration | ImGuiWindo
 }  // namespace
 
 void begin_sheet(const char* name, ImVec2 at, ImVec2 pivot, const Ui& ui, ImGuiWindowFlags more) {
+  // Larger than its place: its title is what stays to be read.
+  if (const ImGuiWindow* known = ImGui::FindWindowByName(name)) {
+    at.x = std::max(at.x, pivot.x * known->Size.x);
+    at.y = std::max(at.y, pivot.y * known->Size.y);
+  }
   ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
   ImGui::PushStyleColor(ImGuiCol_WindowBg, ui_color::kOverlay);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, ui.px(5));

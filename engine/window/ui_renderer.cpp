@@ -23,17 +23,6 @@ Result<void> make_room(const Device& device, Buffer& buffer, std::size_t bytes, 
   return {};
 }
 
-/// The part of the target that a clip rectangle of ImGui leaves; empty: nothing.
-VkRect2D scissor_of(const ImVec4& clip, const ImDrawData& data, Size target) {
-  const ImVec2 scale = data.FramebufferScale, shift = data.DisplayPos;
-  const auto x0 = std::clamp((clip.x - shift.x) * scale.x, 0.0f, static_cast<float>(target.width));
-  const auto y0 = std::clamp((clip.y - shift.y) * scale.y, 0.0f, static_cast<float>(target.height));
-  const auto x1 = std::clamp((clip.z - shift.x) * scale.x, x0, static_cast<float>(target.width));
-  const auto y1 = std::clamp((clip.w - shift.y) * scale.y, y0, static_cast<float>(target.height));
-  return {{static_cast<std::int32_t>(x0), static_cast<std::int32_t>(y0)},
-          {static_cast<std::uint32_t>(x1 - x0), static_cast<std::uint32_t>(y1 - y0)}};
-}
-
 Size target_size(const ImDrawData& data) {
   return {static_cast<int>(std::lround(data.DisplaySize.x * data.FramebufferScale.x)),
           static_cast<int>(std::lround(data.DisplaySize.y * data.FramebufferScale.y))};
@@ -89,6 +78,7 @@ Result<void> UiRenderer::take_fonts() {
                                    .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                                    .pImageInfo = &image};
   device_.vk().vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
+  pieces_.take_atlas(size);
   pending_ = true;
   return {};
 }
@@ -145,28 +135,31 @@ Result<void> UiRenderer::upload_parts(VkCommandBuffer commands, Slot& slot, std:
   return {};
 }
 
+void UiRenderer::look(const ImDrawData& data, std::span<const Rect> written, WindowTiles& tiles) {
+  pieces_.take(data, target_size(data), written);
+  pieces_.add_to(tiles);
+}
+
 Result<void> UiRenderer::prepare(VkCommandBuffer commands, std::size_t slot_index, const ImDrawData& data,
-                                 std::span<const Rect> changed) {
-  if (pending_) upload_atlas(commands);
-  if (!changed.empty()) AFTERGLOW_CHECK(upload_parts(commands, slots_[slot_index], changed));
-  if (data.TotalVtxCount == 0) return {};
+                                 std::span<const Rect> written, std::span<const Rect> only) {
   Slot& slot = slots_[slot_index];
+  if (pending_) upload_atlas(commands);
+  if (!written.empty()) AFTERGLOW_CHECK(upload_parts(commands, slot, written));
+  pieces_.write(only, draws_, indices_);
+  if (draws_.empty()) return {};
   const auto vertex_count = static_cast<std::size_t>(data.TotalVtxCount);
-  const auto index_count = static_cast<std::size_t>(data.TotalIdxCount);
   AFTERGLOW_CHECK(
       make_room(device_, slot.vertices, vertex_count * sizeof(ImDrawVert), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
-  AFTERGLOW_CHECK(make_room(device_, slot.indices, index_count * sizeof(ImDrawIdx), VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
+  AFTERGLOW_CHECK(
+      make_room(device_, slot.indices, indices_.size() * sizeof(ImDrawIdx), VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
   std::byte* vertices = slot.vertices.data();
-  std::byte* indices = slot.indices.data();
   for (int i = 0; i < data.CmdListsCount; ++i) {
     const ImDrawList& list = *data.CmdLists[i];
     const auto vertex_bytes = static_cast<std::size_t>(list.VtxBuffer.Size) * sizeof(ImDrawVert);
-    const auto index_bytes = static_cast<std::size_t>(list.IdxBuffer.Size) * sizeof(ImDrawIdx);
     std::memcpy(vertices, list.VtxBuffer.Data, vertex_bytes);
-    std::memcpy(indices, list.IdxBuffer.Data, index_bytes);
     vertices += vertex_bytes;
-    indices += index_bytes;
   }
+  std::memcpy(slot.indices.data(), indices_.data(), indices_.size() * sizeof(ImDrawIdx));
   slot.vertices.memory().flush();
   slot.indices.memory().flush();
   return {};
@@ -174,7 +167,7 @@ Result<void> UiRenderer::prepare(VkCommandBuffer commands, std::size_t slot_inde
 
 void UiRenderer::record(VkCommandBuffer commands, std::size_t slot_index, const ImDrawData& data) const {
   const Size target = target_size(data);
-  if (data.TotalVtxCount == 0 || target.area() == 0) return;
+  if (draws_.empty()) return;
   const Slot& slot = slots_[slot_index];
   device_.begin_label(commands, "interface");
   device_.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.pipeline.get());
@@ -192,19 +185,12 @@ void UiRenderer::record(VkCommandBuffer commands, std::size_t slot_index, const 
   push.shift = {-1 - data.DisplayPos.x * push.scale[0], -1 - data.DisplayPos.y * push.scale[1]};
   device_.vk().vkCmdPushConstants(commands, pipeline_.layout.get(), VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
 
-  std::uint32_t first_vertex = 0, first_index = 0;
-  for (int i = 0; i < data.CmdListsCount; ++i) {
-    const ImDrawList& list = *data.CmdLists[i];
-    for (const ImDrawCmd& command : list.CmdBuffer) {
-      if (command.UserCallback) continue;  // nobody here uses them
-      const VkRect2D scissor = scissor_of(command.ClipRect, data, target);
-      if (scissor.extent.width == 0 || scissor.extent.height == 0) continue;
-      device_.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
-      device_.vk().vkCmdDrawIndexed(commands, command.ElemCount, 1, first_index + command.IdxOffset,
-                                    static_cast<std::int32_t>(first_vertex + command.VtxOffset), 0);
-    }
-    first_vertex += static_cast<std::uint32_t>(list.VtxBuffer.Size);
-    first_index += static_cast<std::uint32_t>(list.IdxBuffer.Size);
+  for (const UiDraw& draw : draws_) {
+    const VkRect2D scissor{
+        {draw.scissor.x, draw.scissor.y},
+        {static_cast<std::uint32_t>(draw.scissor.width), static_cast<std::uint32_t>(draw.scissor.height)}};
+    device_.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
+    device_.vk().vkCmdDrawIndexed(commands, draw.count, 1, draw.first_index, draw.vertex_offset, 0);
   }
   device_.end_label(commands);
 }

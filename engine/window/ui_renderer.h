@@ -10,6 +10,7 @@
 #include "gpu/image.h"
 #include "gpu/memory.h"
 #include "gpu/swapchain.h"
+#include "window/ui_pieces.h"
 #include "window/ui_pipeline.h"
 
 struct ImDrawData;
@@ -25,10 +26,14 @@ class UiRenderer {
   /// Takes the atlas of the current ImGui context's fonts: to be called first, and after fonts have changed. The frames
   /// drawn so far must be done. Errors: device.
   Result<void> take_fonts();
-  /// Writes what `record` will draw; what was recorded with `slot` before must be done. Outside of rendering: also
-  /// uploads a new atlas, or those parts of it that have changed since. Errors: device.
+  /// What a frame shows, for `tiles`; before `prepare` and `record` of it. `written`: parts of the atlas that have
+  /// changed since the frame before.
+  void look(const ImDrawData& data, std::span<const Rect> written, WindowTiles& tiles);
+  /// Writes what `record` will draw, within `only` (rectangles that have no pixel in common); what was recorded with
+  /// `slot` before must be done. Outside of rendering: also uploads a new atlas, or what was written of it. Errors:
+  /// device.
   Result<void> prepare(VkCommandBuffer commands, std::size_t slot, const ImDrawData& data,
-                       std::span<const Rect> changed = {});
+                       std::span<const Rect> written, std::span<const Rect> only);
   /// Within vkCmdBeginRendering on one colour target.
   void record(VkCommandBuffer commands, std::size_t slot, const ImDrawData& data) const;
 
@@ -51,6 +56,9 @@ class UiRenderer {
   Buffer staging_;        ///< pixels of the atlas; kept until the next one
   bool pending_ = false;  ///< the atlas has not been uploaded yet
   std::vector<Slot> slots_;
+  UiPieces pieces_;
+  std::vector<UiDraw> draws_;  ///< of the frame that is prepared, with their indices
+  std::vector<ImDrawIdx> indices_;
 };
 
 }  // namespace afterglow

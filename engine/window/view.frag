@@ -11,12 +11,12 @@ layout(constant_id = 0) const int kFlags = 0;
 layout(constant_id = 1) const int kChannel = 0;          // ViewChannel
 layout(constant_id = 2) const int kShownReads = 0;       // how each image is read
 layout(constant_id = 3) const int kComparedReads = 0;
-const int kFalseColor = 1, kDifference = 2, kEncode = 4, kGray = 8, kChecker = 16, kFill = 32, kZoned = 64,
+const int kFalseColor = 1, kDifference = 2, kEncode = 4, kGray = 8, kChecker = 16, kZoned = 64,
           kGamma = 128, kTable = 256;
 const int kNearest = 0, kSmooth = 1, kMean = 2;
 
 layout(push_constant) uniform Push {
-  vec4 fill;            // the one colour of kFill, as it is stored; w: the power of kGamma
+  vec4 power;           // w: of kGamma
   vec4 below;           // mark of values under 0; w: gain of the exposure
   vec4 above;           // mark of values over 1
   vec4 not_finite;      // mark
@@ -150,7 +150,7 @@ vec3 zone_of(float light) {
   return decoded(kZones[int(clamp(stop, float(kFirstZone), float(kLastZone))) - kFirstZone]);
 }
 
-vec3 with_gamma(vec3 c) { return has(kGamma) ? sign(c) * pow(abs(c), vec3(push.fill.w)) : c; }
+vec3 with_gamma(vec3 c) { return has(kGamma) ? sign(c) * pow(abs(c), vec3(push.power.w)) : c; }
 
 // `as_light`: a display shows the colour as its table says. Marks, differences and alpha are no light.
 vec3 looked_at(Sample s, out bool as_light) {
@@ -220,10 +220,6 @@ Sample sample_compared(vec2 point) {
 }
 
 void main() {
-  if (has(kFill)) {
-    result = vec4(push.fill.rgb, 1.0);
-    return;
-  }
   vec2 point = (gl_FragCoord.xy - push.origin) / push.scale;
   Sample s = sample_shown(point);
   if (has(kDifference)) {

@@ -7,12 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "fill.frag.h"
 #include "gpu/error.h"
 #include "gpu/fullscreen_vertex.h"
 #include "gpu/pipeline.h"
 #include "gpu/swapchain.h"
 #include "view.frag.h"
 #include "window/view_table.h"
+#include "window/window_tiles.h"
 
 namespace afterglow {
 
@@ -24,7 +26,7 @@ constexpr VkDescriptorType kImageType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLE
 
 /// As view.frag declares it.
 struct Push {
-  std::array<float, 4> fill, below, above, not_finite;
+  std::array<float, 4> power, below, above, not_finite;
   std::array<float, 2> origin;
   float scale, checker;
   std::array<std::int32_t, 2> picture, shown_size, compared_size;
@@ -33,13 +35,15 @@ struct Push {
 };
 static_assert(sizeof(Push) == 128);  // devices have no more for sure
 
+/// As fill.frag declares it.
+using ViewFill = std::array<float, 4>;
+
 enum Flag {
   kFalseColor = 1,
   kDifference = 2,
   kEncode = 4,
   kGray = 8,
   kChecker = 16,
-  kFill = 32,
   kZoned = 64,
   kGamma = 128,
   kTable = 256
@@ -64,12 +68,6 @@ std::array<int, 2> middles_between(double from, double to) {
   return {static_cast<int>(std::ceil(from - 0.5)), static_cast<int>(std::ceil(to - 0.5))};
 }
 
-Rect intersection(const Rect& a, const Rect& b) {
-  const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
-  return {x, y, std::max(std::min(a.x + a.width, b.x + b.width) - x, 0),
-          std::max(std::min(a.y + a.height, b.y + b.height) - y, 0)};
-}
-
 /// What a view shows, and where on the target.
 struct Place {
   Point origin;  ///< of the picture
@@ -87,7 +85,7 @@ Place place_of(const ViewFrame& frame) {
   };
   const auto [left, right] = side(out.origin.x, at.scale * frame.picture.width, frame.area.x, frame.area.width);
   const auto [top, bottom] = side(out.origin.y, at.scale * frame.picture.height, frame.area.y, frame.area.height);
-  out.pixels = intersection({left, top, std::max(right - left, 0), std::max(bottom - top, 0)}, frame.area);
+  out.pixels = common_part({left, top, std::max(right - left, 0), std::max(bottom - top, 0)}, frame.area);
   const bool across = frame.view.wipe_vertical;
   const double length = at.scale * frame.view.wipe * (across ? frame.picture.height : frame.picture.width);
   out.border = length + (across ? out.origin.y : out.origin.x);
@@ -101,22 +99,12 @@ Rect strip(const Place& place, bool vertical, double from, double to) {
   const auto [begin, end] = middles_between(std::clamp<double>(from, first - 1, first + length + 1),
                                             std::clamp<double>(to, first - 1, first + length + 1));
   const Rect cut = vertical ? Rect{all.x, begin, all.width, end - begin} : Rect{begin, all.y, end - begin, all.height};
-  return intersection(cut, all);
-}
-
-/// What of `all` lies above, below, left and right of `hole`, which lies in it.
-std::array<Rect, 4> around(const Rect& all, const Rect& hole) {
-  if (hole.size().area() == 0) return {all};
-  const int right = hole.x + hole.width, bottom = hole.y + hole.height;
-  return {Rect{all.x, all.y, all.width, hole.y - all.y},
-          {all.x, bottom, all.width, all.y + all.height - bottom},
-          {all.x, hole.y, hole.x - all.x, hole.height},
-          {right, hole.y, all.x + all.width - right, hole.height}};
+  return common_part(cut, all);
 }
 
 Push push_of(const ViewFrame& frame, const Place& place, Size shown, Size compared) {
   Push push{};
-  push.fill[3] = static_cast<float>(1 / frame.view.gamma);
+  push.power[3] = static_cast<float>(1 / frame.view.gamma);
   push.below = color_and(kMarkBelow, std::exp2(frame.view.exposure));
   push.above = color_and(kMarkAbove, 0);
   push.not_finite = color_and(kMarkNotFinite, 0);
@@ -147,20 +135,27 @@ struct ViewPass::State {
   const Device& device;
   bool encode = true;
   VkFormat target = VK_FORMAT_UNDEFINED;
-  DrawLayout layout;
+  DrawLayout layout, fill_layout;
   ShaderModuleHandle vertex, fragment;
   std::map<Constants, PipelineHandle> pipelines;
+  PipelineHandle filling;
   SamplerHandle sampler;
   DescriptorPoolHandle pool;
   ViewTable table;
   std::vector<VkDescriptorSet> sets;  // of each slot, of each frame, kSetsOfFrame in a row
+  std::vector<Rect> only;             // pixels that are recorded now
+
+  bool reached(const Rect& pixels) const {
+    return std::ranges::any_of(only, [&](const Rect& r) { return common_part(r, pixels).size().area() > 0; });
+  }
 
   Result<void> make_shaders();
   Result<VkPipeline> pipeline(Constants constants);
   Result<void> make_sets(std::size_t count);
   void bind(VkDescriptorSet set, const std::array<ViewImage, kImages>& images) const;
   Result<void> draw(VkCommandBuffer commands, const Rect& pixels, const Constants& constants, const Push& push);
-  Result<void> fill(VkCommandBuffer commands, const Rect& pixels, const ViewColor& color);
+  void draw_parts(VkCommandBuffer commands, const Rect& pixels) const;
+  void fill(VkCommandBuffer commands, const Rect& pixels, const ViewColor& color);
   Result<void> draw_images(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame, const Place& place,
                            const Rect& pixels, const std::array<ViewImage, kImages>& images, bool difference);
   Result<void> draw_frame(VkCommandBuffer commands, std::span<const VkDescriptorSet, kSetsOfFrame> own,
@@ -172,6 +167,9 @@ Result<void> ViewPass::State::make_shaders() {
                 create_draw_layout(device, {.images = std::vector(kBindings, kImageType), .push_bytes = sizeof(Push)}));
   AFTERGLOW_TRY(vertex, create_shader_module(device, kFullscreenVertex, "view"));
   AFTERGLOW_TRY(fragment, create_shader_module(device, kViewFrag, "view"));
+  AFTERGLOW_TRY(fill_layout, create_draw_layout(device, {.push_bytes = sizeof(ViewFill)}));
+  AFTERGLOW_TRY(const auto fill, create_shader_module(device, kFillFrag, "fill"));
+  AFTERGLOW_TRY(filling, create_draw_pipeline(device, fill_layout, vertex.get(), fill.get(), {target}, "fill"));
   AFTERGLOW_TRY(sampler, create_sampler(device, VK_FILTER_NEAREST));
   return {};
 }
@@ -230,41 +228,51 @@ void ViewPass::State::bind(VkDescriptorSet set, const std::array<ViewImage, kIma
   device.vk().vkUpdateDescriptorSets(device.handle(), kBindings, writes.data(), 0, nullptr);
 }
 
+/// With the pipeline that is bound.
+void ViewPass::State::draw_parts(VkCommandBuffer commands, const Rect& pixels) const {
+  for (const Rect& part : only) {
+    const Rect at = common_part(part, pixels);
+    if (at.size().area() == 0) continue;
+    const auto width = static_cast<std::uint32_t>(at.width), height = static_cast<std::uint32_t>(at.height);
+    const VkViewport viewport{static_cast<float>(at.x),
+                              static_cast<float>(at.y),
+                              static_cast<float>(width),
+                              static_cast<float>(height),
+                              0,
+                              1};
+    const VkRect2D scissor{{at.x, at.y}, {width, height}};
+    device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
+    device.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
+    device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
+  }
+}
+
 /// Of these pixels of the target, with the set that is bound.
 Result<void> ViewPass::State::draw(VkCommandBuffer commands, const Rect& pixels, const Constants& constants,
                                    const Push& push) {
-  if (pixels.size().area() == 0) return {};
+  if (!reached(pixels)) return {};
   AFTERGLOW_TRY(const VkPipeline pipeline, this->pipeline(constants));
-  const auto width = static_cast<std::uint32_t>(pixels.width), height = static_cast<std::uint32_t>(pixels.height);
-  const VkViewport viewport{static_cast<float>(pixels.x),
-                            static_cast<float>(pixels.y),
-                            static_cast<float>(width),
-                            static_cast<float>(height),
-                            0,
-                            1};
-  const VkRect2D scissor{{pixels.x, pixels.y}, {width, height}};
-  device.vk().vkCmdSetViewport(commands, 0, 1, &viewport);
-  device.vk().vkCmdSetScissor(commands, 0, 1, &scissor);
   device.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
   device.vk().vkCmdPushConstants(commands, layout.pipeline.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push, &push);
-  device.vk().vkCmdDraw(commands, 3, 1, 0, 0);
+  draw_parts(commands, pixels);
   return {};
 }
 
-Result<void> ViewPass::State::fill(VkCommandBuffer commands, const Rect& pixels, const ViewColor& color) {
-  Push push{};
-  if (encode) {
-    std::ranges::copy(color, push.fill.begin());
-  } else {
-    push.fill = color_and(color, 0);
-  }
-  return draw(commands, pixels, {kFill, 0, kNearest, kNearest}, push);
+void ViewPass::State::fill(VkCommandBuffer commands, const Rect& pixels, const ViewColor& color) {
+  if (!reached(pixels)) return;
+  ViewFill push = color_and(color, 1);
+  if (encode) std::ranges::copy(color, push.begin());
+  device.vk().vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, filling.get());
+  device.vk().vkCmdPushConstants(commands, fill_layout.pipeline.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
+                                 push.data());
+  draw_parts(commands, pixels);
 }
 
 /// The first image, or how far both are apart.
 Result<void> ViewPass::State::draw_images(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame,
                                           const Place& place, const Rect& pixels,
                                           const std::array<ViewImage, kImages>& images, bool difference) {
+  if (!reached(pixels)) return {};
   bind(set, images);
   device.vk().vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout.pipeline.get(), 0, 1, &set, 0,
                                       nullptr);
@@ -291,14 +299,14 @@ Result<void> ViewPass::State::draw_frame(VkCommandBuffer commands, std::span<con
   const Rect rest = wipe ? strip(place, vertical, place.border, kFar) : place.pixels;
   AFTERGLOW_CHECK(
       draw_images(commands, own[0], frame, place, rest, {frame.shown, difference ? other : frame.shown}, difference));
-  for (const Rect& beside : around(frame.area, place.pixels)) AFTERGLOW_CHECK(fill(commands, beside, frame.outside));
+  for (const Rect& beside : parts_beside(frame.area, place.pixels)) fill(commands, beside, frame.outside);
   if (!wipe) return {};
   const Rect before = strip(place, vertical, -kFar, place.border);
   AFTERGLOW_CHECK(draw_images(commands, own[1], frame, place, before, {other, other}, false));
   // A bright line between dark ones shows on any picture.
   const double half_width = frame.pixel_scale;
   for (const auto& [half, color] : {std::pair(half_width + 1, kBesideBorder), std::pair(half_width, kBorder)})
-    AFTERGLOW_CHECK(fill(commands, strip(place, vertical, place.border - half, place.border + half), color));
+    fill(commands, strip(place, vertical, place.border - half, place.border + half), color);
   return {};
 }
 
@@ -318,11 +326,18 @@ void ViewPass::prepare(VkCommandBuffer commands) { state_->table.upload(state_->
 ViewPass::ViewPass(std::unique_ptr<State> state) : state_(std::move(state)) {}
 ViewPass::~ViewPass() = default;
 
-Result<void> ViewPass::record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames) {
+Rect picture_pixels(const ViewFrame& frame) { return place_of(frame).pixels; }
+
+Result<void> ViewPass::record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames,
+                              std::span<const Rect> only, const ViewColor& background) {
   State& s = *state_;
   s.device.begin_label(commands, "view");
+  s.only.assign(only.begin(), only.end());
+  const Rect first = frames.empty() ? Rect{} : frames.front().area;
+  for (const Rect& part : only)
+    for (const Rect& beside : parts_beside(part, common_part(part, first))) s.fill(commands, beside, background);
   for (std::size_t i = 0; i < std::min(frames.size(), kMostFrames); ++i)
-    if (frames[i].area.size().area() > 0) {
+    if (s.reached(frames[i].area)) {
       const VkDescriptorSet* sets = &s.sets[(slot * kMostFrames + i) * kSetsOfFrame];
       AFTERGLOW_CHECK(
           s.draw_frame(commands, std::span<const VkDescriptorSet, kSetsOfFrame>(sets, kSetsOfFrame), frames[i]));

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +22,7 @@ struct ViewImage {
   VkImageView view = VK_NULL_HANDLE;
   VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   Size size;
+  friend bool operator==(const ViewImage&, const ViewImage&) = default;
 };
 
 /// What shows through where alpha is below 1. none: alpha is ignored, RGB as it is.
@@ -61,7 +63,12 @@ struct ViewFrame {
   ViewBackground background = ViewBackground::none;
   ViewColor outside{0.1f, 0.1f, 0.1f};  ///< beside the picture
   float pixel_scale = 1;                ///< of lines and squares (HiDPI)
+  std::uint64_t content = 0;  ///< another number when the images may have other pixels than in the frame before
+  friend bool operator==(const ViewFrame&, const ViewFrame&) = default;
 };
+
+/// The pixels of the target that the picture has; the others of its area are `outside`.
+Rect picture_pixels(const ViewFrame& frame);
 
 /// What is done to each pixel, in this order:
 /// 1. Place (play/view.h). Magnified, the nearest pixel, exactly, or (View::smooth) bilinear in linear light; minified,
@@ -91,9 +98,11 @@ class ViewPass {
 
   /// Pictures that one call records at most: two lie side by side.
   static constexpr std::size_t kMostFrames = 2;
-  /// Within vkCmdBeginRendering on one colour target. What was recorded with `slot` before must be done. Makes a
-  /// pipeline when a way of looking (channel, marks, background, how pixels are read) comes first. Errors: device.
-  Result<void> record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames);
+  /// Within vkCmdBeginRendering on one colour target: of the frames' areas, what lies within `only` (which have no
+  /// pixel in common). What was recorded with `slot` before must be done. Makes a pipeline when a way of looking
+  /// (channel, marks, background, how pixels are read) comes first. Errors: device.
+  Result<void> record(VkCommandBuffer commands, std::size_t slot, std::span<const ViewFrame> frames,
+                      std::span<const Rect> only, const ViewColor& background);
 
  private:
   struct State;

@@ -27,7 +27,7 @@ Result<std::unique_ptr<WindowApp>> WindowApp::create(DesktopWindow& window, Devi
   std::unique_ptr<WindowApp> app(new WindowApp(window, player, options, diagnostics));
   app->interface_ = std::make_unique<Interface>(window.handle());
   app->interface_->set_scale(options.scale.value_or(window.content_scale()));
-  AFTERGLOW_TRY(app->painter_, Painter::create(device, {.tearing = options.tearing, .readback = true}));
+  AFTERGLOW_TRY(app->painter_, Painter::create(device, {.tearing = options.tearing, .readback = true}, options.check));
   Ui& ui = app->interface_->ui();
   ui.show_stats = options.stats;
   if (options.display) {

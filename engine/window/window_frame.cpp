@@ -111,6 +111,7 @@ std::vector<ViewFrame> WindowApp::view_frames() const {
   frame.area = area_;
   frame.background = background_;
   frame.pixel_scale = interface_->ui().scale;
+  frame.content = turn_;
   if (!compared) return {frame};
   switch (frame.view.by) {
     case CompareBy::flip:

@@ -38,7 +38,7 @@ class PainterTest : public testing::Test {
     ASSERT_TRUE(device) << device.error().text();
     device_ = std::move(*device);
     interface_ = std::make_unique<Interface>(window_->handle());
-    auto painter = Painter::create(*device_, {.readback = true});
+    auto painter = Painter::create(*device_, {.readback = true}, true);
     ASSERT_TRUE(painter) << painter.error().text();
     painter_ = std::move(*painter);
     window_->show();
@@ -195,6 +195,157 @@ TEST_F(PainterTest, WritesWhatTheWindowShows) {
   EXPECT_NE(out.find("#7F7F7F"), std::string::npos) << out;
   ASSERT_EQ(run_on(xvfb_.display(), "identify -format '%wx%h' " + file.string(), &out), 0);
   EXPECT_EQ(out, "640x400");
+}
+
+/// The painter holds each frame that draws only what has changed against one that is drawn wholly: `paint` fails where
+/// a pixel differs.
+class PainterPartsTest : public PainterTest {
+ protected:
+  /// What an interface may do from frame to frame.
+  struct State {
+    bool panel = false, overlay = false, message = false, moved = false;
+    float slider = 0.2f;
+    int frame = 0;  ///< a text that changes
+    double zoom = 128;
+    double exposure = 0;
+    std::uint64_t content = 0;
+    std::optional<Compare> compare;
+    CompareBy by = CompareBy::wipe;
+    double wipe = 0.5;
+  };
+
+  void draw_interface(const State& s) {
+    constexpr auto kFlags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing;
+    if (s.panel) {
+      ImGui::SetNextWindowPos({400, 0});
+      ImGui::SetNextWindowSize({240, 400});
+      ImGui::Begin("panel", nullptr, kFlags);
+      float value = s.slider;
+      ImGui::SliderFloat("slider", &value, 0, 1);
+      for (int i = 0; i < 12; ++i) ImGui::Text("row %d of many", i);
+      ImGui::Text("frame %d", s.frame);
+      ImGui::End();
+    }
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    if (s.overlay) {
+      list.AddRectFilled({20, 100}, {220, 180}, IM_COL32(10, 12, 14, 200), 5);
+      list.AddText({30, 110}, IM_COL32_WHITE, ("shown " + std::to_string(s.frame)).c_str());
+      list.AddCircle({180, 140}, 25.3f, IM_COL32(250, 160, 60, 150), 0, 1.7f);
+      list.AddLine({22.5f, 170}, {215, 105.2f}, IM_COL32(250, 160, 60, 220), 1.3f);
+    }
+    if (s.message) list.AddText({60.5f, 350.25f}, IM_COL32(255, 200, 90, 230), "a message over the picture");
+    const float x = s.moved ? 333.3f : 250;
+    list.AddRectFilledMultiColor({x, 20}, {x + 60, 60}, IM_COL32_WHITE, IM_COL32_BLACK, IM_COL32(255, 0, 0, 90),
+                                 IM_COL32(0, 0, 255, 128));
+  }
+
+  void show(const State& s, std::span<const Rect> written = {}) {
+    window_->wait(0);
+    const Size size = window_->framebuffer();
+    interface_->begin();
+    draw_interface(s);
+    const ImDrawData& data = interface_->end();
+    ViewFrame frame;
+    frame.shown = {picture_.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, {64, 40}};
+    if (s.compare) frame.compared = frame.shown;
+    frame.picture = {64, 40};
+    frame.area = {0, 0, s.panel ? 400 : size.width, size.height - 50};
+    frame.view.fit = false;
+    frame.view.zoom = s.zoom;
+    frame.view.center = {32, 20};
+    frame.view.exposure = s.exposure;
+    frame.view.compare = s.compare.value_or(Compare::none);
+    frame.view.by = s.by;
+    frame.view.wipe = s.wipe;
+    frame.content = s.content;
+    const auto drawn = painter_->paint(size, {&frame, 1}, data, written);
+    EXPECT_TRUE(drawn) << drawn.error().text();
+  }
+  /// In every image of the window, with what was there before in some of them.
+  void show_often(const State& s) {
+    for (int i = 0; i < 6; ++i) show(s);
+  }
+
+  /// Other light in the upper half of the picture; whoever calls has waited for its readers.
+  void write_picture(float light) {
+    ASSERT_TRUE(painter_->finish());
+    for (int y = 0; y < 20; ++y) {
+      auto* row = reinterpret_cast<float*>(picture_.row(y));
+      for (int i = 0; i < 64 * 4; ++i) row[i] = i % 4 == 3 ? 1.0f : light * static_cast<float>(i % 7) / 7;
+    }
+    picture_.memory().flush();
+  }
+};
+
+TEST_F(PainterPartsTest, ShowWhatWholeFramesShow) {
+  State s;
+  show_often(s);
+  s.panel = true;
+  show_often(s);
+  for (int i = 0; i < 8; ++i) {
+    s.slider += 0.05f;
+    ++s.frame;
+    show(s);
+  }
+  s.overlay = true;
+  show_often(s);
+  for (int i = 0; i < 8; ++i) {
+    ++s.frame;
+    ++s.content;
+    write_picture(0.1f * static_cast<float>(i));
+    show(s);
+  }
+  s.message = true;
+  show(s);
+  s.message = false;
+  show_often(s);
+  s.moved = true;
+  show(s);
+  s.exposure = 1;
+  show(s);
+  s.zoom = 3.7;
+  show_often(s);
+  s.compare = Compare::source;
+  for (const double at : {0.2, 0.4, 0.41, 0.9}) {
+    s.wipe = at;
+    show(s);
+  }
+  s.by = CompareBy::difference;
+  show(s);
+  s.compare.reset();
+  s.panel = false;
+  show_often(s);
+}
+
+TEST_F(PainterPartsTest, FollowTheWindowTheFontsAndTheAtlas) {
+  State s{.panel = true, .overlay = true};
+  show_often(s);
+  for (const Size size : {Size{701, 433}, Size{640, 400}, Size{903, 611}}) {
+    glfwSetWindowSize(window_->handle(), size.width, size.height);
+    for (int i = 0; i < 100 && window_->framebuffer() != size; ++i) window_->wait(0.1);
+    EXPECT_EQ(window_->framebuffer(), size);
+    ++s.frame;
+    show_often(s);
+  }
+  EXPECT_TRUE(interface_->set_scale(2));
+  ASSERT_TRUE(painter_->take_fonts());
+  show_often(s);
+  // All glyphs are gone: what was drawn with them looks different, though its triangles are the same.
+  unsigned char* pixels = nullptr;
+  Rect atlas;
+  ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &atlas.width, &atlas.height);
+  std::memset(pixels, 0x60, static_cast<std::size_t>(atlas.size().area()) * 4);
+  show(s, {&atlas, 1});
+  show_often(s);
+}
+
+TEST_F(PainterPartsTest, ADisplayIsTakenOverAll) {
+  State s{.panel = true, .content = 3};
+  show_often(s);
+  DisplayTable table{.name = "gray", .planes = 2, .size = {2 * kDisplayTiles, 2}};
+  table.codes.assign(static_cast<std::size_t>(table.size.area()) * 4, 0.25f);
+  ASSERT_TRUE(painter_->take_display(table));
+  show_often(s);
 }
 
 TEST_F(PainterTest, DroppedFilesArrive) {

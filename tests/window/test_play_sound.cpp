@@ -39,6 +39,26 @@ TEST_F(PlayWindow, AVideoIsHeardWhileItPlaysAndUMakesItSilent) {
     ASSERT_NEAR(sample(i, 1), 0.5, 1e-3);
   }
 
+  // The right channel is 0.5 times the volume; changes come in softly.
+  const auto heard_at = [&](float volume) {
+    return until([&] {
+      const std::string now = text_of("heard.raw");
+      constexpr std::size_t kTail = 1200;
+      if (now.size() < kTail * 8) return false;
+      for (std::size_t i = 0; i < kTail; ++i) {
+        float value = 0;
+        std::memcpy(&value, now.data() + (now.size() / 8 - kTail + i) * 8 + 4, 4);
+        if (std::abs(value - 0.5f * volume) > 1e-3f) return false;
+      }
+      return true;
+    });
+  };
+  EXPECT_TRUE(heard_at(1));
+  ASSERT_TRUE(user("key bracketleft key bracketleft"));
+  EXPECT_TRUE(heard_at(0.8f));
+  ASSERT_TRUE(user("key bracketright"));
+  EXPECT_TRUE(heard_at(0.9f));
+
   ASSERT_TRUE(user("key u"));
   EXPECT_TRUE(until([&] {
     const std::string now = text_of("heard.raw");

@@ -118,9 +118,10 @@ class ViewPassTest : public testing::Test {
                                     .layerCount = 1,
                                     .colorAttachmentCount = 1,
                                     .pColorAttachments = &color};
+    const Rect all{0, 0, size.width, size.height};
     pass.prepare(commands);
     device_->vk().vkCmdBeginRendering(commands, &rendering);
-    EXPECT_TRUE(pass.record(commands, 0, {&frame, 1}));
+    EXPECT_TRUE(pass.record(commands, 0, {&frame, 1}, {&all, 1}, {-1, -1, -1}));
     device_->vk().vkCmdEndRendering(commands);
     const auto into = image_barrier(target.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
