@@ -37,8 +37,11 @@ echo "|---|---|---|---|"
 for size in 900x600 1280x720 1440x900 1920x1080; do
   "$program" play "$preset" "$work/####.exr" --stats >"$work/stats" 2>&1 & player=$!
   window=
-  while [[ -z $window ]] && kill -0 $player; do window=$(xdotool search --class afterglow 2>/dev/null | tail -n1 || true); done
-  xdotool windowsize "$window" "${size%x*}" "${size#*x}"
+  # The window of the player before may still be found, but no longer be there.
+  until [[ -n $window ]] && xdotool windowsize "$window" "${size%x*}" "${size#*x}" 2>/dev/null; do
+    kill -0 $player
+    window=$(xdotool search --class afterglow 2>/dev/null | tail -n1 || true)
+  done
   sleep 3
   first=$(ticks $player)
   sleep 10
