@@ -12,7 +12,7 @@ program=${1:-$here/../../build/release/bin/afterglow} preset=${2:-$here/../../pr
 work=$(mktemp -d)
 export XDG_CONFIG_HOME=$work XDG_STATE_HOME=$work  # settings and windows of whoever calls stay out of it
 exec {display_pipe}<> <(:)
-Xvfb -displayfd "$display_pipe" -screen 0 1920x1200x24 >/dev/null 2>&1 & server=$!
+Xvfb -displayfd "$display_pipe" -screen 0 1920x1200x24 -noreset >/dev/null 2>&1 & server=$!
 trap 'kill $server 2>/dev/null; rm -rf "$work"' EXIT
 read -r -u "$display_pipe" number
 export DISPLAY=:$number

@@ -13,7 +13,7 @@ cp "$project/tests/images/neon.exr" "$work/neon.exr"
 cd "$work"
 export XDG_CONFIG_HOME=$work XDG_STATE_HOME=$work  # as for somebody new
 mkfifo number
-Xvfb -displayfd 3 -screen 0 1280x800x24 3>number 2>/dev/null & display_server=$!
+Xvfb -displayfd 3 -screen 0 1280x800x24 -noreset 3>number 2>/dev/null & display_server=$!
 read -r number <number
 export DISPLAY=":$number"
 "$program" play look.lua neon.exr -v >log 2>&1 & play=$!
