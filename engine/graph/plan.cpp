@@ -51,6 +51,12 @@ std::vector<int> count_readers(const Graph& graph, const std::vector<bool>& keep
   return readers;
 }
 
+std::string name_of(const Graph& graph, const std::vector<int>& passes) {
+  std::string name;
+  for (const int of : passes) name += (name.empty() ? "" : "+") + graph.passes[of].name;
+  return name;
+}
+
 bool is_anchor(const Pass& pass) { return info_of(pass.kind).begins; }
 
 bool runs_as_workgroups(const Graph& graph, const PlanKernel& kernel, const ExecutionConfig& config) {
@@ -90,7 +96,7 @@ class Joiner {
     if (fusion != Fusion::none && pass.kind == PassKind::pixel)
       for (int feeder = feeder_of(kernel, fusion); feeder >= 0; feeder = feeder_of(kernel, fusion))
         kernel = fused(kernels_[feeder], kernel);
-    for (const int of : kernel.passes) kernel.name += (kernel.name.empty() ? "" : "+") + graph_.passes[of].name;
+    kernel.name = name_of(graph_, kernel.passes);
     // It runs where its last pass stands, so that everything that its passes read is there.
     kernels_.push_back(std::move(kernel));
     kernel_of_[pass.output] = static_cast<int>(kernels_.size()) - 1;
@@ -151,6 +157,29 @@ class Joiner {
   std::vector<PlanKernel> kernels_;
 };
 
+// Samplers make one row an invocation, and what is joined to them with them. Many pixel passes behind a large one are
+// made faster by several rows, even though their image has to be stored and read once more. Half floats would round it.
+void cut_behind_samplers(const Graph& graph, const ExecutionConfig& config, std::vector<PlanKernel>& kernels) {
+  constexpr std::size_t kMany = 5;
+  constexpr long long kLarge = 1 << 19;
+  if (config.rows <= 1 || config.storage != Storage::fp32) return;
+  std::vector<PlanKernel> cut;
+  for (auto& kernel : kernels) {
+    const Pass& anchor = graph.passes[kernel.passes.front()];
+    PlanKernel tail{{kernel.passes.begin() + 1, kernel.passes.end()}, "", kernel.output};
+    const bool gains = anchor.kind == PassKind::sample && tail.passes.size() >= kMany &&
+                       graph.images[kernel.output].size.area() >= kLarge;
+    if (!gains || bound_images(graph, tail) > kMaxImagesPerKernel) {
+      cut.push_back(std::move(kernel));
+      continue;
+    }
+    tail.name = name_of(graph, tail.passes);
+    cut.push_back({{kernel.passes.front()}, anchor.name, anchor.output});
+    cut.push_back(std::move(tail));
+  }
+  kernels = std::move(cut);
+}
+
 void find_lifetimes(const Graph& graph, Plan& plan) {
   std::map<ImageId, std::size_t> place_of;
   for (std::size_t k = 0; k < plan.kernels.size(); ++k) {
@@ -196,6 +225,7 @@ Plan make_plan(const Graph& graph, const ExecutionConfig& config) {
       plan.skipped.push_back({graph.passes[i].name, "nobody reads its image"});
   }
   plan.kernels = joiner.finish();
+  cut_behind_samplers(graph, config, plan.kernels);
   for (auto& kernel : plan.kernels) kernel.compute = runs_as_workgroups(graph, kernel, config);
   for (const auto& kernel : plan.kernels) plan.once.push_back(once[kernel.output]);
   find_lifetimes(graph, plan);

@@ -39,7 +39,7 @@ struct Plan {
   std::vector<bool> once;
 };
 
-/// Of `config` it reads `fusion` and `compute`. What compute kernels make is transient: neither the result nor kept by
+/// Of `config` it reads `fusion`, `compute`, `rows` and `storage`. What compute kernels make is transient: neither the result nor kept by
 /// a history.
 Plan make_plan(const Graph& graph, const ExecutionConfig& config);
 

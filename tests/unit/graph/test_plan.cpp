@@ -148,6 +148,24 @@ TEST(Plan, DoesNotJoinSamplersOrFiltersToWhatFeedsThem) {
   EXPECT_EQ(make_plan(b.graph, {}).kernels.size(), 2u);
 }
 
+TEST(Plan, CutsBehindASamplerWhereManyPassesGainByRows) {
+  const auto plan_of = [](int passes, Size size, const ExecutionConfig& config) {
+    Builder b;
+    ImageId last = b.sample("lens", {{"picture", b.graph.source, false}}, size);
+    const ImageId lens = last;
+    for (int i = 0; i < passes; ++i) last = b.pixel("p" + std::to_string(i), last, {{"lens", lens, true}});
+    return names(make_plan(b.graph, config));
+  };
+  constexpr Size kLarge{1024, 512};
+  constexpr ExecutionConfig kRows{.rows = 8};
+  const Names one{"test.lens+test.p0+test.p1+test.p2+test.p3+test.p4"};
+  EXPECT_EQ(plan_of(5, kLarge, kRows), (Names{"test.lens", "test.p0+test.p1+test.p2+test.p3+test.p4"}));
+  EXPECT_EQ(plan_of(5, kLarge, {}), one) << "without rows nothing is gained";
+  EXPECT_EQ(plan_of(5, {1024, 511}, kRows), one) << "small images are not worth it";
+  EXPECT_EQ(plan_of(5, kLarge, {.storage = Storage::fp16, .rows = 8}), one) << "half floats would round the image";
+  EXPECT_EQ(plan_of(4, kLarge, kRows), (Names{"test.lens+test.p0+test.p1+test.p2+test.p3"}));
+}
+
 TEST(Plan, JoinedKernelsRunWhereTheirLastPassStood) {
   Builder b;
   const ImageId anchor = b.filter("anchor", b.graph.source, {16, 8});
