@@ -43,6 +43,7 @@ Result<Rect> part_of_region(const Rect& region, const Rect& data_window, const R
 
 void crop_picture(Picture& picture, const Rect& region, const Rect& part) {
   if (!picture.unorm8.empty()) picture.unorm8 = cut(picture.unorm8, picture.color.width, 4, part);
+  open_color(picture);
   cut(picture.color, part);
   for (auto& [name, image] : picture.auxiliary) cut(image, part);
   picture.content.clear();

@@ -160,6 +160,16 @@ void FrameLoop::choose_overlap(const FrameNeed& need, const FrameJob& job) {
   while (overlap_ && !in_order && most_read_ < kMostRead && fits(most_read_ + 1, most_written_)) ++most_read_;
 }
 
+/// Whether there is anything to do for the device; what a picture's content makes needless is not known yet.
+bool FrameLoop::runs(const Reading& reading) { return !reading.request.build->graph.passes.empty(); }
+
+/// Pictures that only become codes, or nothing else at all, need not be floats in between. A result in full floats
+/// takes the source's place.
+bool FrameLoop::halves_suffice(const Reading& reading) const {
+  return options_.nan_policy == NanPolicy::zero && !reading.scaling && !reading.request.region &&
+         (reading.request.encoding || !runs(reading));
+}
+
 std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFrame& scheduled) {
   auto reading = std::make_unique<Reading>();
   FrameRecord& frame = *scheduled.record;
@@ -190,14 +200,16 @@ std::unique_ptr<FrameLoop::Reading> FrameLoop::begin_reading(const ScheduledFram
     return reading;
   }
   choose_overlap(*need, frame.job);
+  reading->options.halves = halves_suffice(*reading);
+  const bool reuse = options_.reuse && several() && runs(*reading);
   reading->picture = std::async(std::launch::async,
-                                [this, &frame, options = reading->options, scaling = reading->scaling,
+                                [this, &frame, reuse, options = reading->options, scaling = reading->scaling,
                                  header = std::move(planned->header)]() -> Result<Picture> {
                                   const auto start = Clock::now();
                                   const double files = FileTime::of_thread();
                                   auto picture = read_picture(header, options, events_.diagnostics);
                                   if (picture && scaling) scale_picture(*picture, *scaling);
-                                  if (picture && options_.reuse && several()) note_content(*picture);
+                                  if (picture && reuse) note_content(*picture);
                                   frame.steps.read = milliseconds_since(start);
                                   frame.steps.decode =
                                       std::max(0.0, frame.steps.read - (FileTime::of_thread() - files));
@@ -306,7 +318,9 @@ Result<void> FrameLoop::make(Reading& reading, Picture& picture) {
 /// Traces the frame from its file: its source is gone, the result took its place.
 Result<Trace> FrameLoop::trace_again(const Reading& reading) {
   Diagnostics quiet;  // reading has said all there is to say
-  AFTERGLOW_TRY(Picture source, read_picture(reading.frame->job.input, reading.options, quiet));
+  ReadOptions options = reading.options;
+  options.halves = false;
+  AFTERGLOW_TRY(Picture source, read_picture(reading.frame->job.input, options, quiet));
   if (reading.scaling) scale_picture(source, *reading.scaling);
   return session_.trace(source, reading.request, options_.nan_policy);
 }
@@ -329,6 +343,7 @@ Result<void> FrameLoop::mend(Reading& reading, Picture& picture) {
   if (options_.nan_policy == NanPolicy::fail && (frame.non_finite.untraced || !trace.passes.empty()))
     return Error{ErrorKind::script, kUntraced};
   picture.color = std::move(trace.result);
+  picture.halves.clear();
   picture.unorm8.clear();
   return {};
 }

@@ -46,6 +46,8 @@ class FrameLoop {
   bool fetch(Schedule& schedule, std::size_t place);
   bool several() const { return endless_ || total_ + pre_roll_ > 1; }
   void choose_overlap(const FrameNeed& need, const FrameJob& job);
+  static bool runs(const Reading& reading);
+  bool halves_suffice(const Reading& reading) const;
   std::unique_ptr<Reading> begin_reading(const ScheduledFrame& scheduled);
   Result<void> place_in_time(Reading& reading);
   std::size_t ahead() const;

@@ -103,9 +103,11 @@ void encode(const CodeRules& rules, const float* rgba, int width, int x0, int y,
   }
 }
 
-/// Row `y` of the display window from `pixels`, which cover the data window.
-template <class Sample>
-void padded_row(const Picture& picture, const Sample* pixels, int y, Sample padding_alpha, Sample* rgba) {
+/// Row `y` of the display window from `pixels`, which cover the data window. `take(from, count, to)` makes samples of
+/// them.
+template <class Stored, class Sample, class Take>
+void padded_row(const Picture& picture, const Stored* pixels, int y, Sample padding_alpha, const Take& take,
+                Sample* rgba) {
   const Rect &data = picture.data_window, &display = picture.display_window;
   const auto fill = [&](int begin, int end) {
     for (int x = begin; x < end; ++x) {
@@ -120,7 +122,7 @@ void padded_row(const Picture& picture, const Sample* pixels, int y, Sample padd
   fill(0, begin);
   const std::size_t first =
       (static_cast<std::size_t>(row) * static_cast<std::size_t>(data.width) + (display.x + begin - data.x)) * 4;
-  std::copy_n(pixels + first, static_cast<std::size_t>(end - begin) * 4, rgba + begin * 4);
+  take(pixels + first, static_cast<std::size_t>(end - begin) * 4, rgba + begin * 4);
   fill(end, display.width);
 }
 
@@ -153,11 +155,30 @@ void from_half(const std::uint8_t* halves, float* values, std::size_t count) {
   }
 }
 
+void from_half(const std::uint16_t* halves, float* values, std::size_t count) {
+  from_half(reinterpret_cast<const std::uint8_t*>(halves), values, count);
+}
+
+const float* color_row(const Picture& picture, int y, std::vector<float>& memory) {
+  if (picture.halves.empty()) return picture.color.at(0, y);
+  const std::size_t values = static_cast<std::size_t>(picture.color.width) * 4;
+  memory.resize(values);
+  from_half(picture.halves.data() + values * static_cast<std::size_t>(y), memory.data(), values);
+  return memory.data();
+}
+
 void display_row(const Picture& picture, int y, float padding_alpha, float* rgba) {
-  padded_row(picture, picture.color.pixels.data(), y, padding_alpha, rgba);
+  const auto copy = [](const float* from, std::size_t count, float* to) { std::copy_n(from, count, to); };
+  const auto open = [](const std::uint16_t* from, std::size_t count, float* to) { from_half(from, to, count); };
+  if (picture.halves.empty()) {
+    padded_row(picture, picture.color.pixels.data(), y, padding_alpha, copy, rgba);
+  } else {
+    padded_row(picture, picture.halves.data(), y, padding_alpha, open, rgba);
+  }
 }
 void display_row(const Picture& picture, int y, std::uint8_t padding_alpha, std::uint8_t* rgba) {
-  padded_row(picture, picture.unorm8.data(), y, padding_alpha, rgba);
+  const auto copy = [](const std::uint8_t* from, std::size_t count, std::uint8_t* to) { std::copy_n(from, count, to); };
+  padded_row(picture, picture.unorm8.data(), y, padding_alpha, copy, rgba);
 }
 
 void encode_row(const CodeRules& rules, const float* rgba, int width, int x, int y, std::uint8_t* codes) {

@@ -15,8 +15,13 @@ namespace afterglow {
 /// Returns how many were.
 std::uint64_t to_half(const float* values, std::uint16_t* halves, std::size_t count);
 
-/// Floats of `count` half floats, which need not be aligned.
+/// Floats of `count` half floats. Bytes need not be aligned.
 void from_half(const std::uint8_t* halves, float* values, std::size_t count);
+void from_half(const std::uint16_t* halves, float* values, std::size_t count);
+
+/// Row `y` of the colours, counted from the data window's top: as it lies in the picture, or made of half floats in
+/// `memory`.
+const float* color_row(const Picture& picture, int y, std::vector<float>& memory);
 
 /// Row `y` of the display window, counted from its top: RGBA pixels of `picture`, and (0, 0, 0, `padding_alpha`) where
 /// it has none.

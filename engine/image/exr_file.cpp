@@ -22,6 +22,7 @@
 #include <thread>
 
 #include "core/exception.h"
+#include "core/parallel.h"
 #include "image/exr_lines.h"
 #include "image/exr_metadata.h"
 
@@ -101,6 +102,25 @@ class ExrFile : public PictureFile {
       const bool told = read_plain(part, targets, chroma.empty() ? rows : RowsArrived());
       read_chroma(part, chroma);
       return told;
+    } catch (const std::exception& error) {
+      return failed("cannot be read: " + exception_text(error));
+    }
+  }
+
+  Result<bool> read_halves(const ChannelChoice& color, std::uint16_t* rgba, const RowsArrived& rows) override {
+    const ExrPart& part = header_[static_cast<std::size_t>(color.part)];
+    const auto target = half_target(part, color, rgba);
+    if (!target) return false;
+    try {
+      AFTERGLOW_CHECK(open());
+      Imf::InputPart input(*file_, color.part);
+      if (has_zipped_lines(part, lines_of(*target))) {
+        read_zipped_halves(input, part, *target, rows);
+      } else {
+        read_plain_halves(input, part, *target);
+        parallel_rows(part.data_window.height, static_cast<long long>(part.data_window.size().area()) * 4, rows);
+      }
+      return true;
     } catch (const std::exception& error) {
       return failed("cannot be read: " + exception_text(error));
     }
@@ -255,6 +275,48 @@ class ExrFile : public PictureFile {
     input.setFrameBuffer(buffer);
     input.readPixels(window.min.y, window.max.y);
     return false;
+  }
+
+  /// Nothing: a channel of the colours is missing, not half, or there twice.
+  std::optional<ExrHalfTarget> half_target(const ExrPart& part, const ChannelChoice& color, std::uint16_t* rgba) const {
+    ExrHalfTarget target{.channels = {}, .rgba = rgba};
+    const PartSlots& slots = slots_[static_cast<std::size_t>(color.part)];
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (color.channels[c] < 0 && c == 3) continue;
+      if (color.channels[c] < 0) return std::nullopt;
+      const ChannelSlot& slot = slots.channels[static_cast<std::size_t>(color.channels[c])];
+      if (slot.chroma >= 0 || slot.type != ExrChannelType::half) return std::nullopt;
+      const auto channel = std::ranges::find(part.channels, slot.stored, &ExrChannel::name) - part.channels.begin();
+      if (std::ranges::count(target.channels, static_cast<std::size_t>(channel)) > 0) return std::nullopt;
+      target.channels[c] = static_cast<std::size_t>(channel);
+    }
+    return target;
+  }
+
+  static std::vector<ExrLineTarget> lines_of(const ExrHalfTarget& target) {
+    std::vector<ExrLineTarget> lines;
+    for (const auto& channel : target.channels)
+      if (channel) lines.push_back({*channel});
+    return lines;
+  }
+
+  static void read_plain_halves(Imf::InputPart& input, const ExrPart& part, const ExrHalfTarget& target) {
+    constexpr std::uint16_t kOne = 0x3c00;
+    constexpr std::size_t kPixel = 4 * sizeof(std::uint16_t);
+    const auto width = static_cast<std::size_t>(part.data_window.width);
+    const std::size_t values = width * static_cast<std::size_t>(part.data_window.height) * 4;
+    const Imath::Box2i window = input.header().dataWindow();
+    Imf::FrameBuffer buffer;
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (!target.channels[c]) {
+        for (std::size_t i = c; i < values; i += 4) target.rgba[i] = kOne;
+        continue;
+      }
+      buffer.insert(part.channels[*target.channels[c]].name,
+                    Imf::Slice::Make(Imf::HALF, target.rgba + c, window, kPixel, width * kPixel));
+    }
+    input.setFrameBuffer(buffer);
+    input.readPixels(window.min.y, window.max.y);
   }
 
   std::vector<ReadTarget> chroma_targets(int part, std::span<const ReadTarget> targets) const {

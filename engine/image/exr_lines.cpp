@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <stdexcept>
 #include <thread>
 #if defined(__x86_64__)
@@ -83,20 +84,57 @@ void interleave(const float* lines, std::size_t lanes, std::size_t width, float*
     for (std::size_t x = first; x < width; ++x) pixels[x * stride + c] = lines[c * width + x];
 }
 
+constexpr std::uint16_t kOneAsHalf = 0x3c00;
+
+/// Half floats of four channels into pixels of RGBA; without the last one alpha is 1.
+void interleave_halves(const std::array<const std::uint8_t*, 4>& channels, std::size_t width, std::uint16_t* rgba) {
+  std::size_t x = 0;
+#if defined(__x86_64__)
+  const auto eight = [&](std::size_t c) {
+    if (!channels[c]) return _mm_set1_epi16(kOneAsHalf);
+    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(channels[c] + 2 * x));
+  };
+  for (; x + 8 <= width; x += 8) {
+    const __m128i r = eight(0), g = eight(1), b = eight(2), a = eight(3);
+    auto* to = reinterpret_cast<__m128i*>(rgba + 4 * x);
+    const __m128i rg = _mm_unpacklo_epi16(r, g), ba = _mm_unpacklo_epi16(b, a);
+    const __m128i rg_high = _mm_unpackhi_epi16(r, g), ba_high = _mm_unpackhi_epi16(b, a);
+    _mm_storeu_si128(to, _mm_unpacklo_epi32(rg, ba));
+    _mm_storeu_si128(to + 1, _mm_unpackhi_epi32(rg, ba));
+    _mm_storeu_si128(to + 2, _mm_unpacklo_epi32(rg_high, ba_high));
+    _mm_storeu_si128(to + 3, _mm_unpackhi_epi32(rg_high, ba_high));
+  }
+#endif
+  for (; x < width; ++x)
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (channels[c]) {
+        std::memcpy(rgba + 4 * x + c, channels[c] + 2 * x, sizeof(std::uint16_t));
+      } else {
+        rgba[4 * x + c] = kOneAsHalf;
+      }
+    }
+}
+
+/// Where the channels begin in a line; behind them, where it ends.
+std::vector<std::size_t> channel_offsets(const ExrPart& part) {
+  std::vector<std::size_t> offsets{0};
+  for (const ExrChannel& channel : part.channels)
+    offsets.push_back(offsets.back() + static_cast<std::size_t>(part.data_window.width) * channel.sample_bytes());
+  return offsets;
+}
+
+/// What is done with line y, counted from the data window's top. Called on several threads.
+using TakeLine = std::function<void(int y, const std::uint8_t* line)>;
+
 class LineReader {
  public:
-  LineReader(Imf::InputPart& input, const ExrPart& part, std::span<const ExrLineTarget> targets, const RowsArrived& rows)
+  LineReader(Imf::InputPart& input, const ExrPart& part, const TakeLine& take, const RowsArrived& rows)
       : input_(input),
         part_(part),
-        groups_(grouped(targets)),
+        take_(take),
         rows_(rows),
-        width_(static_cast<std::size_t>(part.data_window.width)),
-        lines_(part.chunk_lines()) {
-    for (const ExrChannel& channel : part.channels) {
-      offsets_.push_back(line_bytes_);
-      line_bytes_ += width_ * channel.sample_bytes();
-    }
-  }
+        line_bytes_(channel_offsets(part).back()),
+        lines_(part.chunk_lines()) {}
 
   /// Chunks are fetched one by one, as files are read best, and unpacked side by side.
   void run() {
@@ -116,8 +154,7 @@ class LineReader {
       parallel_rows(count, samples, [&](int begin, int end) {
         ExrUnzip unzip;
         std::vector<std::uint8_t> bytes(line_bytes_ * static_cast<std::size_t>(lines_));
-        std::vector<float> lines(width_ * 4);
-        for (int i = begin; i < end; ++i) unpack(first + i, packed[static_cast<std::size_t>(i)], unzip, bytes, lines);
+        for (int i = begin; i < end; ++i) unpack(first + i, packed[static_cast<std::size_t>(i)], unzip, bytes);
       });
     }
   }
@@ -134,23 +171,15 @@ class LineReader {
     packed.resize(static_cast<std::size_t>(size));
   }
 
-  void unpack(int chunk, std::span<const std::uint8_t> packed, ExrUnzip& unzip, std::vector<std::uint8_t>& bytes,
-              std::vector<float>& lines) const {
+  void unpack(int chunk, std::span<const std::uint8_t> packed, ExrUnzip& unzip,
+              std::vector<std::uint8_t>& bytes) const {
     const std::size_t length = line_bytes_ * static_cast<std::size_t>(lines_of(chunk));
     const std::uint8_t* stored = packed.data();
     if (packed.size() != length) {
       if (!unzip.run(packed, {bytes.data(), length})) throw damaged(chunk);
       stored = bytes.data();
     }
-    for (int y = 0; y < lines_of(chunk); ++y, stored += line_bytes_)
-      for (const TargetGroup& group : groups_) {
-        float* out = group.base + static_cast<std::size_t>(chunk * lines_ + y) * group.row_stride;
-        float* line = group.pixel_stride == 1 ? out : lines.data();
-        for (std::size_t i = 0; i < group.channels.size(); ++i)
-          take_samples(stored + offsets_[group.channels[i]], part_.channels[group.channels[i]].type, width_,
-                       line + i * width_);
-        if (line != out) interleave(line, group.channels.size(), width_, out, group.pixel_stride);
-      }
+    for (int y = 0; y < lines_of(chunk); ++y, stored += line_bytes_) take_(chunk * lines_ + y, stored);
     if (rows_) rows_(chunk * lines_, chunk * lines_ + lines_of(chunk));
   }
 
@@ -160,10 +189,9 @@ class LineReader {
 
   Imf::InputPart& input_;
   const ExrPart& part_;
-  std::vector<TargetGroup> groups_;
+  const TakeLine& take_;
   const RowsArrived& rows_;
-  std::size_t width_, line_bytes_ = 0;
-  std::vector<std::size_t> offsets_;  // of channels within a line
+  std::size_t line_bytes_;
   int lines_;
 };
 
@@ -181,7 +209,35 @@ bool has_zipped_lines(const ExrPart& part, std::span<const ExrLineTarget> target
 
 void read_zipped_lines(Imf::InputPart& input, const ExrPart& part, std::span<const ExrLineTarget> targets,
                        const RowsArrived& rows) {
-  LineReader(input, part, targets, rows).run();
+  const std::vector<TargetGroup> groups = grouped(targets);
+  const std::vector<std::size_t> offsets = channel_offsets(part);
+  const auto width = static_cast<std::size_t>(part.data_window.width);
+  const TakeLine take = [&](int y, const std::uint8_t* stored) {
+    thread_local std::vector<float> lines;
+    lines.resize(width * 4);
+    for (const TargetGroup& group : groups) {
+      float* out = group.base + static_cast<std::size_t>(y) * group.row_stride;
+      float* line = group.pixel_stride == 1 ? out : lines.data();
+      for (std::size_t i = 0; i < group.channels.size(); ++i)
+        take_samples(stored + offsets[group.channels[i]], part.channels[group.channels[i]].type, width,
+                     line + i * width);
+      if (line != out) interleave(line, group.channels.size(), width, out, group.pixel_stride);
+    }
+  };
+  LineReader(input, part, take, rows).run();
+}
+
+void read_zipped_halves(Imf::InputPart& input, const ExrPart& part, const ExrHalfTarget& target,
+                        const RowsArrived& rows) {
+  const std::vector<std::size_t> offsets = channel_offsets(part);
+  const auto width = static_cast<std::size_t>(part.data_window.width);
+  const TakeLine take = [&](int y, const std::uint8_t* stored) {
+    std::array<const std::uint8_t*, 4> channels{};
+    for (std::size_t c = 0; c < 4; ++c)
+      if (target.channels[c]) channels[c] = stored + offsets[*target.channels[c]];
+    interleave_halves(channels, width, target.rgba + static_cast<std::size_t>(y) * width * 4);
+  };
+  LineReader(input, part, take, rows).run();
 }
 
 }  // namespace afterglow

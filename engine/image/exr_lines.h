@@ -5,6 +5,9 @@
 
 #include <OpenEXR/ImfInputPart.h>
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +23,12 @@ struct ExrLineTarget {
   std::size_t pixel_stride = 1, row_stride = 0;
 };
 
+/// Colours as RGBA of half floats: channels of the part that are half, the fourth maybe none.
+struct ExrHalfTarget {
+  std::array<std::optional<std::size_t>, 4> channels{};
+  std::uint16_t* rgba = nullptr;  ///< without gaps
+};
+
 /// Whether `read_zipped_lines` can: lines of ZIP or ZIPS, no channel sub-sampled, wanted ones half or float.
 bool has_zipped_lines(const ExrPart& part, std::span<const ExrLineTarget> targets);
 
@@ -28,5 +37,8 @@ bool has_zipped_lines(const ExrPart& part, std::span<const ExrLineTarget> target
 /// when a chunk is damaged.
 void read_zipped_lines(Imf::InputPart& input, const ExrPart& part, std::span<const ExrLineTarget> targets,
                        const RowsArrived& rows = {});
+/// The same; samples stay as they are. An alpha that is not there becomes 1.
+void read_zipped_halves(Imf::InputPart& input, const ExrPart& part, const ExrHalfTarget& target,
+                        const RowsArrived& rows = {});
 
 }  // namespace afterglow

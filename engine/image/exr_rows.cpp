@@ -38,18 +38,25 @@ void ExrColorRows::add_slices(int first, int rows, Imf::FrameBuffer& buffer) {
   const Imath::V2i origin(picture_.data_window.x, picture_.data_window.y + first);
   const bool half = type_ == SampleType::half;
   const std::size_t row_samples = static_cast<std::size_t>(color.width) * 4;
-  if (half) {
-    halves_.resize(row_samples * static_cast<std::size_t>(rows));
-    parallel_rows(rows, static_cast<long long>(halves_.size()), [&](int begin, int end) {
-      overflows_ += to_half(color.at(0, first + begin), halves_.data() + row_samples * static_cast<std::size_t>(begin),
-                            row_samples * static_cast<std::size_t>(end - begin));
+  const std::size_t samples = row_samples * static_cast<std::size_t>(rows);
+  const auto place = [&](int row) { return row_samples * static_cast<std::size_t>(row); };
+  const std::uint16_t* halves = picture_.halves.empty() ? nullptr : picture_.halves.data() + place(first);
+  const float* floats = halves ? nullptr : color.at(0, first);
+  if (half && !halves) {
+    halves_.resize(samples);
+    parallel_rows(rows, static_cast<long long>(samples), [&](int begin, int end) {
+      overflows_ += to_half(floats + place(begin), halves_.data() + place(begin), place(end - begin));
     });
+    halves = halves_.data();
+  } else if (!half && halves) {
+    floats_.resize(samples);
+    from_half(halves, floats_.data(), samples);
+    floats = floats_.data();
   }
   const std::size_t sample = half ? sizeof(std::uint16_t) : sizeof(float);
   for (std::size_t c = 0; c < 4; ++c) {
     if (names_[c].empty()) continue;
-    const void* base =
-        half ? static_cast<const void*>(halves_.data() + c) : static_cast<const void*>(color.at(0, first) + c);
+    const void* base = half ? static_cast<const void*>(halves + c) : static_cast<const void*>(floats + c);
     buffer.insert(names_[c], Imf::Slice::Make(half ? Imf::HALF : Imf::FLOAT, base, origin, color.width, rows,
                                               4 * sample, row_samples * sample));
   }
@@ -62,21 +69,17 @@ void ExrColorRows::find_places(const Imf::Header& header) {
 
 void ExrColorRows::put_row(int row, std::uint8_t* line) {
   const auto width = static_cast<std::size_t>(picture_.color.width);
-  const float* rgba = picture_.color.at(0, row);
-  const bool half = type_ == SampleType::half;
+  const auto put = [&](const auto* rgba) {
+    for (std::size_t c = 0; c < 4; ++c)
+      if (!names_[c].empty()) put_channel(rgba + c, width, line + places_[c]);
+  };
+  thread_local std::vector<float> floats;
   thread_local std::vector<std::uint16_t> halves;
-  if (half) {
-    halves.resize(width * 4);
-    overflows_ += to_half(rgba, halves.data(), width * 4);
-  }
-  for (std::size_t c = 0; c < 4; ++c) {
-    if (names_[c].empty()) continue;
-    if (half) {
-      put_channel(halves.data() + c, width, line + places_[c]);
-    } else {
-      put_channel(rgba + c, width, line + places_[c]);
-    }
-  }
+  if (type_ != SampleType::half) return put(color_row(picture_, row, floats));
+  if (!picture_.halves.empty()) return put(picture_.halves.data() + width * 4 * static_cast<std::size_t>(row));
+  halves.resize(width * 4);
+  overflows_ += to_half(picture_.color.at(0, row), halves.data(), width * 4);
+  put(halves.data());
 }
 
 void ExrColorRows::warn_of_overflow(Diagnostics& diagnostics) const {

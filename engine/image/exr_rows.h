@@ -17,8 +17,8 @@
 
 namespace afterglow {
 
-/// Strips of rows as slices of a frame buffer: floats are lent straight from the picture, halves are made strip by
-/// strip.
+/// Strips of rows as slices of a frame buffer: what the picture holds is lent straight from it, the other of floats and
+/// halves is made strip by strip.
 class ExrColorRows {
  public:
   /// `names`: channels for R, G, B, A; empty ones are not written.
@@ -41,6 +41,7 @@ class ExrColorRows {
   SampleType type_;
   std::array<std::size_t, 4> places_{};
   std::vector<std::uint16_t> halves_;
+  std::vector<float> floats_;
   std::atomic<std::uint64_t> overflows_ = 0;
 };
 

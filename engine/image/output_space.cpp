@@ -8,11 +8,13 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
 
 #include "core/processor.h"
+#include "image/encode.h"
 
 namespace afterglow {
 namespace {
@@ -127,6 +129,38 @@ void OutputSpace::encode(const float* rgba, std::size_t pixels, float* stored) c
     }
     for (std::size_t c = 0; c < 3; ++c) stored[c] = stored_value(pixel[c]);
     stored[3] = pixel[3];
+  }
+}
+
+const std::vector<float>& OutputSpace::of_halves() const {
+  std::call_once(halves_made_, [&] {
+    constexpr std::size_t kAll = 1 << 16;
+    std::vector<std::uint16_t> bits(kAll);
+    std::iota(bits.begin(), bits.end(), std::uint16_t{0});
+    of_halves_.resize(kAll);
+    from_half(bits.data(), of_halves_.data(), kAll);
+    for (float& value : of_halves_) value = stored_value(value);
+  });
+  return of_halves_;
+}
+
+void OutputSpace::encode(const std::uint16_t* rgba, std::size_t pixels, float* stored) const {
+  if (matrix_) {
+    from_half(rgba, stored, pixels * 4);
+    return encode(stored, pixels, stored);
+  }
+  const float* table = of_halves().data();
+  constexpr std::size_t kBlock = 64;  // alphas of so many pixels are made at a time
+  std::array<float, kBlock * 4> opened;
+  for (std::size_t first = 0; first < pixels; first += kBlock) {
+    const std::size_t count = std::min(kBlock, pixels - first);
+    from_half(rgba + first * 4, opened.data(), count * 4);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint16_t* light = rgba + (first + i) * 4;
+      float* out = stored + (first + i) * 4;
+      for (std::size_t c = 0; c < 3; ++c) out[c] = table[light[c]];
+      out[3] = opened[i * 4 + 3];
+    }
   }
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -22,6 +24,8 @@ class OutputSpace {
   /// Colours of RGBA pixels, linear Rec.709, become stored values 0…1; alpha stays. Light beyond what the space holds
   /// is held at its ends, NaN at that of 0. `stored` may be `rgba` itself.
   void encode(const float* rgba, std::size_t pixels, float* stored) const;
+  /// The same, bit for bit, of half floats.
+  void encode(const std::uint16_t* rgba, std::size_t pixels, float* stored) const;
 
  private:
   explicit OutputSpace(const InputSpace& space);
@@ -32,6 +36,10 @@ class OutputSpace {
   std::optional<Matrix3> matrix_;  ///< from Rec.709, when the primaries are others
   float of_zero_ = 0;              ///< what light 0 is stored as
   std::vector<float> table_;       ///< stored values at the ends of equal parts of octaves
+  /// Stored values of all half floats, by their bits. Made when they are first asked for.
+  const std::vector<float>& of_halves() const;
+  mutable std::once_flag halves_made_;
+  mutable std::vector<float> of_halves_;
 };
 
 /// The space of this name, for outputs. Empty: none is asked for, null. Errors (usage): unknown.

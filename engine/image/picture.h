@@ -45,6 +45,9 @@ struct Picture {
   std::vector<std::string> layers;  ///< names of all layers of the file, read or not
   /// Hashes of `color` ("source") and of auxiliary images, where they are known: equal hashes mean equal pixels.
   std::map<std::string, Hash> content;
+  /// When not empty, the pixels of `color` as half floats, RGBA, in place of color.pixels, which are empty then: of
+  /// readers that were allowed to (ReadOptions::halves). Whoever wants floats calls open_color or color_row.
+  std::vector<std::uint16_t> halves;
   /// When not empty, `color` as 8-bit display codes that need no more encoding, RGBA: sRGB, alpha straight.
   std::vector<std::uint8_t> unorm8;
   bool has_alpha = false;  ///< the file stored alpha; without it the A of `color` is 1
@@ -59,6 +62,9 @@ struct Picture {
 
 /// Makes RGBA of scene-linear light finite and its colours ≥ 0, as `SanitizeCounts` says, and counts that.
 void sanitize_color(float* rgba, std::size_t pixels, SanitizeCounts& counts);
+
+/// Makes floats of colours that are half floats, in `memory` where that has room; leaves others as they are.
+void open_color(Picture& picture, std::vector<float> memory = {});
 
 /// Fills in `content`. Whoever changes pixels afterwards has to clear it.
 void note_content(Picture& picture);

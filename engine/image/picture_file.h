@@ -46,6 +46,12 @@ class PictureFile {
   /// numbers. A file that ends too early is an error, though some rows may have been written. `rows`, if given, is told
   /// of rows as they come, while they lie in the processor's caches.
   Result<void> read(int part, std::span<const ReadTarget> targets, const RowsArrived& rows = {});
+  /// Colours whose channels are all stored as half floats, as RGBA without gaps, a row after the other from the data
+  /// window's top; an alpha that is not there is 1. False: the file does not hold them so, and nothing was read.
+  virtual Result<bool> read_halves([[maybe_unused]] const ChannelChoice& color, [[maybe_unused]] std::uint16_t* rgba,
+                                   [[maybe_unused]] const RowsArrived& rows) {
+    return false;
+  }
   /// How the chosen colour channels are encoded. `warnings` that matter to users are passed on.
   virtual ColorEncoding color_encoding(const ChannelChoice& color, Diagnostics& diagnostics) const = 0;
   /// What a writer keeps, for these colour channels.

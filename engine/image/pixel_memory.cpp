@@ -38,11 +38,26 @@ std::vector<std::uint8_t> PixelMemory::take_codes() {
   return codes;
 }
 
+std::vector<std::uint16_t> PixelMemory::take_halves(std::size_t count) {
+  std::vector<std::uint16_t> halves;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!free_halves_.empty()) {
+      halves = std::move(free_halves_.back());
+      free_halves_.pop_back();
+    }
+  }
+  resize_for_picture(halves, count);
+  return halves;
+}
+
 void PixelMemory::give(Picture&& picture) {
   Picture done = std::move(picture);  // all of it goes, whoever holds what is left
   std::vector<float> pixels = std::move(done.color.pixels);
   std::vector<std::uint8_t> codes = std::move(done.unorm8);
+  std::vector<std::uint16_t> halves = std::move(done.halves);
   const std::lock_guard lock(mutex_);
+  if (!halves.empty()) free_halves_.push_back(std::move(halves));
   if (!codes.empty() && codes.size() == count_) free_codes_.push_back(std::move(codes));
   if (!pixels.empty() && pixels.size() == count_) free_.push_back(std::move(pixels));
 }

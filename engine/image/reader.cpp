@@ -15,6 +15,7 @@
 #include "core/saturated.h"
 #include "core/text.h"
 #include "image/color_encoding.h"
+#include "image/half_colors.h"
 #include "image/input_space.h"
 #include "image/movie.h"
 #include "image/orientation.h"
@@ -282,6 +283,26 @@ Image color_image(const Plan& plan, const ColorEncoding& encoding, PixelMemory* 
   return image;
 }
 
+/// Colours as the half floats that the file holds, where that was allowed and nothing else is to be read. False: they
+/// have to be read as floats.
+Result<bool> read_halves(const Plan& plan, const ColorEncoding& encoding, const ReadOptions& options,
+                         Picture& picture) {
+  if (!options.halves || !options.memory || !plan.auxiliary.empty()) return false;
+  if (plan.color_part().orientation > 1 || !stays_half(encoding)) return false;
+  const Size size = picture.data_window.size();
+  std::vector<std::uint16_t> halves = options.memory->take_halves(static_cast<std::size_t>(size.area()) * 4);
+  HalfColors colors(halves.data(), size.width);
+  AFTERGLOW_TRY(const bool read, plan.file->read_halves(plan.color, halves.data(),
+                                                        [&](int begin, int end) { colors.take_rows(begin, end); }));
+  if (!read || !colors.finite()) return false;
+  picture.color.width = size.width;
+  picture.color.height = size.height;
+  picture.color.channels = 4;
+  picture.halves = std::move(halves);
+  picture.sanitized.negative = colors.negative();
+  return true;
+}
+
 /// Allocates, reads and decodes everything of the plan. May throw std::bad_alloc.
 Result<Picture> read_planned(Plan& plan, const ReadOptions& options, Diagnostics& diagnostics) {
   const NanPolicy policy = options.nan_policy;
@@ -296,6 +317,12 @@ Result<Picture> read_planned(Plan& plan, const ReadOptions& options, Diagnostics
   if (!options.input_space.empty()) {
     AFTERGLOW_TRY(const InputSpace* space, find_input_space(options.input_space));
     use_input_space(*space, encoding);
+  }
+
+  AFTERGLOW_TRY(const bool done, read_halves(plan, encoding, options, picture));
+  if (done) {
+    report(picture, policy, plan.file->path(), diagnostics);
+    return picture;
   }
 
   // Everything from the colour's own part is read in one go: the file is decompressed once.

@@ -29,6 +29,8 @@ class PixelMemory {
   std::vector<float> take(std::size_t count);
   /// For 8-bit codes: what a picture had them in, or empty.
   std::vector<std::uint8_t> take_codes();
+  /// For half floats.
+  std::vector<std::uint16_t> take_halves(std::size_t count);
   /// Takes the picture, and keeps what it has of that memory.
   void give(Picture&& picture);
 
@@ -37,6 +39,7 @@ class PixelMemory {
   std::size_t count_ = 0;  ///< that was asked for last
   std::vector<std::vector<float>> free_;
   std::vector<std::vector<std::uint8_t>> free_codes_;
+  std::vector<std::vector<std::uint16_t>> free_halves_;
 };
 
 /// `FILE[:NAME]` of --depth, --normal and --motion: another file and/or a channel or layer in it.
@@ -61,7 +64,10 @@ struct ReadOptions {
       auxiliary;  ///< what the stack asks for: "depth", "normal", "motion", "layer:NAME"; only these are read
   NanPolicy nan_policy = NanPolicy::zero;  ///< fail: a picture with values that are not finite is an error (io)
   int max_side = 16384;                    ///< larger sides are refused from the header
-  PixelMemory* memory = nullptr;           ///< where the colour's pixels are taken from; null: anew
+  /// Colours that a file holds as half floats, and that need no more than to be held at 0, may stay so
+  /// (Picture::halves).
+  bool halves = false;
+  PixelMemory* memory = nullptr;         ///< where the colour's pixels are taken from; null: anew
   std::uint64_t max_bytes = 6ull << 30;  ///< pictures whose own host memory would be larger are refused from the header
 };
 

@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "core/file_time.h"
 #include "core/temporary.h"
+#include "image/encode.h"
 #include "image/exr_file.h"
 #include "image/oiio_module.h"
 #include "image/output_file.h"
@@ -81,8 +82,12 @@ Result<void> write_format(const Picture& picture, const OutputFormat& format, Ou
 
 /// Whether dropping alpha changes what is seen.
 bool has_transparency(const Picture& picture) {
-  for (std::size_t i = 3; i < picture.color.pixels.size(); i += 4)
-    if (picture.color.pixels[i] < 1) return true;
+  std::vector<float> memory;
+  for (int y = 0; y < picture.color.height; ++y) {
+    const float* row = color_row(picture, y, memory);
+    for (int x = 0; x < picture.color.width; ++x)
+      if (row[4 * x + 3] < 1) return true;
+  }
   return false;
 }
 
@@ -125,8 +130,9 @@ Result<void> write_checked(const Picture& picture, const OutputFormat& format, c
 
 Result<void> check_picture(const Picture& picture) {
   const Image& color = picture.color;
+  const std::size_t values = picture.halves.empty() ? color.pixels.size() : picture.halves.size();
   if (color.width < 1 || color.height < 1 || color.channels != 4 || color.size() != picture.data_window.size() ||
-      color.pixels.size() != static_cast<std::size_t>(color.width) * static_cast<std::size_t>(color.height) * 4)
+      values != static_cast<std::size_t>(color.width) * static_cast<std::size_t>(color.height) * 4)
     return Error{ErrorKind::other, "the picture's pixels do not cover its data window"};
   if (picture.display_window.width < 1 || picture.display_window.height < 1)
     return Error{ErrorKind::other, "the picture's display window is empty"};

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "image/encode.h"
 #include "image/metadata.h"
 
 namespace afterglow {
@@ -10,6 +11,9 @@ namespace {
 
 HostImage host_image(const Picture& picture, const std::string& name, const Image& image) {
   HostImage out{image.pixels.data(), image.size(), image.channels};
+  if (name == "source" && !picture.halves.empty())
+    out.read_row = [halves = picture.halves.data(), values = static_cast<std::size_t>(image.width) * 4](
+                       int y, float* row) { from_half(halves + values * static_cast<std::size_t>(y), row, values); };
   if (const auto known = picture.content.find(name); known != picture.content.end()) out.content = known->second;
   return out;
 }

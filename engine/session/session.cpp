@@ -6,6 +6,7 @@
 
 #include "core/stopwatch.h"
 #include "exec/cpu/warm_up.h"
+#include "image/encode.h"
 #include "session/picture_inputs.h"
 
 namespace afterglow {
@@ -24,12 +25,15 @@ OpenedDevice open_device(const DeviceOptions& options, Diagnostics& diagnostics)
 
 /// Whether the codes have no alpha somewhere in `part` where the picture has some.
 bool lost_alpha(const Picture& picture, const Rect& part) {
-  for (int y = part.y; y < part.y + part.height; ++y)
+  std::vector<float> memory;
+  for (int y = part.y; y < part.y + part.height; ++y) {
+    const float* row = color_row(picture, y, memory);
+    const std::size_t first = 4 * static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.color.width);
     for (int x = part.x; x < part.x + part.width; ++x) {
-      const std::size_t alpha =
-          4 * (static_cast<std::size_t>(y) * picture.color.width + static_cast<std::size_t>(x)) + 3;
-      if (picture.unorm8[alpha] == 0 && picture.color.pixels[alpha] >= 1.0f / 255) return true;
+      const std::size_t alpha = 4 * static_cast<std::size_t>(x) + 3;
+      if (picture.unorm8[first + alpha] == 0 && row[alpha] >= 1.0f / 255) return true;
     }
+  }
   return false;
 }
 
@@ -50,6 +54,7 @@ struct Session::State {
     std::optional<Rect> region;
     std::vector<Skipped> skipped;
     bool runs = false;
+    bool codes = false;  ///< the result are 8-bit codes
   };
   std::deque<Frame> frames;
   FrameReport last;              ///< of the frame that was collected last
@@ -143,10 +148,11 @@ Result<void> Session::submit(Picture picture, FrameRequest request) {
 
 /// Takes the picture; on errors it stays.
 Result<void> Session::State::submit(Picture& picture, FrameRequest request) {
-  Frame frame{.picture = {}, .encoding = request.encoding, .region = request.region, .skipped = {}, .runs = false};
+  Frame frame{.picture = {}, .encoding = request.encoding, .region = request.region, .skipped = {}};
   AFTERGLOW_TRY(RenderRequest render, stack->request(std::move(request)));
   frame.runs = render.work.runs();
   if (frame.runs) {
+    frame.codes = render.work.unorm8;
     render.inputs = picture_inputs(picture, render.work.graph);
     render.timing = options.timing;
     AFTERGLOW_CHECK(renderer->submit(std::move(render)));
@@ -178,6 +184,7 @@ Result<void> Session::collect(Picture& picture) {
   // The result replaces the source in its own memory. Effects never change alpha: the source's own values stay where
   // they are, exact whatever the storage format.
   HostResult& result = s.result;
+  if (!frame.codes) open_color(picture);
   result.pixels = std::move(picture.color.pixels);
   result.unorm8 = std::move(codes);
   result.keep_alpha = true;
