@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstring>
 
@@ -12,9 +13,10 @@
 namespace afterglow {
 namespace {
 
-// Globals: signal handlers can reach nothing else.
-volatile std::sig_atomic_t g_interrupted = 0;
-volatile std::sig_atomic_t g_grace = 1;  // seconds between being asked to stop and being stopped
+// Globals: signal handlers can reach nothing else. Atomic: a signal comes on any thread.
+std::atomic<bool> g_interrupted = false;
+std::atomic<unsigned> g_grace = 1;  // seconds between being asked to stop and being stopped
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<unsigned>::is_always_lock_free);
 
 /// A driver may compile or draw for minutes and hears nothing meanwhile. What is half-written goes.
 [[noreturn]] void end_at_once(int) {
@@ -26,10 +28,9 @@ volatile std::sig_atomic_t g_grace = 1;  // seconds between being asked to stop 
 }
 
 void on_signal(int signal) {
-  if (g_interrupted != 0) end_at_once(signal);
-  g_interrupted = 1;
+  if (g_interrupted.exchange(true)) end_at_once(signal);
   give_up_waiting();
-  alarm(static_cast<unsigned>(g_grace));
+  alarm(g_grace);
 }
 
 void handle(int signal, void (*handler)(int)) {
@@ -56,9 +57,9 @@ void install_interrupt_handler() {
   std::signal(SIGPIPE, SIG_IGN);  // so is one into a pipe that nobody reads
 }
 
-void allow_to_end(unsigned seconds) { g_grace = static_cast<std::sig_atomic_t>(seconds); }
+void allow_to_end(unsigned seconds) { g_grace = seconds; }
 
-bool interrupted() { return g_interrupted != 0; }
+bool interrupted() { return g_interrupted; }
 
 Error interrupt_error() { return Error{ErrorKind::interrupted, "interrupted"}; }
 
