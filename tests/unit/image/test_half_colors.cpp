@@ -241,7 +241,10 @@ TEST(HalfColors, FilesAreTheSame) {
         for (const char* compression : {"none", "zip", "piz", "dwaa"}) expect_same("exr", of_type(type, compression));
       for (const auto type : {SampleType::uint8, SampleType::uint16}) {
         expect_same("png", of_type(type));
-        expect_same("tif", of_type(type));
+        // Its files have the time in them.
+        ASSERT_TRUE(write_picture(floats, folder / "floats.tif", of_type(type), silent));
+        ASSERT_TRUE(write_picture(read.picture, folder / "halves.tif", of_type(type), silent));
+        EXPECT_EQ(read_or_fail(folder / "halves.tif").color.pixels, read_or_fail(folder / "floats.tif").color.pixels);
         expect_same("dpx", of_type(type));
       }
       for (const char* extension : {"jpg", "tga", "webp", "ppm", "pfm", "hdr"}) expect_same(extension, {});
