@@ -7,9 +7,12 @@
 uniform sampler2D source;   // half ways and nearness
 uniform sampler2D picture;
 uniform sampler2D longest;  // half ways, by tile
-uniform int block;
+uniform float tiles;  // in a pixel: 1 / their side
 uniform int samples;
 uniform float softness;
+
+/// The longest way around a pixel. (Division of whole numbers is slow on CPU devices; this is the same for sides up to 16384.)
+vec2 around(ivec2 pixel) { return fetch(longest, ivec2((vec2(pixel) + 0.5) * tiles)).xy; }
 
 float longer(vec2 way) { return max(abs(way.x), abs(way.y)); }
 
@@ -64,12 +67,12 @@ void follow(inout vec4 behind, inout vec4 front, ivec2 pixel, vec2 way, vec4 own
 // Nothing around moves by a pixel.
 bool done_at(ivec2 pixel, out vec4 color) {
   color = fetch(picture, pixel);
-  return longer(fetch(longest, pixel / block).xy) <= 0.5;
+  return longer(around(pixel)) <= 0.5;
 }
 
 vec4 sample_at(ivec2 pixel) {
   vec4 color = fetch(picture, pixel);
-  vec2 way = fetch(longest, pixel / block).xy;
+  vec2 way = around(pixel);
   vec4 own = fetch(source, pixel);
   vec4 behind = vec4(color.rgb, 1.0), front = vec4(0.0);
   bool two = unlike(way, own.xy) > 0.25;
