@@ -13,7 +13,8 @@ uniform float subpixel_blending;
 // Behind the last step the end is guessed to be so much further.
 const float kGuess = 8.0;
 // The way along the edge: at high quality 4 steps of one pixel first, then one of a half more, twos, and a last of 4 (at low quality of 2).
-const int kFine = quality == 2 ? 4 : 0, kFar = quality == 0 ? 3 : quality == 1 ? 8 : 6;
+const int kFine = quality == 2 ? 4 : 0, kLast = quality == 0 ? 2 : quality == 1 ? 7 : 5;
+const int kMost = 64;  // turns, more than there are: loops that end sooner by what they find are not unfolded
 
 float at(ivec2 pixel) { return fetch(luma, pixel).r; }
 
@@ -26,22 +27,25 @@ float between(ivec2 pixel, ivec2 over, ivec2 next) {
 }
 
 /// Way along `next`, or against it, until luma leaves that of the edge by `enough`; `change` is by how much it did. Pixels come first, which are two
-/// reads each, and the places between two of them behind.
+/// reads each, and the places between two of them behind. (Loops end behind their reads: a CPU driver would take a group of pixels through them once
+/// more to see that they are over.)
 float way_to_end(ivec2 pixel, ivec2 over, ivec2 next, bool back, float edge, float enough, out float change) {
-  ivec2 on = back ? -next : next, to = pixel + on;
-  change = beside(to, over) - edge;
-  for (int i = 0; i < kFine && abs(change) < enough; ++i) {
+  ivec2 on = back ? -next : next, to = pixel;
+  change = 0.0;
+  for (int i = 0; i < kMost; ++i) {
     to += on;
     change = beside(to, over) - edge;
+    if (i == kFine || abs(change) >= enough) break;
   }
   float half_more = 0.0;
   if (abs(change) < enough) {
     half_more = 0.5;
     if (back) to += on;  // the upper or left one of the two pixels
-  }
-  for (int i = 0; i < kFar && abs(change) < enough; ++i) {
-    to += on * (i == 0 ? 1 : i == kFar - 1 && quality != 0 ? 4 : 2);
-    change = between(to, over, next) - edge;
+    for (int i = 0; i < kMost; ++i) {
+      to += on * (i == 0 ? 1 : i == kLast && quality != 0 ? 4 : 2);
+      change = between(to, over, next) - edge;
+      if (i == kLast || abs(change) >= enough) break;
+    }
   }
   ivec2 gone = abs(to - pixel);
   float way = float(gone.x + gone.y) + (back ? -half_more : half_more);
