@@ -36,6 +36,6 @@ return fx.effect {
     local tiles = g:pass { shader = "motion_blur/longest", source = rows, size = { across, down }, block = tile, down = true, name = "tiles" }
     local neighbours = g:pass { shader = "motion_blur/neighbours", source = tiles, channels = 2 }
     return g:pass { shader = "motion_blur/gather", source = motion, picture = source, longest = neighbours, tiles = 1 / tile, samples = s.samples,
-                    softness = depth and s.depth_softness or 1 }
+                    hardness = depth and 1 / s.depth_softness or 1, sparse = 2 * radius > s.samples }
   end,
 }
