@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "exec/kernel_pipelines.h"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -27,13 +28,20 @@ DrawInterface interface_of(const CompiledKernel& kernel) {
   return {.block = kernel.block_size > 0,
           .images = descriptor_types(kernel),
           .push_bytes = kPushConstantBytes,
-          .compute = kernel.workgroup.has_value()};
+          .compute = kernel.workgroup.has_value(),
+          .vertex = !kernel.workgroup};
 }
 
 VkFormat format_of(const CompiledKernel& kernel, VkFormat given) {
   if (given != VK_FORMAT_UNDEFINED) return given;
   if (kernel.target == KernelTarget::unorm8) return VK_FORMAT_R8G8B8A8_UNORM;
   return float_format(kernel.target_channels, kernel.target == KernelTarget::float16);
+}
+
+/// Outputs of four numbers that a vertex shader may hand on beside the place.
+std::uint32_t locations_of(const Device& device) {
+  const auto& limits = device.properties().limits;
+  return std::min(limits.maxVertexOutputComponents, limits.maxFragmentInputComponents) / 4 - 1;
 }
 
 struct Made {
@@ -45,7 +53,16 @@ Result<Made> make(const Device& device, const CompiledKernel& kernel, const Draw
   Made made;
   if (const auto& group = kernel.workgroup)
     AFTERGLOW_CHECK(check_workgroup(device, group->invocations, kernel.shared_bytes, name));
-  AFTERGLOW_TRY(const ShaderModuleHandle module, create_shader_module(device, kernel.spirv, name));
+  const std::vector<std::uint32_t>* spirv = &kernel.spirv;
+  std::optional<FlatParameters> flat;
+  ShaderModuleHandle own_vertex;
+  if (kernel.flat_parameters) flat = flat_parameters(kernel.spirv, locations_of(device));
+  if (flat) {
+    AFTERGLOW_TRY(own_vertex, create_shader_module(device, flat->vertex, name));
+    vertex = own_vertex.get();
+    spirv = &flat->fragment;
+  }
+  AFTERGLOW_TRY(const ShaderModuleHandle module, create_shader_module(device, *spirv, name));
   if (kernel.workgroup) {
     AFTERGLOW_TRY(made.pipeline, create_compute_pipeline(device, layout, module.get(), name));
     return made;
@@ -60,7 +77,7 @@ Result<Made> make(const Device& device, const CompiledKernel& kernel, const Draw
     return made;
   }
   AFTERGLOW_TRY(made.pipeline, draw(module, KernelDraw::done, DrawMarks::writes));
-  AFTERGLOW_TRY(const ShaderModuleHandle early, create_shader_module(device, tested_early(kernel.spirv), name));
+  AFTERGLOW_TRY(const ShaderModuleHandle early, create_shader_module(device, tested_early(*spirv), name));
   AFTERGLOW_TRY(made.rest, draw(early, KernelDraw::rest, DrawMarks::tests));
   return made;
 }

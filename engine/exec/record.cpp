@@ -18,9 +18,9 @@ void bind(const Device& device, VkCommandBuffer commands, const KernelCommands& 
   const std::array<std::int32_t, 4> sizes{kernel.target_size.width, kernel.target_size.height,
                                           kernel.first_image_size.width, kernel.first_image_size.height};
   static_assert(sizeof sizes == kPushConstantBytes);
-  device.vk().vkCmdPushConstants(commands, kernel.layout,
-                                 compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof sizes,
-                                 sizes.data());
+  const VkShaderStageFlags stages =
+      compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+  device.vk().vkCmdPushConstants(commands, kernel.layout, stages, 0, sizeof sizes, sizes.data());
 }
 
 /// The image that tells two draws apart, wherever it was used last.

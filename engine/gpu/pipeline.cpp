@@ -15,6 +15,7 @@ namespace afterglow {
 Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface& interface) {
   const auto& limits = device.properties().limits;
   const VkShaderStageFlags stage = interface.stage();
+  const VkShaderStageFlags parameters = stage | (interface.vertex ? VkShaderStageFlags{VK_SHADER_STAGE_VERTEX_BIT} : 0u);
   const auto check = [&](VkDescriptorType type, std::uint32_t most) -> Result<void> {
     const auto count = static_cast<std::uint32_t>(std::count(interface.images.begin(), interface.images.end(), type));
     if (count <= most) return {};
@@ -28,7 +29,7 @@ Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface&
     bindings.push_back({.binding = 0,
                         .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                         .descriptorCount = 1,
-                        .stageFlags = stage,
+                        .stageFlags = parameters,
                         .pImmutableSamplers = nullptr});
   }
   for (std::size_t i = 0; i < interface.images.size(); ++i) {
@@ -47,7 +48,7 @@ Result<DrawLayout> create_draw_layout(const Device& device, const DrawInterface&
                "cannot create a descriptor layout");
   out.set = SetLayoutHandle(device, set);
 
-  const VkPushConstantRange push{stage, 0, interface.push_bytes};
+  const VkPushConstantRange push{parameters, 0, interface.push_bytes};
   const VkPipelineLayoutCreateInfo layout_info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                                .setLayoutCount = 1,
                                                .pSetLayouts = &set,

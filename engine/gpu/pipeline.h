@@ -20,6 +20,7 @@ struct DrawInterface {
   std::vector<VkDescriptorType> images;
   std::uint32_t push_bytes = 0;
   bool compute = false;
+  bool vertex = false;  ///< its vertex shader may read the block and the push constants too
   VkShaderStageFlagBits stage() const { return compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT; }
   friend auto operator<=>(const DrawInterface&, const DrawInterface&) = default;
 };

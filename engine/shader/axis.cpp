@@ -99,6 +99,30 @@ std::vector<TapTerm> Axis::read(double offset, int pixel) {
   return terms;
 }
 
+std::vector<PlacedTerm> Axis::read_placed(double offset) {
+  const int base = phase_for(0);
+  Axis whole_period(letter_, ratio_, interpolation_, period());
+  std::map<int, std::vector<double>> columns;
+  for (int place = 0; place < period(); ++place) {
+    const int carry = split((place + 0.5) * step() - 0.5).first;  // as setup() gives it to the base
+    for (const auto& term : whole_period.read(offset, place)) {
+      auto& weights = columns[term.texel.shift - carry];
+      weights.resize(static_cast<std::size_t>(period()));
+      weights[static_cast<std::size_t>(place)] += term.constant;
+    }
+  }
+  std::vector<PlacedTerm> terms;
+  for (auto& [column, weights] : columns) terms.push_back({{base, column}, std::move(weights)});
+  return terms;
+}
+
+std::string Axis::weight(const std::vector<double>& by_place) const {
+  std::vector<std::string> literals;
+  for (const double value : by_place) literals.push_back(float_literal(value));
+  const std::string out = this->by_place(literals);
+  return out == literals.back() ? out : "(" + out + ")";
+}
+
 std::vector<FetchTerm> Axis::fetch(double offset) {
   if (fixed()) {
     std::map<TexelKey, double> texels;

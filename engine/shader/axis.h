@@ -31,6 +31,12 @@ struct TapTerm {
   std::string variable;
 };
 
+/// One texel's share of a tap, for each place of a pixel in its period.
+struct PlacedTerm {
+  TexelKey texel;
+  std::vector<double> by_place;
+};
+
 /// One filtered fetch's share of a tap: at `position` (an expression, in texels) with weight constant · variable.
 struct FetchTerm {
   std::string position;
@@ -49,6 +55,12 @@ class Axis {
   /// The texels that a tap of weight 1 reads for one of the invocation's pixels (other than the first: fixed axes
   /// only).
   std::vector<TapTerm> read(double offset, int pixel = 0);
+  /// Weights of texels depend on the pixel's place alone, which repeats: they can be read by `read_placed`.
+  bool placed() const { return !fixed() && period() > 1; }
+  /// The same for such an axis: all taps count texels from one base, so that those which several of them read are one.
+  std::vector<PlacedTerm> read_placed(double offset);
+  /// Expression: the weight at the pixel's place.
+  std::string weight(const std::vector<double>& by_place) const;
   /// The same through the sampler's interpolation. Not for Interpolation::nearest.
   std::vector<FetchTerm> fetch(double offset);
   /// For a fixed axis: filtered fetches for merged texels, neighbours in pairs.

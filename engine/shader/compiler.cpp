@@ -177,6 +177,7 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   out.target = desc.target;
   out.target_channels = desc.target_channels;
   out.two_draws = assembled.two_draws;
+  out.flat_parameters = desc.config.flat_parameters && !out.workgroup;
   for (const auto number : made->unset)
     if (number < assembled.unset.size()) out.warnings.push_back(unset_warning(assembled.unset[number]));
   for (std::size_t i = 0; i + 1 < made->loops.size(); i += 2) {

@@ -49,6 +49,9 @@ struct ExecutionConfig {
   /// drivers take all pixels through both sides of a branch, but leave out groups of pixels that fail a depth test.
   /// Likewise without a word.
   bool two_draws = false;
+  /// Parameters come to fragment shaders through the vertex shader: CPU drivers read a uniform block for each pixel by
+  /// itself. Likewise without a word.
+  bool flat_parameters = false;
   friend bool operator==(const ExecutionConfig&, const ExecutionConfig&) = default;
 };
 

@@ -267,34 +267,83 @@ Result<std::string> free_anchor(const Filter& filter, AxisRatio ratio_x, AxisRat
   return out + weighted_sum("ag_color", reads);
 }
 
+/// Weight and texel of each read.
+using Reads = std::vector<std::pair<std::string, std::string>>;
+
+/// What each row of the target has of a line of texels: rows that weigh it alike, as those above and below it do, share
+/// the sum.
+std::string add_line(const std::vector<Reads>& of_row) {
+  std::vector<std::pair<Reads, std::vector<std::size_t>>> alike;
+  for (std::size_t row = 0; row < of_row.size(); ++row) {
+    if (of_row[row].empty()) continue;
+    auto same = std::find_if(alike.begin(), alike.end(), [&](const auto& a) { return a.first == of_row[row]; });
+    if (same == alike.end()) same = alike.insert(alike.end(), {of_row[row], {}});
+    same->second.push_back(row);
+  }
+  std::string out;
+  for (const auto& [reads, rows] : alike) {
+    out += "  ag_line = vec4(0.0);\n" + weighted_sum("ag_line", reads);
+    for (const auto row : rows) out += fmt::format("  ag_color{} += ag_line;\n", row);
+  }
+  return out;
+}
+
+/// What a texel weighs in a row: a sum, or one number for each place of the pixel along x.
+struct ColumnWeight {
+  Weight sum;
+  std::vector<double> by_place;
+
+  void add(const std::vector<double>& weights, double times) {
+    by_place.resize(weights.size());
+    for (std::size_t place = 0; place < weights.size(); ++place) by_place[place] += times * weights[place];
+  }
+  bool none() const {
+    if (!by_place.empty()) return std::ranges::all_of(by_place, [](double weight) { return weight == 0; });
+    return sum.size() == 1 && sum.begin()->second == 0;
+  }
+  std::string text(const Axis& x) const { return by_place.empty() ? expression(sum) : x.weight(by_place); }
+};
+
 /// Free taps, several rows of the target at once: each texel is read once and added to all rows that it is part of.
 Result<std::string> free_rows(const Filter& filter, AxisRatio ratio_x, AxisRatio ratio_y, int rows) {
   Axis x('x', ratio_x, filter.interpolation), y('y', ratio_y, filter.interpolation, rows);
-  std::map<std::pair<TexelKey, TexelKey>, std::map<int, Weight>> texels;  // y, then x → row → weight
+  std::map<TexelKey, std::map<TexelKey, std::map<int, ColumnWeight>>> lines;  // y → x → row
+  std::size_t texels = 0;
   for (const auto& tap : filter.taps) {
-    const auto across = x.read(tap.dx);
     for (int row = 0; row < rows; ++row)
-      for (const auto& down : y.read(tap.dy, row))
-        for (const auto& term : across)
-          texels[{down.texel, term.texel}][row][term.variable] += tap.weight * term.constant * down.constant;
-    if (texels.size() > kMaxReads) return too_many(texels.size(), kMaxReads);
+      for (const auto& down : y.read(tap.dy, row)) {
+        auto& line = lines[down.texel];
+        const std::size_t before = line.size();
+        const double weight = tap.weight * down.constant;
+        if (x.placed())
+          for (const auto& term : x.read_placed(tap.dx)) line[term.texel][row].add(term.by_place, weight);
+        else
+          for (const auto& term : x.read(tap.dx)) line[term.texel][row].sum[term.variable] += weight * term.constant;
+        texels += line.size() - before;
+      }
+    if (texels > kMaxReads) return too_many(texels, kMaxReads);
   }
   std::string out = x.setup() + y.setup() + kLast;
   for (int row = 0; row < rows; ++row) out += fmt::format("  vec4 ag_color{} = vec4(0.0);\n", row);
-  out += "  vec4 ag_read;\n  int ag_row;\n";
+  out += "  vec4 ag_line;\n  int ag_row;\n";
   std::map<TexelKey, std::string> columns;
-  const TexelKey* line = nullptr;
-  for (const auto& [key, weights] : texels) {
-    if (auto [column, fresh] = columns.try_emplace(key.second); fresh) {
-      column->second = fmt::format("ag_col{}", columns.size() - 1);
-      out += fmt::format("  int {} = {};\n", column->second, x.index(key.second));
+  std::size_t declared = 0;
+  for (const auto& [line, line_texels] : lines) {
+    out += fmt::format("  ag_row = {};\n", y.index(line));
+    std::vector<Reads> of_row(static_cast<std::size_t>(rows));
+    std::size_t reads = 0;
+    for (const auto& [column, weights] : line_texels) {
+      if (auto [at, fresh] = columns.try_emplace(column); fresh) {
+        at->second = fmt::format("ag_col{}", columns.size() - 1);
+        out += fmt::format("  int {} = {};\n", at->second, x.index(column));
+      }
+      const std::string read = fmt::format("ag_read{}", reads);
+      out += fmt::format("  {}{} = {};\n", reads++ < declared ? "" : "vec4 ", read, texel(columns[column], "ag_row"));
+      for (const auto& [row, weight] : weights)
+        if (!weight.none()) of_row[static_cast<std::size_t>(row)].emplace_back(weight.text(x), read);
     }
-    if (!line || *line != key.first) out += fmt::format("  ag_row = {};\n", y.index(key.first));
-    line = &key.first;
-    out += fmt::format("  ag_read = {};\n", texel(columns[key.second], "ag_row"));
-    for (const auto& [row, weight] : weights)
-      if (weight.size() > 1 || weight.begin()->second != 0)
-        out += fmt::format("  ag_color{} += {} * ag_read;\n", row, expression(weight));
+    declared = std::max(declared, reads);
+    out += add_line(of_row);
   }
   return out;
 }

@@ -148,6 +148,15 @@ inline constexpr std::uint32_t kDrawConstant = 0;
 /// `spirv` of such a kernel for the second draw: depth is tested before it runs, whatever it stores.
 std::vector<std::uint32_t> tested_early(std::vector<std::uint32_t> spirv);
 
+/// A kernel's `spirv` whose parameters and sizes come from a vertex shader that reads the same block and push
+/// constants.
+struct FlatParameters {
+  std::vector<std::uint32_t> fragment, vertex;
+};
+/// Nothing where it reads no parameters or sizes, or more than `most_locations` of four numbers can hold. Pixels are
+/// the same bits.
+std::optional<FlatParameters> flat_parameters(const std::vector<std::uint32_t>& spirv, std::uint32_t most_locations);
+
 /// Push constants of every kernel (its one stage): ivec2 target size, ivec2 size of image 0.
 inline constexpr std::uint32_t kPushConstantBytes = 16;
 
@@ -161,7 +170,8 @@ struct CompiledKernel {
   std::uint64_t shared_bytes = 0;      ///< that a workgroup shares
   KernelTarget target = KernelTarget::float32;
   int target_channels = 4;
-  bool two_draws = false;  ///< see KernelDraw
+  bool two_draws = false;        ///< see KernelDraw
+  bool flat_parameters = false;  ///< as in its execution
   /// What authors should know, as FILE:LINE: TEXT: variables that may be read before they have a value (they are 0).
   std::vector<std::string> warnings;
   /// With `config.guard_loops`, where each loop stands, when one of them may be endless. The kernel then needs a

@@ -69,7 +69,7 @@ return fx.effect {
     end
     local far = through_lens { shader = "depth_of_field/far", name = "far" }
     local disc = blades < 3 and 1 or math.sin(side) / side
-    local near = through_lens { shader = "depth_of_field/near", widest = widest, block = block, part = disc / math.max(s.squeeze, 1 / s.squeeze), name = "near" }
+    local near = through_lens { shader = "depth_of_field/near", widest = widest, tiles = 1 / block, part = disc / math.max(s.squeeze, 1 / s.squeeze), name = "near" }
     far = g:pass { shader = "depth_of_field/fill", source = far, name = "far_filled" }
     near = g:pass { shader = "depth_of_field/fill", source = near, name = "near_filled" }
     return with_circles { shader = "depth_of_field/final", size = source, picture = source, far = far, near = near, factor = factor, name = "final" }

@@ -35,7 +35,7 @@ return fx.effect {
     local rows = g:pass { shader = "motion_blur/longest", source = motion, size = { across, source.height }, block = tile, down = false, name = "rows" }
     local tiles = g:pass { shader = "motion_blur/longest", source = rows, size = { across, down }, block = tile, down = true, name = "tiles" }
     local neighbours = g:pass { shader = "motion_blur/neighbours", source = tiles, channels = 2 }
-    return g:pass { shader = "motion_blur/gather", source = motion, picture = source, longest = neighbours, block = tile, samples = s.samples,
-                    softness = depth and s.depth_softness or 1 }
+    return g:pass { shader = "motion_blur/gather", source = motion, picture = source, longest = neighbours, tiles = 1 / tile, samples = s.samples,
+                    hardness = depth and 1 / s.depth_softness or 1, sparse = 2 * radius > s.samples }
   end,
 }

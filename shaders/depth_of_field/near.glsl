@@ -8,7 +8,7 @@ layout(constant_id = 1) const bool has_tube = false;
 
 uniform sampler2D source;  // pyramid of the small picture, circles in alpha
 uniform sampler2D widest;  // circle in front of the focus around, by tile
-uniform int block;
+uniform float tiles;       // in a pixel: 1 / their side
 uniform ivec2 small;       // size of the small picture
 uniform float factor;
 uniform vec4 turns;
@@ -18,7 +18,7 @@ uniform float samples;
 uniform float part;        // of a disc that the iris is
 
 vec4 sample_at(ivec2 pixel) {
-  float around = -fetch(widest, pixel / block).a;
+  float around = -fetch(widest, ivec2((vec2(pixel) + 0.5) * tiles)).a;
   int coarsest = blurred(around * factor, factor) <= 0.0 ? -1 : level_for(around, samples);
   vec3 tube = tube_at(vec2(pixel) + 0.5, vec2(small), cat_eye);
   float soft = stretch.z, open = part * open_part(has_tube ? tube.z : 0.0);

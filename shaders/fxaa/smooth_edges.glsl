@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Along each edge the way to its two ends tells how the edge slants; the pixel is then read from between itself and the other side.
+#include "lib/color.glsl"
+
 layout(constant_id = 0) const int quality = 2;
 
 uniform sampler2D source;
@@ -10,32 +12,43 @@ uniform float subpixel_blending;
 
 // Behind the last step the end is guessed to be so much further.
 const float kGuess = 8.0;
-const int kSteps = quality == 0 ? 3 : quality == 1 ? 8 : 10;
-
-// How far a step goes along the edge, in pixels: at high quality a few of one first, then one of a half more, twos, and a last of 4.
-float step_of(int i) {
-  const int fine = quality == 2 ? 4 : 0;
-  return i < fine ? 1.0 : i == fine ? 1.5 : i < kSteps - 1 || quality == 0 ? 2.0 : 4.0;
-}
+// The way along the edge: at high quality 4 steps of one pixel first, then one of a half more, twos, and a last of 4 (at low quality of 2).
+const int kFine = quality == 2 ? 4 : 0, kLast = quality == 0 ? 2 : quality == 1 ? 7 : 5;
+const int kMost = 64;  // turns, more than there are: loops that end sooner by what they find are not unfolded
 
 float at(ivec2 pixel) { return fetch(luma, pixel).r; }
 
-/// Luma on the line between two rows or columns, `way` pixels along it from `pixel`; both are whole or halves.
-float beside(vec2 pixel, float way, vec2 direction, bool horizontal) {
-  ivec2 to = ivec2(floor(pixel + way * direction));
-  ivec2 next = way == floor(way) ? ivec2(0) : horizontal ? ivec2(1, 0) : ivec2(0, 1), over = horizontal ? ivec2(0, 1) : ivec2(1, 0);
-  float own = at(to), ahead = at(to + next), other = at(to + over), both = at(to + next + over);
-  return 0.25 * (horizontal ? (own + ahead) + (other + both) : (own + other) + (ahead + both));
+/// Luma on the line between two rows or columns: `pixel` lies on its upper or left side, the other one `over` from it.
+float beside(ivec2 pixel, ivec2 over) { return 0.5 * (at(pixel) + at(pixel + over)); }
+
+/// The same between `pixel` and the next one along the line.
+float between(ivec2 pixel, ivec2 over, ivec2 next) {
+  return 0.25 * ((at(pixel) + at(pixel + over)) + (at(pixel + next) + at(pixel + next + over)));
 }
 
-/// Way along `direction` until luma leaves that of the edge by `enough`; `change` is by how much it did.
-float way_to_end(vec2 pixel, vec2 direction, bool horizontal, float edge, float enough, out float change) {
-  float way = 1.0;
-  change = beside(pixel, way, direction, horizontal) - edge;
-  for (int i = 0; i < kSteps && abs(change) < enough; ++i) {
-    way += step_of(i);
-    change = beside(pixel, way, direction, horizontal) - edge;
+/// Way along `next`, or against it, until luma leaves that of the edge by `enough`; `change` is by how much it did. Pixels come first, which are two
+/// reads each, and the places between two of them behind. (Loops end behind their reads: a CPU driver would take a group of pixels through them once
+/// more to see that they are over.)
+float way_to_end(ivec2 pixel, ivec2 over, ivec2 next, bool back, float edge, float enough, out float change) {
+  ivec2 on = back ? -next : next, to = pixel;
+  change = 0.0;
+  for (int i = 0; i < kMost; ++i) {
+    to += on;
+    change = beside(to, over) - edge;
+    if (i == kFine || abs(change) >= enough) break;
   }
+  float half_more = 0.0;
+  if (abs(change) < enough) {
+    half_more = 0.5;
+    if (back) to += on;  // the upper or left one of the two pixels
+    for (int i = 0; i < kMost; ++i) {
+      to += on * (i == 0 ? 1 : i == kLast && quality != 0 ? 4 : 2);
+      change = between(to, over, next) - edge;
+      if (i == kLast || abs(change) >= enough) break;
+    }
+  }
+  ivec2 gone = abs(to - pixel);
+  float way = float(gone.x + gone.y) + (back ? -half_more : half_more);
   return abs(change) < enough ? way + kGuess : way;
 }
 
@@ -70,16 +83,16 @@ vec4 sample_at(ivec2 pixel) {
   float ahead = horizontal ? s : e, behind = horizontal ? n : w;
   bool forward = abs(ahead - m) > abs(behind - m);
   float other = forward ? ahead : behind;
-  vec2 across = (horizontal ? vec2(0.0, 1.0) : vec2(1.0, 0.0)) * (forward ? 1.0 : -1.0);
-  vec2 along = horizontal ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
 
-  vec2 centre = vec2(pixel) + 0.5;
   float edge = 0.5 * (m + other), enough = 0.25 * abs(other - m), change_p, change_n;
-  vec2 from = vec2(pixel) + min(across, 0.0);  // the upper or left one of the two sides
-  float way_p = way_to_end(from, along, horizontal, edge, enough, change_p);
-  float way_n = way_to_end(from, -along, horizontal, edge, enough, change_n);
+  ivec2 over = horizontal ? ivec2(0, 1) : ivec2(1, 0), next = 1 - over;
+  ivec2 from = forward ? pixel : pixel - over;  // the upper or left one of the two sides
+  float way_p = way_to_end(from, over, next, false, edge, enough, change_p);
+  float way_n = way_to_end(from, over, next, true, edge, enough, change_n);
   bool rising = (way_p <= way_n ? change_p : change_n) >= 0.0;
   float slant = rising == (m >= edge) ? 0.0 : 0.5 - min(way_p, way_n) / (way_p + way_n);
 
-  return vec4(fetch_linear(source, centre + max(subpixel, slant) * across).rgb, fetch(source, pixel).a);
+  // Between the pixel and the one across the edge.
+  vec4 own = fetch(source, pixel);
+  return vec4(lerp(own.rgb, fetch(source, forward ? pixel + over : pixel - over).rgb, max(subpixel, slant)), own.a);
 }

@@ -4,12 +4,19 @@
 // read counts for the part of its length that the way covers: so a way of half a pixel more blurs by half a pixel more.
 #include "lib/color.glsl"
 
+layout(constant_id = 0) const bool sparse = false;  // ways may be longer than `samples` reads
+
 uniform sampler2D source;   // half ways and nearness
 uniform sampler2D picture;
 uniform sampler2D longest;  // half ways, by tile
-uniform int block;
+uniform float tiles;  // in a pixel: 1 / their side
 uniform int samples;
-uniform float softness;
+uniform float hardness;  // 1 / the difference of nearness that is in front
+
+const int kMost = 512;  // turns, more than there are
+
+/// The longest way around a pixel. (Division of whole numbers is slow on CPU devices; this is the same for sides up to 16384.)
+vec2 around(ivec2 pixel) { return fetch(longest, ivec2((vec2(pixel) + 0.5) * tiles)).xy; }
 
 float longer(vec2 way) { return max(abs(way.x), abs(way.y)); }
 
@@ -19,62 +26,73 @@ float covered(float i, float steps) { return clamp(steps + 0.5 - i, 0.0, 1.0); }
 /// Square of the difference of two ways; which end of a way comes first decides nothing.
 float unlike(vec2 a, vec2 b) { return max(dot(a, a) + dot(b, b) - 2.0 * abs(dot(a, b)), 1e-6); }
 
+/// A way to follow, on both sides of the pixel.
+struct Way {
+  vec2 step;            // between two reads, one pixel of the longer axis or several
+  vec2 per_step;        // how many steps a motion is along it, by their dot product
+  float slope, steps;   // aside for each step; steps from the pixel to the end
+  ivec2 along, across;  // the longer axis, and the other one
+  int reads;            // 0: it is not followed
+};
+
+Way way_along(vec2 way, bool follows) {
+  float length_of_way = longer(way);
+  // No more reads than there may be: each then stands for several pixels.
+  float apart = sparse ? max(1.0, ceil((2.0 * length_of_way - 0.3) / float(samples))) : 1.0;
+  vec2 step = way * (apart / length_of_way);
+  bool flat_way = abs(way.x) >= abs(way.y);
+  ivec2 across = flat_way ? ivec2(0, 1) : ivec2(1, 0);
+  ivec2 along = (1 - across) * (int(apart) * ((flat_way ? way.x : way.y) < 0.0 ? -1 : 1));
+  float steps = sparse ? length_of_way / apart : length_of_way;
+  return Way(step, step / dot(step, step), flat_way ? step.y : step.x, steps, along, across, follows ? int(floor(steps + 0.5)) : 0);
+}
+
 /// Adds one pixel, `i` steps along the way, to what is not in front (colour and weight) and to what is (colour and share of the time).
-/// `share`: how much of it lies on the way; `inside`: how much of its step the way covers.
-void count(inout vec4 behind, inout vec4 front, ivec2 at, float share, float i, float inside, vec2 step, vec4 own, vec2 other, bool two) {
+/// `share`: how much of it lies on the way; `inside`: how much of its step the way covers, below 0 on a way that is not the pixel's own.
+void count(inout vec4 behind, inout vec4 front, ivec2 at, float share, float i, float inside, vec2 per_step, vec4 own, vec2 other, bool two) {
   vec4 read = fetch(source, at);
-  float in_front = clamp((read.z - own.z) / softness, 0.0, 1.0);
-  // What is in front passes over this pixel for as long as its own motion along this way says.
-  float steps = abs(dot(read.xy, step)) / dot(step, step);
-  float passes = share * in_front * covered(i, steps) / (2.0 * max(steps, 0.5));
-  if (two) {
-    // It belongs to the way that it is more like.
-    float to_own = unlike(read.xy, own.xy), to_other = unlike(read.xy, other);
-    passes *= (inside < 0.0 ? to_own : to_other) / (to_own + to_other);
-  }
+  float in_front = clamp((read.z - own.z) * hardness, 0.0, 1.0);
+  // What is in front passes over this pixel for as long as its own motion along this way says. Of two ways it belongs to the one that it is more like.
+  float steps = abs(dot(read.xy, per_step));
+  float to_own = unlike(read.xy, own.xy), to_other = unlike(read.xy, other);
+  float of_this = two ? (inside < 0.0 ? to_own : to_other) : 1.0, of_both = two ? to_own + to_other : 1.0;
+  float passes = share * in_front * covered(i, steps) * of_this / (2.0 * max(steps, 0.5) * of_both);
   float stays = share * max(inside, 0.0) * (1.0 - in_front);
-  if (passes + stays <= 0.0) return;
   vec3 color = fetch(picture, at).rgb;
   front += passes * vec4(color, 1.0);
   behind += stays * vec4(color, 1.0);
 }
 
-/// Adds what lies along a way, to both sides. `first`: it is the pixel's own way, and what is not in front counts too.
-void follow(inout vec4 behind, inout vec4 front, ivec2 pixel, vec2 way, vec4 own, vec2 other, bool two, bool first) {
-  float length_of_way = longer(way);
-  // No more reads than there may be: each then stands for several pixels.
-  float apart = max(1.0, ceil((2.0 * length_of_way - 0.3) / float(samples)));
-  vec2 step = way * (apart / length_of_way);
-  bool flat_way = abs(way.x) >= abs(way.y);
-  ivec2 across = flat_way ? ivec2(0, 1) : ivec2(1, 0);
-  ivec2 along = (1 - across) * (int(apart) * ((flat_way ? way.x : way.y) < 0.0 ? -1 : 1));
-  float slope = flat_way ? step.y : step.x, steps = length_of_way / apart;
-  int reads = int(floor(steps + 0.5));
-  for (int i = 1; i <= reads; ++i) {
-    float inside = first ? covered(float(i), steps) : -1.0;
-    float aside = float(i) * slope, whole = floor(aside), rest = aside - whole;
-    ivec2 to = i * along + int(whole) * across;
-    count(behind, front, pixel + to, 1.0 - rest, float(i), inside, step, own, other, two);
-    count(behind, front, pixel + to + across, rest, float(i), inside, step, own, other, two);
-    count(behind, front, pixel - to, 1.0 - rest, float(i), inside, step, own, other, two);
-    count(behind, front, pixel - to - across, rest, float(i), inside, step, own, other, two);
-  }
-}
-
 // Nothing around moves by a pixel.
 bool done_at(ivec2 pixel, out vec4 color) {
   color = fetch(picture, pixel);
-  return longer(fetch(longest, pixel / block).xy) <= 0.5;
+  return longer(around(pixel)) <= 0.5;
 }
 
 vec4 sample_at(ivec2 pixel) {
   vec4 color = fetch(picture, pixel);
-  vec2 way = fetch(longest, pixel / block).xy;
+  vec2 way = around(pixel);
   vec4 own = fetch(source, pixel);
   vec4 behind = vec4(color.rgb, 1.0), front = vec4(0.0);
   bool two = unlike(way, own.xy) > 0.25;
-  if (longer(own.xy) > 0.5) follow(behind, front, pixel, own.xy, own, way, two, true);
-  if (two) follow(behind, front, pixel, way, own, way, true, false);
+  // Its own way first, on which what is not in front counts too; in one loop, as a group of pixels goes through each loop at least once.
+  Way first = way_along(own.xy, longer(own.xy) > 0.5), second = way_along(way, two);
+  int reads = first.reads + second.reads;
+  if (reads > 0)
+    for (int k = 0; k < kMost; ++k) {
+      bool is_first = k < first.reads;
+      vec2 per_step = is_first ? first.per_step : second.per_step;
+      ivec2 along = is_first ? first.along : second.along, across = is_first ? first.across : second.across;
+      int i = is_first ? k + 1 : k + 1 - first.reads;
+      float inside = is_first ? covered(float(i), first.steps) : -1.0;
+      float aside = float(i) * (is_first ? first.slope : second.slope), whole = floor(aside), rest = aside - whole;
+      ivec2 to = i * along + int(whole) * across;
+      count(behind, front, pixel + to, 1.0 - rest, float(i), inside, per_step, own, way, two);
+      count(behind, front, pixel + to + across, rest, float(i), inside, per_step, own, way, two);
+      count(behind, front, pixel - to, 1.0 - rest, float(i), inside, per_step, own, way, two);
+      count(behind, front, pixel - to - across, rest, float(i), inside, per_step, own, way, two);
+      if (k + 1 == reads) break;
+    }
   vec3 result = behind.rgb * (max(1.0 - front.a, 0.0) / behind.a) + front.rgb / max(front.a, 1.0);
   return vec4(result, color.a);
 }

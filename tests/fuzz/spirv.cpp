@@ -35,6 +35,11 @@ void steps(const Words& spirv) {
       [](const Words& in) { return give_values(in, {}).spirv; },
       [](const Words& in) { return interleave_rows(in, 4); },
       [](const Words& in) { return defeat_uniform_inlining(in); },
+      [](const Words& in) {
+        const auto flat = flat_parameters(in, 31);
+        if (flat) FUZZ_CLAIM(is_valid(flat->vertex), "vertex shader\n" + text_of(flat->vertex));
+        return flat ? flat->fragment : in;
+      },
   };
   Words in_turn = spirv;
   for (std::size_t step = 0; step < all.size(); ++step) {

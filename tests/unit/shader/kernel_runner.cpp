@@ -47,14 +47,18 @@ struct KernelRunner::Pipeline {
 };
 
 const KernelRunner::Pipeline& KernelRunner::pipeline(const CompiledKernel& kernel, VkFormat format) {
-  auto& made = pipelines_[{kernel.hash, format}];
+  auto& made = pipelines_[{kernel.hash, format, kernel.flat_parameters}];
   if (made) return *made;
   made = std::make_unique<Pipeline>();
   std::vector<VkDescriptorType> types(kernel.images.size(), VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
   if (!kernel.loops.empty()) types.push_back(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
-  made->layout = need(create_draw_layout(*device_, {kernel.block_size > 0, types, kPushConstantBytes}));
-  made->vertex = need(create_shader_module(*device_, kFullscreenVertex, "vertex"));
-  made->fragment = need(create_shader_module(*device_, kernel.spirv, "kernel"));
+  made->layout = need(create_draw_layout(
+      *device_, {.block = kernel.block_size > 0, .images = types, .push_bytes = kPushConstantBytes, .vertex = true}));
+  std::optional<FlatParameters> flat;
+  if (kernel.flat_parameters) flat = flat_parameters(kernel.spirv, 16);
+  made->vertex = need(create_shader_module(
+      *device_, flat ? std::span<const std::uint32_t>(flat->vertex) : kFullscreenVertex, "vertex"));
+  made->fragment = need(create_shader_module(*device_, flat ? flat->fragment : kernel.spirv, "kernel"));
   made->pipeline = need(create_draw_pipeline(*device_, made->layout, made->vertex.get(), made->fragment.get(),
                                              {format, kernel.rows}, "kernel"));
   return *made;
@@ -194,7 +198,8 @@ TestImage KernelRunner::run(const CompiledKernel& kernel, const std::vector<Test
   vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout.pipeline.get(), 0, 1, &set, 0, nullptr);
   const int push[4] = {target.width, target.height, images.empty() ? 0 : images[0].size.width,
                        images.empty() ? 0 : images[0].size.height};
-  vk.vkCmdPushConstants(commands, layout.pipeline.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push, push);
+  vk.vkCmdPushConstants(commands, layout.pipeline.get(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                        sizeof push, push);
   vk.vkCmdDraw(commands, 3, 1, 0, 0);
   vk.vkCmdEndRendering(commands);
   const auto to_copy = image_barrier(output.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 #include "core/geometry.h"
@@ -37,7 +38,7 @@ class KernelRunner {
   const Pipeline& pipeline(const CompiledKernel& kernel, VkFormat format);
 
   std::unique_ptr<Device> device_;
-  std::map<std::pair<Hash, VkFormat>, std::unique_ptr<Pipeline>> pipelines_;  // after the device: destroyed before it
+  std::map<std::tuple<Hash, VkFormat, bool>, std::unique_ptr<Pipeline>> pipelines_;  // after the device: destroyed before it
   VkCommandPool pool_ = VK_NULL_HANDLE;
 };
 

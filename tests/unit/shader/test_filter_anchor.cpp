@@ -91,6 +91,20 @@ TEST(FilterAnchor, RowsOfFreeTapsReadEachTexelOnce) {
   EXPECT_FALSE(rows_shared(kPlus, any, 4)) << "weights differ from row to row";
 }
 
+TEST(FilterAnchor, RowsOfFreeTapsShareTexelsAndSumsWhereTheImageGrows) {
+  // Taps at whole and at half texels: four columns hold all of them, whichever place a pixel has.
+  Filter up;
+  up.interpolation = kLinear;
+  up.taps = {{-1, 0, 0.125},      {1, 0, 0.125},      {0, -1, 0.125},     {0, 1, 0.125},
+             {-0.5, -0.5, 0.125}, {0.5, -0.5, 0.125}, {-0.5, 0.5, 0.125}, {0.5, 0.5, 0.125}};
+  KernelDesc desc = kernel(up, twice, twice);
+  desc.config.rows = 8;
+  const std::string text = main_of(desc);
+  EXPECT_EQ(count(text, "ag_texel0("), 7 * 4) << "columns of each line";
+  // Of the rows that a line belongs to, those above and below it weigh it alike.
+  EXPECT_LT(count(text, "ag_line = vec4(0.0)"), count(text, "+= ag_line")) << text;
+}
+
 TEST(FilterAnchor, CoordinatesAreClampedOnceAndOnlyWhereTheyCanLeave) {
   const auto text = main_of(kernel({kLinear}, half, half));
   EXPECT_EQ(count(text, "clamp("), 0);

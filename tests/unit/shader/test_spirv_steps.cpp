@@ -49,7 +49,7 @@ TEST(SpirvSteps, PixelsOfRandomShadersStay) {
     desc.sample = files.stage("test/random", text);
     const auto plain = compiler.compile(desc);
     ASSERT_TRUE(plain) << plain.error().text() << "\n" << text;
-    desc.config.defeat_uniform_inlining = desc.config.guard_loops = true;
+    desc.config.defeat_uniform_inlining = desc.config.guard_loops = desc.config.flat_parameters = true;
     desc.config.rows = round % 4 == 3 ? 4 : 1;
     const auto changed = compiler.compile(desc);
     ASSERT_TRUE(changed) << changed.error().text() << "\n" << text;
