@@ -16,7 +16,16 @@ namespace {
 constexpr float kPanelWidth = 376, kTransportHeight = 78;
 constexpr double kRetry = 0.02;  // when the window could not be drawn to
 
-ViewImage view_image(const DeviceImage& image) { return {image.binding.view, image.layout, image.binding.size}; }
+ViewImage view_image(const DeviceImage& image) {
+  ViewImage out{.view = image.binding.view, .layout = image.layout, .size = image.binding.size};
+  const VkFormat format = image.binding.format;
+  out.half = format == VK_FORMAT_R16G16B16A16_SFLOAT;
+  if (out.half || format == VK_FORMAT_R32G32B32A32_SFLOAT) {
+    out.pixels = image.pixels;
+    out.row_pitch = image.row_pitch;
+  }
+  return out;
+}
 
 }  // namespace
 
