@@ -18,12 +18,39 @@ namespace afterglow {
 
 namespace {
 
-/// The pixel of the image under the middle of one of the target, in floats as view.frag finds it.
-int nearest_pixel(int at, float origin, float scale, int picture, int size) {
-  const float point = (static_cast<float>(at) + 0.5f - origin) / scale;
-  const float pixel = std::floor(point * (static_cast<float>(size) / static_cast<float>(picture)));
-  return static_cast<int>(std::clamp(pixel, 0.0f, static_cast<float>(size - 1)));
+/// Along one axis: from pixels of the target to places of the image, in floats as view.frag has it.
+struct Axis {
+  float origin, scale, per_point;
+  int size;  ///< of the image
+
+  float place(int at) const { return (static_cast<float>(at) + 0.5f - origin) / scale * per_point; }
+  int nearest(int at) const {
+    return static_cast<int>(std::clamp(std::floor(place(at)), 0.0f, static_cast<float>(size - 1)));
+  }
+};
+
+/// The pixels of the image that lie under one of the target, along one axis, and how much of each.
+struct Covered {
+  int begin = 0, end = 0;
+  float low = 0, high = 0;
+  float share(int pixel) const {
+    return std::min(static_cast<float>(pixel + 1), high) - std::max(static_cast<float>(pixel), low);
+  }
+};
+
+Covered covered(const Axis& axis, int at) {
+  const float place = axis.place(at), reach = std::max(axis.per_point / axis.scale, 1.0f);
+  Covered out;
+  out.low = std::max(place - 0.5f * reach, 0.0f);
+  out.high = std::min(place + 0.5f * reach, static_cast<float>(axis.size));
+  const int last = axis.size - 1;
+  out.begin = std::clamp(static_cast<int>(std::floor(out.low)), 0, last);
+  out.end = std::clamp(static_cast<int>(std::ceil(out.high)) - 1, out.begin, last) + 1;
+  return out;
 }
+
+constexpr float kLargest = 1e30f;
+float tamed(float v) { return std::isnan(v) ? 0 : std::clamp(v, -kLargest, kLargest); }
 
 #if defined(__x86_64__)
 __attribute__((target("avx2"), always_inline)) inline __m256 next_avx2(__m256 curve, __m256 root, float next) {
@@ -46,7 +73,7 @@ __attribute__((target("avx2"), always_inline)) inline __m256 srgb_avx2(__m256 c)
 __attribute__((target("avx2"), always_inline)) inline __m256i codes_avx2(const float* rgba, __m256 gain) {
   const __m256 zero = _mm256_setzero_ps(), one = _mm256_set1_ps(1);
   const __m256 positive = _mm256_max_ps(_mm256_loadu_ps(rgba), zero);  // its second operand for NaN
-  const __m256 held = _mm256_min_ps(_mm256_mul_ps(_mm256_min_ps(positive, _mm256_set1_ps(1e30f)), gain), one);
+  const __m256 held = _mm256_min_ps(_mm256_mul_ps(_mm256_min_ps(positive, _mm256_set1_ps(kLargest)), gain), one);
   return _mm256_cvtps_epi32(_mm256_mul_ps(srgb_avx2(held), _mm256_set1_ps(255)));
 }
 
@@ -72,13 +99,35 @@ __attribute__((target("avx2"))) int encode_avx2(const float* rgba, int count, co
   }
   return i;
 }
+
+/// Eight floats at a time; how many it did.
+__attribute__((target("avx2"))) std::size_t add_share_avx2(const float* from, float share, std::size_t count,
+                                                           float* to) {
+  const __m256 largest = _mm256_set1_ps(kLargest), least = _mm256_set1_ps(-kLargest), part = _mm256_set1_ps(share);
+  std::size_t i = 0;
+  for (; i + 8 <= count; i += 8) {
+    const __m256 v = _mm256_loadu_ps(from + i);
+    const __m256 number = _mm256_and_ps(v, _mm256_cmp_ps(v, v, _CMP_ORD_Q));
+    const __m256 held = _mm256_max_ps(_mm256_min_ps(number, largest), least);
+    _mm256_storeu_ps(to + i, _mm256_add_ps(_mm256_loadu_ps(to + i), _mm256_mul_ps(held, part)));
+  }
+  return i;
+}
 #endif
+
+void add_share(const float* from, float share, std::size_t count, float* to) {
+  std::size_t i = 0;
+#if defined(__x86_64__)
+  if (has_avx2()) i = add_share_avx2(from, share, count, to);
+#endif
+  for (; i < count; ++i) to[i] += tamed(from[i]) * share;
+}
 
 std::uint32_t encode_pixel(const float* rgba, const PlainView& view) {
   const CodeEncoder& encoder = CodeEncoder::srgb(255);
   std::array<std::uint8_t, 4> bytes{0, 0, 0, 255};
   for (std::size_t c = 0; c < 3; ++c)
-    bytes[view.blue_first ? 2 - c : c] = static_cast<std::uint8_t>(encoder(std::min(rgba[c], 1e30f) * view.gain));
+    bytes[view.blue_first ? 2 - c : c] = static_cast<std::uint8_t>(encoder(tamed(rgba[c]) * view.gain));
   std::uint32_t out = 0;
   std::memcpy(&out, bytes.data(), sizeof out);
   return out;
@@ -102,33 +151,89 @@ void encode_pixels(const float* rgba, int count, const PlainView& view, std::uin
   for (int i = 0; i < count; ++i) codes[i] = encode_pixel(rgba + static_cast<std::ptrdiff_t>(i) * 4, view);
 }
 
-}  // namespace
+/// Rows of the image, from one column to another, as floats.
+class ImageRows {
+ public:
+  ImageRows(const PlainView& view, int first, int count)
+      : view_(view),
+        first_(static_cast<std::size_t>(first)),
+        floats_(view.half ? static_cast<std::size_t>(count) * 4 : 0) {}
+  /// Holds until the next one.
+  const float* row(int y) {
+    const std::byte* from =
+        view_.pixels + static_cast<std::size_t>(y) * view_.row_pitch + first_ * (view_.half ? 8 : 16);
+    if (!view_.half) return reinterpret_cast<const float*>(from);
+    from_half(reinterpret_cast<const std::uint16_t*>(from), floats_.data(), floats_.size());
+    return floats_.data();
+  }
 
-void write_plain_view(const PlainView& view, const Rect& pixels, std::byte* codes) {
-  if (pixels.size().area() == 0) return;
+ private:
+  const PlainView& view_;
+  std::size_t first_;
+  std::vector<float> floats_;
+};
+
+void write_nearest(const PlainView& view, const Axis& across, const Axis& down, const Rect& pixels, std::byte* codes) {
   const auto width = static_cast<std::size_t>(pixels.width);
   std::vector<int> columns(width);
-  for (int x = 0; x < pixels.width; ++x)
-    columns[static_cast<std::size_t>(x)] =
-        nearest_pixel(pixels.x + x, view.origin[0], view.scale, view.picture.width, view.size.width);
+  for (int x = 0; x < pixels.width; ++x) columns[static_cast<std::size_t>(x)] = across.nearest(pixels.x + x);
   const int first = columns.front(), count = columns.back() - first + 1;
-  for (int& column : columns) column -= first;
+  ImageRows rows(view, first, count);
   std::vector<std::uint32_t> line(static_cast<std::size_t>(count)), out(width);
-  std::vector<float> floats(view.half ? static_cast<std::size_t>(count) * 4 : 0);
-  const std::size_t pixel_bytes = view.half ? 8 : 16;
   int before = -1;  // row of the image
   for (int y = 0; y < pixels.height; ++y, codes += width * sizeof(std::uint32_t)) {
-    const int row = nearest_pixel(pixels.y + y, view.origin[1], view.scale, view.picture.height, view.size.height);
-    if (row != before) {
-      const std::byte* from =
-          view.pixels + static_cast<std::size_t>(row) * view.row_pitch + static_cast<std::size_t>(first) * pixel_bytes;
-      if (view.half) from_half(reinterpret_cast<const std::uint16_t*>(from), floats.data(), floats.size());
-      encode_pixels(view.half ? floats.data() : reinterpret_cast<const float*>(from), count, view, line.data());
-      for (std::size_t x = 0; x < width; ++x) out[x] = line[static_cast<std::size_t>(columns[x])];
+    if (const int row = down.nearest(pixels.y + y); row != before) {
+      encode_pixels(rows.row(row), count, view, line.data());
+      for (std::size_t x = 0; x < width; ++x) out[x] = line[static_cast<std::size_t>(columns[x] - first)];
       before = row;
     }
     std::memcpy(codes, out.data(), width * sizeof(std::uint32_t));
   }
+}
+
+void write_means(const PlainView& view, const Axis& across, const Axis& down, const Rect& pixels, std::byte* codes) {
+  const auto width = static_cast<std::size_t>(pixels.width);
+  std::vector<Covered> columns(width);
+  for (int x = 0; x < pixels.width; ++x) columns[static_cast<std::size_t>(x)] = covered(across, pixels.x + x);
+  const int first = columns.front().begin, count = columns.back().end - first;
+  ImageRows rows(view, first, count);
+  std::vector<float> sums(static_cast<std::size_t>(count) * 4), means(width * 4);
+  std::vector<std::uint32_t> out(width);
+  for (int y = 0; y < pixels.height; ++y, codes += width * sizeof(std::uint32_t)) {
+    const Covered row = covered(down, pixels.y + y);
+    std::fill(sums.begin(), sums.end(), 0.0f);
+    float height = 0;
+    for (int i = row.begin; i < row.end; ++i) {
+      add_share(rows.row(i), row.share(i), sums.size(), sums.data());
+      height += row.share(i);
+    }
+    for (std::size_t x = 0; x < width; ++x) {
+      std::array<float, 4> sum{};
+      float total = 0;
+      for (int i = columns[x].begin; i < columns[x].end; ++i) {
+        const float share = columns[x].share(i);
+        const float* from = &sums[static_cast<std::size_t>(i - first) * 4];
+        for (std::size_t c = 0; c < 4; ++c) sum[c] += share * from[c];
+        total += share;
+      }
+      const float part = 1 / std::max(total * height, 1e-20f);
+      for (std::size_t c = 0; c < 4; ++c) means[x * 4 + c] = sum[c] * part;
+    }
+    encode_pixels(means.data(), pixels.width, view, out.data());
+    std::memcpy(codes, out.data(), width * sizeof(std::uint32_t));
+  }
+}
+
+}  // namespace
+
+void write_plain_view(const PlainView& view, const Rect& pixels, std::byte* codes) {
+  if (pixels.size().area() == 0) return;
+  const auto axis = [&](float origin, int size, int picture) {
+    return Axis{origin, view.scale, static_cast<float>(size) / static_cast<float>(picture), size};
+  };
+  const Axis across = axis(view.origin[0], view.size.width, view.picture.width);
+  const Axis down = axis(view.origin[1], view.size.height, view.picture.height);
+  (view.means ? write_means : write_nearest)(view, across, down, pixels, codes);
 }
 
 }  // namespace afterglow

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures in the way in which most are looked at, nearest pixels as sRGB codes, made by the processor: drivers on the
-// CPU take several times as long for a shader that does the same, since they read pixels block by block.
+// Pictures in the way in which most are looked at, nearest pixels or their means as sRGB codes, made by the processor:
+// drivers on the CPU take several times as long for a shader that does the same, since they read pixels block by block.
 #pragma once
 
 #include <array>
@@ -15,6 +15,7 @@ struct PlainView {
   const std::byte* pixels = nullptr;  ///< RGBA floats; the first row's
   std::size_t row_pitch = 0;          ///< bytes from one row to the next
   bool half = false;                  ///< they are half floats
+  bool means = false;                 ///< of all that a pixel of the target covers, by area; else the nearest
   bool blue_first = false;            ///< of the target: blue, green, red, alpha; else red first
   Size size;                          ///< of the image
   Size picture;                       ///< that `scale` is about
@@ -24,7 +25,8 @@ struct PlainView {
 };
 
 /// Codes of these pixels of the target, four bytes each, row by row without gaps; alpha is 255. The same pixels of the
-/// image as view.frag takes, and codes that differ from its own at most where two are equally near. NaN counts as 0.
+/// image as view.frag takes, and codes that differ from its own at most where two are nearly equally near. NaN counts
+/// as 0.
 void write_plain_view(const PlainView& view, const Rect& pixels, std::byte* codes);
 
 }  // namespace afterglow

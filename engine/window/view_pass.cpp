@@ -153,11 +153,14 @@ std::int32_t flags_of(const ViewFrame& frame) {
 std::optional<PlainView> plain_view(const ViewFrame& frame, const Place& place, const Strip& strip, bool by_table) {
   const ViewImage& image = strip.images[0];
   if (!image.pixels || strip.difference || by_table || flags_of(frame) != 0 ||
-      frame.view.channel != ViewChannel::color || reads_of(frame, place, image.size) != kNearest)
+      frame.view.channel != ViewChannel::color)
     return std::nullopt;
+  const Reads reads = reads_of(frame, place, image.size);
+  if (reads == kSmooth) return std::nullopt;
   return PlainView{.pixels = image.pixels,
                    .row_pitch = image.row_pitch,
                    .half = image.half,
+                   .means = reads == kMean,
                    .size = image.size,
                    .picture = frame.picture,
                    .origin = {static_cast<float>(place.origin.x), static_cast<float>(place.origin.y)},

@@ -98,8 +98,8 @@ class ViewPass {
   Result<void> take_table(const DisplayTable& table);
   /// Outside of rendering, before `record` with the same frames: brings a new table to the device. With a `target`
   /// (null: none) that can be copied to, which is and stays in COLOR_ATTACHMENT_OPTIMAL, devices on the CPU get what is
-  /// nearest pixels as sRGB codes there and then from the processor, which takes a fifth of the shader's time. True
-  /// when the target has such pixels now; `record` leaves them alone. Errors: device.
+  /// nearest pixels or means as sRGB codes there and then from the processor, which takes a fifth of the shader's time.
+  /// True when the target has such pixels now; `record` leaves them alone. Errors: device.
   Result<bool> prepare(VkCommandBuffer commands, std::size_t slot, VkImage target, std::span<const ViewFrame> frames,
                        std::span<const Rect> only);
 
