@@ -107,7 +107,7 @@ Result<std::optional<ShownDisplay>> DisplayArguments::shown(const std::filesyste
     return std::optional(ShownDisplay{.table = std::move(made), .files = {profile}});
   }
   AFTERGLOW_TRY(const OcioRequest asked, request(preset, paths));
-  AFTERGLOW_TRY(ShownDisplay made, ocio_display(asked));
+  AFTERGLOW_TRY(ShownDisplay made, display_of_config(asked));
   return std::optional(std::move(made));
 }
 

@@ -108,7 +108,7 @@ void measure(DisplayTable& table, const ColorFunction& exact, double most_stop) 
 
 }  // namespace
 
-Result<ShownDisplay> ocio_display(const OcioRequest& request) {
+Result<ShownDisplay> display_of_config(const OcioRequest& request) {
   AFTERGLOW_TRY(OcioSurvey survey, survey_ocio(request));
   AFTERGLOW_TRY(const OcioFunction view, ocio_function(request));
   ShownDisplay out{.table = empty_table(kScene, view.display + ", " + view.view),
@@ -123,7 +123,7 @@ Result<ShownDisplay> ocio_display(const OcioRequest& request) {
 }
 
 Result<DisplayTable> ocio_display_table(const OcioRequest& request) {
-  AFTERGLOW_TRY(ShownDisplay made, ocio_display(request));
+  AFTERGLOW_TRY(ShownDisplay made, display_of_config(request));
   return std::move(made.table);
 }
 

@@ -45,7 +45,7 @@ inline constexpr int kDisplayTiles = 8;  ///< slices beside each other
 /// line where one is known; a name of the request, with those it has and the nearest), io (OpenColorIO is missing).
 Result<DisplayTable> ocio_display_table(const OcioRequest& request);
 /// The same, and what else its configuration has; `files` are the configuration and the tables of the view.
-Result<ShownDisplay> ocio_display(const OcioRequest& request);
+Result<ShownDisplay> display_of_config(const OcioRequest& request);
 
 /// A monitor's profile: relative colorimetric, black point compensated. Its light is that of a display, 0…1 and what
 /// larger gamuts need around it. Errors: io, with the file (missing, damaged, not of an RGB display).

@@ -152,8 +152,7 @@ std::int32_t flags_of(const ViewFrame& frame) {
 /// What the processor can make of it.
 std::optional<PlainView> plain_view(const ViewFrame& frame, const Place& place, const Strip& strip, bool by_table) {
   const ViewImage& image = strip.images[0];
-  if (!image.pixels || strip.difference || by_table || flags_of(frame) != 0 ||
-      frame.view.channel != ViewChannel::color)
+  if (!image.pixels || strip.difference || by_table || flags_of(frame) != 0 || frame.view.channel != ViewChannel::color)
     return std::nullopt;
   const Reads reads = reads_of(frame, place, image.size);
   if (reads == kSmooth) return std::nullopt;
@@ -385,9 +384,15 @@ Result<void> ViewPass::record(VkCommandBuffer commands, std::size_t slot, std::s
   State& s = *state_;
   s.device.begin_label(commands, "view");
   s.only.assign(only.begin(), only.end());
-  const Rect first = frames.empty() ? Rect{} : frames.front().area;
-  for (const Rect& part : only)
-    for (const Rect& beside : parts_beside(part, common_part(part, first))) s.fill(commands, beside, background);
+  std::vector<Rect> beside(only.begin(), only.end());  // all frames: their pixels may be there already
+  for (const ViewFrame& frame : frames) {
+    std::vector<Rect> rest;
+    for (const Rect& part : beside)
+      for (const Rect& r : parts_beside(part, common_part(part, frame.area)))
+        if (r.size().area() > 0) rest.push_back(r);
+    beside = std::move(rest);
+  }
+  for (const Rect& part : beside) s.fill(commands, part, background);
   for (std::size_t i = 0; i < std::min(frames.size(), kMostFrames); ++i)
     if (s.reached(frames[i].area)) {
       const VkDescriptorSet* sets = &s.sets[(slot * kMostFrames + i) * kSetsOfFrame];
