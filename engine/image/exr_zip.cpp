@@ -100,12 +100,6 @@ void take_differences(std::span<const std::uint8_t> bytes, std::span<std::uint8_
 
 }  // namespace
 
-ExrZip::ExrZip(int level) : deflate_(libdeflate_alloc_compressor(level)) {
-  if (deflate_ == nullptr) throw std::bad_alloc();
-}
-
-ExrZip::~ExrZip() { libdeflate_free_compressor(deflate_); }
-
 std::span<const std::uint8_t> ExrZip::differences(std::span<const std::uint8_t> bytes) {
   apart_.resize(bytes.size());
   differences_.resize(bytes.size());
@@ -117,7 +111,7 @@ std::span<const std::uint8_t> ExrZip::differences(std::span<const std::uint8_t> 
 std::span<const std::uint8_t> ExrZip::run(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed) {
   const auto from = differences(bytes);
   packed.resize(bytes.size());  // what needs more is not taken
-  packed.resize(libdeflate_zlib_compress(deflate_, from.data(), from.size(), packed.data(), packed.size()));
+  packed.resize(deflate_.stream(from, packed));
   if (packed.empty() || packed.size() >= bytes.size()) return bytes;
   return packed;
 }
@@ -127,9 +121,9 @@ void ExrZip::append(std::span<const std::uint8_t> bytes, std::vector<std::uint8_
 }
 
 void ExrZip::append_plain(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed) {
-  const std::size_t at = packed.size(), room = libdeflate_zlib_compress_bound(deflate_, bytes.size());
-  packed.resize(at + room);
-  packed.resize(at + libdeflate_zlib_compress(deflate_, bytes.data(), bytes.size(), packed.data() + at, room));
+  const std::size_t at = packed.size();
+  packed.resize(at + deflate_.bound(bytes.size()));
+  packed.resize(at + deflate_.stream(bytes, std::span(packed).subspan(at)));
 }
 
 ExrUnzip::ExrUnzip() : inflate_(libdeflate_alloc_decompressor()) {

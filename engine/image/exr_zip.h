@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 // OpenEXR's ZIP and ZIPS, as its documentation of the file layout has them: the bytes at even places and those at odd
-// ones are put apart, each byte becomes its difference from the one before, and all of it is deflated. By libdeflate,
-// which takes half of zlib's time or less.
+// ones are put apart, each byte becomes its difference from the one before, and all of it is deflated.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "image/deflate.h"
 #include "image/exr_packer.h"
 
-struct libdeflate_compressor;
 struct libdeflate_decompressor;
 
 namespace afterglow {
@@ -34,8 +33,7 @@ class ExrUnzip {
 /// The other way. One thread's.
 class ExrZip : public ExrPacker {
  public:
-  explicit ExrZip(int level);  ///< 0 to 9, as zlib's
-  ~ExrZip() override;
+  explicit ExrZip(int level) : deflate_(level) {}  ///< 0 to 9, as zlib's
 
   std::span<const std::uint8_t> run(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed) override;
   /// The same, behind what `packed` holds, and also where it makes the bytes longer.
@@ -46,7 +44,7 @@ class ExrZip : public ExrPacker {
  private:
   std::span<const std::uint8_t> differences(std::span<const std::uint8_t> bytes);
 
-  libdeflate_compressor* deflate_;
+  Deflate deflate_;
   std::vector<std::uint8_t> apart_, differences_;
 };
 

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/exception.h"
+#include "image/ffmpeg_facts.h"
 #include "image/ffmpeg_input.h"
 #include "image/ffmpeg_log.h"
 #include "image/ffmpeg_video_file.h"
@@ -113,6 +114,7 @@ class FfmpegJoin {
     }
     const AVDictionaryEntry* alpha = av_dict_get(input.stream().metadata, "alpha_mode", nullptr, 0);
     alpha_ = alpha && std::strcmp(alpha->value, "1") == 0;
+    if (plan_.time_code.empty()) plan_.time_code = first_time_code(input.container());
     return {};
   }
 
@@ -145,7 +147,7 @@ class FfmpegJoin {
     return times_[std::min(place, times_.size() - 1)].pts - lead;
   }
 
-  const VideoPlan& plan_;
+  VideoPlan plan_;
   const VideoPieces& pieces_;
   std::unique_ptr<FfmpegVideoFile> file_;
   ParametersHandle parameters_;

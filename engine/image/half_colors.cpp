@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <numeric>
 
 namespace afterglow {
 namespace {
@@ -33,6 +35,30 @@ Signs signs_of(const std::uint16_t* halves, std::size_t count) {
   return {std::ranges::any_of(signs, has_sign), std::ranges::any_of(carried, has_sign)};
 }
 
+/// Colours below 0, and −0, become 0, alphas stay. Returns how many were below 0. In blocks, as above: as integers,
+/// halves with a sign are negative too.
+std::uint64_t hold_at_zero(std::uint16_t* rgba, std::size_t count) {
+  constexpr std::size_t kBlock = 16, kBlocksAtATime = 4096;
+  constexpr std::int16_t kLeast = std::numeric_limits<std::int16_t>::min();  // the bits of −0
+  const auto hold = [](std::uint16_t& half, std::size_t channel) -> std::uint16_t {
+    const auto value = static_cast<std::int16_t>(half);
+    const std::int16_t floor = channel == 3 ? kLeast : std::int16_t{0};
+    half = static_cast<std::uint16_t>(std::max(value, floor));
+    return value < floor && value != kLeast;
+  };
+  std::uint64_t below = 0;
+  std::size_t i = 0;
+  while (i + kBlock <= count) {
+    std::array<std::uint16_t, kBlock> found{};
+    for (std::size_t blocks = 0; blocks < kBlocksAtATime && i + kBlock <= count; ++blocks, i += kBlock)
+      for (std::size_t k = 0; k < kBlock; ++k)
+        found[k] = static_cast<std::uint16_t>(found[k] + hold(rgba[i + k], k % 4));
+    below += std::accumulate(found.begin(), found.end(), std::uint64_t{0});
+  }
+  for (; i < count; ++i) below += hold(rgba[i], i % 4);
+  return below;
+}
+
 }  // namespace
 
 bool stays_half(const ColorEncoding& encoding) {
@@ -42,18 +68,10 @@ bool stays_half(const ColorEncoding& encoding) {
 
 void HalfColors::take_rows(int begin, int end) {
   std::uint16_t* const first = rgba_ + static_cast<std::size_t>(begin) * width_ * 4;
-  const std::size_t pixels = static_cast<std::size_t>(end - begin) * width_;
-  const Signs signs = signs_of(first, pixels * 4);
+  const std::size_t count = static_cast<std::size_t>(end - begin) * width_ * 4;
+  const Signs signs = signs_of(first, count);
   if (signs.infinite) finite_ = false;
-  if (!signs.any || signs.infinite) return;
-  std::uint64_t negative = 0;
-  for (std::size_t i = 0; i < pixels; ++i)
-    for (std::size_t c = 0; c < 3; ++c) {
-      std::uint16_t& value = first[i * 4 + c];
-      negative += value > kSign;  // −0 is no less than 0
-      value = (value & kSign) ? 0 : value;
-    }
-  negative_ += negative;
+  if (signs.any && !signs.infinite) negative_ += hold_at_zero(first, count);
 }
 
 }  // namespace afterglow

@@ -144,23 +144,15 @@ const std::vector<float>& OutputSpace::of_halves() const {
   return of_halves_;
 }
 
-void OutputSpace::encode(const std::uint16_t* rgba, std::size_t pixels, float* stored) const {
+void OutputSpace::encode_colors(const std::uint16_t* rgba, std::size_t pixels, float* stored) const {
   if (matrix_) {
     from_half(rgba, stored, pixels * 4);
     return encode(stored, pixels, stored);
   }
   const float* table = of_halves().data();
-  constexpr std::size_t kBlock = 64;  // alphas of so many pixels are made at a time
-  std::array<float, kBlock * 4> opened;
-  for (std::size_t first = 0; first < pixels; first += kBlock) {
-    const std::size_t count = std::min(kBlock, pixels - first);
-    from_half(rgba + first * 4, opened.data(), count * 4);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint16_t* light = rgba + (first + i) * 4;
-      float* out = stored + (first + i) * 4;
-      for (std::size_t c = 0; c < 3; ++c) out[c] = table[light[c]];
-      out[3] = opened[i * 4 + 3];
-    }
+  for (std::size_t i = 0; i < pixels * 4; i += 4) {
+    for (std::size_t c = 0; c < 3; ++c) stored[i + c] = table[rgba[i + c]];
+    stored[i + 3] = 1;
   }
 }
 

@@ -24,8 +24,8 @@ class OutputSpace {
   /// Colours of RGBA pixels, linear Rec.709, become stored values 0…1; alpha stays. Light beyond what the space holds
   /// is held at its ends, NaN at that of 0. `stored` may be `rgba` itself.
   void encode(const float* rgba, std::size_t pixels, float* stored) const;
-  /// The same, bit for bit, of half floats.
-  void encode(const std::uint16_t* rgba, std::size_t pixels, float* stored) const;
+  /// The same colours, bit for bit, of half floats; what stands at the place of alpha has no meaning.
+  void encode_colors(const std::uint16_t* rgba, std::size_t pixels, float* stored) const;
 
  private:
   explicit OutputSpace(const InputSpace& space);

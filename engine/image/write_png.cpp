@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
-#include <new>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/parallel.h"
 #include "core/text.h"
+#include "image/deflate.h"
 #include "image/kept_values.h"
 #include "image/metadata.h"
 #include "image/output_metadata.h"
@@ -135,9 +135,8 @@ void write_header(const Picture& picture, const StripForm& form, OutputFile& out
   write_texts(out, metadata);
 }
 
-/// All rows, each behind the number of its filter.
-void filter_rows(const Picture& picture, const StripForm& form, std::uint8_t* filtered) {
-  const int height = picture.display_window.height;
+/// Rows [begin, end), each behind the number of its filter.
+void filter_rows(const Picture& picture, const StripForm& form, int begin, int end, std::uint8_t* filtered) {
   const std::size_t row_bytes = form.row_bytes(picture), pixel = (form.alpha ? 4 : 3) * form.sample_bytes();
   const auto encode = [&](int y, int rows, std::uint8_t* samples) {
     encode_rows(picture, form, y, rows, samples);
@@ -145,42 +144,98 @@ void filter_rows(const Picture& picture, const StripForm& form, std::uint8_t* fi
       for (std::size_t i = 0; i + 1 < row_bytes * static_cast<std::size_t>(rows); i += 2)
         std::swap(samples[i], samples[i + 1]);  // PNG is big-endian
   };
-  constexpr int kRows = 16;  // that are encoded at a time
-  parallel_rows(height, static_cast<long long>(row_bytes) * height, [&](int begin, int end) {
-    std::vector<std::uint8_t> rows((1 + kRows) * row_bytes), scratch(4 * row_bytes);  // the first: above the others
-    if (begin > 0) encode(begin - 1, 1, rows.data());
-    for (int y = begin; y < end;) {
-      const int count = std::min(kRows, end - y);
-      encode(y, count, &rows[row_bytes]);
-      const std::uint8_t* row = rows.data();
-      for (int i = 0; i < count; ++i, ++y) {
-        row += row_bytes;
-        png_filter_row(row, y > 0 ? row - row_bytes : nullptr, row_bytes, pixel, scratch.data(),
-                       &filtered[(row_bytes + 1) * static_cast<std::size_t>(y)]);
-      }
-      std::copy_n(row, row_bytes, rows.data());
+  constexpr int kRows = 16;                                                         // that are encoded at a time
+  std::vector<std::uint8_t> rows((1 + kRows) * row_bytes), scratch(4 * row_bytes);  // the first: above the others
+  if (begin > 0) encode(begin - 1, 1, rows.data());
+  for (int y = begin; y < end;) {
+    const int count = std::min(kRows, end - y);
+    encode(y, count, &rows[row_bytes]);
+    const std::uint8_t* row = rows.data();
+    for (int i = 0; i < count; ++i, ++y) {
+      row += row_bytes;
+      png_filter_row(row, y > 0 ? row - row_bytes : nullptr, row_bytes, pixel, scratch.data(), filtered);
+      filtered += row_bytes + 1;
+    }
+    std::copy_n(row, row_bytes, rows.data());
+  }
+}
+
+void write_data(OutputFile& out, std::span<const std::uint8_t> packed) {
+  for (std::size_t i = 0; i < packed.size() && !out.failure(); i += kChunkBytes)
+    write_chunk(out, "IDAT", &packed[i], std::min(kChunkBytes, packed.size() - i));
+}
+
+Error no_room() { return {ErrorKind::other, "PNG: what was packed is longer than it can be"}; }
+
+/// Strips of rows are filtered and packed by several threads.
+Result<void> write_strips(const Picture& picture, const StripForm& form, OutputFile& out, int level,
+                          WorkMemory& memory) {
+  constexpr std::size_t kStripBytes = 512 << 10;
+  const std::size_t row = form.row_bytes(picture) + 1;
+  const int height = picture.display_window.height;
+  const int rows = static_cast<int>(std::clamp<std::size_t>(kStripBytes / row, 1, static_cast<std::size_t>(height)));
+  struct Strip {
+    std::size_t bytes = 0, packed = 0;
+    std::uint32_t sum = 0;
+  };
+  std::vector<Strip> strips(static_cast<std::size_t>((height + rows - 1) / rows));
+  const std::size_t strip_bytes = row * static_cast<std::size_t>(rows);
+  const std::size_t room = Deflate(level).bound(strip_bytes);
+  WorkMemory::Block block = memory.take(room * strips.size());
+  const auto place = [&](std::size_t i) { return std::span(block.bytes.get() + room * i, room); };
+  parallel_rows(static_cast<int>(strips.size()), static_cast<long long>(row) * height, [&](int begin, int end) {
+    Deflate deflate(level);
+    std::vector<std::uint8_t> filtered(strip_bytes);
+    for (int i = begin; i < end; ++i) {
+      Strip& strip = strips[static_cast<std::size_t>(i)];
+      const int first = i * rows, last = std::min(first + rows, height);
+      filter_rows(picture, form, first, last, filtered.data());
+      strip.bytes = row * static_cast<std::size_t>(last - first);
+      const auto bytes = std::span(filtered).first(strip.bytes);
+      strip.sum = adler32_of(bytes);
+      strip.packed = deflate.piece(bytes, last == height, place(static_cast<std::size_t>(i)));
     }
   });
+  write_chunk(out, "IDAT", kStreamHead, sizeof kStreamHead);
+  std::uint32_t sum = 1;
+  for (std::size_t i = 0; i < strips.size(); ++i) {
+    if (strips[i].packed == 0) return no_room();
+    write_data(out, place(i).first(strips[i].packed));
+    sum = adler32_of(sum, strips[i].sum, strips[i].bytes);
+  }
+  std::string end;
+  put_number(end, sum);
+  write_chunk(out, "IDAT", end);
+  memory.give(std::move(block));
+  return {};
+}
+
+Result<void> write_whole(const Picture& picture, const StripForm& form, OutputFile& out, int level,
+                         WorkMemory& memory) {
+  const std::size_t row = form.row_bytes(picture) + 1;
+  const int height = picture.display_window.height;
+  const std::size_t size = row * static_cast<std::size_t>(height);
+  Deflate deflate(level);
+  const std::size_t room = deflate.bound(size);
+  WorkMemory::Block block = memory.take(size + room);
+  const std::span filtered(block.bytes.get(), size), packed(block.bytes.get() + size, room);
+  parallel_rows(height, static_cast<long long>(size), [&](int begin, int end) {
+    filter_rows(picture, form, begin, end, &filtered[row * static_cast<std::size_t>(begin)]);
+  });
+  const std::size_t length = deflate.stream(filtered, packed);
+  if (length == 0) return no_room();
+  write_data(out, packed.first(length));
+  memory.give(std::move(block));
+  return {};
 }
 
 }  // namespace
 
 Result<void> write_png(const Picture& picture, const StripForm& form, OutputFile& out, int level, WorkMemory* memory) {
   write_header(picture, form, out);
-  const std::size_t size = (form.row_bytes(picture) + 1) * static_cast<std::size_t>(picture.display_window.height);
-  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> deflate(
-      libdeflate_alloc_compressor(std::clamp(level, 0, 9)), &libdeflate_free_compressor);
-  if (!deflate) throw std::bad_alloc();
-  const std::size_t room = libdeflate_zlib_compress_bound(deflate.get(), size);
   WorkMemory own;
-  if (!memory) memory = &own;
-  WorkMemory::Block block = memory->take(size + room);
-  std::uint8_t *filtered = block.bytes.get(), *packed = filtered + size;
-  filter_rows(picture, form, filtered);
-  const std::size_t length = libdeflate_zlib_compress(deflate.get(), filtered, size, packed, room);
-  for (std::size_t i = 0; i < length && !out.failure(); i += kChunkBytes)
-    write_chunk(out, "IDAT", &packed[i], std::min(kChunkBytes, length - i));
-  memory->give(std::move(block));
+  const auto write = Deflate::makes_pieces(level) ? write_strips : write_whole;
+  AFTERGLOW_CHECK(write(picture, form, out, level, memory ? *memory : own));
   write_chunk(out, "IEND", "");
   return {};
 }

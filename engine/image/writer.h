@@ -56,7 +56,7 @@ struct WriteOptions {
   /// Empty: ZIP for EXR, the format's default elsewhere. EXR: none rle zip zips piz pxr24 b44 b44a dwaa dwab, some with
   /// ":level"; TIFF: none lzw zip packbits; WebP: lossless, lossy:quality; Targa: none rle.
   std::string compression;
-  int png_level = 1;  ///< libdeflate's level, 0–9
+  int png_level = 1;  ///< 0–9; see image/deflate.h
   int jpeg_quality = 95;
   /// Blue noise between two integer codes; deterministic. Empty: into 8 bits, not into 16.
   std::optional<bool> dither = {};

@@ -187,6 +187,26 @@ TEST_F(FarmVideo, PicturesBecomeOneVideoToo) {
   EXPECT_THAT(farm({"status", "out"}).out, HasSubstr("18 of 18 frames, 3 chunks and the join: 4 done"));
 }
 
+TEST_F(FarmVideo, TheTimeCodeIsThatOfTheFirstPicture) {
+  make_frames("in", 1, 16, 64, 48);
+  for (int frame = 1; frame <= 16; ++frame) {
+    const std::string name = fmt::format("in/shot.{:04}.exr", frame);
+    ASSERT_EQ(
+        shell(fmt::format("oiiotool {0} --attrib:type=timecode smpte:TimeCode 01:02:03:{1:02} -o {0}", name, frame + 2))
+            .exit_code,
+        0);
+  }
+  make_look_back();
+  const auto code = [&](const std::string& file) {
+    return shell("ffprobe -v error -select_streams v:0 -show_entries stream_tags=timecode -of csv=p=0 " + file).out;
+  };
+  for (const char* video : {"a.mov", "a.mkv"}) {
+    make_both("in/shot.####.exr", video, {"--frames", "4-16"});
+    EXPECT_EQ(code(std::string("one/") + video), "01:02:03:06\n") << video;
+    EXPECT_EQ(code(std::string("out/") + video), "01:02:03:06\n") << video;
+  }
+}
+
 TEST_F(FarmVideo, AlphaOfVp9AndSoundOfAnotherFileStay) {
   make_clip("clip.mkv", 20);
   make_look_back();

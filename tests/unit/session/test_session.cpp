@@ -123,6 +123,36 @@ TEST_F(SessionTest, DisplayCodesAreThoseOfTheWriter) {
         }
 }
 
+/// A picture that came as half floats gives the bits that the same light in floats gives; it stays so only where it is
+/// not replaced.
+TEST_F(SessionTest, HalvesAreTheirLight) {
+  for (const bool runs : {true, false})
+    for (const bool codes : {true, false}) {
+      SCOPED_TRACE(testing::Message() << runs << codes);
+      preset(runs ? "fx.gain { amount = 0.4 }" : "fx.gain { amount = 1 }");
+      auto session = open();
+      ASSERT_TRUE(session) << session.error().text();
+      Picture floats = picture(301, 17), halves = floats;
+      for (std::size_t i = 3; i < floats.color.pixels.size(); i += 4) floats.color.pixels[i] = (i % 20 == 3) ? 0 : 1;
+      halves.halves.resize(floats.color.pixels.size());
+      to_half(floats.color.pixels.data(), halves.halves.data(), halves.halves.size());
+      halves.color.pixels.clear();
+      const std::optional<DisplayEncoding> encoding =
+          codes ? std::optional(DisplayEncoding{false, true}) : std::nullopt;
+      const bool flagged = [&] {
+        EXPECT_TRUE((*session)->process(floats, {}, encoding));
+        return (*session)->report().flagged;
+      }();
+      ASSERT_TRUE((*session)->process(halves, {}, encoding));
+      EXPECT_EQ(halves.unorm8, floats.unorm8);
+      EXPECT_EQ((*session)->report().flagged, flagged);
+      EXPECT_EQ(halves.halves.empty(), runs && !codes);
+      open_color(halves);
+      EXPECT_EQ(halves.color.pixels, floats.color.pixels);
+      EXPECT_EQ((*session)->device().validation_errors(), 0);
+    }
+}
+
 TEST_F(SessionTest, NothingToDoLeavesThePictureAndSaysWhy) {
   preset("fx.gain { amount = 1 }");
   auto session = open();
