@@ -65,10 +65,13 @@ Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& optio
   if (!a.geometry.empty()) {
     AFTERGLOW_TRY(place, parse_geometry(a.geometry));
   }
-  AFTERGLOW_TRY(auto display, a.shown_on.table(options.preset, a.preset.paths));
-  if (display)
-    console.diagnostics().note(fmt::format("view: {}, within {:.1f} codes of 8 bits (mean {:.2f})", display->name,
-                                           display->largest_error, display->mean_error));
+  AFTERGLOW_TRY(auto display, a.shown_on.shown(options.preset, a.preset.paths));
+  const auto make_display = [&](const std::string& name, const std::string& view) -> Result<ShownDisplay> {
+    DisplayArguments wanted = a.shown_on;
+    if (wanted.profile.empty()) wanted.display = name, wanted.view = view;
+    AFTERGLOW_TRY(auto made, wanted.shown(options.preset, a.preset.paths));
+    return made ? Result<ShownDisplay>(*std::move(made)) : Error{ErrorKind::other, "no display is named"};
+  };
   const PlayWindowOptions window{.place = place,
                                  .scale = a.ui_scale,
                                  .full_screen = a.full_screen,
@@ -76,6 +79,7 @@ Result<void> play_with_window(const PlayArguments& a, const PlayerOptions& optio
                                  .stats = a.stats,
                                  .speed = a.speed,
                                  .display = std::move(display),
+                                 .make_display = make_display,
                                  .exports = a.exports};
   Result<void> written;
   const auto report = [&](const Device& device, Player& player, const PlayedTimes& times, const Result<void>& done) {

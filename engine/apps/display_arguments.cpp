@@ -96,18 +96,18 @@ Result<OcioRequest> DisplayArguments::request(const std::filesystem::path& prese
   return out;
 }
 
-Result<std::optional<DisplayTable>> DisplayArguments::table(const std::filesystem::path& preset,
+Result<std::optional<ShownDisplay>> DisplayArguments::shown(const std::filesystem::path& preset,
                                                             const std::vector<std::string>& paths) const {
-  if (!any()) return std::optional<DisplayTable>{};
+  if (!any()) return std::optional<ShownDisplay>{};
   if (!profile.empty()) {
     if (!(config.empty() && display.empty() && view.empty()))
       return Error{ErrorKind::usage, "a view of OpenColorIO is for its own display: it goes without a profile",
                    "--view-icc"};
     AFTERGLOW_TRY(DisplayTable made, icc_display_table(profile));
-    return std::optional(std::move(made));
+    return std::optional(ShownDisplay{.table = std::move(made), .files = {profile}});
   }
   AFTERGLOW_TRY(const OcioRequest asked, request(preset, paths));
-  AFTERGLOW_TRY(DisplayTable made, ocio_display_table(asked));
+  AFTERGLOW_TRY(ShownDisplay made, display_of_config(asked));
   return std::optional(std::move(made));
 }
 

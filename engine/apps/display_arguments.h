@@ -21,7 +21,7 @@ struct DisplayArguments {
   /// What they name, baked; none: nothing is named. Configurations are looked up as files, then beside `preset`, in
   /// `paths` and the rest of the search path, and among the assets. Errors: usage (options that exclude each other,
   /// names that the configuration does not have), script and io with the file.
-  Result<std::optional<DisplayTable>> table(const std::filesystem::path& preset,
+  Result<std::optional<ShownDisplay>> shown(const std::filesystem::path& preset,
                                             const std::vector<std::string>& paths) const;
 
  private:

@@ -18,6 +18,7 @@ WindowOptions window_options(const PlayWindowOptions& options) {
   out.full_screen = options.full_screen;
   out.stats = options.stats;
   out.display = options.display;
+  out.make_display = options.make_display;
   out.interrupted = [] { return interrupted(); };
   return out;
 }

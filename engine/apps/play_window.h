@@ -21,8 +21,10 @@ struct PlayWindowOptions {
   bool paused = false;
   bool stats = false;
   double speed = 1;
-  std::optional<DisplayTable> display;  ///< that pictures are shown on; none: sRGB
-  std::filesystem::path exports;        ///< see FrameExport; empty: beside where the program was called
+  std::optional<ShownDisplay> display;  ///< that pictures are shown on; none: sRGB
+  /// Makes it anew, or another display and view of its configuration. Called on a thread of its own.
+  std::function<Result<ShownDisplay>(const std::string& display, const std::string& view)> make_display;
+  std::filesystem::path exports;  ///< see FrameExport; empty: beside where the program was called
 };
 
 /// In milliseconds.

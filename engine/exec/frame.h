@@ -56,6 +56,8 @@ struct HostResult {
 struct DeviceImage {
   ImageBinding binding;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  const std::byte* pixels = nullptr;  ///< of images that the CPU may read in place between frames; else null
+  std::size_t row_pitch = 0;          ///< of those, in bytes
 };
 struct DeviceImages {
   DeviceImage source, result;

@@ -421,7 +421,13 @@ Result<std::optional<double>> FrameRunner::time_kernel(Program& program, std::si
 }
 
 DeviceImages FrameRunner::images() const {
-  const auto image = [](const FrameImage& from) { return DeviceImage{binding_of(from), from.layout}; };
+  const auto image = [](const FrameImage& from) {
+    DeviceImage out{.binding = binding_of(from), .layout = from.layout};
+    if (!from.direct) return out;
+    out.pixels = from.image.row(0);
+    out.row_pitch = from.image.row_pitch();
+    return out;
+  };
   DeviceImages out;
   if (const auto source = state_->inputs.images().find("source"); source != state_->inputs.images().end())
     out.source = image(source->second);

@@ -124,6 +124,8 @@ Result<bool> Swapchain::make_chain(Size window) {
   readable_ = options_.readback && (surface.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
   VkImageUsageFlags usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
   if (readable_) usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  takes_copies_ = device_.is_cpu() && (surface.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+  if (takes_copies_) usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   const VkSwapchainCreateInfoKHR info{
       .sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
       .surface = surface_.get(),
@@ -242,8 +244,8 @@ Result<void> Swapchain::submit(Slot& slot, const Image& image, std::size_t index
                                   VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT,
                                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
   record_barriers(device_, slot.commands, &into, 1);
-  draw(slot.commands,
-       {image.image, image.view.get(), format_.format, chain_->size, next_slot_, index, image.presented});
+  draw(slot.commands, {image.image, image.view.get(), format_.format, chain_->size, next_slot_, index, image.presented,
+                       takes_copies_});
   const auto out_of = image_barrier(image.image, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                                     VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);

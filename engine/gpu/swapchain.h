@@ -32,6 +32,7 @@ struct PresentTarget {
   std::size_t slot = 0;
   std::size_t index = 0;  ///< of the image among those of the window
   bool kept = false;      ///< the image has the pixels that were drawn into it last, with the same size; else anything
+  bool takes_copies = false;  ///< it may be copied to
 };
 
 /// Drawing thread alone. Draws at most kFramesInFlight frames ahead of the device. The Device (which must have a
@@ -120,6 +121,7 @@ class Swapchain {
   SwapchainOptions options_;
   Surface surface_;
   VkSurfaceFormatKHR format_{};
+  bool takes_copies_ = false;
   bool readable_ = false;
   bool stale_ = false;  ///< the chain can present no more, or no longer well
   Size suboptimal_at_;  ///< size of the last chain that was made anew for being suboptimal

@@ -108,12 +108,23 @@ void measure(DisplayTable& table, const ColorFunction& exact, double most_stop) 
 
 }  // namespace
 
-Result<DisplayTable> ocio_display_table(const OcioRequest& request) {
+Result<ShownDisplay> display_of_config(const OcioRequest& request) {
+  AFTERGLOW_TRY(OcioSurvey survey, survey_ocio(request));
   AFTERGLOW_TRY(const OcioFunction view, ocio_function(request));
-  DisplayTable out = empty_table(kScene, view.display + ", " + view.view);
-  fill(out, view.apply);
-  measure(out, view.apply, 4);
+  ShownDisplay out{.table = empty_table(kScene, view.display + ", " + view.view),
+                   .display = view.display,
+                   .view = view.view,
+                   .choices = std::move(survey.displays),
+                   .files = {request.config}};
+  for (const auto& file : survey.files) out.files.push_back(file.path);
+  fill(out.table, view.apply);
+  measure(out.table, view.apply, 4);
   return out;
+}
+
+Result<DisplayTable> ocio_display_table(const OcioRequest& request) {
+  AFTERGLOW_TRY(ShownDisplay made, display_of_config(request));
+  return std::move(made.table);
 }
 
 Result<DisplayTable> icc_display_table(const std::filesystem::path& file) {

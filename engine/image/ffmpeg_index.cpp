@@ -66,8 +66,14 @@ class AccessPointFinder {
   int length_ = 0;
 };
 
+/// Stamps that far from 0 are none: sums and differences of others fit.
+constexpr std::int64_t kFarthestStamp = std::int64_t{1} << 60;
+std::int64_t near_stamp(std::int64_t stamp) {
+  return stamp < -kFarthestStamp || stamp > kFarthestStamp ? AV_NOPTS_VALUE : stamp;
+}
+
 MoviePacket noted(const AVPacket& packet, AVCodecID codec, const AccessPointFinder& find) {
-  MoviePacket out{.pts = packet.pts, .dts = packet.dts, .pos = packet.pos, .size = packet.size};
+  MoviePacket out{.pts = near_stamp(packet.pts), .dts = near_stamp(packet.dts), .pos = packet.pos, .size = packet.size};
   out.key = (packet.flags & AV_PKT_FLAG_KEY) != 0;
   out.exact = out.key;
   if (out.key && codec == AV_CODEC_ID_H264) {
@@ -121,9 +127,14 @@ void sort_by_time(MovieIndex& index) {
 void add_missing(MovieIndex& index, std::size_t missing) {
   index.missing = missing;
   const std::size_t frames = index.pts.size();
+  // Frames without stamps are ordered, and come here again, later.
+  const auto near = [](long long stamp) { return std::clamp<long long>(stamp, -kFarthestStamp, kFarthestStamp); };
   const long long step =
-      frames > 1 ? std::max(1ll, (index.pts.back() - index.pts.front()) / static_cast<long long>(frames - 1)) : 1;
-  for (std::size_t i = 0; i < missing; ++i) index.pts.push_back((index.pts.empty() ? 0 : index.pts.back()) + step);
+      frames > 1
+          ? std::max(1ll, (near(index.pts.back()) - near(index.pts.front())) / static_cast<long long>(frames - 1))
+          : 1;
+  for (std::size_t i = 0; i < missing; ++i)
+    index.pts.push_back((index.pts.empty() ? 0 : near(index.pts.back())) + step);
 }
 
 int MovieIndex::start_for(int packet) const {

@@ -26,6 +26,8 @@ constexpr std::int64_t kPreroll = kRate / 4;
 constexpr std::int64_t kNear = 2 * kRate;
 /// Stamps of some containers are round: a difference below this is none.
 constexpr std::int64_t kRound = kRate / 100;
+/// Seconds. A stamp beyond that is none: no sound lasts for years.
+constexpr double kFarthest = 1e9;
 /// As with pictures: decoders that strangers' files may reach.
 constexpr const char* kCodecs =
     "aac,mp3,mp3float,mp2,mp2float,mp1,mp1float,opus,libopus,vorbis,libvorbis,flac,alac,ac3,eac3,wavpack,tta,"
@@ -35,6 +37,9 @@ constexpr const char* kCodecs =
 struct SwrDeleter {
   void operator()(SwrContext* converter) const { swr_free(&converter); }
 };
+
+/// Files of floats hold anything.
+float held_sample(float sample) { return std::isnan(sample) ? 0 : std::clamp(sample, -1.0f, 1.0f); }
 
 bool is_allowed(const AVCodec& codec) {
   const std::string list = std::string(",") + kCodecs + ",";
@@ -85,8 +90,8 @@ class FfmpegSound : public SoundTrack {
     decode_until(first + count);
     const std::int64_t from = std::max(first, held_), until = std::min(first + count, end());
     if (from < until)
-      std::copy_n(samples_.begin() + (from - held_) * kChannels, (until - from) * kChannels,
-                  to.begin() + (from - first) * kChannels);
+      std::transform(samples_.begin() + (from - held_) * kChannels, samples_.begin() + (until - held_) * kChannels,
+                     to.begin() + (from - first) * kChannels, held_sample);
     drop_before(first);
     return {};
   }
@@ -195,11 +200,11 @@ class FfmpegSound : public SoundTrack {
   /// Where the frame's samples belong: behind those before, or where its stamp says when that is elsewhere.
   void place(const AVFrame& frame) {
     const std::int64_t stamp = frame.best_effort_timestamp;
-    if (stamp == AV_NOPTS_VALUE) {
+    const double seconds = static_cast<double>(stamp) * av_q2d(codec_->pkt_timebase) - start_;
+    if (stamp == AV_NOPTS_VALUE || !(std::abs(seconds) < kFarthest)) {
       if (!std::exchange(anchored_, true)) held_ = 0;
       return;
     }
-    const double seconds = static_cast<double>(stamp) * av_q2d(codec_->pkt_timebase) - start_;
     // What the converter still holds comes first.
     const std::int64_t at =
         std::llround(seconds * static_cast<double>(kRate)) - swr_get_delay(converter_.get(), static_cast<int>(kRate));

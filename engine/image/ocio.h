@@ -41,7 +41,12 @@ struct OcioSurvey {
     std::string name;            ///< as the configuration writes it
     std::filesystem::path path;  ///< where it is, or would be looked for first
   };
-  std::vector<File> files;  ///< tables that OpenColorIO is going to read, whether they are there or not
+  struct Display {
+    std::string name;
+    std::vector<std::string> views;
+  };
+  std::vector<Display> displays;  ///< that the configuration has; empty with a fault
+  std::vector<File> files;        ///< tables that OpenColorIO is going to read, whether they are there or not
 };
 
 /// Reads the configuration and none of its tables. Thread-safe. Errors (script, with the configuration's file and line

@@ -59,9 +59,16 @@ Result<OcioSurvey> survey(const OcioRequest& request) {
     const auto config = open_ocio(request);
     OcioSurvey out;
     out.files = ocio_files(*config, *ocio_chain(*config, request));
+    for (int i = 0; i < config->getNumDisplays(); ++i) {
+      OcioSurvey::Display& display = out.displays.emplace_back(OcioSurvey::Display{config->getDisplay(i), {}});
+      for (int v = 0; v < config->getNumViews(display.name.c_str()); ++v)
+        display.views.emplace_back(config->getView(display.name.c_str(), v));
+    }
     return out;
   } catch (const OcioFault& wrong) {
-    return OcioSurvey{wrong.fault, {}};
+    OcioSurvey out;
+    out.fault = wrong.fault;
+    return out;
   } catch (const Unsupported& why) {
     return Error{ErrorKind::script, why.what, request.config.string()};
   } catch (const std::exception& error) {

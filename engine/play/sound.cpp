@@ -14,6 +14,7 @@ constexpr int kSoundBlock = SoundTrack::kRate / 100;  // frames of samples that 
 constexpr double kAhead = 0.2 * SoundTrack::kRate;
 /// No device is further off than this; one that takes everything at once (a file, nothing at all) is held to it.
 constexpr double kFastest = 1.01;
+constexpr double kShortestLoop = 0.05;
 
 std::string without_sound(const Error& error) {
   return "there is no sound: " + (error.file.empty() ? "" : error.file + ": ") + error.message;
@@ -53,10 +54,17 @@ void Sound::stop() {
   woken_.notify_all();
 }
 
+void Sound::set_loop(const std::optional<SoundLoop>& loop) {
+  const std::lock_guard lock(mutex_);
+  loop_ = loop && loop->until - loop->from >= kShortestLoop ? loop : std::nullopt;
+}
+
 std::optional<double> Sound::heard(double now) const {
   const std::lock_guard lock(mutex_);
   if (!moment_ || moment_->wish != wish_.number) return std::nullopt;
-  return moment_->seconds + (now - moment_->at);
+  const double seconds = moment_->seconds + (now - moment_->at);
+  const auto& loop = moment_->loop;
+  return loop && seconds >= loop->until ? seconds - (loop->until - loop->from) : seconds;
 }
 
 std::string Sound::playing() const {
@@ -140,9 +148,30 @@ bool Sound::begin(const Wish& wish) {
   }
   // Opening took its time: it goes on where the picture is by now.
   cursor_ = std::llround((wish.seconds + clock_() - wish.at) * SoundTrack::kRate);
+  around_.reset();
   gain_ = 0;  // without a click
   pace_ = {clock_(), kAhead};
   return true;
+}
+
+/// From `cursor_` on, around the loop's end where that lies ahead.
+Result<void> Sound::read_on(std::span<float> samples, const std::optional<SoundLoop>& loop) {
+  const auto frame_at = [](double seconds) { return std::llround(seconds * SoundTrack::kRate); };
+  while (!samples.empty()) {
+    auto frames = static_cast<std::int64_t>(samples.size()) / SoundTrack::kChannels;
+    const std::int64_t until = loop ? frame_at(loop->until) : 0;
+    if (loop && cursor_ < until) frames = std::min(frames, until - cursor_);
+    const std::size_t count = static_cast<std::size_t>(frames) * SoundTrack::kChannels;
+    AFTERGLOW_CHECK(track_->read(cursor_, samples.first(count)));
+    samples = samples.subspan(count);
+    cursor_ += frames;
+    since_ += frames;
+    if (!loop || cursor_ != until) continue;
+    cursor_ = frame_at(loop->from);
+    around_ = loop;
+    since_ = 0;
+  }
+  return {};
 }
 
 /// One block; false: the device is gone.
@@ -158,14 +187,16 @@ bool Sound::write_some(const Wish& wish) {
     return true;
   }
   std::array<float, std::size_t{kSoundBlock} * SoundTrack::kChannels> samples{};
-  if (auto read = track_->read(cursor_, samples); !read) {
-    fail(without_sound(read.error()), false);
-    return false;
-  }
   float gain = 0;
+  std::optional<SoundLoop> loop;
   {
     const std::lock_guard lock(mutex_);
+    loop = loop_;
     gain = options_.mute ? 0 : static_cast<float>(options_.volume);
+  }
+  if (auto read = read_on(samples, loop); !read) {
+    fail(without_sound(read.error()), false);
+    return false;
   }
   const float step = (gain - gain_) / kSoundBlock;
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -175,11 +206,14 @@ bool Sound::write_some(const Wish& wish) {
     fail(without_sound(written.error()), true);
     return false;
   }
-  cursor_ += kSoundBlock;
   pace_.frames -= kSoundBlock;
   const double delay = device_->delay();
+  double seconds = (static_cast<double>(cursor_) - delay) / SoundTrack::kRate;
+  // What was written before the loop's beginning is heard up to its end.
+  const bool before = around_ && delay > static_cast<double>(since_);
+  if (before) seconds += around_->until - around_->from;
   const std::lock_guard lock(mutex_);
-  moment_ = {wish.number, (static_cast<double>(cursor_) - delay) / SoundTrack::kRate, clock_()};
+  moment_ = {wish.number, seconds, clock_(), before ? around_ : std::nullopt};
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 
@@ -24,6 +25,12 @@ struct SoundOptions {
   OpenSoundDevice open_device;  ///< empty: `open_sound_device`
 };
 
+/// A part of a track that is played again and again, in seconds: behind its end its beginning is heard, without a gap.
+struct SoundLoop {
+  double from = 0, until = 0;
+  friend bool operator==(const SoundLoop&, const SoundLoop&) = default;
+};
+
 /// Thread-safe. Tracks and device are used by a thread of its own, which begins with the first sound.
 class Sound {
  public:
@@ -37,6 +44,8 @@ class Sound {
   /// From now on the track `key` is heard from `seconds` on; `open` makes it when it is another one than before.
   void play(const std::string& key, double seconds, const OpenSoundTrack& open);
   void stop();
+  /// From now on; what has been written ahead stays. None, or one that is shorter than 0.05 s: there is no loop.
+  void set_loop(const std::optional<SoundLoop>& loop);
   /// The moment of the track that is heard at `now`, in seconds. None: nothing is playing, or it has not begun.
   std::optional<double> heard(double now) const;
   /// What `play` was given last; empty: nothing plays.
@@ -59,6 +68,7 @@ class Sound {
   void run();
   bool begin(const Wish& wish);
   bool write_some(const Wish& wish);
+  Result<void> read_on(std::span<float> samples, const std::optional<SoundLoop>& loop);
   void fail(const std::string& why, bool for_good);
 
   SoundOptions options_;
@@ -73,15 +83,19 @@ class Sound {
   struct Moment {
     std::uint64_t wish = 0;
     double seconds = 0, at = 0;
+    std::optional<SoundLoop> loop;  ///< what is written ahead has come around it
   };
+  std::optional<SoundLoop> loop_;
   std::optional<Moment> moment_;
 
   // Of the thread.
   std::unique_ptr<SoundDevice> device_;
   std::unique_ptr<SoundTrack> track_;
   std::string track_key_;
-  std::int64_t cursor_ = 0;  ///< the next frame of samples to be written
-  float gain_ = 0;           ///< of the last sample
+  std::int64_t cursor_ = 0;          ///< the next frame of samples to be written
+  std::optional<SoundLoop> around_;  ///< that `cursor_` went around last
+  std::int64_t since_ = 0;           ///< frames of samples that were written since
+  float gain_ = 0;                   ///< of the last sample
   struct Pace {
     double at = 0, frames = 0;
   } pace_;

@@ -18,6 +18,15 @@ bool sounds(const Transport& transport) {
          transport.heading() > 0;
 }
 
+/// What the transport goes around, of the one video that it lies in.
+std::optional<SoundLoop> loop_of(const Transport& transport, const Footage& footage) {
+  const int first = transport.first(), last = transport.last();
+  if (transport.loop() != LoopMode::loop || footage.clip_at(first) != footage.clip_at(last)) return std::nullopt;
+  const auto from = sound_moment(footage, first, 0, transport.fps());
+  const auto until = sound_moment(footage, last, 1, transport.fps());
+  return from && until ? std::optional(SoundLoop{*from, *until}) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<double> sound_moment(const Footage& footage, int position, double fraction, double fps) {
@@ -45,10 +54,16 @@ void SoundFollower::follow(Transport& transport, const Footage& footage, Sound& 
     return;
   }
   const double place = transport.position() + transport.fraction(now);
-  const bool moved = !before_ || before_->movie != movie.get() ||
-                     std::abs(place - before_->place - (now - before_->at) * transport.fps()) > kMoved;
+  const auto loop = loop_of(transport, footage);
+  sound.set_loop(loop);
+  const double by = before_ ? place - before_->place - (now - before_->at) * transport.fps() : 0;
+  const double around = transport.last() - transport.first() + 1;
+  const bool wrapped = loop && std::abs(by + around) <= kMoved;
+  const bool moved = !before_ || before_->movie != movie.get() || (std::abs(by) > kMoved && !wrapped);
   const auto heard = moved ? std::nullopt : sound.heard(now);
-  const double off = heard ? *heard - *moment : 0;
+  double off = heard ? *heard - *moment : 0;
+  // One of both may be around the end already.
+  if (loop && std::abs(off) > kFar) off = std::remainder(off, loop->until - loop->from);
   if (moved || std::abs(off) > kFar) {
     const int clip = footage.clip_at(transport.position());
     sound.play(footage.clips()[static_cast<std::size_t>(clip)].key, *moment,

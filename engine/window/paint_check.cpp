@@ -35,11 +35,12 @@ void copy_target(const Device& device, VkCommandBuffer commands, VkImage image, 
 Result<PresentTarget> PaintCheck::begin(const Device& device, VkCommandBuffer commands, const PresentTarget& target) {
   if (size_ != target.size || !whole_) {
     const auto bytes = static_cast<VkDeviceSize>(target.size.area()) * 4;
-    AFTERGLOW_TRY(whole_, GpuImage::create(device, {.name = "whole frame",
-                                                    .size = target.size,
-                                                    .format = target.format,
-                                                    .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
-                                                             VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
+    AFTERGLOW_TRY(
+        whole_, GpuImage::create(device, {.name = "whole frame",
+                                          .size = target.size,
+                                          .format = target.format,
+                                          .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                                   VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
     for (Buffer* buffer : {&parts_pixels_, &whole_pixels_}) {
       AFTERGLOW_TRY(*buffer, Buffer::create(device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::read,
                                             "pixels to compare"));

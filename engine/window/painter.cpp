@@ -60,8 +60,13 @@ void Painter::look(const PresentTarget& target, std::span<const ViewFrame> views
   std::vector<ViewFrame> now(views.begin(), views.end());
   for (ViewFrame& frame : now) {
     frame.content = 0;
-    frame.shown.view = VK_NULL_HANDLE;  // pictures that follow each other may lie in turn in several images
-    if (frame.compared) frame.compared->view = VK_NULL_HANDLE;
+    // Pictures that follow each other may lie in turn in several images.
+    frame.shown.view = VK_NULL_HANDLE;
+    frame.shown.pixels = nullptr;
+    if (frame.compared) {
+      frame.compared->view = VK_NULL_HANDLE;
+      frame.compared->pixels = nullptr;
+    }
   }
   if (now != views_) {
     ++look_;
@@ -87,7 +92,6 @@ Result<void> Painter::record(VkCommandBuffer commands, const PresentTarget& targ
   const std::vector<Rect> only = tiles_.changed(shown);
   shown.clear();  // until all of it is recorded
   AFTERGLOW_CHECK(ui_->prepare(commands, target.slot, interface, written, only));
-  view_pass_->prepare(commands);
   if (!only.empty()) AFTERGLOW_CHECK(record_parts(commands, target, views, interface, only));
   shown = tiles_.numbers();
   return {};
@@ -96,11 +100,13 @@ Result<void> Painter::record(VkCommandBuffer commands, const PresentTarget& targ
 Result<void> Painter::record_parts(VkCommandBuffer commands, const PresentTarget& target,
                                    std::span<const ViewFrame> views, const ImDrawData& interface,
                                    std::span<const Rect> only) {
+  const VkImage copied_to = target.takes_copies ? target.image : VK_NULL_HANDLE;
+  AFTERGLOW_TRY(const bool copied, view_pass_->prepare(commands, target.slot, copied_to, views, only));
   const VkRenderingAttachmentInfo color{
       .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
       .imageView = target.view,
       .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-      .loadOp = target.kept ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+      .loadOp = target.kept || copied ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
       .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
   const VkRenderingInfo rendering{
       .sType = VK_STRUCTURE_TYPE_RENDERING_INFO,

@@ -10,9 +10,9 @@
 #include "core/diagnostics.h"
 #include "core/geometry.h"
 #include "gpu/device.h"
-#include "image/display_table.h"
 #include "play/player.h"
 #include "window/desktop_window.h"
+#include "window/display_keeper.h"
 #include "window/shortcuts.h"
 #include "window/ui.h"
 
@@ -22,7 +22,8 @@ struct WindowOptions {
   std::optional<float> scale;  ///< of the interface; none: the desktop's
   bool full_screen = false;
   bool stats = false;                    ///< shown from the start
-  std::optional<DisplayTable> display;   ///< that pictures are shown on; none: sRGB
+  std::optional<ShownDisplay> display;   ///< that pictures are shown on; none: sRGB
+  MakeDisplay make_display;              ///< makes it anew, or another; empty: it stays
   bool tearing = false;                  ///< see SwapchainOptions
   bool check = false;                    ///< each frame is drawn wholly too, and compared (window/paint_check.h)
   std::filesystem::path captures = ".";  ///< folder for screenshots by key

@@ -53,6 +53,7 @@ constexpr Shortcut kShortcuts[] = {
     {Action::gamma_down, GLFW_KEY_DOWN, kShift, "Shift+Down", "Picture", "Less gamma", true},
     {Action::as_display, GLFW_KEY_V, kShift, "Shift+V", "Picture",
      "As --view-ocio or --view-icc say, or as sRGB (the view alone)"},
+    {Action::next_display_view, GLFW_KEY_V, kControl, "Ctrl+V", "Picture", "The next view of that display", true},
     {Action::marks, GLFW_KEY_X, kNone, "X", "Picture", "Marks: none, what is out of range, zones of a stop each"},
     {Action::background, GLFW_KEY_K, kShift, "Shift+K", "Picture", "Behind transparency: nothing, grey, checkers"},
     {Action::guides, GLFW_KEY_G, kShift, "Shift+G", "Picture", "Lines: none, thirds, safe areas, both"},

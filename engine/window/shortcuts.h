@@ -63,6 +63,7 @@ enum class Action {
   gamma_up,
   gamma_down,
   as_display,
+  next_display_view,
   marks,
   background,
   guides,

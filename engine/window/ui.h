@@ -8,8 +8,10 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/geometry.h"
+#include "image/ocio.h"
 #include "window/atlas_cells.h"
 #include "window/hover_help.h"
 #include "window/typed_value.h"
@@ -34,7 +36,12 @@ struct Ui {
   bool show_frame_field = false;
   bool show_stats = false;
 
-  std::string display;  ///< that pictures are shown on; empty: none is named, and it is sRGB
+  std::string display;                        ///< that pictures are shown on; empty: none is named, and it is sRGB
+  std::string display_name, display_view;     ///< of an OpenColorIO configuration
+  std::vector<OcioSurvey::Display> displays;  ///< that it has; empty: there is none
+  /// Shows pictures through another one. An empty view is the display's first.
+  std::function<void(const std::string& display, const std::string& view)> choose_display = [](const std::string&,
+                                                                                               const std::string&) {};
   Size picture_window;  ///< what one picture has of the window, in pixels of the frame buffer
   double now = 0;       ///< seconds of a clock that never goes backwards
   /// Puts text on the clipboard.

@@ -15,6 +15,20 @@ constexpr double kExposureStep = 0.25, kMostExposure = 16, kGammaStep = 0.1;
 
 }  // namespace
 
+void WindowApp::next_display_view() {
+  Ui& ui = interface_->ui();
+  const auto display = std::ranges::find(ui.displays, ui.display_name, &OcioSurvey::Display::name);
+  if (display == ui.displays.end()) {
+    ui.say("no OpenColorIO configuration is named: --view-ocio does");
+    return;
+  }
+  const auto& views = display->views;
+  const auto at = std::ranges::find(views, ui.display_view);
+  const std::string& next = at == views.end() || at + 1 == views.end() ? views.front() : *(at + 1);
+  ui.display_view = next;  // pressed again before it is there: the one after
+  ui.choose_display(display->name, next);
+}
+
 bool WindowApp::act_on_view(Action action) {
   View& view = player_.view();
   const Size picture = player_.images().picture, window = picture_window();
@@ -132,6 +146,9 @@ bool WindowApp::act_on_picture(Action action) {
         view.as_display = !view.as_display;
         ui.say("view: " + (view.as_display ? ui.display : "sRGB"));
       }
+      return true;
+    case Action::next_display_view:
+      next_display_view();
       return true;
     case Action::marks:
       view.marks = static_cast<Marks>((static_cast<int>(view.marks) + 1) % 3);

@@ -46,6 +46,25 @@ void draw_comparison(const Ui& ui, PanelPort& port) {
   ui.help("Shift+W");
 }
 
+/// Displays of the configuration, and views of the one that is shown on.
+void draw_display_choice(const Ui& ui) {
+  if (ui.displays.empty()) return;
+  if (ImGui::BeginCombo("display", ui.display_name.c_str(), ImGuiComboFlags_HeightLarge)) {
+    for (const auto& display : ui.displays)
+      if (ImGui::Selectable(display.name.c_str(), display.name == ui.display_name)) ui.choose_display(display.name, "");
+    ImGui::EndCombo();
+  }
+  ui.help("Of the OpenColorIO configuration");
+  const auto shown = std::ranges::find(ui.displays, ui.display_name, &OcioSurvey::Display::name);
+  if (shown == ui.displays.end()) return;
+  if (ImGui::BeginCombo("view", ui.display_view.c_str(), ImGuiComboFlags_HeightLarge)) {
+    for (const auto& view : shown->views)
+      if (ImGui::Selectable(view.c_str(), view == ui.display_view)) ui.choose_display(shown->name, view);
+    ImGui::EndCombo();
+  }
+  ui.help("Of that display (Ctrl+V: the next)");
+}
+
 void draw_guide_controls(const Ui& ui, View& view) {
   if (ImGui::BeginCombo("lines", guides_name(view.guides).c_str())) {
     for (const Guides guides : {Guides::none, Guides::thirds, Guides::safe_areas, Guides::both})
@@ -110,6 +129,7 @@ void draw_view_controls(Ui& ui, PanelPort& port) {
   if (!ui.display.empty()) {
     ImGui::Checkbox("as the display has it", &view.as_display);
     ui.help(ui.display + " (Shift+V); files stay without it");
+    draw_display_choice(ui);
   }
   draw_comparison(ui, port);
   draw_guide_controls(ui, view);

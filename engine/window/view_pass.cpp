@@ -13,6 +13,7 @@
 #include "gpu/pipeline.h"
 #include "gpu/swapchain.h"
 #include "view.frag.h"
+#include "window/plain_pass.h"
 #include "window/view_table.h"
 #include "window/window_tiles.h"
 
@@ -93,13 +94,32 @@ Place place_of(const ViewFrame& frame) {
 }
 
 /// The pixels whose middles lie between these two along the border's direction of a wipe.
-Rect strip(const Place& place, bool vertical, double from, double to) {
+Rect strip_between(const Place& place, bool vertical, double from, double to) {
   const Rect& all = place.pixels;
   const int first = vertical ? all.y : all.x, length = vertical ? all.height : all.width;
   const auto [begin, end] = middles_between(std::clamp<double>(from, first - 1, first + length + 1),
                                             std::clamp<double>(to, first - 1, first + length + 1));
   const Rect cut = vertical ? Rect{all.x, begin, all.width, end - begin} : Rect{begin, all.y, end - begin, all.height};
   return common_part(cut, all);
+}
+
+/// A part of the picture that is drawn at once: an image, or how far two are apart.
+struct Strip {
+  Rect pixels;
+  std::array<ViewImage, kImages> images;
+  bool difference = false;
+};
+
+/// What is shown, and what it is compared with beside a border.
+std::vector<Strip> strips_of(const ViewFrame& frame, const Place& place) {
+  const bool compares = frame.view.compare != Compare::none && frame.compared.has_value();
+  if (!compares) return {{place.pixels, {frame.shown, frame.shown}}};
+  const ViewImage& other = *frame.compared;
+  if (frame.view.by == CompareBy::difference) return {{place.pixels, {frame.shown, other}, true}};
+  constexpr double kFar = 1e9;
+  const bool vertical = frame.view.wipe_vertical;
+  return {{strip_between(place, vertical, place.border, kFar), {frame.shown, frame.shown}},
+          {strip_between(place, vertical, -kFar, place.border), {other, other}}};
 }
 
 Push push_of(const ViewFrame& frame, const Place& place, Size shown, Size compared) {
@@ -129,10 +149,29 @@ std::int32_t flags_of(const ViewFrame& frame) {
          (frame.background == ViewBackground::checker ? kChecker : 0);
 }
 
+/// What the processor can make of it.
+std::optional<PlainView> plain_view(const ViewFrame& frame, const Place& place, const Strip& strip, bool by_table) {
+  const ViewImage& image = strip.images[0];
+  if (!image.pixels || strip.difference || by_table || flags_of(frame) != 0 || frame.view.channel != ViewChannel::color)
+    return std::nullopt;
+  const Reads reads = reads_of(frame, place, image.size);
+  if (reads == kSmooth) return std::nullopt;
+  return PlainView{.pixels = image.pixels,
+                   .row_pitch = image.row_pitch,
+                   .half = image.half,
+                   .means = reads == kMean,
+                   .size = image.size,
+                   .picture = frame.picture,
+                   .origin = {static_cast<float>(place.origin.x), static_cast<float>(place.origin.y)},
+                   .scale = static_cast<float>(place.scale),
+                   .gain = static_cast<float>(std::exp2(frame.view.exposure))};
+}
+
 }  // namespace
 
 struct ViewPass::State {
   const Device& device;
+  PlainPass plain;
   bool encode = true;
   VkFormat target = VK_FORMAT_UNDEFINED;
   DrawLayout layout, fill_layout;
@@ -144,6 +183,7 @@ struct ViewPass::State {
   ViewTable table;
   std::vector<VkDescriptorSet> sets;  // of each slot, of each frame, kSetsOfFrame in a row
   std::vector<Rect> only;             // pixels that are recorded now
+  bool plain_made = false;            // what `plain` can make is in the target
 
   bool reached(const Rect& pixels) const {
     return std::ranges::any_of(only, [&](const Rect& r) { return common_part(r, pixels).size().area() > 0; });
@@ -156,8 +196,10 @@ struct ViewPass::State {
   Result<void> draw(VkCommandBuffer commands, const Rect& pixels, const Constants& constants, const Push& push);
   void draw_parts(VkCommandBuffer commands, const Rect& pixels) const;
   void fill(VkCommandBuffer commands, const Rect& pixels, const ViewColor& color);
-  Result<void> draw_images(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame, const Place& place,
-                           const Rect& pixels, const std::array<ViewImage, kImages>& images, bool difference);
+  bool by_table(const ViewFrame& frame) const { return table.planes() > 0 && frame.view.as_display; }
+  void make_plain(const ViewFrame& frame, std::span<const Rect> parts);
+  Result<void> draw_strip(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame, const Place& place,
+                          const Strip& strip);
   Result<void> draw_frame(VkCommandBuffer commands, std::span<const VkDescriptorSet, kSetsOfFrame> own,
                           const ViewFrame& frame);
 };
@@ -268,50 +310,50 @@ void ViewPass::State::fill(VkCommandBuffer commands, const Rect& pixels, const V
   draw_parts(commands, pixels);
 }
 
-/// The first image, or how far both are apart.
-Result<void> ViewPass::State::draw_images(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame,
-                                          const Place& place, const Rect& pixels,
-                                          const std::array<ViewImage, kImages>& images, bool difference) {
-  if (!reached(pixels)) return {};
-  bind(set, images);
+Result<void> ViewPass::State::draw_strip(VkCommandBuffer commands, VkDescriptorSet set, const ViewFrame& frame,
+                                         const Place& place, const Strip& strip) {
+  if (!reached(strip.pixels) || (plain_made && plain_view(frame, place, strip, by_table(frame)))) return {};
+  bind(set, strip.images);
   device.vk().vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout.pipeline.get(), 0, 1, &set, 0,
                                       nullptr);
-  const auto [shown, compared] = images;
-  const bool by_table = table.planes() > 0 && frame.view.as_display;
+  const auto& [shown, compared] = strip.images;
   Push push = push_of(frame, place, shown.size, compared.size);
   push.planes = table.planes();
   push.shaper = table.shaper();
-  return draw(commands, pixels,
-              {flags_of(frame) | (difference ? kDifference : 0) | (by_table ? kTable : 0),
+  return draw(commands, strip.pixels,
+              {flags_of(frame) | (strip.difference ? kDifference : 0) | (by_table(frame) ? kTable : 0),
                static_cast<std::int32_t>(frame.view.channel), reads_of(frame, place, shown.size),
-               difference ? reads_of(frame, place, compared.size) : kNearest},
+               strip.difference ? reads_of(frame, place, compared.size) : kNearest},
               push);
 }
 
 Result<void> ViewPass::State::draw_frame(VkCommandBuffer commands, std::span<const VkDescriptorSet, kSetsOfFrame> own,
                                          const ViewFrame& frame) {
   const Place place = place_of(frame);
-  const bool compares = frame.view.compare != Compare::none && frame.compared.has_value();
-  const bool difference = compares && frame.view.by == CompareBy::difference, wipe = compares && !difference;
-  const bool vertical = frame.view.wipe_vertical;
-  constexpr double kFar = 1e9;
-  const ViewImage& other = compares ? *frame.compared : frame.shown;
-  const Rect rest = wipe ? strip(place, vertical, place.border, kFar) : place.pixels;
-  AFTERGLOW_CHECK(
-      draw_images(commands, own[0], frame, place, rest, {frame.shown, difference ? other : frame.shown}, difference));
+  const std::vector<Strip> strips = strips_of(frame, place);
+  for (std::size_t i = 0; i < strips.size(); ++i)
+    AFTERGLOW_CHECK(draw_strip(commands, own[i], frame, place, strips[i]));
   for (const Rect& beside : parts_beside(frame.area, place.pixels)) fill(commands, beside, frame.outside);
-  if (!wipe) return {};
-  const Rect before = strip(place, vertical, -kFar, place.border);
-  AFTERGLOW_CHECK(draw_images(commands, own[1], frame, place, before, {other, other}, false));
+  if (strips.size() < 2) return {};
   // A bright line between dark ones shows on any picture.
   const double half_width = frame.pixel_scale;
   for (const auto& [half, color] : {std::pair(half_width + 1, kBesideBorder), std::pair(half_width, kBorder)})
-    fill(commands, strip(place, vertical, place.border - half, place.border + half), color);
+    fill(commands, strip_between(place, frame.view.wipe_vertical, place.border - half, place.border + half), color);
   return {};
 }
 
+void ViewPass::State::make_plain(const ViewFrame& frame, std::span<const Rect> parts) {
+  const Place place = place_of(frame);
+  for (const Strip& strip : strips_of(frame, place)) {
+    auto view = plain_view(frame, place, strip, by_table(frame));
+    if (!view) continue;
+    view->blue_first = plain.blue_first();
+    for (const Rect& part : parts) plain.add(*view, common_part(part, strip.pixels));
+  }
+}
+
 Result<std::unique_ptr<ViewPass>> ViewPass::create(const Device& device, VkFormat target, std::size_t slots) {
-  std::unique_ptr<State> state(new State{.device = device});
+  std::unique_ptr<State> state(new State{.device = device, .plain = PlainPass(device, target, slots)});
   state->encode = !encodes_srgb(target);
   state->target = target;
   AFTERGLOW_CHECK(state->make_shaders());
@@ -321,7 +363,16 @@ Result<std::unique_ptr<ViewPass>> ViewPass::create(const Device& device, VkForma
 
 Result<void> ViewPass::take_table(const DisplayTable& table) { return state_->table.take(state_->device, table); }
 
-void ViewPass::prepare(VkCommandBuffer commands) { state_->table.upload(state_->device, commands); }
+Result<bool> ViewPass::prepare(VkCommandBuffer commands, std::size_t slot, VkImage target,
+                               std::span<const ViewFrame> frames, std::span<const Rect> only) {
+  State& s = *state_;
+  s.table.upload(s.device, commands);
+  s.plain_made = target != VK_NULL_HANDLE && s.plain.works();
+  if (!s.plain_made) return false;
+  s.plain.begin(slot);
+  for (const ViewFrame& frame : frames.first(std::min(frames.size(), kMostFrames))) s.make_plain(frame, only);
+  return s.plain.record(commands, target);
+}
 
 ViewPass::ViewPass(std::unique_ptr<State> state) : state_(std::move(state)) {}
 ViewPass::~ViewPass() = default;
@@ -333,9 +384,15 @@ Result<void> ViewPass::record(VkCommandBuffer commands, std::size_t slot, std::s
   State& s = *state_;
   s.device.begin_label(commands, "view");
   s.only.assign(only.begin(), only.end());
-  const Rect first = frames.empty() ? Rect{} : frames.front().area;
-  for (const Rect& part : only)
-    for (const Rect& beside : parts_beside(part, common_part(part, first))) s.fill(commands, beside, background);
+  std::vector<Rect> beside(only.begin(), only.end());  // all frames: their pixels may be there already
+  for (const ViewFrame& frame : frames) {
+    std::vector<Rect> rest;
+    for (const Rect& part : beside)
+      for (const Rect& r : parts_beside(part, common_part(part, frame.area)))
+        if (r.size().area() > 0) rest.push_back(r);
+    beside = std::move(rest);
+  }
+  for (const Rect& part : beside) s.fill(commands, part, background);
   for (std::size_t i = 0; i < std::min(frames.size(), kMostFrames); ++i)
     if (s.reached(frames[i].area)) {
       const VkDescriptorSet* sets = &s.sets[(slot * kMostFrames + i) * kSetsOfFrame];

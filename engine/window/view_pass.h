@@ -17,11 +17,14 @@
 namespace afterglow {
 
 /// An image that fragment shaders may read when the pass runs: usage SAMPLED, barriers are the caller's. RGBA floats,
-/// scene-linear, associated alpha.
+/// scene-linear, associated alpha. With `pixels`, what wrote the image is done.
 struct ViewImage {
   VkImageView view = VK_NULL_HANDLE;
   VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   Size size;
+  const std::byte* pixels = nullptr;  ///< where the processor may read them, in RGBA; null: nowhere
+  std::size_t row_pitch = 0;          ///< of those, in bytes
+  bool half = false;                  ///< those are half floats
   friend bool operator==(const ViewImage&, const ViewImage&) = default;
 };
 
@@ -93,8 +96,12 @@ class ViewPass {
 
   /// The display that is shown on; read until the next one. What was recorded before must be done. Errors: device.
   Result<void> take_table(const DisplayTable& table);
-  /// Outside of rendering, before `record`: brings a new table to the device.
-  void prepare(VkCommandBuffer commands);
+  /// Outside of rendering, before `record` with the same frames: brings a new table to the device. With a `target`
+  /// (null: none) that can be copied to, which is and stays in COLOR_ATTACHMENT_OPTIMAL, devices on the CPU get what is
+  /// nearest pixels or means as sRGB codes there and then from the processor, which takes a fifth of the shader's time.
+  /// True when the target has such pixels now; `record` leaves them alone. Errors: device.
+  Result<bool> prepare(VkCommandBuffer commands, std::size_t slot, VkImage target, std::span<const ViewFrame> frames,
+                       std::span<const Rect> only);
 
   /// Pictures that one call records at most: two lie side by side.
   static constexpr std::size_t kMostFrames = 2;

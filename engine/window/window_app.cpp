@@ -31,8 +31,12 @@ Result<std::unique_ptr<WindowApp>> WindowApp::create(DesktopWindow& window, Devi
   Ui& ui = app->interface_->ui();
   ui.show_stats = options.stats;
   if (options.display) {
-    AFTERGLOW_CHECK(app->painter_->take_display(*options.display));
-    ui.display = options.display->name;
+    AFTERGLOW_CHECK(app->show_display(*options.display));
+    if (options.make_display)
+      app->displays_ = std::make_unique<DisplayKeeper>(*options.display, options.make_display, &DesktopWindow::wake);
+    ui.choose_display = [raw = app.get()](const std::string& display, const std::string& view) {
+      if (raw->displays_) raw->displays_->choose(display, view);
+    };
   }
   ui.copy = [&window](const std::string& text) { window.set_clipboard(text); };
   // Not within the frame that asks for it: what asks may be gone then.
@@ -50,12 +54,42 @@ Result<void> WindowApp::run() {
   while (!quit_) {
     AFTERGLOW_TRY(const Step turn, step());
     note_step(turn);
+    AFTERGLOW_CHECK(follow_display());
     if (!minimised_ && (redraw_ > 0 || !step_shown_)) AFTERGLOW_CHECK(draw());
     wait(turn);
     take_events();
     quit_ = quit_ || options_.interrupted();
   }
   diagnostics_.note(fmt::format("window closed: {} frames drawn", painter_->swapchain().counters().presented));
+  return {};
+}
+
+Result<void> WindowApp::show_display(const ShownDisplay& shown) {
+  const DisplayTable& table = shown.table;
+  AFTERGLOW_CHECK(painter_->take_display(table));
+  Ui& ui = interface_->ui();
+  ui.display = table.name;
+  ui.display_name = shown.display;
+  ui.display_view = shown.view;
+  ui.displays = shown.choices;
+  diagnostics_.note(fmt::format("view: {}, within {:.1f} codes of 8 bits (mean {:.2f})", table.name,
+                                table.largest_error, table.mean_error));
+  redraw_ = kSettle;
+  return {};
+}
+
+/// The display's files have changed, or another one was chosen.
+Result<void> WindowApp::follow_display() {
+  const auto made = displays_ ? displays_->take() : std::nullopt;
+  if (!made) return {};
+  if (*made) {
+    player_.view().as_display = true;
+    interface_->ui().say("view: " + (*made)->table.name);
+    return show_display(**made);
+  }
+  diagnostics_.warn("the view stays as it was: " + made->error().text());
+  interface_->ui().say("the view stays as it was: " + made->error().text());
+  redraw_ = kSettle;
   return {};
 }
 

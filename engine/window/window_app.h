@@ -43,6 +43,9 @@ class WindowApp {
   void browse_presets();
   void note_step(const Step& step);
   void update_title();
+  Result<void> show_display(const ShownDisplay& shown);
+  Result<void> follow_display();
+  void next_display_view();
 
   // A frame.
   Result<void> follow_scale();
@@ -85,6 +88,7 @@ class WindowApp {
   Diagnostics& diagnostics_;
   std::unique_ptr<Interface> interface_;
   std::unique_ptr<Painter> painter_;
+  std::unique_ptr<DisplayKeeper> displays_;  ///< none: the display stays as it is
 
   InputQueue input_;
   std::vector<std::filesystem::path> to_open_, others_to_open_;

@@ -14,9 +14,19 @@ namespace afterglow {
 namespace {
 
 constexpr float kPanelWidth = 376, kTransportHeight = 78;
-constexpr double kRetry = 0.02;  // when the window could not be drawn to
+constexpr float kMostTransport = 0.6f;  // of the window's height
+constexpr double kRetry = 0.02;         // when the window could not be drawn to
 
-ViewImage view_image(const DeviceImage& image) { return {image.binding.view, image.layout, image.binding.size}; }
+ViewImage view_image(const DeviceImage& image) {
+  ViewImage out{.view = image.binding.view, .layout = image.layout, .size = image.binding.size};
+  const VkFormat format = image.binding.format;
+  out.half = format == VK_FORMAT_R16G16B16A16_SFLOAT;
+  if (out.half || format == VK_FORMAT_R32G32B32A32_SFLOAT) {
+    out.pixels = image.pixels;
+    out.row_pitch = image.row_pitch;
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -82,7 +92,7 @@ void WindowApp::draw_parts(Size window) {
   const float panel = options_.panel && ui.show_panel ? std::min(ui.px(kPanelWidth), width * 0.6f) : 0;
   const float wanted =
       options_.transport_height ? options_.transport_height(ui, width - panel) : ui.px(kTransportHeight);
-  const float bar = options_.transport && ui.show_transport ? std::min(wanted, height * 0.5f) : 0;
+  const float bar = options_.transport && ui.show_transport ? std::min(wanted, height * kMostTransport) : 0;
   player_.time_kernels(panel > 0);  // it shows what effects cost
   if (panel > 0) {
     options_.panel(player_, ui, {width - panel, 0}, {panel, height});

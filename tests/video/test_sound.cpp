@@ -129,6 +129,7 @@ struct Listener {
   double began = 0;          ///< when what is in the device began to be heard
   std::int64_t written = 0;  ///< since then
   int drops = 0;
+  std::vector<int> heard;  ///< left, as kCounting numbers its samples
   bool ends = false;
   static constexpr double kHolds = 0.1 * kRate;
 
@@ -159,6 +160,8 @@ class ListeningDevice : public SoundDevice {
       to_.written = 0;
     }
     to_.written += frames;
+    for (std::size_t i = 0; i < samples.size(); i += SoundTrack::kChannels)
+      to_.heard.push_back(static_cast<int>(std::lround(samples[i] * 32768)));
     to_.changed.notify_all();
     return {};
   }
@@ -259,6 +262,47 @@ TEST_F(Following, ASeekMovesTheSoundAndOtherSpeedsAreSilent) {
   transport_.pause(listener_.now);
   follower_.follow(transport_, *footage_, *sound_, listener_.now);
   EXPECT_TRUE(sound_->playing().empty());
+}
+
+/// Every sample of the loop follows the one before, and none is missing where it begins anew.
+TEST_F(Following, ALoopIsHeardWithoutAGap) {
+  begin(sounding("ten.mov", kCounting, "-c:v mjpeg -c:a pcm_s16le", 10), 1);
+  transport_.set_range(24, 59, 0);  // from 1 s on, 1.5 s
+  transport_.play(0);
+  follower_.follow(transport_, *footage_, *sound_, 0);
+  double most = 0;
+  for (int i = 0; i < 60 * 7; ++i) {
+    turn(1.0 / 60);
+    // Right at the border picture and sound may lie on either side of it.
+    if (i > 30) most = std::max(most, std::abs(std::remainder(off(), 1.5)));
+  }
+  EXPECT_LT(most, 0.5 / 24);
+  EXPECT_EQ(listener_.drops, 0) << "it never began anew";
+  const std::lock_guard lock(listener_.mutex);
+  const auto& heard = listener_.heard;
+  int around = 0;
+  for (std::size_t i = 480 + 1; i < heard.size(); ++i) {
+    if (heard[i] == heard[i - 1] + 1 || (heard[i] == 0 && heard[i - 1] == 29'999)) continue;
+    ASSERT_EQ(heard[i - 1], (60 * 2000 - 1) % 30'000) << i;
+    ASSERT_EQ(heard[i], 24 * 2000 % 30'000) << i;
+    ++around;
+  }
+  EXPECT_EQ(around, 4);
+}
+
+TEST_F(Following, ALoopThatChangesIsFollowed) {
+  begin(sounding("ten.mov", kCounting, "-c:v mjpeg -c:a pcm_s16le", 10), 1);
+  transport_.set_range(24, 59, 0);
+  transport_.play(0);
+  follower_.follow(transport_, *footage_, *sound_, 0);
+  for (int i = 0; i < 60; ++i) turn(1.0 / 60);
+  transport_.clear_range(listener_.now);
+  for (int i = 0; i < 90; ++i) turn(1.0 / 60);
+  EXPECT_NEAR(off(), 0, 0.5 / 24);
+  EXPECT_GT(transport_.position(), 59);
+  transport_.set_loop(LoopMode::ping_pong, listener_.now);
+  for (int i = 0; i < 30; ++i) turn(1.0 / 60);
+  EXPECT_NEAR(off(), 0, 0.5 / 24);
 }
 
 TEST_F(Following, FramesAtAnotherRateThanTheFileAreSilent) {

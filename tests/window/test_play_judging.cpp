@@ -91,6 +91,44 @@ TEST_F(PlayWindow, PicturesAreShownAsADisplayHasThem) {
   expect_clean_end();
 }
 
+/// Of two displays; one's views swap channels or make all of them half as light.
+std::string two_displays(const char* light) {
+  const auto space = [](const std::string& name, const std::string& matrix) {
+    return "  - !<ColorSpace>\n    name: " + name + "\n    from_scene_reference: !<MatrixTransform> {matrix: [" +
+           matrix + ", 0, 0, 0, 0, 1]}\n";
+  };
+  const std::string l = light;
+  return "ocio_profile_version: 2\nroles: {default: lin_rec709}\nfile_rules: [!<Rule> {name: Default, colorspace: "
+         "lin_rec709}]\ndisplays:\n  Wall:\n    - !<View> {name: Swapped, colorspace: swapped}\n"
+         "    - !<View> {name: Dim, colorspace: dim}\n  Floor:\n    - !<View> {name: Dim, colorspace: dim}\n"
+         "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n" +
+         space("swapped", "0.5, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0") +
+         space("dim", l + ", 0, 0, 0, 0, " + l + ", 0, 0, 0, 0, " + l);
+}
+
+TEST_F(PlayWindow, ViewsOfADisplayAreChosenAndFollowTheirFile) {
+  write_preset("{ 1, 1, 0 }");
+  const auto write = [&](const std::string& text) { std::ofstream(folder_ / "studio.ocio") << text; };
+  write(two_displays("0.25"));
+  play({"look.lua", "shot.0001.exr", "--paused", "--view-ocio", "studio.ocio"});
+  ASSERT_TRUE(program_->wait_for("view: Wall, Swapped, within"));
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  constexpr Color kSwapped{64, 0, 128}, kDim{32, 32, 0}, kDimmer{16, 16, 0};
+  EXPECT_TRUE(until_color(kX, kY, kSwapped));
+  ASSERT_TRUE(user("mousemove 400 300 key ctrl+v"));
+  ASSERT_TRUE(program_->wait_for("view: Wall, Dim, within"));
+  EXPECT_TRUE(until_color(kX, kY, kDim));
+  write("displays: [");  // what is on screen stays
+  ASSERT_TRUE(program_->wait_for("the view stays as it was: "));
+  EXPECT_TRUE(until_color(kX, kY, kDim));
+  write(two_displays("0.125"));
+  EXPECT_TRUE(until_color(kX, kY, kDimmer));
+  ASSERT_TRUE(user("key ctrl+v"));  // behind the last, the first
+  EXPECT_TRUE(until_color(kX, kY, kSwapped));
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
 /// An editor that writes down how it was called.
 TEST_F(PlayWindow, AnErrorOpensTheEditorAtItsLine) {
   std::ofstream(folder_ / "editor") << "#!/bin/sh\necho \"$@\" >> called.txt\n";

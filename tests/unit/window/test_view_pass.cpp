@@ -9,6 +9,7 @@
 
 #include "exec/submit.h"
 #include "gpu/image.h"
+#include "image/encode.h"
 #include "view_oracle.h"
 #include "window/view_pass.h"
 
@@ -53,17 +54,22 @@ class ViewPassTest : public testing::Test {
     EXPECT_EQ(log->errors(), 0) << (log->messages().empty() ? "" : log->messages().front());
   }
 
-  static GpuImage upload(const Image& image) {
+  static GpuImage upload(const Image& image, bool half = false) {
     auto made = GpuImage::create(*device_,
                                  {.name = "picture",
                                   .size = image.size(),
-                                  .format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                                  .format = float_format(4, half),
                                   .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
                                   .tiling = VK_IMAGE_TILING_LINEAR},
                                  HostAccess::write);
     EXPECT_TRUE(made) << made.error().text();
     for (int y = 0; y < image.height; ++y) {
-      std::memcpy(made->row(y), image.at(0, y), static_cast<std::size_t>(image.width) * 4 * sizeof(float));
+      const auto values = static_cast<std::size_t>(image.width) * 4;
+      if (half) {
+        to_half(image.at(0, y), reinterpret_cast<std::uint16_t*>(made->row(y)), values);
+      } else {
+        std::memcpy(made->row(y), image.at(0, y), values * sizeof(float));
+      }
     }
     made->memory().flush();
     return std::move(*made);
@@ -75,7 +81,8 @@ class ViewPassTest : public testing::Test {
         GpuImage::create(*device_, {.name = "target",
                                     .size = target_size,
                                     .format = format,
-                                    .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+                                    .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                             VK_IMAGE_USAGE_TRANSFER_DST_BIT});
     EXPECT_TRUE(target) << target.error().text();
     const auto bytes = static_cast<VkDeviceSize>(target_size.area()) * 16;
     auto buffer = Buffer::create(*device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, HostAccess::read, "pixels");
@@ -106,10 +113,16 @@ class ViewPassTest : public testing::Test {
                                    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL));
     record_barriers(*device_, commands, before.data(), before.size());
+    // In two parts, which meet where no tile ends.
+    const std::array<Rect, 2> all{
+        {{0, 0, size.width / 3, size.height}, {size.width / 3, 0, size.width - size.width / 3, size.height}}};
+    const auto copied = pass.prepare(commands, 0, copies_ ? target.get() : VK_NULL_HANDLE, {&frame, 1}, all);
+    ASSERT_TRUE(copied) << copied.error().text();
+    copied_ = *copied;
     const VkRenderingAttachmentInfo color{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                           .imageView = target.view(),
                                           .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                          .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                          .loadOp = copied_ ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR,
                                           .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
                                           .clearValue = {.color = {.float32 = {-1, -1, -1, -1}}}};
     const VkExtent2D extent{static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height)};
@@ -118,10 +131,8 @@ class ViewPassTest : public testing::Test {
                                     .layerCount = 1,
                                     .colorAttachmentCount = 1,
                                     .pColorAttachments = &color};
-    const Rect all{0, 0, size.width, size.height};
-    pass.prepare(commands);
     device_->vk().vkCmdBeginRendering(commands, &rendering);
-    EXPECT_TRUE(pass.record(commands, 0, {&frame, 1}, {&all, 1}, {-1, -1, -1}));
+    EXPECT_TRUE(pass.record(commands, 0, {&frame, 1}, all, {-1, -1, -1}));
     device_->vk().vkCmdEndRendering(commands);
     const auto into = image_barrier(target.get(), VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
@@ -179,8 +190,51 @@ class ViewPassTest : public testing::Test {
     EXPECT_EQ(inside, frame.area.width * frame.area.height);
   }
 
+  /// Pictures that the processor may read, on targets that it can copy to. `compared` may be null.
+  static void expect_codes(ViewFrame frame, const Image& shown, const Image* compared, Size target, VkFormat format,
+                           bool half, bool by_processor) {
+    const GpuImage gpu_shown = upload(shown, half);
+    const GpuImage gpu_compared = compared ? upload(*compared, half) : GpuImage();
+    const auto view_of = [&](const GpuImage& image) {
+      return ViewImage{.view = image.view(),
+                       .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                       .size = image.desc().size,
+                       .pixels = image.row(0),
+                       .row_pitch = image.row_pitch(),
+                       .half = half};
+    };
+    std::vector<VkImage> sources{gpu_shown.get()};
+    frame.shown = view_of(gpu_shown);
+    if (compared) {
+      frame.compared = view_of(gpu_compared);
+      sources.push_back(gpu_compared.get());
+    }
+    copies_ = true;
+    const Image drawn = draw(frame, target, sources, format);
+    copies_ = false;
+    EXPECT_EQ(copied_, by_processor);
+    copied_ = false;
+    const ViewOracle oracle(frame, shown, compared, display_);
+    const auto* codes = reinterpret_cast<const std::uint8_t*>(drawn.pixels.data());
+    const bool blue_first = format == VK_FORMAT_B8G8R8A8_UNORM;
+    int wrong = 0;
+    for (int y = 0; y < target.height; ++y)
+      for (int x = 0; x < target.width; ++x, codes += 4) {
+        const Rgb want = oracle.at(x, y);
+        for (std::size_t i = 0; i < 3; ++i) {
+          const int got = codes[blue_first ? 2 - i : i];
+          if (std::abs(got - 255 * want[i]) <= 0.5 + (half ? 0.07 : 0.01)) continue;
+          if (++wrong <= 5) ADD_FAILURE() << x << ", " << y << " channel " << i << ": " << got << ", " << 255 * want[i];
+        }
+        ASSERT_EQ(codes[3], 255);
+      }
+    EXPECT_EQ(wrong, 0);
+  }
+
   static Device* device_;
   static const DisplayTable* display_;  ///< that the pass is given
+  static inline bool copies_ = false;   ///< the pass may copy into the target
+  static inline bool copied_ = false;   ///< and did
 };
 Device* ViewPassTest::device_ = nullptr;
 const DisplayTable* ViewPassTest::display_ = nullptr;
@@ -204,6 +258,41 @@ TEST_F(ViewPassTest, PlacesMagnifiesAndMinifies) {
     const View view{.fit = false, .zoom = zoom, .center = {11.213, 8.347}};
     expect_same(frame_of(area, view), image, nullptr, {70, 55}, std::to_string(zoom).c_str());
   }
+}
+
+TEST_F(ViewPassTest, TheProcessorMakesTheSameCodes) {
+  const Image image = picture(kPicture, 1), before = picture(kPicture, 5), small = picture({15, 13}, 6);
+  for (const VkFormat format : {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM})
+    for (const bool half : {false, true})
+      for (const double zoom : {0.125, 0.23, 0.5, 0.81, 1.0, 1.37, 3.0, 7.7, 16.0}) {
+        SCOPED_TRACE(std::to_string(format) + (half ? ", halves, " : ", floats, ") + std::to_string(zoom));
+        View view{.fit = false, .zoom = zoom, .center = {11.213, 8.347}, .exposure = half ? 0 : 1.5};
+        expect_codes(frame_of({0, 0, 61, 47}, view), image, nullptr, {61, 47}, format, half, true);
+        view.compare = Compare::source;
+        view.wipe = 0.413;
+        view.wipe_vertical = half;
+        expect_codes(frame_of({0, 0, 61, 47}, view), small, &before, {61, 47}, format, half, true);
+      }
+}
+
+TEST_F(ViewPassTest, TheProcessorLeavesOtherWaysToTheShader) {
+  const Image image = picture(kPicture, 1), before = picture(kPicture, 5);
+  const auto shader_draws = [&](const View& view, ViewBackground background = ViewBackground::none) {
+    ViewFrame frame = frame_of({0, 0, 61, 47}, view);
+    frame.background = background;
+    expect_codes(frame, image, &before, {61, 47}, VK_FORMAT_B8G8R8A8_UNORM, false, false);
+  };
+  shader_draws({.smooth = true});
+  shader_draws({.channel = ViewChannel::green});
+  shader_draws({.marks = Marks::range});
+  shader_draws({}, ViewBackground::checker);
+  View view;
+  view.gamma = 1.8;
+  shader_draws(view);
+  view = {};
+  view.compare = Compare::other;
+  view.by = CompareBy::difference;
+  shader_draws(view);
 }
 
 TEST_F(ViewPassTest, MagnifiesSmoothly) {
