@@ -2,6 +2,7 @@
 #include "core/half.h"
 
 #include <bit>
+#include <cstring>
 
 #include "core/processor.h"
 
@@ -34,10 +35,9 @@ __attribute__((target("avx,f16c"))) std::uint64_t halves_from_floats_f16c(const 
   return held;
 }
 
-__attribute__((target("avx,f16c"))) void floats_from_halves_f16c(const std::uint16_t* from, std::size_t count,
-                                                                 float* to) {
+__attribute__((target("avx,f16c"))) void from_half_f16c(const std::byte* from, std::size_t count, float* to) {
   for (std::size_t i = 0; i < count; i += 8) {
-    _mm256_storeu_ps(to + i, _mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from + i))));
+    _mm256_storeu_ps(to + i, _mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from + 2 * i))));
   }
 }
 
@@ -88,19 +88,26 @@ std::uint64_t halves_from_floats(const float* from, std::size_t count, std::uint
   return held;
 }
 
-std::uint64_t floats_from_halves(const std::uint16_t* from, std::size_t count, float* to) {
-  std::size_t done = 0;
+void from_half(const void* halves, float* values, std::size_t count) {
+  const auto* from = static_cast<const std::byte*>(halves);
+  std::size_t i = 0;
 #if AFTERGLOW_F16C
   if (has_f16c()) {
-    done = count / 8 * 8;
-    floats_from_halves_f16c(from, done, to);
+    i = count / 8 * 8;
+    from_half_f16c(from, i, values);
   }
 #endif
-  std::uint64_t held = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    held += (from[i] & ~kSign) == kMaxHalfBits;
-    if (i >= done) to[i] = float_from_half(from[i]);
+  for (; i < count; ++i) {
+    std::uint16_t bits = 0;
+    std::memcpy(&bits, from + 2 * i, sizeof bits);
+    values[i] = float_from_half(bits);
   }
+}
+
+std::uint64_t floats_from_halves(const std::uint16_t* from, std::size_t count, float* to) {
+  from_half(from, to, count);
+  std::uint64_t held = 0;
+  for (std::size_t i = 0; i < count; ++i) held += (from[i] & ~kSign) == kMaxHalfBits;
   return held;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <utility>
 
+#include "core/half.h"
 #include "core/large_pages.h"
 #include "core/parallel.h"
-#include "image/encode.h"
 #include "image/picture.h"
 
 namespace afterglow {

@@ -11,6 +11,7 @@
 #include <immintrin.h>
 #endif
 
+#include "core/half.h"
 #include "core/processor.h"
 #include "image/srgb.h"
 
@@ -36,14 +37,6 @@ __attribute__((target("avx,f16c"))) std::size_t to_half_f16c(const float* values
     const __m256 inside = _mm256_max_ps(smallest, _mm256_min_ps(largest, v));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(halves + i), _mm256_cvtps_ph(inside, _MM_FROUND_TO_NEAREST_INT));
   }
-  return i;
-}
-
-__attribute__((target("avx,f16c"))) std::size_t from_half_f16c(const std::uint8_t* halves, float* values,
-                                                               std::size_t count) {
-  std::size_t i = 0;
-  for (; i + 8 <= count; i += 8)
-    _mm256_storeu_ps(values + i, _mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(halves + 2 * i))));
   return i;
 }
 #endif
@@ -141,29 +134,10 @@ std::uint64_t to_half(const float* values, std::uint16_t* halves, std::size_t co
   return overflows;
 }
 
-void from_half(const std::uint8_t* halves, float* values, std::size_t count) {
-  std::size_t i = 0;
-#if defined(__x86_64__)
-  if (has_f16c()) i = from_half_f16c(halves, values, count);
-#endif
-  for (; i < count; ++i) {
-    Imath::half value;
-    std::uint16_t bits = 0;
-    std::memcpy(&bits, halves + 2 * i, sizeof bits);
-    value.setBits(bits);
-    values[i] = value;
-  }
-}
-
-void from_half(const std::uint16_t* halves, float* values, std::size_t count) {
-  from_half(reinterpret_cast<const std::uint8_t*>(halves), values, count);
-}
-
 const float* color_row(const Picture& picture, int y, std::vector<float>& memory) {
   if (picture.halves.empty()) return picture.color.at(0, y);
-  const std::size_t values = static_cast<std::size_t>(picture.color.width) * 4;
-  memory.resize(values);
-  from_half(picture.halves.data() + values * static_cast<std::size_t>(y), memory.data(), values);
+  memory.resize(static_cast<std::size_t>(picture.color.width) * 4);
+  from_half(half_row(picture, y), memory.data(), memory.size());
   return memory.data();
 }
 

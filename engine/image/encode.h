@@ -15,9 +15,10 @@ namespace afterglow {
 /// Returns how many were.
 std::uint64_t to_half(const float* values, std::uint16_t* halves, std::size_t count);
 
-/// Floats of `count` half floats. Bytes need not be aligned.
-void from_half(const std::uint8_t* halves, float* values, std::size_t count);
-void from_half(const std::uint16_t* halves, float* values, std::size_t count);
+/// Row `y` of colours that are half floats, counted from the data window's top.
+inline const std::uint16_t* half_row(const Picture& picture, int y) {
+  return picture.halves.data() + static_cast<std::size_t>(picture.color.width) * 4 * static_cast<std::size_t>(y);
+}
 
 /// Row `y` of the colours, counted from the data window's top: as it lies in the picture, or made of half floats in
 /// `memory`.

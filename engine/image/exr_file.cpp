@@ -301,7 +301,6 @@ class ExrFile : public PictureFile {
   }
 
   static void read_plain_halves(Imf::InputPart& input, const ExrPart& part, const ExrHalfTarget& target) {
-    constexpr std::uint16_t kOne = 0x3c00;
     constexpr std::size_t kPixel = 4 * sizeof(std::uint16_t);
     const auto width = static_cast<std::size_t>(part.data_window.width);
     const std::size_t values = width * static_cast<std::size_t>(part.data_window.height) * 4;
@@ -309,7 +308,7 @@ class ExrFile : public PictureFile {
     Imf::FrameBuffer buffer;
     for (std::size_t c = 0; c < 4; ++c) {
       if (!target.channels[c]) {
-        for (std::size_t i = c; i < values; i += 4) target.rgba[i] = kOne;
+        for (std::size_t i = c; i < values; i += 4) target.rgba[i] = kOneAsHalf;
         continue;
       }
       buffer.insert(part.channels[*target.channels[c]].name,

@@ -14,8 +14,8 @@
 #endif
 
 #include "core/file_time.h"
+#include "core/half.h"
 #include "core/parallel.h"
-#include "image/encode.h"
 #include "image/exr_zip.h"
 
 namespace afterglow {
@@ -83,8 +83,6 @@ void interleave(const float* lines, std::size_t lanes, std::size_t width, float*
   for (std::size_t c = 0; c < lanes; ++c)
     for (std::size_t x = first; x < width; ++x) pixels[x * stride + c] = lines[c * width + x];
 }
-
-constexpr std::uint16_t kOneAsHalf = 0x3c00;
 
 /// Half floats of four channels into pixels of RGBA; without the last one alpha is 1.
 void interleave_halves(const std::array<const std::uint8_t*, 4>& channels, std::size_t width, std::uint16_t* rgba) {

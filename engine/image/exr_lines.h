@@ -23,6 +23,8 @@ struct ExrLineTarget {
   std::size_t pixel_stride = 1, row_stride = 0;
 };
 
+inline constexpr std::uint16_t kOneAsHalf = 0x3c00;
+
 /// Colours as RGBA of half floats: channels of the part that are half, the fourth maybe none.
 struct ExrHalfTarget {
   std::array<std::optional<std::size_t>, 4> channels{};

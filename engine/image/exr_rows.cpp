@@ -8,6 +8,7 @@
 #include <array>
 #include <cstring>
 
+#include "core/half.h"
 #include "core/parallel.h"
 #include "image/encode.h"
 #include "image/exr_line_writer.h"
@@ -40,7 +41,7 @@ void ExrColorRows::add_slices(int first, int rows, Imf::FrameBuffer& buffer) {
   const std::size_t row_samples = static_cast<std::size_t>(color.width) * 4;
   const std::size_t samples = row_samples * static_cast<std::size_t>(rows);
   const auto place = [&](int row) { return row_samples * static_cast<std::size_t>(row); };
-  const std::uint16_t* halves = picture_.halves.empty() ? nullptr : picture_.halves.data() + place(first);
+  const std::uint16_t* halves = picture_.halves.empty() ? nullptr : half_row(picture_, first);
   const float* floats = halves ? nullptr : color.at(0, first);
   if (half && !halves) {
     halves_.resize(samples);
@@ -76,7 +77,7 @@ void ExrColorRows::put_row(int row, std::uint8_t* line) {
   thread_local std::vector<float> floats;
   thread_local std::vector<std::uint16_t> halves;
   if (type_ != SampleType::half) return put(color_row(picture_, row, floats));
-  if (!picture_.halves.empty()) return put(picture_.halves.data() + width * 4 * static_cast<std::size_t>(row));
+  if (!picture_.halves.empty()) return put(half_row(picture_, row));
   halves.resize(width * 4);
   overflows_ += to_half(picture_.color.at(0, row), halves.data(), width * 4);
   put(halves.data());

@@ -13,8 +13,8 @@
 #include <immintrin.h>
 #endif
 
+#include "core/half.h"
 #include "core/processor.h"
-#include "image/encode.h"
 
 namespace afterglow {
 namespace {

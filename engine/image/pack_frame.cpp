@@ -54,8 +54,7 @@ class StoredRows {
     rgba.resize(width * 4);
     if (!rules_.layout->alpha && picture_.data_window == picture_.display_window) {  // as it lies, without a copy
       if (picture_.halves.empty()) return rules_.space->encode(picture_.color.at(0, y), width, rgba.data());
-      return rules_.space->encode_colors(picture_.halves.data() + rgba.size() * static_cast<std::size_t>(y), width,
-                                         rgba.data());
+      return rules_.space->encode_colors(half_row(picture_, y), width, rgba.data());
     }
     display_row(picture_, y, picture_.has_alpha ? 0.0f : 1.0f, rgba.data());
     if (rules_.layout->alpha)

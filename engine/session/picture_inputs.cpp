@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "image/encode.h"
+#include "core/half.h"
 #include "image/metadata.h"
 
 namespace afterglow {

@@ -10,8 +10,10 @@
 #include <immintrin.h>
 #endif
 
+#include "core/half.h"
 #include "core/processor.h"
 #include "image/encode.h"
+#include "image/picture.h"
 #include "image/srgb.h"
 
 namespace afterglow {
@@ -49,8 +51,7 @@ Covered covered(const Axis& axis, int at) {
   return out;
 }
 
-constexpr float kLargest = 1e30f;
-float tamed(float v) { return std::isnan(v) ? 0 : std::clamp(v, -kLargest, kLargest); }
+float tamed(float v) { return std::isnan(v) ? 0 : std::clamp(v, -kLargestColor, kLargestColor); }
 
 #if defined(__x86_64__)
 __attribute__((target("avx2"), always_inline)) inline __m256 next_avx2(__m256 curve, __m256 root, float next) {
@@ -73,7 +74,7 @@ __attribute__((target("avx2"), always_inline)) inline __m256 srgb_avx2(__m256 c)
 __attribute__((target("avx2"), always_inline)) inline __m256i codes_avx2(const float* rgba, __m256 gain) {
   const __m256 zero = _mm256_setzero_ps(), one = _mm256_set1_ps(1);
   const __m256 positive = _mm256_max_ps(_mm256_loadu_ps(rgba), zero);  // its second operand for NaN
-  const __m256 held = _mm256_min_ps(_mm256_mul_ps(_mm256_min_ps(positive, _mm256_set1_ps(kLargest)), gain), one);
+  const __m256 held = _mm256_min_ps(_mm256_mul_ps(_mm256_min_ps(positive, _mm256_set1_ps(kLargestColor)), gain), one);
   return _mm256_cvtps_epi32(_mm256_mul_ps(srgb_avx2(held), _mm256_set1_ps(255)));
 }
 
@@ -103,7 +104,8 @@ __attribute__((target("avx2"))) int encode_avx2(const float* rgba, int count, co
 /// Eight floats at a time; how many it did.
 __attribute__((target("avx2"))) std::size_t add_share_avx2(const float* from, float share, std::size_t count,
                                                            float* to) {
-  const __m256 largest = _mm256_set1_ps(kLargest), least = _mm256_set1_ps(-kLargest), part = _mm256_set1_ps(share);
+  const __m256 largest = _mm256_set1_ps(kLargestColor), least = _mm256_set1_ps(-kLargestColor),
+               part = _mm256_set1_ps(share);
   std::size_t i = 0;
   for (; i + 8 <= count; i += 8) {
     const __m256 v = _mm256_loadu_ps(from + i);
@@ -163,7 +165,7 @@ class ImageRows {
     const std::byte* from =
         view_.pixels + static_cast<std::size_t>(y) * view_.row_pitch + first_ * (view_.half ? 8 : 16);
     if (!view_.half) return reinterpret_cast<const float*>(from);
-    from_half(reinterpret_cast<const std::uint16_t*>(from), floats_.data(), floats_.size());
+    from_half(from, floats_.data(), floats_.size());
     return floats_.data();
   }
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/half.h"
 #include "image/encode.h"
 #include "image/output_space.h"
 #include "image/writer.h"
