@@ -7,6 +7,7 @@
 #include <isa-l/igzip_lib.h>
 #endif
 
+#include <algorithm>
 #include <new>
 #include <vector>
 
@@ -70,9 +71,10 @@ Deflate::~Deflate() { libdeflate_free_compressor(other_); }
 
 bool Deflate::makes_pieces(int level) { return kHasFast && level == kFastLevel; }
 
-std::size_t Deflate::bound(std::size_t bytes) const {
+std::size_t Deflate::bound(std::size_t bytes) {
   // ISA-L stores what would get longer: some bytes for each block, and those of head, end and sum.
-  return fast_ ? bytes + bytes / 256 + 1024 : libdeflate_zlib_compress_bound(other_, bytes);
+  const std::size_t fast = bytes + bytes / 256 + 1024;
+  return std::max(fast, libdeflate_zlib_compress_bound(nullptr, bytes));
 }
 
 std::size_t Deflate::stream(Bytes bytes, std::span<std::uint8_t> packed) {

@@ -21,8 +21,8 @@ class Deflate {
   Deflate(const Deflate&) = delete;
   Deflate& operator=(const Deflate&) = delete;
 
-  /// Bytes that are always enough for what `bytes` of them become, as a stream or as a piece.
-  std::size_t bound(std::size_t bytes) const;
+  /// Bytes that are always enough for what `bytes` of them become, as a stream or as a piece, at every level.
+  static std::size_t bound(std::size_t bytes);
   /// A zlib stream of `bytes`. Returns how long it is; 0: it does not fit into `packed`.
   std::size_t stream(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> packed);
 

@@ -122,7 +122,7 @@ void ExrZip::append(std::span<const std::uint8_t> bytes, std::vector<std::uint8_
 
 void ExrZip::append_plain(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed) {
   const std::size_t at = packed.size();
-  packed.resize(at + deflate_.bound(bytes.size()));
+  packed.resize(at + Deflate::bound(bytes.size()));
   packed.resize(at + deflate_.stream(bytes, std::span(packed).subspan(at)));
 }
 

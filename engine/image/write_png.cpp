@@ -180,7 +180,7 @@ Result<void> write_strips(const Picture& picture, const StripForm& form, OutputF
   };
   std::vector<Strip> strips(static_cast<std::size_t>((height + rows - 1) / rows));
   const std::size_t strip_bytes = row * static_cast<std::size_t>(rows);
-  const std::size_t room = Deflate(level).bound(strip_bytes);
+  const std::size_t room = Deflate::bound(strip_bytes);
   WorkMemory::Block block = memory.take(room * strips.size());
   const auto place = [&](std::size_t i) { return std::span(block.bytes.get() + room * i, room); };
   parallel_rows(static_cast<int>(strips.size()), static_cast<long long>(row) * height, [&](int begin, int end) {
@@ -216,7 +216,7 @@ Result<void> write_whole(const Picture& picture, const StripForm& form, OutputFi
   const int height = picture.display_window.height;
   const std::size_t size = row * static_cast<std::size_t>(height);
   Deflate deflate(level);
-  const std::size_t room = deflate.bound(size);
+  const std::size_t room = Deflate::bound(size);
   WorkMemory::Block block = memory.take(size + room);
   const std::span filtered(block.bytes.get(), size), packed(block.bytes.get() + size, room);
   parallel_rows(height, static_cast<long long>(size), [&](int begin, int end) {
@@ -234,6 +234,7 @@ Result<void> write_whole(const Picture& picture, const StripForm& form, OutputFi
 Result<void> write_png(const Picture& picture, const StripForm& form, OutputFile& out, int level, WorkMemory* memory) {
   write_header(picture, form, out);
   WorkMemory own;
+  level = std::clamp(level, 0, 9);
   const auto write = Deflate::makes_pieces(level) ? write_strips : write_whole;
   AFTERGLOW_CHECK(write(picture, form, out, level, memory ? *memory : own));
   write_chunk(out, "IEND", "");
