@@ -122,11 +122,6 @@ Result<ShownDisplay> display_of_config(const OcioRequest& request) {
   return out;
 }
 
-Result<DisplayTable> ocio_display_table(const OcioRequest& request) {
-  AFTERGLOW_TRY(ShownDisplay made, display_of_config(request));
-  return std::move(made.table);
-}
-
 Result<DisplayTable> icc_display_table(const std::filesystem::path& file) {
   AFTERGLOW_TRY(const std::string bytes, read_file(file));
   auto profile = display_profile({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});

@@ -43,8 +43,7 @@ inline constexpr int kDisplayTiles = 8;  ///< slices beside each other
 
 /// The view of the request. Its light is scene-linear, up to 64. Errors: script (the configuration, with its file and
 /// line where one is known; a name of the request, with those it has and the nearest), io (OpenColorIO is missing).
-Result<DisplayTable> ocio_display_table(const OcioRequest& request);
-/// The same, and what else its configuration has; `files` are the configuration and the tables of the view.
+/// `files` are the configuration and the tables of the view.
 Result<ShownDisplay> display_of_config(const OcioRequest& request);
 
 /// A monitor's profile: relative colorimetric, black point compensated. Its light is that of a display, 0…1 and what

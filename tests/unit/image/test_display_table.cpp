@@ -109,10 +109,10 @@ OcioRequest request_of(const char* display, const char* view) {
 TEST(DisplayTable, ViewsOfOpenColorIo) {
   for (const char* display : {"sRGB - Display", "Rec.1886 Rec.709 - Display", "P3-D65 - Display"})
     for (const char* view : {"ACES 1 - SDR Video", "ACES 1 - SDR Video with gamut compression", "Un-tone-mapped"}) {
-      const auto table = ocio_display_table(request_of(display, view));
-      ASSERT_TRUE(table) << table.error().text();
-      EXPECT_EQ(table->name, std::string(display) + ", " + view);
-      expect_near(*table, 4, aces_view(display, view),
+      const auto shown = display_of_config(request_of(display, view));
+      ASSERT_TRUE(shown) << shown.error().text();
+      EXPECT_EQ(shown->table.name, std::string(display) + ", " + view);
+      expect_near(shown->table, 4, aces_view(display, view),
                   std::string(display).starts_with("sRGB") ? Bounds{1, 0.05, 0.3, 0.5} : Bounds{8, 0.08, 1, 1.2});
     }
 }
