@@ -5,28 +5,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fuzz.h"
+#include "clip.h"
 #include "image/reader.h"
 
 using namespace afterglow;
 
 namespace {
-constexpr SizeLimits kSmall{.max_side = 512, .max_bytes = 64ull << 20};
 constexpr int kMostFrames = 6;
 }  // namespace
-
-/// Modules take seconds to load under the sanitizers: not in the time of an input.
-extern "C" int LLVMFuzzerInitialize(int*, char***) {
-  Diagnostics quiet;
-  (void)Movie::open(fuzz::write("tiny.y4m", "YUV4MPEG2 W2 H2 F24:1\nFRAME\n123456"), kSmall, quiet);
-  return 0;
-}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto file = fuzz::write("clip", fuzz::text_of(data, size));
   Diagnostics quiet;
   if (movie_format(file).empty()) return 0;
-  auto movie = Movie::open(file, kSmall, quiet);
+  auto movie = Movie::open(file, fuzz::kSmallClips, quiet);
   if (!movie) {
     fuzz::check_error(movie.error(), {ErrorKind::io});
     return 0;
@@ -35,8 +27,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const int last = (*movie)->frames() - 1;
   ReadOptions options;
   options.movie = *movie;
-  options.max_side = kSmall.max_side;
-  options.max_bytes = kSmall.max_bytes;
+  options.max_side = fuzz::kSmallClips.max_side;
+  options.max_bytes = fuzz::kSmallClips.max_bytes;
   for (int i = 0; i <= std::min(last, kMostFrames); ++i) {
     options.movie_frame = i < kMostFrames ? i : last;
     FUZZ_CLAIM(std::isfinite((*movie)->time(options.movie_frame)), "");

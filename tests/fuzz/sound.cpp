@@ -5,32 +5,23 @@
 #include <array>
 #include <cmath>
 
-#include "fuzz.h"
-#include "image/movie.h"
+#include "clip.h"
 
 using namespace afterglow;
 
 namespace {
 
-constexpr SizeLimits kSmall{.max_side = 512, .max_bytes = 64ull << 20};
 constexpr std::size_t kRead = 2400;  ///< frames of samples: a picture's at 20 a second
 /// In order, a jump that is decoded on the way, one that is sought, back, and where no video is.
 constexpr std::array<std::int64_t, 8> kFirst{0, kRead, 2 * kRead, 60'000, 480'000, 1'000, -5'000, 48'000ll * 86'400};
 
 }  // namespace
 
-/// Modules take seconds to load under the sanitizers: not in the time of an input.
-extern "C" int LLVMFuzzerInitialize(int*, char***) {
-  Diagnostics quiet;
-  (void)Movie::open(fuzz::write("tiny.y4m", "YUV4MPEG2 W2 H2 F24:1\nFRAME\n123456"), kSmall, quiet);
-  return 0;
-}
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto file = fuzz::write("clip", fuzz::text_of(data, size));
   Diagnostics quiet;
   if (movie_format(file).empty()) return 0;
-  const auto movie = Movie::open(file, kSmall, quiet);
+  const auto movie = Movie::open(file, fuzz::kSmallClips, quiet);
   if (!movie) return 0;  // the harness "movie" looks at that
   const auto sound = SoundTrack::open(**movie);
   if (!sound) {
