@@ -139,7 +139,11 @@ Result<void> run_frames(BatchRun& run) {
                  "afterglow run"};
   SessionOptions opened = asked.session;
   opened.frames = frames.size() > 1 || run.list.more ? kFramesInFlight : 1;
-  AFTERGLOW_TRY(run.session, Session::open(asked.preset, opened, run.events.diagnostics));
+  const double before = run.milliseconds();
+  AFTERGLOW_TRY(run.session, Session::begin(asked.preset, opened, run.events.diagnostics));
+  // Of a picture alone nothing is asked that needs the device before it is being read.
+  const bool alone = opened.frames == 1 && !asked.resume && !asked.watch && asked.lock.empty() && asked.locked.empty();
+  if (!alone) AFTERGLOW_CHECK(run.session->ready());
   FrameLoopOptions options = asked.loop;
   options.read.auxiliary = run.session->preset().needs();
   options.read.input_space = asked.input_space.empty() ? run.session->preset().input_space() : asked.input_space;
@@ -161,9 +165,11 @@ Result<void> run_frames(BatchRun& run) {
     run.report.processors += processor_milliseconds() - used;
     return done;
   };
-  run.report.startup = std::max(0.0, run.milliseconds() - run.session->report().times.script);
+  run.report.startup = std::max(0.0, run.milliseconds() - run.session->stack().script_milliseconds());
   auto done = asked.watch ? run_watching(frames, earlier.value_or(0), options.fail_fast, run.events, run_waiting)
                           : run_waiting();
+  if (run.session->ready())
+    run.report.startup = std::max(run.report.startup, before + run.session->report().times.device);
   run.report.memory_needed = loop.largest_need();
   return done;
 }
@@ -179,7 +185,7 @@ Result<void> run_batch(const BatchRequest& request, const RunEvents& events, Run
   run.list.jobs.clear();
   auto done = run_frames(run);
   if (done && !request.lock.empty()) done = write_file_atomically(request.lock, lock_text(*run.lock));
-  if (run.session) report.session = run.session->report();
+  if (run.session && run.session->ready()) report.session = run.session->report();
   report.wall = run.milliseconds();
   return done;
 }

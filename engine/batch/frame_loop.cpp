@@ -62,7 +62,9 @@ Result<void> FrameLoop::run(Schedule& schedule) {
     if (next.empty()) next.push_back(begin_reading(frames[begun++]));
     auto reading = std::move(next.front());
     next.pop_front();
-    // Shaders, pipelines and memory are made while the first picture is read.
+    // The device opens, and shaders, pipelines and memory are made, while the first picture is read.
+    if (i == 0)
+      if (auto ready = session_.ready(); !ready) return close(std::move(ready));
     if (i == 0 && !reading->refused) {
       if (auto prepared = session_.prepare(reading->request); !prepared && ends_run(prepared.error()))
         return close(fail(*reading->frame, std::move(prepared).error()));

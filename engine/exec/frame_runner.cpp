@@ -78,7 +78,8 @@ struct FrameRunner::State {
     std::optional<Clock::time_point> submitted{};  ///< none: its kernels have been waited for
   };
   std::optional<Begun> begun;
-  Submitter submitter;  // last: it waits before the images go
+  bool warming_up = false;  ///< what `warm_up` submitted has not been waited for
+  Submitter submitter;      // last: it waits before the images go
 
   Result<void> check_memory(const std::map<std::string, ImageDesc>& descs, std::uint64_t other_bytes) const;
   Result<void> prepare_inputs(const std::map<std::string, ImageDesc>& descs);
@@ -261,10 +262,11 @@ Result<void> FrameRunner::State::time_separately(Program& program, const std::ve
 
 /// The one place that waits for kernels.
 Result<void> FrameRunner::State::wait() {
+  if (std::exchange(warming_up, false)) AFTERGLOW_CHECK(submitter.wait());
   if (!begun || !begun->submitted) return {};
   const auto since = *std::exchange(begun->submitted, std::nullopt);
   auto done = submitter.wait();
-  begun->times.execute = milliseconds_since(since);
+  begun->times.execute += milliseconds_since(since);
   auto ended = done && begun->running ? begun->running->check_loops(begun->runaways) : Result<void>();
   if (done && ended) return {};
   result.set_writer(0);
@@ -276,6 +278,9 @@ Result<void> FrameRunner::State::wait() {
 /// Everything of a frame but waiting for it and reading it back.
 Result<void> FrameRunner::State::start(Program& program, const std::map<std::string, HostImage>& host,
                                        KernelTiming timing, const Choose& choose) {
+  const auto warming = Clock::now();
+  AFTERGLOW_CHECK(wait());
+  begun->times.execute = milliseconds_since(warming);
   AFTERGLOW_CHECK(prepare(program, host));
   begun->source = host.at("source");
   const auto began = Clock::now();
@@ -333,6 +338,27 @@ Result<void> FrameRunner::begin(Program& program, const std::map<std::string, Ho
   State& s = *state_;
   AFTERGLOW_CHECK(s.begin(program, inputs, timing, choose));
   return s.ahead && s.begun->ran ? s.result.begin_download(s.staging, *s.shown) : Result<void>();
+}
+
+Result<void> FrameRunner::warm_up(Program& program) {
+  State& s = *state_;
+  AFTERGLOW_CHECK(s.wait());
+  if (program.plan().kernels.empty()) return {};
+  AFTERGLOW_CHECK(s.prepare(program, usual_inputs(program.graph())));
+  s.bound.reset();
+  s.result.set_writer(0);
+  AFTERGLOW_CHECK(program.bind(s.inputs.bindings(), binding_of(s.result.image())));
+  AFTERGLOW_CHECK(s.submitter.submit(
+      [&](VkCommandBuffer commands) {
+        s.inputs.before(program, commands);
+        s.result.before(commands);
+        program.record_a_pixel_each(commands);
+        s.inputs.after(commands);
+        s.result.after(commands);
+      },
+      State::kOneOff));
+  s.warming_up = true;
+  return {};
 }
 
 Result<void> FrameRunner::wait() { return state_->wait(); }

@@ -50,6 +50,10 @@ class FrameRunner {
   /// `inputs` point at must stay until `finish`. Errors: those of `run`; then there is nothing to finish.
   Result<void> begin(Program& program, const std::map<std::string, HostImage>& inputs, KernelTiming timing,
                      const Choose& choose);
+  /// Begins to draw a pixel with each kernel of a program that frames will run: drivers of CPU devices compile a kernel
+  /// when something is first drawn with it (exec/cpu/warm_up.h), and need not do so in the first frame, which waits for
+  /// this. Makes the images of such frames. No frame may be in flight. Errors: io (over `max_memory`), device.
+  Result<void> warm_up(Program& program);
   /// Until the kernels of the frame that began have run: then its program may be used for another. Errors: device.
   Result<void> wait();
   /// The second half. Errors: device.

@@ -36,6 +36,16 @@ std::map<std::string, ImageId> inputs_of(const Graph& graph) {
   return out;
 }
 
+std::map<std::string, HostImage> usual_inputs(const Graph& graph) {
+  static const float kNothing = 0;
+  std::map<std::string, HostImage> out;
+  for (const auto& [name, id] : inputs_of(graph))
+    out[name] = {.pixels = &kNothing,
+                 .size = graph.images[id].size,
+                 .channels = known_channels(name).value_or(name == "source" ? 4 : 3)};
+  return out;
+}
+
 VkFormat input_format(const std::string& name, int channels, VkFormat storage) {
   if (name == "source") return storage;
   return known_channels(name).value_or(channels) == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;

@@ -18,6 +18,9 @@ Result<void> check_input(const Graph& graph, const std::string& name, ImageId id
 /// The images that a program reads, by the names of HostImages.
 std::map<std::string, ImageId> inputs_of(const Graph& graph);
 
+/// Those images as pictures usually have them, for who wants a program without a frame: their pixels must not be read.
+std::map<std::string, HostImage> usual_inputs(const Graph& graph);
+
 /// Everything but the source is stored as full floats, whatever the storage of the stack. Shaders that read an image as
 /// a storage image name its format: what a name tells (`known_channels`) counts more than the channels that are given.
 VkFormat input_format(const std::string& name, int channels, VkFormat storage);

@@ -93,7 +93,6 @@ void Program::record(VkCommandBuffer commands, VkQueryPool timestamps, const std
   const State& s = *state_;
   if (s.bindings == 0) return;
   const std::size_t count = s.plan.kernels.size();
-  if (s.begins_anew()) s.write_set(State::kFirst, [&](ImageId id) { return s.look_in_first_frame(id); });
   const auto stamp = [&](std::size_t query) {
     if (timestamps == VK_NULL_HANDLE) return;
     s.device.vk().vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, timestamps,
@@ -103,7 +102,7 @@ void Program::record(VkCommandBuffer commands, VkQueryPool timestamps, const std
     s.device.vk().vkCmdResetQueryPool(commands, timestamps, 0, static_cast<std::uint32_t>(count + 1));
   }
   stamp(0);
-  if (s.histories) s.record_initial(commands);
+  s.begin_recording(commands);
   if (std::ranges::find(run, false) != run.end())
     s.record_some(commands, run, stamp);
   else

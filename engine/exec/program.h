@@ -45,10 +45,6 @@ struct ProgramOptions {
   bool result_by_rows = false;  ///< the result that will be bound has targets by rows (`Program::result_rows`)
   /// Only this part of the result is made, in its pixels; what else the result holds is undefined. Empty: all of it.
   std::optional<Rect> region{};
-  /// Each kernel draws one pixel alone: for exec/cpu/warm_up.h. What images hold is undefined.
-  bool a_pixel_each = false;
-  /// With that: the last kernel first, where images between kernels are linear, as those of CPU devices are.
-  bool backwards = false;
   /// Images between kernels keep their pixels from run to run (they share no memory), so that `record` can run the
   /// kernels alone for which something has changed.
   bool keep_images = false;
@@ -143,6 +139,11 @@ class Program {
   /// what and as it was before. Needs `keep_images`, or that all that ran are recorded again, in their order. The
   /// caller's images as for `record`. `timestamps`: a pool with 2 queries, or null.
   void record_again(VkCommandBuffer commands, std::size_t kernel, VkQueryPool timestamps = VK_NULL_HANDLE) const;
+
+  /// Records one pixel of each kernel: drivers that compile when something is first drawn do so then. As `record` in
+  /// the rest, but what images hold is undefined behind it. `backwards`: the last kernel first, where images between
+  /// kernels are linear, as those of CPU devices are.
+  void record_a_pixel_each(VkCommandBuffer commands, bool backwards = false);
 
   const Plan& plan() const;
   const Graph& graph() const;

@@ -243,6 +243,12 @@ Result<ProgramCache::Choice> ProgramCache::for_content(const SourceContent& cont
   return Choice{choice.program, *choice.skipped};
 }
 
+Result<Program*> ProgramCache::usual(ShaderLibrary& shaders) {
+  if (!depends_on_content()) return program();
+  AFTERGLOW_TRY(const Choice choice, for_content({.opaque = true}, shaders));
+  return choice.program;
+}
+
 void ProgramCache::made() { state_->histories->made(); }
 void ProgramCache::reset_histories() { state_->histories->reset(); }
 

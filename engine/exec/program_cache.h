@@ -107,6 +107,10 @@ class ProgramCache {
   /// when it is first wanted, and kept. Errors: those of `find`.
   Result<Choice> for_content(const SourceContent& content, ShaderLibrary& shaders);
 
+  /// `for_content` of a source as most are, before a frame is there: opaque, and no effect is idle. Null when nothing
+  /// runs. Errors: those of `find`.
+  Result<Program*> usual(ShaderLibrary& shaders);
+
   /// The frame that began was recorded or has run.
   void made();
   /// What earlier frames handed on is forgotten: the next one has none before it.

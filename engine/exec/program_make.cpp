@@ -259,11 +259,6 @@ Result<void> Program::State::find_parts() {
   const auto whole = [this](ImageId id) {
     return Rect{0, 0, graph.images[id].size.width, graph.images[id].size.height};
   };
-  if (options.a_pixel_each) {
-    parts.kernels.assign(plan.kernels.size(), Rect{0, 0, 1, 1});
-    for (std::size_t i = 0; i < graph.images.size(); ++i) parts.images.push_back(whole(static_cast<ImageId>(i)));
-    return {};
-  }
   if (options.region) {
     const Rect &part = *options.region, all = whole(graph.result);
     if (part.width < 1 || part.height < 1 || part.x < 0 || part.y < 0 || part.x + part.width > all.width ||

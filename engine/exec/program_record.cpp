@@ -79,7 +79,9 @@ void Program::State::make_commands() {
 }
 
 /// Fills the previous images that have neither a frame before them nor a first image.
-void Program::State::record_initial(VkCommandBuffer commands) const {
+void Program::State::begin_recording(VkCommandBuffer commands) const {
+  if (begins_anew()) write_set(kFirst, [this](ImageId id) { return look_in_first_frame(id); });
+  if (!histories) return;
   for (const auto& history : graph.histories) {
     if (history.first != kNoImage || !lacks_previous(history)) continue;
     const VkImage image = histories->image(history.name, parity())->get();
@@ -93,24 +95,41 @@ void Program::State::record_initial(VkCommandBuffer commands) const {
   }
 }
 
-void Program::State::record_one(VkCommandBuffer commands, std::size_t kernel, KernelBarriers barriers) const {
+KernelCommands Program::State::commands_of(std::size_t kernel) const {
   KernelCommands one = kernels[static_cast<std::size_t>(parity())][kernel];
   if (begins_anew()) one.set = descriptors.set(set_index(kFirst, kernel));
+  return one;
+}
+
+void Program::State::record_one(VkCommandBuffer commands, std::size_t kernel, KernelBarriers barriers) const {
+  KernelCommands one = commands_of(kernel);
   one.barriers = std::move(barriers);
   record_kernel(device, commands, one, result);
 }
 
 void Program::State::record_all(VkCommandBuffer commands, const std::function<void(std::size_t)>& stamp) const {
   const auto& all = kernels[static_cast<std::size_t>(parity())];
-  const bool anew = begins_anew(), backwards = options.a_pixel_each && options.backwards && linear;
+  const bool anew = begins_anew();
   afterglow::record_barriers(device, commands, begin);
-  for (std::size_t turn = 0; turn < all.size(); ++turn) {
-    const std::size_t i = backwards ? all.size() - 1 - turn : turn;
+  for (std::size_t i = 0; i < all.size(); ++i) {
     if (anew)
       record_one(commands, i, all[i].barriers);
     else
       record_kernel(device, commands, all[i], result);
-    stamp(turn + 1);
+    stamp(i + 1);
+  }
+}
+
+void Program::record_a_pixel_each(VkCommandBuffer commands, bool backwards) {
+  State& s = *state_;
+  const std::size_t count = s.plan.kernels.size();
+  for (std::size_t i = 0; i < count; ++i) s.holds(i).reset();
+  s.begin_recording(commands);
+  afterglow::record_barriers(s.device, commands, s.begin);
+  for (std::size_t turn = 0; turn < count; ++turn) {
+    KernelCommands one = s.commands_of(backwards && s.linear ? count - 1 - turn : turn);
+    one.part = {0, 0, 1, 1};
+    record_kernel(s.device, commands, one, s.result);
   }
 }
 

@@ -130,7 +130,8 @@ struct Program::State {
   // program_record.cpp
   VkImage barrier_image(ImageId id, int parity) const;
   void make_commands();
-  void record_initial(VkCommandBuffer commands) const;
+  void begin_recording(VkCommandBuffer commands) const;
+  KernelCommands commands_of(std::size_t kernel) const;
   void record_one(VkCommandBuffer commands, std::size_t kernel, KernelBarriers barriers) const;
   void record_all(VkCommandBuffer commands, const std::function<void(std::size_t)>& stamp) const;
   void record_some(VkCommandBuffer commands, const std::vector<bool>& run,

@@ -54,7 +54,7 @@ int Renderer::in_flight() const { return static_cast<int>(state_->used); }
 Result<void> Renderer::wait() { return state_->wait(); }
 
 Result<void> Renderer::State::wait() {
-  for (std::size_t i = 0; i < used; ++i) AFTERGLOW_CHECK(slots[(oldest + i) % slots.size()].runner->wait());
+  for (std::size_t i = 0; i < slots.size(); ++i) AFTERGLOW_CHECK(slots[(oldest + i) % slots.size()].runner->wait());
   return {};
 }
 
@@ -118,6 +118,14 @@ void add_kept(FrameReport& report) {
 }
 
 }  // namespace
+
+Result<Program*> Renderer::warm_up(ProgramCache& programs, ShaderLibrary& shaders) {
+  State& s = *state_;
+  if (!s.device.is_cpu()) return nullptr;
+  AFTERGLOW_TRY(Program* const program, programs.usual(shaders));
+  if (program) AFTERGLOW_CHECK(s.next().runner->warm_up(*program));
+  return program;
+}
 
 Result<void> Renderer::submit(RenderRequest request) {
   State& s = *state_;

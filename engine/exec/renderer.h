@@ -56,6 +56,11 @@ class Renderer {
   int frames() const;     ///< that may be in flight
   int in_flight() const;  ///< submitted and not collected
 
+  /// On devices that compile late, begins to warm up what `programs` has prepared (FrameRunner::warm_up), as frames
+  /// usually need it, and does not wait. The program; null when there is nothing to run, or the device compiles early.
+  /// No frame may be in flight. Errors: those of `submit`.
+  Result<Program*> warm_up(ProgramCache& programs, ShaderLibrary& shaders);
+
   /// Makes the frame's program the present one of its cache, packs, uploads and submits. Needs `in_flight` below
   /// `frames`. Errors: script, other (an input is missing or of another size), io (over `max_memory`), device.
   Result<void> submit(RenderRequest request);

@@ -43,6 +43,8 @@ struct Session::State {
   SessionOptions options;
   std::string preset_file;
   // Destroyed in reverse: what was made on the device goes before the device.
+  std::future<OpenedDevice> opening;
+  std::optional<Error> failed;  ///< it did not open
   std::unique_ptr<Device> device;
   std::unique_ptr<Stack> stack;
   std::unique_ptr<Renderer> renderer;
@@ -64,7 +66,8 @@ struct Session::State {
   SessionTimes times;
   std::future<void> warming_up;  ///< first to go: it is waited for
 
-  void warm_up();
+  Result<void> use(OpenedDevice opened);
+  void warm_up(const Program& program);
   Result<void> submit(Picture& picture, FrameRequest request);
 };
 
@@ -76,26 +79,44 @@ Device& Session::device() { return *state_->device; }
 
 Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& preset, const SessionOptions& options,
                                                Diagnostics& diagnostics) {
-  auto opening = std::async(std::launch::async, [&] { return open_device(options.device, diagnostics); });
-  auto stack = Stack::load(preset, options.stack, diagnostics);
-  OpenedDevice opened = opening.get();
-  if (!stack) return std::move(stack).error();
-  if (!opened.device) return std::move(opened.device).error();
+  AFTERGLOW_TRY(auto session, begin(preset, options, diagnostics));
+  AFTERGLOW_CHECK(session->ready());
+  return session;
+}
 
+Result<std::unique_ptr<Session>> Session::begin(const std::filesystem::path& preset, const SessionOptions& options,
+                                                Diagnostics& diagnostics) {
   auto state = std::make_unique<State>();
   state->options = options;
   state->preset_file = preset.string();
-  state->device = std::move(opened.device).value();
-  state->stack = std::move(stack).value();
-  state->stack->use(*state->device, true);
-  // Timestamps around deferred draws mean nothing: there, each kernel is timed in a submission of its own.
-  if (options.timing == KernelTiming::timestamps && !state->device->timestamps_mean_draws())
-    state->options.timing = KernelTiming::submissions;
-  state->times.device = opened.milliseconds;
-  AFTERGLOW_TRY(state->renderer, Renderer::create(*state->device, {.max_memory = options.stack.max_memory,
-                                                                   .direct = options.direct,
-                                                                   .frames = options.frames}));
+  state->opening = std::async(std::launch::async,
+                              [device = options.device, &diagnostics] { return open_device(device, diagnostics); });
+  AFTERGLOW_TRY(state->stack, Stack::load(preset, options.stack, diagnostics));
   return std::unique_ptr<Session>(new Session(std::move(state)));
+}
+
+Result<void> Session::ready() {
+  State& s = *state_;
+  if (s.opening.valid()) {
+    auto done = s.use(s.opening.get());
+    if (!done) s.failed = std::move(done).error();
+  }
+  if (s.failed) return *s.failed;
+  return {};
+}
+
+Result<void> Session::State::use(OpenedDevice opened) {
+  if (!opened.device) return std::move(opened.device).error();
+  device = std::move(opened.device).value();
+  times.device = opened.milliseconds;
+  stack->use(*device, true);
+  // Timestamps around deferred draws mean nothing: there, each kernel is timed in a submission of its own.
+  if (options.timing == KernelTiming::timestamps && !device->timestamps_mean_draws())
+    options.timing = KernelTiming::submissions;
+  AFTERGLOW_TRY(renderer, Renderer::create(*device, {.max_memory = options.stack.max_memory,
+                                                     .direct = options.direct,
+                                                     .frames = options.frames}));
+  return {};
 }
 
 int Session::frames() const { return state_->renderer->frames(); }
@@ -108,20 +129,21 @@ Result<void> Session::prepare(FrameRequest frame) {
   const int before = compiler.counters().compiled;
   AFTERGLOW_CHECK(state_->stack->prepare(std::move(frame)));
   state_->skipped = state_->stack->skipped();
-  if (compiler.counters().compiled - before >= kWorthIt) state_->warm_up();
+  // What goes wrong there goes wrong again in the frame.
+  const auto usual = state_->renderer->warm_up(*state_->stack->programs(), state_->stack->shaders());
+  if (usual && *usual && compiler.counters().compiled - before >= kWorthIt) state_->warm_up(**usual);
   return {};
 }
 
-/// Kernels that were compiled here are new to the driver too: in the first frame it compiles them one after the other,
-/// on one thread. Another one begins at their other end meanwhile. What goes wrong there goes wrong again in the frame.
-void Session::State::warm_up() {
+/// Kernels that were compiled here are new to the driver too: it compiles them one after the other, on one thread.
+/// Another one begins at their other end meanwhile.
+void Session::State::warm_up(const Program& program) {
   const ProgramCache& programs = *stack->programs();
-  if (warming_up.valid() || options.stack.reference || !programs.program() || !WarmUp::helps(*device)) return;
+  if (warming_up.valid() || options.stack.reference || !WarmUp::helps(*device)) return;
   ProgramOptions wanted = programs.program_options();
-  wanted.backwards = true;
   warming_up =
       std::async(std::launch::async, [&device = *device, kernels = programs.kernels(), path = stack->shaders().path(),
-                                      graph = programs.program()->graph(), wanted = std::move(wanted)] {
+                                      graph = program.graph(), wanted = std::move(wanted)] {
         auto other = WarmUp::create(device);
         if (!other) return;
         ShaderLibrary shaders(path);  // that of the stack is looked for elsewhere as scripts say

@@ -56,6 +56,12 @@ class Session {
   /// Loads the preset while the device opens. Errors: script, device, usage (unknown override).
   static Result<std::unique_ptr<Session>> open(const std::filesystem::path& preset, const SessionOptions& options,
                                                Diagnostics& diagnostics);
+  /// Does not wait for the device: until `ready` has, only `preset` and `evaluate` may be used, and of `stack` what needs
+  /// no device. `diagnostics` must stay until then. Errors: script, usage.
+  static Result<std::unique_ptr<Session>> begin(const std::filesystem::path& preset, const SessionOptions& options,
+                                                Diagnostics& diagnostics);
+  /// Waits for the device, the first time. Errors: device.
+  Result<void> ready();
   ~Session();
 
   Stack& stack();

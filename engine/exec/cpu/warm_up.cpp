@@ -25,17 +25,6 @@ bool cache_is_off() {
   return false;
 }
 
-/// Inputs as pictures usually have them; their pixels are never looked at.
-std::map<std::string, HostImage> inputs_for(const Graph& graph) {
-  static const float kNothing = 0;
-  std::map<std::string, HostImage> out;
-  for (const auto& [name, id] : inputs_of(graph))
-    out[name] = {.pixels = &kNothing,
-                 .size = graph.images[id].size,
-                 .channels = known_channels(name).value_or(name == "source" ? 4 : 3)};
-  return out;
-}
-
 }  // namespace
 
 struct WarmUp::State {
@@ -68,7 +57,6 @@ Result<std::unique_ptr<WarmUp>> WarmUp::create(const Device& device, bool valida
 Result<void> WarmUp::draw(ShaderLibrary& shaders, KernelCompiler& compiler, const Graph& graph,
                           ProgramOptions options) {
   State& s = *state_;
-  options.a_pixel_each = true;
   options.region.reset();
   options.keep_images = false;
   options.pipelines = &s.pipelines;
@@ -76,7 +64,7 @@ Result<void> WarmUp::draw(ShaderLibrary& shaders, KernelCompiler& compiler, cons
   options.histories = nullptr;
   AFTERGLOW_TRY(auto program, Program::create(*s.device, shaders, compiler, graph, options));
   if (program->plan().kernels.empty()) return {};
-  AFTERGLOW_TRY(const auto wanted, FrameInputs::wanted_by(*program, inputs_for(graph)));
+  AFTERGLOW_TRY(const auto wanted, FrameInputs::wanted_by(*program, usual_inputs(graph)));
   AFTERGLOW_CHECK(s.submitter.wait());
   AFTERGLOW_CHECK(s.inputs.prepare(wanted));
   AFTERGLOW_CHECK(s.result.take(FrameResult::wanted_by(*program), program->result_rows()));
@@ -85,7 +73,7 @@ Result<void> WarmUp::draw(ShaderLibrary& shaders, KernelCompiler& compiler, cons
   AFTERGLOW_CHECK(s.submitter.submit([&](VkCommandBuffer commands) {
     s.inputs.before(*program, commands);
     s.result.before(commands);
-    program->record(commands);
+    program->record_a_pixel_each(commands, true);
     s.inputs.after(commands);
     s.result.after(commands);
   }));

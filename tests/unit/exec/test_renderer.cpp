@@ -265,6 +265,72 @@ TEST_F(RendererTest, SteadyFramesMakeNothingNew) {
   EXPECT_EQ(programs->programs(), 1);
 }
 
+/// A look at the surroundings, two kernels of which the first keeps its image; what an earlier frame handed on.
+Graph surroundings(double gain) {
+  GraphBuilder builder(kSize);
+  const ImageId half = builder.sample("half", "test/half", {(kSize.width + 1) / 2, (kSize.height + 1) / 2},
+                                      {{"image", builder.source()}});
+  return builder.finish(builder.sample("sum", "test/sum", kSize, {{"image", builder.source()}, {"small", half}},
+                                       {{"gain", number(gain)}}));
+}
+
+/// Drawn before the first frame or between frames, over images that are kept or not, in one's own memory or over
+/// staging: the frames are as without.
+TEST_F(RendererTest, WarmingUpChangesNoFrame) {
+  shader("test/half",
+         "uniform sampler2D image;\nvec4 sample_at(ivec2 pixel) { return fetch(image, 2 * pixel) * 0.5; }\n");
+  shader("test/sum",
+         "uniform sampler2D image;\nuniform sampler2D small;\nuniform float gain;\n"
+         "vec4 sample_at(ivec2 pixel) { return fetch(image, pixel) + gain * fetch(small, pixel / 2); }\n");
+  const std::vector<float> pictures[] = {noise(kSize, 1), noise(kSize, 2)};
+  for (const bool keep : {false, true})
+    for (const int frames : {0, 1, 2}) {  // 0: direct
+      const auto plain = cache({.keep_images = keep}), warmed = cache({.keep_images = keep});
+      const auto ours = renderer(std::max(frames, 1), frames == 0), theirs = renderer(1);
+      for (int i = 0; i < 6; ++i) {
+        RenderRequest one = request(*warmed, surroundings(i / 2), pictures[i % 2]);
+        RenderRequest other = request(*plain, surroundings(i / 2), pictures[i % 2]);
+        one.inputs["source"].content = other.inputs["source"].content = Hash{1, static_cast<std::uint64_t>(i % 2)};
+        if (i % 3 == 0) {
+          ASSERT_TRUE(warmed->prepare(one.work, *library_));
+          const auto program = ours->warm_up(*warmed, *library_);
+          ASSERT_TRUE(program) << program.error().text();
+          EXPECT_EQ(*program, device().is_cpu() ? warmed->program() : nullptr);
+        }
+        HostResult got, wanted;
+        const auto ran = ours->render(std::move(one), got);
+        ASSERT_TRUE(ran) << ran.error().text();
+        ASSERT_TRUE(theirs->render(std::move(other), wanted));
+        EXPECT_EQ(got.pixels, wanted.pixels) << "frame " << i << ", kept: " << keep << ", " << frames;
+      }
+    }
+}
+
+/// The program for opaque pictures is there before the first of them is.
+TEST_F(RendererTest, OpaquePicturesAreWarmedUpFor) {
+  const auto programs = cache();
+  const auto ring = renderer(1, true);
+  Graph straight = graph(2);
+  straight.passes.front().straight = true;
+  std::vector<float> pixels = noise(kSize, 1);
+  for (std::size_t i = 3; i < pixels.size(); i += 4) pixels[i] = 1;
+  RenderRequest one = request(*programs, straight, pixels);
+  ASSERT_TRUE(programs->prepare(one.work, *library_));
+  EXPECT_EQ(programs->programs(), 1);
+  const auto usual = ring->warm_up(*programs, *library_);
+  ASSERT_TRUE(usual) << usual.error().text();
+  if (!device().is_cpu()) return;
+  ASSERT_NE(*usual, nullptr);
+  EXPECT_NE(*usual, programs->program());
+  EXPECT_EQ(programs->programs(), 2);
+  HostResult out;
+  const auto ran = ring->render(std::move(one), out);
+  ASSERT_TRUE(ran) << ran.error().text();
+  EXPECT_EQ(ran->program, (*usual)->id());
+  EXPECT_EQ(programs->programs(), 2);
+  EXPECT_FLOAT_EQ(out.pixels[0], 2 * pixels[0]);
+}
+
 /// The same picture and values again and again: no frame is the result of another slot's.
 TEST_F(RendererTest, ASlotsOldResultIsNotTakenForTheNewOne) {
   const auto programs = cache({.keep_images = true});
