@@ -165,6 +165,31 @@ const ImDrawData& Interface::end() {
   return *ImGui::GetDrawData();
 }
 
+void Interface::navigate(const char* name) {
+  ImGuiIO& io = ImGui::GetIO();
+  ImGuiContext& context = *ImGui::GetCurrentContext();
+  ImGuiWindow* window = *name ? ImGui::FindWindowByName(name) : nullptr;
+  ImGui::FocusWindow(window);
+  if (!window) {
+    io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+    context.NavId = 0;
+    return;
+  }
+  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  ImGui::NavInitWindow(window, true);
+#if IMGUI_VERSION_NUM >= 19140
+  context.NavCursorVisible = context.NavHighlightItemUnderNav = true;
+#else
+  context.NavDisableHighlight = false;
+  context.NavDisableMouseHover = true;
+#endif
+}
+
+bool Interface::holds_something() const {
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  return context.ActiveId != 0 || !context.OpenPopupStack.empty();
+}
+
 bool Interface::wants_keyboard() const {
   // Both stay for a frame behind a field that was left.
   const ImGuiContext& context = *ImGui::GetCurrentContext();

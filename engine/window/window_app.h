@@ -38,6 +38,11 @@ class WindowApp {
   void quit_when_saved();
   void input_seen();
   void await_field();
+  void go_to_next_pane();
+  void go_to_pane(Pane pane);
+  void follow_pane();
+  void mark_pane(Pane pane, ImVec2 at, ImVec2 size) const;
+  const char* window_of(Pane pane) const;
   void open_dropped(const std::filesystem::path& path);
   void open_other(const std::filesystem::path& path);
   void browse_presets();
@@ -72,6 +77,7 @@ class WindowApp {
   void recall_snapshot(int snapshot);
   void edit_file(const std::string& file, int line);
   void edit_next_place();
+  void print_keys();
   void draw_frame_field();
   void compare_by(CompareBy by);
   Size picture_window() const;  ///< what one picture has of `area_`
@@ -92,6 +98,7 @@ class WindowApp {
 
   InputQueue input_;
   std::vector<std::filesystem::path> to_open_, others_to_open_;
+  bool pane_due_ = false;  ///< the keyboard goes to another part with the next frame
   int field_awaited_ = 0;  ///< frames that a field has to get the keyboard; what is typed waits for it
 
   static constexpr int kSettle = 3;  ///< ImGui needs a frame to see an event and one to answer it
