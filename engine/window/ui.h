@@ -98,7 +98,7 @@ bool double_clicked();
 
 /// The colours of the interface.
 namespace ui_color {
-inline constexpr ImU32 kText = IM_COL32(222, 224, 228, 255), kDim = IM_COL32(150, 154, 162, 255),
+inline constexpr ImU32 kText = IM_COL32(222, 224, 228, 255), kDim = IM_COL32(153, 157, 165, 255),
                        kAccent = IM_COL32(255, 158, 60, 255), kError = IM_COL32(255, 107, 97, 255),
                        kWarning = IM_COL32(240, 196, 84, 255), kGood = IM_COL32(120, 200, 130, 255),
                        kOverlay = IM_COL32(16, 17, 19, 238), kLine = IM_COL32(58, 61, 67, 255);

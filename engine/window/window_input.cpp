@@ -102,10 +102,9 @@ const char* WindowApp::window_of(Pane pane) const {
   return "";
 }
 
-/// Within a frame, behind its parts. One that went away has no keyboard.
+/// Within a frame, before its parts. One that went away has no keyboard.
 void WindowApp::follow_pane() {
   Ui& ui = interface_->ui();
-  ui.item_menu = false;
   if (ui.pane != Pane::picture && window_of(ui.pane)[0] == '\0') go_to_pane(Pane::picture);
   if (std::exchange(pane_due_, false)) {
     interface_->navigate(window_of(ui.pane));
