@@ -48,6 +48,16 @@ ImFont* add_font(const char* name, float size) {
   return atlas.AddFontDefault(&config);
 }
 
+/// In Dear ImGui 1.86 Enter opens fields and does no more; in later ones, which have no such member, it presses buttons
+/// too.
+template <typename Context>
+void press_by_enter(Context& context) {
+  if constexpr (requires { context.NavActivateInputId; }) {
+    if (context.NavActivateInputId != 0)
+      context.NavActivateId = context.NavActivateDownId = context.NavActivatePressedId = context.NavActivateInputId;
+  }
+}
+
 }  // namespace
 
 Interface::Interface(GLFWwindow* window) : pointer_(kElsewhere) {
@@ -158,6 +168,7 @@ void Interface::begin(Size size, float seconds) {
     io.Fonts->SetTexID(nullptr);
   }
   ImGui::NewFrame();
+  press_by_enter(*ImGui::GetCurrentContext());
 }
 
 const ImDrawData& Interface::end() {

@@ -31,6 +31,7 @@ class WindowApp {
   Result<Step> step();
   Result<void> draw();
   void wait(const Step& step);
+  void tidy();
   void take_events();
   void deliver_input();
   void ask_to_quit();
@@ -111,6 +112,7 @@ class WindowApp {
   int proxy_ = 2;    ///< that Shift+P takes
   int redraw_ = 3;   ///< frames to draw though nothing new is there: interfaces settle in a few
   double last_draw_ = -1;
+  std::uint64_t tidied_ = 0;  ///< swapchains that were made when memory was given back last
   enum class Quitting { no, asked, saving } quitting_ = Quitting::no;
   bool quit_ = false, minimised_ = false, resume_ = false;
   bool step_shown_ = true;  ///< the last changed turn was presented

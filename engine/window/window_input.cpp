@@ -59,6 +59,8 @@ void WindowApp::deliver_input() {
     // An action is all that its key does: Tab would choose a field too, which takes the keys that follow. Esc closes
     // what ImGui opened.
     if (!action || *action == Action::escape) interface_->feed(*event);
+    // Enter opens a field where the chosen item has one.
+    if (key && away && !typing && (event->code == GLFW_KEY_ENTER || event->code == GLFW_KEY_KP_ENTER)) await_field();
   }
   if (field_awaited_ || !input_.empty()) redraw_ = std::max(redraw_, 1);
 }
