@@ -371,6 +371,11 @@ Result<void> Swapchain::lose_surface() {
   return make_surface();
 }
 
+std::optional<Size> Swapchain::shown(Size window) const {
+  if (!chain_ || stale_ || made_for_ != window || counters_.presented == 0) return std::nullopt;
+  return chain_->size;
+}
+
 Swapchain::Counters Swapchain::counters() const { return counters_; }
 
 }  // namespace afterglow

@@ -61,6 +61,9 @@ class Swapchain {
 
   VkFormat format() const { return format_.format; }  ///< the same for the life of the Swapchain
   bool readable() const { return readable_; }         ///< images may be copied from
+  /// The size of the last frame, as long as a window of that size shows it: none while the next frame would have to be
+  /// drawn whatever it shows.
+  std::optional<Size> shown(Size window) const;
   /// Blocks until all frames drawn so far are done. Not for steady frames. Errors: device.
   Result<void> finish();
   /// Destroys what is no longer needed by frames in flight when they are done: for objects that drawers replace.

@@ -119,8 +119,9 @@ void DesktopWindow::listen() {
   glfwSetWindowCloseCallback(window_, &on_close);
   // What these say is asked for when a frame is drawn; that there was something is enough.
   glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { self(w).events_.any = true; });
-  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { self(w).events_.any = true; });
-  glfwSetWindowIconifyCallback(window_, [](GLFWwindow* w, int) { self(w).events_.any = true; });
+  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { self(w).events_.any = self(w).events_.exposed = true; });
+  glfwSetWindowIconifyCallback(window_,
+                               [](GLFWwindow* w, int) { self(w).events_.any = self(w).events_.exposed = true; });
   glfwSetWindowContentScaleCallback(window_, [](GLFWwindow* w, float, float) { self(w).events_.any = true; });
   glfwSetWindowFocusCallback(window_, &on_focus);
   glfwSetCursorPosCallback(window_, &on_move);

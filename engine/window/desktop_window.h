@@ -19,8 +19,9 @@ namespace afterglow {
 
 /// What has happened since the events were taken last.
 struct WindowEvents {
-  bool any = false;    ///< anything at all: something may look different
-  bool close = false;  ///< the desktop asks the window to close
+  bool any = false;      ///< anything at all: something may look different
+  bool exposed = false;  ///< what the window showed may be lost
+  bool close = false;    ///< the desktop asks the window to close
   std::vector<InputEvent> input;
   std::vector<std::filesystem::path> dropped;
 };

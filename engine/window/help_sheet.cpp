@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <string_view>
 
 #include "window/shortcuts.h"
 
@@ -33,6 +34,17 @@ void draw_group(const Ui& ui, const char* group) {
   }
   ImGui::EndTable();
   ImGui::Spacing();
+}
+
+std::string html_text(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<' || c == '>' || c == '&')
+      out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : "&amp;";
+    else
+      out += c;
+  }
+  return out;
 }
 
 }  // namespace
@@ -69,6 +81,33 @@ HelpLayout help_layout(const std::vector<HelpGroup>& groups, int columns) {
   };
   part(part, 0, 0);
   return best;
+}
+
+std::string keys_page() {
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>Keys of afterglow play</title>\n<style>\n"
+      "@page { size: A4; margin: 12mm }\n"
+      "body { font: 8.5pt/1.3 \"DejaVu Sans\", sans-serif; columns: 2; column-gap: 8mm; color: #000; background: #fff "
+      "}\n"
+      "h1 { font-size: 13pt; margin: 0 0 2mm; column-span: all }\n"
+      "h2 { font-size: 10pt; margin: 2mm 0 1mm; break-after: avoid }\n"
+      "table { border-collapse: collapse; width: 100% }\n"
+      "tr { break-inside: avoid; border-bottom: 0.2mm solid #ccc }\n"
+      "td { padding: 0.3mm 1mm; vertical-align: top }\n"
+      "td:first-child { font-family: \"DejaVu Sans Mono\", monospace; white-space: nowrap; width: 1% }\n"
+      "</style>\n<h1>Keys of afterglow play</h1>\n";
+  const char* group = "";
+  const Shortcut* last = nullptr;
+  for (const Shortcut& shortcut : shortcuts()) {
+    if (std::strcmp(shortcut.group, group) != 0) {
+      out += (*group ? "</table>\n<h2>" : "<h2>") + html_text(shortcut.group) + "</h2>\n<table>\n";
+      group = shortcut.group;
+    }
+    if (!last || last->action != shortcut.action)
+      out += "<tr><td>" + html_text(keys_of(shortcut.action)) + "</td><td>" + html_text(shortcut.doc) + "</td></tr>\n";
+    last = &shortcut;
+  }
+  return out + "</table>\n</html>\n";
 }
 
 void draw_help_sheet(Ui& ui, ImVec2 area) {

@@ -2,6 +2,7 @@
 // Every key and what it does, from the list that the keys themselves go by.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "window/ui.h"
@@ -20,6 +21,9 @@ struct HelpLayout {
   int height = 0;           ///< of the longest column, in lines
 };
 HelpLayout help_layout(const std::vector<HelpGroup>& groups, int columns);
+
+/// The same as a page of HTML that fits on two sheets of A4.
+std::string keys_page();
 
 /// Over everything else, in the middle of an area of this size; draws nothing unless `ui.show_help`.
 void draw_help_sheet(Ui& ui, ImVec2 area);

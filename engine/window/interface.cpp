@@ -48,6 +48,16 @@ ImFont* add_font(const char* name, float size) {
   return atlas.AddFontDefault(&config);
 }
 
+/// In Dear ImGui 1.86 Enter opens fields and does no more; in later ones, which have no such member, it presses buttons
+/// too.
+template <typename Context>
+void press_by_enter(Context& context) {
+  if constexpr (requires { context.NavActivateInputId; }) {
+    if (context.NavActivateInputId != 0)
+      context.NavActivateId = context.NavActivateDownId = context.NavActivatePressedId = context.NavActivateInputId;
+  }
+}
+
 }  // namespace
 
 Interface::Interface(GLFWwindow* window) : pointer_(kElsewhere) {
@@ -158,11 +168,37 @@ void Interface::begin(Size size, float seconds) {
     io.Fonts->SetTexID(nullptr);
   }
   ImGui::NewFrame();
+  press_by_enter(*ImGui::GetCurrentContext());
 }
 
 const ImDrawData& Interface::end() {
   ImGui::Render();
   return *ImGui::GetDrawData();
+}
+
+void Interface::navigate(const char* name) {
+  ImGuiIO& io = ImGui::GetIO();
+  ImGuiContext& context = *ImGui::GetCurrentContext();
+  ImGuiWindow* window = *name ? ImGui::FindWindowByName(name) : nullptr;
+  ImGui::FocusWindow(window);
+  if (!window) {
+    io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+    context.NavId = 0;
+    return;
+  }
+  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  ImGui::NavInitWindow(window, true);
+#if IMGUI_VERSION_NUM >= 19140
+  context.NavCursorVisible = context.NavHighlightItemUnderNav = true;
+#else
+  context.NavDisableHighlight = false;
+  context.NavDisableMouseHover = true;
+#endif
+}
+
+bool Interface::holds_something() const {
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  return context.ActiveId != 0 || !context.OpenPopupStack.empty();
 }
 
 bool Interface::wants_keyboard() const {

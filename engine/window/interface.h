@@ -37,6 +37,10 @@ class Interface {
   void feed(const InputEvent& event);
 
   Ui& ui() { return ui_; }
+  /// Keys choose and change items of the window of that name (arrows, Space, Enter); empty: no longer.
+  void navigate(const char* window);
+  /// Something is held, typed or open that Escape ends first.
+  bool holds_something() const;
   bool wants_keyboard() const;  ///< a text is being typed, or is from the next frame on: keys are no shortcuts
   int press_mods() const { return pressed_.mods; }  ///< GLFW_MOD_… of the last press of a button
   bool wants_mouse() const;                         ///< the pointer is on the interface, or holds a part of it

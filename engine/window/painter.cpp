@@ -55,8 +55,9 @@ Result<void> Painter::take_display(const DisplayTable& table) {
 }
 
 /// What the frame shows, in `tiles_`.
-void Painter::look(const PresentTarget& target, std::span<const ViewFrame> views, const ImDrawData& interface,
+void Painter::look(Size size, std::span<const ViewFrame> views, const ImDrawData& interface,
                    std::span<const Rect> written) {
+  looked_ = size;
   std::vector<ViewFrame> now(views.begin(), views.end());
   for (ViewFrame& frame : now) {
     frame.content = 0;
@@ -72,7 +73,7 @@ void Painter::look(const PresentTarget& target, std::span<const ViewFrame> views
     ++look_;
     views_ = std::move(now);
   }
-  tiles_.begin(target.size, glyphs_);
+  tiles_.begin(size, glyphs_);
   for (const ViewFrame& frame : views) {
     const auto handle = [](VkImageView view) { return reinterpret_cast<std::uint64_t>(view); };
     tiles_.add(frame.area, look_);
@@ -85,7 +86,7 @@ void Painter::look(const PresentTarget& target, std::span<const ViewFrame> views
 
 Result<void> Painter::record(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
                              const ImDrawData& interface, std::span<const Rect> written) {
-  look(target, views, interface, written);
+  if (looked_ != target.size) look(target.size, views, interface, written);
   if (shown_.size() <= target.index) shown_.resize(target.index + 1);
   std::vector<std::uint64_t>& shown = shown_[target.index];
   if (!target.kept || !keeps_) shown.clear();
@@ -140,6 +141,12 @@ Result<Swapchain::Drawn> Painter::paint(Size window, std::span<const ViewFrame> 
   Buffer pixels;
   Size size;
   bool checked = false;
+  looked_ = {};
+  if (const auto now = swapchain_->shown(window); now && !on_screen_.empty() && written.empty() && !capture) {
+    look(*now, views, interface, written);
+    if (tiles_.numbers() == on_screen_) return Swapchain::Drawn::yes;
+  }
+  on_screen_.clear();
   AFTERGLOW_TRY(const auto drawn, swapchain_->draw(window, [&](VkCommandBuffer commands, const PresentTarget& target) {
     recorded = record(commands, target, views, interface, written);
     checked = recorded && check_ && target.kept && keeps_ && swapchain_->readable();
@@ -160,6 +167,7 @@ Result<Swapchain::Drawn> Painter::paint(Size window, std::span<const ViewFrame> 
     AFTERGLOW_CHECK(swapchain_->finish());
     AFTERGLOW_CHECK(check_->compare());
   }
+  if (drawn == Swapchain::Drawn::yes) on_screen_ = tiles_.numbers();
   if (size.area() > 0) AFTERGLOW_CHECK(write_capture(pixels, size));
   return drawn;
 }

@@ -32,8 +32,11 @@ class Painter {
   /// Devices on the CPU leave alone what an image of the window shows already; the pixels are the same.
   /// Images of `view` must be readable by fragment shaders in what is submitted from here on. Errors: device.
   /// `written`: parts of the interface's atlas that have changed.
+  /// A frame that looks as the last one is neither drawn nor presented; the answer is `yes` all the same.
   Result<Swapchain::Drawn> paint(Size window, std::span<const ViewFrame> views, const ImDrawData& interface,
                                  std::span<const Rect> written = {});
+  /// What the window shows was lost (another one lay over it): the next frame is presented whatever it shows.
+  void expose() { on_screen_.clear(); }
   /// The next frame that is painted goes to this file too (PNG, or what else the writer knows).
   void capture(const std::filesystem::path& file) { capture_ = file; }
 
@@ -43,8 +46,7 @@ class Painter {
   explicit Painter(Device& device) : device_(device), keeps_(device.is_cpu()) {}
   Result<void> record(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
                       const ImDrawData& interface, std::span<const Rect> written);
-  void look(const PresentTarget& target, std::span<const ViewFrame> views, const ImDrawData& interface,
-            std::span<const Rect> written);
+  void look(Size size, std::span<const ViewFrame> views, const ImDrawData& interface, std::span<const Rect> written);
   Result<void> record_parts(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
                             const ImDrawData& interface, std::span<const Rect> only);
   Result<void> record_check(VkCommandBuffer commands, const PresentTarget& target, std::span<const ViewFrame> views,
@@ -57,7 +59,9 @@ class Painter {
   std::filesystem::path capture_;
   const bool keeps_;   ///< drivers on the CPU: there a pixel costs more than finding out that it need not be drawn
   WindowTiles tiles_;  ///< of the frame that is painted
+  Size looked_;        ///< size of the frame that `tiles_` are of; empty: of none yet
   std::vector<std::vector<std::uint64_t>> shown_;  ///< what each image of the window has
+  std::vector<std::uint64_t> on_screen_;           ///< what the last frame has; empty: not known
   std::vector<ViewFrame> views_;                   ///< of the frame before, without what changes with each picture
   std::uint64_t look_ = 0;                         ///< another number when `views_` are others
   std::uint64_t glyphs_ = 0;                       ///< another number when all that the window shows may look different

@@ -73,8 +73,11 @@ void Panel::draw_entry(Ui& ui, PanelPort& port, std::size_t index) {
   const std::string* skipped = reason_of(port.skipped(), entry.name);
   if (search_[0] != '\0') ImGui::SetNextItemOpen(true);
   if (draw_entry_head(ui, port, entry, skipped)) {
-    if (skipped) ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kDim);
-    if (skipped) ImGui::TextWrapped("skipped: %s", skipped->c_str());
+    if (skipped) {
+      ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kDim);
+      ImGui::TextWrapped("skipped: %s", skipped->c_str());
+      ImGui::PopStyleColor();
+    }
     for (std::size_t i = 0; i < schema.settings.size() && i < entry.settings.size(); ++i)
       if (shows(schema.settings[i]))
         draw_row(ui, port, bases_, row_of(entry, history.settings[i], schema.settings[i], entry.settings[i].second));
@@ -82,7 +85,6 @@ void Panel::draw_entry(Ui& ui, PanelPort& port, std::size_t index) {
       if (const auto of = matches(setting) ? preset.setting_schema(entry, setting.name) : std::nullopt)
         draw_row(ui, port, bases_, row_of(entry, setting, *of, setting.value));
     if (entry.mask && (whole || found("mask"))) ImGui::TextDisabled("mask: %s", entry.mask->text().c_str());
-    if (skipped) ImGui::PopStyleColor();
     ImGui::Spacing();
   }
   ImGui::PopID();

@@ -90,6 +90,7 @@ void draw_row(Ui& ui, PanelPort& port, EditBases& bases, const PanelRow& row) {
   if (ui.typed.take_back()) port.undo();
   if (changed) port.set(row.entry, row.name, *changed);
   if (ImGui::IsItemDeactivated()) port.end_gesture();
+  if (ui.item_menu && ImGui::IsItemFocused()) ImGui::OpenPopup("more");
   if (ImGui::BeginPopupContextItem("more")) {
     if (ImGui::MenuItem("As in the file", nullptr, false, edit.has_value())) port.reset(row.entry, row.name);
     if (ImGui::MenuItem("Default", nullptr, false, !(value == schema.default_value)))

@@ -41,6 +41,13 @@ struct Frame {
   float y(double part) const { return to.y - static_cast<float>(part) * (to.y - from.y); }
 };
 
+/// On a plate: what a scope shows may be as bright as they are.
+void draw_letters(ImDrawList& list, ImVec2 at, const char* text) {
+  const ImVec2 size = ImGui::CalcTextSize(text);
+  list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, IM_COL32(13, 14, 16, 180));
+  list.AddText(at, ui_color::kText, text);
+}
+
 float label_width(const Ui& ui) { return ui.px(30); }
 
 void draw_levels(ImDrawList& list, const Ui& ui, const Frame& frame, ScopeScale scale, bool across) {
@@ -88,7 +95,7 @@ void draw_targets(ImDrawList& list, const Ui& ui, const Frame& frame) {
     const ImVec2 p{frame.x(at[0] + 0.5), frame.y(at[1] + 0.5)};
     const float half = ui.px(5);
     list.AddRect({p.x - half, p.y - half}, {p.x + half, p.y + half}, kTarget);
-    list.AddText({p.x + half + ui.px(2), p.y - half}, kTarget, target.name);
+    draw_letters(list, {p.x + half + ui.px(2), p.y - half}, target.name);
   }
 }
 
@@ -114,7 +121,7 @@ void draw_scope(const Ui& ui, const View& view, ScopeKind kind, ImVec2 size) {
   }
   if (kind == ScopeKind::parade) {
     for (int c = 0; c < 3; ++c)
-      list.AddText({frame.x(c / 3.0) + ui.px(3), frame.from.y + ui.px(1)}, kTarget, c == 0 ? "R" : c == 1 ? "G" : "B");
+      draw_letters(list, {frame.x(c / 3.0) + ui.px(3), frame.from.y + ui.px(1)}, c == 0 ? "R" : c == 1 ? "G" : "B");
   }
   list.AddRect(frame.from, frame.to, ui_color::kLine);
 }

@@ -39,7 +39,7 @@ void apply_theme(float scale) {
 
   ImVec4* c = style.Colors;
   c[ImGuiCol_Text] = {0.87f, 0.875f, 0.885f, 1};
-  c[ImGuiCol_TextDisabled] = {0.59f, 0.60f, 0.635f, 1};
+  c[ImGuiCol_TextDisabled] = {0.60f, 0.615f, 0.645f, 1};
   c[ImGuiCol_WindowBg] = gray(30);
   c[ImGuiCol_ChildBg] = gray(30, 0);
   c[ImGuiCol_PopupBg] = gray(36, 0.98f);
@@ -55,14 +55,14 @@ void apply_theme(float scale) {
   c[ImGuiCol_ScrollbarGrabHovered] = gray(84);
   c[ImGuiCol_ScrollbarGrabActive] = gray(100);
   c[ImGuiCol_CheckMark] = accent(1);
-  c[ImGuiCol_SliderGrab] = accent(0.85f);
-  c[ImGuiCol_SliderGrabActive] = accent(1);
+  // Values are written over them.
+  c[ImGuiCol_SliderGrab] = c[ImGuiCol_SliderGrabActive] = accent(0.54f);
   c[ImGuiCol_Button] = gray(52);
   c[ImGuiCol_ButtonHovered] = gray(66);
   c[ImGuiCol_ButtonActive] = gray(78);
-  c[ImGuiCol_Header] = gray(44);
-  c[ImGuiCol_HeaderHovered] = gray(54);
-  c[ImGuiCol_HeaderActive] = gray(62);
+  c[ImGuiCol_Header] = gray(42);
+  c[ImGuiCol_HeaderHovered] = gray(47);
+  c[ImGuiCol_HeaderActive] = gray(50);
   c[ImGuiCol_Separator] = gray(48);
   c[ImGuiCol_SeparatorHovered] = gray(80);
   c[ImGuiCol_SeparatorActive] = accent(0.8f);
@@ -70,7 +70,8 @@ void apply_theme(float scale) {
   c[ImGuiCol_Tab] = gray(38);
   c[ImGuiCol_TabHovered] = gray(60);
   c[ImGuiCol_TabActive] = gray(52);
-  c[ImGuiCol_PlotLines] = c[ImGuiCol_PlotHistogram] = accent(0.9f);
+  c[ImGuiCol_PlotLines] = accent(0.9f);
+  c[ImGuiCol_PlotHistogram] = accent(0.54f);  // words stand over it
   c[ImGuiCol_TableHeaderBg] = gray(40);
   c[ImGuiCol_TableBorderStrong] = c[ImGuiCol_TableBorderLight] = gray(48);
   c[ImGuiCol_TextSelectedBg] = accent(0.8f, 0.35f);

@@ -2,6 +2,7 @@
 #include "window/timeline.h"
 
 #include <fmt/format.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -119,8 +120,10 @@ float timeline_height(const Ui& ui) { return ui.px(24) + ruler_height(ui); }
 void draw_timeline(const Ui& ui, TimelineState& state) {
   Transport& transport = state.transport;
   const ImVec2 begin = ImGui::GetCursorScreenPos();
+  ImGui::PushItemFlag(ImGuiItemFlags_NoNav, true);  // keys that choose items have no use for it
   ImGui::InvisibleButton("scrub", {std::max(ImGui::GetContentRegionAvail().x, 1.0f), timeline_height(ui)},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+  ImGui::PopItemFlag();
   const Bar bar{{begin.x, begin.y + ruler_height(ui)}, ImGui::GetItemRectMax(), transport.frames()};
   const int under = position_in_bar(ImGui::GetIO().MousePos.x, begin.x, bar.width(), bar.frames);
   if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) move(state, under);

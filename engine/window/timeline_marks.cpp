@@ -55,7 +55,7 @@ void draw_clips(ImDrawList& list, const Ui& ui, const TimelineState& state, ImVe
       drawn = left;
     }
     if (right - left >= text_width(*ui.body, size, clip.label) + 2 * pad)
-      list.AddText(ui.body, size, {left + pad, begin.y + ui.px(4)}, ui_color::kDim, clip.label.c_str());
+      list.AddText(ui.body, size, {left + pad, begin.y + ui.px(4)}, ui_color::kText, clip.label.c_str());
   }
 }
 

@@ -69,7 +69,7 @@ void draw_speed(const Ui& ui, Transport& transport, double now) {
   float speed = static_cast<float>(transport.speed());
   if (ImGui::DragFloat("##speed", &speed, 0.02f, -8, 8, "%.2fx") && std::abs(speed) >= Transport::kSlowest)
     transport.set_speed(speed, now);
-  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) transport.set_speed(1, now);
+  if (wants_menu(ui)) transport.set_speed(1, now);
   ui.help("Speed; negative is backwards (, and .); right-click for 1");
 }
 

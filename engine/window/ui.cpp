@@ -15,6 +15,10 @@ void Ui::help(const std::string& text) const {
   ImGui::EndTooltip();
 }
 
+bool wants_menu(const Ui& ui) {
+  return ImGui::IsItemClicked(ImGuiMouseButton_Right) || (ui.item_menu && ImGui::IsItemFocused());
+}
+
 bool escape_pressed() {
 #if IMGUI_VERSION_NUM >= 18700
   return ImGui::IsKeyPressed(ImGuiKey_Escape, false);

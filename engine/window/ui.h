@@ -20,6 +20,9 @@ namespace afterglow {
 
 class Player;
 
+/// Parts of the window that the keyboard can go to. While it is at the picture, keys are shortcuts.
+enum class Pane { picture, panel, bar, strip };
+
 /// State of the interface, and its tools. Drawing thread alone. Those who draw talk to the Player and to this, and to
 /// nothing of the window: they can be tested with ImGui alone.
 struct Ui {
@@ -69,7 +72,9 @@ struct Ui {
   mutable HoverHelp hover;  ///< what `help` remembers
   /// A field gets the keyboard within a few frames: what is typed meanwhile is for it.
   bool field_opens = false;
-  bool values_apply = true;  ///< false: settings are shown and cannot be changed
+  Pane pane = Pane::picture;  ///< that has the keyboard
+  bool item_menu = false;     ///< for this frame: the chosen item shows what a right click shows
+  bool values_apply = true;   ///< false: settings are shown and cannot be changed
   struct {
     std::array<char, 32> text{};
     bool begin = false;  ///< it gets the keyboard with the next frame
@@ -82,6 +87,8 @@ struct Ui {
 
 /// Gives the keyboard to the item that is drawn next.
 void focus_next_item();
+/// The item that was drawn last is right-clicked, or chosen by the keyboard and its menu asked for.
+bool wants_menu(const Ui& ui);
 /// Escape went down in this frame.
 bool escape_pressed();
 
@@ -91,7 +98,7 @@ bool double_clicked();
 
 /// The colours of the interface.
 namespace ui_color {
-inline constexpr ImU32 kText = IM_COL32(222, 224, 228, 255), kDim = IM_COL32(150, 154, 162, 255),
+inline constexpr ImU32 kText = IM_COL32(222, 224, 228, 255), kDim = IM_COL32(153, 157, 165, 255),
                        kAccent = IM_COL32(255, 158, 60, 255), kError = IM_COL32(255, 107, 97, 255),
                        kWarning = IM_COL32(240, 196, 84, 255), kGood = IM_COL32(120, 200, 130, 255),
                        kOverlay = IM_COL32(16, 17, 19, 238), kLine = IM_COL32(58, 61, 67, 255);

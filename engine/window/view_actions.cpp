@@ -12,6 +12,7 @@ namespace afterglow {
 namespace {
 
 constexpr double kExposureStep = 0.25, kMostExposure = 16, kGammaStep = 0.1;
+constexpr double kPanStep = 0.125;  // of the window
 
 }  // namespace
 
@@ -46,6 +47,14 @@ bool WindowApp::act_on_view(Action action) {
       return true;
     case Action::zoom_out:
       zoom_at(view, picture, window, cursor().value_or(middle), 1 / 1.25);
+      return true;
+    case Action::pan_left:
+    case Action::pan_right:
+      pan(view, picture, window, {window.width * (action == Action::pan_left ? kPanStep : -kPanStep), 0});
+      return true;
+    case Action::pan_up:
+    case Action::pan_down:
+      pan(view, picture, window, {0, window.height * (action == Action::pan_up ? kPanStep : -kPanStep)});
       return true;
     case Action::smooth:
       view.smooth = !view.smooth;

@@ -114,11 +114,11 @@ void draw_view_controls(Ui& ui, PanelPort& port) {
   draw_image_picker(ui, port);
   float exposure = static_cast<float>(view.exposure);
   if (ImGui::SliderFloat("exposure", &exposure, -10, 10, "%+.2f EV")) view.exposure = exposure;
-  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) view.exposure = 0;
+  if (wants_menu(ui)) view.exposure = 0;
   ui.help("Of the view alone, before encoding for the screen (Up, Down, 0); right-click for 0");
   float gamma = static_cast<float>(view.gamma);
   if (ImGui::SliderFloat("gamma", &gamma, 0.25f, 4, "%.2f", ImGuiSliderFlags_AlwaysClamp)) view.gamma = gamma;
-  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) view.gamma = 1;
+  if (wants_menu(ui)) view.gamma = 1;
   ui.help("Of the view alone, behind the exposure (Shift+Up, Shift+Down, 0); right-click for 1");
   if (ImGui::BeginCombo("channel", view_channel_name(view.channel).c_str())) {
     for (const ViewChannel channel : kChannels)

@@ -6,7 +6,9 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/file.h"
 #include "window/editor.h"
+#include "window/help_sheet.h"
 #include "window/window_app.h"
 
 namespace afterglow {
@@ -150,6 +152,14 @@ void WindowApp::change_sound(Action action) {
   ui.say(sound->mute() ? "silent: U lets it be heard" : fmt::format("sound {:.0f} %", sound->volume() * 100));
 }
 
+/// The sheet of keys, where screenshots go.
+void WindowApp::print_keys() {
+  const auto file = options_.captures / "afterglow-keys.html";
+  const auto written = write_file_atomically(file, keys_page());
+  interface_->ui().say(written ? "written, to print from a browser: " + file.string() : written.error().text());
+  diagnostics_.note(written ? "keys written to " + file.string() : written.error().text());
+}
+
 /// One way at the speed of the clock; pressed again, twice as fast.
 void WindowApp::shuttle(int direction) {
   Transport& t = player_.transport();
@@ -285,6 +295,15 @@ bool WindowApp::act_on_window(Action action) {
       return true;
     case Action::transport:
       ui.show_transport = !ui.show_transport;
+      return true;
+    case Action::next_pane:
+      go_to_next_pane();
+      return true;
+    case Action::item_menu:
+      ui.item_menu = true;
+      return true;
+    case Action::print_keys:
+      print_keys();
       return true;
     case Action::stats:
       ui.show_stats = !ui.show_stats;

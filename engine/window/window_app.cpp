@@ -2,6 +2,7 @@
 #include "window/window_app.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <limits>
@@ -122,6 +123,16 @@ void WindowApp::minimise_or_restore(bool minimised) {
   }
 }
 
+/// Windows of other sizes leave holes of all sizes in the heap where drivers on the CPU have their images.
+void WindowApp::tidy() {
+  const Swapchain::Counters counters = painter_->swapchain().counters();
+  if (counters.made == tidied_ || counters.retired > 0) return;
+  tidied_ = counters.made;
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
 void WindowApp::wait(const Step& turn) {
   const double now = player_.now();
   double until = turn.next;
@@ -130,6 +141,7 @@ void WindowApp::wait(const Step& turn) {
   } else if (redraw_ > 0 || !step_shown_) {
     until = std::min(until, last_draw_ + kLeastPause);
   } else {
+    tidy();
     const Ui& ui = interface_->ui();
     if (ui.message_until > now) until = std::min(until, ui.message_until);
     until = std::min(until, ui.hover.wake());
@@ -141,9 +153,8 @@ void WindowApp::wait(const Step& turn) {
   const Ui& ui = interface_->ui();
   const bool faded = !ui.message.empty() && ui.message_until <= later;
   const bool rested = ui.hover.wake() <= later;
-  if (faded || rested || interface_->wants_keyboard() || scopes_due()) {
-    redraw_ = std::max(redraw_, 1);
-  }
+  if (faded || interface_->wants_keyboard() || scopes_due()) redraw_ = std::max(redraw_, 1);
+  if (rested) redraw_ = kSettle;  // a tip finds its size in its first frame, and is seen from the second on
 }
 
 /// What scripts and tests that watch us want to know.

@@ -31,6 +31,7 @@ class WindowApp {
   Result<Step> step();
   Result<void> draw();
   void wait(const Step& step);
+  void tidy();
   void take_events();
   void deliver_input();
   void ask_to_quit();
@@ -38,6 +39,11 @@ class WindowApp {
   void quit_when_saved();
   void input_seen();
   void await_field();
+  void go_to_next_pane();
+  void go_to_pane(Pane pane);
+  void follow_pane();
+  void mark_pane(Pane pane, ImVec2 at, ImVec2 size) const;
+  const char* window_of(Pane pane) const;
   void open_dropped(const std::filesystem::path& path);
   void open_other(const std::filesystem::path& path);
   void browse_presets();
@@ -72,6 +78,7 @@ class WindowApp {
   void recall_snapshot(int snapshot);
   void edit_file(const std::string& file, int line);
   void edit_next_place();
+  void print_keys();
   void draw_frame_field();
   void compare_by(CompareBy by);
   Size picture_window() const;  ///< what one picture has of `area_`
@@ -92,6 +99,7 @@ class WindowApp {
 
   InputQueue input_;
   std::vector<std::filesystem::path> to_open_, others_to_open_;
+  bool pane_due_ = false;  ///< the keyboard goes to another part with the next frame
   int field_awaited_ = 0;  ///< frames that a field has to get the keyboard; what is typed waits for it
 
   static constexpr int kSettle = 3;  ///< ImGui needs a frame to see an event and one to answer it
@@ -104,6 +112,7 @@ class WindowApp {
   int proxy_ = 2;    ///< that Shift+P takes
   int redraw_ = 3;   ///< frames to draw though nothing new is there: interfaces settle in a few
   double last_draw_ = -1;
+  std::uint64_t tidied_ = 0;  ///< swapchains that were made when memory was given back last
   enum class Quitting { no, asked, saving } quitting_ = Quitting::no;
   bool quit_ = false, minimised_ = false, resume_ = false;
   bool step_shown_ = true;  ///< the last changed turn was presented

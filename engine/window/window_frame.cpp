@@ -45,6 +45,7 @@ Result<void> WindowApp::draw() {
   ui.now = player_.now();
   ui.hover.begin_frame();
   interface_->begin();
+  follow_pane();
   draw_parts(window);
   navigate();
   AFTERGLOW_CHECK(draw_overlays());
@@ -56,6 +57,7 @@ Result<void> WindowApp::draw() {
     if (const auto answer = draw_quit_dialog(ui, changes, ImGui::GetIO().DisplaySize)) answer_quit(*answer);
   }
   if (options_.help && ui.show_help) options_.help(player_, ui, {0, 0}, ImGui::GetIO().DisplaySize);
+  ui.item_menu = false;
   const ImDrawData& data = interface_->end();
   const auto written = ui.cells.take_written();
   atlas_parts_.insert(atlas_parts_.end(), written.begin(), written.end());
@@ -84,6 +86,16 @@ Result<void> WindowApp::draw() {
   return {};
 }
 
+/// A frame around the part that has the keyboard.
+void WindowApp::mark_pane(Pane pane, ImVec2 at, ImVec2 size) const {
+  const Ui& ui = interface_->ui();
+  if (ui.pane != pane) return;
+  const float line = ui.px(2);
+  ImGui::GetForegroundDrawList()->AddRect({at.x + line / 2, at.y + line / 2},
+                                          {at.x + size.x - line / 2, at.y + size.y - line / 2}, ui_color::kAccent, 0, 0,
+                                          line);
+}
+
 /// The panel at the right, the transport at the bottom, the rest is the picture's.
 void WindowApp::draw_parts(Size window) {
   Ui& ui = interface_->ui();
@@ -96,12 +108,19 @@ void WindowApp::draw_parts(Size window) {
   player_.time_kernels(panel > 0);  // it shows what effects cost
   if (panel > 0) {
     options_.panel(player_, ui, {width - panel, 0}, {panel, height});
+    mark_pane(Pane::panel, {width - panel, 0}, {panel, height});
   } else if (options_.hidden_panel) {
     options_.hidden_panel(player_, ui);
   }
-  if (bar > 0) options_.transport(player_, ui, {0, height - bar}, {width - panel, bar});
+  if (bar > 0) {
+    options_.transport(player_, ui, {0, height - bar}, {width - panel, bar});
+    mark_pane(Pane::bar, {0, height - bar}, {width - panel, bar});
+  }
   const float strip = options_.strip && options_.strip_height ? options_.strip_height(ui) : 0;
-  if (strip > 0) options_.strip(player_, ui, {0, height - bar - strip}, {width - panel, strip});
+  if (strip > 0) {
+    options_.strip(player_, ui, {0, height - bar - strip}, {width - panel, strip});
+    mark_pane(Pane::strip, {0, height - bar - strip}, {width - panel, strip});
+  }
   const float sx = io.DisplayFramebufferScale.x, sy = io.DisplayFramebufferScale.y;
   area_ = {0, 0, std::max(window.width - static_cast<int>(std::lround(panel * sx)), 1),
            std::max(window.height - static_cast<int>(std::lround((bar + strip) * sy)), 1)};

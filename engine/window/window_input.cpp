@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What comes to a window that plays: keys and text, dropped files, the wish to close it.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,11 +15,19 @@ namespace {
 
 constexpr int kFramesToField = 6;  // that a field may need to get the keyboard
 
+/// While the keyboard is at a part of the interface, what has a letter, an arrow, Space, Enter or Tab is for that.
+bool acts_everywhere(const InputEvent& key) {
+  const bool function = key.code >= GLFW_KEY_F1 && key.code <= GLFW_KEY_F25;
+  const bool letter = key.code >= GLFW_KEY_0 && key.code <= GLFW_KEY_Z;
+  return function || key.code == GLFW_KEY_MENU || (letter && (key.mods & GLFW_MOD_CONTROL) != 0);
+}
+
 }  // namespace
 
 void WindowApp::take_events() {
   const WindowEvents events = window_.take_events();
   if (events.any) redraw_ = kSettle;
+  if (events.exposed) painter_->expose();
   if (events.close) ask_to_quit();
   for (const InputEvent& event : events.input) input_.push(event);
   deliver_input();
@@ -29,25 +39,80 @@ void WindowApp::take_events() {
 /// As much as the next frame can tell apart. Keys act at once where no text is typed.
 void WindowApp::deliver_input() {
   while (!field_awaited_) {
-    const bool typing = interface_->wants_keyboard();
-    const auto event = input_.next(typing);
+    const bool typing = interface_->wants_keyboard(), away = interface_->ui().pane != Pane::picture;
+    const auto event = input_.next(typing || away);
     if (!event) break;
     const bool key = event->kind == InputEvent::Kind::key && event->down;
+    if (event->kind == InputEvent::Kind::button && event->down) go_to_pane(Pane::picture);
     if (key && quitting_ == Quitting::asked) {
       if (const auto answer = quit_answer_of(event->code)) answer_quit(*answer);
       continue;
     }
-    const auto action = key && !typing ? action_of({event->code, event->mods, event->repeat}) : std::nullopt;
+    if (key && away && event->code == GLFW_KEY_ESCAPE && !interface_->holds_something() &&
+        !interface_->ui().show_help) {
+      go_to_pane(Pane::picture);
+      continue;
+    }
+    const bool shortcut = key && !typing && (!away || acts_everywhere(*event));
+    const auto action = shortcut ? action_of({event->code, event->mods, event->repeat}) : std::nullopt;
     if (action) act(*action);
     // An action is all that its key does: Tab would choose a field too, which takes the keys that follow. Esc closes
     // what ImGui opened.
     if (!action || *action == Action::escape) interface_->feed(*event);
+    // Enter opens a field where the chosen item has one.
+    if (key && away && !typing && (event->code == GLFW_KEY_ENTER || event->code == GLFW_KEY_KP_ENTER)) await_field();
   }
   if (field_awaited_ || !input_.empty()) redraw_ = std::max(redraw_, 1);
 }
 
 /// What is typed from here on is for the field that is about to get the keyboard.
 void WindowApp::await_field() { field_awaited_ = kFramesToField; }
+
+/// The next one that is shown; behind the last one the picture.
+void WindowApp::go_to_next_pane() {
+  const Ui& ui = interface_->ui();
+  for (int next = static_cast<int>(ui.pane) + 1; next <= static_cast<int>(Pane::strip); ++next)
+    if (window_of(static_cast<Pane>(next))[0] != '\0') return go_to_pane(static_cast<Pane>(next));
+  go_to_pane(Pane::picture);
+}
+
+void WindowApp::go_to_pane(Pane pane) {
+  Ui& ui = interface_->ui();
+  if (ui.pane == pane) return;
+  ui.pane = pane;
+  pane_due_ = true;
+  if (pane == Pane::picture) return ui.say("the keyboard is at the picture");
+  ui.say(fmt::format("the keyboard is at {}: arrows, Space, Enter; F6 goes on, Esc goes back",
+                     pane == Pane::panel ? "the panel"
+                     : pane == Pane::bar ? "the bar"
+                                         : "the export"));
+}
+
+/// By ImGui's name; empty: it is not shown, or there is none.
+const char* WindowApp::window_of(Pane pane) const {
+  const Ui& ui = interface_->ui();
+  switch (pane) {
+    case Pane::panel:
+      return options_.panel && ui.show_panel ? "Settings" : "";
+    case Pane::bar:
+      return options_.transport && ui.show_transport ? "Transport" : "";
+    case Pane::strip:
+      return options_.strip_height && options_.strip_height(ui) > 0 ? "Export" : "";
+    case Pane::picture:
+      break;
+  }
+  return "";
+}
+
+/// Within a frame, before its parts. One that went away has no keyboard.
+void WindowApp::follow_pane() {
+  Ui& ui = interface_->ui();
+  if (ui.pane != Pane::picture && window_of(ui.pane)[0] == '\0') go_to_pane(Pane::picture);
+  if (std::exchange(pane_due_, false)) {
+    interface_->navigate(window_of(ui.pane));
+    redraw_ = kSettle;
+  }
+}
 
 /// What is not in the preset's file is asked about first.
 void WindowApp::ask_to_quit() {

@@ -88,7 +88,7 @@ class PainterTest : public testing::Test {
     window_->wait(0);
     const Size size = window_->framebuffer();
     interface_->begin();
-    ImGui::GetForegroundDrawList()->AddRectFilled({10, 10}, {30, 30}, IM_COL32(255, 255, 255, 255));
+    ImGui::GetForegroundDrawList()->AddRectFilled({10, 10}, {square_, 30}, IM_COL32(255, 255, 255, 255));
     const ImDrawData& data = interface_->end();
     ViewFrame frame;
     frame.shown = {picture_.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, {64, 40}};
@@ -97,6 +97,7 @@ class PainterTest : public testing::Test {
     frame.view.fit = false;
     frame.view.zoom = 128;
     frame.view.center = {32, 20};
+    frame.content = content_;
     auto drawn = painter_->paint(size, {&frame, 1}, data);
     EXPECT_TRUE(drawn) << drawn.error().text();
     return drawn ? *drawn : Swapchain::Drawn::later;
@@ -116,6 +117,8 @@ class PainterTest : public testing::Test {
   Xvfb xvfb_;
   fs::path folder_;
   int surfaces_ = 0;
+  float square_ = 30;  ///< its right edge
+  std::uint64_t content_ = 0;
   std::unique_ptr<DesktopWindow> window_;
   std::shared_ptr<Presentation> presentation_;
   std::unique_ptr<Device> device_;
@@ -141,11 +144,39 @@ TEST_F(PainterTest, ShowsPictureAndInterface) {
 TEST_F(PainterTest, SteadyFramesMakeNothing) {
   for (int i = 0; i < 5; ++i) paint();
   const auto before = painter_->swapchain().counters();
-  for (int i = 0; i < 50; ++i) EXPECT_EQ(paint(), Swapchain::Drawn::yes);
+  for (int i = 0; i < 50; ++i) {
+    painter_->expose();
+    EXPECT_EQ(paint(), Swapchain::Drawn::yes);
+  }
   const auto after = painter_->swapchain().counters();
   EXPECT_EQ(after.presented, before.presented + 50);
   EXPECT_EQ(after.made, before.made);
   EXPECT_EQ(after.retired, 0u);
+}
+
+/// The screen keeps what was presented: the same again is not presented again, what differs in anything is.
+TEST_F(PainterTest, WhatLooksAsBeforeIsNotPresented) {
+  for (int i = 0; i < 5; ++i) paint();
+  const auto presented = [&] { return painter_->swapchain().counters().presented; };
+  const auto before = presented();
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(paint(), Swapchain::Drawn::yes);
+  EXPECT_EQ(presented(), before);
+  painter_->expose();  // another window lay over it
+  paint();
+  paint();
+  EXPECT_EQ(presented(), before + 1);
+  ++content_;
+  paint();
+  paint();
+  EXPECT_EQ(presented(), before + 2) << "another picture";
+  square_ = 31;
+  paint();
+  paint();
+  EXPECT_EQ(presented(), before + 3) << "a pixel of the interface";
+  painter_->capture(folder_ / "again.png");
+  EXPECT_EQ(paint(), Swapchain::Drawn::yes);
+  EXPECT_TRUE(fs::exists(folder_ / "again.png")) << "a screenshot of what stands";
+  EXPECT_EQ(presented(), before + 4);
 }
 
 TEST_F(PainterTest, FollowsItsWindowAndReleasesOldSwapchains) {
@@ -159,7 +190,10 @@ TEST_F(PainterTest, FollowsItsWindowAndReleasesOldSwapchains) {
     })) << size.width
         << "×" << size.height;
   }
-  for (int i = 0; i < 10; ++i) paint();
+  for (int i = 0; i < 10; ++i) {
+    painter_->expose();
+    paint();
+  }
   EXPECT_GE(painter_->swapchain().counters().made, std::size(sizes));
   EXPECT_EQ(painter_->swapchain().counters().retired, 0u);
 }
@@ -263,7 +297,10 @@ class PainterPartsTest : public PainterTest {
   }
   /// In every image of the window, with what was there before in some of them.
   void show_often(const State& s) {
-    for (int i = 0; i < 6; ++i) show(s);
+    for (int i = 0; i < 6; ++i) {
+      painter_->expose();  // drawn, though the screen has it already
+      show(s);
+    }
   }
 
   /// Other light in the upper half of the picture; whoever calls has waited for its readers.

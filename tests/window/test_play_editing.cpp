@@ -46,7 +46,7 @@ class PlayEditing : public PlayWindow {
     // The slider's handle, in the middle of the only row.
     ASSERT_TRUE(until([&] {
       const Screen screen = shot();
-      return !screen.rgb.empty() && screen.at(1004, 171)[0] > 160 && screen.at(1004, 171)[2] < 110;
+      return !screen.rgb.empty() && screen.at(1004, 171)[0] > 110 && screen.at(1004, 171)[2] < 60;
     })) << "the search has not found the setting alone";
   }
   /// Opens the field by a double click, and leaves it by a key.

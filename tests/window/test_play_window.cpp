@@ -357,7 +357,7 @@ TEST_F(PlayWindow, ArgumentsAreDraggedInThePanel) {
   EXPECT_TRUE(until_color(kX, kY, kRed));
   EXPECT_TRUE(until([&] {  // the slider's handle, orange, in the first row of the panel
     const Screen screen = shot();
-    return !screen.rgb.empty() && screen.at(923, 171)[0] > 160 && screen.at(923, 171)[2] < 110;
+    return !screen.rgb.empty() && screen.at(923, 171)[0] > 110 && screen.at(923, 171)[2] < 60;
   }));
   const int before = shot().at(950, 171)[0];
   ASSERT_TRUE(user("mousemove 923 171"));  // the slider is lit

@@ -139,4 +139,14 @@ Rect window_place(const std::string& name) {
   return out;
 }
 
+bool set_dots_per_inch(const std::string& name, int dots) {
+  const DisplayPtr display(XOpenDisplay(name.c_str()));
+  if (!display) return false;
+  const std::string text = "Xft.dpi:\t" + std::to_string(dots) + "\n";
+  XChangeProperty(display.get(), DefaultRootWindow(display.get()), XA_RESOURCE_MANAGER, XA_STRING, 8, PropModeReplace,
+                  reinterpret_cast<const unsigned char*>(text.data()), static_cast<int>(text.size()));
+  XSync(display.get(), False);
+  return true;
+}
+
 }  // namespace afterglow

@@ -16,6 +16,9 @@ bool ask_to_close(const std::string& display);
 /// it.
 bool drop_file(const std::string& display, const std::filesystem::path& file);
 
+/// What desktops say of their screens ("Xft.dpi"); programs that start later read it. False: no display.
+bool set_dots_per_inch(const std::string& display, int dots);
+
 /// The title of the program's window.
 std::string window_title(const std::string& display);
 
