@@ -311,7 +311,7 @@ Result<void> FrameRunner::State::start(Program& program, const std::map<std::str
 
 Result<void> FrameRunner::State::begin(Program& program, const std::map<std::string, HostImage>& host,
                                        KernelTiming timing, const Choose& choose) {
-  begun.emplace();
+  begun = Begun{};
   shown.reset();
   auto started = start(program, host, timing, choose);
   if (!started) {

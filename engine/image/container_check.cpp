@@ -17,6 +17,7 @@
 #include "core/saturated.h"
 #include "image/claimed_size.h"
 #include "image/exr_header.h"
+#include "image/sgi_check.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -154,30 +155,6 @@ Result<ContainerFacts> check_dpx(const fs::path& file, std::ifstream& in, std::u
   return ContainerFacts{};
 }
 
-/// Packed rows lie where a table says, and OpenImageIO makes room for as many bytes as another claims.
-Result<ContainerFacts> check_sgi(const fs::path& file, std::ifstream& in, std::uint64_t size) {
-  constexpr std::uint64_t kTables = 512, kMostRead = 1 << 16;
-  std::array<unsigned char, 12> head{};
-  in.seekg(0);
-  if (!fill(in, head.data(), head.size())) return malformed(file, "is truncated");
-  const bool packed = head[2] == 1;
-  if (!packed) return ContainerFacts{};
-  const std::uint64_t rows = std::uint64_t{big_endian(&head[8], 2)} * big_endian(&head[10], 2);
-  if (kTables + rows * 8 > size) return malformed(file, "is truncated");
-  std::vector<unsigned char> places(std::min(rows, kMostRead) * 4), lengths(places.size());
-  for (std::uint64_t done = 0; done < rows; done += kMostRead) {
-    const std::uint64_t count = std::min(rows - done, kMostRead);
-    in.seekg(static_cast<std::streamoff>(kTables + done * 4));
-    if (!fill(in, places.data(), count * 4)) return malformed(file, "is truncated");
-    in.seekg(static_cast<std::streamoff>(kTables + (rows + done) * 4));
-    if (!fill(in, lengths.data(), count * 4)) return malformed(file, "is truncated");
-    for (std::uint64_t i = 0; i < count; ++i)
-      if (std::uint64_t{big_endian(&places[i * 4], 4)} + big_endian(&lengths[i * 4], 4) > size)
-        return malformed(file, "is truncated");
-  }
-  return ContainerFacts{};
-}
-
 }  // namespace
 
 Result<ContainerFacts> check_container(const fs::path& file) {
@@ -204,7 +181,10 @@ Result<ContainerFacts> check_container(const fs::path& file) {
   if (starts_with(kPngMagic)) return check_png(file, in, size);
   if (starts_with("\xff\xd8\xff")) return check_jpeg(file, in, size);
   if (starts_with("SDPX") || starts_with("XPDS")) return check_dpx(file, in, size, starts_with("SDPX"));
-  if (starts_with("\x01\xda")) return check_sgi(file, in, size);
+  if (starts_with("\x01\xda")) {
+    AFTERGLOW_CHECK(check_sgi(file, in, size));
+    return ContainerFacts{};
+  }
   ContainerFacts facts;
   if (is_exr(file)) facts.kind = ContainerFacts::Kind::exr;
   if (const auto claimed = claimed_size(head)) {

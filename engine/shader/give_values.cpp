@@ -47,7 +47,9 @@ std::optional<Mark> mark_at(const Module& module, std::size_t at, const Ids& ids
   if (load.op != spv::OpLoad || store.op != spv::OpStore || store.words[1] != load.words[3] ||
       store.words[2] != load.result)
     return std::nullopt;
-  return Mark{ids.numbers.at(code[at].words[2]), load.type, load.words[3]};
+  const auto number = ids.numbers.find(code[at].words[2]);
+  if (number == ids.numbers.end()) return std::nullopt;
+  return Mark{number->second, load.type, load.words[3]};
 }
 
 Instruction store(std::uint32_t variable, std::uint32_t value) {

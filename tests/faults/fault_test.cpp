@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <iostream>
 #include <numeric>
 #include <sstream>
 
@@ -89,11 +90,18 @@ long FaultTest::places(const std::vector<std::string>& arguments, const Fault& f
 }
 
 std::vector<long> FaultTest::some(const std::vector<long>& places, long most) {
-  const auto last = static_cast<long>(places.size()) - 1;
-  const char* wanted = std::getenv("AFTERGLOW_FAULTS");
-  if (wanted && *wanted) most = std::string(wanted) == "every" ? last + 1 : std::atol(wanted);
+  const auto count = static_cast<long>(places.size());
+  const char* asked = std::getenv("AFTERGLOW_FAULTS");
+  const std::string wanted = asked ? asked : "";
+  if (const auto dash = wanted.find('-'); dash != std::string::npos) {
+    const long from = std::clamp(std::atol(wanted.c_str()), 1L, count);
+    const long to = std::clamp(std::atol(wanted.c_str() + dash + 1), from, count);
+    std::cout << "places " << from << " to " << to << " of " << count << std::endl;
+    return {places.begin() + (from - 1), places.begin() + to};
+  }
+  if (!wanted.empty()) most = wanted == "every" ? count : std::atol(wanted.c_str());
   std::set<long> chosen;
-  for (long i = 0; i < most && most > 1; ++i) chosen.insert(places[last * i / (most - 1)]);
+  for (long i = 0; i < most && most > 1; ++i) chosen.insert(places[(count - 1) * i / (most - 1)]);
   return {chosen.begin(), chosen.end()};
 }
 

@@ -36,7 +36,8 @@ class FaultTest : public CliTest {
   /// Those of them that are worth a strike each, in their order, where the fault's library can tell: of allocations,
   /// the first and the last one by each way through the program's functions. The last of all in any case.
   std::vector<long> distinct_places(const std::vector<std::string>& arguments, const Fault& fault) const;
-  /// `most` of these places, spread evenly. The environment may say otherwise: AFTERGLOW_FAULTS=every or a number.
+  /// `most` of these places, spread evenly. The environment may say otherwise: AFTERGLOW_FAULTS=every, a number, or
+  /// FROM-TO, which is those in a row.
   static std::vector<long> some(const std::vector<long>& places, long most);
   static std::vector<long> some(long last, long most);  ///< of [1, last]
   Outcome run_with(const std::vector<std::string>& arguments, const Fault& fault, long place) const;

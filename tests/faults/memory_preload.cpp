@@ -11,6 +11,7 @@
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <link.h>
+#include <unwind.h>
 
 #include <algorithm>
 #include <atomic>
@@ -91,16 +92,26 @@ bool is_foreign(const void* address) {
           std::strstr(info.dli_fname, "libVkLayer"));
 }
 
+/// Goes up from an allocation until it is known whose it is.
+struct Asker {
+  bool known = false, is_the_programs = false;
+  int left = 6;
+};
+
+_Unwind_Reason_Code look_at(_Unwind_Context* context, void* into) {
+  auto& asker = *static_cast<Asker*>(into);
+  const auto* at = reinterpret_cast<const void*>(_Unwind_GetIP(context));
+  if (!asker.known && (own.holds(at) || library.holds(at))) return _URC_NO_REASON;
+  if (!asker.known) asker.is_the_programs = program.holds(at);
+  asker.known = true;
+  if (!program.holds(at) && !library.holds(at) && is_foreign(at)) asker.is_the_programs = false;
+  return asker.is_the_programs && --asker.left > 0 ? _URC_NO_REASON : _URC_NORMAL_STOP;
+}
+
 bool is_the_programs() {
-  constexpr int kDepth = 16;
-  void* frames[kDepth];
-  const int count = backtrace(frames, kDepth);
-  int first = 0;
-  while (first < count && (own.holds(frames[first]) || library.holds(frames[first]))) ++first;
-  if (first == count || !program.holds(frames[first])) return false;
-  for (int i = first; i < count && i < first + 6; ++i)
-    if (!program.holds(frames[i]) && !library.holds(frames[i]) && is_foreign(frames[i])) return false;
-  return true;
+  Asker asker;
+  _Unwind_Backtrace(look_at, &asker);
+  return asker.is_the_programs;
 }
 
 /// What of the program called what, down to main or the thread's first function. Depths of recursion are alike.
@@ -124,8 +135,10 @@ void note_way(long number) {
   ways->try_emplace(way, number, number).first->second.second = number;
 }
 
-bool strikes() {
+bool strikes(const void* caller) {
   if (!ready || inside) return false;
+  if (!ways && (wanted == 0 || calls >= wanted)) return false;  // nothing is left to find out
+  if (!program.holds(caller) && !library.holds(caller)) return false;
   inside = true;
   long number = 0;
   if (is_the_programs()) {
@@ -136,15 +149,15 @@ bool strikes() {
   return number != 0 && number == wanted;
 }
 
-void* take(std::size_t size, std::size_t alignment) {
-  if (strikes()) return nullptr;
+void* take(std::size_t size, std::size_t alignment, const void* caller) {
+  if (strikes(caller)) return nullptr;
   if (size == 0) size = 1;
   if (alignment <= alignof(std::max_align_t)) return std::malloc(size);
   return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
 }
 
-void* take_or_throw(std::size_t size, std::size_t alignment) {
-  if (void* memory = take(size, alignment)) return memory;
+void* take_or_throw(std::size_t size, std::size_t alignment, const void* caller) {
+  if (void* memory = take(size, alignment, caller)) return memory;
   if (const auto handler = std::get_new_handler()) handler();
   throw std::bad_alloc();
 }
@@ -152,6 +165,7 @@ void* take_or_throw(std::size_t size, std::size_t alignment) {
 }  // namespace
 
 #define EXPORT __attribute__((visibility("default")))
+#define CALLER __builtin_return_address(0)
 
 using Main = int (*)(int, char**, char**);
 static Main real_main = nullptr;
@@ -168,12 +182,14 @@ extern "C" EXPORT int __libc_start_main(Main main, int argc, char** argv, void (
   return start(main_from_here, argc, argv, init, fini, rtld_fini, stack_end);
 }
 
-EXPORT void* operator new(std::size_t size) { return take_or_throw(size, 1); }
-EXPORT void* operator new[](std::size_t size) { return take_or_throw(size, 1); }
-EXPORT void* operator new(std::size_t size, std::align_val_t a) { return take_or_throw(size, std::size_t(a)); }
-EXPORT void* operator new[](std::size_t size, std::align_val_t a) { return take_or_throw(size, std::size_t(a)); }
-EXPORT void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return take(size, 1); }
-EXPORT void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return take(size, 1); }
+EXPORT void* operator new(std::size_t size) { return take_or_throw(size, 1, CALLER); }
+EXPORT void* operator new[](std::size_t size) { return take_or_throw(size, 1, CALLER); }
+EXPORT void* operator new(std::size_t size, std::align_val_t a) { return take_or_throw(size, std::size_t(a), CALLER); }
+EXPORT void* operator new[](std::size_t size, std::align_val_t a) {
+  return take_or_throw(size, std::size_t(a), CALLER);
+}
+EXPORT void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return take(size, 1, CALLER); }
+EXPORT void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return take(size, 1, CALLER); }
 EXPORT void operator delete(void* memory) noexcept { std::free(memory); }
 EXPORT void operator delete[](void* memory) noexcept { std::free(memory); }
 EXPORT void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }

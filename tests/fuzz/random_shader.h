@@ -13,7 +13,8 @@ class RandomShader {
  public:
   RandomShader(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
 
-  /// With an image `source`, and parameters `n` (int; 0 to 9 keep it short) and `g` (float).
+  /// With an image `source`, and parameters `n` (int; 0 to 9 keep it short), `g` (float), `two` (vec2), `four` (vec4),
+  /// `pair` (ivec2) and `flag` (bool).
   std::string text() {
     std::string functions;
     functions_ = static_cast<int>(take(3));
@@ -23,9 +24,10 @@ class RandomShader {
           "vec4 f" + std::to_string(f) + "(vec4 c, int k) {\n" + block(2, false) + "  return " + vector(2) + ";\n}\n";
     }
     called_ = functions_;
-    return "uniform sampler2D source;\nuniform int n;\nuniform float g;\n" + functions +
-           "vec4 sample_at(ivec2 pixel) {\n  vec4 c = fetch(source, pixel);\n  int k = n;\n" + block(3, false) +
-           "  return c;\n}\n";
+    return "uniform sampler2D source;\nuniform int n;\nuniform float g;\nuniform vec2 two;\nuniform vec4 four;\n"
+           "uniform ivec2 pair;\nuniform bool flag;\n" +
+           functions + "vec4 sample_at(ivec2 pixel) {\n  vec4 c = fetch(source, pixel);\n  int k = n;\n" +
+           block(3, false) + "  return c;\n}\n";
   }
 
  private:
@@ -34,7 +36,7 @@ class RandomShader {
   std::string digit() { return std::to_string(take(7)); }
 
   std::string number(int depth) {
-    switch (depth > 0 ? take(7) : take(3)) {
+    switch (depth > 0 ? take(10) : take(3)) {
       case 0:
         return "c." + component();
       case 1:
@@ -47,25 +49,35 @@ class RandomShader {
         return "sin(" + number(depth - 1) + ")";
       case 5:
         return "(" + condition(depth - 1) + " ? " + number(depth - 1) + " : " + number(depth - 1) + ")";
+      case 6:
+        return "two." + std::string(1, "xy"[take(2)]);
+      case 7:
+        return "four." + component();
+      case 8:
+        return "float(pair." + std::string(1, "xy"[take(2)]) + ")";
       default:
         return "max(" + number(depth - 1) + ", " + digit() + ".5)";
     }
   }
   std::string component() { return std::string(1, "xyzw"[take(4)]); }
   std::string condition(int depth) {
-    switch (depth > 0 ? take(4) : take(2)) {
+    switch (depth > 0 ? take(6) : take(2)) {
       case 0:
         return number(0) + " > " + digit() + ".25";
       case 1:
         return "k < " + digit();
       case 2:
         return "(" + condition(depth - 1) + " && " + condition(depth - 1) + ")";
+      case 3:
+        return "flag";
+      case 4:
+        return "pair.x < k";
       default:
         return "(" + condition(depth - 1) + " || " + condition(depth - 1) + ")";
     }
   }
   std::string vector(int depth) {
-    switch (depth > 0 ? take(5) : take(2)) {
+    switch (depth > 0 ? take(7) : take(2)) {
       case 0:
         return "c";
       case 1:
@@ -75,6 +87,10 @@ class RandomShader {
       case 3:
         return called_ > 0 ? "f" + std::to_string(take(static_cast<unsigned>(called_))) + "(" + vector(0) + ", k)"
                            : "c.yzwx";
+      case 4:
+        return "four";
+      case 5:
+        return "vec4(two.yx, vec2(pair))";
       default:
         return "mix(" + vector(depth - 1) + ", " + vector(depth - 1) + ", " + number(depth - 1) + ")";
     }
@@ -89,7 +105,7 @@ class RandomShader {
   std::string statement(int depth, bool in_loop) {
     if (++statements_ > kMostStatements) return "c += 1.0;\n";
     const std::string i = "i" + std::to_string(++names_);
-    switch (depth > 0 ? take(11) : take(3)) {
+    switch (depth > 0 ? take(14) : take(3)) {
       case 0:
         return "c = " + vector(2) + ";\n";
       case 1:
@@ -116,6 +132,15 @@ class RandomShader {
       case 9:
         return in_loop ? "if (" + condition(0) + ") " + (take(2) == 0 ? "break;\n" : "continue;\n")
                        : "if (" + condition(0) + ") return c;\n";
+      case 10:
+        return "float " + i + "[4] = float[](" + number(1) + ", " + number(1) + ", g, 0.5);\n" + i +
+               "[k & 3] = " + number(1) + ";\nc." + component() + " += " + i + "[(k + 1) & 3];\n";
+      case 11:  // it may be read before it has a value: it is 0 then
+        return "vec2 " + i + ";\nif (" + condition(1) + ") " + i + ".x = " + number(1) + ";\nelse " + i +
+               "[k & 1] = " + number(0) + ";\nc.xy += " + i + ";\n";
+      case 12:
+        return "for (int " + i + " = 0; " + i + " < 4; ++" + i + ") {\n  c[" + i + "] = " + number(1) + ";\n" +
+               block(depth - 1, true) + "}\n";
       default:
         return "for (int " + i + " = 0;; ++" + i + ") {\n  if (" + i + " >= " + bound() + ") break;\n" +
                block(depth - 1, true) + "}\n";

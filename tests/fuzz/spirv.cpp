@@ -29,10 +29,10 @@ std::string text_of(const Words& spirv) {
   return out;
 }
 
-void steps(const Words& spirv) {
+void steps(const Words& spirv, const std::vector<AssembledKernel::UnsetVariable>& unset) {
   const std::vector<std::function<Words(const Words&)>> all{
       [](const Words& in) { return guard_loops(in, 17).spirv; },
-      [](const Words& in) { return give_values(in, {}).spirv; },
+      [&unset](const Words& in) { return give_values(in, unset).spirv; },
       [](const Words& in) { return interleave_rows(in, 4); },
       [](const Words& in) { return defeat_uniform_inlining(in); },
       [](const Words& in) {
@@ -77,7 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (first == kMagic) {
     Words words(size / 4);
     std::memcpy(words.data(), data, words.size() * 4);
-    if (is_valid(words)) steps(words);
+    if (is_valid(words)) steps(words, {});
     return 0;
   }
   const unsigned passes = data[0], rows = 1 + data[1] % 2 * 3;
@@ -96,6 +96,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto spirv = compile_glsl(assembled->glsl, assembled->file_names);
   FUZZ_CLAIM(spirv.ok(), spirv.error().text() + "\n" + text);
   const Words other = made_other(*spirv, passes);
-  if (is_valid(other)) steps(other);
+  if (is_valid(other)) steps(other, assembled->unset);
   return 0;
 }

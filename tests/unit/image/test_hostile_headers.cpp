@@ -332,6 +332,70 @@ TEST_F(HostileHeaders, SgiRowsThatTheFileDoesNotHold) {
   EXPECT_EQ(refused(place).message, "is truncated");
 }
 
+/// An SGI picture whose packed rows are all this one, which is stored once.
+std::string packed_sgi(int unit, int width, int height, const std::string& row, int dimensions = 3, int planes = 3) {
+  const auto big = [](int value, int bytes) {
+    std::string out;
+    for (int i = bytes - 1; i >= 0; --i) out += static_cast<char>(value >> 8 * i & 255);
+    return out;
+  };
+  std::string out =
+      "\x01\xda\x01" + big(unit, 1) + big(dimensions, 2) + big(width, 2) + big(height, 2) + big(planes, 2);
+  out.resize(512);
+  const int rows = height * planes;
+  for (int i = 0; i < rows; ++i) out += big(512 + rows * 8, 4);
+  for (int i = 0; i < rows; ++i) out += big(static_cast<int>(row.size()), 4);
+  return out + row;
+}
+
+TEST_F(HostileHeaders, SgiRowsThatGiveOtherPixelsThanThePictureHas) {
+  const auto read = [&](const std::string& bytes) {
+    write_bytes(folder_ / "good.sgi", bytes);
+    Diagnostics silent;
+    const auto picture = read_picture(folder_ / "good.sgi", {}, silent);
+    EXPECT_TRUE(picture) << picture.error().message;
+    return picture ? picture->color.width * 100 + picture->color.height : 0;
+  };
+  using namespace std::string_literals;
+  // Five pixels: three that are told and two that are alike.
+  const std::string bytes = "\x83\x01\x02\x03\x02\xff\0"s, words = "\0\x83\0\x01\0\x02\0\x03\0\x02\xff\xff\0\0"s;
+  EXPECT_EQ(read(packed_sgi(1, 5, 4, bytes)), 504);
+  EXPECT_EQ(read(packed_sgi(2, 5, 4, words)), 504);
+  EXPECT_EQ(read(packed_sgi(1, 5, 4, bytes.substr(0, 6))), 504);  // no end is told, none is needed
+  EXPECT_EQ(read(packed_sgi(1, 5, 4, bytes + "xyz")), 504);
+  const std::string damaged = "is damaged: a row has too few or too many pixels";
+  for (const int unit : {1, 2}) {
+    const std::string& row = unit == 1 ? bytes : words;
+    EXPECT_EQ(refused(packed_sgi(unit, 4, 4, row)).message, damaged);
+    EXPECT_EQ(refused(packed_sgi(unit, 6, 4, row)).message, damaged);
+    // Of a run that the row does not hold the reader would take what lies behind it in memory.
+    for (std::size_t left = 0; left < 6 * row.size() / 7; ++left)
+      EXPECT_EQ(refused(packed_sgi(unit, 5, 4, row.substr(0, left))).message, damaged) << unit << " " << left;
+  }
+  EXPECT_EQ(refused(packed_sgi(2, 3, 4, "\0\x83\0\x01\0\x02\0"s)).message, damaged);  // the fuzzer's
+  // The tables have no rows, but by its dimensions the picture has.
+  EXPECT_EQ(refused(packed_sgi(1, 5, 4, std::string(600, 'x'), 2, 0)).message, "is a malformed SGI picture");
+  EXPECT_EQ(refused(packed_sgi(1, 5, 0, std::string(600, 'x'), 1, 3)).message, "is a malformed SGI picture");
+  EXPECT_EQ(refused(packed_sgi(3, 5, 4, bytes)).message, "is a malformed SGI picture");
+  EXPECT_EQ(refused(packed_sgi(1, 5, 4, bytes, 4)).message, "is a malformed SGI picture");
+  EXPECT_EQ(refused(packed_sgi(1, 5, 4, bytes, 3, 33)).message, "is a malformed SGI picture");
+  EXPECT_EQ(refused(packed_sgi(1, 0, 4, bytes)).message, "has no pixels");
+}
+
+TEST_F(HostileHeaders, SgiRowsThatLieInEachOtherAreNotReadAgainAndAgain) {
+  // 3,000 good rows in a file of 65 kB: 236 runs of 127 pixels, from each of 3,000 bytes on.
+  const std::string one(40000, '\xff');
+  std::string all = packed_sgi(1, 236 * 127, 1000, one);
+  const auto put = [&](std::size_t at, std::size_t value) {
+    for (std::size_t i = 0; i < 4; ++i) all[at + i] = static_cast<char>(value >> (24 - 8 * i));
+  };
+  for (std::size_t i = 0; i < 3000; ++i) {
+    put(512 + i * 4, all.size() - one.size() + i);
+    put(512 + (3000 + i) * 4, std::size_t{236} * 128);
+  }
+  EXPECT_EQ(refused(all).message, "is damaged: its rows overlap");
+}
+
 TEST_F(HostileHeaders, PicturesThatReadersDecodeWholeWhenTheyOpenThem) {
   // Sizes that are allowed, of more memory than is: the readers of these formats take it before they tell the size.
   const std::string vp8 = little(0x2a019d, 3) + little(16000, 2) + little(16000, 2);

@@ -3,6 +3,7 @@
 // the modules are valid, of many more shaders: tests/fuzz/spirv.cpp.)
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <random>
 #include <spirv-tools/libspirv.hpp>
@@ -22,8 +23,17 @@ TestImage waves(Size size) {
 
 std::vector<std::byte> values(const CompiledKernel& kernel, std::int32_t n, float g) {
   std::vector<std::byte> out(kernel.block_size);
-  for (const auto& param : kernel.params)
-    std::memcpy(&out[param.offset], param.name == "n" ? static_cast<const void*>(&n) : &g, 4);
+  const auto set = [&](const std::string& name, const auto& value) {
+    for (const auto& param : kernel.params)
+      if (param.name == name && param.offset != KernelParam::kUnread)
+        std::memcpy(&out[param.offset], &value, sizeof value);
+  };
+  set("n", n);
+  set("g", g);
+  set("two", std::array<float, 2>{-g, 1.5f});
+  set("four", std::array<float, 4>{0.25f, g, -2.f, 1.f});
+  set("pair", std::array<std::int32_t, 2>{n - 3, 2});
+  set("flag", std::int32_t{n == 5});
   return out;
 }
 
@@ -40,7 +50,7 @@ TEST(SpirvSteps, PixelsOfRandomShadersStay) {
   std::mt19937 random(11);
   KernelCompiler compiler({});
   int guarded = 0;
-  for (int round = 0; round < 16; ++round) {
+  for (int round = 0; round < 24; ++round) {
     std::vector<std::uint8_t> bytes(36);
     for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
     const std::string text = fuzz::RandomShader(bytes.data(), bytes.size()).text();
@@ -61,7 +71,7 @@ TEST(SpirvSteps, PixelsOfRandomShadersStay) {
       EXPECT_TRUE(same(want, made)) << "n = " << n << ", rows " << desc.config.rows << "\n" << text;
     }
   }
-  EXPECT_GT(guarded, 4);
+  EXPECT_GT(guarded, 5);
   EXPECT_EQ(runner().validation_errors(), 0);
 }
 
