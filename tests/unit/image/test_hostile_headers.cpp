@@ -362,7 +362,6 @@ TEST_F(HostileHeaders, SgiRowsThatGiveOtherPixelsThanThePictureHas) {
   EXPECT_EQ(read(packed_sgi(1, 5, 4, bytes)), 504);
   EXPECT_EQ(read(packed_sgi(2, 5, 4, words)), 504);
   EXPECT_EQ(read(packed_sgi(1, 5, 4, bytes.substr(0, 6))), 504);  // no end is told, none is needed
-  EXPECT_EQ(read(packed_sgi(1, 5, 4, bytes + "xyz")), 504);
   const std::string damaged = "is damaged: a row has too few or too many pixels";
   for (const int unit : {1, 2}) {
     const std::string& row = unit == 1 ? bytes : words;

@@ -50,7 +50,7 @@ TEST(SpirvSteps, PixelsOfRandomShadersStay) {
   std::mt19937 random(11);
   KernelCompiler compiler({});
   int guarded = 0;
-  for (int round = 0; round < 24; ++round) {
+  for (int round = 0; round < 32; ++round) {
     std::vector<std::uint8_t> bytes(36);
     for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
     const std::string text = fuzz::RandomShader(bytes.data(), bytes.size()).text();
