@@ -9,6 +9,7 @@
 #include <map>
 
 #include "core/file.h"
+#include "core/text.h"
 #include "image/input_space.h"
 #include "image/srgb.h"
 #include "image/writer.h"
@@ -96,17 +97,11 @@ std::string cube_text(const Cube& cube, const std::string& title) {
   return out;
 }
 
-std::string xml(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return out;
-}
-
 // Common LUT Format 3: with a logarithm it begins with scene-linear Rec.709 and does the way to ACEScct itself.
 std::string clf_text(const Cube& cube, const std::string& title) {
   std::string out = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<ProcessList id=\"afterglow\" name=\"{}\" compCLFversion=\"3.0\">\n",
-      xml(title));
+      markup_text(title));
   if (cube.shaper == Shaper::log) {
     const Matrix3 m = inverse(to_rec709(kAp1));
     out += "  <Matrix inBitDepth=\"32f\" outBitDepth=\"32f\"><Array dim=\"3 3\">\n";

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "apps/graph_view.h"
+#include "core/text.h"
 #include "graph/history.h"
 
 namespace afterglow {
@@ -24,23 +25,6 @@ struct Node {
   std::size_t row = 0, column = 0;
   double x = 0, y = 0;
 };
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
 
 /// Kernels of several passes share a tint; the others are white.
 std::string tint(const Plan& plan, int kernel) {
@@ -139,10 +123,10 @@ std::string box(const Node& node) {
                   node.x, node.y, kBoxWidth, kBoxHeight, node.rounded ? 22 : 6, node.color);
   const double middle = node.x + kBoxWidth / 2;
   out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\">{}</text>\n", middle, node.y + (node.detail.empty() ? 27 : 19),
-                     escaped(node.label));
+                     markup_text(node.label));
   if (!node.detail.empty())
     out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" class=\"detail\">{}</text>\n", middle, node.y + 35,
-                       escaped(node.detail));
+                       markup_text(node.detail));
   return out;
 }
 
@@ -174,13 +158,13 @@ std::string graph_svg(const Graph& graph, const Plan& plan, const std::string& t
       "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" style=\"fill:#fff;stroke:none\"/>\n",
       width, height);
   out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" class=\"note\" style=\"font-size:17px\">{}</text>\n", kMargin,
-                     kTitle, escaped(title));
+                     kTitle, markup_text(title));
   for (const auto& node : nodes)
     for (const auto input : node.inputs) out += edge(nodes[input], node);
   for (const auto& node : nodes) out += box(node);
   double y = bottom + kMargin + kLine;
   for (const auto& line : lines) {
-    out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" class=\"note\">{}</text>\n", kMargin, y, escaped(line));
+    out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" class=\"note\">{}</text>\n", kMargin, y, markup_text(line));
     y += kLine;
   }
   return out + "</svg>\n";

@@ -63,11 +63,10 @@ Result<void> FrameLoop::run(Schedule& schedule) {
     auto reading = std::move(next.front());
     next.pop_front();
     // The device opens, and shaders, pipelines and memory are made, while the first picture is read.
-    if (i == 0)
+    if (i == 0) {
       if (auto ready = session_.ready(); !ready) return close(std::move(ready));
-    if (i == 0 && !reading->refused) {
-      if (auto prepared = session_.prepare(reading->request); !prepared && ends_run(prepared.error()))
-        return close(fail(*reading->frame, std::move(prepared).error()));
+      auto prepared = reading->refused ? Result<void>() : session_.prepare(reading->request);
+      if (!prepared && ends_run(prepared.error())) return close(fail(*reading->frame, std::move(prepared).error()));
     }
     if (reading->picture.valid()) {
       const auto waiting = Clock::now();

@@ -5,18 +5,13 @@
 #include <cmath>
 
 #include "bench/report.h"
+#include "core/text.h"
 
 namespace afterglow::bench {
 namespace {
 
 constexpr double kWidth = 960, kHeight = 420, kLeft = 70, kRight = 360, kTop = 44, kBottom = 56;
 constexpr double kLeastError = 1e-8;  ///< what is exact stands here on a logarithmic axis
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return out;
-}
 
 /// A logarithmic axis from pixel `from` to pixel `to` over whole decades, or halves of them where values lie close.
 struct LogAxis {
@@ -64,7 +59,7 @@ std::string front_svg(const Report& report, const Cell& cell) {
       "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n"
       "<text x=\"{2}\" y=\"18\" font-size=\"14\">{3} {4}×{5}: run time against error</text>\n"
       "<text x=\"{2}\" y=\"34\" fill=\"#666\">{6}</text>\n",
-      kWidth, kHeight, kLeft, escaped(cell.preset), cell.size.width, cell.size.height, escaped(report.device));
+      kWidth, kHeight, kLeft, markup_text(cell.preset), cell.size.width, cell.size.height, markup_text(report.device));
   for (const double tick : x.ticks())
     out += fmt::format(
         "<path d=\"M{0:.1f} {1}V{2}\" stroke=\"#ddd\"/><text x=\"{0:.1f}\" y=\"{3}\" "
@@ -97,10 +92,11 @@ std::string front_svg(const Report& report, const Cell& cell) {
         "<path d=\"M{:.1f} {:.1f}H{:.1f}\" stroke=\"#888\"/><circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"8\" fill=\"{}\"/>"
         "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" font-size=\"10\" fill=\"#fff\">{}</text>\n",
         x.at(std::max(p->execute.lower, 1e-3)), py, x.at(p->execute.upper), px, py, color, px, py + 3.5, number);
-    out += fmt::format(
-        "<text x=\"{:.0f}\" y=\"{:.0f}\" font-size=\"11\" fill=\"{}\">{}  {}: {:.3g} ms, {:.1e}</text>\n",
-        kWidth - kRight + 16, row, color, number, escaped(p->label + (p->settings.empty() ? "" : " " + p->settings)),
-        p->execute.median, p->quality->error.percentile);
+    out +=
+        fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" font-size=\"11\" fill=\"{}\">{}  {}: {:.3g} ms, {:.1e}</text>\n",
+                    kWidth - kRight + 16, row, color, number,
+                    markup_text(p->label + (p->settings.empty() ? "" : " " + p->settings)), p->execute.median,
+                    p->quality->error.percentile);
   }
   return out + "</svg>\n";
 }

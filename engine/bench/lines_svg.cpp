@@ -21,12 +21,6 @@ struct Line {
   std::vector<std::pair<double, double>> points;
 };
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return out;
-}
-
 std::vector<Line> lines_of(const Report& report) {
   std::vector<Line> lines;
   for (const auto& curve : report.temporal) {
@@ -62,7 +56,7 @@ std::string temporal_svg(const Report& report) {
       "<text x=\"{2}\" y=\"18\" font-size=\"14\">A highlight that drifts by parts of a pixel: how far the light around "
       "it "
       "swings</text>\n<text x=\"{2}\" y=\"34\" fill=\"#666\">largest less smallest, % of the mean; {3}</text>\n",
-      kWidth, kHeight, kLeft, escaped(report.device));
+      kWidth, kHeight, kLeft, markup_text(report.device));
   for (double x = least; x <= most * 1.001; x *= 2)
     out += fmt::format(
         "<path d=\"M{0:.1f} {1}V{2}\" stroke=\"#ddd\"/><text x=\"{0:.1f}\" y=\"{3}\" "
@@ -82,7 +76,7 @@ std::string temporal_svg(const Report& report) {
       path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", across(x), up(y));
     out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"/>\n", path, color);
     out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" font-size=\"10\" fill=\"{}\">{}</text>\n", kWidth - kRight + 14,
-                       kTop + 12 + 16.0 * static_cast<double>(n), color, escaped(lines[n].name));
+                       kTop + 12 + 16.0 * static_cast<double>(n), color, markup_text(lines[n].name));
   }
   return out + "</svg>\n";
 }

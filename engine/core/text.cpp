@@ -75,6 +75,22 @@ std::string lower(std::string_view text) {
   return out;
 }
 
+std::string markup_text(std::string_view text) {
+  std::string out;
+  for (const char c : text)
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  return out;
+}
+
 std::string number_text(double value) {
   if (!std::isfinite(value)) return fmt::format("{}", value);
   // A setting that came as 0.2 must print as 0.2 whether it was kept as a float or as a double.

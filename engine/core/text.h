@@ -22,6 +22,9 @@ bool starts_with_any(std::string_view text, std::span<const std::string_view> pr
 std::string trim(std::string_view text);
 std::string lower(std::string_view text);
 
+/// For XML and HTML, between tags and in attributes: & < > and quotation marks as entities.
+std::string markup_text(std::string_view text);
+
 /// Shortest decimal text that reads back as the same float ("0.2", not "0.20000000298").
 std::string number_text(double value);
 

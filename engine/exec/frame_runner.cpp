@@ -340,7 +340,7 @@ Result<void> FrameRunner::begin(Program& program, const std::map<std::string, Ho
   return s.ahead && s.begun->ran ? s.result.begin_download(s.staging, *s.shown) : Result<void>();
 }
 
-Result<void> FrameRunner::warm_up(Program& program) {
+Result<void> FrameRunner::warm_up(Program& program, bool backwards) {
   State& s = *state_;
   AFTERGLOW_CHECK(s.wait());
   if (program.plan().kernels.empty()) return {};
@@ -352,7 +352,7 @@ Result<void> FrameRunner::warm_up(Program& program) {
       [&](VkCommandBuffer commands) {
         s.inputs.before(program, commands);
         s.result.before(commands);
-        program.record_a_pixel_each(commands);
+        program.record_a_pixel_each(commands, backwards);
         s.inputs.after(commands);
         s.result.after(commands);
       },

@@ -52,8 +52,9 @@ class FrameRunner {
                      const Choose& choose);
   /// Begins to draw a pixel with each kernel of a program that frames will run: drivers of CPU devices compile a kernel
   /// when something is first drawn with it (exec/cpu/warm_up.h), and need not do so in the first frame, which waits for
-  /// this. Makes the images of such frames. No frame may be in flight. Errors: io (over `max_memory`), device.
-  Result<void> warm_up(Program& program);
+  /// this. Makes the images of such frames. No frame may be in flight. `backwards`: see Program::record_a_pixel_each.
+  /// Errors: io (over `max_memory`), device.
+  Result<void> warm_up(Program& program, bool backwards = false);
   /// Until the kernels of the frame that began have run: then its program may be used for another. Errors: device.
   Result<void> wait();
   /// The second half. Errors: device.

@@ -16,6 +16,7 @@
 
 #include "core/saturated.h"
 #include "image/claimed_size.h"
+#include "image/container_bytes.h"
 #include "image/exr_header.h"
 #include "image/sgi_check.h"
 
@@ -24,18 +25,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
-
-std::uint32_t big_endian(const unsigned char* p, int bytes) {
-  std::uint32_t value = 0;
-  for (int i = 0; i < bytes; ++i) value = value << 8 | p[i];
-  return value;
-}
-
-Error malformed(const fs::path& file, const char* why) { return Error{ErrorKind::io, why, file.string()}; }
-
-bool fill(std::ifstream& in, unsigned char* into, std::size_t size) {
-  return static_cast<bool>(in.read(reinterpret_cast<char*>(into), static_cast<std::streamsize>(size)));
-}
 
 /// The checksum of chunk type and data. Told here, damage is one error of ours; libpng would print its own line
 /// besides.

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cstring>
-#include <string_view>
 
+#include "core/text.h"
 #include "window/shortcuts.h"
 
 namespace afterglow {
@@ -34,17 +34,6 @@ void draw_group(const Ui& ui, const char* group) {
   }
   ImGui::EndTable();
   ImGui::Spacing();
-}
-
-std::string html_text(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<' || c == '>' || c == '&')
-      out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : "&amp;";
-    else
-      out += c;
-  }
-  return out;
 }
 
 }  // namespace
@@ -100,11 +89,12 @@ std::string keys_page() {
   const Shortcut* last = nullptr;
   for (const Shortcut& shortcut : shortcuts()) {
     if (std::strcmp(shortcut.group, group) != 0) {
-      out += (*group ? "</table>\n<h2>" : "<h2>") + html_text(shortcut.group) + "</h2>\n<table>\n";
+      out += (*group ? "</table>\n<h2>" : "<h2>") + markup_text(shortcut.group) + "</h2>\n<table>\n";
       group = shortcut.group;
     }
     if (!last || last->action != shortcut.action)
-      out += "<tr><td>" + html_text(keys_of(shortcut.action)) + "</td><td>" + html_text(shortcut.doc) + "</td></tr>\n";
+      out +=
+          "<tr><td>" + markup_text(keys_of(shortcut.action)) + "</td><td>" + markup_text(shortcut.doc) + "</td></tr>\n";
     last = &shortcut;
   }
   return out + "</table>\n</html>\n";

@@ -22,7 +22,7 @@ struct HelpLayout {
 };
 HelpLayout help_layout(const std::vector<HelpGroup>& groups, int columns);
 
-/// The same as a page of HTML that fits on two sheets of A4.
+/// The same as a page of HTML, to print.
 std::string keys_page();
 
 /// Over everything else, in the middle of an area of this size; draws nothing unless `ui.show_help`.

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include "core/file.h"
 #include "image/reader.h"
@@ -36,14 +38,29 @@ class PlayWindow : public testing::Test {
     fs::remove_all(folder_, ec);
   }
 
-  void write_picture_file(const std::string& name, float level) {
+  using Light = std::array<float, 3>;
+  /// Of 64×40 pixels.
+  void write_picture_file(const std::string& name, const std::function<Light(int x, int y)>& light) {
     Picture picture;
     picture.color = Image(64, 40, 4);
-    for (std::size_t i = 0; i < picture.color.pixels.size(); ++i) picture.color.pixels[i] = i % 4 == 3 ? 1 : level;
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const Light rgb = light(x, y);
+        float* pixel = &picture.color.pixels[static_cast<std::size_t>(y * 64 + x) * 4];
+        std::copy(rgb.begin(), rgb.end(), pixel);
+        pixel[3] = 1;
+      }
     picture.data_window = picture.display_window = {0, 0, 64, 40};
     Diagnostics nowhere;
     const auto written = write_picture(picture, folder_ / name, {}, nowhere);
     ASSERT_TRUE(written) << written.error().text();
+  }
+
+  void write_picture_file(const std::string& name, const Light& light) {
+    write_picture_file(name, [&](int, int) { return light; });
+  }
+  void write_picture_file(const std::string& name, float level) {
+    write_picture_file(name, Light{level, level, level});
   }
 
   /// A look that keeps of each channel what `filter` says.
@@ -80,15 +97,19 @@ class PlayWindow : public testing::Test {
     }
     return true;
   }
+  static bool is(const std::uint8_t* rgb, const Color& color) {
+    return rgb[0] == color[0] && rgb[1] == color[1] && rgb[2] == color[2];
+  }
   static int count_color(const Screen& screen, const Color& color) {
     int count = 0;
-    for (int y = 0; y < screen.size.height; ++y) {
-      for (int x = 0; x < screen.size.width; ++x) {
-        const std::uint8_t* rgb = screen.at(x, y);
-        count += rgb[0] == color[0] && rgb[1] == color[1] && rgb[2] == color[2];
-      }
-    }
+    for (int y = 0; y < screen.size.height; ++y)
+      for (int x = 0; x < screen.size.width; ++x) count += is(screen.at(x, y), color);
     return count;
+  }
+  /// The handle of a slider, orange, in the first row of the panel.
+  bool shows_handle(int x) {
+    const Screen screen = shot();
+    return !screen.rgb.empty() && screen.at(x, 171)[0] > 110 && screen.at(x, 171)[2] < 60;
   }
 
   void expect_clean_end() {

@@ -27,14 +27,7 @@ class PlayEditing : public PlayWindow {
 
   /// What follows Ctrl+F goes to the field, from the first letter on: some are shortcuts elsewhere.
   void open(const std::vector<std::string>& more = {}) {
-    Picture picture;
-    picture.color = Image(64, 40, 4);
-    for (std::size_t i = 0; i < picture.color.pixels.size(); ++i)
-      picture.color.pixels[i] = i % 4 == 0 ? 0.6f : i % 4 == 3 ? 1 : 0.1f;
-    picture.data_window = picture.display_window = {0, 0, 64, 40};
-    Diagnostics nowhere;
-    const auto written = write_picture(picture, folder_ / "colored.exr", {}, nowhere);
-    ASSERT_TRUE(written) << written.error().text();
+    ASSERT_NO_FATAL_FAILURE(write_picture_file("colored.exr", Light{0.6f, 0.1f, 0.1f}));
     write_look("0");
     std::vector<std::string> arguments{"look.lua", "colored.exr"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -44,10 +37,7 @@ class PlayEditing : public PlayWindow {
     ASSERT_TRUE(user("mousemove 400 300 key ctrl+f type saturation"));
     ASSERT_TRUE(user("key Return"));
     // The slider's handle, in the middle of the only row.
-    ASSERT_TRUE(until([&] {
-      const Screen screen = shot();
-      return !screen.rgb.empty() && screen.at(1004, 171)[0] > 110 && screen.at(1004, 171)[2] < 60;
-    })) << "the search has not found the setting alone";
+    ASSERT_TRUE(until([&] { return shows_handle(1004); })) << "the search has not found the setting alone";
   }
   /// Opens the field by a double click, and leaves it by a key.
   void type(const std::string& value, const std::string& key) {

@@ -17,18 +17,6 @@ constexpr Color kAccent{255, 158, 60}, kPanelGround{30, 30, 31};
 
 class PlayMended : public PlayWindow {
  protected:
-  /// Of 64×40 pixels; `level` of each.
-  void write_levels(const std::string& name, const std::function<float(int x, int y)>& level) {
-    Picture picture;
-    picture.color = Image(64, 40, 4);
-    for (int y = 0; y < 40; ++y)
-      for (int x = 0; x < 64; ++x)
-        for (std::size_t c = 0; c < 4; ++c)
-          picture.color.pixels[static_cast<std::size_t>(y * 64 + x) * 4 + c] = c == 3 ? 1 : level(x, y);
-    picture.data_window = picture.display_window = {0, 0, 64, 40};
-    Diagnostics nowhere;
-    ASSERT_TRUE(write_picture(picture, folder_ / name, {}, nowhere));
-  }
   void open(const std::vector<std::string>& arguments) {
     write_preset("{ 1, 1, 1 }");
     std::vector<std::string> all{"look.lua"};
@@ -45,10 +33,6 @@ class PlayMended : public PlayWindow {
                      " click 1"));
     ASSERT_TRUE(user("mousemove 250 120"));
   }
-  static bool is(const std::uint8_t* rgb, const Color& color) {
-    return rgb[0] == color[0] && rgb[1] == color[1] && rgb[2] == color[2];
-  }
-
   /// Fields and buttons of a part of the screen: what hangs together of their two greys, row by row, from left to
   /// right.
   static std::vector<Rect> boxes(const Screen& screen, const Rect& part) {
@@ -181,7 +165,10 @@ TEST_F(PlayMended, TheRangeIsSeenOnTheTimeline) {
 
 /// Columns of light and of none: the nearest pixel has no colour between, a linear way has.
 TEST_F(PlayMended, TheBarSwitchesZoomAndWhatLiesBetweenPixels) {
-  ASSERT_NO_FATAL_FAILURE(write_levels("columns.exr", [](int x, int) { return x % 2 == 0 ? 0.5f : 0.0f; }));
+  ASSERT_NO_FATAL_FAILURE(write_picture_file("columns.exr", [](int x, int) {
+    const float level = x % 2 == 0 ? 0.5f : 0.0f;
+    return Light{level, level, level};
+  }));
   ASSERT_NO_FATAL_FAILURE(open({"columns.exr", "--geometry", "1280x800+0+0"}));
   const auto between = [&] {
     const Screen screen = shot();
@@ -233,11 +220,7 @@ TEST_F(PlayMended, TipsAndMessagesStayOutOfTheWay) {
   ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
   ASSERT_TRUE(user("mousemove 400 300 key ctrl+f type saturation"));
   ASSERT_TRUE(user("key Return"));
-  const auto handle_at = [&](int x) {
-    const Screen screen = shot();
-    return !screen.rgb.empty() && screen.at(x, 171)[0] > 110 && screen.at(x, 171)[2] < 60;
-  };
-  ASSERT_TRUE(until([&] { return handle_at(1004); }));
+  ASSERT_TRUE(until([&] { return shows_handle(1004); }));
   // Below the only row nothing else is drawn.
   const auto below = [&] {
     const Screen screen = shot();
@@ -248,7 +231,7 @@ TEST_F(PlayMended, TipsAndMessagesStayOutOfTheWay) {
   };
   EXPECT_EQ(below(), 0);
   ASSERT_TRUE(user("mousemove 1004 171 mousedown 1 mousemove 1030 171 mousemove 1060 171"));
-  EXPECT_TRUE(until([&] { return handle_at(1060); })) << "the slider follows";
+  EXPECT_TRUE(until([&] { return shows_handle(1060); })) << "the slider follows";
   EXPECT_EQ(below(), 0) << "nothing covers what is dragged";
   ASSERT_TRUE(user("mouseup 1"));
   EXPECT_TRUE(until([&] { return below() > 500; })) << "the tip, when the pointer rests";
@@ -259,7 +242,7 @@ TEST_F(PlayMended, TipsAndMessagesStayOutOfTheWay) {
   EXPECT_TRUE(until([&] { return text_of("look.lua").find("saturation = 0 }") == std::string::npos; }));
   ASSERT_TRUE(program_->wait_for("reload"));
   EXPECT_TRUE(until([&] { return !is(shot().at(450, 24), {26, 26, 26}); })) << "the message, over the picture";
-  EXPECT_TRUE(handle_at(1060)) << "the row is where it was";
+  EXPECT_TRUE(shows_handle(1060)) << "the row is where it was";
   const Screen after = shot();
   for (int y = 165; y < 178; ++y) EXPECT_EQ(before.at(930, y)[0], after.at(930, y)[0]) << y;
   quit();
@@ -268,27 +251,18 @@ TEST_F(PlayMended, TipsAndMessagesStayOutOfTheWay) {
 /// The slider's field and the menu of a right click are come to without a mouse; the bar takes the keyboard and gives
 /// it back.
 TEST_F(PlayMended, TheKeyboardAloneChangesSettings) {
-  Picture picture;
   std::ofstream(folder_ / "look.lua")
       << "local fx = require \"afterglow\"\nreturn fx.stack {\n  name = \"test look\",\n  fx.color_adjustments { "
          "hue_shift = 0.01, saturation = 0 },\n}\n";
   constexpr Color kColored{203, 89, 89}, kDull{126, 126, 126};
-  picture.color = Image(64, 40, 4);
-  for (std::size_t i = 0; i < picture.color.pixels.size(); ++i)
-    picture.color.pixels[i] = i % 4 == 0 ? 0.6f : i % 4 == 3 ? 1 : 0.1f;
-  picture.data_window = picture.display_window = {0, 0, 64, 40};
-  Diagnostics nowhere;
   for (const char* name : {"c.0001.exr", "c.0002.exr", "c.0003.exr"})
-    ASSERT_TRUE(write_picture(picture, folder_ / name, {}, nowhere));
+    ASSERT_NO_FATAL_FAILURE(write_picture_file(name, Light{0.6f, 0.1f, 0.1f}));
   play({"look.lua", "c.####.exr", "--paused", "--geometry", "1280x800+0+0"});
   ASSERT_TRUE(program_->wait_for("shown c.0001.exr"));
   ASSERT_TRUE(until_color(kX, kY, kColored));
   ASSERT_TRUE(user("key ctrl+f type saturation"));
   ASSERT_TRUE(user("key Return"));
-  ASSERT_TRUE(until([&] {
-    const Screen screen = shot();
-    return !screen.rgb.empty() && screen.at(1004, 171)[0] > 110 && screen.at(1004, 171)[2] < 60;
-  })) << "the search has not found the setting alone";
+  ASSERT_TRUE(until([&] { return shows_handle(1004); })) << "the search has not found the setting alone";
   const auto framed = [&](int x, int y) {
     return until([&] {
       const Screen screen = shot();

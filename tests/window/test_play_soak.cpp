@@ -37,21 +37,13 @@ int srgb_code(double light) {
 class PlaySoak : public PlayWindow {
  protected:
   /// Colours that tell frames apart by far more than a code.
-  static std::array<float, 3> light_of(int frame) {
+  static Light light_of(int frame) {
     return {0.05f + 0.1f * static_cast<float>(frame % 8), 0.05f + 0.15f * static_cast<float>(frame / 8), 0.4f};
   }
 
   void write_frames() {
-    for (int frame = 1; frame <= kFrames; ++frame) {
-      Picture picture;
-      picture.color = Image(64, 40, 4);
-      const auto light = light_of(frame);
-      for (std::size_t i = 0; i < picture.color.pixels.size(); ++i)
-        picture.color.pixels[i] = i % 4 == 3 ? 1 : light[i % 4];
-      picture.data_window = picture.display_window = {0, 0, 64, 40};
-      Diagnostics nowhere;
-      ASSERT_TRUE(write_picture(picture, folder_ / fmt::format("soak.{:04}.exr", frame), {}, nowhere));
-    }
+    for (int frame = 1; frame <= kFrames; ++frame)
+      ASSERT_NO_FATAL_FAILURE(write_picture_file(fmt::format("soak.{:04}.exr", frame), light_of(frame)));
   }
 
   /// A look that keeps `keeps` of each channel; saved at once, as editors do.

@@ -335,7 +335,8 @@ TEST_F(PlayWindow, WhatIsTypedIntoTheSearchIsNoShortcut) {
   expect_clean_end();
 }
 
-/// A key that does something is not a word to the interface too: Tab does not choose a field, which would take what follows.
+/// A key that does something is not a word to the interface too: Tab does not choose a field, which would take what
+/// follows.
 TEST_F(PlayWindow, TabHidesThePanelAndTheNextKeyTheBar) {
   write_preset("{ 1, 0, 0 }");
   play({"look.lua", "shot.0001.exr"});
@@ -355,10 +356,7 @@ TEST_F(PlayWindow, ArgumentsAreDraggedInThePanel) {
   play({"look.lua", "shot.0001.exr", "--paused"});
   ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
   EXPECT_TRUE(until_color(kX, kY, kRed));
-  EXPECT_TRUE(until([&] {  // the slider's handle, orange, in the first row of the panel
-    const Screen screen = shot();
-    return !screen.rgb.empty() && screen.at(923, 171)[0] > 110 && screen.at(923, 171)[2] < 60;
-  }));
+  EXPECT_TRUE(until([&] { return shows_handle(923); }));
   const int before = shot().at(950, 171)[0];
   ASSERT_TRUE(user("mousemove 923 171"));  // the slider is lit
   EXPECT_TRUE(until([&] { return shot().at(950, 171)[0] != before; }));

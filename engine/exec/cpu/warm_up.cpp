@@ -2,14 +2,12 @@
 #include "exec/cpu/warm_up.h"
 
 #include <cstdlib>
+#include <limits>
 #include <string_view>
 
-#include "exec/frame_inputs.h"
-#include "exec/frame_result.h"
+#include "exec/frame_runner.h"
 #include "exec/histories.h"
-#include "exec/host_input.h"
 #include "exec/pipeline_pool.h"
-#include "exec/submit.h"
 
 namespace afterglow {
 namespace {
@@ -28,15 +26,10 @@ bool cache_is_off() {
 }  // namespace
 
 struct WarmUp::State {
-  State(std::unique_ptr<Device> device_in)
-      : device(std::move(device_in)), inputs(*device, true), result(*device, true) {}
-
   std::unique_ptr<Device> device;
   PipelinePool pipelines;
   std::unique_ptr<Program> last;  ///< keeps its pipelines, with which the driver keeps what it has compiled
-  FrameInputs inputs;
-  FrameResult result;
-  Submitter submitter;  // last: it waits before the images go
+  std::unique_ptr<FrameRunner> runner;
 };
 
 WarmUp::WarmUp(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -49,8 +42,10 @@ Result<std::unique_ptr<WarmUp>> WarmUp::create(const Device& device, bool valida
   AFTERGLOW_TRY(
       auto own,
       Device::create({.device = device.info().uuid, .validate = validate, .forced = device.forced()}, nowhere));
-  auto state = std::make_unique<State>(std::move(own));
-  AFTERGLOW_TRY(state->submitter, Submitter::create(*state->device));
+  auto state = std::make_unique<State>();
+  state->device = std::move(own);
+  constexpr FrameRunner::Options kNoLimit{.max_memory = std::numeric_limits<std::uint64_t>::max()};
+  AFTERGLOW_TRY(state->runner, FrameRunner::create(*state->device, kNoLimit));
   return std::unique_ptr<WarmUp>(new WarmUp(std::move(state)));
 }
 
@@ -64,20 +59,9 @@ Result<void> WarmUp::draw(ShaderLibrary& shaders, KernelCompiler& compiler, cons
   options.histories = nullptr;
   AFTERGLOW_TRY(auto program, Program::create(*s.device, shaders, compiler, graph, options));
   if (program->plan().kernels.empty()) return {};
-  AFTERGLOW_TRY(const auto wanted, FrameInputs::wanted_by(*program, usual_inputs(graph)));
-  AFTERGLOW_CHECK(s.submitter.wait());
-  AFTERGLOW_CHECK(s.inputs.prepare(wanted));
-  AFTERGLOW_CHECK(s.result.take(FrameResult::wanted_by(*program), program->result_rows()));
   if (program->histories()) program->histories()->begin(0);
-  AFTERGLOW_CHECK(program->bind(s.inputs.bindings(), binding_of(s.result.image())));
-  AFTERGLOW_CHECK(s.submitter.submit([&](VkCommandBuffer commands) {
-    s.inputs.before(*program, commands);
-    s.result.before(commands);
-    program->record_a_pixel_each(commands, true);
-    s.inputs.after(commands);
-    s.result.after(commands);
-  }));
-  AFTERGLOW_CHECK(s.submitter.wait());
+  AFTERGLOW_CHECK(s.runner->warm_up(*program, true));
+  AFTERGLOW_CHECK(s.runner->wait());
   s.last = std::move(program);
   return {};
 }

@@ -132,5 +132,10 @@ TEST(Filter, TextTellsFiltersApart) {
   EXPECT_NE(a.text(), b.text());
 }
 
+TEST(Text, MarkupNamesWhatItsReadersTakeForTheirs) {
+  EXPECT_EQ(markup_text("a < b && c > \"d\""), "a &lt; b &amp;&amp; c &gt; &quot;d&quot;");
+  EXPECT_EQ(markup_text("1920×1080"), "1920×1080");
+}
+
 }  // namespace
 }  // namespace afterglow
