@@ -10,17 +10,23 @@
 #if defined(__linux__)
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <unistd.h>
 #endif
 
 namespace afterglow {
 
-/// Advice about memory that has not been touched yet; nothing depends on it.
+/// Advice about memory that has not been touched yet; nothing depends on it. What is smaller than a large page stays as
+/// it is.
 inline void use_large_pages(void* begin, std::size_t bytes) {
 #if defined(__linux__)
-  constexpr std::uintptr_t kLarge = 2u << 20;
+  constexpr std::size_t kLarge = 2u << 20;
+  if (bytes < kLarge) return;
+  static const auto small = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  // From the page on in which it begins: large allocations begin with a few bytes of the C library's, at a place where
+  // newer kernels (6.7) can put a large page.
   const auto address = reinterpret_cast<std::uintptr_t>(begin);
-  const std::uintptr_t first = (address + kLarge - 1) / kLarge * kLarge, last = (address + bytes) / kLarge * kLarge;
-  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+  const std::uintptr_t first = address / small * small, last = (address + bytes + small - 1) / small * small;
+  madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
 #else
   static_cast<void>(begin), static_cast<void>(bytes);
 #endif

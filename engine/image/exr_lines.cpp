@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 #if defined(__x86_64__)
@@ -16,6 +17,7 @@
 #include "core/file_time.h"
 #include "core/half.h"
 #include "core/parallel.h"
+#include "core/spares.h"
 #include "image/exr_zip.h"
 
 namespace afterglow {
@@ -141,7 +143,8 @@ class LineReader {
     const int chunk_bytes = static_cast<int>(std::min<std::size_t>(line_bytes_ * lines_, kFetchedBytes));
     const int most =
         std::min(chunks, std::max(2 * threads, static_cast<int>(kFetchedBytes) / std::max(chunk_bytes, 1)));
-    std::vector<std::vector<std::uint8_t>> packed(static_cast<std::size_t>(most));
+    std::vector<Packed> packed(static_cast<std::size_t>(most));
+    Spares<Unpacker> unpackers;
     for (int first = 0; first < chunks; first += most) {
       const int count = std::min(most, chunks - first);
       {
@@ -150,32 +153,45 @@ class LineReader {
       }
       const long long samples = static_cast<long long>(line_bytes_) * lines_ * count;
       parallel_rows(count, samples, [&](int begin, int end) {
-        ExrUnzip unzip;
-        std::vector<std::uint8_t> bytes(line_bytes_ * static_cast<std::size_t>(lines_));
-        for (int i = begin; i < end; ++i) unpack(first + i, packed[static_cast<std::size_t>(i)], unzip, bytes);
+        const auto unpacker = unpackers.borrow([&] { return std::make_unique<Unpacker>(chunk_room()); });
+        for (int i = begin; i < end; ++i) unpack(first + i, packed[static_cast<std::size_t>(i)], *unpacker);
       });
     }
   }
 
  private:
-  int lines_of(int chunk) const { return std::min(lines_, part_.data_window.height - chunk * lines_); }
+  /// A chunk as the file has it.
+  struct Packed {
+    std::unique_ptr<std::uint8_t[]> bytes;  ///< room for one that is stored as it is
+    std::size_t size = 0;
+  };
+  /// What a thread needs for one chunk after the other.
+  struct Unpacker {
+    explicit Unpacker(std::size_t room) : bytes(std::make_unique_for_overwrite<std::uint8_t[]>(room)) {}
+    ExrUnzip unzip;
+    std::unique_ptr<std::uint8_t[]> bytes;
+  };
 
-  void fetch(int chunk, std::vector<std::uint8_t>& packed) {
-    packed.resize(line_bytes_ *
-                  static_cast<std::size_t>(lines_of(chunk)));  // what does not get shorter is stored as it is
-    int size = static_cast<int>(packed.size());
-    input_.rawPixelDataToBuffer(part_.data_window.y + chunk * lines_, reinterpret_cast<char*>(packed.data()), size);
-    if (size < 0 || static_cast<std::size_t>(size) > packed.size()) throw damaged(chunk);
-    packed.resize(static_cast<std::size_t>(size));
+  int lines_of(int chunk) const { return std::min(lines_, part_.data_window.height - chunk * lines_); }
+  std::size_t chunk_room() const { return line_bytes_ * static_cast<std::size_t>(lines_); }
+
+  void fetch(int chunk, Packed& packed) {
+    if (!packed.bytes) packed.bytes = std::make_unique_for_overwrite<std::uint8_t[]>(chunk_room());
+    const std::size_t most =
+        line_bytes_ * static_cast<std::size_t>(lines_of(chunk));  // what does not get shorter is stored as it is
+    int size = static_cast<int>(most);
+    input_.rawPixelDataToBuffer(part_.data_window.y + chunk * lines_, reinterpret_cast<char*>(packed.bytes.get()),
+                                size);
+    if (size < 0 || static_cast<std::size_t>(size) > most) throw damaged(chunk);
+    packed.size = static_cast<std::size_t>(size);
   }
 
-  void unpack(int chunk, std::span<const std::uint8_t> packed, ExrUnzip& unzip,
-              std::vector<std::uint8_t>& bytes) const {
+  void unpack(int chunk, const Packed& packed, Unpacker& unpacker) const {
     const std::size_t length = line_bytes_ * static_cast<std::size_t>(lines_of(chunk));
-    const std::uint8_t* stored = packed.data();
-    if (packed.size() != length) {
-      if (!unzip.run(packed, {bytes.data(), length})) throw damaged(chunk);
-      stored = bytes.data();
+    const std::uint8_t* stored = packed.bytes.get();
+    if (packed.size != length) {
+      stored = unpacker.bytes.get();
+      if (!unpacker.unzip.run({packed.bytes.get(), packed.size}, {unpacker.bytes.get(), length})) throw damaged(chunk);
     }
     for (int y = 0; y < lines_of(chunk); ++y, stored += line_bytes_) take_(chunk * lines_ + y, stored);
     if (rows_) rows_(chunk * lines_, chunk * lines_ + lines_of(chunk));

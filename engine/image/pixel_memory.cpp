@@ -73,7 +73,9 @@ WorkMemory::Block WorkMemory::take(std::size_t size) {
   }
   if (block.size >= size && block.size / 2 <= size) return block;
   block = {};  // before the new one is made: the two need not exist at once
-  return {std::make_unique_for_overwrite<std::uint8_t[]>(size), size};
+  block = {std::make_unique_for_overwrite<std::uint8_t[]>(size), size};
+  use_large_pages(block.bytes.get(), size);
+  return block;
 }
 
 void WorkMemory::give(Block block) {

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/parallel.h"
+#include "core/spares.h"
 #include "core/text.h"
 #include "image/deflate.h"
 #include "image/kept_values.h"
@@ -135,8 +137,17 @@ void write_header(const Picture& picture, const StripForm& form, OutputFile& out
   write_texts(out, metadata);
 }
 
+/// What a thread needs to filter rows.
+struct FilterRoom {
+  static constexpr int kRows = 16;  ///< that are encoded at a time
+  explicit FilterRoom(std::size_t row_bytes) : rows((1 + kRows) * row_bytes), scratch(4 * row_bytes) {}
+  std::vector<std::uint8_t> rows;  ///< the first: above the others
+  std::vector<std::uint8_t> scratch;
+};
+
 /// Rows [begin, end), each behind the number of its filter.
-void filter_rows(const Picture& picture, const StripForm& form, int begin, int end, std::uint8_t* filtered) {
+void filter_rows(const Picture& picture, const StripForm& form, int begin, int end, FilterRoom& room,
+                 std::uint8_t* filtered) {
   const std::size_t row_bytes = form.row_bytes(picture), pixel = (form.alpha ? 4 : 3) * form.sample_bytes();
   const auto encode = [&](int y, int rows, std::uint8_t* samples) {
     encode_rows(picture, form, y, rows, samples);
@@ -144,11 +155,10 @@ void filter_rows(const Picture& picture, const StripForm& form, int begin, int e
       for (std::size_t i = 0; i + 1 < row_bytes * static_cast<std::size_t>(rows); i += 2)
         std::swap(samples[i], samples[i + 1]);  // PNG is big-endian
   };
-  constexpr int kRows = 16;                                                         // that are encoded at a time
-  std::vector<std::uint8_t> rows((1 + kRows) * row_bytes), scratch(4 * row_bytes);  // the first: above the others
+  auto& [rows, scratch] = room;
   if (begin > 0) encode(begin - 1, 1, rows.data());
   for (int y = begin; y < end;) {
-    const int count = std::min(kRows, end - y);
+    const int count = std::min(FilterRoom::kRows, end - y);
     encode(y, count, &rows[row_bytes]);
     const std::uint8_t* row = rows.data();
     for (int i = 0; i < count; ++i, ++y) {
@@ -167,6 +177,15 @@ void write_data(OutputFile& out, std::span<const std::uint8_t> packed) {
 
 Error no_room() { return {ErrorKind::other, "PNG: what was packed is longer than it can be"}; }
 
+/// What a thread needs for one strip after the other.
+struct StripPacker {
+  StripPacker(int level, std::size_t row_bytes, std::size_t strip_bytes)
+      : deflate(level), room(row_bytes), filtered(std::make_unique_for_overwrite<std::uint8_t[]>(strip_bytes)) {}
+  Deflate deflate;
+  FilterRoom room;
+  std::unique_ptr<std::uint8_t[]> filtered;
+};
+
 /// Strips of rows are filtered and packed by several threads.
 Result<void> write_strips(const Picture& picture, const StripForm& form, OutputFile& out, int level,
                           WorkMemory& memory) {
@@ -183,17 +202,18 @@ Result<void> write_strips(const Picture& picture, const StripForm& form, OutputF
   const std::size_t room = Deflate::bound(strip_bytes);
   WorkMemory::Block block = memory.take(room * strips.size());
   const auto place = [&](std::size_t i) { return std::span(block.bytes.get() + room * i, room); };
+  Spares<StripPacker> packers;
   parallel_rows(static_cast<int>(strips.size()), static_cast<long long>(row) * height, [&](int begin, int end) {
-    Deflate deflate(level);
-    std::vector<std::uint8_t> filtered(strip_bytes);
+    const auto packer =
+        packers.borrow([&] { return std::make_unique<StripPacker>(level, form.row_bytes(picture), strip_bytes); });
     for (int i = begin; i < end; ++i) {
       Strip& strip = strips[static_cast<std::size_t>(i)];
       const int first = i * rows, last = std::min(first + rows, height);
-      filter_rows(picture, form, first, last, filtered.data());
+      filter_rows(picture, form, first, last, packer->room, packer->filtered.get());
       strip.bytes = row * static_cast<std::size_t>(last - first);
-      const auto bytes = std::span(filtered).first(strip.bytes);
+      const std::span bytes(packer->filtered.get(), strip.bytes);
       strip.sum = adler32_of(bytes);
-      strip.packed = deflate.piece(bytes, last == height, place(static_cast<std::size_t>(i)));
+      strip.packed = packer->deflate.piece(bytes, last == height, place(static_cast<std::size_t>(i)));
     }
   });
   write_chunk(out, "IDAT", kStreamHead, sizeof kStreamHead);
@@ -220,7 +240,8 @@ Result<void> write_whole(const Picture& picture, const StripForm& form, OutputFi
   WorkMemory::Block block = memory.take(size + room);
   const std::span filtered(block.bytes.get(), size), packed(block.bytes.get() + size, room);
   parallel_rows(height, static_cast<long long>(size), [&](int begin, int end) {
-    filter_rows(picture, form, begin, end, &filtered[row * static_cast<std::size_t>(begin)]);
+    FilterRoom scratch(form.row_bytes(picture));
+    filter_rows(picture, form, begin, end, scratch, &filtered[row * static_cast<std::size_t>(begin)]);
   });
   const std::size_t length = deflate.stream(filtered, packed);
   if (length == 0) return no_room();

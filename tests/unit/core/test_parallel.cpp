@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
 #include "core/parallel.h"
+#include "core/spares.h"
 
 namespace afterglow {
 namespace {
@@ -26,6 +28,54 @@ TEST(ParallelFor, AnExceptionOfAnyThreadEndsTheLoop) {
   };
   EXPECT_THROW(parallel_for(1'000'000, work), std::runtime_error);
   EXPECT_LT(done, 500'000u);
+}
+
+TEST(Spares, AreMadeForThoseThatWorkAtATimeAndKeepWhatTheyHold) {
+  struct Thing {
+    std::atomic<bool> used = false;
+    int uses = 0;
+  };
+  std::atomic<int> made = 0, now = 0, most = 0, uses = 0, shared = 0;
+  Spares<Thing> spares;
+  const auto make = [&] {
+    ++made;
+    return std::make_unique<Thing>();
+  };
+  for (int round = 0; round < 3; ++round)
+    parallel_for(100, [&](std::size_t) {
+      const int here = ++now;
+      for (int before = most; before < here && !most.compare_exchange_weak(before, here);) {
+      }
+      {
+        const auto thing = spares.borrow(make);
+        if (thing->used.exchange(true)) ++shared;
+        ++thing->uses;
+        thing->used = false;
+      }
+      --now;
+    });
+  EXPECT_EQ(shared, 0) << "two had the same one";
+  EXPECT_LE(made, most);
+  std::vector<std::unique_ptr<Spares<Thing>::Borrowed>> all;
+  for (int i = made; i > 0; --i) {
+    all.push_back(std::unique_ptr<Spares<Thing>::Borrowed>(new Spares<Thing>::Borrowed(spares.borrow(make))));
+    uses += (*all.back())->uses;
+  }
+  EXPECT_EQ(uses, 300);
+}
+
+TEST(Spares, ComeBackWhenTheirUserFails) {
+  int made = 0;
+  Spares<int> spares;
+  const auto make = [&] { return std::make_unique<int>(++made); };
+  try {
+    const auto one = spares.borrow(make);
+    *one = 7;
+    throw std::runtime_error("in between");
+  } catch (const std::runtime_error&) {
+  }
+  EXPECT_EQ(*spares.borrow(make), 7);
+  EXPECT_EQ(made, 1);
 }
 
 }  // namespace
