@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 
@@ -131,17 +132,33 @@ Result<std::vector<ImageId>> images_of_slots(const Graph& graph, const PlanKerne
 }
 
 Result<CompiledKernels> compile_kernels(KernelCompiler& compiler, const std::vector<KernelDesc>& kernels) {
-  CompiledKernels out;
-  std::map<Hash, int> seen;
-  std::vector<const KernelDesc*> unique;
+  // Most levels of a pyramid are described alike, and what is not may still come to one text.
+  std::vector<const KernelDesc*> descs;
+  std::vector<std::size_t> desc_of;
   for (const auto& kernel : kernels) {
-    AFTERGLOW_TRY(const AssembledKernel assembled, assemble(kernel));
-    const auto [at, is_new] = seen.emplace(assembled.hash, static_cast<int>(unique.size()));
-    if (is_new) unique.push_back(&kernel);
-    out.index.push_back(at->second);
+    const auto same = std::ranges::find_if(descs, [&](const KernelDesc* d) { return same_kernel(*d, kernel); });
+    desc_of.push_back(static_cast<std::size_t>(same - descs.begin()));
+    if (same == descs.end()) descs.push_back(&kernel);
   }
-  std::vector<std::optional<Result<CompiledKernel>>> results(unique.size());
-  parallel_for(unique.size(), [&](std::size_t i) { results[i].emplace(compiler.compile(*unique[i])); });
+  std::vector<std::optional<Result<AssembledKernel>>> texts(descs.size());
+  parallel_for(descs.size(), [&](std::size_t i) { texts[i].emplace(assemble(*descs[i])); });
+  std::map<Hash, int> seen;
+  std::vector<int> unique_of;
+  std::vector<std::size_t> order;  // of what is compiled, by its place in `descs`
+  for (std::size_t i = 0; i < descs.size(); ++i) {
+    if (!*texts[i]) return std::move(*texts[i]).error();
+    const auto [at, is_new] = seen.emplace(texts[i]->value().hash, static_cast<int>(order.size()));
+    if (is_new) order.push_back(i);
+    unique_of.push_back(at->second);
+  }
+  CompiledKernels out;
+  for (const auto desc : desc_of) out.index.push_back(unique_of[desc]);
+  std::vector<std::optional<Result<CompiledKernel>>> results(order.size());
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return texts[i]->value().glsl.size(); });
+  parallel_for(order.size(), [&](std::size_t k) {
+    const std::size_t i = order[k];
+    results[static_cast<std::size_t>(unique_of[i])].emplace(compiler.compile(*descs[i], std::move(*texts[i]).value()));
+  });
   for (auto& result : results) {
     if (!*result) return std::move(*result).error();
     out.unique.push_back(std::move(*result).value());

@@ -2,6 +2,7 @@
 #include "exec/kernel_pipelines.h"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -104,6 +105,9 @@ Result<KernelPipelines> KernelPipelines::create(const Device& device, const std:
   if (missing.empty()) return out;
   AFTERGLOW_TRY(const ShaderModuleHandle vertex,
                 create_shader_module(device, kFullscreenVertex, "full-screen triangle"));
+  // The longest first: that of a look's last kernel often takes ten times as long as another, and would begin when
+  // nothing is left to do beside it.
+  std::ranges::stable_sort(missing, std::greater(), [&](std::size_t i) { return kernels[i].spirv.size(); });
   std::vector<std::optional<Result<Made>>> made(missing.size());
   parallel_for(made.size(), [&](std::size_t k) {
     const std::size_t i = missing[k];

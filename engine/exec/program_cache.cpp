@@ -68,15 +68,18 @@ ShaderFindings check_kernels(ShaderLibrary& shaders, KernelCompiler& compiler, c
   ProgramOptions options{.config = config, .inputs_are_storage = true, .unorm8 = work.unorm8, .flag_non_finite = true};
   fit_to_cpu_driver(options.config);
   ShaderFindings found;
+  std::vector<KernelDesc> seen;               // most levels of a pyramid are described alike
   for (const bool compute : {false, true}) {  // both ways of passes that have two
     options.config.compute = compute;
     for (const auto& kernel : make_plan(work.graph, options.config).kernels) {
       if (compute && !kernel.compute) continue;
       const auto check = [&]() -> Result<void> {
-        AFTERGLOW_TRY(const KernelDesc desc, describe_kernel(shaders, work.graph, kernel, options));
-        AFTERGLOW_TRY(const AssembledKernel assembled, assemble(desc));
+        AFTERGLOW_TRY(KernelDesc desc, describe_kernel(shaders, work.graph, kernel, options));
+        if (std::ranges::any_of(seen, [&](const KernelDesc& other) { return same_kernel(other, desc); })) return {};
+        seen.push_back(std::move(desc));
+        AFTERGLOW_TRY(AssembledKernel assembled, assemble(seen.back()));
         if (!checked.insert(assembled.hash).second) return {};
-        AFTERGLOW_TRY(const CompiledKernel compiled, compiler.compile(desc));
+        AFTERGLOW_TRY(const CompiledKernel compiled, compiler.compile(seen.back(), std::move(assembled)));
         found.warnings.insert(found.warnings.end(), compiled.warnings.begin(), compiled.warnings.end());
         return {};
       };

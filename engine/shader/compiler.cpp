@@ -148,6 +148,10 @@ KernelCompiler::~KernelCompiler() = default;
 
 Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc) {
   AFTERGLOW_TRY(AssembledKernel assembled, assemble(desc));
+  return compile(desc, std::move(assembled));
+}
+
+Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc, AssembledKernel assembled) {
   const auto entry = state_->entry(assembled.hash);
   std::shared_ptr<const KernelFile> made;
   {

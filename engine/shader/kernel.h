@@ -93,6 +93,9 @@ struct KernelDesc {
   std::vector<ImageRead> reads{};
 };
 
+/// Whether both come to the same text: all but the labels of their stages counts. Cheap beside `assemble`.
+bool same_kernel(const KernelDesc& a, const KernelDesc& b);
+
 /// Name and version of the compiler of kernels: part of cache keys. Does not initialise it.
 std::string glsl_compiler_version();
 
@@ -209,6 +212,8 @@ class KernelCompiler {
 
   /// Errors (script): GLSL errors, with the author's file and line, and the compiler's further lines in `trail`.
   Result<CompiledKernel> compile(const KernelDesc& kernel);
+  /// The same of what `assemble` made of the kernel.
+  Result<CompiledKernel> compile(const KernelDesc& kernel, AssembledKernel assembled);
 
   struct Counters {
     int compiled = 0, from_disk = 0, from_memory = 0;

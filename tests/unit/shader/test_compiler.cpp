@@ -91,6 +91,47 @@ TEST(KernelCompiler, OneTextIsCompiledOnce) {
   EXPECT_EQ(compiler.counters().compiled, 2);
 }
 
+TEST(SameKernel, AllButLabelsCounts) {
+  ShaderFiles files;
+  KernelDesc kernel = one(files.stage("t/a", kThreshold));
+  kernel.filter = Filter{};
+  const auto changed = [&](const auto& change) {
+    KernelDesc other = kernel;
+    change(other);
+    return other;
+  };
+  const KernelDesc labelled = changed([](KernelDesc& k) { k.stages[0].label = "another.level[3]"; });
+  EXPECT_TRUE(same_kernel(kernel, kernel));
+  EXPECT_TRUE(same_kernel(kernel, labelled));
+  EXPECT_EQ(assemble(kernel)->hash, assemble(labelled)->hash);
+
+  const KernelStage stage = files.stage("t/b", kThreshold);
+  const KernelDesc others[] = {
+      changed([](KernelDesc& k) { k.filter->x[0].weight = 0.5; }),
+      changed([](KernelDesc& k) { k.filter.reset(); }),
+      changed([](KernelDesc& k) { k.ratio_x = AxisRatio::half; }),
+      changed([](KernelDesc& k) { k.ratio_y = AxisRatio::half; }),
+      changed([](KernelDesc& k) { k.filter_channels = 1; }),
+      changed([&](KernelDesc& k) { k.sample = stage; }),
+      changed([&](KernelDesc& k) { k.stages.push_back(stage); }),
+      changed([&](KernelDesc& k) { k.stages[0].shader = stage.shader; }),
+      changed([](KernelDesc& k) { k.stages[0].constants["count"] = 3; }),
+      changed([](KernelDesc& k) { k.stages[0].straight = true; }),
+      changed([](KernelDesc& k) { k.stages[0].color = kOwnImage; }),
+      changed([](KernelDesc& k) { k.stages[0].values["high"] = 0; }),
+      changed([](KernelDesc& k) {
+        k.stages[0].again["high"] = {0, "source"};
+      }),
+      changed([](KernelDesc& k) { k.stages[0].channels = 1; }),
+      changed([](KernelDesc& k) { k.config.rows = 2; }),
+      changed([](KernelDesc& k) { k.target = KernelTarget::float16; }),
+      changed([](KernelDesc& k) { k.target_channels = 2; }),
+      changed([](KernelDesc& k) { k.finite_check = FiniteCheck::flag; }),
+      changed([](KernelDesc& k) { k.reads = {ImageRead::storage_rgba32f}; }),
+  };
+  for (std::size_t i = 0; i < std::size(others); ++i) EXPECT_FALSE(same_kernel(kernel, others[i])) << i;
+}
+
 class KernelCache : public testing::Test {
  protected:
   Result<CompiledKernel> compile(KernelCompiler::Counters& counters) {
