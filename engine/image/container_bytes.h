@@ -17,6 +17,13 @@ inline std::uint32_t big_endian(const unsigned char* p, std::size_t bytes) {
   return value;
 }
 
+/// The same, the lowest first.
+inline std::uint32_t little_endian(const unsigned char* p, std::size_t bytes) {
+  std::uint32_t value = 0;
+  for (std::size_t i = bytes; i > 0; --i) value = value << 8 | p[i - 1];
+  return value;
+}
+
 inline Error malformed(const std::filesystem::path& file, const char* why) {
   return Error{ErrorKind::io, why, file.string()};
 }

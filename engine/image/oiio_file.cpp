@@ -123,6 +123,7 @@ class OiioFile : public PictureFile {
   Result<void> open_input(const std::string& format) {
     OIIO::ImageSpec wanted, found;
     wanted.attribute("oiio:UnassociatedAlpha", 1);  // straight alpha stays straight: it is multiplied after decoding
+    wanted.attribute("bmp:monochrome_detect", 0);   // grey ones that are packed are written beyond a line else
     input_ = OIIO::ImageInput::create(format);
     if (!input_) return failed(message_of(OIIO::geterror()));
     if (!input_->open(path_.string(), found, wanted)) return failed(message_of(input_->geterror()));
