@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "image/film_check.h"
 
-#include <array>
 #include <optional>
+#include <vector>
 
 #include "image/container_bytes.h"
 
@@ -12,22 +12,18 @@ namespace {
 constexpr const char* kMalformed = "is malformed: its header makes no sense";
 
 /// The header, whose numbers have the order that the file's first four bytes tell.
-template <std::size_t kBytes>
 class FilmHeader {
  public:
-  bool read(std::ifstream& in, unsigned char first_if_big) {
-    in.seekg(0);
-    if (!fill(in, bytes_.data(), bytes_.size())) return false;
-    big_ = bytes_[0] == first_if_big;
-    return true;
-  }
+  FilmHeader(std::ifstream& in, std::size_t bytes, unsigned char first_if_big)
+      : bytes_(bytes_at(in, 0, bytes)), whole_(bytes_.size() == bytes), big_(whole_ && bytes_[0] == first_if_big) {}
+  bool whole() const { return whole_; }
   std::uint32_t number(std::size_t at, std::size_t bytes) const {
     return big_ ? big_endian(&bytes_[at], bytes) : little_endian(&bytes_[at], bytes);
   }
 
  private:
-  std::array<unsigned char, kBytes> bytes_{};
-  bool big_ = true;
+  std::vector<unsigned char> bytes_;
+  bool whole_, big_;
 };
 
 /// Bytes of one line of so many samples.
@@ -67,8 +63,8 @@ std::optional<std::uint32_t> dpx_channels(std::uint32_t descriptor) {
 Result<void> check_dpx(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
   constexpr std::uint32_t kUndefined = 0xffffffff, kMostSide = 1u << 20;
   constexpr std::size_t kElement = 780;
-  FilmHeader<kElement + 72> header;
-  if (!header.read(in, 'S')) return malformed(file, "is truncated");
+  const FilmHeader header(in, kElement + 72, 'S');
+  if (!header.whole()) return malformed(file, "is truncated");
   // OpenImageIO makes room for as many bytes of the user's data as the header claims.
   const std::uint32_t user_bytes = header.number(32, 4);
   if (user_bytes != kUndefined && user_bytes > size) return malformed(file, "is truncated");
@@ -99,8 +95,8 @@ Result<void> check_dpx(const std::filesystem::path& file, std::ifstream& in, std
 Result<void> check_cineon(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
   constexpr std::size_t kElements = 196, kElement = 28;
   constexpr std::uint32_t kMostSide = 1u << 20;
-  FilmHeader<692> header;
-  if (!header.read(in, 0x80)) return malformed(file, "is truncated");
+  const FilmHeader header(in, 692, 0x80);
+  if (!header.whole()) return malformed(file, "is truncated");
   const std::uint32_t elements = header.number(193, 1);
   if (elements < 1 || elements > 8) return malformed(file, kMalformed);
   const std::uint32_t bits = header.number(kElements + 2, 1);

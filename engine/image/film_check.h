@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// DPX and Cineon files that OpenImageIO 2.4 reads beyond its memory with, or leaves memory unfilled for. Internal to the
-// room.
+// DPX and Cineon files that OpenImageIO 2.4 reads beyond its memory with, or leaves memory unfilled for. Internal to
+// the room.
 #pragma once
 
 #include <filesystem>

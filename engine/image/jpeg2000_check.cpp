@@ -14,16 +14,6 @@ namespace {
 
 constexpr std::uint64_t kMostProfile = 16u << 20;
 
-std::vector<unsigned char> bytes_at(std::ifstream& in, std::uint64_t at, std::uint64_t count) {
-  std::vector<unsigned char> bytes(count);
-  in.clear();
-  in.seekg(static_cast<std::streamoff>(at));
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
-  in.clear();
-  return bytes;
-}
-
 struct Box {
   std::string type;
   std::uint64_t begin = 0, end = 0;  ///< of what it holds
@@ -101,8 +91,7 @@ Result<std::optional<ClaimedSize>> check_jpeg2000(const std::filesystem::path& f
   const auto number = [&](std::size_t place) { return std::uint64_t{big_endian(&head[place], 4)}; };
   const std::uint64_t x1 = number(8), y1 = number(12), x0 = number(16), y0 = number(20);
   const std::size_t channels = big_endian(&head[40], 2);
-  if (x0 >= x1 || y0 >= y1 || channels == 0 || kFixed + 3 * channels > head.size())
-    return std::optional<ClaimedSize>();
+  if (x0 >= x1 || y0 >= y1 || channels == 0 || kFixed + 3 * channels > head.size()) return std::optional<ClaimedSize>();
   if (y0 > 0) return malformed(file, "does not begin at its first line, which cannot be read right");
   std::optional<Extent> across, down;
   for (std::size_t c = 0; c < channels; ++c) {

@@ -20,7 +20,9 @@ class JpegMetadata {
   /// What is wrong with a segment, behind its length; null when nothing is.
   const char* add(unsigned char marker, Bytes segment) {
     const std::string_view text(reinterpret_cast<const char*>(segment.data()), segment.size());
-    const auto begins = [&](std::string_view with) { return text.substr(0, with.size() + 1) == std::string(with) + '\0'; };
+    const auto begins = [&](std::string_view with) {
+      return text.substr(0, with.size() + 1) == std::string(with) + '\0';
+    };
     constexpr std::string_view kExif = "Exif", kProfile = "ICC_PROFILE", kXmp = "http://ns.adobe.com/xap/1.0/",
                                kPhotoshop = "Photoshop 3.0";
     constexpr std::size_t kProfileHead = 14;

@@ -15,15 +15,6 @@ namespace {
 
 constexpr const char* kNoColor = "is damaged: a pixel has a colour that its table does not hold";
 
-std::vector<unsigned char> whole(std::ifstream& in, std::uint64_t size) {
-  std::vector<unsigned char> bytes(size);
-  in.seekg(0);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
-  in.clear();
-  return bytes;
-}
-
 /// Whether every pixel of a Targa has a colour; where it ends too early its reader says so.
 bool targa_colors_exist(std::span<const unsigned char> bytes, bool packed) {
   const std::uint32_t first = little_endian(&bytes[3], 2), colors = little_endian(&bytes[5], 2);
@@ -114,7 +105,7 @@ class GifCodes {
 }  // namespace
 
 Result<ClaimedSize> check_targa(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
-  const std::vector<unsigned char> bytes = whole(in, size);
+  const std::vector<unsigned char> bytes = bytes_at(in, 0, size);
   if (bytes.size() < 18) return malformed(file, "is truncated");
   const unsigned kind = bytes[2];
   if ((kind == 1 || kind == 9) && !targa_colors_exist(bytes, kind == 9)) return malformed(file, kNoColor);
@@ -140,7 +131,7 @@ Result<std::optional<ClaimedSize>> check_bmp(const std::filesystem::path& file, 
 }
 
 Result<void> check_gif(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
-  const std::vector<unsigned char> bytes = whole(in, size);
+  const std::vector<unsigned char> bytes = bytes_at(in, 0, size);
   if (bytes.size() < 13) return malformed(file, "is truncated");
   const auto table = [](unsigned flags) { return (flags & 0x80) != 0 ? 2u << (flags & 7) : 0u; };
   std::uint32_t colors = table(bytes[10]);

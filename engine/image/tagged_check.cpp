@@ -20,16 +20,6 @@ namespace {
 constexpr std::uint64_t kMostMetadata = 16u << 20;
 using Buffer = std::vector<unsigned char>;
 
-Buffer bytes_at(std::ifstream& in, std::uint64_t at, std::uint64_t count) {
-  Buffer bytes(count);
-  in.clear();
-  in.seekg(static_cast<std::streamoff>(at));
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
-  in.clear();
-  return bytes;
-}
-
 /// As far as it can be unpacked, like libpng, which stops at 8 MB.
 Buffer inflated(Bytes packed) {
   constexpr std::size_t kMost = 8'000'000, kStep = 1u << 16;
@@ -70,7 +60,8 @@ const char* hex_exif_fault(Bytes text) {
       bytes.push_back(static_cast<unsigned char>(value(text[at]) << 4 | value(text[at + 1])));
       at += 2;
     }
-  const std::string begin(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bytes.size(), 4)));
+  const std::string begin(bytes.begin(),
+                          bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bytes.size(), 4)));
   return lower(begin) == "exif" ? exif_fault(bytes) : nullptr;
 }
 
