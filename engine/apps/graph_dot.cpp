@@ -6,6 +6,7 @@
 
 #include "apps/graph_view.h"
 #include "core/json_text.h"
+#include "core/printable.h"
 #include "graph/condition.h"
 #include "graph/history.h"
 
@@ -14,9 +15,9 @@ namespace {
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
-  for (const char c : text) {
+  for (const char c : printable(text)) {
     if (c == '"' || c == '\\') out += '\\';
-    out += c == '\n' ? ' ' : c;
+    out += c;
   }
   return out + "\"";
 }
@@ -29,7 +30,7 @@ std::string node(const Graph& graph, ImageId image) {
 
 std::string pass_line(const Graph& graph, int index) {
   const Pass& pass = graph.passes[static_cast<std::size_t>(index)];
-  std::string label = fmt::format("{}\n{} {}", pass.name, info_of(pass.kind).name, size_text(graph, pass));
+  std::string label = fmt::format("{}\n{} {}", printable(pass.name), info_of(pass.kind).name, size_text(graph, pass));
   std::string escaped;
   for (const char c : label)
     escaped += c == '\n' ? std::string("\\n") : c == '"' ? std::string("\\\"") : std::string(1, c);

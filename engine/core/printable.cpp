@@ -7,13 +7,14 @@ namespace afterglow {
 namespace {
 
 /// Bytes of the character at `at` if it is none that a line may hold, else 0. Those that turn the direction of text or
-/// end lines (U+200E, U+200F, U+2028–202E, U+2066–2069) could make a message read as another.
+/// end lines (U+061C, U+200E, U+200F, U+2028–202E, U+2066–2069) could make a message read as another.
 std::size_t unprintable(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t ahead) -> unsigned {
     return at + ahead < text.size() ? static_cast<unsigned char>(text[at + ahead]) : 0u;
   };
   if (byte(0) < 0x20 || byte(0) == 0x7F) return 1;
   if (byte(0) == 0xC2 && (byte(1) & 0xE0) == 0x80) return 2;
+  if (byte(0) == 0xD8 && byte(1) == 0x9C) return 2;
   if (byte(0) != 0xE2) return 0;
   const bool marks = byte(1) == 0x80 && (byte(2) == 0x8E || byte(2) == 0x8F || (byte(2) >= 0xA8 && byte(2) <= 0xAE));
   const bool isolates = byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9;

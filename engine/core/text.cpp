@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/printable.h"
+
 namespace afterglow {
 namespace {
 
@@ -77,7 +79,7 @@ std::string lower(std::string_view text) {
 
 std::string markup_text(std::string_view text) {
   std::string out;
-  for (const char c : text)
+  for (const char c : printable(std::string(text), true))
     if (c == '&')
       out += "&amp;";
     else if (c == '<')

@@ -5,14 +5,10 @@
 #include <array>
 #include <string_view>
 
+#include "image/container_bytes.h"
+
 namespace afterglow {
 namespace {
-
-std::uint32_t little_endian(const unsigned char* p, int bytes) {
-  std::uint32_t value = 0;
-  for (int i = bytes; i > 0; --i) value = value << 8 | p[i - 1];
-  return value;
-}
 
 Size size_of(std::uint32_t width, std::uint32_t height) {
   constexpr std::uint32_t kLargest = 0x7fffffff;

@@ -2,9 +2,11 @@
 // What the checks of containers share. Internal to the room.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 #include "core/result.h"
 
@@ -17,6 +19,13 @@ inline std::uint32_t big_endian(const unsigned char* p, std::size_t bytes) {
   return value;
 }
 
+/// The same, the lowest first.
+inline std::uint32_t little_endian(const unsigned char* p, std::size_t bytes) {
+  std::uint32_t value = 0;
+  for (std::size_t i = bytes; i > 0; --i) value = value << 8 | p[i - 1];
+  return value;
+}
+
 inline Error malformed(const std::filesystem::path& file, const char* why) {
   return Error{ErrorKind::io, why, file.string()};
 }
@@ -24,6 +33,17 @@ inline Error malformed(const std::filesystem::path& file, const char* why) {
 /// False: the file ends before.
 inline bool fill(std::ifstream& in, unsigned char* into, std::size_t size) {
   return static_cast<bool>(in.read(reinterpret_cast<char*>(into), static_cast<std::streamsize>(size)));
+}
+
+/// So many bytes from a place on, fewer where the file ends before.
+inline std::vector<unsigned char> bytes_at(std::ifstream& in, std::uint64_t at, std::uint64_t count) {
+  std::vector<unsigned char> bytes(count);
+  in.clear();
+  in.seekg(static_cast<std::streamoff>(at));
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+  in.clear();
+  return bytes;
 }
 
 }  // namespace afterglow

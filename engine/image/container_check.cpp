@@ -18,7 +18,13 @@
 #include "image/claimed_size.h"
 #include "image/container_bytes.h"
 #include "image/exr_header.h"
+#include "image/film_check.h"
+#include "image/jpeg2000_check.h"
+#include "image/jpeg_check.h"
+#include "image/numbered_check.h"
+#include "image/picture_format.h"
 #include "image/sgi_check.h"
+#include "image/tagged_check.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
@@ -79,69 +85,10 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
       facts.primaries = Chromaticities{xy(1), xy(2), xy(3), xy(0)};
     }
     AFTERGLOW_CHECK(check_sum(file, in, at, length));
+    if (const char* why = png_metadata_fault(type, in, at + 8, length)) return malformed(file, why);
     if (type == "IEND") return facts;
     at += 12 + length;
   }
-}
-
-bool is_frame_header(unsigned char marker) {
-  return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-}
-
-bool is_progressive(unsigned char marker) { return (marker & 3) == 2; }
-
-/// Walks the segments, and the entropy-coded data for its end marker.
-Result<ContainerFacts> check_jpeg(const fs::path& file, std::ifstream& in, std::uint64_t size) {
-  constexpr std::uint64_t kLargestFile = 1u << 30;
-  if (size > kLargestFile) return malformed(file, "is larger than any JPEG should be");
-  std::vector<unsigned char> bytes(size);
-  in.seekg(0);
-  if (!fill(in, bytes.data(), bytes.size())) return malformed(file, "cannot be read");
-  ContainerFacts facts;
-  facts.kind = ContainerFacts::Kind::jpeg;
-  std::size_t at = 2;
-  while (at + 1 < bytes.size()) {
-    // Between segments and inside coded data alike: the next 0xff that is followed by a marker.
-    if (bytes[at] != 0xff || bytes[at + 1] == 0xff || bytes[at + 1] == 0 ||
-        (bytes[at + 1] >= 0xd0 && bytes[at + 1] <= 0xd7)) {
-      const auto* next = static_cast<const unsigned char*>(std::memchr(&bytes[at + 1], 0xff, bytes.size() - at - 1));
-      if (!next) break;
-      at = static_cast<std::size_t>(next - bytes.data());
-      continue;
-    }
-    const unsigned char marker = bytes[at + 1];
-    if (marker == 0xd9) {
-      if (!facts.size) return malformed(file, "is a malformed JPEG");
-      return facts;
-    }
-    if (at + 4 > bytes.size()) break;
-    const std::size_t length = big_endian(&bytes[at + 2], 2);
-    if (length < 2 || at + 2 + length > bytes.size()) break;
-    if (is_frame_header(marker)) {
-      if (length < 8 || facts.size) return malformed(file, "is a malformed JPEG");
-      facts.size =
-          Size{static_cast<int>(big_endian(&bytes[at + 7], 2)), static_cast<int>(big_endian(&bytes[at + 5], 2))};
-      if (facts.size->width < 1 || facts.size->height < 1) return malformed(file, "has no pixels");
-      const auto area = static_cast<std::uint64_t>(facts.size->area());
-      // Huffman codes (the first three kinds) take a bit at least for each block of 8×8.
-      if (marker <= 0xc2) facts.least_file_bytes = area / 64 / 8;
-      if (is_progressive(marker)) facts.decoder_bytes = area * bytes[at + 9] * sizeof(std::int16_t);
-    }
-    at += 2 + length;
-  }
-  return malformed(file, "is truncated");
-}
-
-/// OpenImageIO makes room for as many bytes of the user's data as the header claims.
-Result<ContainerFacts> check_dpx(const fs::path& file, std::ifstream& in, std::uint64_t size, bool big) {
-  constexpr std::uint32_t kUndefined = 0xffffffff;
-  std::array<unsigned char, 4> field{};
-  in.seekg(32);
-  if (!fill(in, field.data(), field.size())) return malformed(file, "is truncated");
-  if (!big) std::ranges::reverse(field);
-  const std::uint32_t user_bytes = big_endian(field.data(), 4);
-  if (user_bytes != kUndefined && user_bytes > size) return malformed(file, "is truncated");
-  return ContainerFacts{};
 }
 
 }  // namespace
@@ -169,14 +116,26 @@ Result<ContainerFacts> check_container(const fs::path& file) {
   };
   if (starts_with(kPngMagic)) return check_png(file, in, size);
   if (starts_with("\xff\xd8\xff")) return check_jpeg(file, in, size);
-  if (starts_with("SDPX") || starts_with("XPDS")) return check_dpx(file, in, size, starts_with("SDPX"));
-  if (starts_with("\x01\xda")) {
-    AFTERGLOW_CHECK(check_sgi(file, in, size));
-    return ContainerFacts{};
-  }
   ContainerFacts facts;
   if (is_exr(file)) facts.kind = ContainerFacts::Kind::exr;
-  if (const auto claimed = claimed_size(head)) {
+  std::optional<ClaimedSize> claimed = claimed_size(head);
+  const std::string format = picture_format(file);
+  if (format == "dpx") AFTERGLOW_CHECK(check_dpx(file, in, size));
+  if (format == "cineon") AFTERGLOW_CHECK(check_cineon(file, in, size));
+  if (format == "sgi") AFTERGLOW_CHECK(check_sgi(file, in, size));
+  if (format == "gif") AFTERGLOW_CHECK(check_gif(file, in, size));
+  if (format == "webp") AFTERGLOW_CHECK(check_webp(file, in, size));
+  if (format == "tiff") AFTERGLOW_CHECK(check_tiff(file, in, size));
+  if (format == "targa") {
+    AFTERGLOW_TRY(claimed, check_targa(file, in, size));
+  }
+  if (format == "bmp") {
+    AFTERGLOW_TRY(claimed, check_bmp(file, in));
+  }
+  if (format == "jpeg2000") {
+    AFTERGLOW_TRY(claimed, check_jpeg2000(file, in, size));
+  }
+  if (claimed) {
     facts.size = claimed->size;
     facts.decoder_bytes =
         saturated_product({static_cast<std::uint64_t>(claimed->size.area()), claimed->bytes_per_pixel});

@@ -11,6 +11,7 @@
 #include "core/exception.h"
 #include "core/saturated.h"
 #include "core/text.h"
+#include "image/heif_check.h"
 #include "image/icc_profile.h"
 #include "image/input_space.h"
 #include "image/oiio_metadata.h"
@@ -43,6 +44,7 @@ class OiioFile : public PictureFile {
 
   Result<void> open(const std::string& format, const SizeLimits& limits) {
     try {
+      if (format == "heif") AFTERGLOW_CHECK(check_heif(path_));
       AFTERGLOW_CHECK(open_input(format));
       format_ = input_->format_name();
       AFTERGLOW_CHECK(add_parts(limits));
@@ -123,6 +125,7 @@ class OiioFile : public PictureFile {
   Result<void> open_input(const std::string& format) {
     OIIO::ImageSpec wanted, found;
     wanted.attribute("oiio:UnassociatedAlpha", 1);  // straight alpha stays straight: it is multiplied after decoding
+    wanted.attribute("bmp:monochrome_detect", 0);   // grey ones that are packed are written beyond a line else
     input_ = OIIO::ImageInput::create(format);
     if (!input_) return failed(message_of(OIIO::geterror()));
     if (!input_->open(path_.string(), found, wanted)) return failed(message_of(input_->geterror()));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -233,6 +234,11 @@ std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
   module.code = std::move(code);
   declare(module, declarations);
 
+  if (!inlines_quickly(module)) {  // any of them may be read
+    std::vector<std::uint32_t> all(unset.size());
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
+  }
   spvtools::Optimizer optimizer(kSpirvEnvironment);
   add_inlining_passes(optimizer);
   optimizer.RegisterPass(spvtools::CreateSSARewritePass())

@@ -1,7 +1,49 @@
 // SPDX-License-Identifier: MIT
 #include "shader/spirv_passes.h"
 
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "core/saturated.h"
+
 namespace afterglow {
+namespace {
+
+struct Calls {
+  std::vector<std::uint32_t> of;  ///< functions, once for each call
+  bool stays = false;             ///< is called, never inlined
+  std::uint64_t inlined = 0;      ///< with those of the functions that it calls
+  bool counted = false;
+};
+
+/// GLSL has no recursion.
+std::uint64_t inlined_calls(std::map<std::uint32_t, Calls>& functions, std::uint32_t id) {
+  Calls& calls = functions[id];
+  if (calls.counted) return calls.inlined;
+  calls.counted = true;
+  for (const auto called : calls.of) {
+    const std::uint64_t inner = inlined_calls(functions, called);
+    if (!functions[called].stays) calls.inlined = saturated_sum({calls.inlined, inner, 1});
+  }
+  return calls.inlined;
+}
+
+}  // namespace
+
+bool inlines_quickly(const Module& module) {
+  std::map<std::uint32_t, Calls> functions;
+  Calls* function = nullptr;
+  for (const auto& i : module.code) {
+    if (i.op == spv::OpFunction) {
+      function = &functions[i.result];
+      function->stays = (i.words[3] & spv::FunctionControlDontInlineMask) != 0;
+    }
+    if (i.op == spv::OpFunctionCall && function) function->of.push_back(i.words[3]);
+  }
+  return std::ranges::all_of(
+      functions, [&](const auto& named) { return inlined_calls(functions, named.first) <= kMaxInlinedCalls; });
+}
 
 void add_inlining_passes(spvtools::Optimizer& optimizer) {
   optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});

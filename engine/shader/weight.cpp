@@ -44,10 +44,38 @@ class Places {
         if (declares && token.is_identifier() && token.text == name) return {path, token.line};
       }
     }
-    return {texts_.empty() ? std::string() : texts_.front().first, 0};
+    return nowhere();
+  }
+  /// Constants have no names behind the compiler. The constructor with the most elements: `float[3](1.0, 2.0, 3.0)`.
+  Place of_constant() const {
+    Place place = nowhere();
+    std::size_t most = 0;
+    for (const auto& [path, text] : texts_) {
+      const auto tokens = tokenize(text, path);
+      if (!tokens) continue;
+      for (std::size_t i = 1; i < tokens->size(); ++i) {
+        if (!(*tokens)[i].is("(") || !(*tokens)[i - 1].is("]")) continue;
+        const std::size_t count = elements(*tokens, i);
+        if (count > most) place = {path, (*tokens)[i].line};
+        most = std::max(most, count);
+      }
+    }
+    return place;
   }
 
  private:
+  Place nowhere() const { return {texts_.empty() ? std::string() : texts_.front().first, 0}; }
+  /// How many stand between the parenthesis at `open` and its other one.
+  static std::size_t elements(const std::vector<Token>& tokens, std::size_t open) {
+    std::size_t count = 1;
+    int depth = 0;
+    for (std::size_t i = open; i < tokens.size(); ++i) {
+      depth += tokens[i].is("(") ? 1 : tokens[i].is(")") ? -1 : 0;
+      if (depth == 0) break;
+      count += depth == 1 && tokens[i].is(",") ? 1 : 0;
+    }
+    return count;
+  }
   void add(const ShaderSource& source) {
     texts_.emplace_back(source.path.string(), source.text);
     for (const auto& include : source.includes) texts_.emplace_back(include.path.string(), include.text);
@@ -168,7 +196,8 @@ class Scales {
   }
 
   void keep_largest(std::uint64_t bytes, std::uint32_t id) {
-    if (bytes > largest_.first) largest_ = {bytes, id};
+    const bool better_known = bytes == largest_.first && !names_.contains(largest_.second) && names_.contains(id);
+    if (bytes > largest_.first || better_known) largest_ = {bytes, id};
   }
 
   /// What a function and all that it calls come to. GLSL has no recursion.
@@ -209,7 +238,7 @@ class Scales {
     const auto named = names_.find(id);
     std::string name = named == names_.end() ? std::string() : original_names(named->second);
     name = name.substr(0, name.find('('));  // functions bring the types of their arguments along
-    const Place place = Places(kernel_).of(name);
+    const Place place = name.empty() ? Places(kernel_).of_constant() : Places(kernel_).of(name);
     Error error =
         shader_error(place.file, place.line, fmt::format(fmt::runtime(message), name.empty() ? "an array" : name));
     error.allowed = std::move(allowed);

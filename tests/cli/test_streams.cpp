@@ -83,6 +83,15 @@ TEST_F(Streams, CharactersThatTurnTextAreNotPrinted) {
   const Outcome outcome = run({"check", turned});
   EXPECT_TRUE(is_one_error_line(outcome.err));
   EXPECT_THAT(outcome.err, HasSubstr("a b c d\xE2\x80\x93.lua")) << "a dash stays";
+  write("name.lua",
+        "return require(\"afterglow\").stack { name = \"a\\27[2Jb\\u{202E}c\\u{61C}d\", "
+        "require(\"afterglow\").tone_mapping {} }\n");
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"check", "name.lua"}, {"explain", "name.lua"}, {"graph", "name.lua"}}) {
+    const Outcome named = run(arguments);
+    EXPECT_EQ(named.exit_code, kDone) << named.err;
+    EXPECT_THAT(named.out, HasSubstr("a [2Jb c d")) << arguments[0];
+  }
 }
 
 TEST_F(Streams, FilesThatLookLikeOptionsAreNamed) {

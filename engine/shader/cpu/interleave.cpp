@@ -50,6 +50,7 @@ void forbid_inlining(Module& module, std::uint32_t function) {
 /// Everything that the row function calls becomes part of it, and branches that only choose a value become selections.
 std::optional<Module> flatten(Module module, std::uint32_t function) {
   forbid_inlining(module, function);
+  if (!inlines_quickly(module)) return std::nullopt;
   spvtools::Optimizer optimizer(kSpirvEnvironment);
   add_inlining_passes(optimizer);
   optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())

@@ -101,6 +101,13 @@ TEST(Hostile, WhatAShaderHoldsIsLimited) {
   refused("const int kSide = 64;\n#define COUNT (kSide * kSide)\n" +
               in_apply("float a[COUNT]; a[int(c.r)] = 1.0; c.r = a[int(c.g)];"),
           4, "a");
+  // Constants have no name behind the compiler; what is handed on has none of its own.
+  refused("vec4 few = vec4[2](vec4(1), vec4(2))[0];\nconst float kMany[400] =\n  float[400](0.5" +
+              repeat(", 1.0", 399) + ");\n" + in_apply("c.r = kMany[int(c.r)];"),
+          3, "an array");
+  refused("struct S { float a[300]; };\nS twice(\n  S many) { many.a[1] *= 2.0; return many; }\n" +
+              in_apply("S s; s.a[int(c.r)] = 1.0;\nc.r = twice(s).a[int(c.g)];"),
+          3, "many");
   // Each by itself is small.
   std::string all, sum;
   for (int i = 0; i < 20; ++i) {

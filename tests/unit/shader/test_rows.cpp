@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Several rows an invocation: what the work on one pixel is taken apart into, and that every row gets the very bits
 // that it gets alone.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cstring>
@@ -116,6 +117,19 @@ TEST(Interleave, LeavesLoopsAsTheyAre) {
   const CompiledKernel kernel = compiled(kStages[4]);
   EXPECT_EQ(count(kernel, spv::OpLoopMerge), 1);
   EXPECT_GE(count(kernel, spv::OpFunctionCall), 8);
+}
+
+/// 1023 calls: SPIRV-Tools would take seconds to make one function of them.
+TEST(Interleave, LeavesManyCallsAsTheyAre) {
+  std::string calls = "float f0(float x) { return sqrt(abs(x)); }\n";
+  for (int i = 1; i <= 9; ++i)
+    calls += fmt::format("float f{0}(float x) {{ return f{1}(x) + f{1}(x * 2.0); }}\n", i, i - 1);
+  EXPECT_GE(
+      count(compiled((calls + "vec4 apply(vec4 color) { return color + f9(color.r); }").c_str()), spv::OpFunctionCall),
+      8);
+  EXPECT_EQ(
+      count(compiled((calls + "vec4 apply(vec4 color) { return color + f6(color.r); }").c_str()), spv::OpFunctionCall),
+      0);
 }
 
 TEST(Interleave, RowsTakeTurns) {

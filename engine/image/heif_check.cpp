@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "image/heif_check.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace afterglow {
+namespace {
+
+// What is used of libheif's C interface, which is stable. Its headers are no dependency of OpenImageIO's package.
+struct HeifError {
+  int code, subcode;
+  const char* message;
+};
+constexpr int kRgb = 1, kInterleavedRgb = 10, kInterleavedRgba = 11, kInterleaved = 10;
+
+class Heif {
+ public:
+  Heif() : library_(dlopen("libheif.so.1", RTLD_LAZY | RTLD_LOCAL)) {
+    if (!library_) return;
+    whole_ = take(alloc, "heif_context_alloc") && take(free, "heif_context_free") &&
+             take(read, "heif_context_read_from_file") && take(primary, "heif_context_get_primary_image_handle") &&
+             take(has_alpha, "heif_image_handle_has_alpha_channel") &&
+             take(claimed_width, "heif_image_handle_get_width") &&
+             take(claimed_height, "heif_image_handle_get_height") && take(release, "heif_image_handle_release") &&
+             take(decode, "heif_decode_image") && take(width, "heif_image_get_width") &&
+             take(height, "heif_image_get_height") && take(release_image, "heif_image_release");
+  }
+  bool whole() const { return whole_; }
+
+  void* (*alloc)() = nullptr;
+  void (*free)(void*) = nullptr;
+  HeifError (*read)(void*, const char*, const void*) = nullptr;
+  HeifError (*primary)(void*, void**) = nullptr;
+  int (*has_alpha)(const void*) = nullptr;
+  int (*claimed_width)(const void*) = nullptr;
+  int (*claimed_height)(const void*) = nullptr;
+  void (*release)(const void*) = nullptr;
+  HeifError (*decode)(const void*, void**, int, int, const void*) = nullptr;
+  int (*width)(const void*, int) = nullptr;
+  int (*height)(const void*, int) = nullptr;
+  void (*release_image)(const void*) = nullptr;
+
+ private:
+  template <typename Function>
+  bool take(Function& function, const char* name) {
+    function = reinterpret_cast<Function>(dlsym(library_, name));
+    return function != nullptr;
+  }
+  void* library_;
+  bool whole_ = false;
+};
+
+}  // namespace
+
+Result<void> check_heif(const std::filesystem::path& file) {
+  static const Heif heif;
+  const auto failed = [&](const std::string& why) { return Error{ErrorKind::io, why, file.string()}; };
+  if (!heif.whole()) return failed("cannot be read: libheif.so.1 is missing");
+  const std::unique_ptr<void, void (*)(void*)> context(heif.alloc(), heif.free);
+  void *handle = nullptr, *image = nullptr;
+  if (!context || heif.read(context.get(), file.c_str(), nullptr).code != 0 ||
+      heif.primary(context.get(), &handle).code != 0 || !handle)
+    return {};  // whose reader says why
+  const std::unique_ptr<void, void (*)(const void*)> held(handle, heif.release);
+  const int chroma = heif.has_alpha(handle) != 0 ? kInterleavedRgba : kInterleavedRgb;
+  if (heif.decode(handle, &image, kRgb, chroma, nullptr).code != 0 || !image) return {};
+  const std::unique_ptr<void, void (*)(const void*)> decoded(image, heif.release_image);
+  const int width = heif.width(image, kInterleaved), height = heif.height(image, kInterleaved);
+  if (width == heif.claimed_width(handle) && height == heif.claimed_height(handle)) return {};
+  return failed(fmt::format("is damaged: it claims {}×{} pixels and holds {}×{}", heif.claimed_width(handle),
+                            heif.claimed_height(handle), width, height));
+}
+
+}  // namespace afterglow

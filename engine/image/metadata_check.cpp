@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "image/metadata_check.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+#include <string_view>
+
+#include "image/container_bytes.h"
+
+namespace afterglow {
+namespace {
+
+constexpr const char* kExif = "is damaged: its EXIF metadata";
+constexpr const char* kIcc = "is damaged: its ICC profile";
+constexpr std::size_t kMostExif = 1u << 20;  ///< arrays of it go onto the stack
+constexpr int kDeepest = 8;                  ///< directories in directories
+constexpr int kDeepestXml = 256;
+
+std::string_view text_of(Bytes bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+
+/// Directories of EXIF, as deep as they go.
+class Exif {
+ public:
+  explicit Exif(Bytes bytes) : bytes_(bytes), little_(bytes[0] == 'I') {}
+
+  bool sound() {
+    const std::uint64_t first = number(4, 4);
+    return first + 2 > bytes_.size() || directory(first, 0);
+  }
+
+ private:
+  std::uint32_t number(std::size_t at, std::size_t bytes) const {
+    return little_ ? little_endian(&bytes_[at], bytes) : big_endian(&bytes_[at], bytes);
+  }
+
+  bool directory(std::uint64_t at, int depth) {
+    constexpr std::uint64_t kEntry = 12;
+    constexpr std::uint32_t kShort = 3, kLong = 4, kRational = 5, kSigned = 10;
+    if (depth > kDeepest || at + 2 > bytes_.size()) return false;
+    if (!seen_.insert(at).second) return true;
+    const std::uint32_t count = number(at, 2);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::uint64_t entry = at + 2 + i * kEntry;
+      if (entry + kEntry > bytes_.size()) break;
+      const std::uint32_t tag = number(entry, 2), type = number(entry + 2, 2), values = number(entry + 4, 4);
+      const bool inner = tag == 0x8769 || tag == 0x8825 || tag == 0xa005;  // EXIF, GPS, interoperability
+      if (inner) {
+        const std::uint64_t offset = number(entry + 8, 4);
+        if (offset < bytes_.size() && !directory(offset, depth + 1)) return false;
+      } else if (values == 0 && (type == kShort || type == kLong || type == kRational || type == kSigned)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  Bytes bytes_;
+  bool little_;
+  std::set<std::uint64_t> seen_;
+};
+
+/// The end of a tag that begins at `at`: behind its '>', quotation marks heeded.
+std::size_t tag_end(std::string_view xml, std::size_t at) {
+  char quote = 0;
+  for (; at < xml.size(); ++at) {
+    const char c = xml[at];
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '>') {
+      return at + 1;
+    }
+  }
+  return xml.size();
+}
+
+}  // namespace
+
+const char* exif_fault(Bytes exif) {
+  if (text_of(exif).starts_with(std::string_view("Exif\0\0", 6))) exif = exif.subspan(6);
+  if (exif.size() < 8) return kExif;
+  if (exif.size() > kMostExif) return "has more than 1 MiB of EXIF metadata";
+  const std::string_view order = text_of(exif).substr(0, 2);
+  if (order != "II" && order != "MM") return nullptr;
+  return Exif(exif).sound() ? nullptr : kExif;
+}
+
+const char* icc_fault(Bytes profile) {
+  constexpr std::size_t kHeader = 128, kEntry = 12, kRecord = 12;
+  if (profile.size() < kHeader + 4 || text_of(profile).substr(36, 4) != "acsp") return nullptr;
+  if (big_endian(profile.data(), 4) != profile.size()) return nullptr;
+  const std::uint32_t count = big_endian(&profile[kHeader], 4);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint64_t entry = kHeader + 4 + i * kEntry;
+    if (entry + kEntry > profile.size()) break;
+    const std::uint64_t offset = big_endian(&profile[entry + 4], 4), size = big_endian(&profile[entry + 8], 4);
+    if (offset + size > profile.size() || offset + 4 > profile.size()) return kIcc;
+    const std::string_view type = text_of(profile).substr(offset, 4);
+    if ((type == "text" && size < 8) || (type == "desc" && size < 12)) return kIcc;
+    if (type != "mluc" || offset + 16 > profile.size()) continue;
+    const std::uint32_t records = big_endian(&profile[offset + 8], 4);
+    for (std::uint64_t r = 0; r < records; ++r) {
+      const std::uint64_t record = offset + 16 + r * kRecord;
+      if (record + kRecord > profile.size()) break;
+      const std::uint64_t length = big_endian(&profile[record + 4], 4), at = big_endian(&profile[record + 8], 4);
+      if (text_of(profile).substr(record, 2) == "en" && offset + at + length > profile.size()) return kIcc;
+    }
+  }
+  return nullptr;
+}
+
+const char* xmp_fault(Bytes xml) {
+  const std::string_view text = text_of(xml);
+  const auto behind = [&](std::size_t at, std::string_view end) {
+    const std::size_t found = text.find(end, at);
+    return found == text.npos ? text.size() : found + end.size();
+  };
+  int depth = 0;
+  for (std::size_t at = text.find('<'); at < text.size(); at = text.find('<', at)) {
+    const std::string_view rest = text.substr(at);
+    if (rest.starts_with("<!--")) {
+      at = behind(at, "-->");
+    } else if (rest.starts_with("<![CDATA[")) {
+      at = behind(at, "]]>");
+    } else if (rest.starts_with("<?")) {
+      at = behind(at, "?>");
+    } else if (rest.starts_with("<!")) {
+      at = tag_end(text, at);
+    } else {
+      const std::size_t end = tag_end(text, at);
+      const bool closes = rest.starts_with("</"), alone = end >= 2 && text[end - 2] == '/';
+      depth = closes ? std::max(0, depth - 1) : depth + (alone ? 0 : 1);
+      if (depth > kDeepestXml) return "is damaged: its XMP metadata is nested too deeply";
+      at = end;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "image/numbered_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "image/container_bytes.h"
+
+namespace afterglow {
+namespace {
+
+constexpr const char* kNoColor = "is damaged: a pixel has a colour that its table does not hold";
+
+/// Whether every pixel of a Targa has a colour; where it ends too early its reader says so.
+bool targa_colors_exist(std::span<const unsigned char> bytes, bool packed) {
+  const std::uint32_t first = little_endian(&bytes[3], 2), colors = little_endian(&bytes[5], 2);
+  const std::size_t pixel = (bytes[16] + 7u) / 8;
+  const std::uint64_t pixels = std::uint64_t{little_endian(&bytes[12], 2)} * little_endian(&bytes[14], 2);
+  std::size_t at = 18u + bytes[0] + std::size_t{colors} * ((bytes[7] + 7u) / 8);
+  const auto exists = [&] {
+    const std::uint64_t number = std::uint64_t{little_endian(&bytes[at], pixel)} + first;
+    at += pixel;
+    return number < colors;
+  };
+  for (std::uint64_t done = 0; done < pixels;) {
+    std::uint64_t stored = 1, made = 1;
+    if (packed) {
+      if (at >= bytes.size()) break;
+      made = (bytes[at] & 0x7fu) + 1;
+      stored = (bytes[at] & 0x80) != 0 ? 1 : made;
+      ++at;
+    }
+    for (; stored > 0; --stored) {
+      if (at + pixel > bytes.size()) return true;
+      if (!exists()) return false;
+    }
+    done += made;
+  }
+  return true;
+}
+
+/// Author, job and program of the extension end inside of their places.
+bool targa_texts_end(std::span<const unsigned char> bytes) {
+  constexpr std::size_t kFooter = 26, kText = 41, kExtension = 495;
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (bytes.size() < kFooter || !text.substr(bytes.size() - 18).starts_with("TRUEVISION-XFILE.")) return true;
+  const std::uint64_t at = little_endian(&bytes[bytes.size() - kFooter], 4);
+  if (at + 2 > bytes.size() || little_endian(&bytes[at], 2) < kExtension) return true;
+  for (const std::uint64_t place : {at + 2, at + 379, at + 426})
+    if (place + kText <= bytes.size() && text.substr(place, kText).find('\0') == text.npos) return false;
+  return true;
+}
+
+/// The codes of a GIF's picture, which give colours' numbers below `clear`, or repeat what was given.
+class GifCodes {
+ public:
+  GifCodes(std::span<const unsigned char> bytes, std::size_t at) : bytes_(bytes), at_(at) {}
+
+  /// False: a number of `colors` or more. `bits`: of a number.
+  bool below(std::uint32_t colors, unsigned bits) {
+    const std::uint32_t clear = 1u << bits, end = clear + 1;
+    unsigned width = bits + 1;
+    std::uint32_t next = end + 1;
+    while (true) {
+      const auto code = read(width);
+      if (!code || *code == end) return true;
+      if (*code < clear && *code >= colors) return false;
+      if (*code == clear) {
+        width = bits + 1;
+        next = end + 1;
+      } else if (next < 4097 && ++next > 1u << width && width < 12) {
+        ++width;
+      }
+    }
+  }
+
+ private:
+  std::optional<std::uint32_t> read(unsigned width) {
+    while (held_ < width) {
+      if (left_ == 0) {
+        if (at_ >= bytes_.size() || bytes_[at_] == 0) return {};
+        left_ = bytes_[at_++];
+      }
+      if (at_ >= bytes_.size()) return {};
+      store_ |= std::uint32_t{bytes_[at_++]} << held_;
+      held_ += 8;
+      --left_;
+    }
+    const std::uint32_t code = store_ & ((1u << width) - 1);
+    store_ >>= width;
+    held_ -= width;
+    return code;
+  }
+
+  std::span<const unsigned char> bytes_;
+  std::size_t at_, left_ = 0;
+  std::uint32_t store_ = 0;
+  unsigned held_ = 0;
+};
+
+}  // namespace
+
+Result<ClaimedSize> check_targa(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
+  const std::vector<unsigned char> bytes = bytes_at(in, 0, size);
+  if (bytes.size() < 18) return malformed(file, "is truncated");
+  const unsigned kind = bytes[2];
+  if ((kind == 1 || kind == 9) && !targa_colors_exist(bytes, kind == 9)) return malformed(file, kNoColor);
+  if (!targa_texts_end(bytes)) return malformed(file, "is damaged: a text of its extension has no end");
+  return ClaimedSize{{static_cast<int>(little_endian(&bytes[12], 2)), static_cast<int>(little_endian(&bytes[14], 2))},
+                     4};
+}
+
+Result<std::optional<ClaimedSize>> check_bmp(const std::filesystem::path& file, std::ifstream& in) {
+  constexpr std::uint32_t kOldHeader = 12, kRuns8 = 1, kRuns4 = 2;
+  std::array<unsigned char, 34> head{};
+  in.seekg(0);
+  if (!fill(in, head.data(), head.size())) return malformed(file, "is truncated");
+  if (little_endian(&head[14], 4) == kOldHeader) return std::optional<ClaimedSize>();
+  const auto side = [&](std::size_t at) {
+    const auto length = static_cast<std::int32_t>(little_endian(&head[at], 4));
+    return static_cast<int>(std::min<std::int64_t>(std::abs(std::int64_t{length}), 0x7fffffff));
+  };
+  const std::uint32_t bits = little_endian(&head[28], 2), packing = little_endian(&head[30], 4);
+  if (packing != kRuns8 && packing != kRuns4) return std::optional<ClaimedSize>();
+  if (bits != 8 && bits != 4) return malformed(file, "is damaged: only pictures of 4 or 8 bits are packed so");
+  return std::optional(ClaimedSize{{side(18), side(22)}, 1});
+}
+
+Result<void> check_gif(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
+  const std::vector<unsigned char> bytes = bytes_at(in, 0, size);
+  if (bytes.size() < 13) return malformed(file, "is truncated");
+  const auto table = [](unsigned flags) { return (flags & 0x80) != 0 ? 2u << (flags & 7) : 0u; };
+  std::uint32_t colors = table(bytes[10]);
+  for (std::size_t at = 13 + std::size_t{3} * colors; at < bytes.size();) {
+    const unsigned kind = bytes[at++];
+    if (kind == 0x21) {  // an extension: a label, then blocks of at most 255 bytes
+      for (++at; at < bytes.size() && bytes[at] != 0;) at += 1u + bytes[at];
+      ++at;
+    } else if (kind == 0x2c && at + 9 < bytes.size()) {
+      if (const std::uint32_t own = table(bytes[at + 8]); own > 0) colors = own, at += std::size_t{3} * own;
+      at += 9;
+      const bool sound = at >= bytes.size() || bytes[at] > 8 || GifCodes(bytes, at + 1).below(colors, bytes[at]);
+      return sound ? Result<void>() : malformed(file, kNoColor);
+    } else {
+      break;
+    }
+  }
+  return {};
+}
+
+}  // namespace afterglow
