@@ -159,7 +159,7 @@ void PlayParts::add_to(WindowOptions& options) {
   options.transport = [this](Player& player, Ui& ui, ImVec2 place, ImVec2 size) {
     draw_transport(player, ui, place, size);
   };
-  options.transport_height = [](const Ui& ui, float width) { return transport_bar_height(ui, width); };
+  options.transport_shape = [](const Ui& ui, float width) { return transport_bar_shape(ui, width); };
   options.help = [](Player&, Ui& ui, ImVec2, ImVec2 size) { draw_help_sheet(ui, size); };
   options.save = [this](Player&, Ui&) { panel_->save(port_); };
   options.unsaved = [this](Player&) { return unsaved(); };

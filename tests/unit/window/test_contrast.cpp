@@ -85,9 +85,9 @@ class Contrast : public ::testing::Test {
     const OverlayArea area{{0, 0}, {w - panel, h - bar}};
     draw_state_overlay(*player_, ui(), area);
     draw_stats_overlay(*player_, ui(), area);
-    draw_scopes_overlay(found_, player_->view(), ui(), area, true);
+    draw_scopes_overlay(found_, player_->view(), ui(), area);
     draw_error_overlay(*player_, ui(), area);
-    draw_probe_overlay(probe_, ui(), area, 0);
+    draw_probe_overlay(probe_, ui(), area);
     draw_frame_mark(*player_, ui(), {.place = {}, .picture = {}, .window = {}}, area);
     draw_message_overlay(ui(), area);
     window_.dialogs(*player_, ui());

@@ -730,7 +730,7 @@ class TransportBar : public PanelTest {
           .view = look,
           .picture = {640, 360},
           .window = {640, 180}};
-      draw_transport_bar(interface.ui(), state, {0, 0}, {wide, transport_bar_height(interface.ui(), wide)});
+      draw_transport_bar(interface.ui(), state, {0, 0}, {wide, transport_bar_shape(interface.ui(), wide).height});
     };
     frame();
   }
