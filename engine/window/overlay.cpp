@@ -13,7 +13,7 @@ namespace afterglow {
 
 namespace {
 
-constexpr float kProbeWidth = 390, kLeastForColumn = 260;  // of the picture's part of the window, for values across and down
+constexpr float kProbeWidth = 390, kLeastForColumn = 180;  // that values across and down need
 
 void wrapped(ImU32 color, const std::string& text, float width) {
   ImGui::PushStyleColor(ImGuiCol_Text, color);
@@ -133,15 +133,17 @@ void draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
   const float wrap = width - ui.px(16);
   const auto shader_errors =
       std::ranges::count_if(message->further, [](const ErrorLine& e) { return !e.where.empty(); });
-  colored(ui_color::kDim,
-          message->headline + (shader_errors > 0 ? fmt::format(" ({} errors)", shader_errors + 1) : ""));
-  ImGui::SameLine(width - ui.px(120));
+  const std::string headline =
+      message->headline + (shader_errors > 0 ? fmt::format(" ({} errors)", shader_errors + 1) : "");
+  const bool beside = ImGui::CalcTextSize(headline.c_str()).x + ui.px(140) < width;  // the buttons have room there
+  wrapped(ui_color::kDim, headline, wrap);
+  if (beside) ImGui::SameLine(width - ui.px(120));
   if (!message->place.file.empty() && ImGui::SmallButton("Open")) {
     ui.edit_file(message->place.file.string(), message->place.line);
     ui.again();
   }
   ui.help("In the editor that AFTERGLOW_EDITOR names (F4; again: the next error)");
-  ImGui::SameLine(width - ui.px(70));
+  ImGui::SameLine(beside ? width - ui.px(70) : 0);
   if (ImGui::SmallButton("Copy")) {
     ui.copy(message->full);
     ui.say("message copied");
@@ -247,11 +249,13 @@ void draw_values_down(const std::vector<std::pair<const char*, Values>>& picture
 
 }  // namespace
 
-void draw_probe_overlay(const Probe& probe, const Ui& ui, const OverlayArea& area) {
+void draw_probe_overlay(const Probe& probe, const View& view, const Ui& ui, const OverlayArea& area) {
   const bool wide = area.size.x >= ui.px(kProbeWidth);
-  if (!wide && area.size.y < ui.px(kLeastForColumn)) return;  // nothing of the picture would be left
-  begin_sheet("probe", {area.at.x + ui.px(14), area.at.y + area.size.y - ui.px(14)}, {0, 1}, ui,
-              ImGuiWindowFlags_NoInputs);
+  const float left = area.at.x + ui.px(14), bottom = area.at.y + area.size.y - ui.px(14);
+  const auto room = ui.sheets.free(left, left + ui.px(180), {area.at.y, bottom});
+  // Nothing else would be left to see.
+  if (!wide && (view.scope != ScopeKind::none || room.bottom - room.top < ui.px(kLeastForColumn))) return;
+  begin_sheet("probe", {left, bottom}, {0, 1}, ui, ImGuiWindowFlags_NoInputs);
   ImGui::PushFont(ui.mono);
   std::vector<std::pair<const char*, Values>> pictures{{"source", probe.source}, {"result", probe.result}};
   if (probe.other) pictures.emplace_back("other", *probe.other);

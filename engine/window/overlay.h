@@ -48,7 +48,7 @@ void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area);
 /// Upper right: frame rate, frame times, drops, and where the time of the last reload went.
 void draw_stats_overlay(const Player& player, const Ui& ui, const OverlayArea& area);
 /// Lower right: the scopes that the view asks for (Ui::cells has them), what does not fit, and means of the region, in
-/// the room that the sheets leave which were drawn before.
+/// the room that the sheets leave which were drawn before; where that is none, it says so.
 void draw_scopes_overlay(const ShownScopes& shown, const View& view, const Ui& ui, const OverlayArea& area);
 /// A frame around the region of the view.
 void draw_region(const Rect& region, const Ui& ui, const OverlayPicture& place);
@@ -58,8 +58,8 @@ void draw_pixel_mark(Pixel pixel, const Ui& ui, const OverlayPicture& place);
 void draw_guides(const View& view, const Ui& ui, const OverlayPicture& place);
 /// Around the picture and above it: that it is not the frame that is asked for, because that is missing or unreadable.
 void draw_frame_mark(const Player& player, const Ui& ui, const OverlayPicture& place, const OverlayArea& area);
-/// Lower left: values of source and result.
-void draw_probe_overlay(const Probe& probe, const Ui& ui, const OverlayArea& area);
+/// Lower left: values of source and result. In a narrow part of the window a column, which makes way for scopes.
+void draw_probe_overlay(const Probe& probe, const View& view, const Ui& ui, const OverlayArea& area);
 /// Ui::message, while it lasts.
 void draw_message_overlay(const Ui& ui, const OverlayArea& area);
 

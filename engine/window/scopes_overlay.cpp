@@ -174,8 +174,13 @@ void draw_scopes_overlay(const ShownScopes& shown, const View& view, const Ui& u
   const float right = area.at.x + area.size.x - ui.px(14);
   const float widest = static_cast<float>(across) * (ui.px(268) + label_width(ui)) + ui.px(34);
   const auto room = ui.sheets.free(right - widest, right, {area.at.y + ui.px(4), area.at.y + area.size.y - ui.px(14)});
+  const float least = ui.px(60) + static_cast<float>(across) * (ui.px(54) + 2 * ImGui::GetTextLineHeight());
   const ImVec2 size = scope_size(ui, area, across, across, room.bottom - room.top);
   begin_sheet("scopes", {right, area.at.y + area.size.y - ui.px(14)}, {1, 1}, ui, ImGuiWindowFlags_NoInputs);
+  if (room.bottom - room.top < least) {
+    colored(ui_color::kDim, scopes ? "scopes: no room" : "means: no room");
+    return end_sheet();
+  }
   ImGui::PushFont(ui.mono);
   if (scopes && view.scope == ScopeKind::all) {
     for (const ScopeKind kind :

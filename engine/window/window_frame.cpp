@@ -54,8 +54,10 @@ Result<void> WindowApp::draw() {
   if (options_.dialogs) options_.dialogs(player_, ui);
   quit_when_saved();
   if (quitting_ == Quitting::asked) {
-    const std::string changes = options_.unsaved(player_) + " would be lost.";
-    if (const auto answer = draw_quit_dialog(ui, changes, ImGui::GetIO().DisplaySize)) answer_quit(*answer);
+    const std::string changes = options_.unsaved(player_, to_open_then_.empty()) + " would be lost.";
+    const std::string before =
+        to_open_then_.empty() ? "closing" : "opening " + to_open_then_.filename().string();
+    if (const auto answer = draw_quit_dialog(ui, before, changes, ImGui::GetIO().DisplaySize)) answer_quit(*answer);
   }
   if (options_.help && ui.show_help) options_.help(player_, ui, {0, 0}, ImGui::GetIO().DisplaySize);
   ui.item_menu = false;
@@ -183,7 +185,7 @@ Result<void> WindowApp::draw_overlays() {
   if (ui.show_stats) draw_stats_overlay(player_, ui, area);
   draw_frame_mark(player_, ui, place, area);
   draw_error_overlay(player_, interface_->ui(), area);
-  if (under_cursor_.probe) draw_probe_overlay(*under_cursor_.probe, ui, area);
+  if (under_cursor_.probe) draw_probe_overlay(*under_cursor_.probe, player_.view(), ui, area);
   draw_scopes_overlay(scopes_.found, player_.view(), ui, area);
   draw_message_overlay(ui, area);
   return {};

@@ -87,11 +87,11 @@ class Contrast : public ::testing::Test {
     draw_stats_overlay(*player_, ui(), area);
     draw_scopes_overlay(found_, player_->view(), ui(), area);
     draw_error_overlay(*player_, ui(), area);
-    draw_probe_overlay(probe_, ui(), area);
+    draw_probe_overlay(probe_, player_->view(), ui(), area);
     draw_frame_mark(*player_, ui(), {.place = {}, .picture = {}, .window = {}}, area);
     draw_message_overlay(ui(), area);
     window_.dialogs(*player_, ui());
-    if (asks_) (void)draw_quit_dialog(ui(), "2 settings of look.lua would be lost.", {w, h});
+    if (asks_) (void)draw_quit_dialog(ui(), "closing", "2 settings of look.lua would be lost.", {w, h});
     window_.help(*player_, ui(), {0, 0}, {w, h});
     return interface_.end();
   }
