@@ -128,6 +128,7 @@ class Player {
   void reset_all();
   bool undo();
   bool redo();
+  void take_back();
   /// See SettingEdits::keep and recall.
   void keep_snapshot(int snapshot);
   bool recall_snapshot(int snapshot);

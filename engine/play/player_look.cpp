@@ -215,6 +215,10 @@ bool Player::redo() {
   return done;
 }
 
+void Player::take_back() {
+  if (state_->edits.take_back()) state_->apply_edits();
+}
+
 void Player::keep_snapshot(int snapshot) { state_->edits.keep(snapshot); }
 
 bool Player::recall_snapshot(int snapshot) {

@@ -104,6 +104,12 @@ bool SettingEdits::redo() {
   return true;
 }
 
+bool SettingEdits::take_back() {
+  if (!undo()) return false;
+  history_.resize(at_ + 1);
+  return true;
+}
+
 void SettingEdits::rebase(std::vector<SettingEdit>& edits, const std::vector<BaseChange>& changes) {
   for (const BaseChange& change : changes) {
     const auto found = std::ranges::find_if(edits, is(change.entry, change.setting));

@@ -72,6 +72,8 @@ class SettingEdits {
   bool can_redo() const { return at_ + 1 < history_.size(); }
   bool undo();  ///< false: there is nothing to undo
   bool redo();
+  /// The last step, as if it had never been. False: there is none.
+  bool take_back();
 
   /// The preset was saved with edits in it, or a save was taken back: every step of the history, and every snapshot,
   /// stays what it was on screen. Steps that had the value from before get it as an edit; those that say what the

@@ -15,8 +15,9 @@ namespace afterglow {
 /// Drawing thread alone.
 class AtlasCells {
  public:
-  static constexpr int kScopes = 4, kThumbnails = 16;  ///< the first cells are scopes', the others thumbnails'
-  static constexpr int kCells = kScopes + kThumbnails;
+  /// The first cells are scopes', the others thumbnails': of a list, and two beside each other.
+  static constexpr int kScopes = 4, kThumbnails = 16, kPair = 2;
+  static constexpr int kCells = kScopes + kThumbnails + kPair;
   static constexpr int kSide = 256;                                   ///< of a scope's cell, in pixels
   static constexpr int kThumbnailWidth = 128, kThumbnailHeight = 72;  ///< of a thumbnail's
 

@@ -29,8 +29,10 @@ void EffectLibrary::poll() {
   if (reading() && running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) read_ = running_.get();
 }
 
-void EffectBrowser::open() {
+void EffectBrowser::open(Source source) {
   open_ = begin_ = true;
+  source_ = std::move(source);
+  wanted_.clear();
   search_.fill(0);
   entered_ = false;
   chosen_ = 0;
@@ -99,6 +101,7 @@ std::optional<std::string> EffectBrowser::draw(Ui& ui, const EffectLibrary& libr
     ImGui::EndChild();
     ImGui::SameLine();
     ImGui::BeginChild("page", {0, -foot}, true);
+    want_pictures(list);
     if (!list.empty()) draw_page(ui, *list[chosen_]);
     ImGui::EndChild();
     entered_ = entered_ || entered;  // before the effects were read: they are waited for
@@ -115,7 +118,38 @@ std::optional<std::string> EffectBrowser::draw(Ui& ui, const EffectLibrary& libr
   return chosen;
 }
 
-void EffectBrowser::draw_page(const Ui& ui, const EffectSchema& effect) const {
+/// As it is, the chosen one, and those that the arrows come to next.
+void EffectBrowser::want_pictures(const std::vector<const EffectSchema*>& list) {
+  constexpr std::size_t kNext = 4;
+  if (!source_.want) return;
+  std::vector<std::string> wanted{""};
+  for (std::size_t i = chosen_; i < std::min(list.size(), chosen_ + kNext); ++i) wanted.push_back(list[i]->name);
+  if (chosen_ > 0 && chosen_ <= list.size()) wanted.push_back(list[chosen_ - 1]->name);
+  if (wanted == wanted_) return;
+  wanted_ = wanted;
+  source_.want(std::move(wanted));
+}
+
+/// The frame without and with it, side by side where there is room; why it does nothing there.
+void EffectBrowser::draw_pictures(Ui& ui, const EffectSchema& effect) {
+  if (!source_.find) return;
+  const float gap = ui.px(6), most = (ImGui::GetContentRegionAvail().x - gap) / 2;
+  const ImVec2 size{std::min(ui.px(Thumbnail::kWidth), most),
+                    std::min(ui.px(Thumbnail::kWidth), most) * Thumbnail::kHeight / Thumbnail::kWidth};
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const auto with = source_.find(effect.name);
+  constexpr int kCell = AtlasCells::kScopes + AtlasCells::kThumbnails;
+  before_.draw(ui, kCell, source_.find(""), at, {at.x + size.x, at.y + size.y});
+  const float x = at.x + size.x + gap;
+  after_.draw(ui, kCell + 1, with, {x, at.y}, {x + size.x, at.y + size.y});
+  ImGui::Dummy({2 * size.x + gap, size.y});
+  if (!with || (!with->error && with->note.empty())) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, with->error ? ui_color::kError : ui_color::kWarning);
+  ImGui::TextWrapped("%s", (with->error ? "Error: " + with->error->text() : "Does nothing here: " + with->note).c_str());
+  ImGui::PopStyleColor();
+}
+
+void EffectBrowser::draw_page(Ui& ui, const EffectSchema& effect) {
   ImGui::PushFont(ui.bold);
   ImGui::TextUnformatted(effect.name.c_str());
   ImGui::PopFont();
@@ -123,6 +157,7 @@ void EffectBrowser::draw_page(const Ui& ui, const EffectSchema& effect) const {
   ImGui::PushStyleColor(ImGuiCol_Text, ui_color::kDim);
   ImGui::TextWrapped("Runs at %s, order %d", effect.at.c_str(), effect.order);
   ImGui::PopStyleColor();
+  draw_pictures(ui, effect);
   ImGui::Separator();
   for (const SettingSchema& setting : effect.settings) {
     ImGui::TextUnformatted(setting.name.c_str());

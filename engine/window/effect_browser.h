@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The effects that can be added to a stack, with what their scripts say about them; a search, and a list to choose
-// from.
+// The effects that can be added to a stack, with what their scripts say about them and what they make of the present
+// frame; a search, and a list to choose from.
 #pragma once
 
 #include <array>
+#include <functional>
 #include <future>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "core/paths.h"
 #include "script/schema.h"
+#include "window/thumbnail_cell.h"
 #include "window/ui.h"
 
 namespace afterglow {
@@ -37,8 +39,13 @@ class EffectLibrary {
 /// A window over the picture. Drawing thread alone.
 class EffectBrowser {
  public:
+  /// Where pictures come from: of the frame with one effect more, "" as it is. All null: there are none.
+  struct Source {
+    std::function<std::shared_ptr<const Thumbnail>(const std::string& effect)> find;
+    std::function<void(std::vector<std::string>)> want;  ///< the most urgent first
+  };
   /// Opens with the keyboard in its search field.
-  void open();
+  void open(Source source);
   void close() { open_ = false; }
   bool is_open() const { return open_; }
   /// The name of the effect that was chosen: by Enter, a double click or the button.
@@ -46,11 +53,16 @@ class EffectBrowser {
 
  private:
   bool found(const EffectSchema& effect) const;
-  void draw_page(const Ui& ui, const EffectSchema& effect) const;
+  void draw_page(Ui& ui, const EffectSchema& effect);
+  void draw_pictures(Ui& ui, const EffectSchema& effect);
+  void want_pictures(const std::vector<const EffectSchema*>& list);
 
   bool open_ = false, begin_ = false, scroll_ = false, entered_ = false;
   std::array<char, 64> search_{};
   std::size_t chosen_ = 0;  ///< among those that are found
+  Source source_;
+  std::vector<std::string> wanted_;  ///< what was asked of it last
+  ThumbnailCell before_, after_;
 };
 
 }  // namespace afterglow

@@ -48,8 +48,10 @@ void draw_frame_mark(const Player& player, const Ui& ui, const OverlayPicture& p
   const std::string text = shown.unreadable
                                ? fmt::format("Frame {} cannot be read; an earlier picture is shown", shown.number)
                                : fmt::format("Frame {} is missing; {} is shown", shown.number, shown.name);
-  begin_sheet("frame", {area.at.x + area.size.x / 2, area.at.y + ui.px(52)}, {0.5f, 0}, ui, ImGuiWindowFlags_NoInputs);
+  begin_sheet("frame", {area.at.x + area.size.x / 2, area.at.y + ui.px(14)}, {0.5f, 0}, ui, ImGuiWindowFlags_NoInputs);
+  ImGui::PushTextWrapPos(sheet_wrap(ui, area.size.x));
   colored(color, text);
+  ImGui::PopTextWrapPos();
   end_sheet();
 }
 

@@ -13,6 +13,8 @@ namespace afterglow {
 
 namespace {
 
+constexpr float kProbeWidth = 390, kLeastForColumn = 180;  // that values across and down need
+
 void wrapped(ImU32 color, const std::string& text, float width) {
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::PushTextWrapPos(width);
@@ -116,9 +118,9 @@ void draw_further(const std::vector<ErrorLine>& lines, Ui& ui, float wrap) {
 
 }  // namespace
 
-float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
+void draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
   const auto message = current(player);
-  if (!message) return 0;
+  if (!message) return;
   const float margin = ui.px(14), width = std::min(area.size.x - 2 * margin, ui.px(900));
   ImGui::SetNextWindowSizeConstraints({width, 0}, {width, area.size.y * 0.6f});
   begin_sheet("error", {area.at.x + margin, area.at.y + area.size.y - margin}, {0, 1}, ui, 0);
@@ -131,15 +133,17 @@ float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
   const float wrap = width - ui.px(16);
   const auto shader_errors =
       std::ranges::count_if(message->further, [](const ErrorLine& e) { return !e.where.empty(); });
-  colored(ui_color::kDim,
-          message->headline + (shader_errors > 0 ? fmt::format(" ({} errors)", shader_errors + 1) : ""));
-  ImGui::SameLine(width - ui.px(120));
+  const std::string headline =
+      message->headline + (shader_errors > 0 ? fmt::format(" ({} errors)", shader_errors + 1) : "");
+  const bool beside = ImGui::CalcTextSize(headline.c_str()).x + ui.px(140) < width;  // the buttons have room there
+  wrapped(ui_color::kDim, headline, wrap);
+  if (beside) ImGui::SameLine(width - ui.px(120));
   if (!message->place.file.empty() && ImGui::SmallButton("Open")) {
     ui.edit_file(message->place.file.string(), message->place.line);
     ui.again();
   }
   ui.help("In the editor that AFTERGLOW_EDITOR names (F4; again: the next error)");
-  ImGui::SameLine(width - ui.px(70));
+  ImGui::SameLine(beside ? width - ui.px(70) : 0);
   if (ImGui::SmallButton("Copy")) {
     ui.copy(message->full);
     ui.say("message copied");
@@ -159,9 +163,7 @@ float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area) {
   if (!message->nearest.empty()) wrapped(ui_color::kGood, fmt::format("did you mean '{}'?", message->nearest), wrap);
   if (!message->allowed.empty()) wrapped(ui_color::kDim, "allowed: " + message->allowed, wrap);
   draw_further(message->further, ui, wrap);
-  const float height = ImGui::GetWindowSize().y;
   end_sheet();
-  return height + margin;
 }
 
 namespace {
@@ -207,30 +209,62 @@ void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area) {
   if (lines.empty() && view.marks == Marks::none && !building) return;
 
   begin_sheet("state", {area.at.x + ui.px(14), area.at.y + ui.px(14)}, {0, 0}, ui, ImGuiWindowFlags_NoInputs);
+  ImGui::PushTextWrapPos(sheet_wrap(ui, area.size.x));
   for (const auto& [color, text] : lines) colored(color, text);
   draw_legend(view.marks);
   if (building) colored(ui_color::kAccent, "building …");
+  ImGui::PopTextWrapPos();
   end_sheet();
 }
 
-void draw_probe_overlay(const Probe& probe, const Ui& ui, const OverlayArea& area, float above) {
-  if (area.size.x < ui.px(kProbeWidth)) return;  // it would lie over the panel
-  begin_sheet("probe", {area.at.x + ui.px(14), area.at.y + area.size.y - ui.px(14) - above}, {0, 1}, ui,
-              ImGuiWindowFlags_NoInputs);
-  ImGui::PushFont(ui.mono);
-  const auto line = [&](const char* name, const std::array<float, 4>& c) {
+namespace {
+
+using Values = std::array<float, 4>;
+
+constexpr ImU32 kChannelColors[] = {IM_COL32(255, 128, 120, 255), IM_COL32(130, 220, 130, 255),
+                                    IM_COL32(130, 170, 255, 255), ui_color::kDim};
+
+/// A line for each picture.
+void draw_values_across(const std::vector<std::pair<const char*, Values>>& pictures) {
+  for (const auto& [name, c] : pictures) {
     colored(ui_color::kDim, fmt::format("{:7}", name));
-    const ImU32 colors[] = {IM_COL32(255, 128, 120, 255), IM_COL32(130, 220, 130, 255), IM_COL32(130, 170, 255, 255),
-                            ui_color::kDim};
-    for (int i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < c.size(); ++i) {
       ImGui::SameLine();
-      colored(colors[i], fmt::format("{:>10.5g}", c[static_cast<std::size_t>(i)]));
+      colored(kChannelColors[i], fmt::format("{:>10.5g}", c[i]));
     }
-  };
+  }
+}
+
+/// A column for each picture: half as wide.
+void draw_values_down(const std::vector<std::pair<const char*, Values>>& pictures) {
+  std::string names = " ";
+  for (const auto& picture : pictures) names += fmt::format(" {:>8}", picture.first);
+  colored(ui_color::kDim, names);
+  for (std::size_t i = 0; i < 4; ++i) {
+    std::string line(1, "RGBA"[i]);
+    for (const auto& picture : pictures) line += fmt::format(" {:>8.4g}", picture.second[i]);
+    colored(kChannelColors[i], line);
+  }
+}
+
+}  // namespace
+
+void draw_probe_overlay(const Probe& probe, const View& view, const Ui& ui, const OverlayArea& area) {
+  const bool wide = area.size.x >= ui.px(kProbeWidth);
+  const float left = area.at.x + ui.px(14), bottom = area.at.y + area.size.y - ui.px(14);
+  const auto room = ui.sheets.free(left, left + ui.px(180), {area.at.y, bottom});
+  // Nothing else would be left to see.
+  if (!wide && (view.scope != ScopeKind::none || room.bottom - room.top < ui.px(kLeastForColumn))) return;
+  begin_sheet("probe", {left, bottom}, {0, 1}, ui, ImGuiWindowFlags_NoInputs);
+  ImGui::PushFont(ui.mono);
+  std::vector<std::pair<const char*, Values>> pictures{{"source", probe.source}, {"result", probe.result}};
+  if (probe.other) pictures.emplace_back("other", *probe.other);
   colored(ui_color::kText, fmt::format("{}, {}", probe.pixel.x, probe.pixel.y));
-  line("source", probe.source);
-  line("result", probe.result);
-  if (probe.other) line("other", *probe.other);
+  if (wide) {
+    draw_values_across(pictures);
+  } else {
+    draw_values_down(pictures);
+  }
   ImGui::PopFont();
   end_sheet();
 }
@@ -239,7 +273,7 @@ void draw_message_overlay(const Ui& ui, const OverlayArea& area) {
   if (ui.message.empty() || ui.now >= ui.message_until) return;
   begin_sheet("message", {area.at.x + area.size.x / 2, area.at.y + ui.px(14)}, {0.5f, 0}, ui,
               ImGuiWindowFlags_NoInputs);
-  ImGui::PushTextWrapPos(area.size.x * 0.7f);
+  ImGui::PushTextWrapPos(sheet_wrap(ui, area.size.x));
   ImGui::TextUnformatted(ui.message.c_str());
   ImGui::PopTextWrapPos();
   end_sheet();

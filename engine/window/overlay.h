@@ -42,16 +42,14 @@ std::vector<ErrorPlace> current_places(const Player& player);
 std::string comparison_text(const View& view);
 
 /// The message of a preset, picture or frame that fails, over the last good picture, with a button that copies it.
-/// Returns its height, 0 without a message.
-float draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area);
-inline constexpr float kProbeWidth = 390, kProbeHeight = 92;  ///< of the lower left sheet, with its distances
+void draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area);
 /// Upper left: what makes the picture look other than the result: image between passes, channel, exposure, marks.
 void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area);
 /// Upper right: frame rate, frame times, drops, and where the time of the last reload went.
 void draw_stats_overlay(const Player& player, const Ui& ui, const OverlayArea& area);
-/// Lower right: the scopes that the view asks for (Ui::cells has them), what does not fit, and means of the region.
-/// `probe`: values are told at the lower left; where both have no room beside each other, this lies above them.
-void draw_scopes_overlay(const ShownScopes& shown, const View& view, const Ui& ui, const OverlayArea& area, bool probe);
+/// Lower right: the scopes that the view asks for (Ui::cells has them), what does not fit, and means of the region, in
+/// the room that the sheets leave which were drawn before; where that is none, it says so.
+void draw_scopes_overlay(const ShownScopes& shown, const View& view, const Ui& ui, const OverlayArea& area);
 /// A frame around the region of the view.
 void draw_region(const Rect& region, const Ui& ui, const OverlayPicture& place);
 /// A frame around the pixel whose values are told.
@@ -60,8 +58,8 @@ void draw_pixel_mark(Pixel pixel, const Ui& ui, const OverlayPicture& place);
 void draw_guides(const View& view, const Ui& ui, const OverlayPicture& place);
 /// Around the picture and above it: that it is not the frame that is asked for, because that is missing or unreadable.
 void draw_frame_mark(const Player& player, const Ui& ui, const OverlayPicture& place, const OverlayArea& area);
-/// Lower left: values of source and result. `above`: free this much below it.
-void draw_probe_overlay(const Probe& probe, const Ui& ui, const OverlayArea& area, float above);
+/// Lower left: values of source and result. In a narrow part of the window a column, which makes way for scopes.
+void draw_probe_overlay(const Probe& probe, const View& view, const Ui& ui, const OverlayArea& area);
 /// Ui::message, while it lasts.
 void draw_message_overlay(const Ui& ui, const OverlayArea& area);
 

@@ -104,7 +104,7 @@ void Panel::read_library(PanelPort& port) {
 
 void Panel::add_effect(PanelPort& port) {
   read_library(port);
-  browser_.open();
+  browser_.open(pictures_());
 }
 
 bool Panel::close_windows() {
@@ -138,7 +138,7 @@ void Panel::draw_head(Ui& ui, PanelPort& port) {
   ui.help(save_.file().string());
   const SettingEdits& edits = port.edits();
   const bool changed = !edits.none();
-  if (small_button(ui, save_.busy() ? "Saving…" : "Save preset", "Write the changes into the preset's file (Ctrl+S)",
+  if (small_button(ui, save_.busy() ? "Saving…" : "Save", "Write the changes into the preset's file (Ctrl+S)",
                    changed && !save_.busy()))
     save(port);
   beside("Save as…");

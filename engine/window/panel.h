@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
+#include <utility>
 
 #include "window/effect_browser.h"
 #include "window/name_dialog.h"
@@ -25,6 +27,10 @@ class Panel {
   void draw(Ui& ui, PanelPort& port, ImVec2 place, ImVec2 size);
   /// Takes what has come of a save. Part of `draw`.
   void turn(Ui& ui, PanelPort& port);
+
+  /// Called when effects are about to be listed: where their pictures come from.
+  void set_pictures(std::function<EffectBrowser::Source()> pictures) { pictures_ = std::move(pictures); }
+  bool lists_effects() const { return browser_.is_open(); }
 
   // What keys do too.
   void save(PanelPort& port);
@@ -71,6 +77,7 @@ class Panel {
   PanelSave save_;  // uses it
   EffectLibrary library_;
   EffectBrowser browser_;
+  std::function<EffectBrowser::Source()> pictures_ = [] { return EffectBrowser::Source(); };
   NameDialog save_as_;
   bool save_waits_ = false;  ///< for changes of the stack
   StackText text_;           ///< that the bases are of

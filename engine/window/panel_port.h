@@ -35,6 +35,7 @@ class PanelPort {
   virtual void reset_all() = 0;
   virtual bool undo() = 0;
   virtual bool redo() = 0;
+  virtual void take_back() = 0;  ///< see SettingEdits::take_back
   virtual void end_gesture() = 0;
   virtual void rebase(const std::vector<BaseChange>& changes) = 0;  ///< see SettingEdits::rebase
   virtual void rebase(const std::vector<BaseChange>& changes, const TextChange& text) = 0;

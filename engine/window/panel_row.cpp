@@ -87,7 +87,7 @@ void draw_row(Ui& ui, PanelPort& port, EditBases& bases, const PanelRow& row) {
   ImGui::PushID(row.name.c_str());
   const float width = std::max(ui.px(120), ImGui::GetContentRegionAvail().x * 0.52f);
   const auto changed = setting_widget(ui, "##value", schema, value, width);
-  if (ui.typed.take_back()) port.undo();
+  if (ui.typed.take_back()) port.take_back();
   if (changed) port.set(row.entry, row.name, *changed);
   if (ImGui::IsItemDeactivated()) port.end_gesture();
   if (ui.item_menu && ImGui::IsItemFocused()) ImGui::OpenPopup("more");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "window/play_parts.h"
 
+#include <utility>
+
 #include "window/desktop_window.h"
 #include "window/help_sheet.h"
 #include "window/transport_bar.h"
@@ -18,7 +20,13 @@ PlayParts::PlayParts(Player& player, const ExportSetup& setup, Diagnostics& diag
         news_ = true;
         DesktopWindow::wake();
       })) {
-  panel_.emplace(setup.preset, preset_options_);
+  open_panel(setup.preset);
+}
+
+void PlayParts::open_panel(const std::filesystem::path& preset) {
+  preset_ = preset;
+  panel_.emplace(preset, preset_options_);
+  panel_->set_pictures([this] { return effect_pictures(); });
 }
 
 void PlayParts::draw_transport(Player& player, Ui& ui, ImVec2 place, ImVec2 size) {
@@ -67,22 +75,48 @@ ThumbnailFrame PlayParts::thumbnail_frame() const {
 void PlayParts::browse_presets() {
   PresetBrowser::Source source;
   source.find = [this](const std::filesystem::path& file) { return thumbnails_->find(file); };
-  source.want = [this](std::vector<std::filesystem::path> files) { thumbnails_->want(std::move(files)); };
+  source.want = [this](const std::vector<std::filesystem::path>& files) {
+    thumbnails_->want({files.begin(), files.end()});
+  };
+  panel_->close_windows();  // one list at a time
   thumbnails_of_ = -1;
   presets_.open(list_presets(preset_, preset_options_), preset_, std::move(source));
 }
 
-/// Thumbnails are of the frame at which the browser was opened, and of another once that stands.
+/// The look as it is on screen when the list is opened, with one effect more.
+EffectBrowser::Source PlayParts::effect_pictures() {
+  ChangedLook look{.text = {},
+                   .overrides = player_.edits().overrides(preset_options_.overrides),
+                   .arguments = player_.edits().arguments(preset_options_.arguments)};
+  if (const StackText& text = player_.edits().stack_text()) look.text = *text;
+  const auto changed = std::make_shared<const ChangedLook>(std::move(look));
+  presets_.close();  // one list at a time
+  thumbnails_of_ = -1;
+  EffectBrowser::Source source;
+  source.find = [this, changed](const std::string& effect) { return thumbnails_->find({preset_, changed, effect}); };
+  source.want = [this, changed](const std::vector<std::string>& effects) {
+    std::vector<ThumbnailOf> wanted;
+    for (const std::string& effect : effects) wanted.emplace_back(preset_, changed, effect);
+    thumbnails_->want(std::move(wanted));
+  };
+  return source;
+}
+
+/// They are of the frame at which the list was opened, and of another once that stands.
+void PlayParts::follow_thumbnails() {
+  const bool seen = presets_.is_open() || panel_->lists_effects();
+  if (std::exchange(thumbnails_seen_, seen) && !seen) thumbnails_->rest();
+  const int position = player_.shown().position;
+  if (!seen || !player_.source() || position == thumbnails_of_) return;
+  if (thumbnails_of_ >= 0 && player_.transport().playing()) return;
+  thumbnails_of_ = position;
+  thumbnails_->set_frame(thumbnail_frame());
+}
+
 void PlayParts::draw_presets(Ui& ui) {
   const bool was_open = presets_.is_open();
-  const int position = player_.shown().position;
-  if (was_open && player_.source() && position != thumbnails_of_ &&
-      (thumbnails_of_ < 0 || !player_.transport().playing())) {
-    thumbnails_of_ = position;
-    thumbnails_->set_frame(thumbnail_frame());
-  }
   const auto choice = presets_.draw(ui, was_open ? panel_->unsaved(port_) : "", ImGui::GetIO().DisplaySize);
-  if (was_open && !presets_.is_open()) thumbnails_->rest();
+  follow_thumbnails();
   if (!choice) return;
   if (choice->other) {
     ui.open_other(choice->file.string());
@@ -97,9 +131,9 @@ void PlayParts::draw_dialogs(Ui& ui) {
   if (const auto name = range_name_.draw(ui, ImGui::GetIO().DisplaySize)) range_export_.begin(player_, ui, *name);
 }
 
-std::string PlayParts::unsaved() {
+std::string PlayParts::unsaved(bool closing) {
   const std::string changes = panel_->unsaved(port_);
-  if (!range_export_.busy()) return changes;
+  if (!closing || !range_export_.busy()) return changes;
   const std::string rest = "the rest of an export (" + range_export_.state() + ")";
   return changes.empty() ? rest : changes + " and " + rest;
 }
@@ -159,10 +193,10 @@ void PlayParts::add_to(WindowOptions& options) {
   options.transport = [this](Player& player, Ui& ui, ImVec2 place, ImVec2 size) {
     draw_transport(player, ui, place, size);
   };
-  options.transport_height = [](const Ui& ui, float width) { return transport_bar_height(ui, width); };
+  options.transport_shape = [](const Ui& ui, float width) { return transport_bar_shape(ui, width); };
   options.help = [](Player&, Ui& ui, ImVec2, ImVec2 size) { draw_help_sheet(ui, size); };
   options.save = [this](Player&, Ui&) { panel_->save(port_); };
-  options.unsaved = [this](Player&) { return unsaved(); };
+  options.unsaved = [this](Player&, bool closing) { return unsaved(closing); };
   options.dialogs = [this](Player&, Ui& ui) { draw_dialogs(ui); };
   options.strip = [this](Player&, Ui& ui, ImVec2 place, ImVec2 size) { range_export_.draw(ui, place, size); };
   options.strip_height = [this](const Ui& ui) { return range_export_.busy() ? ui.px(40) : 0; };
@@ -182,7 +216,6 @@ void PlayParts::add_to(WindowOptions& options) {
     const bool open = range_name_.is_open();
     range_name_.close();
     const bool browsed = presets_.is_open();
-    if (browsed) thumbnails_->rest();
     presets_.close();
     const bool marks = marks_.close_windows();
     return panel_->close_windows() || open || browsed || marks;
@@ -191,9 +224,8 @@ void PlayParts::add_to(WindowOptions& options) {
   options.news = [this] { return news_.exchange(false); };
   options.search = [this](Player&, Ui&) { panel_->search(); };
   options.preset_opened = [this](const std::filesystem::path& preset) {
-    panel_.emplace(preset, preset_options_);
+    open_panel(preset);
     range_export_.preset_opened(preset);
-    preset_ = preset;
   };
 }
 

@@ -28,7 +28,7 @@ class PlayParts {
   bool edit_stack(Ui& ui, Action action);
   void ask_for_range(Ui& ui);
   void draw_dialogs(Ui& ui);
-  std::string unsaved();
+  std::string unsaved(bool closing);
   void draw_panel(Ui& ui, ImVec2 place, ImVec2 size);
   Player& player_;
   PlayerPort port_;
@@ -40,10 +40,14 @@ class PlayParts {
   MarkKeys marks_;
   PresetBrowser presets_;
   ThumbnailFrame thumbnail_frame() const;
+  void open_panel(const std::filesystem::path& preset);
+  EffectBrowser::Source effect_pictures();
+  void follow_thumbnails();
   void browse_presets();
   void draw_presets(Ui& ui);
   std::filesystem::path preset_;  ///< that is played
   int thumbnails_of_ = -1;        ///< position of the frame that they are of
+  bool thumbnails_seen_ = false;  ///< a list that shows them is open
   std::atomic<bool> news_ = false;
   std::unique_ptr<Thumbnails> thumbnails_;  // last: its thread says `news_`
 };

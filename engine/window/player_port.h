@@ -28,6 +28,7 @@ class PlayerPort final : public PanelPort {
   void reset_stack() override { player_.reset_stack(); }
   void reset_all() override { player_.reset_all(); }
   bool undo() override { return player_.undo(); }
+  void take_back() override { player_.take_back(); }
   bool redo() override { return player_.redo(); }
   void end_gesture() override { player_.end_gesture(); }
   void rebase(const std::vector<BaseChange>& changes) override { player_.rebase(changes); }

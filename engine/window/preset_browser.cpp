@@ -14,8 +14,6 @@ namespace {
 
 constexpr float kRowGap = 8;
 
-static_assert(Thumbnail::kWidth == AtlasCells::kThumbnailWidth && Thumbnail::kHeight == AtlasCells::kThumbnailHeight);
-
 float row_height(const Ui& ui) { return ui.px(Thumbnail::kHeight + kRowGap); }
 
 }  // namespace
@@ -164,14 +162,7 @@ void PresetBrowser::draw_row(Ui& ui, const ListedPreset& preset, int cell, float
   const ImVec2 from{corner.x + ui.px(4), corner.y + ui.px(kRowGap / 2)};
   const ImVec2 to{from.x + ui.px(Thumbnail::kWidth), from.y + ui.px(Thumbnail::kHeight)};
   const auto thumbnail = source_.find ? source_.find(preset.file) : nullptr;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(from, to, IM_COL32(10, 11, 12, 255));
-  if (thumbnail && !thumbnail->error) {
-    fill_cell(ui, thumbnail, cell);
-    ui.cells.draw(list, AtlasCells::kScopes + cell, from, to);
-  }
-  list.AddRect(from, to, ui_color::kLine);
-  if (source_.find && !thumbnail) list.AddText({from.x + ui.px(8), from.y + ui.px(8)}, ui_color::kDim, "…");
+  cells_[static_cast<std::size_t>(cell)].draw(ui, AtlasCells::kScopes + cell, thumbnail, from, to);
 
   const float left = ui.px(Thumbnail::kWidth + 16);
   ImGui::PushClipRect(corner, {corner.x + width, to.y}, true);
@@ -194,14 +185,6 @@ void PresetBrowser::draw_row(Ui& ui, const ListedPreset& preset, int cell, float
   ImGui::PopStyleColor();
   ImGui::EndGroup();
   ImGui::PopClipRect();
-}
-
-/// A cell is written when another thumbnail takes it, and with each new atlas.
-void PresetBrowser::fill_cell(Ui& ui, const std::shared_ptr<const Thumbnail>& thumbnail, int cell) {
-  Cell& now = cells_[static_cast<std::size_t>(cell)];
-  if (now.thumbnail == thumbnail && now.generation == ui.cells.generation()) return;
-  ui.cells.write(AtlasCells::kScopes + cell, thumbnail->pixels);
-  now = {thumbnail, ui.cells.generation()};
 }
 
 /// Those that are seen first, then the chosen one's neighbours: the whole list, as it goes on from there.

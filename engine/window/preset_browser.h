@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "window/preset_list.h"
-#include "window/thumbnails.h"
+#include "window/thumbnail_cell.h"
 #include "window/ui.h"
 
 namespace afterglow {
@@ -43,7 +43,6 @@ class PresetBrowser {
   void draw_search(Ui& ui, const Found& found, bool& entered, bool& left);
   void draw_list(Ui& ui, const Found& found, bool& entered);
   void draw_row(Ui& ui, const ListedPreset& preset, int cell, float width);
-  void fill_cell(Ui& ui, const std::shared_ptr<const Thumbnail>& thumbnail, int cell);
   void want_thumbnails(const Found& found, int first, int last);
 
   bool open_ = false, begin_ = false, scroll_ = false;
@@ -54,11 +53,7 @@ class PresetBrowser {
   std::size_t chosen_ = 0;                      ///< among those that are found
   std::optional<std::filesystem::path> asked_;  ///< what to open, when what would be lost was told
   std::vector<std::filesystem::path> wanted_;   ///< what was asked of `source_` last
-  struct Cell {
-    std::shared_ptr<const Thumbnail> thumbnail;
-    int generation = -1;  ///< of the atlas
-  };
-  std::array<Cell, AtlasCells::kThumbnails> cells_{};
+  std::array<ThumbnailCell, AtlasCells::kThumbnails> cells_{};
 };
 
 }  // namespace afterglow

@@ -6,14 +6,15 @@
 
 namespace afterglow {
 
-std::optional<QuitAnswer> draw_quit_dialog(const Ui& ui, const std::string& changes, ImVec2 area) {
+std::optional<QuitAnswer> draw_quit_dialog(const Ui& ui, const std::string& before, const std::string& changes,
+                                           ImVec2 area) {
   ImGui::GetBackgroundDrawList()->AddRectFilled({0, 0}, area, IM_COL32(0, 0, 0, 128));
   ImGui::SetNextWindowPos({area.x / 2, area.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowFocus();
   constexpr int kFlags = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                          ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings;
   std::optional<QuitAnswer> answer;
-  if (ImGui::Begin("Save before closing?", nullptr, kFlags)) {
+  if (ImGui::Begin(("Save before " + before + "?###quit").c_str(), nullptr, kFlags)) {
     ImGui::PushTextWrapPos(ui.px(420));
     ImGui::TextUnformatted(changes.c_str());
     ImGui::PopTextWrapPos();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Asked before a window closes whose changes are not in the preset's file.
+// Asked before a window closes, or opens another preset, whose changes are not in the preset's file.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,9 @@ namespace afterglow {
 
 enum class QuitAnswer { save, discard, cancel };
 
-/// Within a frame of ImGui, over everything. None: there is no answer yet.
-std::optional<QuitAnswer> draw_quit_dialog(const Ui& ui, const std::string& changes, ImVec2 area);
+/// Within a frame of ImGui, over everything. `before`: "closing". None: there is no answer yet.
+std::optional<QuitAnswer> draw_quit_dialog(const Ui& ui, const std::string& before, const std::string& changes,
+                                           ImVec2 area);
 /// The same by a key (GLFW_KEY_…).
 std::optional<QuitAnswer> quit_answer_of(int key);
 

@@ -29,13 +29,14 @@ struct WindowOptions {
   std::filesystem::path captures = ".";  ///< folder for screenshots by key
   /// A part of the interface, drawn as an ImGui window at `place`. Without one, its place is the picture's.
   using Part = std::function<void(Player&, Ui&, ImVec2 place, ImVec2 size)>;
-  Part panel;                                                     ///< at the right
-  Part transport;                                                 ///< at the bottom
-  std::function<float(const Ui&, float width)> transport_height;  ///< that it wants
-  Part help;                                                      ///< over everything
-  std::function<void(Player&, Ui&)> save;                         ///< Ctrl+S; empty: there is no such thing
-  /// What the window would forget when it is closed, for people: "2 settings of look.lua". Empty: nothing.
-  std::function<std::string(Player&)> unsaved;
+  Part panel;                                                       ///< at the right
+  Part transport;                                                   ///< at the bottom
+  std::function<BarShape(const Ui&, float width)> transport_shape;  ///< that it wants
+  Part help;                                                        ///< over everything
+  std::function<void(Player&, Ui&)> save;                           ///< Ctrl+S; empty: there is no such thing
+  /// What the window would forget when it is closed, or else when another preset is opened, for people: "2 settings of
+  /// look.lua". Empty: nothing.
+  std::function<std::string(Player&, bool closing)> unsaved;
   enum class Saving { busy, done, failed };
   std::function<Saving()> saving;                  ///< what has become of the last `save`
   std::function<void(Player&, Ui&)> export_frame;  ///< S

@@ -126,11 +126,11 @@ void draw_scope(const Ui& ui, const View& view, ScopeKind kind, ImVec2 size) {
   list.AddRect(frame.from, frame.to, ui_color::kLine);
 }
 
-/// Sizes of one of four scopes, so that they take no more than a good part of the picture.
-ImVec2 scope_size(const Ui& ui, const OverlayArea& area, int columns, int rows) {
+/// Sizes of one of four scopes, so that they take no more than a good part of the picture, and of what is free.
+ImVec2 scope_size(const Ui& ui, const OverlayArea& area, int columns, int rows, float free) {
   const float beside = label_width(ui) + ui.px(12), around = 2 * ImGui::GetTextLineHeight() + ui.px(14);
   const float width = (area.size.x * 0.92f - ui.px(30)) / static_cast<float>(columns) - beside;
-  const float height = (area.size.y * 0.7f - ui.px(60)) / static_cast<float>(rows) - around;
+  const float height = (std::min(area.size.y * 0.7f, free) - ui.px(60)) / static_cast<float>(rows) - around;
   return {std::clamp(width, ui.px(60), ui.px(256)), std::clamp(height, ui.px(40), ui.px(192))};
 }
 
@@ -167,16 +167,20 @@ void draw_means(const RegionMeans& means) {
 
 }  // namespace
 
-void draw_scopes_overlay(const ShownScopes& shown, const View& view, const Ui& ui, const OverlayArea& area,
-                         bool probe) {
+void draw_scopes_overlay(const ShownScopes& shown, const View& view, const Ui& ui, const OverlayArea& area) {
   const bool scopes = view.scope != ScopeKind::none && shown.scopes;
   if (!scopes && !shown.means) return;
-  const ImVec2 size = scope_size(ui, area, view.scope == ScopeKind::all ? 2 : 1, view.scope == ScopeKind::all ? 2 : 1);
-  const float wide = view.scope == ScopeKind::all ? 2 * (size.x + label_width(ui)) + ui.px(46) : ui.px(400);
-  const bool told = probe && area.size.x >= ui.px(kProbeWidth);
-  const float raised = told && wide + ui.px(kProbeWidth) > area.size.x ? ui.px(kProbeHeight) : 0;
-  begin_sheet("scopes", {area.at.x + area.size.x - ui.px(14), area.at.y + area.size.y - ui.px(14) - raised}, {1, 1}, ui,
-              ImGuiWindowFlags_NoInputs);
+  const int across = view.scope == ScopeKind::all ? 2 : 1;
+  const float right = area.at.x + area.size.x - ui.px(14);
+  const float widest = static_cast<float>(across) * (ui.px(268) + label_width(ui)) + ui.px(34);
+  const auto room = ui.sheets.free(right - widest, right, {area.at.y + ui.px(4), area.at.y + area.size.y - ui.px(14)});
+  const float least = ui.px(60) + static_cast<float>(across) * (ui.px(54) + 2 * ImGui::GetTextLineHeight());
+  const ImVec2 size = scope_size(ui, area, across, across, room.bottom - room.top);
+  begin_sheet("scopes", {right, area.at.y + area.size.y - ui.px(14)}, {1, 1}, ui, ImGuiWindowFlags_NoInputs);
+  if (room.bottom - room.top < least) {
+    colored(ui_color::kDim, scopes ? "scopes: no room" : "means: no room");
+    return end_sheet();
+  }
   ImGui::PushFont(ui.mono);
   if (scopes && view.scope == ScopeKind::all) {
     for (const ScopeKind kind :

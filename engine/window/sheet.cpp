@@ -3,8 +3,6 @@
 
 #include <imgui_internal.h>
 
-#include <algorithm>
-
 namespace afterglow {
 
 namespace {
@@ -16,12 +14,10 @@ constexpr ImGuiWindowFlags kOverlay = ImGuiWindowFlags_NoDecoration | ImGuiWindo
 }  // namespace
 
 void begin_sheet(const char* name, ImVec2 at, ImVec2 pivot, const Ui& ui, ImGuiWindowFlags more) {
-  // Larger than its place: its title is what stays to be read.
-  if (const ImGuiWindow* known = ImGui::FindWindowByName(name)) {
-    at.x = std::max(at.x, pivot.x * known->Size.x);
-    at.y = std::max(at.y, pivot.y * known->Size.y);
-  }
-  ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
+  // Its size is known from its second frame on; others make way for it then.
+  const ImGuiWindow* known = ImGui::FindWindowByName(name);
+  const ImVec2 corner = ui.sheets.place(at, pivot, known ? known->Size : ImVec2(0, 0));
+  ImGui::SetNextWindowPos(known ? corner : at, ImGuiCond_Always, known ? ImVec2(0, 0) : pivot);
   ImGui::PushStyleColor(ImGuiCol_WindowBg, ui_color::kOverlay);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, ui.px(5));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui.px(10), ui.px(8)));

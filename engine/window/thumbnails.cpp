@@ -12,6 +12,8 @@
 #include <thread>
 #include <utility>
 
+#include "core/file.h"
+#include "edit/stack_edit.h"
 #include "image/scale.h"
 #include "image/srgb.h"
 #include "session/live_session.h"
@@ -58,19 +60,51 @@ std::vector<std::uint32_t> encoded(const float* rgba, Size size) {
   return out;
 }
 
-Result<std::vector<std::uint32_t>> make(Device& device, const fs::path& preset, const StackOptions& stack,
-                                        const SmallFrame& frame) {
+/// The preset with an effect more, as the panel would add it. Its name in the new stack.
+Result<std::string> add(const ThumbnailOf& of, PresetOptions& options) {
+  if (!options.text) {
+    AFTERGLOW_TRY(options.text, read_file(of.preset));
+  }
+  AFTERGLOW_TRY(auto rewrite, rewrite_stack(of.preset, *options.text, {StackEdit::Kind::add, of.added}, options));
+  options.text = std::move(rewrite.text);
+  for (Override& one : options.overrides)
+    for (const auto& [before, now] : rewrite.renamed)
+      if (one.entry == before) {
+        one.entry = now;
+        break;
+      }
+  return rewrite.entry;
+}
+
+Result<Thumbnail> make(Device& device, const ThumbnailOf& of, const StackOptions& stack, const SmallFrame& frame) {
   Diagnostics silent;  // warnings are told when it is opened
   LiveOptions options{.stack = stack};
   options.follow = false;
-  AFTERGLOW_TRY(const auto session, LiveSession::open(device, preset, options, silent));
+  PresetOptions& preset = options.stack.preset;
+  if (of.changed) {
+    preset.text = of.changed->text;
+    preset.overrides = of.changed->overrides;
+    preset.arguments = of.changed->arguments;
+  }
+  std::string entry;
+  if (!of.added.empty()) {
+    AFTERGLOW_TRY(entry, add(of, preset));
+  }
+  AFTERGLOW_TRY(const auto session, LiveSession::open(device, of.preset, options, silent));
   AFTERGLOW_CHECK(session->process(frame.picture, frame.context));
   const LiveStatus status = session->live().status();
   if (status.error) return *status.error;
-  if (!session->images().ran) return encoded(frame.picture.color.pixels.data(), frame.picture.color.size());
+  Thumbnail out;
+  for (const Skipped& skipped : session->skipped())
+    if (!entry.empty() && skipped.name == entry) out.note = skipped.reason;
+  if (!session->images().ran) {
+    out.pixels = encoded(frame.picture.color.pixels.data(), frame.picture.color.size());
+    return out;
+  }
   HostResult result;
   AFTERGLOW_CHECK(session->read_result(result));
-  return encoded(result.pixels.data(), session->images().result.binding.size);
+  out.pixels = encoded(result.pixels.data(), session->images().result.binding.size);
+  return out;
 }
 
 }  // namespace
@@ -85,14 +119,14 @@ struct Thumbnails::State {
   bool ends = false, rests = false;
   std::uint64_t generation = 0;  ///< of the frame
   std::optional<ThumbnailFrame> frame;
-  std::vector<fs::path> wanted;
-  std::map<fs::path, std::shared_ptr<const Thumbnail>> kept;
+  std::vector<ThumbnailOf> wanted;
+  std::map<ThumbnailOf, std::shared_ptr<const Thumbnail>> kept;
   std::thread thread;  // last: it uses the rest
 
-  std::optional<fs::path> next() const {
+  std::optional<ThumbnailOf> next() const {
     if (!frame) return std::nullopt;
-    for (const fs::path& preset : wanted)
-      if (!kept.contains(preset)) return preset;
+    for (const ThumbnailOf& one : wanted)
+      if (!kept.contains(one)) return one;
     return std::nullopt;
   }
   void run();
@@ -105,8 +139,8 @@ void Thumbnails::State::make_all(std::unique_lock<std::mutex>& lock) {
   std::optional<SmallFrame> small;
   std::uint64_t small_of = 0;
   while (!ends && !rests) {
-    const auto preset = next();
-    if (!preset) {
+    const auto one = next();
+    if (!one) {
       changed.wait(lock);
       continue;
     }
@@ -128,18 +162,18 @@ void Thumbnails::State::make_all(std::unique_lock<std::mutex>& lock) {
       }
     }
     if (device) {
-      auto pixels = make(*device, *preset, stack, *small);
-      if (pixels) {
-        out.pixels = std::move(*pixels);
+      auto thumbnail = make(*device, *one, stack, *small);
+      if (thumbnail) {
+        out = std::move(*thumbnail);
       } else {
-        out.error = pixels.error();
+        out.error = thumbnail.error();
         if (out.error->kind == ErrorKind::device) device.reset();  // lost: the next one begins anew
       }
     }
     lock.lock();
-    const bool still = of == generation && std::ranges::find(wanted, *preset) != wanted.end();
+    const bool still = of == generation && std::ranges::find(wanted, *one) != wanted.end();
     if (!still || rests || ends) continue;
-    kept[*preset] = std::make_shared<const Thumbnail>(std::move(out));
+    kept[*one] = std::make_shared<const Thumbnail>(std::move(out));
     lock.unlock();
     made();
     lock.lock();
@@ -194,11 +228,11 @@ void Thumbnails::set_frame(ThumbnailFrame frame) {
   state_->changed.notify_all();
 }
 
-void Thumbnails::want(std::vector<fs::path> presets) {
-  if (presets.size() > kMostKept) presets.resize(kMostKept);
+void Thumbnails::want(std::vector<ThumbnailOf> wanted) {
+  if (wanted.size() > kMostKept) wanted.erase(wanted.begin() + kMostKept, wanted.end());
   {
     const std::lock_guard lock(state_->mutex);
-    state_->wanted = std::move(presets);
+    state_->wanted = std::move(wanted);
     std::erase_if(state_->kept, [&](const auto& one) {
       return std::ranges::find(state_->wanted, one.first) == state_->wanted.end();
     });
@@ -206,9 +240,9 @@ void Thumbnails::want(std::vector<fs::path> presets) {
   state_->changed.notify_all();
 }
 
-std::shared_ptr<const Thumbnail> Thumbnails::find(const fs::path& preset) const {
+std::shared_ptr<const Thumbnail> Thumbnails::find(const ThumbnailOf& of) const {
   const std::lock_guard lock(state_->mutex);
-  const auto found = state_->kept.find(preset);
+  const auto found = state_->kept.find(of);
   return found == state_->kept.end() ? nullptr : found->second;
 }
 

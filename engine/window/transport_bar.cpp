@@ -165,10 +165,11 @@ std::vector<int> rows_for(const std::array<float, kPieces>& widths, const Ui& ui
 
 }  // namespace
 
-float transport_bar_height(const Ui& ui, float width) {
+BarShape transport_bar_shape(const Ui& ui, float width) {
   const ImGuiStyle& style = ImGui::GetStyle();
-  const auto rows = static_cast<float>(rows_for(widths_of(ui), ui, width).back() + 1);
-  return timeline_height(ui) + rows * (ImGui::GetFrameHeight() + style.ItemSpacing.y) + 2 * style.WindowPadding.y;
+  const int rows = rows_for(widths_of(ui), ui, width).back() + 1;
+  return {rows, timeline_height(ui) + static_cast<float>(rows) * (ImGui::GetFrameHeight() + style.ItemSpacing.y) +
+                    2 * style.WindowPadding.y};
 }
 
 void draw_transport_bar(Ui& ui, TransportBarState& state, ImVec2 place, ImVec2 size) {

@@ -25,7 +25,7 @@ struct TransportBarState {
 
 /// Within a frame of ImGui, as a window at this place. Drawing thread alone.
 void draw_transport_bar(Ui& ui, TransportBarState& state, ImVec2 place, ImVec2 size);
-/// Height that it wants when it is that wide: what finds no room in a row goes to the next.
-float transport_bar_height(const Ui& ui, float width);
+/// What it wants when it is that wide: what finds no room in a row goes to the next.
+BarShape transport_bar_shape(const Ui& ui, float width);
 
 }  // namespace afterglow

@@ -14,6 +14,7 @@
 #include "image/ocio.h"
 #include "window/atlas_cells.h"
 #include "window/hover_help.h"
+#include "window/sheet_places.h"
 #include "window/typed_value.h"
 
 namespace afterglow {
@@ -22,6 +23,12 @@ class Player;
 
 /// Parts of the window that the keyboard can go to. While it is at the picture, keys are shortcuts.
 enum class Pane { picture, panel, bar, strip };
+
+/// Of the bar below the picture: rows of buttons, and its height with the timeline.
+struct BarShape {
+  int rows = 1;
+  float height = 0;
+};
 
 /// State of the interface, and its tools. Drawing thread alone. Those who draw talk to the Player and to this, and to
 /// nothing of the window: they can be tested with ImGui alone.
@@ -69,7 +76,8 @@ struct Ui {
   void help(const std::string& text) const;
   std::string message;
   double message_until = 0;
-  mutable HoverHelp hover;  ///< what `help` remembers
+  mutable HoverHelp hover;      ///< what `help` remembers
+  mutable SheetPlaces sheets;  ///< that lie over the picture
   /// A field gets the keyboard within a few frames: what is typed meanwhile is for it.
   bool field_opens = false;
   Pane pane = Pane::picture;  ///< that has the keyboard

@@ -34,7 +34,8 @@ class WindowApp {
   void tidy();
   void take_events();
   void deliver_input();
-  void ask_to_quit();
+  void ask_to_quit(const std::filesystem::path& to_open_then = {});
+  void leave();
   void answer_quit(QuitAnswer answer);
   void quit_when_saved();
   void input_seen();
@@ -99,6 +100,7 @@ class WindowApp {
 
   InputQueue input_;
   std::vector<std::filesystem::path> to_open_, others_to_open_;
+  std::filesystem::path to_open_then_;  ///< the preset in whose favour the present one is left; empty: the window closes
   bool pane_due_ = false;  ///< the keyboard goes to another part with the next frame
   int field_awaited_ = 0;  ///< frames that a field has to get the keyboard; what is typed waits for it
 

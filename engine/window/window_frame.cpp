@@ -15,6 +15,7 @@ namespace {
 
 constexpr float kPanelWidth = 376, kTransportHeight = 78;
 constexpr float kMostTransport = 0.6f;  // of the window's height
+constexpr int kMostRowsBeside = 2;      // of the bar, beside the panel
 constexpr double kRetry = 0.02;         // when the window could not be drawn to
 
 ViewImage view_image(const DeviceImage& image) {
@@ -53,8 +54,10 @@ Result<void> WindowApp::draw() {
   if (options_.dialogs) options_.dialogs(player_, ui);
   quit_when_saved();
   if (quitting_ == Quitting::asked) {
-    const std::string changes = options_.unsaved(player_) + " would be lost.";
-    if (const auto answer = draw_quit_dialog(ui, changes, ImGui::GetIO().DisplaySize)) answer_quit(*answer);
+    const std::string changes = options_.unsaved(player_, to_open_then_.empty()) + " would be lost.";
+    const std::string before =
+        to_open_then_.empty() ? "closing" : "opening " + to_open_then_.filename().string();
+    if (const auto answer = draw_quit_dialog(ui, before, changes, ImGui::GetIO().DisplaySize)) answer_quit(*answer);
   }
   if (options_.help && ui.show_help) options_.help(player_, ui, {0, 0}, ImGui::GetIO().DisplaySize);
   ui.item_menu = false;
@@ -102,19 +105,25 @@ void WindowApp::draw_parts(Size window) {
   const ImGuiIO& io = ImGui::GetIO();
   const float width = io.DisplaySize.x, height = io.DisplaySize.y;
   const float panel = options_.panel && ui.show_panel ? std::min(ui.px(kPanelWidth), width * 0.6f) : 0;
-  const float wanted =
-      options_.transport_height ? options_.transport_height(ui, width - panel) : ui.px(kTransportHeight);
-  const float bar = options_.transport && ui.show_transport ? std::min(wanted, height * kMostTransport) : 0;
+  const auto shape = [&](float wide) {
+    return options_.transport_shape ? options_.transport_shape(ui, wide) : BarShape{1, ui.px(kTransportHeight)};
+  };
+  // In a narrow window the bar has its whole width, and the panel ends above it.
+  const bool whole = shape(width - panel).rows > kMostRowsBeside;
+  const float bar_width = whole ? width : width - panel;
+  const float bar =
+      options_.transport && ui.show_transport ? std::min(shape(bar_width).height, height * kMostTransport) : 0;
+  const float panel_height = whole ? height - bar : height;
   player_.time_kernels(panel > 0);  // it shows what effects cost
   if (panel > 0) {
-    options_.panel(player_, ui, {width - panel, 0}, {panel, height});
-    mark_pane(Pane::panel, {width - panel, 0}, {panel, height});
+    options_.panel(player_, ui, {width - panel, 0}, {panel, panel_height});
+    mark_pane(Pane::panel, {width - panel, 0}, {panel, panel_height});
   } else if (options_.hidden_panel) {
     options_.hidden_panel(player_, ui);
   }
   if (bar > 0) {
-    options_.transport(player_, ui, {0, height - bar}, {width - panel, bar});
-    mark_pane(Pane::bar, {0, height - bar}, {width - panel, bar});
+    options_.transport(player_, ui, {0, height - bar}, {bar_width, bar});
+    mark_pane(Pane::bar, {0, height - bar}, {bar_width, bar});
   }
   const float strip = options_.strip && options_.strip_height ? options_.strip_height(ui) : 0;
   if (strip > 0) {
@@ -170,13 +179,14 @@ Result<void> WindowApp::draw_overlays() {
   const OverlayPicture place = overlay_picture();
   draw_guides(player_.view(), ui, place);
   if (const auto& region = player_.view().region) draw_region(*region, ui, place);
-  draw_frame_mark(player_, ui, place, area);
   if (under_cursor_.probe) draw_pixel_mark(under_cursor_.probe->pixel, ui, place);
+  // Those at the top and those at the bottom, in the order in which they have the right of way.
   draw_state_overlay(player_, ui, area);
   if (ui.show_stats) draw_stats_overlay(player_, ui, area);
-  draw_scopes_overlay(scopes_.found, player_.view(), ui, area, under_cursor_.probe.has_value());
-  const float below = draw_error_overlay(player_, interface_->ui(), area);
-  if (under_cursor_.probe) draw_probe_overlay(*under_cursor_.probe, ui, area, below);
+  draw_frame_mark(player_, ui, place, area);
+  draw_error_overlay(player_, interface_->ui(), area);
+  if (under_cursor_.probe) draw_probe_overlay(*under_cursor_.probe, player_.view(), ui, area);
+  draw_scopes_overlay(scopes_.found, player_.view(), ui, area);
   draw_message_overlay(ui, area);
   return {};
 }

@@ -22,6 +22,10 @@ bool acts_everywhere(const InputEvent& key) {
   return function || key.code == GLFW_KEY_MENU || (letter && (key.mods & GLFW_MOD_CONTROL) != 0);
 }
 
+bool is_preset(const std::filesystem::path& path) {
+  return path.extension() == ".lua" || path.extension() == ".zip";
+}
+
 }  // namespace
 
 void WindowApp::take_events() {
@@ -31,7 +35,13 @@ void WindowApp::take_events() {
   if (events.close) ask_to_quit();
   for (const InputEvent& event : events.input) input_.push(event);
   deliver_input();
-  for (const auto& path : events.dropped) open_dropped(path);
+  for (const auto& path : events.dropped) {
+    if (is_preset(path)) {
+      ask_to_quit(path);
+    } else {
+      open_dropped(path);
+    }
+  }
   for (const auto& path : std::exchange(to_open_, {})) open_dropped(path);
   for (const auto& path : std::exchange(others_to_open_, {})) open_other(path);
 }
@@ -115,36 +125,46 @@ void WindowApp::follow_pane() {
 }
 
 /// What is not in the preset's file is asked about first.
-void WindowApp::ask_to_quit() {
+void WindowApp::ask_to_quit(const std::filesystem::path& to_open_then) {
   redraw_ = kSettle;
   if (quitting_ != Quitting::no) return;
+  to_open_then_ = to_open_then;
   if (options_.saving && options_.saving() == WindowOptions::Saving::busy) {
     quitting_ = Quitting::saving;  // what is being written is no loss
     return;
   }
-  const bool unsaved = options_.unsaved && !options_.unsaved(player_).empty();
-  quitting_ = unsaved ? Quitting::asked : Quitting::no;
-  if (unsaved) diagnostics_.note("asked whether to save");
-  quit_ = quit_ || !unsaved;
+  const bool unsaved = options_.unsaved && !options_.unsaved(player_, to_open_then.empty()).empty();
+  if (!unsaved) return leave();
+  quitting_ = Quitting::asked;
+  diagnostics_.note("asked whether to save");
+}
+
+/// Nothing holds the window back from what it was asked for.
+void WindowApp::leave() {
+  if (to_open_then_.empty()) {
+    quit_ = true;
+  } else {
+    to_open_.push_back(std::exchange(to_open_then_, {}));  // with the next turn: see create
+  }
 }
 
 void WindowApp::answer_quit(QuitAnswer answer) {
   redraw_ = kSettle;
   quitting_ = Quitting::no;
-  if (answer == QuitAnswer::discard) quit_ = true;
+  if (answer == QuitAnswer::discard) leave();
   if (answer != QuitAnswer::save || !options_.save) return;
   options_.save(player_, interface_->ui());
   quitting_ = Quitting::saving;
 }
 
-/// A save that fails, or leaves something out, keeps the window open: it says why.
+/// A save that fails, or leaves something out, keeps the preset open: it says why.
 void WindowApp::quit_when_saved() {
   if (quitting_ != Quitting::saving) return;
   const auto state = options_.saving ? options_.saving() : WindowOptions::Saving::done;
   redraw_ = std::max(redraw_, 1);
   if (state == WindowOptions::Saving::busy) return;
   quitting_ = Quitting::no;
-  quit_ = state == WindowOptions::Saving::done;
+  if (state == WindowOptions::Saving::done) leave();
 }
 
 /// The frame has seen what it was given. A field that gets the keyboard has it within a few frames: what is typed
@@ -163,8 +183,7 @@ void WindowApp::input_seen() {
 /// A preset takes the preset's place, anything else the footage's.
 void WindowApp::open_dropped(const std::filesystem::path& path) {
   Ui& ui = interface_->ui();
-  const auto extension = path.extension();
-  const bool preset = extension == ".lua" || extension == ".zip";
+  const bool preset = is_preset(path);
   // What is closed for it may still be on its way to the screen. A lost device shows up in the next turn.
   (void)painter_->finish();
   const Result<void> opened = preset ? player_.open_preset(path) : player_.open_footage({path.string()});

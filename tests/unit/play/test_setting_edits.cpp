@@ -23,6 +23,17 @@ TEST(SettingEdits, ADragIsOneStepOfUndo) {
   EXPECT_EQ(edits.value("glow", "strength"), number(0.3));
 }
 
+TEST(SettingEdits, WhatIsTakenBackCannotBeDoneAgain) {
+  SettingEdits edits;
+  EXPECT_FALSE(edits.take_back());
+  edits.set("glow", "radius", number(4));
+  edits.set("glow", "strength", number(0.1));
+  ASSERT_TRUE(edits.take_back());
+  EXPECT_EQ(edits.value("glow", "strength"), std::nullopt);
+  EXPECT_EQ(edits.value("glow", "radius"), number(4));
+  EXPECT_FALSE(edits.can_redo());
+}
+
 TEST(SettingEdits, SnapshotsAreBroughtBackAsOneStep) {
   SettingEdits edits;
   EXPECT_FALSE(edits.has(0));

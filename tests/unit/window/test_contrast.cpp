@@ -85,13 +85,13 @@ class Contrast : public ::testing::Test {
     const OverlayArea area{{0, 0}, {w - panel, h - bar}};
     draw_state_overlay(*player_, ui(), area);
     draw_stats_overlay(*player_, ui(), area);
-    draw_scopes_overlay(found_, player_->view(), ui(), area, true);
+    draw_scopes_overlay(found_, player_->view(), ui(), area);
     draw_error_overlay(*player_, ui(), area);
-    draw_probe_overlay(probe_, ui(), area, 0);
+    draw_probe_overlay(probe_, player_->view(), ui(), area);
     draw_frame_mark(*player_, ui(), {.place = {}, .picture = {}, .window = {}}, area);
     draw_message_overlay(ui(), area);
     window_.dialogs(*player_, ui());
-    if (asks_) (void)draw_quit_dialog(ui(), "2 settings of look.lua would be lost.", {w, h});
+    if (asks_) (void)draw_quit_dialog(ui(), "closing", "2 settings of look.lua would be lost.", {w, h});
     window_.help(*player_, ui(), {0, 0}, {w, h});
     return interface_.end();
   }

@@ -66,6 +66,7 @@ class Port : public PanelPort {
   void reset(const std::string& entry, const std::string& setting) override { changes.reset(entry, setting); }
   void reset_all() override { changes.reset_all(); }
   bool undo() override { return changes.undo(); }
+  void take_back() override { changes.take_back(); }
   bool redo() override { return changes.redo(); }
   void end_gesture() override { changes.end_gesture(); }
   void rebase(const std::vector<BaseChange>& base) override { changes.rebase(base); }
@@ -522,7 +523,7 @@ TEST_F(PanelTest, EffectsAreSearchedAndAdded) {
   EXPECT_GT(library.effects().size(), 40u);
   EXPECT_GT(library.masks().size(), 7u);
   EffectBrowser browser;
-  browser.open();
+  browser.open({});
   std::optional<std::string> chosen;
   what_ = [&] {
     if (auto name = browser.draw(interface.ui(), library, {0, 0}, {kWidth, 500})) chosen = name;
@@ -581,7 +582,7 @@ TEST_F(PanelTest, Search) {
 TEST_F(PanelTest, SavesAndListsWhatIsLeftOut) {
   port->changes.set("bloom", "intensity", {SettingType::number, {0.5}, ""});
   port->changes.set("color_adjustments", "contrast", {SettingType::number, {20}, ""});
-  ASSERT_TRUE(find({"Settings", "Save preset"}));
+  ASSERT_TRUE(find({"Settings", "Save"}));
   click();
   panel->saving().wait();
   const std::string text = words();
@@ -630,7 +631,7 @@ TEST_F(PanelTest, OpacityBlendAndPartsOfMasks) {
   click();
   EXPECT_EQ(edited("tone_mapping", "blend").choice, "screen");
   port->changes.set("tone_mapping", "mask.luma.from", {SettingType::number, {0.75}, ""});
-  ASSERT_TRUE(find({"Settings", "Save preset"}));
+  ASSERT_TRUE(find({"Settings", "Save"}));
   click();
   panel->saving().wait();
   frame();
@@ -663,7 +664,7 @@ TEST_F(PanelTest, ArgumentsAreChangedAndAreNotThePresets) {
   ASSERT_TRUE(find({"Settings", "arguments", "Copy --arg"}));
   click();
   EXPECT_EQ(copied, argument_words(port->changes));
-  ASSERT_TRUE(find({"Settings", "Save preset"}));
+  ASSERT_TRUE(find({"Settings", "Save"}));
   click();
   EXPECT_THAT(words(), HasSubstr("Arguments are not part of the preset: they are given by --arg strength=1"));
   EXPECT_EQ(*read_file(file), text);
@@ -730,7 +731,7 @@ class TransportBar : public PanelTest {
           .view = look,
           .picture = {640, 360},
           .window = {640, 180}};
-      draw_transport_bar(interface.ui(), state, {0, 0}, {wide, transport_bar_height(interface.ui(), wide)});
+      draw_transport_bar(interface.ui(), state, {0, 0}, {wide, transport_bar_shape(interface.ui(), wide).height});
     };
     frame();
   }

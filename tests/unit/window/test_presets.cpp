@@ -82,9 +82,12 @@ ThumbnailFrame gray_frame(float level = 0.5f) {
 class ThumbnailsOfPresets : public PresetFolder {
  protected:
   std::shared_ptr<const Thumbnail> wait_for(Thumbnails& of, const std::string& name) {
+    return wait_for(of, ThumbnailOf{file(name)});
+  }
+  std::shared_ptr<const Thumbnail> wait_for(Thumbnails& of, const ThumbnailOf& wanted) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
     while (std::chrono::steady_clock::now() < end) {
-      if (auto found = of.find(file(name))) return found;
+      if (auto found = of.find(wanted)) return found;
       std::this_thread::yield();
     }
     return nullptr;
@@ -113,6 +116,31 @@ TEST_F(ThumbnailsOfPresets, AreOfTheFrameAndTellErrors) {
   EXPECT_EQ(middle(*plain), 0xffbcbcbcu) << "a look that does nothing";
   EXPECT_FALSE(thumbnails.busy());
   EXPECT_EQ(made, 3);
+}
+
+/// What the panel has changed counts, and the effect is added to that; one that has nothing to do says why.
+TEST_F(ThumbnailsOfPresets, OfAnEffectMore) {
+  ChangedLook look;
+  look.text =
+      "local fx = require \"afterglow\"\nreturn fx.stack { fx.color_adjustments {} }\n";
+  look.overrides = {{"color_adjustments", "color_filter", "{0, 1, 0}"}};
+  const auto changed = std::make_shared<const ChangedLook>(look);
+  Thumbnails thumbnails({.device = "auto", .validate = true}, {}, [] {});
+  thumbnails.set_frame(gray_frame());
+  const ThumbnailOf plain{file("red"), changed, ""}, darker{file("red"), changed, "vignette"},
+      fog{file("red"), changed, "depth_fog"};
+  thumbnails.want({plain, darker, fog});
+  const auto as_it_is = wait_for(thumbnails, plain), with = wait_for(thumbnails, darker),
+             nothing = wait_for(thumbnails, fog);
+  ASSERT_TRUE(as_it_is && with && nothing);
+  ASSERT_FALSE(as_it_is->error) << as_it_is->error->text();
+  ASSERT_FALSE(with->error) << with->error->text();
+  EXPECT_EQ(middle(*as_it_is) & 0xff, 0u) << "no red: what the panel has changed counts";
+  EXPECT_GT(middle(*as_it_is) >> 8 & 0xff, 100u);
+  EXPECT_NE(with->pixels, as_it_is->pixels) << "darker at its edges";
+  EXPECT_EQ(middle(*with) & 0xff, 0u);
+  EXPECT_EQ(with->note, "");
+  EXPECT_TRUE(nothing->error || !nothing->note.empty()) << "there is no depth";
 }
 
 TEST_F(ThumbnailsOfPresets, AnotherFrameAndAnotherWishThrowThemAway) {
