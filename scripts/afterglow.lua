@@ -53,6 +53,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@class afterglow.Lut
 ---@field table afterglow.Image  the numbers of all steps
 ---@field steps { kind: integer, row: integer, size: integer }[]
+---@field unit boolean  what the last step gives always lies in 0…1
 
 ---What of an OpenColorIO configuration is wanted. With `to` a change of colour space, else what a display's view shows.
 ---@class afterglow.OcioRequest

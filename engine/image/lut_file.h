@@ -49,6 +49,9 @@ inline constexpr int kLutRow = 256;  ///< colours a row of one-dimensional table
 Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record = nullptr,
                      const std::string& correction = {});
 
+/// Whether what the last step gives always lies in 0…1: it is a table of such entries.
+bool gives_unit(const Lut& lut);
+
 /// Looks a .cube through before OpenColorIO reads it, which says less about what is wrong and takes memory for whatever
 /// size a file claims. Errors: script, at the line.
 Result<void> check_cube(const std::string& text, const std::string& file);

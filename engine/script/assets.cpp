@@ -146,7 +146,8 @@ const LoadedLut& load_lut(lua_State* lua, const fs::path& file, const std::strin
   const Sandbox::Pause pause(*runtime.box);
   auto read = read_lut(file, runtime.path.record.get(), correction);
   if (!read) throw ScriptError{std::move(read).error()};
-  LoadedLut loaded{std::move(read->steps), make_data(runtime, read->size, std::move(read->table), file)};
+  const bool unit = gives_unit(*read);
+  LoadedLut loaded{std::move(read->steps), make_data(runtime, read->size, std::move(read->table), file), unit};
   return runtime.assets.luts.emplace(std::pair(file, correction), std::move(loaded)).first->second;
 }
 

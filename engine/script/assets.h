@@ -23,6 +23,7 @@ struct Runtime;
 struct LoadedLut {
   std::vector<LutStep> steps;
   std::shared_ptr<const ImageData> table;
+  bool unit = false;  ///< see gives_unit (image/lut_file.h)
 };
 
 /// A part of a configuration of OpenColorIO, as a shader.

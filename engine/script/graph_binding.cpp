@@ -198,7 +198,9 @@ int graph_lookup(lua_State* lua) {
   const auto correction = table.text("correction");
   const auto file = read_file_key(lua, table, "lookup");
   const LoadedLut& loaded = load_lut(lua, file, correction.value_or(""));
-  lua_createtable(lua, 0, 2);
+  lua_createtable(lua, 0, 3);
+  lua_pushboolean(lua, loaded.unit);
+  lua_setfield(lua, -2, "unit");
   push_image(lua, graph.data(file.filename().string(), loaded.table));
   lua_setfield(lua, -2, "table");
   lua_createtable(lua, static_cast<int>(loaded.steps.size()), 0);

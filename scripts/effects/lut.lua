@@ -44,7 +44,7 @@ return fx.effect {
     local output = s.output == "same" and s.input or s.output
     local pass = {
       shader = "lut/apply", source = source, table = lookup.table, intensity = s.intensity,
-      before = encodings[s.input], behind = encodings[output],
+      before = encodings[s.input], behind = encodings[output], unit = lookup.unit,
     }
     for i, step in ipairs(lookup.steps) do
       pass["kind" .. i], pass["row" .. i], pass["size" .. i] = step.kind, step.row, step.size

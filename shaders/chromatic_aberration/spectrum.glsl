@@ -15,31 +15,62 @@ vec3 spectrum(float t) {
   return vec3(0.5 * aa - rise + on, rise + on + 0.5 * bb - rise_b + further, rise_b + further);
 }
 
+// The way: how far it goes aside with each pixel of its longer axis, that axis, and the other one.
+struct Way {
+  float slope;
+  ivec2 along, across;
+};
+
+// Light on the way, i pixels from its beginning.
+vec3 light_at(ivec2 pixel, int i, Way way) {
+  float aside = float(i) * way.slope, whole = floor(aside), rest = aside - whole;
+  ivec2 at = pixel + i * way.along + int(whole) * way.across;
+  return (1.0 - rest) * fetch(source, at).rgb + rest * fetch(source, at + way.across).rgb;
+}
+
+// What pixel i weighs, from the second integrals at its neighbours and its own. Red ends in the middle: no rounding of it, which bright pixels
+// would show; nor behind the end.
+vec3 weight_of(vec3 before, vec3 here, vec3 next, float before_at) {
+  vec3 weight = max((next - here) - (here - before), vec3(0.0));
+  if (before_at >= 0.5) weight.r = 0.0;
+  return before_at >= 1.0 ? vec3(0.0) : weight;
+}
+
+const int kMost = 2048;  // turns, more than there are
+
 vec4 sample_at(ivec2 pixel) {
   vec4 color = fetch(source, pixel);
   vec2 size = vec2(target_size());
   vec2 from_centre = (vec2(2 * pixel + 1) - size) / size;  // −1…1
-  vec2 way = -from_centre * dot(from_centre, from_centre) * amount * size;
+  vec2 to = -from_centre * dot(from_centre, from_centre) * amount * size;
   if (three) {
     vec2 here = vec2(pixel) + 0.5;
-    return vec4(color.r, fetch_linear(source, here + 0.5 * way).g, fetch_linear(source, here + way).b, color.a);
+    return vec4(color.r, fetch_linear(source, here + 0.5 * to).g, fetch_linear(source, here + to).b, color.a);
   }
-  bool flat_way = abs(way.x) >= abs(way.y);
-  float signed_length = flat_way ? way.x : way.y, longer = max(abs(signed_length), 1e-6);
-  float slope = (flat_way ? way.y : way.x) / longer, step = 1.0 / longer;
+  bool flat_way = abs(to.x) >= abs(to.y);
+  float signed_length = flat_way ? to.x : to.y, longer = max(abs(signed_length), 1e-6);
+  float step = 1.0 / longer;
   ivec2 across = flat_way ? ivec2(0, 1) : ivec2(1, 0);
-  ivec2 along = (1 - across) * (signed_length < 0.0 ? -1 : 1);
-  int last = int(ceil(longer));
-  vec3 here = spectrum(step), change = here, sum = change * color.rgb;
-  for (int i = 1; i <= last; ++i) {
-    vec3 next = spectrum(float(i + 1) * step), weight = max((next - here) - change, vec3(0.0));
-    if (float(i - 1) * step >= 0.5) weight.r = 0.0;  // red has ended: no rounding of it, which bright pixels would show
-    float aside = float(i) * slope, whole = floor(aside), rest = aside - whole;
-    ivec2 at = pixel + i * along + int(whole) * across;
-    sum += weight * ((1.0 - rest) * fetch(source, at).rgb + rest * fetch(source, at + across).rgb);
-    change = next - here;
-    here = next;
-  }
+  Way way = Way((flat_way ? to.y : to.x) * step, (1 - across) * (signed_length < 0.0 ? -1 : 1), across);
+  int last = int(longer);  // it and the pixel behind it are at the end
+
+  // The pixels between the first and the last ones. Where the spectrum is a line over a whole tent, a weight is the line's middle; the bend in
+  // the middle of the way adds what the tent has beyond it. In units of 2·step³.
+  vec3 sum = vec3(0.0);
+  if (last > 1)
+    for (int i = 1; i < kMost; ++i) {
+      float at = float(i), beyond = at - 0.5 * longer, near = max(1.0 - abs(beyond), 0.0), bend = near * near * near * (1.0 / 6.0);
+      sum += vec3(max(-beyond, 0.0) + bend, min(at, longer - at) - 2.0 * bend, max(beyond, 0.0) + bend) * light_at(pixel, i, way);
+      if (i + 1 == last) break;
+    }
+  sum *= 2.0 * step * step * step;
+
+  float end = float(last);
+  vec3 first = spectrum(step), before = spectrum((end - 1.0) * step), here = spectrum(end * step), next = spectrum((end + 1.0) * step),
+       behind = spectrum((end + 2.0) * step);
+  if (last > 0) sum += first * color.rgb;
+  sum += weight_of(before, here, next, (end - 1.0) * step) * light_at(pixel, last, way);
+  sum += weight_of(here, next, behind, end * step) * light_at(pixel, last + 1, way);
   // All weights together are what the last change is.
-  return vec4(max(sum / change, 0.0), color.a);
+  return vec4(max(sum / (behind - next), 0.0), color.a);
 }

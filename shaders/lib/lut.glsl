@@ -8,17 +8,23 @@ const int kLutMatrix = 1, kLutTable1d = 2, kLutTable3d = 3, kLutRange = 4, kLutC
 ivec2 lut_entry(int row, int i) { return ivec2(i & 255, row + (i >> 8)); }
 
 /// Entry (r, g, b) of a cube.
-ivec2 lut_entry(int row, int size, ivec3 i) { return ivec2(i.r + size * (i.b & 1), row + i.g + size * (i.b >> 1)); }
+ivec2 lut_entry(int row, int size, ivec3 i) { return ivec2(i.r + (-(i.b & 1) & size), row + i.g + size * (i.b >> 1)); }
 
-/// The two corners of the tetrahedron around `f` that lie between (0,0,0) and (1,1,1) of a cell, and the weights of all four: of
-/// (0,0,0), `a`, `b`, (1,1,1). Six tetrahedra share the diagonal from black to white, so that greys meet no others.
-vec4 lut_tetrahedron(vec3 f, out ivec3 a, out ivec3 b) {
+/// What is added to the place of entry (r, g, b) of a cube to get to (r, g, b + 1).
+ivec2 lut_step_b(int size, int b) {
+  int odd = -(b & 1);  // all bits, or none
+  return ivec2(size - (odd & (2 * size)), odd & size);
+}
+
+/// The two corners of the tetrahedron around `f` that lie between (0,0,0) and (1,1,1) of a cell, as ways from the place of (0,0,0), and the
+/// weights of all four: of (0,0,0), `a`, `b`, (1,1,1). Six tetrahedra share the diagonal from black to white, so that greys meet no others.
+vec4 lut_tetrahedron(vec3 f, ivec2 step_b, out ivec2 a, out ivec2 b) {
   bool rg = f.r > f.g, gb = f.g > f.b, rb = f.r > f.b;
-  float most = max(f.r, max(f.g, f.b)), least = min(f.r, min(f.g, f.b));
-  float middle = max(min(f.r, f.g), min(max(f.r, f.g), f.b));
-  a = rg ? (rb ? ivec3(1, 0, 0) : ivec3(0, 0, 1)) : (gb ? ivec3(0, 1, 0) : ivec3(0, 0, 1));
-  ivec3 lowest = rg ? (gb ? ivec3(0, 0, 1) : ivec3(0, 1, 0)) : (rb ? ivec3(0, 0, 1) : ivec3(1, 0, 0));
-  b = ivec3(1) - lowest;
+  float larger = max(f.r, f.g), smaller = min(f.r, f.g);
+  float most = max(larger, f.b), least = min(smaller, f.b), middle = max(smaller, min(larger, f.b));
+  bool red_most = rg && rb, green_most = !rg && gb, red_least = !rg && !rb, green_least = rg && !gb;
+  a = ivec2(red_most ? 1 : green_most ? 0 : step_b.x, red_most ? 0 : green_most ? 1 : step_b.y);
+  b = ivec2(red_least ? step_b.x : green_least ? 1 + step_b.x : 1, red_least ? 1 + step_b.y : green_least ? step_b.y : 1);
   return vec4(1.0 - most, most - middle, middle - least, least);
 }
 

@@ -26,6 +26,7 @@ layout(constant_id = 16) const int size5 = 0;
 layout(constant_id = 17) const int kind6 = 0;
 layout(constant_id = 18) const int row6 = 0;
 layout(constant_id = 19) const int size6 = 0;
+layout(constant_id = 20) const bool unit = false;  // what the last step gives is 0…1
 
 vec3 matrix_step(vec3 c, int row) {
   vec4 r = fetch(table, ivec2(0, row)), g = fetch(table, ivec2(1, row)), b = fetch(table, ivec2(2, row));
@@ -54,12 +55,12 @@ vec3 table_half(vec3 c, int row) {
 
 vec3 table_3d(vec3 c, int row, int size) {
   vec3 at = clamp(c, 0.0, 1.0) * float(size - 1);
-  ivec3 low = ivec3(at), high = min(low + 1, ivec3(size - 1)), a, b;
-  vec4 weights = lut_tetrahedron(at - vec3(low), a, b);
-  a = a * high + (1 - a) * low;
-  b = b * high + (1 - b) * low;
-  return fetch(table, lut_entry(row, size, low)).rgb * weights.x + fetch(table, lut_entry(row, size, a)).rgb * weights.y +
-         fetch(table, lut_entry(row, size, b)).rgb * weights.z + fetch(table, lut_entry(row, size, high)).rgb * weights.w;
+  ivec3 low = min(ivec3(at), ivec3(size - 2));  // white is the far corner of the last cell
+  ivec2 step_b = lut_step_b(size, low.b), a, b;
+  vec4 weights = lut_tetrahedron(at - vec3(low), step_b, a, b);
+  ivec2 entry = lut_entry(row, size, low);
+  return fetch(table, entry).rgb * weights.x + fetch(table, entry + a).rgb * weights.y + fetch(table, entry + b).rgb * weights.z +
+         fetch(table, entry + 1 + step_b).rgb * weights.w;
 }
 
 vec3 range_step(vec3 c, int row) {
@@ -89,14 +90,25 @@ vec3 one_step(vec3 c, int kind, int row, int size) {
   return c;
 }
 
+// Tables know 0…1 alone, and most give no more: there sRGB is a polynomial.
+vec3 first_codes(vec3 c) {
+  bool held = kind1 == kLutTable1d || kind1 == kLutTable3d;
+  if (held && before == kEncodingSrgb) return srgb_from_linear_unit(clamp(c, 0.0, 1.0));
+  return encoded(c, before);
+}
+
+vec3 last_light(vec3 c) {
+  if (unit && behind == kEncodingSrgb) return linear_from_srgb_unit(c);
+  return clamp(decoded(c, behind), -kMaxLight, kMaxLight);
+}
+
 vec4 apply(vec4 color) {
-  vec3 c = encoded(color.rgb, before);
+  vec3 c = first_codes(color.rgb);
   c = one_step(c, kind1, row1, size1);
   c = one_step(c, kind2, row2, size2);
   c = one_step(c, kind3, row3, size3);
   c = one_step(c, kind4, row4, size4);
   c = one_step(c, kind5, row5, size5);
   c = one_step(c, kind6, row6, size6);
-  c = clamp(decoded(c, behind), -kMaxLight, kMaxLight);
-  return vec4(lerp(color.rgb, c, intensity), color.a);
+  return vec4(lerp(color.rgb, last_light(c), intensity), color.a);
 }
