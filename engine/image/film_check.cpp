@@ -71,8 +71,8 @@ Result<void> check_dpx(const std::filesystem::path& file, std::ifstream& in, std
   const std::uint32_t width = header.number(772, 4), lines = header.number(776, 4);
   const std::uint32_t bits = header.number(kElement + 23, 1), packing = header.number(kElement + 24, 2);
   const auto channels = dpx_channels(header.number(kElement + 20, 1));
-  if (!channels || width == 0 || lines == 0 || width > kMostSide || lines > kMostSide || packing > 2)
-    return malformed(file, kMalformed);
+  if (width > kMostSide || lines > kMostSide) return {};  // refused for its size
+  if (!channels || width == 0 || lines == 0 || packing > 2) return malformed(file, kMalformed);
   const std::uint64_t samples = std::uint64_t{width} * *channels;
   std::uint64_t line = samples * bits / 8;
   if (bits == 10 && packing > 0) {
@@ -101,7 +101,8 @@ Result<void> check_cineon(const std::filesystem::path& file, std::ifstream& in, 
   if (elements < 1 || elements > 8) return malformed(file, kMalformed);
   const std::uint32_t bits = header.number(kElements + 2, 1);
   const std::uint32_t width = header.number(kElements + 4, 4), lines = header.number(kElements + 8, 4);
-  if (width == 0 || lines == 0 || width > kMostSide || lines > kMostSide) return malformed(file, kMalformed);
+  if (width > kMostSide || lines > kMostSide) return {};  // refused for its size
+  if (width == 0 || lines == 0) return malformed(file, kMalformed);
   for (std::size_t i = 1; i < elements; ++i) {
     const std::size_t at = kElements + i * kElement;
     if (header.number(at + 2, 1) != bits || header.number(at + 4, 4) != width || header.number(at + 8, 4) != lines)

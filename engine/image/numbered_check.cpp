@@ -143,6 +143,7 @@ Result<void> check_gif(const std::filesystem::path& file, std::ifstream& in, std
     } else if (kind == 0x2c && at + 9 < bytes.size()) {
       if (const std::uint32_t own = table(bytes[at + 8]); own > 0) colors = own, at += std::size_t{3} * own;
       at += 9;
+      if (colors == 0) break;
       const bool sound = at >= bytes.size() || bytes[at] > 8 || GifCodes(bytes, at + 1).below(colors, bytes[at]);
       return sound ? Result<void>() : malformed(file, kNoColor);
     } else {

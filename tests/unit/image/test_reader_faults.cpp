@@ -159,14 +159,15 @@ TEST_F(ReaderFaults, HeifOfAnotherSizeThanItClaims) {
 }
 
 TEST_F(ReaderFaults, Jpeg2000ChannelsOfDifferentSizes) {
-  const std::string bytes = made("a.jp2");
+  make_file(folder_ / "a.jp2", 128, 96, {"R", "G", "B"}, OIIO::TypeUInt8);
+  const std::string bytes = file_bytes(folder_ / "a.jp2");
   const std::size_t sizes = bytes.find(std::string("\xff\x4f\xff\x51"));
   ASSERT_NE(sizes, std::string::npos);
   EXPECT_EQ(said(bytes), "ok");
   const auto with = [&](std::size_t place, const std::string& other) {
     return std::string(bytes).replace(sizes + place, other.size(), other);
   };
-  EXPECT_THAT(said(with(42 + 3 + 2, "\x02")), HasSubstr("has channels of different sizes"));
+  EXPECT_THAT(said(with(42 + 3 + 2, "\x05")), HasSubstr("has channels of different sizes"));
   EXPECT_THAT(said(with(20, number(1, 4, true))), HasSubstr("does not begin at its first line"));
   ReadOptions small;
   small.max_bytes = 64u << 20;
