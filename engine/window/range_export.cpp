@@ -24,6 +24,21 @@ std::vector<int> frames_of(Player& player) {
   return {numbers.begin(), numbers.end()};
 }
 
+/// The clip that the whole range lies in; none: it has frames of several, or clips are no inputs.
+std::optional<std::size_t> clip_of_range(Player& player) {
+  const Transport& t = player.transport();
+  const Footage& footage = player.footage();
+  const int first = footage.clip_at(t.first()), last = footage.clip_at(std::min(t.last(), footage.frames() - 1));
+  if (first != last || footage.clips().size() != player.footage_options().inputs.size()) return std::nullopt;
+  return static_cast<std::size_t>(first);
+}
+
+/// Of the range.
+int first_picture(Player& player) {
+  const Footage& footage = player.footage();
+  return footage.frame(std::min(player.transport().first(), footage.frames() - 1)).picture;
+}
+
 /// Runs of numbers: "3-12,20".
 std::string list_text(const std::vector<int>& numbers) {
   std::string out;
@@ -64,11 +79,12 @@ void RangeExport::poll(Player& player, Ui& ui) {
   diagnostics_.note("export: " + told);
 }
 
-std::string RangeExport::proposed(const Player& player) const {
+std::string RangeExport::proposed(Player& player) const {
   if (!setup_.to.empty()) return setup_.to.string();
   const Footage& footage = player.footage();
-  std::string stem = footage.file(0).stem().string();
-  if (footage.is_video()) return stem + "_graded.mp4";
+  const int first = first_picture(player);
+  std::string stem = footage.file(first).stem().string();
+  if (footage.movie(first)) return stem + "_graded.mp4";
   // "shot.0012" is "shot" with a number.
   if (footage.frames() > 1)
     while (!stem.empty() &&
@@ -97,8 +113,10 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
   const FootageOptions& footage = player.footage_options();
   const auto numbers = frames_of(player);
   if (numbers.empty()) return Error{ErrorKind::usage, "no frame of the range is there"};
-  if (footage.inputs.size() > 1 && player.footage().frames() > static_cast<int>(numbers.size()))
-    return Error{ErrorKind::usage, "several inputs have frames of the same number: export them one by one"};
+  const auto& clips = player.footage().clips();
+  const auto clip = clip_of_range(player);
+  if (footage.inputs.size() > 1 && !clip && player.footage().frames() > static_cast<int>(numbers.size()))
+    return Error{ErrorKind::usage, "the range has frames of several clips: choose those of one with I and O"};
   BatchRequest out;
   out.preset = setup_.preset;
   out.session.device = setup_.device;
@@ -114,9 +132,11 @@ Result<BatchRequest> RangeExport::request(Player& player, const std::string& out
   preset.overrides = player.edits().overrides(preset.overrides);
   preset.arguments = player.edits().arguments(preset.arguments);
   preset.leave_out_unfit = true;
-  out.files.inputs = footage.inputs;
+  const bool one = clip && clips.size() > 1;
+  out.files.inputs = one ? std::vector<std::string>{footage.inputs[*clip]} : footage.inputs;
   out.files.output = output;
-  if (player.footage().frames() > 1 || player.footage().is_video()) out.files.frames = list_text(numbers);
+  const int frames = one ? clips[*clip].frames : player.footage().frames();
+  if (frames > 1 || player.footage().movie(first_picture(player))) out.files.frames = list_text(numbers);
   out.files.depth = footage.read.depth;
   out.files.normal = footage.read.normal;
   out.files.motion = footage.read.motion;

@@ -36,7 +36,7 @@ class RangeExport {
   /// In each turn: follows the look, so that an export begins with the last good one; tells what has come of it.
   void poll(Player& player, Ui& ui);
   /// The name that is proposed: of the range's frames, in the folder of the call.
-  std::string proposed(const Player& player) const;
+  std::string proposed(Player& player) const;
   /// The frames that would be written, for people: "frames 3–12 (10)".
   std::string range_text(Player& player) const;
   /// The first file that would be written over, if there is one.

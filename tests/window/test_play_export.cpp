@@ -76,6 +76,30 @@ TEST_F(PlayExport, TheRangeIsWrittenWithTheLookOfItsBeginning) {
   expect_clean_end();
 }
 
+/// Two clips whose frames have the same numbers: the range of one is exported, of both it is told why not.
+TEST_F(PlayExport, OfSeveralClipsTheOneThatTheRangeIsIn) {
+  write_preset("{ 1, 0, 0 }");
+  for (const char* name : {"more.0001.exr", "more.0002.exr", "more.0003.exr"})
+    ASSERT_NO_FATAL_FAILURE(write_picture_file(name, 0.25f));
+  play({"look.lua", "shot.####.exr", "more.####.exr", "--paused"});
+  ASSERT_TRUE(program_->wait_for("shown shot.0001.exr"));
+  ASSERT_TRUE(user("mousemove 400 300 key ctrl+r type out.####.exr"));
+  ASSERT_TRUE(user("key Return"));
+  ASSERT_TRUE(program_->wait_for("export: error: the range has frames of several clips"));
+  ASSERT_TRUE(user("key ctrl+shift+Right"));
+  ASSERT_TRUE(program_->wait_for("shown more.0001.exr: position 3"));
+  ASSERT_TRUE(user("key Right"));
+  ASSERT_TRUE(program_->wait_for("shown more.0002.exr: position 4"));
+  ASSERT_TRUE(user("key i"));
+  ASSERT_NO_FATAL_FAILURE(begin_export("out.####.exr"));
+  EXPECT_TRUE(program_->wait_for("export: 2 frames written to out.####.exr"));
+  EXPECT_EQ(files("out."), 2);
+  EXPECT_NEAR(pixel("out.0002.exr")[0], 0.25, 1e-3) << "of the second clip";
+  EXPECT_NEAR(pixel("out.0003.exr")[0], 0.25, 1e-3);
+  ASSERT_TRUE(user("key q"));
+  expect_clean_end();
+}
+
 TEST_F(PlayExport, ChangesOfThePanelArePartOfIt) {
   write_preset("{ 1, 0, 0 }");
   play({"look.lua", "shot.####.exr", "--paused"});
