@@ -96,5 +96,23 @@ TEST(Cube, EveryFormatRefusesRubbish) {
   EXPECT_THAT(read_lut(folder / "none.cube").error().text(), HasSubstr("none.cube: error: "));
 }
 
+Lut ending_with(LutKind kind, float value) {
+  Lut lut{{{LutKind::range, 0, 0}, {kind, 1, 1}}, {1, 3}, std::vector<float>(12, 0.0f)};
+  lut.table[2] = 7;  // the range's; the last step begins a row further
+  lut.table[4] = value;
+  return lut;
+}
+
+TEST(Lut, TablesOfUnitEntriesAtTheEndGiveNoMore) {
+  for (const auto kind : {LutKind::table1d, LutKind::table3d, LutKind::table_half}) {
+    EXPECT_TRUE(gives_unit(ending_with(kind, 0)));
+    EXPECT_TRUE(gives_unit(ending_with(kind, 1)));
+    EXPECT_FALSE(gives_unit(ending_with(kind, 1.001f)));
+    EXPECT_FALSE(gives_unit(ending_with(kind, -0.001f)));
+  }
+  EXPECT_FALSE(gives_unit(ending_with(LutKind::matrix, 0.5f)));
+  EXPECT_FALSE(gives_unit({}));
+}
+
 }  // namespace
 }  // namespace afterglow
