@@ -238,7 +238,11 @@ class Scales {
     const auto named = names_.find(id);
     std::string name = named == names_.end() ? std::string() : original_names(named->second);
     name = name.substr(0, name.find('('));  // functions bring the types of their arguments along
-    const Place place = name.empty() ? Places(kernel_).of_constant() : Places(kernel_).of(name);
+    Place place = Places(kernel_).of(name);
+    if (name.empty() || (name == "indexable" && place.line == 0)) {  // the compiler's copy of a constant
+      name.clear();
+      place = Places(kernel_).of_constant();
+    }
     Error error =
         shader_error(place.file, place.line, fmt::format(fmt::runtime(message), name.empty() ? "an array" : name));
     error.allowed = std::move(allowed);
