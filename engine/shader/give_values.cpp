@@ -10,6 +10,7 @@
 #include <set>
 #include <string_view>
 
+#include "shader/cpu/interleave.h"
 #include "shader/spirv_passes.h"
 
 namespace afterglow {
@@ -234,6 +235,8 @@ std::vector<std::uint32_t> read_before_written(Module module, const Ids& ids,
   module.code = std::move(code);
   declare(module, declarations);
 
+  // Each row does the same, so one is looked at. What variables of file scope hold is only seen in one function.
+  if (globals.empty() || !inlines_quickly(module)) forbid_inlining(module, function_named(module, kRowFunction));
   if (!inlines_quickly(module)) {  // any of them may be read
     std::vector<std::uint32_t> all(unset.size());
     std::iota(all.begin(), all.end(), 0u);

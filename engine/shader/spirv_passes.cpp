@@ -31,6 +31,21 @@ std::uint64_t inlined_calls(std::map<std::uint32_t, Calls>& functions, std::uint
 
 }  // namespace
 
+std::uint32_t function_named(const Module& module, std::string_view name) {
+  for (const auto& instruction : module.code) {
+    if (instruction.op != spv::OpName) continue;
+    const std::string_view text = reinterpret_cast<const char*>(&instruction.words[2]);
+    if (text.substr(0, text.find('(')) == name) return instruction.words[1];
+  }
+  return 0;
+}
+
+void forbid_inlining(Module& module, std::uint32_t function) {
+  for (auto& instruction : module.code)
+    if (instruction.op == spv::OpFunction && instruction.result == function)
+      instruction.words[3] = spv::FunctionControlDontInlineMask;
+}
+
 bool inlines_quickly(const Module& module) {
   std::map<std::uint32_t, Calls> functions;
   Calls* function = nullptr;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <spirv-tools/optimizer.hpp>
+#include <string_view>
 
 #include "shader/spirv_module.h"
 
@@ -14,8 +15,15 @@ namespace afterglow {
 /// far as single writes go. Callers add what they need behind them.
 void add_inlining_passes(spvtools::Optimizer& optimizer);
 
-/// SPIRV-Tools takes time as the square of the calls that become part of one function: half a second for so many.
-inline constexpr std::uint64_t kMaxInlinedCalls = 512;
+/// The function that GLSL names so, or 0. (glslang adds the types of its parameters: "ag_stages(vf4;vf4;".)
+std::uint32_t function_named(const Module& module, std::string_view name);
+
+/// The inlining passes leave its calls as they are.
+void forbid_inlining(Module& module, std::uint32_t function);
+
+/// SPIRV-Tools takes time as the square of the calls that become part of one function: two seconds for so many. (The
+/// effects that come along have 664 at most.)
+inline constexpr std::uint64_t kMaxInlinedCalls = 1024;
 
 /// False: the inlining passes would take too long for this module.
 bool inlines_quickly(const Module& module);

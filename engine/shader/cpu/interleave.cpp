@@ -25,26 +25,10 @@ Range range_of(const Module& module, std::uint32_t function) {
   return range;
 }
 
-/// glslang names functions with their parameter types: "ag_stages(vf4;vf4;".
-std::uint32_t named(const Module& module, std::string_view name) {
-  for (const auto& instruction : module.code) {
-    if (instruction.op != spv::OpName) continue;
-    const std::string_view text = reinterpret_cast<const char*>(&instruction.words[2]);
-    if (text.substr(0, text.find('(')) == name) return instruction.words[1];
-  }
-  return 0;
-}
-
 std::uint32_t entry_point(const Module& module) {
   for (const auto& instruction : module.code)
     if (instruction.op == spv::OpEntryPoint) return instruction.words[2];
   return 0;
-}
-
-void forbid_inlining(Module& module, std::uint32_t function) {
-  for (auto& instruction : module.code)
-    if (instruction.op == spv::OpFunction && instruction.result == function)
-      instruction.words[3] = spv::FunctionControlDontInlineMask;
 }
 
 /// Everything that the row function calls becomes part of it, and branches that only choose a value become selections.
@@ -197,7 +181,7 @@ class Interleaver {
 std::vector<std::uint32_t> interleave_rows(const std::vector<std::uint32_t>& spirv, int together) {
   auto module = parse(spirv);
   if (!module) return spirv;
-  const std::uint32_t function = named(*module, kRowFunction), main = entry_point(*module);
+  const std::uint32_t function = function_named(*module, kRowFunction), main = entry_point(*module);
   if (function == 0 || main == 0) return spirv;
   module = flatten(std::move(*module), function);
   if (!module) return spirv;

@@ -106,12 +106,12 @@ TEST(GiveValues, WhatIsAlwaysGivenIsNotTold) {
 /// Which would take too long to follow: all of them are told.
 TEST(GiveValues, AmongVeryManyCalls) {
   std::string shader = "float f0(float x) { return x * 0.5; }\n";
-  for (int i = 1; i <= 9; ++i)
+  for (int i = 1; i <= 10; ++i)
     shader += "float f" + std::to_string(i) + "(float x) { return f" + std::to_string(i - 1) + "(x) - f" +
               std::to_string(i - 1) + "(x); }\n";
-  shader += "vec4 apply(vec4 color) { float a, b; a = 1.0; return color + f9(color.r) * a + b; }\n";
+  shader += "vec4 apply(vec4 color) { float a, b; a = 1.0; return color + f10(color.r) * a + b; }\n";
   const Made one = made(shader);
-  EXPECT_THAT(one.warnings, ElementsAre(read_at(11, "a"), read_at(11, "b")));
+  EXPECT_THAT(one.warnings, ElementsAre(read_at(12, "a"), read_at(12, "b")));
   EXPECT_THAT(one.pixel, ElementsAre(0.5f, 0.25f, 2.f, 1.f));
 }
 
