@@ -50,7 +50,7 @@ Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record = nul
                      const std::string& correction = {});
 
 /// Whether what the last step gives always lies in 0…1: it is a table of such entries.
-bool gives_unit(const Lut& lut);
+bool gives_unit(const Lut& loaded);
 
 /// Looks a .cube through before OpenColorIO reads it, which says less about what is wrong and takes memory for whatever
 /// size a file claims. Errors: script, at the line.
