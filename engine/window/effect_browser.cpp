@@ -145,7 +145,8 @@ void EffectBrowser::draw_pictures(Ui& ui, const EffectSchema& effect) {
   ImGui::Dummy({2 * size.x + gap, size.y});
   if (!with || (!with->error && with->note.empty())) return;
   ImGui::PushStyleColor(ImGuiCol_Text, with->error ? ui_color::kError : ui_color::kWarning);
-  ImGui::TextWrapped("%s", (with->error ? "Error: " + with->error->text() : "Does nothing here: " + with->note).c_str());
+  ImGui::TextWrapped("%s",
+                     (with->error ? "Error: " + with->error->text() : "Does nothing here: " + with->note).c_str());
   ImGui::PopStyleColor();
 }
 

@@ -23,8 +23,8 @@ ImVec2 SheetPlaces::place(ImVec2 at, ImVec2 pivot, ImVec2 size) {
   ImVec2 corner{std::max(at.x - pivot.x * size.x, 0.0f), at.y - pivot.y * size.y};
   const bool hangs = pivot.y == 0, stands = pivot.y == 1;
   const auto meets = [&](const Place& other) {
-    return other.hangs == hangs && corner.x < other.to.x && other.from.x < corner.x + size.x &&
-           corner.y < other.to.y && other.from.y < corner.y + size.y;
+    return other.hangs == hangs && corner.x < other.to.x && other.from.x < corner.x + size.x && corner.y < other.to.y &&
+           other.from.y < corner.y + size.y;
   };
   // Each way goes one way alone: it ends.
   for (auto other = places_.begin(); (hangs || stands) && other != places_.end();) {

@@ -76,7 +76,7 @@ struct Ui {
   void help(const std::string& text) const;
   std::string message;
   double message_until = 0;
-  mutable HoverHelp hover;      ///< what `help` remembers
+  mutable HoverHelp hover;     ///< what `help` remembers
   mutable SheetPlaces sheets;  ///< that lie over the picture
   /// A field gets the keyboard within a few frames: what is typed meanwhile is for it.
   bool field_opens = false;

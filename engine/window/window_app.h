@@ -100,7 +100,8 @@ class WindowApp {
 
   InputQueue input_;
   std::vector<std::filesystem::path> to_open_, others_to_open_;
-  std::filesystem::path to_open_then_;  ///< the preset in whose favour the present one is left; empty: the window closes
+  std::filesystem::path
+      to_open_then_;       ///< the preset in whose favour the present one is left; empty: the window closes
   bool pane_due_ = false;  ///< the keyboard goes to another part with the next frame
   int field_awaited_ = 0;  ///< frames that a field has to get the keyboard; what is typed waits for it
 

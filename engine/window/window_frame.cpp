@@ -55,8 +55,7 @@ Result<void> WindowApp::draw() {
   quit_when_saved();
   if (quitting_ == Quitting::asked) {
     const std::string changes = options_.unsaved(player_, to_open_then_.empty()) + " would be lost.";
-    const std::string before =
-        to_open_then_.empty() ? "closing" : "opening " + to_open_then_.filename().string();
+    const std::string before = to_open_then_.empty() ? "closing" : "opening " + to_open_then_.filename().string();
     if (const auto answer = draw_quit_dialog(ui, before, changes, ImGui::GetIO().DisplaySize)) answer_quit(*answer);
   }
   if (options_.help && ui.show_help) options_.help(player_, ui, {0, 0}, ImGui::GetIO().DisplaySize);

@@ -22,9 +22,7 @@ bool acts_everywhere(const InputEvent& key) {
   return function || key.code == GLFW_KEY_MENU || (letter && (key.mods & GLFW_MOD_CONTROL) != 0);
 }
 
-bool is_preset(const std::filesystem::path& path) {
-  return path.extension() == ".lua" || path.extension() == ".zip";
-}
+bool is_preset(const std::filesystem::path& path) { return path.extension() == ".lua" || path.extension() == ".zip"; }
 
 }  // namespace
 

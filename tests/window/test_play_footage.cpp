@@ -22,7 +22,8 @@ class PlayFootage : public PlayWindow {
 TEST_F(PlayFootage, FramesThatAreRenderedMeanwhileComeIn) {
   write_preset("{ 1, 1, 1 }");
   fs::create_directories(folder_ / "seq");
-  for (const char* name : {"seq/s.0001.exr", "seq/s.0003.exr"}) ASSERT_NO_FATAL_FAILURE(render(name, {0.5f, 0.5f, 0.5f}));
+  for (const char* name : {"seq/s.0001.exr", "seq/s.0003.exr"})
+    ASSERT_NO_FATAL_FAILURE(render(name, {0.5f, 0.5f, 0.5f}));
   play({"look.lua", "seq", "--paused"});
   ASSERT_TRUE(program_->wait_for("shown s.0001.exr: position 0"));
   EXPECT_TRUE(until_color(kX, kY, kGray));

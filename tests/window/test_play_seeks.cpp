@@ -57,8 +57,8 @@ class PlaySeeks : public PlayWindow {
     ASSERT_TRUE(until([&] {
       screen = shot();
       return number_on(screen) == number && (known == labels_.end() || label_on(screen) == known->second);
-    })) << "picture " << number << " with its label, by "
-        << way << "; seen is " << number_on(screen).value_or(-1);
+    })) << "picture "
+        << number << " with its label, by " << way << "; seen is " << number_on(screen).value_or(-1);
     if (known == labels_.end()) {
       const auto label = label_on(screen);
       for (const auto& [other, its] : labels_) ASSERT_NE(its, label) << other << " and " << number;
@@ -86,8 +86,8 @@ class PlaySeeks : public PlayWindow {
       int to;
     };
     const int last = kFrames - 1;
-    const Key keys[] = {{"Right", at_ < last ? at_ + 1 : 0}, {"Left", at_ > 0 ? at_ - 1 : last},
-                        {"Home", 0},                         {"End", last}};
+    const Key keys[] = {
+        {"Right", at_ < last ? at_ + 1 : 0}, {"Left", at_ > 0 ? at_ - 1 : last}, {"Home", 0}, {"End", last}};
     const Key& key = keys[std::uniform_int_distribution(0, 3)(random_)];
     ASSERT_TRUE(user(std::string("key ") + key.name));
     expect_frame(key.to, key.name);
@@ -122,8 +122,8 @@ class PlaySeeks : public PlayWindow {
       if (HasFatalFailure()) return;
       ++taken[kind < 5 ? 0 : kind < 7 ? 1 : kind < 9 ? 2 : 3];
     }
-    fmt::print("{} by number, {} on the timeline, {} by keys, {} by playing; {} of {} frames seen\n", taken[0], taken[1],
-               taken[2], taken[3], labels_.size(), kFrames);
+    fmt::print("{} by number, {} on the timeline, {} by keys, {} by playing; {} of {} frames seen\n", taken[0],
+               taken[1], taken[2], taken[3], labels_.size(), kFrames);
     ASSERT_TRUE(user("key q"));
     expect_clean_end();
   }
@@ -153,12 +153,13 @@ TEST_F(PlaySeeks, FramesOfAVideoHaveTheirLabels) {
   const std::string bit = "mod(floor(N/pow(2\\,floor(X/8)))\\,2)";
   std::string even = "0";
   for (int i = 0; i < kBits; ++i) even += fmt::format("+mod(floor(N/{})\\,2)", 1 << i);
-  ASSERT_EQ(std::system(fmt::format("ffmpeg -v error -f lavfi -i \"color=c=black:s=64x40:r=24,format=yuv420p,"
-                                    "geq=lum='40+190*if(lt(X\\,56)\\,{}\\,mod({}\\,2))':cb=128:cr=128,trim=end_frame={}\" "
-                                    "-c:v libx264 -bf 3 -g 100 -qp 12 {}",
-                                    bit, even, kFrames, (folder_ / "seek.mp4").string())
-                            .c_str()),
-            0);
+  ASSERT_EQ(
+      std::system(fmt::format("ffmpeg -v error -f lavfi -i \"color=c=black:s=64x40:r=24,format=yuv420p,"
+                              "geq=lum='40+190*if(lt(X\\,56)\\,{}\\,mod({}\\,2))':cb=128:cr=128,trim=end_frame={}\" "
+                              "-c:v libx264 -bf 3 -g 100 -qp 12 {}",
+                              bit, even, kFrames, (folder_ / "seek.mp4").string())
+                      .c_str()),
+      0);
   first_ = 1;
   title_ = [](int) { return std::string("seek.mp4"); };
   ASSERT_NO_FATAL_FAILURE(open({"seek.mp4"}));

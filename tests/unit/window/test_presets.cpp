@@ -121,8 +121,7 @@ TEST_F(ThumbnailsOfPresets, AreOfTheFrameAndTellErrors) {
 /// What the panel has changed counts, and the effect is added to that; one that has nothing to do says why.
 TEST_F(ThumbnailsOfPresets, OfAnEffectMore) {
   ChangedLook look;
-  look.text =
-      "local fx = require \"afterglow\"\nreturn fx.stack { fx.color_adjustments {} }\n";
+  look.text = "local fx = require \"afterglow\"\nreturn fx.stack { fx.color_adjustments {} }\n";
   look.overrides = {{"color_adjustments", "color_filter", "{0, 1, 0}"}};
   const auto changed = std::make_shared<const ChangedLook>(look);
   Thumbnails thumbnails({.device = "auto", .validate = true}, {}, [] {});

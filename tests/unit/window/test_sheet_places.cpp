@@ -61,7 +61,8 @@ TEST_F(Sheets, WithRoomBesideEachOtherStayInARow) {
 }
 
 TEST_F(Sheets, LargerThanTheWindowBeginAtItsCorner) {
-  const auto at = places({{"scopes", {100, 100}, {1, 1}, "a\nb\nc\nd\ne\nf\ng\nh\ni\nj\nk\nl and a line that is far too wide"}});
+  const auto at =
+      places({{"scopes", {100, 100}, {1, 1}, "a\nb\nc\nd\ne\nf\ng\nh\ni\nj\nk\nl and a line that is far too wide"}});
   EXPECT_EQ(at[0].Min.x, 0);
   EXPECT_EQ(at[0].Min.y, 0);
 }
