@@ -32,9 +32,7 @@ std::optional<Size> heif_size(std::string_view head) {
   std::optional<Size> largest;
   for (auto at = head.find("ispe"); at != head.npos && at + 16 <= head.size(); at = head.find("ispe", at + 4)) {
     const auto number = [&](std::size_t offset) {
-      std::uint32_t value = 0;
-      for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(head[at + offset + i]);
-      return value;
+      return big_endian(reinterpret_cast<const unsigned char*>(&head[at + offset]), 4);
     };
     const Size size = size_of(number(8), number(12));
     if (!largest || size.area() > largest->area()) largest = size;

@@ -12,18 +12,19 @@
 
 namespace afterglow {
 
-/// A number of so many bytes (4 at most), the highest first.
-inline std::uint32_t big_endian(const unsigned char* p, std::size_t bytes) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < bytes; ++i) value = value << 8 | p[i];
+/// A number of so many bytes (8 at most), the highest or the lowest first.
+inline std::uint64_t ordered(const unsigned char* p, std::size_t bytes, bool highest_first) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < bytes; ++i) value = value << 8 | p[highest_first ? i : bytes - 1 - i];
   return value;
 }
 
-/// The same, the lowest first.
+/// The same of 4 bytes at most.
+inline std::uint32_t big_endian(const unsigned char* p, std::size_t bytes) {
+  return static_cast<std::uint32_t>(ordered(p, bytes, true));
+}
 inline std::uint32_t little_endian(const unsigned char* p, std::size_t bytes) {
-  std::uint32_t value = 0;
-  for (std::size_t i = bytes; i > 0; --i) value = value << 8 | p[i - 1];
-  return value;
+  return static_cast<std::uint32_t>(ordered(p, bytes, false));
 }
 
 inline Error malformed(const std::filesystem::path& file, const char* why) {

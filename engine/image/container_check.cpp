@@ -30,7 +30,7 @@ namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
+constexpr std::uint64_t kPngChunks = 8;  ///< where they begin
 
 /// The checksum of chunk type and data. Told here, damage is one error of ours; libpng would print its own line
 /// besides.
@@ -54,7 +54,7 @@ Result<void> check_sum(const fs::path& file, std::ifstream& in, std::uint64_t at
 Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::uint64_t size) {
   ContainerFacts facts;
   facts.kind = ContainerFacts::Kind::png;
-  std::uint64_t at = kPngMagic.size();
+  std::uint64_t at = kPngChunks;
   while (true) {
     std::array<unsigned char, 8> head{};
     in.seekg(static_cast<std::streamoff>(at));
@@ -65,7 +65,7 @@ Result<ContainerFacts> check_png(const fs::path& file, std::ifstream& in, std::u
     std::array<unsigned char, 32> data{};
     if (length >= 4 && length <= data.size() && !fill(in, data.data(), length)) return malformed(file, "is truncated");
     const auto number = [&](int index) { return big_endian(&data[static_cast<std::size_t>(index) * 4], 4); };
-    if (at == kPngMagic.size()) {
+    if (at == kPngChunks) {
       if (type != "IHDR" || length != 13) return malformed(file, "is a malformed PNG");
       if (number(0) < 1 || number(1) < 1) return malformed(file, "has no pixels");
       if (number(0) > 0x7fffffff || number(1) > 0x7fffffff) return malformed(file, "is a malformed PNG");
@@ -111,15 +111,12 @@ Result<ContainerFacts> check_container(const fs::path& file) {
   in.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
   const auto head = std::span<const unsigned char>(bytes).first(static_cast<std::size_t>(in.gcount()));
   in.clear();
-  const auto starts_with = [&](std::string_view magic) {
-    return std::string_view(reinterpret_cast<const char*>(head.data()), head.size()).starts_with(magic);
-  };
-  if (starts_with(kPngMagic)) return check_png(file, in, size);
-  if (starts_with("\xff\xd8\xff")) return check_jpeg(file, in, size);
+  const std::string format = picture_format(file);
+  if (format == "png") return check_png(file, in, size);
+  if (format == "jpeg") return check_jpeg(file, in, size);
   ContainerFacts facts;
   if (is_exr(file)) facts.kind = ContainerFacts::Kind::exr;
   std::optional<ClaimedSize> claimed = claimed_size(head);
-  const std::string format = picture_format(file);
   if (format == "dpx") AFTERGLOW_CHECK(check_dpx(file, in, size));
   if (format == "cineon") AFTERGLOW_CHECK(check_cineon(file, in, size));
   if (format == "sgi") AFTERGLOW_CHECK(check_sgi(file, in, size));

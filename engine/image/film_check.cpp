@@ -10,6 +10,7 @@ namespace afterglow {
 namespace {
 
 constexpr const char* kMalformed = "is malformed: its header makes no sense";
+constexpr std::uint32_t kUndefined = 0xffffffff, kMostSide = 1u << 20;
 
 /// The header, whose numbers have the order that the file's first four bytes tell.
 class FilmHeader {
@@ -18,7 +19,7 @@ class FilmHeader {
       : bytes_(bytes_at(in, 0, bytes)), whole_(bytes_.size() == bytes), big_(whole_ && bytes_[0] == first_if_big) {}
   bool whole() const { return whole_; }
   std::uint32_t number(std::size_t at, std::size_t bytes) const {
-    return big_ ? big_endian(&bytes_[at], bytes) : little_endian(&bytes_[at], bytes);
+    return static_cast<std::uint32_t>(ordered(&bytes_[at], bytes, big_));
   }
 
  private:
@@ -33,7 +34,6 @@ std::uint64_t filled_line(std::uint64_t samples) { return (samples + 2) / 3 * 4;
 
 Result<void> check_pixels(const std::filesystem::path& file, std::uint64_t size, std::uint32_t offset,
                           std::uint32_t lines, std::uint64_t line, std::uint32_t padding) {
-  constexpr std::uint32_t kUndefined = 0xffffffff;
   if (offset == kUndefined) return malformed(file, kMalformed);
   if (offset + lines * (line + (padding == kUndefined ? 0 : padding)) > size) return malformed(file, "is truncated");
   return {};
@@ -61,7 +61,6 @@ std::optional<std::uint32_t> dpx_channels(std::uint32_t descriptor) {
 }  // namespace
 
 Result<void> check_dpx(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
-  constexpr std::uint32_t kUndefined = 0xffffffff, kMostSide = 1u << 20;
   constexpr std::size_t kElement = 780;
   const FilmHeader header(in, kElement + 72, 'S');
   if (!header.whole()) return malformed(file, "is truncated");
@@ -94,7 +93,6 @@ Result<void> check_dpx(const std::filesystem::path& file, std::ifstream& in, std
 
 Result<void> check_cineon(const std::filesystem::path& file, std::ifstream& in, std::uint64_t size) {
   constexpr std::size_t kElements = 196, kElement = 28;
-  constexpr std::uint32_t kMostSide = 1u << 20;
   const FilmHeader header(in, 692, 0x80);
   if (!header.whole()) return malformed(file, "is truncated");
   const std::uint32_t elements = header.number(193, 1);

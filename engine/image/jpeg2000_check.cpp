@@ -25,7 +25,7 @@ std::optional<Box> box_at(std::ifstream& in, std::uint64_t at, std::uint64_t end
   std::uint64_t length = big_endian(head.data(), 4), begin = at + 8;
   if (length == 1) {
     if (head.size() < 16) return {};
-    length = std::uint64_t{big_endian(&head[8], 4)} << 32 | big_endian(&head[12], 4);
+    length = ordered(&head[8], 8, true);
     begin = at + 16;
   }
   const bool rest = length == 0 || length > end - at;

@@ -31,7 +31,7 @@ class Exif {
 
  private:
   std::uint32_t number(std::size_t at, std::size_t bytes) const {
-    return little_ ? little_endian(&bytes_[at], bytes) : big_endian(&bytes_[at], bytes);
+    return static_cast<std::uint32_t>(ordered(&bytes_[at], bytes, !little_));
   }
 
   bool directory(std::uint64_t at, int depth) {

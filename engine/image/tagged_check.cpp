@@ -118,11 +118,7 @@ Result<void> check_tiff(const std::filesystem::path& file, std::ifstream& in, st
   if (head.size() < 8) return malformed(file, "is truncated");
   const bool big = head[0] == 'M', large = (big ? head[3] : head[2]) == 43;
   if (large && head.size() < 16) return malformed(file, "is truncated");
-  const auto number = [&](const unsigned char* p, std::size_t bytes) -> std::uint64_t {
-    if (bytes < 8) return big ? big_endian(p, bytes) : little_endian(p, bytes);
-    return big ? std::uint64_t{big_endian(p, 4)} << 32 | big_endian(p + 4, 4)
-               : std::uint64_t{little_endian(p + 4, 4)} << 32 | little_endian(p, 4);
-  };
+  const auto number = [&](const unsigned char* p, std::size_t bytes) { return ordered(p, bytes, big); };
   const std::size_t wide = large ? 8 : 4, entry = large ? 20 : 12, counter = large ? 8 : 2;
   std::set<std::uint64_t> seen;
   std::uint64_t at = number(&head[large ? 8 : 4], wide);
