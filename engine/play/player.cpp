@@ -335,6 +335,7 @@ double Player::now() const { return state_->now(); }
 Transport& Player::transport() { return state_->transport; }
 View& Player::view() { return state_->view; }
 const std::filesystem::path& Player::preset_file() const { return state_->options.preset; }
+const std::filesystem::path& Player::other_file() const { return state_->options.other_preset; }
 const Footage& Player::footage() const { return *state_->footage; }
 const FootageOptions& Player::footage_options() const { return state_->options.footage; }
 Sound* Player::sound() { return state_->sound.get(); }

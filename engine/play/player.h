@@ -106,6 +106,7 @@ class Player {
   View& view();
   const Footage& footage() const;
   const std::filesystem::path& preset_file() const;
+  const std::filesystem::path& other_file() const;  ///< of `other`
   Sound* sound();                                 ///< null without PlayerOptions::sound
   const FootageOptions& footage_options() const;  ///< what `footage` was opened with
   FrameState frame_state(int position) const;

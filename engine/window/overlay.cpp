@@ -72,17 +72,21 @@ std::optional<Message> current(const Player& constant) {
 
 }  // namespace
 
-std::string comparison_text(const View& view) {
+std::string comparison_text(Player& player) {
+  const View& view = player.view();
   if (view.compare == Compare::none) return "result";
-  const bool other = view.compare == Compare::other;
-  switch (view.by) {
-    case CompareBy::flip:
-      return other ? "the other preset" : "before";
-    case CompareBy::difference:
-      return other ? "difference from the other preset" : "difference from what went in";
-    default:
-      return other ? "other preset | this one" : "before | after";
+  if (view.compare == Compare::source) {
+    if (view.by == CompareBy::flip) return "before";
+    return view.by == CompareBy::difference ? "difference from what went in" : "before | after";
   }
+  const std::filesystem::path &own = player.preset_file(), &other = player.other_file();
+  const bool alike = own.filename() == other.filename();
+  const auto name = [&](const std::filesystem::path& file) {
+    return alike ? (absolute(file).parent_path().filename() / file.filename()).string() : file.filename().string();
+  };
+  if (view.by == CompareBy::flip) return "B: " + name(other);
+  if (view.by == CompareBy::difference) return "difference from " + name(other);
+  return name(other) + " | " + name(own);
 }
 
 std::string current_message(const Player& player) {
@@ -204,7 +208,7 @@ void draw_state_overlay(Player& player, const Ui& ui, const OverlayArea& area) {
   if (view.channel != ViewChannel::color) lines.emplace_back(ui_color::kText, view_channel_name(view.channel));
   if (view.gamma != 1) lines.emplace_back(ui_color::kText, fmt::format("view gamma {:.2f}", view.gamma));
   if (view.exposure != 0) lines.emplace_back(ui_color::kText, fmt::format("view {:+.2f} EV", view.exposure));
-  if (view.compare != Compare::none) lines.emplace_back(ui_color::kText, comparison_text(view));
+  if (view.compare != Compare::none) lines.emplace_back(ui_color::kText, comparison_text(player));
   const bool building = player.live().status().building;
   if (lines.empty() && view.marks == Marks::none && !building) return;
 

@@ -38,8 +38,8 @@ std::string current_message(const Player& player);
 /// The places that it is about, the first error's first; without an error the preset's file.
 std::vector<ErrorPlace> current_places(const Player& player);
 
-/// What is compared, in words: "before | after"; "result" when nothing is.
-std::string comparison_text(const View& view);
+/// What is compared, in words: "before | after", "warm.lua | look.lua"; "result" when nothing is.
+std::string comparison_text(Player& player);
 
 /// The message of a preset, picture or frame that fails, over the last good picture, with a button that copies it.
 void draw_error_overlay(Player& player, Ui& ui, const OverlayArea& area);

@@ -92,7 +92,7 @@ void WindowApp::next_wipe() {
                    : view.compare == Compare::source && player_.other() ? Compare::other
                                                                         : Compare::none;
   }
-  interface_->ui().say(comparison_text(view));
+  interface_->ui().say(comparison_text(player_));
 }
 
 /// With the other preset where there is one, else with what went in; the key pressed again ends it.
@@ -104,7 +104,7 @@ void WindowApp::compare_by(CompareBy by) {
     view.compare = player_.other() ? Compare::other : Compare::source;
   }
   view.by = by;
-  interface_->ui().say(comparison_text(view));
+  interface_->ui().say(comparison_text(player_));
 }
 
 bool WindowApp::act_on_picture(Action action) {
