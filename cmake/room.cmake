@@ -24,5 +24,5 @@ function(afterglow_test name)
   target_compile_definitions(test_${name} PRIVATE
     AFTERGLOW_TEST_FOLDER="${PROJECT_SOURCE_DIR}/tests"
     AFTERGLOW_PROJECT_FOLDER="${PROJECT_SOURCE_DIR}")
-  gtest_discover_tests(test_${name} NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 ${TEST_PROPERTIES})
+  gtest_discover_tests(test_${name} NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES ${TEST_PROPERTIES})
 endfunction()

@@ -89,12 +89,13 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field name? string                     default: "filter"
 
 ---An image that one frame makes for the next. A frame that follows none (the first, after a seek, after a change of the effect)
----finds `first` instead. Pixels are four full floats.
+---finds `first` instead. Pixels are full floats.
 ---@class afterglow.History
 ---@field name? string                     default: "history"
 ---@field size? afterglow.Image|integer[]  default: that of `first`
 ---@field first? afterglow.Image|number|number[]  an image of this frame, or what every pixel is (numbers that are missing are 0); default: 0
 ---@field pre_roll? integer                earlier frames that `run` runs before the first one asked for; default: 1, or 24 when the history is made from itself
+---@field channels? 1|2|4                  that are kept; readers find 0 and an alpha of 1 for the others, as of passes. Fewer: `first` is numbers. Default: 4
 ---@field precise? boolean                 false: may be kept in half floats where other images are; default: true
 
 ---A linear resampling as data: out(X, Y) = Σ weight · I(p + offset), p = (X + ½) · n_source / n_target in texels. Reads outside

@@ -25,9 +25,10 @@ std::uint64_t next_turn() {
 ImageDesc desc_of(const Graph& graph, const History& history, const Histories::Options& options) {
   // What is made from itself adds up its errors, frame for frame: full floats unless the effect says otherwise.
   const bool half = options.half && !history.precise;
+  const int channels = options.four_channels ? 4 : graph.images[history.previous].channels;
   return {.name = history.name,
           .size = graph.images[history.next].size,
-          .format = half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT,
+          .format = float_format(channels, half),
           .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
                    VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
                    (options.storage ? VkImageUsageFlags{VK_IMAGE_USAGE_STORAGE_BIT} : 0)};

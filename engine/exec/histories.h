@@ -20,8 +20,9 @@ namespace afterglow {
 class Histories {
  public:
   struct Options {
-    bool half = false;     ///< store those that are not precise as half floats
-    bool storage = false;  ///< they are read as storage images too
+    bool half = false;           ///< store those that are not precise as half floats
+    bool storage = false;        ///< they are read as storage images too
+    bool four_channels = false;  ///< whatever the graph says
     std::uint64_t max_memory = 6ull << 30;
   };
   /// Makes images for the histories of this graph. Those whose part of the graph, size and format are as before keep

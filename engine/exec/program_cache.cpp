@@ -9,6 +9,7 @@
 #include "core/stopwatch.h"
 #include "exec/cpu/driver.h"
 #include "exec/describe.h"
+#include "exec/formats.h"
 #include "exec/histories.h"
 #include "exec/idle_programs.h"
 #include "graph/condition.h"
@@ -137,7 +138,11 @@ ProgramOptions ProgramCache::State::program_options() const {
 Result<void> ProgramCache::State::fit_histories() {
   const bool half = storage() == Storage::fp16 && !options.reference;
   return histories->fit(device, entries.front().work.graph,
-                        {.half = half, .storage = options.config.storage_reads, .max_memory = options.max_memory});
+                        {.half = half,
+                         .storage = options.config.storage_reads,
+                         .four_channels = options.config.four_channels ||
+                                          !holds_few_channels(device, entries.front().work.graph, options.config),
+                         .max_memory = options.max_memory});
 }
 
 /// Images that programs share go with the last of them: where they are kept, the program before stays until the new one
@@ -280,6 +285,7 @@ Result<std::unique_ptr<Program>> ProgramCache::by_passes(const Graph& graph, con
   const bool halves = std::ranges::any_of(graph.histories, [](const History& history) { return !history.precise; });
   if (halves) options.config.storage = s.storage();
   options.config.storage_reads = s.options.config.storage_reads;  // as the histories are made
+  options.config.four_channels = s.options.config.four_channels;
   options.reference = true;
   options.region = region;
   options.max_memory = s.options.max_memory;

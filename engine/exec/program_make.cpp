@@ -5,23 +5,13 @@
 #include <algorithm>
 
 #include "exec/cpu/driver.h"
+#include "exec/formats.h"
 #include "exec/program_state.h"
 #include "gpu/error.h"
 #include "gpu/pipeline.h"
 #include "graph/history.h"
 
 namespace afterglow {
-
-namespace {
-
-/// Whether optimally tiled images of the format can be used so.
-bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted) {
-  VkFormatProperties properties{};
-  device.vk().vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
-  return (properties.optimalTilingFeatures & wanted) == wanted;
-}
-
-}  // namespace
 
 /// What the device and the other options leave of the wished execution.
 void Program::State::settle_config() {
@@ -38,27 +28,10 @@ void Program::State::settle_config() {
   config.hardware_filter =
       config.hardware_filter && filters(format) && (graph.histories.empty() || filters(VK_FORMAT_R32G32B32A32_SFLOAT));
   config.storage_reads = config.storage_reads && supports(device, format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
-  config.four_channels = config.four_channels || !has_few_channels(config);
+  config.four_channels = config.four_channels || !holds_few_channels(device, graph, config);
   if (device.is_cpu()) fit_to_cpu_driver(config);
   config.two_draws = config.two_draws && !options.reference;
   config.guard_loops = config.guard_loops && device.stores_from_fragments();
-}
-
-/// Whether the device can do with images of one and two channels what these of four are used for; true where there are
-/// none. Linear ones are another matter (can_be_linear).
-bool Program::State::has_few_channels(const ExecutionConfig& config) const {
-  const bool half = config.storage == Storage::fp16;
-  VkFormatFeatureFlags wanted = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
-  if (config.hardware_filter) wanted |= VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
-  const bool computed = std::ranges::any_of(
-      graph.passes, [](const Pass& pass) { return pass.kind == PassKind::compute || !pass.by_workgroups.empty(); });
-  const bool stored = config.storage_reads || computed;
-  if (stored) wanted |= VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
-  return std::ranges::all_of(graph.images, [&](const GraphImage& image) {
-    if (image.channels == 4) return true;
-    const VkFormat wish = float_format(image.channels, half);
-    return supports(device, wish, wanted) && (!stored || wish == VK_FORMAT_R32_SFLOAT || device.stores_few_channels());
-  });
 }
 
 /// The linear image that a result by rows is.
@@ -78,9 +51,8 @@ VkImageLayout Program::State::target_layout(ImageId output) const {
 
 VkFormat Program::State::image_format(ImageId image) const {
   if (image == graph.result) return result_format();
-  return is_precise(graph, image)
-             ? VK_FORMAT_R32G32B32A32_SFLOAT
-             : float_format(stored_channels(graph, image, options.config), options.config.storage == Storage::fp16);
+  return float_format(stored_channels(graph, image, options.config),
+                      options.config.storage == Storage::fp16 && !is_precise(graph, image));
 }
 
 /// What the device must be able to do, before anything is made.
@@ -251,6 +223,7 @@ Result<void> Program::State::make_histories() {
   return histories->fit(device, graph,
                         {.half = options.config.storage == Storage::fp16,
                          .storage = options.config.storage_reads,
+                         .four_channels = options.config.four_channels,
                          .max_memory = options.max_memory - std::min(options.max_memory, arena.memory().arena)});
 }
 

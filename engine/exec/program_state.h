@@ -89,7 +89,6 @@ struct Program::State {
 
   // program_make.cpp
   void settle_config();
-  bool has_few_channels(const ExecutionConfig& config) const;
   Result<void> check();
   Result<void> find_parts();
   Result<std::vector<KernelDesc>> describe(ShaderLibrary& shaders);

@@ -24,8 +24,12 @@ Result<void> validate_images(const Graph& graph) {
     if (image.size.width < 1 || image.size.height < 1)
       return Error{ErrorKind::script,
                    fmt::format("image '{}' has no pixels ({}×{})", image.name, image.size.width, image.size.height)};
+  for (std::size_t i = 0; i < graph.images.size(); ++i)
+    if (const GraphImage& image = graph.images[i];
+        image.channels != 4 && image.producer < 0 && !history_of_previous(graph, static_cast<ImageId>(i)))
+      return Error{ErrorKind::script, fmt::format("image '{}', which is given, has four channels", image.name)};
   for (const auto& image : graph.images)
-    if (image.channels != 4 && (image.producer < 0 || (image.channels != 1 && image.channels != 2)))
+    if (image.channels != 1 && image.channels != 2 && image.channels != 4)
       return Error{ErrorKind::script, fmt::format("image '{}' cannot have {} channels", image.name, image.channels)};
   for (const auto& image : graph.images)
     if (image.data && (image.producer >= 0 || image.data->size != image.size ||
@@ -89,12 +93,15 @@ Result<void> validate_history(const Graph& graph, const History& history) {
   if (next.size != previous.size)
     return wrong(fmt::format("it is {}×{}, but the next frame gets {}×{}", previous.size.width, previous.size.height,
                              next.size.width, next.size.height));
+  if (next.channels > previous.channels)
+    return wrong(fmt::format("it has {} channels, but the next frame gets {}", previous.channels, next.channels));
   if (history.pre_roll < 0) return wrong("its pre-roll is negative");
   for (const double value : history.initial)
     if (!std::isfinite(static_cast<float>(value))) return wrong("its first value is not finite");
   if (history.first == kNoImage) return {};
   if (!is_image(graph, history.first)) return wrong("its first image is no image of this graph");
   const GraphImage& first = graph.images[history.first];
+  if (previous.channels != 4) return wrong("a first image is for histories of four channels");
   if (first.size != previous.size)
     return wrong(fmt::format("it is {}×{}, but its first image is {}×{}", previous.size.width, previous.size.height,
                              first.size.width, first.size.height));
@@ -152,8 +159,9 @@ std::optional<int> known_channels(const std::string& input) {
 }
 
 int stored_channels(const Graph& graph, ImageId image, const ExecutionConfig& config) {
-  const bool kept = image == graph.result || history_of_next(graph, image) != nullptr;
-  return kept || config.four_channels ? 4 : graph.images[image].channels;
+  if (image == graph.result || config.four_channels) return 4;
+  const History* history = history_of_next(graph, image);
+  return graph.images[history ? history->previous : image].channels;
 }
 
 std::vector<std::string> shaders_of(const Pass& pass) {

@@ -119,8 +119,8 @@ bool is_computed(const Graph& graph, ImageId image);
 /// hold what a frame brings.
 std::optional<int> known_channels(const std::string& input);
 
-/// How many channels the memory of a pass's image holds: as many as it has, but four of the result, of what a history
-/// keeps, and where `config` wants no fewer.
+/// How many channels the memory of a pass's or a history's image holds: as many as it has, of what a history keeps as
+/// many as `previous` has, but four of the result and where `config` wants no fewer.
 int stored_channels(const Graph& graph, ImageId image, const ExecutionConfig& config);
 
 /// Names of the shaders that a pass may run.

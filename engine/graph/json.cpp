@@ -45,6 +45,7 @@ Json history_json(const Graph& graph, const History& history) {
     out["first"] = graph.images[history.first].name;
   else
     out["first"] = history.initial;
+  if (const int channels = graph.images[history.previous].channels; channels != 4) out["channels"] = channels;
   out["precise"] = history.precise;
   out["pre_roll"] = history.pre_roll;
   return out;

@@ -15,12 +15,12 @@ std::uint64_t memory_needed(const Graph& graph, const ExecutionConfig& config) {
   std::uint64_t kept = 0;
   for (std::size_t i = 0; i < plan.transient.size(); ++i) {
     const auto pixels = static_cast<std::uint64_t>(graph.images[plan.transient[i]].size.area());
-    // Both images of a history have memory of their own; one of them counts among the inputs below.
+    const auto channels = static_cast<std::uint64_t>(stored_channels(graph, plan.transient[i], config));
+    // Both images of a history have memory of their own.
     if (history_of_next(graph, plan.transient[i])) {
-      kept += pixels * (is_precise(graph, plan.transient[i]) ? 32 - bytes_per_pixel : bytes_per_pixel);
+      kept += 2 * pixels * channels * (is_precise(graph, plan.transient[i]) ? 4 : bytes_per_pixel / 4);
       continue;
     }
-    const auto channels = static_cast<std::uint64_t>(stored_channels(graph, plan.transient[i], config));
     blocks.push_back({pixels * bytes_per_pixel / 4 * channels, 1, plan.lifetimes[i].first, plan.lifetimes[i].last});
   }
   std::uint64_t total = kept + place(blocks, config.share_memory).total;
@@ -30,8 +30,10 @@ std::uint64_t memory_needed(const Graph& graph, const ExecutionConfig& config) {
     if (pass.kind == PassKind::sample)
       marks = std::max(marks, static_cast<std::uint64_t>(graph.images[pass.output].size.area()) * 2);
   total += marks;
-  for (const auto& image : graph.images)
-    if (image.producer < 0) total += static_cast<std::uint64_t>(image.size.area()) * bytes_per_pixel;
+  for (std::size_t i = 0; i < graph.images.size(); ++i)
+    if (const GraphImage& image = graph.images[i];
+        image.producer < 0 && !history_of_previous(graph, static_cast<ImageId>(i)))
+      total += static_cast<std::uint64_t>(image.size.area()) * bytes_per_pixel;
   return total;
 }
 

@@ -22,10 +22,9 @@ Traffic traffic_of(const Graph& graph, const Plan& plan, const ExecutionConfig& 
   const std::uint64_t channel = config.storage == Storage::fp16 ? 2 : 4;
   const auto bytes_per_pixel = [&](ImageId image) -> std::uint64_t {
     const GraphImage& made = graph.images[static_cast<std::size_t>(image)];
-    const bool given = made.producer < 0 && image != graph.source;
-    if (given && known_channels(made.name) == 1) return 4;
-    if (given || is_precise(graph, image)) return 16;
-    return channel * static_cast<std::uint64_t>(stored_channels(graph, image, config));
+    const bool given = made.producer < 0 && image != graph.source && !history_of_previous(graph, image);
+    if (given) return known_channels(made.name) == 1 ? 4 : 16;
+    return (is_precise(graph, image) ? 4 : channel) * static_cast<std::uint64_t>(stored_channels(graph, image, config));
   };
   const auto area = [&](ImageId image) -> std::uint64_t {
     const auto at = static_cast<std::size_t>(image);

@@ -146,10 +146,11 @@ void read_first(lua_State* lua, TableReader& table, HistoryRequest& request) {
 int graph_history(lua_State* lua) {
   GraphBuilder& graph = graph_of(lua, "g:history { … }");
   TableReader table(lua, 2, call_name(lua, graph, "g:history"));
-  table.allow({"first", "name", "pre_roll", "precise", "size"}, false);
+  table.allow({"channels", "first", "name", "pre_roll", "precise", "size"}, false);
   HistoryRequest request;
   request.name = table.text("name", 80);
   request.size = read_size(table, lua);
+  request.channels = table.number("channels");
   request.precise = table.boolean("precise").value_or(true);
   request.pre_roll = table.integer("pre_roll");
   read_first(lua, table, request);

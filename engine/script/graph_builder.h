@@ -56,6 +56,7 @@ struct HistoryRequest {
   std::optional<Size> size;       ///< default: that of `first`
   std::optional<ImageRef> first;  ///< else `initial`
   std::array<double, 4> initial{};
+  std::optional<double> channels;
   bool precise = true;
   std::optional<int> pre_roll;
 };

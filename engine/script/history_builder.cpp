@@ -50,12 +50,21 @@ ImageRef GraphBuilder::history(const HistoryRequest& request, const CallPlace& p
                  {"first"}, fmt::format("{}×{}", size.width, size.height));
   for (const double value : request.initial)
     if (!std::isfinite(static_cast<float>(value))) fail_history(history, "'first' is not finite", {"first"});
+  if (request.channels && *request.channels != 1 && *request.channels != 2 && *request.channels != 4)
+    fail_history(history, fmt::format("channels = {} is no number of channels", *request.channels), {"channels"},
+                 "1, 2, 4");
+  if (request.first && request.channels.value_or(4) != 4)
+    fail_history(history, "'first' is an image, which is for histories of four channels", {"first"}, "numbers");
   if (request.pre_roll && (*request.pre_roll < 0 || *request.pre_roll > kMostPreRoll))
     fail_history(history, fmt::format("pre_roll = {} is out of range", *request.pre_roll), {"pre_roll"},
                  fmt::format("0…{} frames", kMostPreRoll));
   history.previous = add_image(history.name, size, -1);
+  graph_.images.back().channels = request.channels ? static_cast<int>(*request.channels) : 4;
   history.first = request.first ? request.first->id : kNoImage;
   history.initial = request.initial;
+  const int channels = graph_.images.back().channels;  // what is not kept reads as of passes: 0, an alpha of 1
+  if (channels < 4) history.initial[2] = 0, history.initial[3] = 1;
+  if (channels < 2) history.initial[1] = 0;
   history.precise = request.precise;
   history.pre_roll = request.pre_roll.value_or(-1);
   open_histories_.emplace_back(history.name, place);
@@ -100,6 +109,10 @@ void GraphBuilder::keep(const ImageRef& image, const ImageRef& next, const CallP
                  fmt::format("it is {}×{}, but is to keep {}×{}", image.size.width, image.size.height, next.size.width,
                              next.size.height),
                  {}, fmt::format("{}×{}", image.size.width, image.size.height));
+  const int channels = graph_.images[static_cast<std::size_t>(image.id)].channels;
+  if (const int given = graph_.images[static_cast<std::size_t>(next.id)].channels; given > channels)
+    fail_history(*history, fmt::format("it has {} channels, but is to keep an image of {}", channels, given), {},
+                 fmt::format("channels = {} of what makes the image", channels));
   // What is kept lies in memory of its own: inputs do not, and two histories cannot share one image.
   const bool needs_copy = graph_.images[static_cast<std::size_t>(next.id)].producer < 0 ||
                           is_computed(graph_, next.id) || history_of_next(graph_, next.id);

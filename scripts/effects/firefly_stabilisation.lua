@@ -20,10 +20,12 @@ return fx.effect {
   idle = function(s) return { brightest = s.threshold } end,
   holds = { "black", "constant", "mirror", "turn_180", no_added_light = 1e-6 },
   build = function(g, s, source)
-    -- The brightness of the last four frames in the four channels: what was before the first one counts as bright or as dark.
-    local unknown = s.first_frame == "keep" and 1e30 or 0
-    local before = g:history { name = "before", size = source, first = { unknown, unknown, unknown, unknown }, pre_roll = s.frames }
-    g:keep(before, g:pass { shader = "firefly_stabilisation/remember", source = source, before = before })
+    -- The brightness of as many last frames in a channel each, 65504 and above as without limit: what was before the first one counts as bright or as
+    -- dark. What is kept is handed on and never added to: half floats are enough.
+    local unknown, channels = s.first_frame == "keep" and 65504 or 0, s.frames == 3 and 4 or s.frames
+    local before = g:history { name = "before", size = source, first = { unknown, unknown, unknown, unknown }, pre_roll = s.frames,
+                               channels = channels, precise = false }
+    g:keep(before, g:pass { shader = "firefly_stabilisation/remember", source = source, before = before, channels = channels })
     return g:pass { shader = "firefly_stabilisation/clamp", source = source, before = before, threshold = s.threshold,
                     tolerance = s.tolerance, search = s.search, frames = s.frames, reach = math.max(s.search * s.frames, 2) }
   end,

@@ -23,7 +23,7 @@ float surroundings(ivec2 pixel) {
   return both(both(above, right), both(below, left)).y;
 }
 
-// The brightness that each of the last frames had nearby: the longer ago, the further a light may have come.
+// The brightness that each of the last frames had nearby: the longer ago, the further a light may have come. 65504 stands for that and all above.
 float past(ivec2 pixel) {
   int reach = search * frames;
   vec4 seen = vec4(0.0);
@@ -35,7 +35,7 @@ float past(ivec2 pixel) {
     }
   float least = seen.x;
   for (int i = 1; i < frames; ++i) least = min(least, seen[i]);
-  return least;
+  return least >= 65504.0 ? kMaxLight : least;
 }
 
 bool done_at(ivec2 pixel, out vec4 color) {

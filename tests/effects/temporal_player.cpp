@@ -20,12 +20,13 @@ Image image_of(const reference::DoubleImage& source, int channels = 4) {
 
 }  // namespace
 
-TemporalPlayer::TemporalPlayer(const std::string& entries, bool reference) {
+TemporalPlayer::TemporalPlayer(const std::string& entries, bool reference, Precision precision) {
   const auto file = std::filesystem::temp_directory_path() / fmt::format("afterglow_temporal_{}.lua", getpid());
   std::ofstream(file) << "local fx = require \"afterglow\"\nreturn fx.stack { " << entries << " }\n";
   SessionOptions options;
   options.device.validate = true;
   options.stack.reference = reference;
+  options.stack.precision = precision;
   auto opened = Session::open(file, options, diagnostics_);
   EXPECT_TRUE(opened) << opened.error().text();
   session_ = std::move(*opened);

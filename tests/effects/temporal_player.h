@@ -14,7 +14,8 @@ namespace afterglow {
 class TemporalPlayer {
  public:
   /// `entries`: Lua, as `run_stack` takes it. `reference`: every pass on its own.
-  explicit TemporalPlayer(const std::string& entries, bool reference = false);
+  explicit TemporalPlayer(const std::string& entries, bool reference = false,
+                          Precision precision = Precision::automatic);
   ~TemporalPlayer();
   TemporalPlayer(const TemporalPlayer&) = delete;
   TemporalPlayer& operator=(const TemporalPlayer&) = delete;

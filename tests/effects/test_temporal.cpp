@@ -146,6 +146,29 @@ TEST_F(Effects, FireflyStabilisationFollowsAsTheOracleDoes) {
   }
 }
 
+TEST_F(Effects, FireflyStabilisationFollowsInHalfFloatsToo) {
+  const FireflyStabilisation v{.frames = 4, .clamp_first = true};
+  TemporalPlayer player(firefly_entry(v), false, Precision::fp16);
+  std::vector<DoubleImage> past;
+  for (int frame = 1; frame <= 7; ++frame) {
+    const DoubleImage source = sparkling(frame);
+    EXPECT_TRUE(agrees(player.play(source, frame), firefly_stabilisation(source, past, v), kHalfFloat, kRgba)) << frame;
+    past.insert(past.begin(), source);
+  }
+}
+
+/// Beyond what half floats hold, a light is without limit in what is remembered of it.
+TEST_F(Effects, LightsBeyondHalfFloatsAreRemembered) {
+  for (const Precision precision : {Precision::fp32, Precision::fp16}) {
+    TemporalPlayer player("fx.firefly_stabilisation {}", false, precision);
+    DoubleImage lit = grey(0.2, {16, 16});
+    lit.at(8, 8) = Rgba(60000, 50000, 40000, 1);
+    if (precision == Precision::fp32) lit.at(3, 5) = Rgba(1e9, 1e8, 1e7, 1);
+    for (int frame = 1; frame <= 4; ++frame)
+      EXPECT_TRUE(agrees(player.play(lit, frame), lit, kHalfFloat, kRgba)) << "keep: frame " << frame;
+  }
+}
+
 TEST_F(Effects, FirefliesGoAndTheirSurroundingsStay) {
   TemporalPlayer player("fx.firefly_stabilisation {}");
   const DoubleImage calm = grey(0.5, {32, 20});

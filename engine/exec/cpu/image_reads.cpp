@@ -19,7 +19,7 @@ ImageRead read_of(const Graph& graph, ImageId image, const ProgramOptions& optio
     return channels == 1 ? ImageRead::storage_r32f : ImageRead::storage_rgba32f;
   }
   const bool half = options.config.storage == Storage::fp16 && !is_precise(graph, image);
-  const int channels = graph.images[image].producer >= 0 ? stored_channels(graph, image, options.config) : 4;
+  const int channels = stored_channels(graph, image, options.config);
   const ImageRead read = channels == 1   ? half ? ImageRead::storage_r16f : ImageRead::storage_r32f
                          : channels == 2 ? half ? ImageRead::storage_rg16f : ImageRead::storage_rg32f
                          : half          ? ImageRead::storage_rgba16f

@@ -63,17 +63,31 @@ TEST(Traffic, FewerChannelsAreFewerBytes) {
   }
 }
 
-/// What a frame hands on is in full floats of four channels.
-TEST(Traffic, HistoriesHaveFourChannels) {
+/// What a frame hands on has the channels of its history, in full floats or in those of other images.
+TEST(Traffic, HistoriesHaveTheirChannels) {
   Builder b;
-  const ImageId kept = b.sample("kept", {{"in", b.graph.source}}, {16, 8});
-  b.sample("out", {{"in", kept}}, {16, 8});
-  b.graph.images[static_cast<std::size_t>(kept)].channels = 1;
-  EXPECT_EQ(stored_channels(b.graph, kept, {}), 1);
   b.graph.images.push_back({"before", {16, 8}, -1});
-  b.graph.histories.push_back(
-      {.name = "past", .previous = static_cast<ImageId>(b.graph.images.size()) - 1, .next = kept});
+  const auto before = static_cast<ImageId>(b.graph.images.size()) - 1;
+  const ImageId kept = b.sample("kept", {{"in", b.graph.source}, {"before", before}}, {16, 8});
+  b.sample("out", {{"in", b.graph.source}, {"before", before}}, {16, 8});
+  b.graph.images[static_cast<std::size_t>(kept)].channels = 1;
+  b.graph.histories.push_back({.name = "past", .previous = before, .next = kept});
   EXPECT_EQ(stored_channels(b.graph, kept, {}), 4);
+  const std::uint64_t pixels = kPixels;
+  const std::uint64_t four = memory_needed(b.graph, {.storage = Storage::fp16});
+  for (const int channels : {1, 2}) {
+    b.graph.images[static_cast<std::size_t>(before)].channels = channels;
+    const auto count = static_cast<std::uint64_t>(channels);
+    EXPECT_EQ(stored_channels(b.graph, kept, {}), channels);
+    EXPECT_EQ(stored_channels(b.graph, kept, {.four_channels = true}), 4);
+    for (const bool precise : {true, false}) {
+      b.graph.histories[0].precise = precise;
+      const std::uint64_t bytes = count * (precise ? 4 : 2);
+      // Source twice, before twice, kept and the result once.
+      EXPECT_EQ(of(b.graph, {.storage = Storage::fp16}).total, pixels * (2 * 8 + 2 * bytes + bytes + 8));
+      EXPECT_EQ(four - memory_needed(b.graph, {.storage = Storage::fp16}), 2 * pixels * (16 - bytes));
+    }
+  }
 }
 
 TEST(Traffic, PyramidsAreToldApartAndImagesReadTwiceByAKernelCountOnce) {

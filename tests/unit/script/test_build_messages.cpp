@@ -221,8 +221,17 @@ TEST_F(BuildMessages, Histories) {
             "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': 'first' is 64×32, the history 4×4; "
             "allowed: 4×4");
   EXPECT_EQ(error("g:history { size = source, frist = 1 }"),
-            "effects/probe.lua:4: error: effect 'probe': g:history has no 'frist'; allowed: first, name, pre_roll, "
-            "precise, size; did you mean 'first'?");
+            "effects/probe.lua:4: error: effect 'probe': g:history has no 'frist'; allowed: channels, first, name, "
+            "pre_roll, precise, size; did you mean 'first'?");
+  EXPECT_EQ(error("g:history { name = \"old\", size = source,\n channels = 3 }"),
+            "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': channels = 3 is no number of channels; "
+            "allowed: 1, 2, 4");
+  EXPECT_EQ(error("g:history { name = \"old\", channels = 2,\n first = source }"),
+            "effects/probe.lua:5: error: history 'glow.old' of effect 'probe': 'first' is an image, which is for "
+            "histories of four channels; allowed: numbers");
+  EXPECT_EQ(error("local h = g:history { name = \"old\", size = source, channels = 2 } "
+                  "g:keep(h, g:pass { shader = \"plain\", source = source })"),
+            at + "it has 2 channels, but is to keep an image of 4; allowed: channels = 2 of what makes the image");
   EXPECT_EQ(error("g:keep(source, source)"),
             "effects/probe.lua:4: error: effect 'probe': g:keep: the first image is no history of this effect; "
             "allowed: what g:history returned");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Images that frames hand on to the next: what follows what, and that nothing else reaches a picture.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -119,6 +120,47 @@ TEST_F(HistoriesOfFrames, AFrameReadsWhatTheOneBeforeItMade) {
     EXPECT_EQ(run(*session, 4, 2), 4.375f);
     EXPECT_EQ(run(*session, 5, 2), 4.1875f);
   }
+}
+
+/// All four channels of what is read, whatever is kept: those that are not read as 0 and an alpha of 1.
+TEST_F(HistoriesOfFrames, FewerChannelsMayBeKept) {
+  write("shaders/t/keep.glsl", "vec4 apply(vec4 color) { return vec4(2.0 * color.r, color.r + 1.0, 9.0, 9.0); }\n");
+  write("shaders/t/sum.glsl",
+        "uniform sampler2D source;\nuniform sampler2D before;\n"
+        "vec4 sample_at(ivec2 p) { vec4 c = fetch(source, p), b = fetch(before, p);\n"
+        "  return vec4(c.r + dot(b, vec4(2.0, 4.0, 8.0, 16.0)), c.gba); }\n");
+  look("fx.few {}");
+  StackOptions plain, reference, half, read, four;
+  reference.reference = true;
+  half.choice = ExecutionConfig{.storage = Storage::fp16};
+  read.choice = ExecutionConfig{.storage = Storage::fp16, .storage_reads = true, .rows = 4};
+  four.choice = ExecutionConfig{.four_channels = true};
+  for (const int channels : {1, 2, 4})
+    for (const bool precise : {true, false}) {
+      write("effects/few.lua", fmt::format(R"(
+local fx = require "afterglow"
+return fx.effect {{
+  name = "few", at = "post_process", order = 100,
+  build = function(g, s, source)
+    local before = g:history {{ name = "before", size = source, first = {{ 16, 3, 5, 7 }}, channels = {}, precise = {} }}
+    g:keep(before, g:pass {{ shader = "t/keep", source = source, channels = {} }})
+    return g:pass {{ shader = "t/sum", source = source, before = before }}
+  end,
+}})",
+                                           channels, precise, channels));
+      const float of_first = channels == 1   ? 48
+                             : channels == 2 ? 60
+                                             : 196,
+                  of_two = channels == 1   ? 24
+                           : channels == 2 ? 36
+                                           : 236;
+      for (const auto& options : {plain, reference, half, read, four}) {
+        const auto session = open(options);
+        EXPECT_EQ(run(*session, 1, 2), 2 + of_first) << channels << ' ' << precise;
+        EXPECT_EQ(run(*session, 2, 5), 5 + of_two) << channels << ' ' << precise;
+        EXPECT_EQ(run(*session, 9, 1), 1 + of_first) << "a seek";
+      }
+    }
 }
 
 TEST_F(HistoriesOfFrames, TheSameFrameOnceMoreIsTheSame) {
