@@ -118,10 +118,12 @@ void DesktopWindow::listen() {
   glfwSetDropCallback(window_, &on_drop);
   glfwSetWindowCloseCallback(window_, &on_close);
   // What these say is asked for when a frame is drawn; that there was something is enough.
-  glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { self(w).events_.any = true; });
+  glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { self(w).size_changes(); });
   glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { self(w).events_.any = self(w).events_.exposed = true; });
-  glfwSetWindowIconifyCallback(window_,
-                               [](GLFWwindow* w, int) { self(w).events_.any = self(w).events_.exposed = true; });
+  glfwSetWindowIconifyCallback(window_, [](GLFWwindow* w, int) {
+    self(w).size_changes();
+    self(w).events_.exposed = true;
+  });
   glfwSetWindowContentScaleCallback(window_, [](GLFWwindow* w, float, float) { self(w).events_.any = true; });
   glfwSetWindowFocusCallback(window_, &on_focus);
   glfwSetCursorPosCallback(window_, &on_move);
@@ -220,11 +222,18 @@ Rect DesktopWindow::place() const {
 
 void DesktopWindow::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
+/// X11 answers each question by a way to the server and back: asked once after each change.
 Size DesktopWindow::framebuffer() const {
-  if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) return {};
+  if (framebuffer_) return *framebuffer_;
   Size size;
-  glfwGetFramebufferSize(window_, &size.width, &size.height);
+  if (!glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) glfwGetFramebufferSize(window_, &size.width, &size.height);
+  framebuffer_ = size;
   return size;
+}
+
+void DesktopWindow::size_changes() {
+  framebuffer_.reset();
+  events_.any = true;
 }
 
 float DesktopWindow::content_scale() const {
@@ -246,7 +255,7 @@ void DesktopWindow::set_full_screen(bool on) {
     glfwSetWindowMonitor(window_, nullptr, windowed_.x, windowed_.y, windowed_.width, windowed_.height, 0);
   }
   full_screen_ = on;
-  events_.any = true;
+  size_changes();
 }
 
 void DesktopWindow::set_clipboard(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }

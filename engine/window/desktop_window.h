@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,10 +78,12 @@ class DesktopWindow {
   static void on_drop(GLFWwindow* window, int count, const char** paths);
   static void on_close(GLFWwindow* window);
   void listen();
+  void size_changes();
   static void take(GLFWwindow* window, const InputEvent& event);
 
   GLFWwindow* window_ = nullptr;
   WindowEvents events_;
+  mutable std::optional<Size> framebuffer_;  ///< none: it may be another than before
   bool full_screen_ = false;
   Rect windowed_;  ///< where it was before it filled the screen
 };
