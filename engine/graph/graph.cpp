@@ -24,13 +24,12 @@ Result<void> validate_images(const Graph& graph) {
     if (image.size.width < 1 || image.size.height < 1)
       return Error{ErrorKind::script,
                    fmt::format("image '{}' has no pixels ({}×{})", image.name, image.size.width, image.size.height)};
-  for (std::size_t i = 0; i < graph.images.size(); ++i)
-    if (const GraphImage& image = graph.images[i];
-        image.channels != 4 && image.producer < 0 && !history_of_previous(graph, static_cast<ImageId>(i)))
-      return Error{ErrorKind::script, fmt::format("image '{}', which is given, has four channels", image.name)};
-  for (const auto& image : graph.images)
-    if (image.channels != 1 && image.channels != 2 && image.channels != 4)
+  for (std::size_t i = 0; i < graph.images.size(); ++i) {
+    const GraphImage& image = graph.images[i];
+    const bool made = image.producer >= 0 || history_of_previous(graph, static_cast<ImageId>(i));
+    if (image.channels != 4 && !(made && (image.channels == 1 || image.channels == 2)))
       return Error{ErrorKind::script, fmt::format("image '{}' cannot have {} channels", image.name, image.channels)};
+  }
   for (const auto& image : graph.images)
     if (image.data && (image.producer >= 0 || image.data->size != image.size ||
                        image.data->pixels.size() != static_cast<std::size_t>(image.size.area()) * 4))

@@ -223,16 +223,17 @@ Rect DesktopWindow::place() const {
 void DesktopWindow::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
 /// X11 answers each question by a way to the server and back: asked once after each change.
-Size DesktopWindow::framebuffer() const {
-  if (framebuffer_) return *framebuffer_;
-  Size size;
-  if (!glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) glfwGetFramebufferSize(window_, &size.width, &size.height);
-  framebuffer_ = size;
-  return size;
+DesktopWindow::Extent DesktopWindow::extent() const {
+  if (extent_) return *extent_;
+  Extent& out = extent_.emplace();
+  if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) return out;
+  glfwGetWindowSize(window_, &out.window.width, &out.window.height);
+  glfwGetFramebufferSize(window_, &out.framebuffer.width, &out.framebuffer.height);
+  return out;
 }
 
 void DesktopWindow::size_changes() {
-  framebuffer_.reset();
+  extent_.reset();
   events_.any = true;
 }
 

@@ -47,8 +47,12 @@ class DesktopWindow {
   /// Where it is, or was before it filled the screen. On desktops that tell nobody, x and y are 0.
   Rect place() const;
   void set_title(const std::string& title);
-  /// Of the frame buffer, in pixels; empty while minimised.
-  Size framebuffer() const;
+  struct Extent {
+    Size window;       ///< in the units that places of the pointer have
+    Size framebuffer;  ///< in pixels
+  };
+  /// Both empty while minimised.
+  Extent extent() const;
   /// Pixels for what is a pixel on a plain display: 1, 1.5, 2, …
   float content_scale() const;
   void set_full_screen(bool on);
@@ -83,7 +87,7 @@ class DesktopWindow {
 
   GLFWwindow* window_ = nullptr;
   WindowEvents events_;
-  mutable std::optional<Size> framebuffer_;  ///< none: it may be another than before
+  mutable std::optional<Extent> extent_;  ///< none: it may be another than before
   bool full_screen_ = false;
   Rect windowed_;  ///< where it was before it filled the screen
 };

@@ -6,6 +6,7 @@
 #include <backends/imgui_impl_glfw.h>
 #include <imgui_internal.h>
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <filesystem>
@@ -72,11 +73,19 @@ Interface::Interface(GLFWwindow* window) : pointer_(kElsewhere) {
   io.ConfigInputTrickleEventQueue = false;  // InputQueue spreads events over frames
 #endif
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-  if (window && ImGui_ImplGlfw_InitForVulkan(window, false)) window_ = window;
+  if (window && ImGui_ImplGlfw_InitForVulkan(window, false)) {
+    window_ = window;
+    shapes_[ImGuiMouseCursor_TextInput] = glfwCreateStandardCursor(GLFW_IBEAM_CURSOR);
+    shapes_[ImGuiMouseCursor_ResizeNS] = glfwCreateStandardCursor(GLFW_VRESIZE_CURSOR);
+    shapes_[ImGuiMouseCursor_ResizeEW] = glfwCreateStandardCursor(GLFW_HRESIZE_CURSOR);
+    shapes_[ImGuiMouseCursor_Hand] = glfwCreateStandardCursor(GLFW_HAND_CURSOR);
+  }
   set_scale(1);
 }
 
 Interface::~Interface() {
+  for (GLFWcursor* shape : shapes_)
+    if (shape) glfwDestroyCursor(shape);
   if (window_) ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext(context_);
 }
@@ -144,8 +153,9 @@ void Interface::note_press(const InputEvent& event) {
   pressed_at_ = pointer_;
 }
 
-/// In place of what the backend asks the window, which is what holds now and not when it happened.
-void Interface::show_pointer() {
+/// In place of what the backend asks the window: that is what holds now and not when it happened, and each question is
+/// a way to the display and back.
+void Interface::take_pointer() {
   ImGuiIO& io = ImGui::GetIO();
   io.MouseDoubleClickTime = twice_ ? FLT_MAX : 0;
 #if IMGUI_VERSION_NUM >= 18700
@@ -157,14 +167,27 @@ void Interface::show_pointer() {
 #endif
 }
 
-void Interface::begin(Size size, float seconds) {
+void Interface::show_pointer() {
+  const ImGuiMouseCursor wanted = ImGui::GetMouseCursor();
+  GLFWcursor* shape = wanted >= 0 ? shapes_[static_cast<std::size_t>(wanted)] : nullptr;
+  if (shape != shape_) glfwSetCursor(window_, shape);
+  shape_ = shape;
+}
+
+void Interface::begin(Size size, Size framebuffer) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {static_cast<float>(size.width), static_cast<float>(size.height)};
+  if (size.area() > 0)
+    io.DisplayFramebufferScale = {static_cast<float>(framebuffer.width) / io.DisplaySize.x,
+                                  static_cast<float>(framebuffer.height) / io.DisplaySize.y};
+  constexpr double kUsual = 1.0 / 60, kLeast = 1e-6;  // seconds; Dear ImGui takes no 0
+  io.DeltaTime = static_cast<float>(kUsual);
   if (window_) {
-    ImGui_ImplGlfw_NewFrame();
-    show_pointer();
+    const double now = glfwGetTime();
+    if (began_ > 0) io.DeltaTime = static_cast<float>(std::max(now - began_, kLeast));
+    began_ = now;
+    take_pointer();
   } else {
-    ImGuiIO& io = ImGui::GetIO();
-    io.DisplaySize = {static_cast<float>(size.width), static_cast<float>(size.height)};
-    io.DeltaTime = seconds;
     io.Fonts->SetTexID(nullptr);
   }
   ImGui::NewFrame();
@@ -173,6 +196,7 @@ void Interface::begin(Size size, float seconds) {
 
 const ImDrawData& Interface::end() {
   ImGui::Render();
+  if (window_) show_pointer();
   return *ImGui::GetDrawData();
 }
 

@@ -12,6 +12,7 @@
 #include "window/input_event.h"
 #include "window/ui.h"
 
+struct GLFWcursor;
 struct GLFWwindow;
 
 namespace afterglow {
@@ -19,8 +20,7 @@ namespace afterglow {
 /// Owns the ImGui context (one in a process). Drawing thread alone.
 class Interface {
  public:
-  /// With a window: listens to it besides whoever did before, and takes its sizes. Without one: for tests; the size is
-  /// given to `begin`.
+  /// With a window: keys are read as it names them, and it shows the pointer's shape. Without one: for tests.
   explicit Interface(GLFWwindow* window);
   ~Interface();
   Interface(const Interface&) = delete;
@@ -29,8 +29,9 @@ class Interface {
   /// Fonts and sizes for that many pixels to a plain display's one; true when they have changed, and the atlas must be
   /// taken anew.
   bool set_scale(float scale);
-  /// `size`, `seconds` since the frame before: used without a window.
-  void begin(Size size = {}, float seconds = 1.0f / 60);
+  /// `size` in the units of the pointer, `framebuffer` in pixels. Asks the window nothing.
+  void begin(Size size, Size framebuffer);
+  void begin(Size size) { begin(size, size); }
   const ImDrawData& end();
 
   /// For the next frame; with a window alone. Events of one frame are those of InputQueue.
@@ -47,13 +48,17 @@ class Interface {
 
  private:
   void load_fonts();
+  void take_pointer();
   void show_pointer();
   void note_press(const InputEvent& event);
   ImGuiContext* context_ = nullptr;
   GLFWwindow* window_ = nullptr;
-  ImVec2 pointer_;                 ///< in the window; off-screen: it is elsewhere
-  std::array<bool, 5> buttons_{};  ///< that are down
-  InputEvent pressed_;             ///< the last press of a button
+  std::array<GLFWcursor*, ImGuiMouseCursor_COUNT> shapes_{};  ///< of the pointer; null: the arrow
+  GLFWcursor* shape_ = nullptr;                               ///< that is shown
+  double began_ = 0;                                          ///< the frame, by GLFW's clock
+  ImVec2 pointer_;                                            ///< in the window; off-screen: it is elsewhere
+  std::array<bool, 5> buttons_{};                             ///< that are down
+  InputEvent pressed_;                                        ///< the last press of a button
   ImVec2 pressed_at_;
   bool twice_ = false;  ///< that press follows another one at once, at the same place
   Ui ui_;

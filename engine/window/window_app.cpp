@@ -95,7 +95,7 @@ Result<void> WindowApp::follow_display() {
 }
 
 Result<Step> WindowApp::step() {
-  minimise_or_restore(window_.framebuffer().area() == 0);
+  minimise_or_restore(window_.extent().framebuffer.area() == 0);
   if (minimised_) return Step{.next = std::numeric_limits<double>::infinity()};
   // The player may write what the last frame reads.
   AFTERGLOW_CHECK(painter_->finish());

@@ -40,12 +40,12 @@ Result<void> WindowApp::follow_scale() {
 
 Result<void> WindowApp::draw() {
   AFTERGLOW_CHECK(follow_scale());
-  const Size window = window_.framebuffer();
+  const auto [extent, window] = window_.extent();
   if (window.area() == 0) return {};
   Ui& ui = interface_->ui();
   ui.now = player_.now();
   ui.hover.begin_frame();
-  interface_->begin();
+  interface_->begin(extent, window);
   follow_pane();
   draw_parts(window);
   navigate();

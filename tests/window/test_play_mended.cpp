@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <random>
+#include <utility>
 
 #include "play_window_test.h"
 
@@ -75,6 +76,7 @@ class PlayMended : public PlayWindow {
   std::vector<Rect> bar_of(Size window, int panel, int wide) {
     std::vector<Rect> out;
     EXPECT_TRUE(until([&] {
+      const std::vector<Rect> before = std::exchange(out, {});
       const Screen screen = shot();
       // The window has this size already: its panel begins where it should.
       const auto ground = [&](int x) { return is(screen.at(x, 6), kPanelGround); };
@@ -83,7 +85,7 @@ class PlayMended : public PlayWindow {
       out = boxes(screen, {0, window.height - height, wide, height});
       if (out.size() < kBoxes) return false;
       out.erase(out.begin(), out.end() - kBoxes);  // the panel above it, and the timeline, which its playhead parts
-      return true;
+      return out == before;
     })) << out.size()
         << " fields and buttons";
     return out;
