@@ -86,8 +86,8 @@ class PainterTest : public testing::Test {
   /// The picture in the left half, and a white square of the interface at its upper left corner.
   Swapchain::Drawn paint() {
     window_->wait(0);
-    const Size size = window_->framebuffer();
-    interface_->begin();
+    const auto [extent, size] = window_->extent();
+    interface_->begin(extent, size);
     ImGui::GetForegroundDrawList()->AddRectFilled({10, 10}, {square_, 30}, IM_COL32(255, 255, 255, 255));
     const ImDrawData& data = interface_->end();
     ViewFrame frame;
@@ -201,7 +201,7 @@ TEST_F(PainterTest, FollowsItsWindowAndReleasesOldSwapchains) {
 TEST_F(PainterTest, NothingIsDrawnWithoutArea) {
   paint();
   const auto before = painter_->swapchain().counters();
-  interface_->begin();
+  interface_->begin(window_->extent().window, window_->extent().framebuffer);
   const ImDrawData& data = interface_->end();
   const auto drawn = painter_->paint({0, 0}, {}, data);
   ASSERT_TRUE(drawn) << drawn.error().text();
@@ -275,8 +275,8 @@ class PainterPartsTest : public PainterTest {
 
   void show(const State& s, std::span<const Rect> written = {}) {
     window_->wait(0);
-    const Size size = window_->framebuffer();
-    interface_->begin();
+    const auto [extent, size] = window_->extent();
+    interface_->begin(extent, size);
     draw_interface(s);
     const ImDrawData& data = interface_->end();
     ViewFrame frame;
@@ -359,8 +359,8 @@ TEST_F(PainterPartsTest, FollowTheWindowTheFontsAndTheAtlas) {
   show_often(s);
   for (const Size size : {Size{701, 433}, Size{640, 400}, Size{903, 611}}) {
     glfwSetWindowSize(window_->handle(), size.width, size.height);
-    for (int i = 0; i < 100 && window_->framebuffer() != size; ++i) window_->wait(0.1);
-    EXPECT_EQ(window_->framebuffer(), size);
+    for (int i = 0; i < 100 && window_->extent().framebuffer != size; ++i) window_->wait(0.1);
+    EXPECT_EQ(window_->extent().framebuffer, size);
     ++s.frame;
     show_often(s);
   }
