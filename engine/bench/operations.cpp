@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "exec/timing.h"
+#include "gpu/image.h"
 
 namespace afterglow::bench {
 namespace {
@@ -20,13 +21,6 @@ constexpr NamedFormat kFormats[] = {{"RGBA32F", kFloats},
                                     {"RGBA16F", VK_FORMAT_R16G16B16A16_SFLOAT},
                                     {"R11G11B10F", VK_FORMAT_B10G11R11_UFLOAT_PACK32},
                                     {"RGBA8", VK_FORMAT_R8G8B8A8_UNORM}};
-
-bool can_draw(const Device& device, VkFormat format) {
-  VkFormatProperties properties{};
-  device.vk().vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
-  constexpr auto kWanted = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
-  return (properties.optimalTilingFeatures & kWanted) == kWanted;
-}
 
 /// Two images of a format, the first with the picture in it, and the copy of it to the second.
 struct FormatCopy {
@@ -82,7 +76,7 @@ Result<std::vector<OperationCost>> measure_operations(Device& device, const Stac
   std::vector<Measured> all;
   std::vector<std::unique_ptr<FormatCopy>> copies;
   for (const auto& format : kFormats) {
-    if (!can_draw(device, format.format)) continue;
+    if (!supports(device, format.format, kDrawnAndSampled)) continue;
     AFTERGLOW_TRY(auto copy, make_copy(device, compiler, floats.source(), format));
     names.push_back(fmt::format("copy {}", format.name));
     all.emplace_back([work = &copy->copy.work()] { return work->run(); });

@@ -9,7 +9,7 @@
 #include "core/stopwatch.h"
 #include "exec/cpu/driver.h"
 #include "exec/describe.h"
-#include "exec/formats.h"
+#include "exec/few_channels.h"
 #include "exec/histories.h"
 #include "exec/idle_programs.h"
 #include "graph/condition.h"

@@ -5,9 +5,10 @@
 #include <algorithm>
 
 #include "exec/cpu/driver.h"
-#include "exec/formats.h"
+#include "exec/few_channels.h"
 #include "exec/program_state.h"
 #include "gpu/error.h"
+#include "gpu/image.h"
 #include "gpu/pipeline.h"
 #include "graph/history.h"
 

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <set>
 
 #include "core/parse_number.h"
 #include "core/text.h"
 #include "gpu/error.h"
+#include "gpu/image.h"
 #include "gpu/instance.h"
 
 namespace afterglow {
@@ -92,10 +92,7 @@ std::optional<std::uint32_t> graphics_family(const VulkanFunctions& vk, VkPhysic
 }
 
 bool can_draw_and_sample(const VulkanFunctions& vk, VkPhysicalDevice device, VkFormat format) {
-  constexpr VkFormatFeatureFlags kWanted = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
-  VkFormatProperties properties{};
-  vk.vkGetPhysicalDeviceFormatProperties(device, format, &properties);
-  return (properties.optimalTilingFeatures & kWanted) == kWanted;
+  return supports(vk, device, format, kDrawnAndSampled);
 }
 
 std::string what_it_lacks(const VulkanFunctions& vk, VkPhysicalDevice device, std::uint32_t api_version,
@@ -183,9 +180,8 @@ PhysicalDevice describe_device(const VulkanFunctions& vk, VkPhysicalDevice devic
   out.info.api_version = plain.apiVersion;
   out.info.why_not = what_it_lacks(vk, device, plain.apiVersion, surface);
   out.info.usable = out.info.why_not.empty();
-  out.info.few_channels = std::ranges::all_of(
-      std::array{VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R16G16_SFLOAT},
-      [&](VkFormat format) { return can_draw_and_sample(vk, device, format); });
+  out.info.few_channels =
+      std::ranges::all_of(kFewChannels, [&](VkFormat format) { return can_draw_and_sample(vk, device, format); });
   return out;
 }
 

@@ -27,6 +27,16 @@ std::uint32_t bytes_per_pixel(VkFormat format) {
   }
 }
 
+bool supports(const VulkanFunctions& vk, VkPhysicalDevice device, VkFormat format, VkFormatFeatureFlags wanted) {
+  VkFormatProperties properties{};
+  vk.vkGetPhysicalDeviceFormatProperties(device, format, &properties);
+  return (properties.optimalTilingFeatures & wanted) == wanted;
+}
+
+bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted) {
+  return supports(device.vk(), device.physical(), format, wanted);
+}
+
 VkFormat float_format(int channels, bool half) {
   if (channels == 1) return half ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT;
   if (channels == 2) return half ? VK_FORMAT_R16G16_SFLOAT : VK_FORMAT_R32G32_SFLOAT;

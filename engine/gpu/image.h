@@ -2,6 +2,7 @@
 // 2-D images: one level, one layer.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "core/geometry.h"
@@ -24,6 +25,16 @@ struct ImageDesc {
 std::uint32_t bytes_per_pixel(VkFormat format);
 /// Of 1, 2 or 4 channels of 16-bit or 32-bit floats.
 VkFormat float_format(int channels, bool half);
+
+/// Floats of one and two channels. Vulkan asks no device for them.
+inline constexpr std::array kFewChannels{VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R16_SFLOAT,
+                                         VK_FORMAT_R16G16_SFLOAT};
+/// What every image between kernels is used for.
+inline constexpr VkFormatFeatureFlags kDrawnAndSampled =
+    VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
+/// Whether optimally tiled images of the format can be used so.
+bool supports(const VulkanFunctions& vk, VkPhysicalDevice device, VkFormat format, VkFormatFeatureFlags wanted);
+bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted);
 
 /// The layout of a new image: PREINITIALIZED for linear tiling, so that pixels written by the CPU stay; else UNDEFINED.
 VkImageLayout initial_layout(const ImageDesc& desc);

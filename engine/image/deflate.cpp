@@ -30,9 +30,9 @@ class Deflate::Fast {
 
   /// 0: no room.
   std::size_t pack(Bytes bytes, bool last, std::span<std::uint8_t> packed) {
-    // Without history, ISA-L (all versions up to 2.32) hashes its own address in place of the third byte: other bytes
-    // in one of some hundred runs. So a stored block holds the first bytes, and they are its history. What is shorter
-    // never comes there.
+    // Without history, ISA-L (2.30 to 2.31.1, and its sources of 2026) hashes its own address in place of the third
+    // byte: other bytes in one of some hundred runs. So a stored block holds the first bytes, and they are its history.
+    // What is shorter never comes there.
     constexpr std::size_t kFirst = 4, kShort = 16;
     const std::size_t first = bytes.size() > kShort ? kFirst : 0;
     std::size_t at = 0;

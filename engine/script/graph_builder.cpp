@@ -96,11 +96,14 @@ Pass GraphBuilder::start(std::string name, const std::optional<std::string>& giv
   return pass;
 }
 
+std::optional<std::string> GraphBuilder::wrong_channels(std::optional<double> wanted) {
+  if (!wanted || *wanted == 1 || *wanted == 2 || *wanted == 4) return {};
+  return fmt::format("channels = {} is no number of channels", *wanted);
+}
+
 int GraphBuilder::channels_of(const Pass& pass, std::optional<double> wanted, int otherwise) const {
-  if (!wanted) return otherwise;
-  if (*wanted != 1 && *wanted != 2 && *wanted != 4)
-    fail(pass, fmt::format("channels = {} is no number of channels", *wanted), {"channels"}, "1, 2, 4");
-  return static_cast<int>(*wanted);
+  if (const auto wrong = wrong_channels(wanted)) fail(pass, *wrong, {"channels"}, kChannelCounts);
+  return wanted ? static_cast<int>(*wanted) : otherwise;
 }
 
 ImageRef GraphBuilder::add(Pass pass, Size size, int channels) {

@@ -67,6 +67,8 @@ struct CallPlace {
   int line = 0;
 };
 
+inline constexpr const char* kChannelCounts = "1, 2, 4";
+
 /// All functions throw ScriptError; messages name pass and effect.
 class GraphBuilder {
  public:
@@ -115,6 +117,8 @@ class GraphBuilder {
   ImageId add_image(std::string name, Size size, int producer);
   Pass start(std::string name, const std::optional<std::string>& given, const CallPlace& place);
   ImageRef add(Pass pass, Size size, int channels);
+  /// What is wrong with `channels = …`; none: nothing.
+  static std::optional<std::string> wrong_channels(std::optional<double> wanted);
   int channels_of(const Pass& pass, std::optional<double> wanted, int otherwise) const;
   void check_image(const Pass& pass, const std::string& key, const ImageRef& image) const;
   void check_size(const Pass& pass, const Size& size) const;

@@ -50,19 +50,18 @@ ImageRef GraphBuilder::history(const HistoryRequest& request, const CallPlace& p
                  {"first"}, fmt::format("{}×{}", size.width, size.height));
   for (const double value : request.initial)
     if (!std::isfinite(static_cast<float>(value))) fail_history(history, "'first' is not finite", {"first"});
-  if (request.channels && *request.channels != 1 && *request.channels != 2 && *request.channels != 4)
-    fail_history(history, fmt::format("channels = {} is no number of channels", *request.channels), {"channels"},
-                 "1, 2, 4");
-  if (request.first && request.channels.value_or(4) != 4)
+  if (const auto wrong = wrong_channels(request.channels)) fail_history(history, *wrong, {"channels"}, kChannelCounts);
+  const int channels = static_cast<int>(request.channels.value_or(4));
+  if (request.first && channels != 4)
     fail_history(history, "'first' is an image, which is for histories of four channels", {"first"}, "numbers");
   if (request.pre_roll && (*request.pre_roll < 0 || *request.pre_roll > kMostPreRoll))
     fail_history(history, fmt::format("pre_roll = {} is out of range", *request.pre_roll), {"pre_roll"},
                  fmt::format("0…{} frames", kMostPreRoll));
   history.previous = add_image(history.name, size, -1);
-  graph_.images.back().channels = request.channels ? static_cast<int>(*request.channels) : 4;
+  graph_.images.back().channels = channels;
   history.first = request.first ? request.first->id : kNoImage;
   history.initial = request.initial;
-  const int channels = graph_.images.back().channels;  // what is not kept reads as of passes: 0, an alpha of 1
+  // What is not kept reads as of passes: 0, an alpha of 1.
   if (channels < 4) history.initial[2] = 0, history.initial[3] = 1;
   if (channels < 2) history.initial[1] = 0;
   history.precise = request.precise;

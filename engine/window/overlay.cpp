@@ -82,7 +82,8 @@ std::string comparison_text(Player& player) {
   const std::filesystem::path &own = player.preset_file(), &other = player.other_file();
   const bool alike = own.filename() == other.filename();
   const auto name = [&](const std::filesystem::path& file) {
-    return alike ? (absolute(file).parent_path().filename() / file.filename()).string() : file.filename().string();
+    std::error_code ec;  // the folder of the call may be gone
+    return alike ? (absolute(file, ec).parent_path().filename() / file.filename()).string() : file.filename().string();
   };
   if (view.by == CompareBy::flip) return "B: " + name(other);
   if (view.by == CompareBy::difference) return "difference from " + name(other);

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What a device can do with formats of images. Vulkan asks no device for those of one and two channels.
+// Whether images of one and two channels can stand for those of four.
 #pragma once
 
 #include "gpu/device.h"
 #include "graph/graph.h"
 
 namespace afterglow {
-
-/// Whether optimally tiled images of the format can be used so.
-bool supports(const Device& device, VkFormat format, VkFormatFeatureFlags wanted);
 
 /// Whether the device can do with the graph's images of one and two channels what those of four are used for; true
 /// where there are none. Linear ones are another matter (can_be_linear). Where a history has such images, the answer is
