@@ -29,14 +29,26 @@ DoubleImage sharpen(const DoubleImage& source, double intensity, double contrast
   });
 }
 
-DoubleImage pixelate(const DoubleImage& source, int size) {
-  return generate(source.size(), [&](int x, int y) {
-    const int left = x / size * size, top = y / size * size;
-    const int right = std::min(left + size, source.width), bottom = std::min(top + size, source.height);
+DoubleImage pixelate(const DoubleImage& source, double size) {
+  const double side = std::floor(size * 65536 + 0.5) / 65536;
+  // The light in a rectangle, whose edges may lie within pixels, over its area.
+  const auto mean = [&](double left, double top, double right, double bottom) {
     Rgb sum(0);
-    for (int j = top; j < bottom; ++j)
-      for (int i = left; i < right; ++i) sum += Rgb(source.at(i, j));
-    return Rgba(sum / static_cast<double>((right - left) * (bottom - top)), source.at(x, y).a);
+    for (int j = static_cast<int>(top); j < bottom; ++j)
+      for (int i = static_cast<int>(left); i < right; ++i)
+        sum += Rgb(source.at(i, j)) * ((std::min(i + 1.0, right) - std::max<double>(i, left)) *
+                                       (std::min(j + 1.0, bottom) - std::max<double>(j, top)));
+    return sum / ((right - left) * (bottom - top));
+  };
+  return generate(source.size(), [&](int x, int y) {
+    Rgb shown(0);
+    for (double top = std::floor(y / side) * side; top < y + 1; top += side)
+      for (double left = std::floor(x / side) * side; left < x + 1; left += side)
+        shown +=
+            mean(left, top, std::min<double>(left + side, source.width), std::min<double>(top + side, source.height)) *
+            ((std::min(left + side, x + 1.0) - std::max<double>(left, x)) *
+             (std::min(top + side, y + 1.0) - std::max<double>(top, y)));
+    return Rgba(shown, source.at(x, y).a);
   });
 }
 

@@ -12,7 +12,7 @@ double perceived(const Rgb& c);
 DoubleImage sharpen(const DoubleImage& source, double intensity, double contrast);
 
 /// Squares of `size` pixels from the upper left corner, each its mean.
-DoubleImage pixelate(const DoubleImage& source, int size);
+DoubleImage pixelate(const DoubleImage& source, double size);
 
 enum class EdgeOperator { sobel, scharr, roberts };
 struct EdgeDetection {

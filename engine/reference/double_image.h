@@ -80,7 +80,7 @@ DoubleImage map_color(const DoubleImage& image, F&& f) {
 }
 
 /// What straight colour is divided by: alpha, or 1 where that is not above 0 (math.md §19).
-inline double cover(const Rgba& p) { return p.a > 0 ? p.a : 1.0; }
+inline double cover(const Rgba& p) { return p.a > 0 ? glm::min(p.a, 65504.0) : 1.0; }
 
 /// As `map_color` with f seeing straight colour: divided by alpha before, multiplied by it behind.
 template <class F>

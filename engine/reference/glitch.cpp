@@ -22,7 +22,7 @@ DoubleImage glitch(const DoubleImage& source, const Glitch& s) {
   const double turns = s.vertical_roll * s.time;
   const int roll = static_cast<int>(std::floor(height * (turns - std::floor(turns))));
   return generate(source.size(), [&](int x, int y) {
-    const Words of_line = pcg3d({static_cast<std::uint32_t>(y / s.line_height), s.seed, s.frame});
+    const Words of_line = pcg3d({static_cast<std::uint32_t>((y + 0.5) / s.line_height), s.seed, s.frame});
     const double random = 2 * unit(of_line[0]) - 1;
     const bool jumps = s.scan_line_jitter > 0 && std::abs(random) >= 1 - 1.2 * s.scan_line_jitter;
     const int shift = shake + (jumps ? pixels(random * (0.002 + 0.05 * std::pow(s.scan_line_jitter, 3))) : 0);

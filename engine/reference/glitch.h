@@ -10,7 +10,7 @@ namespace afterglow::reference {
 
 struct Glitch {
   double scan_line_jitter = 0.3;
-  int line_height = 2;
+  double line_height = 2;
   double horizontal_shake = 0, rgb_split = 0.1;
   double vertical_roll = 0;  ///< pictures per second
   std::uint32_t seed = 0, frame = 1;

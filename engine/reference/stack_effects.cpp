@@ -158,7 +158,7 @@ DoubleImage run_lens_dirt(const DoubleImage& source, const Inputs&, const Settin
 
 DoubleImage run_glitch(const DoubleImage& source, const Inputs& inputs, const Settings& s) {
   return glitch(source, {.scan_line_jitter = s.number("scan_line_jitter"),
-                         .line_height = s.integer("line_height"),
+                         .line_height = s.number("line_height"),
                          .horizontal_shake = s.number("horizontal_shake"),
                          .rgb_split = s.number("rgb_split"),
                          .vertical_roll = s.number("vertical_roll"),
@@ -229,7 +229,7 @@ DoubleImage run_sharpen(const DoubleImage& source, const Inputs&, const Settings
 }
 
 DoubleImage run_pixelate(const DoubleImage& source, const Inputs&, const Settings& s) {
-  return pixelate(source, s.integer("size"));
+  return pixelate(source, s.number("size"));
 }
 
 DoubleImage run_edge_detection(const DoubleImage& source, const Inputs&, const Settings& s) {

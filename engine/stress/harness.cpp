@@ -8,6 +8,7 @@
 
 #include "bench/oracle.h"
 #include "exec/calibration.h"
+#include "graph/condition.h"
 #include "session/picture_inputs.h"
 #include "stress/auxiliary.h"
 
@@ -204,6 +205,7 @@ Result<LookFacts> Harness::State::find_facts(const Look& look, Size size, double
                   .passes = 0,
                   .images = {}};
   facts.passes = graph.passes.size();
+  facts.divides = straight_passes(graph) > 0;
   for (const auto& pass : graph.passes) {
     const GraphImage& image = graph.images[static_cast<std::size_t>(pass.output)];
     if (pass.output != graph.result && image.size == size) facts.images.push_back(image.name);

@@ -6,6 +6,8 @@
 local fx = require "afterglow"
 local glow = require "lib.glow"
 
+local function digits(s) return 2e-5 * math.max(1, s.intensity) * math.max(1, s.threshold) end
+
 return fx.effect {
   name = "halation",
   doc = "The red and orange glow around highlights on film.",
@@ -23,10 +25,11 @@ return fx.effect {
     return s.color[1] > 0 or s.color[2] > 0 or s.color[3] > 0, "color is black"
   end,
   idle = function(s) return { brightest = s.threshold * (1 - 1e-6) } end,
+  -- Light is averaged before the threshold is taken from it, which leaves as many digits less as it is high.
   holds = {
-    "black", "constant", "mirror", "turn_180", "turn_90",
+    "black", "constant", mirror = { within = digits }, turn_180 = { within = digits }, turn_90 = { within = digits },
     continuous = function(s) return 1 + 1.1 * s.intensity * math.max(s.color[1], s.color[2], s.color[3]) end,
-    error = { fp32 = function(s) return 2e-5 * math.max(1, s.intensity) * math.max(1, s.threshold) end, fp16 = function(s) return 3e-3 * math.max(1, s.threshold) * math.max(1, s.intensity) end, up_to = 1e4,
+    error = { fp32 = digits, fp16 = function(s) return 3e-3 * math.max(1, s.threshold) * math.max(1, s.intensity) end, up_to = 1e4,
               when = function(s) return s.intensity * math.max(s.color[1], s.color[2], s.color[3]) <= 100 end },
   },
   build = function(g, s, source)

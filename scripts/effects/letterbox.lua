@@ -2,13 +2,15 @@
 -- Letterbox: bars that leave a window of another shape. Its edges are exact to parts of a pixel, so that it moves smoothly when the shape is animated.
 local fx = require "afterglow"
 
--- Where the window lies along an axis of n pixels of which it has `length`: its first and last whole pixel, and how much the ones beside them show.
+-- Where the window lies along an axis of n pixels of which it has `length`: its first and last whole pixel, and how much the ones beside them show,
+-- then how much of those two the bars cover: as numbers of their own, for a bright bar is seen where it covers a millionth.
 local function window(n, length, offset)
   local from = (n - length) * 0.5 * (1 + offset)
   local to = math.min(from + length, n)
   local first, last = math.ceil(from - 1e-9), math.floor(to + 1e-9) - 1
-  if last < first - 1 then return { first, last }, { to - from, 0 } end  -- within a single pixel
-  return { first, last }, { first - from, to - last - 1 }
+  local before, behind = first - from, to - last - 1
+  if last < first - 1 then before, behind = to - from, 0 end  -- within a single pixel
+  return { first, last }, { before, behind, 1 - before, 1 - behind }
 end
 
 return fx.effect {

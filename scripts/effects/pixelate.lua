@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 -- Pixelate: the picture in squares, each of the mean of its light. Means do not flicker as single samples would. Squares start at the upper
--- left corner; those at the right and lower edge may be cut.
+-- left corner; those at the right and lower edge may be cut. Their sides are whole numbers of 1/65536 pixel: the shaders count in those, so that
+-- no square moves by rounding at the far end of a large picture.
 local fx = require "afterglow"
 
 return fx.effect {
@@ -13,9 +14,11 @@ return fx.effect {
   active = function(s) return s.size > 1, "size is 1" end,
   holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = 1e-5 },
   build = function(g, s, source)
-    local across, down = math.ceil(source.width / s.size), math.ceil(source.height / s.size)
-    local rows = g:pass { shader = "pixelate/mean", source = source, size = { across, source.height }, block = s.size, down = false, name = "rows" }
-    local blocks = g:pass { shader = "pixelate/mean", source = rows, size = { across, down }, block = s.size, down = true, name = "blocks" }
-    return g:pass { shader = "pixelate/enlarge", source = blocks, picture = source, size = source, block = s.size }
+    local block = math.floor(s.size * 65536 + 0.5)
+    local function blocks_of(pixels) return (pixels * 65536 + block - 1) // block end
+    local across, down = blocks_of(source.width), blocks_of(source.height)
+    local rows = g:pass { shader = "pixelate/mean", source = source, size = { across, source.height }, block = block, down = false, name = "rows" }
+    local blocks = g:pass { shader = "pixelate/mean", source = rows, size = { across, down }, block = block, down = true, name = "blocks" }
+    return g:pass { shader = "pixelate/enlarge", source = blocks, picture = source, size = source, block = block }
   end,
 }

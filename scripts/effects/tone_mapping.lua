@@ -65,7 +65,9 @@ return fx.effect {
     monotone = { within = by_curve(1e-2, 1e-5) },
     bounded = { from = by_curve(-1e-4, 0), to = function(s) return curves[s.mode].to or 1 end,
                 when = function(s) return s.mode ~= "none" and curves[s.mode].to ~= nil end },
-    continuous = { slope = function(s) return (curves[s.mode].slope or 1) * 2 ^ s.exposure end,
+    continuous = { slope = function(s)  -- reinhard_extended rises without end, in brights by 1/white²
+                     return math.max(curves[s.mode].slope or 1, s.mode == "reinhard_extended" and 1.01 / s.white ^ 2 or 0) * 2 ^ s.exposure
+                   end,
                    when = function(s) return s.mode ~= "none" and curves[s.mode].slope ~= nil and (s.mode ~= "agx" or s.look == "base") end },
     error = { fp32 = function(s) return (s.mode == "aces" or s.mode == "agx") and 5e-5 or 2e-5 end },
   },

@@ -178,6 +178,25 @@ TEST_F(Effects, StraightColourStaysFiniteWhereAlphaIsTiny) {
   EXPECT_TRUE(all_finite(made.result));
 }
 
+TEST_F(Effects, StraightColourStaysFiniteWhereAlphaIsOutOfAllBounds) {
+  Scene scene{"huge", DoubleImage(3, 1, Rgba(1e30, 2, 0, 1e30)), {}, {}};
+  scene.source.at(1, 0) = Rgba(1e30, 65504, 1, 65504);
+  scene.source = in_floats(scene.source);
+  for (const std::string entries : {"fx.cdl { power = { 10, 0.1, 1 } }", "fx.split_toning { shadows = { 0, 0, 0 } }",
+                                    "fx.cdl { slope = { 16, 2, 1 } }, fx.lift_gamma_gain { gamma = { 0.6, 0.6, 0 } }"})
+    for (const Way way : {Way::plain, Way::fused})
+      EXPECT_TRUE(all_finite(run_stack(entries, scene, way).result)) << entries;
+  // An alpha that pictures may have loses nothing of its meaning.
+  EXPECT_TRUE(agrees(
+      run_stack("fx.cdl { slope = { 2, 2, 2 } }", scene, Way::fused).result,
+      [&] {
+        auto doubled = scene.source;
+        for (auto& p : doubled.pixels) p = Rgba(glm::min(2 * p.r / cover(p), 1e30) * cover(p), 2 * p.g, 2 * p.b, p.a);
+        return doubled;
+      }(),
+      1e-6, kRgb));
+}
+
 /// As users run it: whole pictures, of which it is known whether they are opaque.
 TEST_F(Effects, OpaquePicturesDivideNothingAndKeepTheirBytes) {
   const auto file = write_test_file("opaque.lua",

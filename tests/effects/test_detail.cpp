@@ -15,7 +15,7 @@ EffectCase sharpened(double intensity, double contrast) {
           [=](const Scene& s) { return sharpen(s.source, intensity, contrast); }};
 }
 
-EffectCase pixelated(int size) {
+EffectCase pixelated(double size) {
   return {fmt::format("fx.pixelate {{ size = {} }}", size), [=](const Scene& s) { return pixelate(s.source, size); }};
 }
 
@@ -53,7 +53,8 @@ TEST_F(Effects, SharpenLeavesFlatAndBrightPlacesAlone) {
 }
 
 TEST_F(Effects, PixelateAgrees) {
-  agree_everywhere({pixelated(2), pixelated(7), pixelated(64), pixelated(1024)});
+  agree_everywhere({pixelated(2), pixelated(7), pixelated(64), pixelated(1024), pixelated(1.0000001), pixelated(1.3),
+                    pixelated(2.5), pixelated(4.8078866)});
   expect_skipped("fx.pixelate { size = 1 }", "size is 1");
 }
 

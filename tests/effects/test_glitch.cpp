@@ -26,7 +26,8 @@ TEST_F(Effects, GlitchAgreesToTheBit) {
   const std::vector<EffectCase> cases{
       broken({}), broken({.scan_line_jitter = 1, .line_height = 1, .horizontal_shake = 1, .rgb_split = 1, .seed = 9}),
       broken({.scan_line_jitter = 0, .rgb_split = 0, .vertical_roll = 1.7}),
-      broken({.scan_line_jitter = 0.6, .line_height = 7, .vertical_roll = -0.9})};
+      broken({.scan_line_jitter = 0.6, .line_height = 7, .vertical_roll = -0.9}),
+      broken({.scan_line_jitter = 0.96592265, .line_height = 12.414532})};
   for (const Size size : kSizes)
     for (const auto& one : cases)
       for (const double frame : {1.0, 12.0}) {
