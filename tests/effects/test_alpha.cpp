@@ -179,7 +179,7 @@ TEST_F(Effects, StraightColourStaysFiniteWhereAlphaIsTiny) {
 }
 
 TEST_F(Effects, StraightColourStaysFiniteWhereAlphaIsOutOfAllBounds) {
-  Scene scene{"huge", DoubleImage(3, 1, Rgba(1e30, 2, 0, 1e30)), {}, {}};
+  Scene scene{"huge", DoubleImage(3, 1, Rgba(1e30, 2, 0, 1e20)), {}, {}};
   scene.source.at(1, 0) = Rgba(1e30, 65504, 1, 65504);
   scene.source = in_floats(scene.source);
   for (const std::string entries : {"fx.cdl { power = { 10, 0.1, 1 } }", "fx.split_toning { shadows = { 0, 0, 0 } }",
