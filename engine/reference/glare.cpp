@@ -12,11 +12,9 @@ namespace afterglow::reference {
 
 namespace {
 
-Size half(Size size) { return {glm::max(size.width / 2, 1), glm::max(size.height / 2, 1)}; }
-
 /// Half size, then what exceeds the threshold.
 DoubleImage bright_half(const DoubleImage& source, double threshold) {
-  return map_color(resample(source, half(source.size()), {}),
+  return map_color(resample(source, halved(source.size()), {}),
                    [&](const Rgb& c) { return box_bloom_threshold(c, threshold, BoxBrightness::max); });
 }
 
@@ -84,7 +82,7 @@ DoubleImage lens_dirt(const DoubleImage& source, const LensDirt& s) {
   Filter tent;
   tent.x = tent.y = {{-1, 0.25}, {0, 0.5}, {1, 0.25}};
   DoubleImage light = bright_half(source, s.threshold);
-  while (glm::min(light.width, light.height) >= 16) light = resample(light, half(light.size()), tent);
+  while (glm::min(light.width, light.height) >= 16) light = resample(light, halved(light.size()), tent);
   const Filter enlarge{.interpolation = Interpolation::cubic_bspline};
   const Size small{(source.width + 3) / 4, (source.height + 3) / 4};
   light = resample(light, small, enlarge);

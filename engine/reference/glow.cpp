@@ -10,8 +10,6 @@
 namespace afterglow::reference {
 namespace {
 
-Size halved(Size size) { return {glm::max(size.width / 2, 1), glm::max(size.height / 2, 1)}; }
-
 double sigma_of_level(std::size_t i) { return 0.76 * std::exp2(static_cast<double>(i)); }
 
 /// The coarsest level still has four pixels each way.

@@ -19,6 +19,8 @@ Rgba sample(const DoubleImage& image, Interpolation interpolation, double px, do
 
 }  // namespace
 
+Size halved(Size size) { return {glm::max(size.width / 2, 1), glm::max(size.height / 2, 1)}; }
+
 DoubleImage resample(const DoubleImage& source, Size size, const Filter& filter) {
   std::vector<Tap2d> taps = filter.taps;
   if (filter.separable())

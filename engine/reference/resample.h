@@ -10,4 +10,7 @@ namespace afterglow::reference {
 /// out(X, Y) = Σ weight · I(px + dx, py + dy) over all channels, alpha included; see Filter for the terms.
 DoubleImage resample(const DoubleImage& source, Size size, const Filter& filter);
 
+/// The next level of a pyramid: half of each side, rounded down; a line of pixels stays one.
+Size halved(Size size);
+
 }  // namespace afterglow::reference

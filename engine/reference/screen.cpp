@@ -18,8 +18,9 @@ double in_window(int at, int n, double length, double offset) {
 
 /// The picture at another size: halved while that leaves enough, then the mean of reads at most half a texel apart.
 DoubleImage resized_to(DoubleImage image, Size size) {
-  while (image.height >= 2 * size.height && image.width >= 2 * size.width)
-    image = resample(image, {image.width / 2, image.height / 2}, {});
+  for (Size half = halved(image.size()); half.width >= size.width && half.height >= size.height && half != image.size();
+       half = halved(half))
+    image = resample(image, half, {});
   if (image.size() == size) return image;
   const auto area = [](int from, int to) {
     const double ratio = static_cast<double>(from) / to;

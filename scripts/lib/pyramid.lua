@@ -21,9 +21,11 @@ function pyramid.resized(g, image, width, height, name)
     image = g:filter { source = image, size = size, filter = filter, name = ("%s[%d]"):format(name, i) }
     i = i + 1
   end
-  while image.height >= 2 * height and image.width >= 2 * width do
-    to({ image.width // 2, image.height // 2 }, fx.filters.bilinear())
-  end
+  repeat
+    local across, down = math.max(image.width // 2, 1), math.max(image.height // 2, 1)  -- a line of pixels stays one
+    local halves = across >= width and down >= height and across + down < image.width + image.height
+    if halves then to({ across, down }, fx.filters.bilinear()) end
+  until not halves
   if image.width ~= width or image.height ~= height then
     to({ width, height }, fx.filters.area(image.width / width, image.height / height))
   end

@@ -28,14 +28,6 @@ vec3 light_at(ivec2 pixel, int i, Way way) {
   return (1.0 - rest) * fetch(source, at).rgb + rest * fetch(source, at + way.across).rgb;
 }
 
-// What pixel i weighs, from the second integrals at its neighbours and its own. Red ends in the middle: no rounding of it, which bright pixels
-// would show; nor behind the end.
-vec3 weight_of(vec3 before, vec3 here, vec3 next, float before_at) {
-  vec3 weight = max((next - here) - (here - before), vec3(0.0));
-  if (before_at >= 0.5) weight.r = 0.0;
-  return before_at >= 1.0 ? vec3(0.0) : weight;
-}
-
 const int kMost = 2048;  // turns, more than there are
 
 vec4 sample_at(ivec2 pixel) {
@@ -55,7 +47,8 @@ vec4 sample_at(ivec2 pixel) {
   int last = int(longer);  // it and the pixel behind it are at the end
 
   // The pixels between the first and the last ones. Where the spectrum is a line over a whole tent, a weight is the line's middle; the bend in
-  // the middle of the way adds what the tent has beyond it. In units of 2·step³.
+  // the middle of the way adds what the tent has beyond it. In units of 2·step³. All weights together are step/4; those of green, of which the
+  // spectrum has twice as much, step/2.
   vec3 sum = vec3(0.0);
   if (last > 1)
     for (int i = 1; i < kMost; ++i) {
@@ -63,14 +56,12 @@ vec4 sample_at(ivec2 pixel) {
       sum += vec3(max(-beyond, 0.0) + bend, min(at, longer - at) - 2.0 * bend, max(beyond, 0.0) + bend) * light_at(pixel, i, way);
       if (i + 1 == last) break;
     }
-  sum *= 2.0 * step * step * step;
+  sum *= vec3(8.0, 4.0, 8.0) * (step * step);
 
-  float end = float(last);
-  vec3 first = spectrum(step), before = spectrum((end - 1.0) * step), here = spectrum(end * step), next = spectrum((end + 1.0) * step),
-       behind = spectrum((end + 2.0) * step);
-  if (last > 0) sum += first * color.rgb;
-  sum += weight_of(before, here, next, (end - 1.0) * step) * light_at(pixel, last, way);
-  sum += weight_of(here, next, behind, end * step) * light_at(pixel, last + 1, way);
-  // All weights together are what the last change is.
-  return vec4(max(sum / (behind - next), 0.0), color.a);
+  // Those at the end, seen from there: backwards the spectrum is itself with red and blue changed over, and small integrals keep their digits.
+  float rest = longer - float(last);
+  vec3 behind = spectrum(rest * step).bgr, end = max(spectrum((1.0 + rest) * step).bgr - 2.0 * behind, 0.0);
+  vec3 ends = end * light_at(pixel, last, way) + behind * light_at(pixel, last + 1, way);
+  if (last > 0) ends += spectrum(step) * color.rgb;
+  return vec4(max(sum + vec3(4.0, 2.0, 4.0) * longer * ends, 0.0), color.a);
 }

@@ -25,7 +25,7 @@ struct Scene {
 reference::DoubleImage in_floats(const reference::DoubleImage& image);
 
 /// Even, odd and tiny.
-inline const std::vector<Size> kSizes{{240, 135}, {101, 57}, {64, 64}, {17, 5}, {8, 8}, {5, 3}, {1, 1}};
+inline const std::vector<Size> kSizes{{240, 135}, {101, 57}, {64, 64}, {17, 5}, {8, 8}, {5, 3}, {1, 6}, {9, 1}, {1, 1}};
 
 /// Light as renders have it: log-normal around 0.3, up to about 43; colours of moderate to strong saturation; alpha in
 /// 0…1. `spikes`: one pixel in 200 is at 1e4. Values are exact halves. With depth (steps from 0.5 to 1500, some 1e10)

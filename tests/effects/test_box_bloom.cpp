@@ -52,7 +52,7 @@ TEST_F(Effects, BoxBloomAgreesAtEverySize) {
   for (const Size size : kSizes)
     for (const auto pattern : {BoxPattern::plus, BoxPattern::box}) {
       const auto brightness = turn++ % 3 == 0 ? BoxBrightness::luma : BoxBrightness::max;
-      check(random_scene(size, 11, turn % 2 == 0), {0.2 * turn, 7 - turn % 4, pattern, brightness});
+      check(random_scene(size, 11, turn % 2 == 0), {0.15 * turn, 7 - turn % 4, pattern, brightness});
     }
 }
 

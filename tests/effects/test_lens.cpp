@@ -47,9 +47,13 @@ TEST_F(Effects, ChromaticAberrationAgrees) {
 }
 
 TEST_F(Effects, ChromaticAberrationKeepsWhatHasOneColour) {
-  const Scene scene{"constant", DoubleImage(33, 20, Rgba(0.25, 3, 0.5, 1)), {}, {}};
-  EXPECT_TRUE(agrees(run_stack("fx.chromatic_aberration { intensity = 1, samples = 7 }", scene, Way::plain).result,
-                     scene.source, 1e-6, kRgba));
+  for (const Size size :
+       {Size{33, 20}, Size{1, 3528}, Size{1917, 7}}) {  // long ways too, and those of parts of a pixel
+    const Scene scene{"constant", DoubleImage(size, Rgba(0.25, 3, 0.5, 1)), {}, {}};
+    EXPECT_TRUE(agrees(run_stack("fx.chromatic_aberration { intensity = 1, samples = 7 }", scene, Way::plain).result,
+                       scene.source, size.width == 33 ? 1e-6 : 3e-6, kRgba))
+        << size.width;
+  }
 }
 
 TEST_F(Effects, LensDistortionAgrees) {
