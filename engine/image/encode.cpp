@@ -11,6 +11,7 @@
 #include <immintrin.h>
 #endif
 
+#include "core/alpha.h"
 #include "core/half.h"
 #include "core/processor.h"
 #include "image/srgb.h"
@@ -68,7 +69,7 @@ void encode_in_space(const CodeRules& rules, const float* rgba, int width, int x
   std::vector<float> row(rgba, rgba + static_cast<std::size_t>(width) * 4);
   if (rules.alpha)
     for (std::size_t i = 0; i < row.size(); i += 4)
-      if (const float alpha = row[i + 3]; alpha > 0 && alpha != 1)
+      if (const float alpha = row[i + 3]; alpha >= kLeastAlpha && alpha != 1)
         for (std::size_t c = 0; c < 3; ++c) row[i + c] /= alpha;
   rules.space->encode(row.data(), static_cast<std::size_t>(width), row.data());
   for (int x = 0; x < width; ++x) {
@@ -86,7 +87,7 @@ void encode(const CodeRules& rules, const float* rgba, int width, int x0, int y,
   const CodeEncoder& encoder = CodeEncoder::srgb(rules.max_code);
   for (int x = 0; x < width; ++x, rgba += 4) {
     const float alpha = rgba[3];
-    const bool divide = rules.alpha && alpha > 0 && alpha != 1;
+    const bool divide = rules.alpha && alpha >= kLeastAlpha && alpha != 1;
     for (int c = 0; c < 3; ++c) {
       const float linear = divide ? rgba[c] / alpha : rgba[c];
       *codes++ =

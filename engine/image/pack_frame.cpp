@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "core/alpha.h"
 #include "core/parallel.h"
 #include "core/processor.h"
 #include "image/encode.h"
@@ -59,7 +60,7 @@ class StoredRows {
     display_row(picture_, y, picture_.has_alpha ? 0.0f : 1.0f, rgba.data());
     if (rules_.layout->alpha)
       for (std::size_t i = 0; i < rgba.size(); i += 4)
-        if (const float alpha = rgba[i + 3]; alpha > 0 && alpha != 1)
+        if (const float alpha = rgba[i + 3]; alpha >= kLeastAlpha && alpha != 1)
           for (std::size_t c = 0; c < 3; ++c) rgba[i + c] /= alpha;
     rules_.space->encode(rgba.data(), width, rgba.data());
   }

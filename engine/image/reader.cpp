@@ -4,71 +4,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
-#include <string_view>
 #include <utility>
 
 #include "core/exception.h"
 #include "core/file_record.h"
-#include "core/saturated.h"
 #include "core/text.h"
 #include "image/color_encoding.h"
 #include "image/half_colors.h"
 #include "image/input_space.h"
 #include "image/movie.h"
 #include "image/orientation.h"
-#include "image/picture_file.h"
+#include "image/read_plan.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
-
-struct AuxiliaryKind {
-  const char* name;
-  int channels;
-  float background;  ///< where the layer has no pixels but the colour has
-};
-constexpr AuxiliaryKind kDepth{"depth", 1, 1e10f};
-constexpr AuxiliaryKind kNormal{"normal", 3, 0.0f};
-constexpr AuxiliaryKind kMotion{"motion", 2, 0.0f};
-constexpr std::array kKinds{&kDepth, &kNormal, &kMotion};
-
-constexpr std::string_view kLayerPrefix = "layer:";  ///< any other layer, by its name, as it is stored
-bool is_layer(const std::string& name) { return name.starts_with(kLayerPrefix); }
-
-/// One auxiliary image: where it will come from.
-struct AuxiliaryPlan {
-  std::string name;
-  const AuxiliaryKind* kind = nullptr;  ///< null: a layer
-  std::unique_ptr<PictureFile> other;   ///< null: the picture's own file
-  ChannelChoice choice;
-};
-
-struct Plan {
-  std::unique_ptr<PictureFile> file;
-  ChannelChoice color;
-  std::vector<AuxiliaryPlan> auxiliary;
-
-  PictureFile& file_of(const AuxiliaryPlan& plan) const { return plan.other ? *plan.other : *file; }
-  const FilePart& color_part() const { return file->parts()[static_cast<std::size_t>(color.part)]; }
-  const FilePart& part_of(const AuxiliaryPlan& plan) const {
-    return file_of(plan).parts()[static_cast<std::size_t>(plan.choice.part)];
-  }
-};
-
-SizeLimits limits_of(const ReadOptions& options) { return {options.max_side, options.max_bytes}; }
-
-Error in_file(Error error, const fs::path& file) {
-  if (error.file.empty()) error.file = file.string();
-  return error;
-}
-
-Rect upright_data(const FilePart& part) { return upright(part.data_window, part.display_window, part.orientation); }
-Rect upright_display(const FilePart& part) {
-  return upright(part.display_window, part.display_window, part.orientation);
-}
 
 /// How far each pixel's content moves in one frame, x to the right and y down. Files hold y upwards. Blender's four
 /// channels are the ways from the previous frame and to the next one; the mean of both is taken, whichever way round
@@ -90,104 +42,6 @@ Image motion_of(const Image& stored) {
     out.pixels[2 * i + 1] = -y;
   }
   return out;
-}
-
-std::uint64_t area(const Rect& rect) { return static_cast<std::uint64_t>(rect.size().area()); }
-
-/// A name that nothing answers to and that looks like a file was probably meant as one.
-bool looks_like_file(const std::string& name) {
-  const std::string extension = lower(fs::path(name).extension().string());
-  const std::vector<std::string> known{".exr", ".png", ".tif", ".tiff", ".hdr", ".jpg", ".jpeg", ".pfm"};
-  return name.find('/') != std::string::npos || std::find(known.begin(), known.end(), extension) != known.end();
-}
-
-/// A file given for this purpose alone may hold just one grey layer, under whatever name.
-std::optional<ChannelChoice> sole_layer(const PictureFile& file, const AuxiliaryKind& kind) {
-  const auto color = find_color(file.parts(), "");
-  if (!color) return std::nullopt;
-  ChannelChoice choice = color.value();
-  choice.channels.resize(static_cast<std::size_t>(kind.channels));
-  const bool grey = choice.channels.size() > 1 && choice.channels[0] == choice.channels[1];
-  return grey ? std::nullopt : std::optional(choice);
-}
-
-Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, const LayerChoice& wanted,
-                                                    const Plan& plan, const ReadOptions& options) {
-  AuxiliaryPlan made;
-  made.name = kind.name;
-  made.kind = &kind;
-  if (!wanted.file.empty()) {
-    AFTERGLOW_TRY(made.other, open_picture(wanted.file, limits_of(options)));
-  }
-  const PictureFile& file = plan.file_of(made);
-  const ChannelChoice* color = made.other ? nullptr : &plan.color;
-  auto found = &kind == &kDepth    ? find_depth(file.parts(), wanted.name, color)
-               : &kind == &kNormal ? find_normal(file.parts(), wanted.name, color)
-                                   : find_motion(file.parts(), wanted.name, color);
-  if (!found) {
-    if (!made.other && looks_like_file(wanted.name)) return Error{ErrorKind::io, "no such file", wanted.name};
-    return in_file(std::move(found).error(), file.path());
-  }
-  if (!found.value() && made.other) {
-    found = sole_layer(file, kind);
-    if (!found.value()) return Error{ErrorKind::io, fmt::format("has no {} layer", kind.name), file.path().string()};
-  }
-  if (!found.value()) return std::optional<AuxiliaryPlan>();
-  made.choice = *found.value();
-  const Rect color_window = upright_data(plan.color_part()), window = upright_data(plan.part_of(made));
-  if (made.other && window.size() != color_window.size())
-    return Error{ErrorKind::io,
-                 fmt::format("its {} is {}×{} pixels, but the picture '{}' has {}×{}", kind.name, window.width,
-                             window.height, plan.file->path().string(), color_window.width, color_window.height),
-                 file.path().string()};
-  return std::optional<AuxiliaryPlan>(std::move(made));
-}
-
-Result<Plan> make_plan(const fs::path& file, const ReadOptions& options, const std::vector<std::string>& auxiliary) {
-  Plan plan;
-  if (options.movie) {
-    plan.file = Movie::frame(options.movie, options.movie_frame);
-  } else {
-    AFTERGLOW_TRY(plan.file, open_picture(file, limits_of(options)));
-  }
-  auto color = find_color(plan.file->parts(), options.layer);
-  if (!color) return in_file(std::move(color).error(), file);
-  plan.color = std::move(color).value();
-  AFTERGLOW_CHECK(check_sides(plan.color_part().data_window, "data window", limits_of(options), file));
-  AFTERGLOW_CHECK(check_sides(plan.color_part().display_window, "display window", limits_of(options), file));
-  for (const std::string& name : auxiliary) {
-    if (is_layer(name)) {
-      // Whoever asks for a layer that is not there is told so by name, with what is there.
-      if (auto choice = find_layer(plan.file->parts(), name.substr(kLayerPrefix.size())))
-        plan.auxiliary.push_back({.name = name, .kind = nullptr, .other = nullptr, .choice = std::move(*choice)});
-      continue;
-    }
-    const auto kind = std::ranges::find(kKinds, name, &AuxiliaryKind::name);
-    if (kind == kKinds.end()) continue;  // kinds that no file holds
-    const LayerChoice& choice = *kind == &kDepth ? options.depth : *kind == &kNormal ? options.normal : options.motion;
-    AFTERGLOW_TRY(auto made, plan_auxiliary(**kind, choice, plan, options));
-    if (made) plan.auxiliary.push_back(std::move(*made));
-  }
-  return plan;
-}
-
-/// Host memory at the peak of reading: the images, a second copy of the largest while it is turned, and the decoders'
-/// buffers.
-std::uint64_t host_bytes(const Plan& plan, const std::vector<std::string>& wanted) {
-  std::uint64_t images = area(plan.color_part().data_window) * 4 * sizeof(float);
-  std::uint64_t second = plan.color_part().orientation > 1 ? images : 0;
-  std::uint64_t buffers = plan.file->buffer_bytes(plan.color.part);
-  for (const AuxiliaryPlan& auxiliary : plan.auxiliary) {
-    if (std::find(wanted.begin(), wanted.end(), auxiliary.name) == wanted.end()) continue;
-    const FilePart& part = plan.part_of(auxiliary);
-    const std::uint64_t pixel =
-        (auxiliary.kind ? static_cast<std::uint64_t>(auxiliary.kind->channels) : auxiliary.choice.channels.size()) *
-        sizeof(float);
-    images += area(plan.color_part().data_window) * pixel;
-    second = std::max(second, area(part.data_window) * pixel);
-    buffers = std::max(buffers, plan.file_of(auxiliary).buffer_bytes(auxiliary.choice.part));
-  }
-  return saturated_sum({images, second, buffers});
 }
 
 /// Targets that spread the given channels over the channels of `image`; a channel that occurs twice is read once, into
@@ -264,7 +118,7 @@ void report(const Picture& picture, NanPolicy policy, const fs::path& file, Diag
 }
 
 /// Values that are all read, or made from those that are (grey, no alpha), may be anything before.
-Image color_image(const Plan& plan, const ColorEncoding& encoding, PixelMemory* memory) {
+Image color_image(const ReadPlan& plan, const ColorEncoding& encoding, PixelMemory* memory) {
   const Size size = plan.color_part().data_window.size();
   bool all_made = true;
   for (std::size_t c = 0; c < 4; ++c) {
@@ -285,7 +139,7 @@ Image color_image(const Plan& plan, const ColorEncoding& encoding, PixelMemory* 
 
 /// Colours as the half floats that the file holds, where that was allowed and nothing else is to be read. False: they
 /// have to be read as floats.
-Result<bool> read_halves(const Plan& plan, const ColorEncoding& encoding, const ReadOptions& options,
+Result<bool> read_halves(const ReadPlan& plan, const ColorEncoding& encoding, const ReadOptions& options,
                          Picture& picture) {
   if (!options.halves || !options.memory || !plan.auxiliary.empty()) return false;
   if (plan.color_part().orientation > 1 || !stays_half(encoding)) return false;
@@ -304,7 +158,7 @@ Result<bool> read_halves(const Plan& plan, const ColorEncoding& encoding, const 
 }
 
 /// Allocates, reads and decodes everything of the plan. May throw std::bad_alloc.
-Result<Picture> read_planned(Plan& plan, const ReadOptions& options, Diagnostics& diagnostics) {
+Result<Picture> read_planned(ReadPlan& plan, const ReadOptions& options, Diagnostics& diagnostics) {
   const NanPolicy policy = options.nan_policy;
   const FilePart& part = plan.color_part();
   Picture picture;
@@ -390,27 +244,9 @@ Result<Picture> read_planned(Plan& plan, const ReadOptions& options, Diagnostics
   return picture;
 }
 
-}  // namespace
-
-LayerChoice parse_layer_choice(const std::string& text) {
-  const auto is_file = [](const std::string& name) {
-    std::error_code ignored;
-    return !name.empty() &&
-           (fs::exists(name, ignored) || name.find('#') != std::string::npos || name.find('%') != std::string::npos);
-  };
-  if (is_file(text) && text.find(':') == std::string::npos) return {text, ""};
-  std::error_code ignored;
-  if (fs::exists(text, ignored)) return {text, ""};
-  for (std::size_t colon = text.rfind(':'); colon != std::string::npos && colon > 0; colon = text.rfind(':', colon - 1))
-    if (is_file(text.substr(0, colon))) return {text.substr(0, colon), text.substr(colon + 1)};
-  return {"", text};
-}
-
-namespace {
-
 /// A picture whose header was parsed and whose pixels were not read yet.
 struct Opened : OpenedPicture {
-  Plan plan;
+  ReadPlan plan;
   FileProbes looks;  ///< what the files were before
   bool read = false;
 };
@@ -425,21 +261,14 @@ Result<std::shared_ptr<Opened>> open_with(const fs::path& file, const ReadOption
                                           const std::vector<std::string>& auxiliary) {
   auto opened = std::make_shared<Opened>();
   note_stamp(file, opened->looks);
-  AFTERGLOW_TRY(opened->plan, make_plan(file, options, auxiliary));
+  AFTERGLOW_TRY(opened->plan, make_read_plan(file, options, auxiliary));
   for (const AuxiliaryPlan& extra : opened->plan.auxiliary)
     note_stamp(opened->plan.file_of(extra).path(), opened->looks);
   return opened;
 }
 
-/// Only what was asked for, in that order.
-void keep_wanted(std::vector<AuxiliaryPlan>& plans, const std::vector<std::string>& wanted) {
-  const auto place = [&](const AuxiliaryPlan& plan) { return std::ranges::find(wanted, plan.name); };
-  std::erase_if(plans, [&](const AuxiliaryPlan& plan) { return place(plan) == wanted.end(); });
-  std::ranges::stable_sort(plans, {}, place);
-}
-
 Result<Picture> read_opened(Opened& opened, const ReadOptions& options, Diagnostics& diagnostics) {
-  Plan& plan = opened.plan;
+  ReadPlan& plan = opened.plan;
   if (std::exchange(opened.read, true))
     return Error{ErrorKind::other, "was read before with this header", plan.file->path().string()};
   keep_wanted(plan.auxiliary, options.auxiliary);
@@ -473,7 +302,7 @@ Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& optio
     PictureHeader header;
     AFTERGLOW_TRY(const auto opened, open_with(file, options, of_header(options)));
     header.opened = opened;
-    const Plan& plan = opened->plan;
+    const ReadPlan& plan = opened->plan;
     header.data_window = upright_data(plan.color_part());
     header.display_window = upright_display(plan.color_part());
     header.channels = static_cast<int>(plan.color_part().channels.size());

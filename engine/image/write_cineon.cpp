@@ -76,7 +76,7 @@ std::string header_of(const Picture& picture, Size size) {
   head.byte(3);
   head.zeros(2);
   for (int colour = 1; colour <= 3; ++colour) add_channel(head, colour, size);
-  head.zeros(5 * 28);  // five more channels
+  head.zeros(5 * 28);       // five more channels
   head.undefined_reals(8);  // white point and primaries
   head.text(text_of(picture, "ImageDescription"), 200);
   head.zeros(28);

@@ -12,6 +12,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "core/alpha.h"
 #include "core/geometry.h"
 #include "core/parallel.h"
 
@@ -79,8 +80,8 @@ DoubleImage map_color(const DoubleImage& image, F&& f) {
   });
 }
 
-/// What straight colour is divided by: alpha, or 1 where that is not above 0 (math.md §19).
-inline double cover(const Rgba& p) { return p.a > 0 ? glm::min(p.a, 65504.0) : 1.0; }
+/// What straight colour is divided by: alpha, at most 65504, or 1 where there is none (math.md §19).
+inline double cover(const Rgba& p) { return p.a >= kLeastAlpha ? glm::min(p.a, 65504.0) : 1.0; }
 
 /// As `map_color` with f seeing straight colour: divided by alpha before, multiplied by it behind.
 template <class F>

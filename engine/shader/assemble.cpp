@@ -195,10 +195,11 @@ class Assembler {
   }
 
   /// From associated to straight colour. Held within finite numbers: no light is lost where alpha is tiny, and what is
-  /// multiplied again stays finite where alpha is out of all bounds (math.md §19).
+  /// multiplied again stays finite where alpha is out of all bounds. As cover_of in shaders/lib/alpha.glsl.
   void divide() {
     row_ += fmt::format(
-        "  float ag_alpha{0} = ag_color.a, ag_cover{0} = mix(1.0, min(ag_color.a, 65504.0), ag_color.a > 0.0);\n"
+        "  float ag_alpha{0} = ag_color.a, ag_cover{0} = mix(1.0, min(ag_color.a, 65504.0), ag_color.a >= "
+        "1.17549435e-38);\n"
         "  ag_color = vec4(clamp(ag_color.rgb / ag_cover{0}, -3.4028234e38, 3.4028234e38), ag_color.a);\n",
         ++divisions_);
   }

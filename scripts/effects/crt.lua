@@ -24,7 +24,8 @@ return fx.effect {
     intensity = fx.float { min = 0, max = 1, default = 1, doc = "How much of the tube is seen. 0: the picture as it was." },
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
-  holds = { "black", error = { fp32 = 3e-3, fp16 = false, up_to = 1 } },
+  -- Places on the tube are rounded: the more, the larger the picture.
+  holds = { "black", error = { fp32 = function(_, source) return 3e-3 * math.max(1, math.max(source.width, source.height) / 2048) end, fp16 = false, up_to = 1 } },
   build = function(g, s, source)
     local down = math.min(s.lines, source.height)
     local across = math.max(1, math.min(source.width, math.floor(source.width * down / source.height + 0.5)))

@@ -63,7 +63,10 @@ return fx.effect {
   holds = {
     "black", "constant", "mirror", "turn_180", "turn_90", shift = 1,
     monotone = { within = by_curve(1e-2, 1e-5) },
-    bounded = { from = by_curve(-1e-4, 0), to = function(s) return curves[s.mode].to or 1 end,
+    bounded = { from = by_curve(-1e-4, 0), to = function(s)
+                  local curve = s.mode == "hable" and hable(s)  -- with an angle its shoulder goes on beyond white
+                  return curve and (curve.shoulder[2] + curve.shoulder[3]) * curve.scale or curves[s.mode].to or 1
+                end,
                 when = function(s) return s.mode ~= "none" and curves[s.mode].to ~= nil end },
     continuous = { slope = function(s)  -- reinhard_extended rises without end, in brights by 1/white²
                      return math.max(curves[s.mode].slope or 1, s.mode == "reinhard_extended" and 1.01 / s.white ^ 2 or 0) * 2 ^ s.exposure

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // An entry's result over what it was given (math.md §20). Modes are numbers in the order of the documents.
+#include "lib/alpha.glsl"
 #include "lib/color.glsl"
 
 const int kBlendNormal = 0, kBlendAdd = 1, kBlendScreen = 2, kBlendMultiply = 3, kBlendOverlay = 4, kBlendSoftLight = 5, kBlendLighten = 6,
@@ -41,7 +42,7 @@ vec3 blended(vec3 below, vec3 above, int mode) {
 
 // From what is below to the blend by `share`. Both have the alpha of what is below.
 vec4 composite(vec4 above, vec4 below, float share, int mode) {
-  float cover = mix(1.0, min(below.a, 65504.0), below.a > 0.0);
+  float cover = cover_of(below.a);
   bool by_straight = mode == kBlendScreen || mode == kBlendMultiply || mode == kBlendOverlay || mode == kBlendSoftLight;
   vec3 c = by_straight ? blended(below.rgb / cover, above.rgb / cover, mode) * cover : blended(below.rgb, above.rgb, mode);
   c = clamp(lerp(below.rgb, min(c, kMaxLight), share), -kMaxLight, kMaxLight);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Scene-linear light to what 8-bit display files hold.
+#include "lib/alpha.glsl"
 
 /// The sRGB curve (IEC 61966-2-1) of 0 ≤ x ≤ 1: 12.92·x up to 0.0031308, then 1.055·x^(1/2.4) − 0.055, that is
 /// 1.055·s^(5/3) − 0.055 of the fourth root s, by a minimax polynomial: off by 1.5e-6 at most, 0.0004 of a step of 1/255.
@@ -13,4 +14,4 @@ vec3 srgb_encode(vec3 x) {
 vec3 display_color(vec3 light) { return srgb_encode(clamp(light, 0.0, 1.0)); }
 
 /// Light without its alpha; where that is 0 as it is.
-vec3 straight(vec3 light, float alpha) { return alpha > 0.0 ? light / alpha : light; }
+vec3 straight(vec3 light, float alpha) { return light / cover_of(alpha); }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What several masks need. A mask is how much a pixel counts, 0…1, in every channel.
+#include "lib/alpha.glsl"
 
 // 1 between `from` and `to`, 0 beyond `soft` outside of them (> 0), smooth between.
 float in_range(float x, float from, float to, float soft) {
@@ -7,4 +8,4 @@ float in_range(float x, float from, float to, float soft) {
 }
 
 // Light without its coverage (math.md §19).
-vec3 straight(vec4 color) { return color.rgb / mix(1.0, color.a, color.a > 0.0); }
+vec3 straight(vec4 color) { return color.rgb / cover_of(color.a); }

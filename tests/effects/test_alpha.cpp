@@ -178,6 +178,20 @@ TEST_F(Effects, StraightColourStaysFiniteWhereAlphaIsTiny) {
   EXPECT_TRUE(all_finite(made.result));
 }
 
+/// Below the smallest normal float, which is 0 for devices and threads that flush such numbers.
+TEST_F(Effects, WhatIsTooLittleToBeAnAlphaCountsAsNone) {
+  Scene little{"little", DoubleImage(3, 1, Rgba(0.5, 2, 0.125, 1e-39)), {}, {}}, none = little;
+  little.source.at(1, 0).a = 1.4e-45;
+  little.source = in_floats(little.source);
+  for (auto& p : none.source.pixels) p.a = 0;
+  for (const std::string entries :
+       {"fx.tone_mapping { mode = \"reinhard\" }", "fx.cdl { power = { 1.2, 1, 0.8 }, blend = \"screen\" }"})
+    for (const Way way : {Way::plain, Way::fused})
+      EXPECT_TRUE(agrees(run_stack(entries, little, way).result,
+                         from_floats(run_stack(entries, none, way).result.data(), {3, 1}, 4), 0, kRgb))
+          << entries;
+}
+
 TEST_F(Effects, StraightColourStaysFiniteWhereAlphaIsOutOfAllBounds) {
   Scene scene{"huge", DoubleImage(3, 1, Rgba(1e30, 2, 0, 1e20)), {}, {}};
   scene.source.at(1, 0) = Rgba(1e30, 65504, 1, 65504);

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "image/read_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/saturated.h"
+#include "core/text.h"
+#include "image/movie.h"
+#include "image/orientation.h"
+
+namespace afterglow {
+namespace fs = std::filesystem;
+namespace {
+
+SizeLimits limits_of(const ReadOptions& options) { return {options.max_side, options.max_bytes}; }
+
+Error in_file(Error error, const fs::path& file) {
+  if (error.file.empty()) error.file = file.string();
+  return error;
+}
+
+std::uint64_t area(const Rect& rect) { return static_cast<std::uint64_t>(rect.size().area()); }
+
+/// A name that nothing answers to and that looks like a file was probably meant as one.
+bool looks_like_file(const std::string& name) {
+  const std::string extension = lower(fs::path(name).extension().string());
+  const std::vector<std::string> known{".exr", ".png", ".tif", ".tiff", ".hdr", ".jpg", ".jpeg", ".pfm"};
+  return name.find('/') != std::string::npos || std::find(known.begin(), known.end(), extension) != known.end();
+}
+
+/// A file given for this purpose alone may hold just one grey layer, under whatever name.
+std::optional<ChannelChoice> sole_layer(const PictureFile& file, const AuxiliaryKind& kind) {
+  const auto color = find_color(file.parts(), "");
+  if (!color) return std::nullopt;
+  ChannelChoice choice = color.value();
+  choice.channels.resize(static_cast<std::size_t>(kind.channels));
+  const bool grey = choice.channels.size() > 1 && choice.channels[0] == choice.channels[1];
+  return grey ? std::nullopt : std::optional(choice);
+}
+
+Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, const LayerChoice& wanted,
+                                                    const ReadPlan& plan, const ReadOptions& options) {
+  AuxiliaryPlan made;
+  made.name = kind.name;
+  made.kind = &kind;
+  if (!wanted.file.empty()) {
+    AFTERGLOW_TRY(made.other, open_picture(wanted.file, limits_of(options)));
+  }
+  const PictureFile& file = plan.file_of(made);
+  const ChannelChoice* color = made.other ? nullptr : &plan.color;
+  auto found = &kind == &kDepth    ? find_depth(file.parts(), wanted.name, color)
+               : &kind == &kNormal ? find_normal(file.parts(), wanted.name, color)
+                                   : find_motion(file.parts(), wanted.name, color);
+  if (!found) {
+    if (!made.other && looks_like_file(wanted.name)) return Error{ErrorKind::io, "no such file", wanted.name};
+    return in_file(std::move(found).error(), file.path());
+  }
+  if (!found.value() && made.other) {
+    found = sole_layer(file, kind);
+    if (!found.value()) return Error{ErrorKind::io, fmt::format("has no {} layer", kind.name), file.path().string()};
+  }
+  if (!found.value()) return std::optional<AuxiliaryPlan>();
+  made.choice = *found.value();
+  const Rect color_window = upright_data(plan.color_part()), window = upright_data(plan.part_of(made));
+  if (made.other && window.size() != color_window.size())
+    return Error{ErrorKind::io,
+                 fmt::format("its {} is {}×{} pixels, but the picture '{}' has {}×{}", kind.name, window.width,
+                             window.height, plan.file->path().string(), color_window.width, color_window.height),
+                 file.path().string()};
+  return std::optional<AuxiliaryPlan>(std::move(made));
+}
+
+}  // namespace
+
+Rect upright_data(const FilePart& part) { return upright(part.data_window, part.display_window, part.orientation); }
+Rect upright_display(const FilePart& part) {
+  return upright(part.display_window, part.display_window, part.orientation);
+}
+
+Result<ReadPlan> make_read_plan(const fs::path& file, const ReadOptions& options,
+                                const std::vector<std::string>& auxiliary) {
+  ReadPlan plan;
+  if (options.movie) {
+    plan.file = Movie::frame(options.movie, options.movie_frame);
+  } else {
+    AFTERGLOW_TRY(plan.file, open_picture(file, limits_of(options)));
+  }
+  auto color = find_color(plan.file->parts(), options.layer);
+  if (!color) return in_file(std::move(color).error(), file);
+  plan.color = std::move(color).value();
+  AFTERGLOW_CHECK(check_sides(plan.color_part().data_window, "data window", limits_of(options), file));
+  AFTERGLOW_CHECK(check_sides(plan.color_part().display_window, "display window", limits_of(options), file));
+  for (const std::string& name : auxiliary) {
+    if (is_layer(name)) {
+      // Whoever asks for a layer that is not there is told so by name, with what is there.
+      if (auto choice = find_layer(plan.file->parts(), name.substr(kLayerPrefix.size())))
+        plan.auxiliary.push_back({.name = name, .kind = nullptr, .other = nullptr, .choice = std::move(*choice)});
+      continue;
+    }
+    const auto kind = std::ranges::find(kKinds, name, &AuxiliaryKind::name);
+    if (kind == kKinds.end()) continue;  // kinds that no file holds
+    const LayerChoice& choice = *kind == &kDepth ? options.depth : *kind == &kNormal ? options.normal : options.motion;
+    AFTERGLOW_TRY(auto made, plan_auxiliary(**kind, choice, plan, options));
+    if (made) plan.auxiliary.push_back(std::move(*made));
+  }
+  return plan;
+}
+
+std::uint64_t host_bytes(const ReadPlan& plan, const std::vector<std::string>& wanted) {
+  std::uint64_t images = area(plan.color_part().data_window) * 4 * sizeof(float);
+  std::uint64_t second = plan.color_part().orientation > 1 ? images : 0;
+  std::uint64_t buffers = plan.file->buffer_bytes(plan.color.part);
+  for (const AuxiliaryPlan& auxiliary : plan.auxiliary) {
+    if (std::find(wanted.begin(), wanted.end(), auxiliary.name) == wanted.end()) continue;
+    const FilePart& part = plan.part_of(auxiliary);
+    const std::uint64_t pixel =
+        (auxiliary.kind ? static_cast<std::uint64_t>(auxiliary.kind->channels) : auxiliary.choice.channels.size()) *
+        sizeof(float);
+    images += area(plan.color_part().data_window) * pixel;
+    second = std::max(second, area(part.data_window) * pixel);
+    buffers = std::max(buffers, plan.file_of(auxiliary).buffer_bytes(auxiliary.choice.part));
+  }
+  return saturated_sum({images, second, buffers});
+}
+
+void keep_wanted(std::vector<AuxiliaryPlan>& plans, const std::vector<std::string>& wanted) {
+  const auto place = [&](const AuxiliaryPlan& plan) { return std::ranges::find(wanted, plan.name); };
+  std::erase_if(plans, [&](const AuxiliaryPlan& plan) { return place(plan) == wanted.end(); });
+  std::ranges::stable_sort(plans, {}, place);
+}
+
+LayerChoice parse_layer_choice(const std::string& text) {
+  const auto is_file = [](const std::string& name) {
+    std::error_code ignored;
+    return !name.empty() &&
+           (fs::exists(name, ignored) || name.find('#') != std::string::npos || name.find('%') != std::string::npos);
+  };
+  if (is_file(text) && text.find(':') == std::string::npos) return {text, ""};
+  std::error_code ignored;
+  if (fs::exists(text, ignored)) return {text, ""};
+  for (std::size_t colon = text.rfind(':'); colon != std::string::npos && colon > 0; colon = text.rfind(':', colon - 1))
+    if (is_file(text.substr(0, colon))) return {text.substr(0, colon), text.substr(colon + 1)};
+  return {"", text};
+}
+
+}  // namespace afterglow
