@@ -74,7 +74,7 @@ DoubleImage ssao_occlusion(const DoubleImage& surface, Size picture, const Ssao&
   return generate(size, [&](int x, int y) {
     const Rgba& here = surface.at(x, y);
     const double z = here.a;
-    if (z >= 1e9 || z <= 0) return Rgba(1, 1, 1, glm::min(z, kFarthest));
+    if (z >= 1e9 || z < 1e-12) return Rgba(1, 1, 1, glm::min(z, kFarthest));
     const Vec at = seen_at(x + 0.5, y + 0.5, z, size, tan, aspect);
     const double far = glm::min(0.5 * size.height * s.radius / (tan * z), most);
     if (far < 0.5) return Rgba(1, 1, 1, glm::min(z, kFarthest));

@@ -25,14 +25,14 @@ return fx.effect {
     return s.file ~= "" or not neutral(s), "all settings are neutral"
   end,
   -- A power multiplies the rounding of what it is given; an offset rounds as what it is added to and takes away; a root makes much of what little
-  -- that leaves.
+  -- that leaves. Saturation above 1 takes the luma of strong powers from one of its channels: no digit need be left of that.
   holds = { "constant", "mirror", "turn_180", "turn_90", shift = 1,
     black = { when = function(s) return s.file == "" and most(s.offset) <= 0 end },
     monotone = { when = function(s) return s.file == "" and s.saturation <= 1 end },
     error = { fp32 = function(s)
-                return 1e-5 * math.max(1, most(s.power)) * (s.saturation > 1 and 4 or 1) * math.max(1, most(s.offset), -least(s.offset))
+                return 1e-5 * math.max(1, most(s.power)) * math.max(1, most(s.offset), -least(s.offset))
               end, up_to = 60,
-              when = function(s) return s.file == "" and (least(s.offset) >= 0 or least(s.power) >= 1) end } },
+              when = function(s) return s.file == "" and s.saturation <= 1 and (least(s.offset) >= 0 or least(s.power) >= 1) end } },
   build = function(g, s, source)
     if s.file ~= "" then
       local lookup = g:lookup { file = s.file, correction = s.correction }

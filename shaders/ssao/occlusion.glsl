@@ -11,6 +11,7 @@ uniform float most;  // pixels
 uniform vec2 view;
 
 const float kFar = 1e9;
+const float kNear = 1e-12;  // metres: nearer there is no surface, for squares of ways keep no digits there
 const float kFarthest = 65504.0;  // whatever is farther is that far in the image: half floats hold no more
 const float kTurns = 7.0;  // of the spiral
 
@@ -19,7 +20,7 @@ vec3 place(vec2 at, vec2 size, float z) { return vec3((2.0 * at / size - 1.0) * 
 vec4 sample_at(ivec2 pixel) {
   vec4 surface = fetch(source, pixel);
   float z = surface.a, told = min(z, kFarthest);
-  if (z >= kFar || z <= 0.0) return vec4(1.0, told, 0.0, 1.0);
+  if (z >= kFar || z < kNear) return vec4(1.0, told, 0.0, 1.0);
   vec2 size = vec2(image_size(source));
   vec3 here = place(vec2(pixel) + 0.5, size, z);
   float far = min(0.5 * size.y * radius / (view.y * z), most);
