@@ -14,7 +14,7 @@ return fx.effect {
   active = function(s) return s.size > 1, "size is 1" end,
   holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1, error = 1e-5 },
   build = function(g, s, source)
-    local block = math.floor(s.size * 65536 + 0.5)
+    local block = math.floor(math.min(s.size, 16384) * 65536 + 0.5)  -- no picture is larger
     local function blocks_of(pixels) return (pixels * 65536 + block - 1) // block end
     local across, down = blocks_of(source.width), blocks_of(source.height)
     local rows = g:pass { shader = "pixelate/mean", source = source, size = { across, source.height }, block = block, down = false, name = "rows" }

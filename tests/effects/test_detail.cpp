@@ -56,6 +56,10 @@ TEST_F(Effects, PixelateAgrees) {
   agree_everywhere({pixelated(2), pixelated(7), pixelated(64), pixelated(1024), pixelated(1.0000001), pixelated(1.3),
                     pixelated(2.5), pixelated(4.8078866)});
   expect_skipped("fx.pixelate { size = 1 }", "size is 1");
+  // A picture of which the look sees one line: squares of 1024 of its pixels are larger than any picture.
+  const auto scene = random_scene({240, 135}, 61);
+  EXPECT_TRUE(agrees(run_stack("reference_height = 1, fx.pixelate { size = 1024 }", scene, Way::fused).result,
+                     pixelate(scene.source, 1024), 1e-5, kRgba));
 }
 
 TEST_F(Effects, EdgeDetectionAgrees) {
