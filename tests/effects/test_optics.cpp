@@ -196,7 +196,8 @@ TEST_F(Effects, FogFollowsBeerAndLambert) {
 TEST_F(Effects, LetterboxAgrees) {
   agree_everywhere({barred({.aspect = 2.39}), barred({.aspect = 3.1, .color = {0.2, 0.4, 2}}),
                     barred({.aspect = 20, .offset = -0.3}), barred({.aspect = 0.3, .offset = 1}),
-                    barred({.aspect = 0.3126, .color = {0.24, 1e4, 0.07}, .offset = -0.23858124})});
+                    barred({.aspect = 0.3126, .color = {0.24, 1e4, 0.07}, .offset = -0.23858124}),
+                    barred({.aspect = 0.499999, .color = {0.24, 1e5, 0.07}})});  // a bar over a millionth of a pixel
   Scene square{"square", DoubleImage(64, 64, Rgba(0.5, 0.5, 0.5, 1)), {}, {}};
   EXPECT_FALSE(run_stack("fx.letterbox { aspect = 1 }", square, Way::plain).ran());
   expect_skipped("fx.letterbox { aspect = 0 }", "aspect is 0");
@@ -243,6 +244,15 @@ TEST_F(Effects, SsaoAgrees) {
       kDecisions);
   expect_skipped("fx.ssao { intensity = 0 }", "intensity is 0");
   expect_skipped("fx.ssao { color = { 1, 1, 1 } }", "color is white");
+}
+
+/// Squares of such ways are 0 or not, as a thread takes numbers below the normal ones.
+TEST_F(Effects, SsaoFindsNoSurfaceWhereThereAreNoDigits) {
+  auto scene = random_scene({17, 5}, 61);
+  for (std::size_t i = 0; i < scene.depth->pixels.size(); ++i) scene.depth->pixels[i].r = i % 3 == 0 ? 1e-39 : 3e-20;
+  scene.depth = in_floats(*scene.depth);
+  for (const Way way : {Way::plain, Way::fused})
+    EXPECT_TRUE(agrees(run_stack("fx.ssao { spare = 1e6 }", scene, way).result, scene.source, 0, kRgba));
 }
 
 TEST_F(Effects, SsaoShadesCornersAndLeavesPlanes) {
