@@ -67,10 +67,7 @@ std::uint32_t stored_code(float stored, float threshold, int max_code) {
 template <class Code>
 void encode_in_space(const CodeRules& rules, const float* rgba, int width, int x0, int y, Code* codes) {
   std::vector<float> row(rgba, rgba + static_cast<std::size_t>(width) * 4);
-  if (rules.alpha)
-    for (std::size_t i = 0; i < row.size(); i += 4)
-      if (const float alpha = row[i + 3]; alpha >= kLeastAlpha && alpha != 1)
-        for (std::size_t c = 0; c < 3; ++c) row[i + c] /= alpha;
+  if (rules.alpha) make_straight(row.data(), static_cast<std::size_t>(width));
   rules.space->encode(row.data(), static_cast<std::size_t>(width), row.data());
   for (int x = 0; x < width; ++x) {
     const float* pixel = &row[static_cast<std::size_t>(x) * 4];
@@ -86,10 +83,9 @@ void encode(const CodeRules& rules, const float* rgba, int width, int x0, int y,
   if (rules.space) return encode_in_space(rules, rgba, width, x0, y, codes);
   const CodeEncoder& encoder = CodeEncoder::srgb(rules.max_code);
   for (int x = 0; x < width; ++x, rgba += 4) {
-    const float alpha = rgba[3];
-    const bool divide = rules.alpha && alpha >= kLeastAlpha && alpha != 1;
+    const float alpha = rgba[3], cover = rules.alpha ? cover_of(alpha) : 1;
     for (int c = 0; c < 3; ++c) {
-      const float linear = divide ? rgba[c] / alpha : rgba[c];
+      const float linear = cover != 1 ? rgba[c] / cover : rgba[c];
       *codes++ =
           static_cast<Code>(rules.dither ? dithered(linear, blue_noise(x0 + x, y), rules.max_code) : encoder(linear));
     }
@@ -121,6 +117,12 @@ void padded_row(const Picture& picture, const Stored* pixels, int y, Sample padd
 }
 
 }  // namespace
+
+void make_straight(float* rgba, std::size_t pixels) {
+  for (float* p = rgba; p != rgba + 4 * pixels; p += 4)
+    if (const float cover = cover_of(p[3]); cover != 1)
+      for (int c = 0; c < 3; ++c) p[c] /= cover;
+}
 
 std::uint64_t to_half(const float* values, std::uint16_t* halves, std::size_t count) {
   std::uint64_t overflows = 0;

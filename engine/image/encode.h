@@ -31,6 +31,9 @@ void display_row(const Picture& picture, int y, float padding_alpha, float* rgba
 /// The same of `picture.unorm8`, padded with the codes of that.
 void display_row(const Picture& picture, int y, std::uint8_t padding_alpha, std::uint8_t* rgba);
 
+/// RGBA pixels without their coverage (math.md §19); in place.
+void make_straight(float* rgba, std::size_t pixels);
+
 /// How RGBA becomes code values.
 struct CodeRules {
   int max_code = 255;   ///< 255, 1023, 4095 or 65535

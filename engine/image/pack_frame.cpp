@@ -6,7 +6,6 @@
 #include <cstring>
 #include <utility>
 
-#include "core/alpha.h"
 #include "core/parallel.h"
 #include "core/processor.h"
 #include "image/encode.h"
@@ -58,10 +57,7 @@ class StoredRows {
       return rules_.space->encode_colors(half_row(picture_, y), width, rgba.data());
     }
     display_row(picture_, y, picture_.has_alpha ? 0.0f : 1.0f, rgba.data());
-    if (rules_.layout->alpha)
-      for (std::size_t i = 0; i < rgba.size(); i += 4)
-        if (const float alpha = rgba[i + 3]; alpha >= kLeastAlpha && alpha != 1)
-          for (std::size_t c = 0; c < 3; ++c) rgba[i + c] /= alpha;
+    if (rules_.layout->alpha) make_straight(rgba.data(), width);
     rules_.space->encode(rgba.data(), width, rgba.data());
   }
   float noise(std::size_t x, int y) const { return rules_.dither ? 1 - blue_noise(static_cast<int>(x), y) : 0.5f; }

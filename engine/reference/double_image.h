@@ -81,7 +81,7 @@ DoubleImage map_color(const DoubleImage& image, F&& f) {
 }
 
 /// What straight colour is divided by: alpha, at most 65504, or 1 where there is none (math.md §19).
-inline double cover(const Rgba& p) { return p.a >= kLeastAlpha ? glm::min(p.a, 65504.0) : 1.0; }
+inline double cover(const Rgba& p) { return cover_of(p.a); }
 
 /// As `map_color` with f seeing straight colour: divided by alpha before, multiplied by it behind.
 template <class F>

@@ -29,8 +29,8 @@ struct KernelStage {
   std::shared_ptr<const ShaderSource> shader;
   std::map<std::string, double> constants;
   std::string label;  ///< name of the pass, for messages and comments: "glow.threshold"
-  /// Its colour is divided by its alpha before and multiplied behind; of neighbours that want it, once around all. An
-  /// alpha that is not above 0 counts as 1. What such a stage returns as alpha does not count.
+  /// Its colour is divided by its alpha before and multiplied behind (by what math.md §19 makes of it); of neighbours
+  /// that want it, once around all. What such a stage returns as alpha does not count.
   bool straight = false;
   /// Of a pixel stage: the number of the colour that flows into `apply`, or kOwnImage. Nothing: that of the stage
   /// before it.

@@ -178,11 +178,10 @@ Result<Hash> digest_of(Harness& harness, const Trial& trial, Diagnostics& diagno
     for (const Storage storage : {Storage::fp32, Storage::fp16}) {
       Way way = usual_way(harness);
       way.choice.storage = storage;
-      AFTERGLOW_TRY(const Made made, harness.run(situation.look, situation.picture, situation.frame, way));
-      Image image = made.image;
-      for (float& v : image.pixels)
+      AFTERGLOW_TRY(Made made, harness.run(situation.look, situation.picture, situation.frame, way));
+      for (float& v : made.image.pixels)
         if (std::abs(v) < std::numeric_limits<float>::min()) v = 0;  // promised to nobody: docs/determinism.md
-      const Hash hash = hash_bytes(image.pixels.data(), image.bytes());
+      const Hash hash = hash_bytes(made.image.pixels.data(), made.image.bytes());
       all.add(hash.high).add(hash.low);
     }
   }

@@ -25,7 +25,7 @@ return fx.effect {
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
   -- Places on the tube are rounded: the more, the larger the picture.
-  holds = { "black", error = { fp32 = function(_, source) return 3e-3 * math.max(1, math.max(source.width, source.height) / 2048) end, fp16 = false, up_to = 1 } },
+  holds = { "black", error = { fp32 = function(_, source) return 3e-3 * math.max(1, source.width / 2048, source.height / 2048) end, fp16 = false, up_to = 1 } },
   build = function(g, s, source)
     local down = math.min(s.lines, source.height)
     local across = math.max(1, math.min(source.width, math.floor(source.width * down / source.height + 0.5)))

@@ -12,6 +12,3 @@ vec3 srgb_encode(vec3 x) {
 
 /// What the nearest 8-bit codes are made of, 0…1.
 vec3 display_color(vec3 light) { return srgb_encode(clamp(light, 0.0, 1.0)); }
-
-/// Light without its alpha; where that is 0 as it is.
-vec3 straight(vec3 light, float alpha) { return light / cover_of(alpha); }

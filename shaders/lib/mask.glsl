@@ -6,6 +6,3 @@
 float in_range(float x, float from, float to, float soft) {
   return smoothstep(from - soft, from, x) * (1.0 - smoothstep(to, to + soft, x));
 }
-
-// Light without its coverage (math.md §19).
-vec3 straight(vec4 color) { return color.rgb / cover_of(color.a); }
