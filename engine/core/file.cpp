@@ -42,27 +42,16 @@ Result<std::string> read_file(const fs::path& path, std::size_t limit, FileRecor
   return content;
 }
 
-Result<void> commit_file(const fs::path& from, const fs::path& to) {
-  std::error_code ec;
-  fs::rename(from, to, ec);
-  if (!ec) return {};
-  std::error_code ignored;
-  fs::remove(from, ignored);
-  return Error{ErrorKind::io, fmt::format("cannot be written: {}", ec.message()), to.string()};
-}
-
 Result<void> write_file_atomically(const fs::path& path, std::string_view content) {
-  const fs::path temporary = temporary_beside(path);
-  std::ofstream out(temporary, std::ios::binary);
+  Temporary temporary(path);
+  std::ofstream out(temporary.path(), std::ios::binary);
   out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.close();
   if (!out) {
     const int reason = errno;
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
     return Error{ErrorKind::io, fmt::format("cannot be written: {}", std::strerror(reason)), path.string()};
   }
-  return commit_file(temporary, path);
+  return temporary.commit();
 }
 
 }  // namespace afterglow

@@ -24,7 +24,4 @@ bool is_file(const std::filesystem::path& path, FileRecord* record = nullptr);
 /// Writes to a temporary file beside `path`, then renames. On error nothing is left behind.
 Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
-/// Renames `from` over `to`; on failure removes `from`. Errors: io.
-Result<void> commit_file(const std::filesystem::path& from, const std::filesystem::path& to);
-
 }  // namespace afterglow

@@ -155,19 +155,14 @@ Result<fs::path> open_zip(const fs::path& path, const fs::path& cache, const Pac
   const fs::path home = cache / "packs" / Hasher().add(name).add(*bytes).finish().hex();
   const fs::path folder = home / name;
   if (is_whole(folder, entries)) return folder;
-  const fs::path temporary = temporary_beside(home);
+  Temporary temporary(home);
   std::error_code ec;
-  fs::create_directories(temporary / name, ec);
-  auto done = unpack_all(zip.get(), path, entries, temporary / name);
-  if (done) {
-    fs::rename(temporary, home, ec);
-    if (ec && !is_whole(folder, entries)) {  // left damaged
-      fs::remove_all(home, ec);
-      fs::rename(temporary, home, ec);
-    }
+  fs::create_directories(temporary.path() / name, ec);
+  AFTERGLOW_CHECK(unpack_all(zip.get(), path, entries, temporary.path() / name));
+  if (!temporary.commit() && !is_whole(folder, entries)) {  // left damaged
+    fs::remove_all(home, ec);
+    (void)temporary.commit();
   }
-  fs::remove_all(temporary, ec);
-  if (!done) return std::move(done).error();
   if (!is_whole(folder, entries)) return Error{ErrorKind::io, "cannot be written", folder.string()};
   return folder;
 }

@@ -10,7 +10,6 @@
 #include <cstring>
 #include <system_error>
 
-#include "core/file.h"
 #include "core/temporary.h"
 
 namespace afterglow {
@@ -47,13 +46,12 @@ Result<void> replace_file_atomically(const fs::path& path, std::string_view cont
   if (stat(target.c_str(), &status) != 0) return failed(errno);
   // A file that may not be written is not replaced either, though its folder would allow it.
   if (access(target.c_str(), W_OK) != 0) return failed(errno);
-  const fs::path temporary = temporary_beside(target);
-  if (!write_new(temporary, content, status.st_mode & 07777)) {
+  Temporary temporary(target);
+  if (!write_new(temporary.path(), content, status.st_mode & 07777)) {
     const int reason = errno;
-    fs::remove(temporary, ec);
     return failed(reason);
   }
-  return commit_file(temporary, target);
+  return temporary.commit();
 }
 
 }  // namespace afterglow

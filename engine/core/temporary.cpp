@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "core/hash.h"
 
@@ -80,6 +81,25 @@ fs::path temporary_beside(const fs::path& path) {
   fs::path temporary = path.parent_path() / name;
   remember(count, temporary.string());
   return temporary;
+}
+
+Temporary::Temporary(fs::path target) : target_(std::move(target)), path_(temporary_beside(target_)) {}
+
+Temporary::~Temporary() {
+  if (!there_ || unlink(path_.c_str()) == 0 || errno == ENOENT) return;
+  try {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  } catch (...) {  // no memory for a walk through a folder
+  }
+}
+
+Result<void> Temporary::commit() {
+  std::error_code ec;
+  fs::rename(path_, target_, ec);
+  there_ = static_cast<bool>(ec);
+  if (ec) return Error{ErrorKind::io, fmt::format("cannot be written: {}", ec.message()), target_.string()};
+  return {};
 }
 
 void remove_own_temporaries() noexcept {

@@ -5,11 +5,31 @@
 #include <filesystem>
 #include <string>
 
+#include "core/result.h"
+
 namespace afterglow {
 
 /// A name in the same folder that no other process or thread uses, hidden and ending in the same extension (image
 /// libraries choose the format by it): `.NAME.MACHINE-PROCESS-COUNT.tmp.EXT`.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
+
+/// What is written under such a name, a file or a folder. It is gone with this, whatever happens, unless it was committed.
+class Temporary {
+ public:
+  /// Of what is to become `target`; makes nothing yet.
+  explicit Temporary(std::filesystem::path target);
+  ~Temporary();
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Renames it over the target. Errors: io.
+  Result<void> commit();
+
+ private:
+  std::filesystem::path target_, path_;
+  bool there_ = true;
+};
 
 /// Removes the last files of this process that have such names and have not become others. For signal handlers that end
 /// the process: it takes no lock and no memory.

@@ -117,11 +117,10 @@ Result<Attempt> Attempt::begin(const Job& job, std::size_t chunk) {
   }
   for (;; ++out.number_) {
     out.begun_ = attempt_path(folder, chunk, out.number_, kBegun);
-    const fs::path temporary = temporary_beside(out.begun_);
-    AFTERGLOW_CHECK(write_file_atomically(temporary, json_text(begun_json(chunk, out.number_))));
-    const bool taken = link(temporary.c_str(), out.begun_.c_str()) == 0;
+    const Temporary temporary(out.begun_);
+    AFTERGLOW_CHECK(write_file_atomically(temporary.path(), json_text(begun_json(chunk, out.number_))));
+    const bool taken = link(temporary.path().c_str(), out.begun_.c_str()) == 0;
     const int reason = errno;
-    unlink(temporary.c_str());
     if (taken) return out;
     if (reason != EEXIST)
       return Error{ErrorKind::io, fmt::format("cannot be written: {}", std::strerror(reason)), out.begun_.string()};

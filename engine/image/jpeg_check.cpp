@@ -23,10 +23,10 @@ class JpegMetadata {
     const auto begins = [&](std::string_view with) {
       return text.substr(0, with.size() + 1) == std::string(with) + '\0';
     };
-    constexpr std::string_view kExif = "Exif", kProfile = "ICC_PROFILE", kXmp = "http://ns.adobe.com/xap/1.0/",
+    constexpr std::string_view kExifName = "Exif", kProfile = "ICC_PROFILE", kXmp = "http://ns.adobe.com/xap/1.0/",
                                kPhotoshop = "Photoshop 3.0";
     constexpr std::size_t kProfileHead = 14;
-    if (marker == 0xe1 && begins(kExif)) return exif_fault(segment.subspan(std::min<std::size_t>(segment.size(), 6)));
+    if (marker == 0xe1 && begins(kExifName)) return exif_fault(segment.subspan(std::min<std::size_t>(segment.size(), 6)));
     if (marker == 0xe1 && begins(kXmp)) return xmp_fault(segment);
     if (marker == 0xed && begins(kPhotoshop)) return iptc_fault(segment.subspan(kPhotoshop.size() + 1));
     if (marker == 0xe2 && begins(kProfile)) {

@@ -36,28 +36,6 @@ fs::path resolved(const fs::path& file) {
   return ec ? file : target;
 }
 
-/// Removes the temporary file unless it was committed.
-class Temporary {
- public:
-  explicit Temporary(fs::path path) : path_(std::move(path)) {}
-  ~Temporary() {
-    std::error_code ignored;
-    if (!committed_) fs::remove(path_, ignored);
-  }
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
-  const fs::path& path() const { return path_; }
-  Result<void> commit(const fs::path& to) {
-    const FileTime time;
-    committed_ = true;  // commit_file removes it when it fails
-    return commit_file(path_, to);
-  }
-
- private:
-  fs::path path_;
-  bool committed_ = false;
-};
-
 Result<void> write_format(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                           const WriteOptions& options, Diagnostics& diagnostics) {
   switch (format.kind) {
@@ -212,13 +190,14 @@ Result<void> write_picture(const Picture& picture, const fs::path& file, const W
   });
   try {
     AFTERGLOW_CHECK(check_picture(picture));
-    Temporary temporary(temporary_beside(target));
+    Temporary temporary(target);
     if (auto written = write_checked(picture, *format, temporary.path(), options, named); !written) {
       Error error = std::move(written).error();
       error.file = file.string();  // not the temporary name
       return error;
     }
-    return temporary.commit(target);
+    const FileTime time;
+    return temporary.commit();
   } catch (const std::exception& error) {
     return Error{ErrorKind::io, fmt::format("cannot be written: {}", exception_text(error)), file.string()};
   }

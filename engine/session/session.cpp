@@ -12,17 +12,6 @@
 namespace afterglow {
 namespace {
 
-struct OpenedDevice {
-  Result<std::unique_ptr<Device>> device;
-  double milliseconds = 0;
-};
-
-OpenedDevice open_device(const DeviceOptions& options, Diagnostics& diagnostics) {
-  const auto start = Clock::now();
-  auto device = Device::create(options, diagnostics);
-  return {std::move(device), milliseconds_since(start)};
-}
-
 /// Whether the codes have no alpha somewhere in `part` where the picture has some.
 bool lost_alpha(const Picture& picture, const Rect& part) {
   std::vector<float> memory;
@@ -40,6 +29,16 @@ bool lost_alpha(const Picture& picture, const Rect& part) {
 }  // namespace
 
 struct Session::State {
+  struct OpenedDevice {
+    Result<std::unique_ptr<Device>> device;
+    double milliseconds = 0;
+  };
+  static OpenedDevice open_device(const DeviceOptions& options, Diagnostics& diagnostics) {
+    const auto start = Clock::now();
+    auto device = Device::create(options, diagnostics);
+    return {std::move(device), milliseconds_since(start)};
+  }
+
   SessionOptions options;
   std::string preset_file;
   // Destroyed in reverse: what was made on the device goes before the device.
@@ -90,7 +89,7 @@ Result<std::unique_ptr<Session>> Session::begin(const std::filesystem::path& pre
   state->options = options;
   state->preset_file = preset.string();
   state->opening = std::async(std::launch::async,
-                              [device = options.device, &diagnostics] { return open_device(device, diagnostics); });
+                              [device = options.device, &diagnostics] { return State::open_device(device, diagnostics); });
   AFTERGLOW_TRY(state->stack, Stack::load(preset, options.stack, diagnostics));
   return std::unique_ptr<Session>(new Session(std::move(state)));
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The program's own allocations fail, one at a time.
+#include <algorithm>
+
 #include "fault_test.h"
 
 namespace afterglow::test {
@@ -7,12 +9,16 @@ namespace {
 
 class MemoryFault : public FaultTest {
  protected:
-  void strike(const std::vector<std::string>& arguments, const std::vector<std::string>& outputs, long most) {
+  /// `most` places over the whole run, and the `last` ones, when outputs have their names and records are written.
+  void strike(const std::vector<std::string>& arguments, const std::vector<std::string>& outputs, long most,
+              std::size_t last = 0) {
     const Fault fault = memory_fault();
     const std::vector<long> where = distinct_places(arguments, fault);
     take_reference(outputs);
     int failed = 0;
-    for (const long place : some(where, most)) {
+    std::vector<long> places = some(where, most);
+    places.insert(places.end(), where.end() - static_cast<std::ptrdiff_t>(std::min(last, where.size())), where.end());
+    for (const long place : places) {
       SCOPED_TRACE("allocation " + std::to_string(place) + " of " + std::to_string(where.back()));
       const Outcome outcome = run_with(arguments, fault, place);
       expect_clean_end(outcome);
@@ -34,7 +40,7 @@ TEST_F(MemoryFault, ASequenceThatLooksBack) {
   write("look.lua", kLooksBack);
   make_exr("in.0001.exr");
   make_exr("in.0002.exr");
-  strike({"run", "look.lua", "in.%04d.exr", "-o", "out.%04d.exr"}, {"out.0001.exr", "out.0002.exr"}, 30);
+  strike({"run", "look.lua", "in.%04d.exr", "-o", "out.%04d.exr"}, {"out.0001.exr", "out.0002.exr"}, 30, 60);
 }
 
 TEST_F(MemoryFault, PlaybackWithoutAWindow) {

@@ -40,6 +40,38 @@ TEST_F(Temporaries, NamesAreHiddenUniqueAndKeepTheExtension) {
   EXPECT_TRUE(a.filename().string().starts_with(".shot.0001."));
 }
 
+TEST_F(Temporaries, WhatIsNotCommittedIsGone) {
+  {
+    Temporary file(folder_ / "shot.exr"), folder(folder_ / "pack"), never(folder_ / "never.exr");
+    touch(file.path());
+    fs::create_directories(folder.path() / "effects");
+    touch(folder.path() / "effects" / "glow.lua");
+    EXPECT_EQ(files().size(), 2u);
+  }
+  EXPECT_EQ(files(), std::set<std::string>());
+}
+
+TEST_F(Temporaries, WhatIsCommittedHasItsNameAndStays) {
+  {
+    Temporary file(folder_ / "shot.exr");
+    touch(file.path());
+    EXPECT_TRUE(file.commit());
+  }
+  EXPECT_EQ(files(), std::set<std::string>{"shot.exr"});
+}
+
+TEST_F(Temporaries, WhatCannotBeCommittedIsGoneAndSaid) {
+  fs::create_directories(folder_ / "shot.exr" / "full");
+  {
+    Temporary file(folder_ / "shot.exr");
+    touch(file.path());
+    const auto done = file.commit();
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().file, (folder_ / "shot.exr").string());
+  }
+  EXPECT_EQ(files(), std::set<std::string>{"shot.exr"});
+}
+
 TEST_F(Temporaries, ThoseOfDeadProcessesAreRemovedAndNoOthers) {
   const fs::path alive = temporary_beside(folder_ / "alive.exr");
   touch(alive);

@@ -71,7 +71,7 @@ TEST(Traffic, HistoriesHaveTheirChannels) {
   const ImageId kept = b.sample("kept", {{"in", b.graph.source}, {"before", before}}, {16, 8});
   b.sample("out", {{"in", b.graph.source}, {"before", before}}, {16, 8});
   b.graph.images[static_cast<std::size_t>(kept)].channels = 1;
-  b.graph.histories.push_back({.name = "past", .previous = before, .next = kept});
+  b.graph.histories.push_back({.name = "past", .effect = "", .previous = before, .next = kept});
   EXPECT_EQ(stored_channels(b.graph, kept, {}), 4);
   const std::uint64_t pixels = kPixels;
   const std::uint64_t four = memory_needed(b.graph, {.storage = Storage::fp16});

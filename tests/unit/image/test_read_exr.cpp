@@ -168,7 +168,7 @@ TEST(ReadExr, ZippedLinesAreThoseOfOtherCompressions) {
       {"R", "G", "B"}, {"R", "G", "B", "A"}, {"Y"}, {"G"}, {"R", "G"}, {"B", "G", "R", "Z"}, {"Z", "R", "A", "B", "G"}};
   for (const auto& names : sets)
     for (const Size size : {Size{1, 1}, Size{3, 17}, Size{4, 16}, Size{9, 33}})
-      for (const auto type : {OIIO::TypeHalf, OIIO::TypeFloat}) {
+      for (const auto& type : {OIIO::TypeHalf, OIIO::TypeFloat}) {
         std::vector<float> samples(static_cast<std::size_t>(size.area()) * names.size());
         for (std::size_t i = 0; i < samples.size(); ++i)
           samples[i] = i % 13 == 5 ? NAN : i % 17 == 3 ? -1.5f : i % 29 == 11 ? INFINITY : 0.25f * float(i % 41);
@@ -176,7 +176,9 @@ TEST(ReadExr, ZippedLinesAreThoseOfOtherCompressions) {
           OIIO::ImageSpec spec = make_spec(size.width, size.height, names, type);
           spec.attribute("compression", compression);
           make_file(folder / "c.exr", {spec}, {samples});
-          return read_or_fail(folder / "c.exr", {.auxiliary = {"depth"}});
+          ReadOptions options;
+          options.auxiliary = {"depth"};
+          return read_or_fail(folder / "c.exr", options);
         };
         const Picture plain = read("none");
         for (const char* compression : {"zip", "zips"}) {
