@@ -83,6 +83,7 @@ Result<KernelDesc> describe_kernel(ShaderLibrary& shaders, const Graph& graph, c
   } else if (info_of(anchor.kind).begins) {
     AFTERGLOW_TRY(desc.sample, stage_of(shaders, anchor, kernel.compute));
     desc.sample->channels = graph.images[anchor.output].channels;
+    desc.sample->reach = anchor.reach;
   } else {
     first_stage = 0;
   }

@@ -27,6 +27,7 @@ Result<std::unique_ptr<Program>> Program::create(Device& device, ShaderLibrary& 
   AFTERGLOW_CHECK(state->check());
   if (!state->plan.kernels.empty()) {
     AFTERGLOW_TRY(std::vector<KernelDesc> descs, state->describe(shaders));
+    AFTERGLOW_CHECK(state->settle_rows(compiler, descs));
     AFTERGLOW_CHECK(state->make_images(descs));
     AFTERGLOW_CHECK(state->compile(compiler, descs));
     state->identify();

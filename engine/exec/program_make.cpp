@@ -109,6 +109,19 @@ bool Program::State::can_be_linear() const {
   });
 }
 
+/// Whether rows of a sample shader share what they read is known once they are compiled.
+Result<void> Program::State::settle_rows(KernelCompiler& compiler, std::vector<KernelDesc>& descs) {
+  std::vector<KernelDesc> tried;
+  for (const auto& desc : descs)
+    if (desc.sample && desc.config.rows > 1) tried.push_back(desc);
+  if (tried.empty()) return {};
+  AFTERGLOW_TRY(const CompiledKernels settled, compile_kernels(compiler, tried));
+  std::size_t next = 0;
+  for (auto& desc : descs)
+    if (desc.sample && desc.config.rows > 1 && !settled.unique[settled.index[next++]].shares_rows) desc.config.rows = 1;
+  return {};
+}
+
 /// How many rows kernels really make at a time, and the images between them, unless those come from a pool.
 Result<void> Program::State::make_images(std::vector<KernelDesc>& descs) {
   for (std::size_t i = 0; i < descs.size(); ++i)

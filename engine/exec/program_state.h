@@ -95,6 +95,7 @@ struct Program::State {
   bool from_pool() const { return options.images && options.keep_images && !options.reference; }
   ArenaOptions arena_options(const std::vector<KernelDesc>& descs) const;
   bool can_be_linear() const;
+  Result<void> settle_rows(KernelCompiler& compiler, std::vector<KernelDesc>& descs);
   Result<void> make_images(std::vector<KernelDesc>& descs);
   Result<void> take_images(const std::vector<KernelDesc>& descs);
   std::vector<ImageId> reads_of(const std::vector<ImageId>& bound) const;

@@ -61,7 +61,8 @@ struct Pass {
   std::map<std::string, ParamValue> params;  ///< dynamic: values may change without a rebuild
   std::map<std::string, double> constants;   ///< specialised: part of the structure
   /// Of a sample pass: how far from the point that corresponds to a target pixel's centre it reads, in texels of each
-  /// input. Empty: anywhere. Decides what a region needs, nothing else.
+  /// input. Empty: anywhere. Decides what a region needs, and whether it is tried to let
+  /// rows of pixels share what they read.
   std::optional<double> reach;
   /// Of a pixel pass: its colour is divided by its alpha before and multiplied by it behind (math.md §1).
   bool straight = false;

@@ -114,7 +114,8 @@ class Assembler {
     } else {
       out_.glsl += fmt::format("vec4 {}(vec4 ag_color, ivec2 ag_at{}) {{\n{}  return ag_color;\n}}\n", kRowFunction,
                                row_parameters_, row_);
-      store(std::string(kRowFunction) + "(ag_color{0}, ag_pixel{0}" + row_arguments_ + ")");
+      // A sample shader's pixels are not held within the target, so that all rows are as far apart.
+      store(std::string(kRowFunction) + (kernel_.sample && kernel_.config.rows > 1 ? "(ag_color{0}, ag_pixel + ivec2(0, {0})" : "(ag_color{0}, ag_pixel{0}") + row_arguments_ + ")");
     }
     out_.glsl += head_function_ + "void main() {\n" + pixels() + body_ + "}\n";
     out_.hash = hash_text(out_.glsl);
@@ -360,12 +361,20 @@ class Assembler {
     const std::string function = prefix + info_of(kind).entry;
     if (source.interface.done)
       sample_rest(prefix + std::string(kDoneFunction), function);
+    else if (info_of(kind).begins && kernel_.config.rows > 1)
+      begin_rows(function);
     else if (info_of(kind).begins)
       every_row("vec4 ag_color{0} = " + function + "(ag_pixel{0});");
     else
       row_ += fmt::format("  ag_color = {}({});\n", function, arguments);
     ++stage_count_;
     return {};
+  }
+
+  /// Each row's colour by a sample shader, within what is done to a row, so that rows take turns and share their reads.
+  void begin_rows(const std::string& entry) {
+    every_row("vec4 ag_color{0} = vec4(0.0);");
+    row_ += fmt::format("  ag_color = {}(ag_at);\n", entry);
   }
 
   /// The colour of a pixel that may be done without the shader's entry.

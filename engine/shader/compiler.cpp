@@ -15,6 +15,7 @@
 #include "shader/cpu/defeat_uniform_inlining.h"
 #include "shader/cpu/guard_loops.h"
 #include "shader/cpu/interleave.h"
+#include "shader/cpu/merge_equal.h"
 #include "shader/give_values.h"
 #include "shader/glsl.h"
 #include "shader/kernel.h"
@@ -115,6 +116,12 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   kernel.spirv = std::move(given.spirv);
   kernel.unset = std::move(given.read);
   if (desc.config.rows > 1) kernel.spirv = interleave_rows(kernel.spirv, kTogether);
+  if (desc.config.rows > 1 && desc.sample) {
+    constexpr double kWorthwhile = 1.5;  // times fewer reads
+    MergedRows merged = merge_equal(std::move(kernel.spirv));
+    kernel.spirv = std::move(merged.spirv);
+    kernel.shares_rows = static_cast<double>(merged.reads_before) > kWorthwhile * static_cast<double>(merged.reads);
+  }
   if (desc.config.defeat_uniform_inlining) kernel.spirv = defeat_uniform_inlining(kernel.spirv);
   AFTERGLOW_TRY(const Reflection reflection, reflect(kernel.spirv));
   kernel.block_size = reflection.block_size;
@@ -176,6 +183,7 @@ Result<CompiledKernel> KernelCompiler::compile(const KernelDesc& desc, Assembled
   std::erase_if(out.params, [](const KernelParam& param) { return param.offset == KernelParam::kUnread; });
   out.block_size = made->block_size;
   out.rows = desc.config.rows;
+  out.shares_rows = made->shares_rows;
   out.workgroup = assembled.workgroup;
   if (out.workgroup) out.shared_bytes = shared_bytes(out.spirv);
   out.target = desc.target;

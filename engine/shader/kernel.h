@@ -32,6 +32,8 @@ struct KernelStage {
   /// Its colour is divided by its alpha before and multiplied behind (by what math.md §19 makes of it); of neighbours
   /// that want it, once around all. What such a stage returns as alpha does not count.
   bool straight = false;
+  /// Of a sample stage: how far it reads (graph/graph.h). A hint: no text depends on it.
+  std::optional<double> reach = {};
   /// Of a pixel stage: the number of the colour that flows into `apply`, or kOwnImage. Nothing: that of the stage
   /// before it.
   std::optional<int> color = {};
@@ -169,6 +171,7 @@ struct CompiledKernel {
   std::vector<KernelParam> params;
   std::uint32_t block_size = 0;        ///< bytes of the uniform block; 0: none
   int rows = 1;                        ///< that one invocation makes
+  bool shares_rows = false;            ///< of a sample shader: these read mostly the same texels, each once
   std::optional<Workgroup> workgroup;  ///< of a compute shader; the target is then the last of the images to bind
   std::uint64_t shared_bytes = 0;      ///< that a workgroup shares
   KernelTarget target = KernelTarget::float32;

@@ -70,6 +70,10 @@ return fx.effect {
       error('source = "device_depth" requires depth_space = "device"', 0)
     end
     local use = uses(s)
+    -- Pixels across which the widest line is drawn, with room for what floats round: where no line is wider than one, all pixels are
+    -- compared with their neighbours, and rows of them share what they read.
+    local width = math.min(s.width / g.length_scale, 16384)
+    local widest = math.floor(width * 1.000001 + 0.5) * g.length_scale
     local depth = (use.depth or use.fade) and g:input("depth") or nil
     local normal = use.normal and g:input("normal") or nil
     local lines = g:pass {
@@ -79,9 +83,9 @@ return fx.effect {
       reach = s.difference == "derivative" and 1 or math.min(2 * (s.width + math.max(1, g.length_scale)), 16384),
       derivative = s.difference == "derivative", fade = use.fade and depth ~= nil,
       device_input = s.depth_space == "device", reversed_z = s.reversed_z, raw_depth = s.source == "device_depth",
-      combine_max = s.combine == "max", level_slopes = s.level_slopes and s.difference == "offset", preview = g.length_scale < 1,
+      next_door = s.difference == "offset" and widest < 1.4999, combine_max = s.combine == "max", level_slopes = s.level_slopes and s.difference == "offset", preview = g.length_scale < 1,
       inverse_clip = { 1 / s.near, 1 / s.far },
-      width = math.min(s.width / g.length_scale, 16384), scale = g.length_scale, fade_distance = s.fade_distance,
+      width = width, scale = g.length_scale, fade_distance = s.fade_distance,
       depth_scale = bounded(s.depth_scale), normal_scale = bounded(s.normal_scale), normal_factor = s.normal_factor,
       divide_factor = s.divide_factor, contrast = bounded(s.contrast),
     }

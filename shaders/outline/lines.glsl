@@ -14,6 +14,7 @@ layout(constant_id = 6) const bool raw_depth = false;    // compare device depth
 layout(constant_id = 7) const bool combine_max = false;  // the stronger of the two; else weighted
 layout(constant_id = 8) const bool level_slopes = false; // planes draw no line, however steep
 layout(constant_id = 9) const bool preview = false;      // `scale` is below 1
+layout(constant_id = 10) const bool next_door = false;   // no pixel is compared with others than its neighbours
 
 uniform sampler2D depth;   // what is not used may be any image: it is never read
 uniform sampler2D normal;
@@ -40,24 +41,32 @@ float depth_change(float a, float b) {
   return min(change * depth_scale, kMaxEdge);
 }
 
-// The bound keeps the squares finite; unit normals differ by at most 2.
-float normal_change(vec3 a, vec3 b) { return min(length(clamp(a - b, -1e15, 1e15)) * normal_scale, kMaxEdge); }
+// The bound keeps the length finite; unit normals differ by at most 2.
+float normal_change(vec3 a, vec3 b) {
+  vec3 change = a - b;
+  return min(sqrt(min(dot(change, change), kMaxEdge)) * normal_scale, kMaxEdge);
+}
 
 // How much farther or nearer the pixel ahead is than the plane through the pixel and the one behind it. Along a line on the screen the inverse
 // distance of a plane is linear, so its change ahead is that behind; in distances: |z − z₋|·z₊/z₋. Where nothing lies behind, the plane is that
-// through the two pixels ahead.
-float change_from_plane(float z, ivec2 centre, ivec2 ahead) {
-  ivec2 behind = 2 * centre - ahead, further = 2 * ahead - centre;
+// through the two pixels ahead. `shared_reads`: both are read, at places that the pixels of a column share.
+float change_from_plane(float z, ivec2 centre, ivec2 way, bool shared_reads) {
+  ivec2 behind = centre - way, further = centre + 2 * way;
   bool inside = min(behind.x, behind.y) >= 0;
-  float next = depth_at(ahead), other = depth_at(inside ? behind : further);
-  float change = depth_change(z, next), slope = depth_change(inside ? other : next, inside ? z : other);
-  bool goes_on = inside ? (next > z) == (z > other) : (next > z) == (other > next);
+  float next = depth_at(centre + way), first;
+  if (shared_reads) {
+    float before = depth_at(behind), after = depth_at(further);
+    first = inside ? before : after;
+  } else {
+    first = depth_at(inside ? behind : further);
+  }
+  float middle = inside ? z : next, last = inside ? next : z;  // three depths in a line, from whichever end
+  float change = depth_change(middle, last), slope = depth_change(first, middle);
   if (!raw_depth) {
-    float from = other, to = inside ? next : z;
-    if (device_input) from = distance_of(from), to = distance_of(to);
+    float from = device_input ? distance_of(first) : first, to = device_input ? distance_of(last) : last;
     slope = min(slope * (max(to, 1e-6) / max(from, 1e-6)), kMaxEdge);
   }
-  return goes_on ? max(change - slope, 0.0) : change;
+  return (last > middle) == (middle > first) ? max(change - slope, 0.0) : change;
 }
 
 int reach(float z) {
@@ -71,29 +80,29 @@ vec4 sample_at(ivec2 pixel) {
   float z = fade || use_depth ? depth_at(centre) : 0.0;
   // Where lines are thinner than a preview's pixels, these show so much less of them.
   float thick = derivative ? scale : float(reach(z)) * scale;
-  int apart = derivative ? 1 : thick > 0.0 ? max(int(floor(thick + 0.5)), 1) : 0;
+  int apart = derivative || next_door ? 1 : thick > 0.0 ? max(int(floor(thick + 0.5)), 1) : 0;
   float covered = min(thick, 1.0);
-  ivec2 right = centre + ivec2(apart, 0), below = centre + ivec2(0, apart);
+  ivec2 to_right = ivec2(apart, 0), to_below = ivec2(0, apart);
 
   // Where a preview's pixels lie farther apart than those of the picture, a slope, which goes on behind, counts as far as it reaches between
   // these; an edge does not go on and counts whole.
   float depth_edge = 0.0, normal_edge = 0.0;
   if (use_depth && level_slopes) {
-    depth_edge = change_from_plane(z, centre, right) + change_from_plane(z, centre, below);
+    depth_edge = change_from_plane(z, centre, to_right, false) + change_from_plane(z, centre, to_below, next_door);
   } else if (use_depth) {
-    float across = depth_change(z, depth_at(right)), down = depth_change(z, depth_at(below));
+    float across = depth_change(z, depth_at(centre + to_right)), down = depth_change(z, depth_at(centre + to_below));
     if (preview) {
-      across -= (1.0 - scale) * min(across, depth_change(z, depth_at(2 * centre - right)));
-      down -= (1.0 - scale) * min(down, depth_change(z, depth_at(2 * centre - below)));
+      across -= (1.0 - scale) * min(across, depth_change(z, depth_at(centre - to_right)));
+      down -= (1.0 - scale) * min(down, depth_change(z, depth_at(centre - to_below)));
     }
     depth_edge = across + down;
   }
   if (use_normal) {
     vec3 n = fetch(normal, centre).xyz;
-    float across = normal_change(n, fetch(normal, right).xyz), down = normal_change(n, fetch(normal, below).xyz);
+    float across = normal_change(n, fetch(normal, centre + to_right).xyz), down = normal_change(n, fetch(normal, centre + to_below).xyz);
     if (preview) {
-      across -= (1.0 - scale) * min(across, normal_change(n, fetch(normal, 2 * centre - right).xyz));
-      down -= (1.0 - scale) * min(down, normal_change(n, fetch(normal, 2 * centre - below).xyz));
+      across -= (1.0 - scale) * min(across, normal_change(n, fetch(normal, centre - to_right).xyz));
+      down -= (1.0 - scale) * min(down, normal_change(n, fetch(normal, centre - to_below).xyz));
     }
     normal_edge = across + down;
   }
@@ -102,6 +111,7 @@ vec4 sample_at(ivec2 pixel) {
   if (use_depth && use_normal)
     edge = combine_max ? max(depth_edge, normal_edge) : normal_factor * normal_edge + (1.0 - normal_factor) * depth_edge;
   edge = min(edge / divide_factor, kMaxEdge);
+  if (next_door && thick <= 0.0) edge = 0.0;  // compared with itself
   float line = clamp((edge - 0.5) * contrast + 0.5, 0.0, 1.0);
   return vec4(preview ? line * covered : line);
 }

@@ -2,16 +2,27 @@
 #include "exec/cpu/rows.h"
 
 namespace afterglow {
+namespace {
+
+bool can_be_in_turns(const KernelStage& stage) { return !stage.shader->loops && !stage.shader->keeps_state; }
+
+}  // namespace
 
 int rows_that_pay(const KernelDesc& kernel, int wanted) {
   constexpr double kWorthwhile = 1.5;  // times fewer reads
   constexpr int kMostLines = 12;       // that a processor fetches ahead at a time
   constexpr int kMostReads = 512;      // of texels, over all rows: each is an instruction to compile
-  if (kernel.sample || kernel.config.hardware_filter) return 1;
+  constexpr double kMostReach = 4;     // of a sample shader: beyond, rows share less and less
+  if (kernel.config.hardware_filter) return 1;
   // Loops cannot be taken in turns: it would be so many times as much to compile for nothing.
   // Variables of file scope would go from row to row with what the row before left in them.
   for (const auto& stage : kernel.stages)
-    if (stage.shader->loops || stage.shader->keeps_state) return 1;
+    if (!can_be_in_turns(stage)) return 1;
+  if (kernel.sample) {
+    const ShaderInterface& shader = kernel.sample->shader->interface;
+    const bool may_share = !shader.done && !shader.workgroup && kernel.sample->reach.value_or(kMostReach + 1) <= kMostReach;
+    return may_share && can_be_in_turns(*kernel.sample) ? wanted : 1;
+  }
   if (!kernel.filter) return wanted;
   for (int rows = wanted; rows > 1; rows /= 2) {
     const auto read = rows_shared(*kernel.filter, kernel.ratio_y, rows);
