@@ -13,7 +13,8 @@ namespace afterglow {
 /// libraries choose the format by it): `.NAME.MACHINE-PROCESS-COUNT.tmp.EXT`.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
-/// What is written under such a name, a file or a folder. It is gone with this, whatever happens, unless it was committed.
+/// What is written under such a name, a file or a folder. It is gone with this, whatever happens, unless it was
+/// committed.
 class Temporary {
  public:
   /// Of what is to become `target`; makes nothing yet.

@@ -50,8 +50,9 @@ class Deflate::Fast {
     state_.gzip_flag = IGZIP_DEFLATE;
     state_.flush = last ? NO_FLUSH : FULL_FLUSH;  // which ends with a whole byte, and refers to nothing before it
     state_.end_of_stream = last ? 1 : 0;
-    if (isal_deflate_set_dict(&state_, const_cast<std::uint8_t*>(bytes.data()),
-                              static_cast<std::uint32_t>(first)) != COMP_OK) return 0;
+    if (isal_deflate_set_dict(&state_, const_cast<std::uint8_t*>(bytes.data()), static_cast<std::uint32_t>(first)) !=
+        COMP_OK)
+      return 0;
     state_.next_in = const_cast<std::uint8_t*>(bytes.data()) + first;
     state_.avail_in = static_cast<std::uint32_t>(bytes.size() - first);
     state_.next_out = packed.data() + at;

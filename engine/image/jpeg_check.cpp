@@ -26,7 +26,8 @@ class JpegMetadata {
     constexpr std::string_view kExifName = "Exif", kProfile = "ICC_PROFILE", kXmp = "http://ns.adobe.com/xap/1.0/",
                                kPhotoshop = "Photoshop 3.0";
     constexpr std::size_t kProfileHead = 14;
-    if (marker == 0xe1 && begins(kExifName)) return exif_fault(segment.subspan(std::min<std::size_t>(segment.size(), 6)));
+    if (marker == 0xe1 && begins(kExifName))
+      return exif_fault(segment.subspan(std::min<std::size_t>(segment.size(), 6)));
     if (marker == 0xe1 && begins(kXmp)) return xmp_fault(segment);
     if (marker == 0xed && begins(kPhotoshop)) return iptc_fault(segment.subspan(kPhotoshop.size() + 1));
     if (marker == 0xe2 && begins(kProfile)) {

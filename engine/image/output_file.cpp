@@ -19,7 +19,7 @@ constexpr std::size_t kBufferSize = 256 << 10;
 
 OutputFile::OutputFile(const std::filesystem::path& path) {
   constexpr mode_t kMode = 0666;  // less what umask takes
-  buffer_.reserve(kBufferSize);  // nothing is open yet when there is no memory
+  buffer_.reserve(kBufferSize);   // nothing is open yet when there is no memory
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
   if (descriptor_ < 0) fail(errno);
 }

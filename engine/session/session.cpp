@@ -88,8 +88,8 @@ Result<std::unique_ptr<Session>> Session::begin(const std::filesystem::path& pre
   auto state = std::make_unique<State>();
   state->options = options;
   state->preset_file = preset.string();
-  state->opening = std::async(std::launch::async,
-                              [device = options.device, &diagnostics] { return State::open_device(device, diagnostics); });
+  state->opening = std::async(
+      std::launch::async, [device = options.device, &diagnostics] { return State::open_device(device, diagnostics); });
   AFTERGLOW_TRY(state->stack, Stack::load(preset, options.stack, diagnostics));
   return std::unique_ptr<Session>(new Session(std::move(state)));
 }

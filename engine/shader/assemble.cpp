@@ -115,7 +115,10 @@ class Assembler {
       out_.glsl += fmt::format("vec4 {}(vec4 ag_color, ivec2 ag_at{}) {{\n{}  return ag_color;\n}}\n", kRowFunction,
                                row_parameters_, row_);
       // A sample shader's pixels are not held within the target, so that all rows are as far apart.
-      store(std::string(kRowFunction) + (kernel_.sample && kernel_.config.rows > 1 ? "(ag_color{0}, ag_pixel + ivec2(0, {0})" : "(ag_color{0}, ag_pixel{0}") + row_arguments_ + ")");
+      store(std::string(kRowFunction) +
+            (kernel_.sample && kernel_.config.rows > 1 ? "(ag_color{0}, ag_pixel + ivec2(0, {0})"
+                                                       : "(ag_color{0}, ag_pixel{0}") +
+            row_arguments_ + ")");
     }
     out_.glsl += head_function_ + "void main() {\n" + pixels() + body_ + "}\n";
     out_.hash = hash_text(out_.glsl);

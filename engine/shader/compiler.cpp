@@ -117,7 +117,7 @@ Result<KernelFile> build(const AssembledKernel& assembled, const KernelDesc& des
   kernel.unset = std::move(given.read);
   if (desc.config.rows > 1) kernel.spirv = interleave_rows(kernel.spirv, kTogether);
   if (desc.config.rows > 1 && desc.sample) {
-    constexpr double kWorthwhile = 1.5;  // times fewer reads
+    constexpr double kWorthwhile = 1.25;  // times fewer reads
     MergedRows merged = merge_equal(std::move(kernel.spirv));
     kernel.spirv = std::move(merged.spirv);
     kernel.shares_rows = static_cast<double>(merged.reads_before) > kWorthwhile * static_cast<double>(merged.reads);

@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kKernelFileVersion = 8;
 struct KernelFile {
   Hash text;  ///< of the assembled GLSL it was made from
   std::uint32_t block_size = 0;
-  bool shares_rows = false;  ///< see CompiledKernel
+  bool shares_rows = false;            ///< see CompiledKernel
   std::vector<std::uint32_t> offsets;  ///< of the parameters, in the order of AssembledKernel::params
   std::vector<std::uint32_t> unset;    ///< numbers of the variables that may be read before they have a value
   std::vector<std::uint32_t>

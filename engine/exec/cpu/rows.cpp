@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "exec/cpu/rows.h"
 
+#include <algorithm>
+
 namespace afterglow {
 namespace {
 
@@ -13,6 +15,7 @@ int rows_that_pay(const KernelDesc& kernel, int wanted) {
   constexpr int kMostLines = 12;       // that a processor fetches ahead at a time
   constexpr int kMostReads = 512;      // of texels, over all rows: each is an instruction to compile
   constexpr double kMostReach = 4;     // of a sample shader: beyond, rows share less and less
+  constexpr int kMostOfSamples = 4;    // rows of one: more read so many lines that they push each other out of a cache
   if (kernel.config.hardware_filter) return 1;
   // Loops cannot be taken in turns: it would be so many times as much to compile for nothing.
   // Variables of file scope would go from row to row with what the row before left in them.
@@ -20,8 +23,9 @@ int rows_that_pay(const KernelDesc& kernel, int wanted) {
     if (!can_be_in_turns(stage)) return 1;
   if (kernel.sample) {
     const ShaderInterface& shader = kernel.sample->shader->interface;
-    const bool may_share = !shader.done && !shader.workgroup && kernel.sample->reach.value_or(kMostReach + 1) <= kMostReach;
-    return may_share && can_be_in_turns(*kernel.sample) ? wanted : 1;
+    const bool may_share =
+        !shader.done && !shader.workgroup && kernel.sample->reach.value_or(kMostReach + 1) <= kMostReach;
+    return may_share && can_be_in_turns(*kernel.sample) ? std::min(wanted, kMostOfSamples) : 1;
   }
   if (!kernel.filter) return wanted;
   for (int rows = wanted; rows > 1; rows /= 2) {

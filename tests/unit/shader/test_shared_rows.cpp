@@ -33,7 +33,8 @@ struct Neighbours {
 const Neighbours kNeighbours[] = {
     // A column of three: ten texels for eight rows.
     {"uniform sampler2D source;\n"
-     "vec4 sample_at(ivec2 p) { return fetch(source, p) + fetch(source, p + ivec2(0, 1)) - fetch(source, p - ivec2(0, 1)); }",
+     "vec4 sample_at(ivec2 p) { return fetch(source, p) + fetch(source, p + ivec2(0, 1)) - fetch(source, p - ivec2(0, "
+     "1)); }",
      10, true},
     // Offsets that are made of constants, in a function with an early end, of two images.
     {R"(layout(constant_id = 0) const int apart = 2;
@@ -47,7 +48,8 @@ vec4 along(ivec2 p, ivec2 way) {
 vec4 sample_at(ivec2 p) { return along(p, ivec2(0, apart)) + along(p, -ivec2(0, apart)) + fetch(other, p + ivec2(apart, 0)); })",
      8 + 4 + 4 + 8, true},
     // In a row nothing is shared.
-    {"uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return fetch(source, p) + fetch(source, p + ivec2(1, 0)); }", 16, false},
+    {"uniform sampler2D source;\nvec4 sample_at(ivec2 p) { return fetch(source, p) + fetch(source, p + ivec2(1, 0)); }",
+     16, false},
     // Nor where pixels decide for themselves.
     {R"(uniform sampler2D source;
 vec4 sample_at(ivec2 p) {
@@ -67,9 +69,8 @@ vec4 sample_at(ivec2 p) {
 
 std::ptrdiff_t reads_of(const CompiledKernel& kernel) {
   const auto module = parse(kernel.spirv);
-  return std::ranges::count_if(module->code, [](const Instruction& i) {
-    return i.op == spv::OpImageRead || i.op == spv::OpImageFetch;
-  });
+  return std::ranges::count_if(
+      module->code, [](const Instruction& i) { return i.op == spv::OpImageRead || i.op == spv::OpImageFetch; });
 }
 
 class SharedRows : public testing::TestWithParam<std::size_t> {};
@@ -79,7 +80,8 @@ TEST_P(SharedRows, EachHasTheBitsThatItHasAlone) {
   const ShaderFiles files;
   KernelDesc desc;
   desc.sample = files.stage("test/sample", tried.shader);
-  desc.stages = {files.stage("test/stage", "vec4 apply(vec4 color, ivec2 pixel) { return color + vec4(pixel, 0, 1); }")};
+  desc.stages = {
+      files.stage("test/stage", "vec4 apply(vec4 color, ivec2 pixel) { return color + vec4(pixel, 0, 1); }")};
   KernelCompiler compiler{std::filesystem::path()};
   const float gain = 0.7f;
   std::vector<std::byte> block(16);
