@@ -6,6 +6,8 @@
 
 namespace afterglow::reference {
 
+inline constexpr double kMostLight = 1e30;  ///< that effects let out: kMaxLight of shaders/lib/color.glsl
+
 /// Pivot of the contrast step inside LogC: ACEScc's middle grey. Its linear value there is 0.2247698.
 inline constexpr double kAcesccMidGray = 0.4135884;
 

@@ -9,6 +9,14 @@
 namespace afterglow::reference {
 namespace {
 
+/// Where an angle points, in pixels; quarters of a turn to the last digit.
+glm::dvec2 direction(double degrees) {
+  const double quarters = degrees / 90, angle = degrees * glm::pi<double>() / 180;
+  if (quarters != std::floor(quarters)) return {std::cos(angle), -std::sin(angle)};
+  const glm::dvec2 ways[] = {{1, 0}, {0, -1}, {-1, 0}, {0, 1}};
+  return ways[(static_cast<int>(quarters) % 4 + 4) % 4];
+}
+
 double share_of(double x) { return x - std::floor(x); }
 
 /// When the turn of the point (u, v) comes; 0 … 1.
@@ -26,9 +34,9 @@ double turn_at(int x, int y, Size size, const Cut& s) {
     const auto cell = [&](int at) { return static_cast<std::uint32_t>(std::floor((at + 0.5) / s.grain)); };
     return unit(pcg3d({cell(x), cell(y), s.seed})[0]);
   }
-  const double along_x = std::cos(angle), along_y = -std::sin(angle);
-  const double way = std::abs(along_x) * aspect + std::abs(along_y);
-  const double along = ((u - 0.5) * aspect * along_x + (v - 0.5) * along_y) / way + 0.5;
+  const glm::dvec2 to = direction(s.angle);
+  const double way = std::abs(to.x) * aspect + std::abs(to.y);
+  const double along = ((u - 0.5) * aspect * to.x + (v - 0.5) * to.y) / way + 0.5;
   return s.kind == CutKind::blinds ? share_of(along * s.count) : along;
 }
 
@@ -36,9 +44,9 @@ double turn_at(int x, int y, Size size, const Cut& s) {
 
 DoubleImage transition(const DoubleImage& source, const DoubleImage* other, const Cut& s) {
   const Size size = source.size();
-  const double angle = s.angle * glm::pi<double>() / 180, ax = std::cos(angle), ay = -std::sin(angle);
-  const bool level = std::abs(ax) >= std::abs(ay);
-  const int way_x = level ? (ax > 0 ? 1 : -1) : 0, way_y = level ? 0 : (ay > 0 ? 1 : -1);
+  const glm::dvec2 to = direction(s.angle);
+  const bool level = std::abs(to.x) >= std::abs(to.y);
+  const int way_x = level ? (to.x > 0 ? 1 : -1) : 0, way_y = level ? 0 : (to.y > 0 ? 1 : -1);
   return generate(size, [&](int x, int y) {
     const Rgba& p = source.at(x, y);
     const auto next = [&](int px, int py) { return other ? Rgb(other->clamped(px, py)) : s.color * p.a; };

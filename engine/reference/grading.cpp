@@ -95,7 +95,7 @@ DoubleImage lift_gamma_gain(const DoubleImage& source, const LiftGammaGain& s) {
   return map_straight(source, [&](const Rgb& c) {
     const Rgb scaled = c * gain + lift;
     Rgb out;
-    for (int i = 0; i < 3; ++i) out[i] = scaled[i] > 0 ? std::pow(scaled[i], power[i]) : 0;
+    for (int i = 0; i < 3; ++i) out[i] = scaled[i] > 0 ? glm::min(std::pow(scaled[i], power[i]), kMostLight) : 0;
     return out;
   });
 }
@@ -106,9 +106,10 @@ DoubleImage exposure(const DoubleImage& source, double ev) {
 
 DoubleImage cdl(const DoubleImage& source, const Cdl& s) {
   return map_straight(source, [&](const Rgb& c) {
-    const Rgb graded = glm::pow(glm::max(c * s.slope + s.offset, Rgb(0)), s.power);
+    const Rgb graded = glm::min(glm::pow(glm::max(c * s.slope + s.offset, Rgb(0)), s.power), Rgb(kMostLight));
     const double luma = glm::dot(graded, Rgb(0.2126, 0.7152, 0.0722));
-    return glm::max(luma + s.saturation * (graded - luma), Rgb(0));
+    // Not luma + s·(graded − luma): the luma of a strong power leaves the other channels no digit, even here.
+    return glm::clamp(s.saturation * graded + (1 - s.saturation) * luma, Rgb(0), Rgb(kMostLight));
   });
 }
 

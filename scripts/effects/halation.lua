@@ -6,6 +6,7 @@
 local fx = require "afterglow"
 local glow = require "lib.glow"
 
+local function is_bounded(s) return s.intensity * math.max(s.color[1], s.color[2], s.color[3]) <= 100 end
 local function digits(s) return 2e-5 * math.max(1, s.intensity) * math.max(1, s.threshold) end
 
 return fx.effect {
@@ -27,10 +28,10 @@ return fx.effect {
   idle = function(s) return { brightest = s.threshold * (1 - 1e-6) } end,
   -- Light is averaged before the threshold is taken from it, which leaves as many digits less as it is high.
   holds = {
-    "black", "constant", mirror = { within = digits }, turn_180 = { within = digits }, turn_90 = { within = digits },
+    "black", "constant", mirror = { within = digits, when = is_bounded }, turn_180 = { within = digits, when = is_bounded }, turn_90 = { within = digits, when = is_bounded },
     continuous = function(s) return 1 + 1.1 * s.intensity * math.max(s.color[1], s.color[2], s.color[3]) end,
     error = { fp32 = digits, fp16 = function(s) return 3e-3 * math.max(1, s.threshold) * math.max(1, s.intensity) end, up_to = 1e4,
-              when = function(s) return s.intensity * math.max(s.color[1], s.color[2], s.color[3]) <= 100 end },
+              when = is_bounded },
   },
   build = function(g, s, source)
     local weights = glow.exponential(source, g.length_scale, { s.radius, 0.6 * s.radius, 0.4 * s.radius })

@@ -62,7 +62,7 @@ return fx.effect {
   active = function(s) return s.mode ~= "none", "mode is none" end,
   holds = {
     "black", "constant", "mirror", "turn_180", "turn_90", shift = 1,
-    monotone = { within = by_curve(1e-2, 1e-5) },
+    monotone = { within = by_curve(2e-2, 1e-5) },
     bounded = { from = by_curve(-1e-4, 0), to = function(s)
                   local curve = s.mode == "hable" and hable(s)  -- with an angle its shoulder goes on beyond white
                   return curve and (curve.shoulder[2] + curve.shoulder[3]) * curve.scale or curves[s.mode].to or 1

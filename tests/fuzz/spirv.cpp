@@ -12,6 +12,7 @@
 #include "shader/cpu/defeat_uniform_inlining.h"
 #include "shader/cpu/guard_loops.h"
 #include "shader/cpu/interleave.h"
+#include "shader/cpu/merge_equal.h"
 #include "shader/give_values.h"
 #include "shader/glsl.h"
 #include "shader/kernel.h"
@@ -34,6 +35,7 @@ void steps(const Words& spirv, const std::vector<AssembledKernel::UnsetVariable>
       [](const Words& in) { return guard_loops(in, 17).spirv; },
       [&unset](const Words& in) { return give_values(in, unset).spirv; },
       [](const Words& in) { return interleave_rows(in, 4); },
+      [](const Words& in) { return merge_equal(in).spirv; },
       [](const Words& in) { return defeat_uniform_inlining(in); },
       [](const Words& in) {
         const auto flat = flat_parameters(in, 31);
