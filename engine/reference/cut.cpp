@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <glm/vec2.hpp>
 
 #include "reference/grain.h"
 

@@ -6,14 +6,6 @@ local fx = require "afterglow"
 
 local kKinds = { dissolve = 0, fade = 1, wipe = 2, iris = 3, clock = 4, blinds = 5, scatter = 6, push = 7 }
 
--- Quarters of a turn to the last digit: 360 degrees are none, and an edge that lies between two pixels stays there.
-local function direction(degrees)
-  local quarters = degrees / 90
-  if quarters ~= math.floor(quarters) then return math.cos(math.rad(degrees)), -math.sin(math.rad(degrees)) end
-  local way = ({ { 1, 0 }, { 0, -1 }, { -1, 0 }, { 0, 1 } })[math.floor(quarters) % 4 + 1]
-  return way[1], way[2]
-end
-
 return fx.effect {
   name = "transition",
   doc = "Goes over to another picture: dissolve, fade, wipe, iris, clock, blinds, scatter, push.",
@@ -45,8 +37,9 @@ return fx.effect {
     if not other and s.to ~= "" then
       other = g:pass { shader = "transition/cover", source = g:image { file = s.to }, size = source, name = "cover" }
     end
+    local turn = math.rad(s.angle)
     local aspect = source.width / source.height
-    local across, down = direction(s.angle)
+    local across, down = math.cos(turn), -math.sin(turn)
     -- The edge's whole way: from where it just touches the picture to where it has left it.
     local span = math.abs(across) * aspect + math.abs(down)
     local corner_x, corner_y = math.max(s.center[1], 1 - s.center[1]) * aspect, math.max(s.center[2], 1 - s.center[2])
@@ -55,7 +48,7 @@ return fx.effect {
     return g:pass {
       shader = "transition/cut", source = source, other = other or source, size = source, name = "cut", kind = kKinds[s.kind], has_other = other ~= nil,
       progress = s.progress, plain = s.color, direction = { across, down }, span = span, soft = math.max(s.softness, 1e-4), center = s.center, aspect = aspect,
-      widest = math.max(math.sqrt(corner_x ^ 2 + corner_y ^ 2), 1e-6), start = math.rad(s.angle), count = s.count, grain = { coarse, size - coarse }, seed = s.seed,
+      widest = math.max(math.sqrt(corner_x ^ 2 + corner_y ^ 2), 1e-6), start = turn, count = s.count, grain = { coarse, size - coarse }, seed = s.seed,
     }
   end,
 }

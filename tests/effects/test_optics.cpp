@@ -296,20 +296,6 @@ TEST_F(Effects, TransitionAgrees) {
   expect_skipped("fx.transition {}", "progress is 0");
 }
 
-TEST_F(Effects, TransitionsByQuartersOfATurnAreExact) {
-  // Where a strip ends between two pixels, the last digit of a cosine would decide.
-  const auto made = [](const char* kind, int angle, Size size) {
-    return run_stack(fmt::format("fx.transition {{ kind = \"{}\", progress = 0.457, angle = {} }}", kind, angle),
-                     random_scene(size, 76), Way::plain)
-        .result;
-  };
-  for (const char* kind : {"wipe", "blinds", "push"})
-    for (const Size size : {Size{1, 2}, Size{2, 1}, Size{24, 12}, Size{12, 24}})
-      for (const auto& [angle, same] :
-           {std::pair{360, 0}, std::pair{-360, 0}, std::pair{-270, 90}, std::pair{-90, 270}, std::pair{-180, 180}})
-        EXPECT_EQ(made(kind, angle, size), made(kind, same, size)) << kind << " " << angle << " " << size.width;
-}
-
 TEST_F(Effects, TransitionsEndAtTheOtherPicture) {
   Scene scene = random_scene({64, 36}, 73);
   scene.layers["next"] = random_scene({64, 36}, 74).source;
