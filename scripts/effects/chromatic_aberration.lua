@@ -14,7 +14,8 @@ return fx.effect {
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
   -- Positions between pixels are rounded: the more, the larger the picture; so what is read at a hard edge is off by as much.
-  holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1,
+  -- A pixel is the sum of a fringe: of up to a thirtieth of the picture's longer side, each rounded.
+  holds = { "black", constant = { within = function(_, source) return 1e-5 * math.max(1, math.max(source.width, source.height) / 4096) end }, "bounded", "monotone", "linear", continuous = 1,
             error = { fp32 = function(_, source) return 1e-3 + 2e-5 * math.max(source.width, source.height) end, fp16 = function(_, source) return 4e-3 + 2e-5 * math.max(source.width, source.height) end, up_to = 1 } },
   build = function(g, s, source)
     return g:pass { shader = "chromatic_aberration/spectrum", source = source, amount = s.intensity * 0.05 * 2 / 3, three = s.samples == 3 }

@@ -5,6 +5,9 @@ local fx = require "afterglow"
 
 local function fills(s) return s.edges ~= "black" end
 
+-- A place is rounded as the picture is large, and as far away as what is enlarged into it.
+local function place_digits(s, source) return 2e-5 * math.max(source.width, source.height) * math.max(1, 0.1 / s.scale) end
+
 return fx.effect {
   name = "lens_distortion",
   doc = "Bends the picture as a wide lens (barrel) or a long one (pincushion) does.",
@@ -24,7 +27,7 @@ return fx.effect {
   -- Positions between pixels are rounded: the more, the larger the picture; so what is read at a hard edge is off by as much, and what is
   -- mirrored from far outside is anywhere.
   holds = { "black", constant = { when = fills }, bounded = { when = fills }, "monotone", "linear", continuous = 1,
-            error = { fp32 = function(_, source) return 1e-3 + 2e-5 * math.max(source.width, source.height) end, fp16 = function(_, source) return 4e-3 + 2e-5 * math.max(source.width, source.height) end, up_to = 1, when = function(s) return s.edges ~= "mirror" end } },
+            error = { fp32 = function(s, source) return 1e-3 + place_digits(s, source) end, fp16 = function(s, source) return 4e-3 + place_digits(s, source) end, up_to = 1, when = function(s) return s.edges ~= "mirror" end } },
   build = function(g, s, source)
     local theta = math.min(1.6 * math.max(math.abs(s.intensity) * 100, 1), 160) * math.pi / 180
     return g:pass {
