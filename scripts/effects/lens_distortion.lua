@@ -8,6 +8,14 @@ local function fills(s) return s.edges ~= "black" end
 -- A place is rounded as the picture is large, and as far away as what is enlarged into it.
 local function place_digits(s, source) return 2e-5 * math.max(source.width, source.height) * math.max(1, 0.1 / s.scale) end
 
+local function angle(s) return math.rad(math.min(1.6 * math.max(math.abs(s.intensity) * 100, 1), 160)) end
+
+-- A barrel's tangent has no bound where rays come from beyond a right angle, as they do far from a centre that is moved aside.
+local function sees_ahead(s)
+  local x, y = math.max(s.center[1], 1 - s.center[1]) * s.x_multiplier, math.max(s.center[2], 1 - s.center[2]) * s.y_multiplier
+  return s.intensity < 0 or math.sqrt(x * x + y * y) / s.scale * angle(s) < 1.4
+end
+
 return fx.effect {
   name = "lens_distortion",
   doc = "Bends the picture as a wide lens (barrel) or a long one (pincushion) does.",
@@ -27,9 +35,9 @@ return fx.effect {
   -- Positions between pixels are rounded: the more, the larger the picture; so what is read at a hard edge is off by as much, and what is
   -- mirrored from far outside is anywhere.
   holds = { "black", constant = { when = fills }, bounded = { when = fills }, "monotone", "linear", continuous = 1,
-            error = { fp32 = function(s, source) return 1e-3 + place_digits(s, source) end, fp16 = function(s, source) return 4e-3 + place_digits(s, source) end, up_to = 1, when = function(s) return s.edges ~= "mirror" end } },
+            error = { fp32 = function(s, source) return 1e-3 + place_digits(s, source) end, fp16 = function(s, source) return 4e-3 + place_digits(s, source) end, up_to = 1, when = function(s) return s.edges ~= "mirror" and sees_ahead(s) end } },
   build = function(g, s, source)
-    local theta = math.min(1.6 * math.max(math.abs(s.intensity) * 100, 1), 160) * math.pi / 180
+    local theta = angle(s)
     return g:pass {
       shader = "lens_distortion/bend", source = source, barrel = s.intensity >= 0, mirrored = s.edges == "mirror", black = s.edges == "black",
       theta = theta, sigma = 2 * math.tan(theta / 2), bend = s.intensity ~= 0 and 1 or 0,

@@ -108,6 +108,18 @@ TEST_P(SharedRows, EachHasTheBitsThatItHasAlone) {
 
 INSTANTIATE_TEST_SUITE_P(All, SharedRows, testing::Range<std::size_t>(0, std::size(kNeighbours)));
 
+// Of lavapipe's pixels it cannot be seen: it contracts nothing. Other drivers may.
+TEST(MergeEqual, WhatIsPreciseIsNotMergedWithWhatIsNot) {
+  const ShaderFiles files;
+  KernelDesc desc;
+  desc.sample = files.stage("test/sample", kNeighbours[4].shader);
+  desc.config.rows = 8;
+  const auto kernel = KernelCompiler{std::filesystem::path()}.compile(desc);
+  ASSERT_TRUE(kernel) << kernel.error().text();
+  const auto module = parse(kernel->spirv);
+  EXPECT_EQ(std::ranges::count(module->code, spv::OpVectorTimesScalar, &Instruction::op), 16);  // a * 1.1
+}
+
 TEST(MergeEqual, LeavesWhatIsNoModuleAlone) {
   const std::vector<std::uint32_t> noise{1, 2, 3, 4, 5, 6};
   EXPECT_EQ(merge_equal(noise).spirv, noise);
