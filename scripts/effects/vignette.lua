@@ -23,7 +23,7 @@ return fx.effect {
     linear = 1e-5, continuous = function(s) return math.max(1, s.color[1], s.color[2], s.color[3]) end,
     mirror = { within = 1e-6, when = function(s) return s.center[1] == 0.5 and s.center[2] == 0.5 end },
     turn_180 = { within = 1e-6, when = function(s) return s.center[1] == 0.5 and s.center[2] == 0.5 end },
-    error = { fp32 = 5e-4, up_to = 100, when = function(s) return math.max(s.color[1], s.color[2], s.color[3]) <= 1e5 end },
+    error = { fp32 = 1e-3, when = function(s) return math.max(s.color[1], s.color[2], s.color[3]) <= 1e5 end },
   },
   build = function(g, s, source)
     local aspect = s.rounded and source.width / source.height or 1
