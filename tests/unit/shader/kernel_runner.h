@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <random>
 #include <tuple>
 #include <vector>
 
@@ -20,6 +21,15 @@ struct TestImage {
   const float* at(int x, int y) const { return &rgba[(static_cast<std::size_t>(y) * size.width + x) * 4]; }
   float* at(int x, int y) { return &rgba[(static_cast<std::size_t>(y) * size.width + x) * 4]; }
 };
+
+/// Values of 0…3, always the same of a seed.
+inline TestImage random_texels(Size size, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> value(0.0f, 3.0f);
+  TestImage image{size, std::vector<float>(static_cast<std::size_t>(size.area()) * 4)};
+  for (float& v : image.rgba) v = value(random);
+  return image;
+}
 
 class KernelRunner {
  public:

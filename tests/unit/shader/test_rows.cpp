@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
-#include <random>
 #include <spirv-tools/libspirv.hpp>
 
 #include "kernel_runner.h"
@@ -15,14 +14,6 @@
 
 namespace afterglow {
 namespace {
-
-TestImage light(Size size, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<float> value(0.0f, 3.0f);
-  TestImage image{size, std::vector<float>(static_cast<std::size_t>(size.area()) * 4)};
-  for (float& v : image.rgba) v = value(random);
-  return image;
-}
 
 // Straight, choosing, choosing within a choice, with helpers, precise, looping, returning early.
 constexpr const char* kStages[] = {
@@ -59,7 +50,8 @@ TEST_P(Rows, EachHasTheBitsThatItHasAlone) {
   std::memcpy(block.data(), &gain, sizeof gain);
   for (const Size size : {Size{1, 1}, Size{13, 9}, Size{33, 32}}) {
     std::vector<TestImage> images;
-    for (std::size_t i = 0; i < alone->images.size(); ++i) images.push_back(light(size, static_cast<unsigned>(i) + 1));
+    for (std::size_t i = 0; i < alone->images.size(); ++i)
+      images.push_back(random_texels(size, static_cast<unsigned>(i) + 1));
     const TestImage expected = runner().run(*alone, images, size, block);
     for (const int rows : {2, 4, 8}) {
       desc.config.rows = rows;
@@ -95,7 +87,7 @@ TEST(Rows, KnowWhereTheyAre) {
     desc.config.rows = rows;
     const auto kernel = KernelCompiler{std::filesystem::path()}.compile(desc);
     ASSERT_TRUE(kernel) << kernel.error().text();
-    const TestImage out = runner().run(*kernel, {light({7, 11}, 1)}, {7, 11});
+    const TestImage out = runner().run(*kernel, {random_texels({7, 11}, 1)}, {7, 11});
     for (int y = 0; y < 11; ++y)
       for (int x = 0; x < 7; ++x) {
         EXPECT_EQ(out.at(x, y)[0], static_cast<float>(x));

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <random>
 #include <spirv-tools/libspirv.hpp>
 
 #include "kernel_runner.h"
@@ -15,14 +14,6 @@
 
 namespace afterglow {
 namespace {
-
-TestImage texels(Size size, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<float> value(0.0f, 3.0f);
-  TestImage image{size, std::vector<float>(static_cast<std::size_t>(size.area()) * 4)};
-  for (float& v : image.rgba) v = value(random);
-  return image;
-}
 
 struct Neighbours {
   const char* shader;
@@ -90,7 +81,8 @@ TEST_P(SharedRows, EachHasTheBitsThatItHasAlone) {
   ASSERT_TRUE(alone) << alone.error().text();
   for (const Size size : {Size{1, 1}, Size{2, 3}, Size{13, 9}, Size{33, 32}}) {
     std::vector<TestImage> images;
-    for (std::size_t i = 0; i < alone->images.size(); ++i) images.push_back(texels(size, static_cast<unsigned>(i) + 1));
+    for (std::size_t i = 0; i < alone->images.size(); ++i)
+      images.push_back(random_texels(size, static_cast<unsigned>(i) + 1));
     const TestImage expected = runner().run(*alone, images, size, block);
     for (const int rows : {2, 4, 8}) {
       desc.config.rows = rows;
