@@ -80,4 +80,16 @@ std::optional<Module> run_passes(const spvtools::Optimizer& optimizer, const Mod
   return parse(after);
 }
 
+std::optional<Module> without_variables(const Module& module) {
+  if (!inlines_quickly(module)) return std::nullopt;
+  spvtools::Optimizer optimizer(kSpirvEnvironment);
+  add_inlining_passes(optimizer);
+  optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
+      .RegisterPass(spvtools::CreateSSARewritePass())
+      .RegisterPass(spvtools::CreateDeadBranchElimPass())
+      .RegisterPass(spvtools::CreateBlockMergePass())
+      .RegisterPass(spvtools::CreateAggressiveDCEPass());
+  return run_passes(optimizer, module);
+}
+
 }  // namespace afterglow

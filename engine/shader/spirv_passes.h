@@ -31,4 +31,8 @@ bool inlines_quickly(const Module& module);
 /// Nothing when a pass fails.
 std::optional<Module> run_passes(const spvtools::Optimizer& optimizer, const Module& module);
 
+/// Values in place of functions, their arguments and variables, and blocks without those that are never entered.
+/// Nothing when that would take too long, or a pass fails.
+std::optional<Module> without_variables(const Module& module);
+
 }  // namespace afterglow

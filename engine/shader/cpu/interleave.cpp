@@ -34,15 +34,7 @@ std::uint32_t entry_point(const Module& module) {
 /// Everything that the row function calls becomes part of it, and branches that only choose a value become selections.
 std::optional<Module> flatten(Module module, std::uint32_t function) {
   forbid_inlining(module, function);
-  if (!inlines_quickly(module)) return std::nullopt;
-  spvtools::Optimizer optimizer(kSpirvEnvironment);
-  add_inlining_passes(optimizer);
-  optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
-      .RegisterPass(spvtools::CreateSSARewritePass())
-      .RegisterPass(spvtools::CreateDeadBranchElimPass())
-      .RegisterPass(spvtools::CreateBlockMergePass())
-      .RegisterPass(spvtools::CreateAggressiveDCEPass());
-  return run_passes(optimizer, module);
+  return without_variables(module);
 }
 
 /// The parts of a function of one block.

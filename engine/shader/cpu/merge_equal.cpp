@@ -39,18 +39,6 @@ bool is_pure_function(std::uint32_t function) {
   return function != kModf && function != kFrexp && (function < kFirstInterpolation || function > kLastInterpolation);
 }
 
-/// Values in place of functions, their arguments and variables.
-std::optional<Module> without_variables(const Module& module) {
-  if (!inlines_quickly(module)) return std::nullopt;
-  spvtools::Optimizer optimizer(kSpirvEnvironment);
-  add_inlining_passes(optimizer);
-  optimizer.RegisterPass(spvtools::CreateSSARewritePass())
-      .RegisterPass(spvtools::CreateDeadBranchElimPass())
-      .RegisterPass(spvtools::CreateBlockMergePass())
-      .RegisterPass(spvtools::CreateAggressiveDCEPass());
-  return run_passes(optimizer, module);
-}
-
 class Merger {
  public:
   explicit Merger(Module& module) : module_(module) {}
