@@ -10,19 +10,21 @@
 namespace afterglow {
 namespace {
 
-constexpr std::uint32_t kUnit = 16;  ///< bytes of the block that one location hands on
+/// How many locations modules have. lavapipe compiles, in each process anew, a function for each number of them and
+/// each choice of their components that kernels read (2 ms, Mesa 22.3): few numbers, and all components are read.
+constexpr std::uint32_t kLocations[] = {3, 8, 16, 31};
 
-/// Takes the numbers of the uniform block and of the push constants from inputs: location 0 holds the push constants,
-/// location n the n-th 16 bytes of the block.
+/// Takes the numbers of the uniform block and of the push constants from inputs, four a location, in their order.
 class Flattener {
  public:
   explicit Flattener(Module& module) : module_(module) {}
 
-  /// False: nothing is read of them, or in a way that is not known.
-  bool run() {
+  /// False: nothing is read of them, or in a way that is not known, or more than `most_locations` hold.
+  bool run(std::uint32_t most_locations) {
     look();
-    if (chains_.empty() || entry_ == 0) return false;
-    if (!std::ranges::all_of(module_.code, [this](const Instruction& i) { return understood(i); })) return false;
+    if (entry_ == 0 || !std::ranges::all_of(module_.code, [this](const Instruction& i) { return understood(i); }))
+      return false;
+    if (!number(most_locations)) return false;
     std::vector<Instruction> body;
     code_.swap(body);
     const auto first = std::ranges::find(module_.code, spv::OpFunction, &Instruction::op);
@@ -42,24 +44,24 @@ class Flattener {
     return true;
   }
 
-  std::uint32_t locations() const { return inputs_.empty() ? 0 : inputs_.rbegin()->first + 1; }
+  const std::vector<GivenNumber>& numbers() const { return numbers_; }
+  std::uint32_t locations() const { return locations_; }
 
  private:
   struct Type {
     std::uint32_t component = 0, count = 0;  ///< of 32-bit numbers
   };
-  struct Chain {
-    std::uint32_t location = 0, component = 0;
-  };
 
   void look() {
     std::map<std::uint32_t, std::uint32_t> pointees;
-    std::map<std::uint32_t, Words> structs;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> offsets;
     std::map<std::uint32_t, std::uint32_t> blocks, constants;  // variable → struct; id → value
+    std::set<std::uint32_t> pushed;
     for (const auto& i : module_.code) {
       const Words& w = i.words;
       if (i.op == spv::OpEntryPoint) entry_ = w[2];
+      if (i.op == spv::OpDecorate && w.size() == 4 && w[2] == spv::DecorationBuiltIn && w[3] == spv::BuiltInFragCoord)
+        position_ = w[1];
       if (i.op == spv::OpMemberDecorate && w.size() == 5 && w[3] == spv::DecorationOffset) offsets[{w[1], w[2]}] = w[4];
       if ((i.op == spv::OpTypeInt || i.op == spv::OpTypeFloat) && w[2] == 32) types_[w[1]] = {w[1], 1};
       if (i.op == spv::OpTypeInt && w[2] == 32 && w[3] == 0) bits_ = w[1];
@@ -68,65 +70,102 @@ class Flattener {
       if (i.op == spv::OpConstant && w.size() == 4) constants[i.result] = w[3];
       if (i.op == spv::OpVariable && (w[3] == spv::StorageClassUniform || w[3] == spv::StorageClassPushConstant)) {
         blocks[i.result] = pointees[i.type];
-        if (w[3] == spv::StorageClassPushConstant) pushed_.insert(i.result);
+        if (w[3] == spv::StorageClassPushConstant) pushed.insert(i.result);
       }
       if (i.op == spv::OpAccessChain && blocks.contains(w[3]) && (w.size() == 5 || w.size() == 6) &&
           std::all_of(w.begin() + 4, w.end(), [&](std::uint32_t id) { return constants.contains(id); })) {
         const auto offset = offsets.find({blocks[w[3]], constants[w[4]]});
         if (offset == offsets.end()) continue;
-        const std::uint32_t bytes = offset->second + (w.size() == 6 ? 4 * constants[w[5]] : 0);
-        chains_[i.result] = {bytes / kUnit + (pushed_.contains(w[3]) ? 0 : 1), bytes % kUnit / 4};
+        chains_[i.result] = {!pushed.contains(w[3]), offset->second + (w.size() == 6 ? 4 * constants[w[5]] : 0)};
       }
     }
     for (const auto& [variable, type] : blocks) variables_.insert(variable);
   }
 
+  bool reads(const Instruction& i) const { return i.op == spv::OpLoad && chains_.contains(i.words[3]); }
+
   /// Of the blocks only numbers are read, and in one way.
   bool understood(const Instruction& i) const {
     if (i.op == spv::OpName || i.op == spv::OpDecorate || i.op == spv::OpVariable) return true;
     if (i.op == spv::OpAccessChain && variables_.contains(i.words[3])) return chains_.contains(i.result);
-    if (i.op == spv::OpLoad && chains_.contains(i.words[3])) {
-      const auto type = types_.find(i.type);
-      return type != types_.end() && chains_.at(i.words[3]).component + type->second.count <= 4;
-    }
+    if (reads(i)) return types_.contains(i.type);
     return std::ranges::none_of(i.ids, [&](std::uint16_t word) {
       return variables_.contains(i.words[word]) || (chains_.contains(i.words[word]) && i.words[word] != i.result);
     });
   }
 
+  /// Finds a place for each number that is read, and leaves one behind them.
+  bool number(std::uint32_t most_locations) {
+    std::set<GivenNumber> numbers;
+    for (const auto& i : module_.code)
+      if (reads(i))
+        for (std::uint32_t c = 0; c < types_.at(i.type).count; ++c) numbers.insert(part(chains_.at(i.words[3]), c));
+    numbers_.assign(numbers.begin(), numbers.end());
+    for (const std::uint32_t locations : kLocations) {
+      locations_ = std::min(locations, most_locations);
+      if (4 * locations_ > numbers_.size()) return !numbers_.empty();
+    }
+    return false;
+  }
+
+  static GivenNumber part(GivenNumber number, std::uint32_t component) {
+    number.offset += 4 * component;
+    return number;
+  }
+
   void copy(const Instruction& i) {
     if (i.op == spv::OpAccessChain && chains_.contains(i.result)) return;
-    if (i.op == spv::OpLoad && chains_.contains(i.words[3]))
+    if (reads(i))
       load(i, chains_.at(i.words[3]));
+    else if (i.op == spv::OpLoad && i.words[3] == position_)
+      read_all(i);
     else
       code_.push_back(i);
   }
 
-  void load(const Instruction& i, Chain from) {
+  void load(const Instruction& i, const GivenNumber& from) {
     const Type type = types_.at(i.type);
-    const std::uint32_t four = bits_of(4), whole = module_.fresh();
-    code_.push_back(Instruction::of_ids(spv::OpLoad, four, whole, {input(from.location)}));
-    std::uint32_t part = whole;
-    const std::uint32_t part_type = bits_of(type.count);
-    const bool same = part_type == i.type;
-    if (type.count < 4) {
-      part = same ? i.result : module_.fresh();
-      Words words{part_type, part, whole};
-      if (type.count > 1) words.push_back(whole);
-      for (std::uint32_t c = 0; c < type.count; ++c) words.push_back(from.component + c);
-      Instruction picked =
-          Instruction::of_words(type.count == 1 ? spv::OpCompositeExtract : spv::OpVectorShuffle, words);
-      picked.type = part_type, picked.result = part;
-      code_.push_back(std::move(picked));
+    const std::uint32_t bits = bits_of(type.count);
+    Words parts;
+    for (std::uint32_t c = 0; c < type.count; ++c) {
+      const auto at = std::ranges::lower_bound(numbers_, part(from, c));
+      const auto place = static_cast<std::uint32_t>(at - numbers_.begin());
+      parts.push_back(extract(add(spv::OpLoad, bits_of(4), {input(place / 4)}), place % 4));
     }
-    if (part == i.result) return;
-    code_.push_back(Instruction::of_ids(same ? spv::OpCopyObject : spv::OpBitcast, i.type, i.result, {part}));
+    const std::uint32_t read = type.count == 1 ? parts[0] : add(spv::OpCompositeConstruct, bits, parts);
+    code_.push_back(Instruction::of_ids(bits == i.type ? spv::OpCopyObject : spv::OpBitcast, i.type, i.result, {read}));
   }
 
-  Instruction& declare(spv::Op op, const Words& words) {
-    declarations_.push_back(Instruction::of_words(op, words));
-    return declarations_.back();
+  /// The pixel's place, and 0, which takes all numbers: what is behind the last one is 0, as the driver cannot know.
+  void read_all(const Instruction& i) {
+    std::uint32_t all = 0, last = 0;
+    for (std::uint32_t n = 0; n < locations_; ++n) {
+      last = add(spv::OpLoad, bits_of(4), {input(n)});
+      all = n == 0 ? last : add(spv::OpBitwiseOr, bits_of(4), {all, last});
+    }
+    std::uint32_t any = extract(all, 0);
+    for (std::uint32_t c = 1; c < 4; ++c) any = add(spv::OpBitwiseOr, bits_of(1), {any, extract(all, c)});
+    const std::uint32_t none = add(spv::OpBitwiseAnd, bits_of(1), {any, extract(last, 3)});
+    const Type type = types_.at(i.type);
+    const std::uint32_t zero = add(spv::OpBitcast, type.component, {none});
+    const std::uint32_t zeros = add(spv::OpCompositeConstruct, i.type, Words(type.count, zero));
+    const std::uint32_t place = add(spv::OpLoad, i.type, {position_});
+    code_.push_back(Instruction::of_ids(spv::OpFAdd, i.type, i.result, {place, zeros}));
   }
+
+  std::uint32_t add(spv::Op op, std::uint32_t type, const Words& operands) {
+    const std::uint32_t id = module_.fresh();
+    code_.push_back(Instruction::of_ids(op, type, id, operands));
+    return id;
+  }
+
+  std::uint32_t extract(std::uint32_t four, std::uint32_t component) {
+    const std::uint32_t id = module_.fresh();
+    code_.push_back(Instruction::of_words(spv::OpCompositeExtract, {bits_of(1), id, four, component}));
+    return id;
+  }
+
+  void declare(spv::Op op, const Words& words) { declarations_.push_back(Instruction::of_words(op, words)); }
 
   /// Whole numbers without a sign. The type may be declared behind what is looked at, but before all functions.
   std::uint32_t bits_of(std::uint32_t count) {
@@ -171,150 +210,12 @@ class Flattener {
   Module& module_;
   std::vector<Instruction> code_, declarations_;
   std::map<std::uint32_t, Type> types_;
-  std::map<std::uint32_t, Chain> chains_;
-  std::set<std::uint32_t> variables_, pushed_;
+  std::map<std::uint32_t, GivenNumber> chains_;
+  std::set<std::uint32_t> variables_;
+  std::vector<GivenNumber> numbers_;               ///< in the order of their places
   std::map<std::uint32_t, std::uint32_t> inputs_;  ///< location → variable
-  std::uint32_t entry_ = 0, bits_ = 0, pointer_ = 0;
+  std::uint32_t entry_ = 0, position_ = 0, bits_ = 0, pointer_ = 0, locations_ = 0;
 };
-
-/// The full-screen triangle of gpu/fullscreen_vertex.h, which also hands on the push constants (location 0) and the
-/// block (locations 1 …). Each number takes a bit of the vertex's index that is 0: a driver that sees what a vertex
-/// shader hands on to be the block's would read the block in its place.
-Words triangle_that_hands_on(std::uint32_t locations) {
-  enum Id : std::uint32_t {
-    nothing = 1,
-    function,
-    real,
-    real4,
-    whole,
-    bits,
-    bits4,
-    yes,
-    zero,
-    one,
-    two,
-    sign,
-    minus,
-    three,
-    nought,
-    unity,
-    count,
-    list,
-    block,
-    push,
-    in_index,
-    out_place,
-    out_bits,
-    from_block,
-    from_push,
-    member_block,
-    member_push,
-    index,
-    place,
-    block_variable,
-    push_variable,
-    main,
-    label,
-    at,
-    is_two,
-    is_one,
-    x,
-    y,
-    corner,
-    top,
-    four_tops,
-    first_output
-  };
-  std::vector<Instruction> code;
-  const auto add = [&](spv::Op op, const Words& words) { code.push_back(Instruction::of_words(op, words)); };
-  const std::uint32_t units = locations - 1;
-  const auto output = [](std::uint32_t location) { return first_output + location; };
-  std::uint32_t bound = first_output + locations;
-  std::vector<std::uint32_t> unit_numbers;  // constants 0 … units − 1
-  for (std::uint32_t n = 0; n < units; ++n) unit_numbers.push_back(bound++);
-
-  add(spv::OpCapability, {spv::CapabilityShader});
-  add(spv::OpMemoryModel, {spv::AddressingModelLogical, spv::MemoryModelGLSL450});
-  Words entry{spv::ExecutionModelVertex, main, 0x6e69616d, 0, index, place};  // "main"
-  for (std::uint32_t n = 0; n < locations; ++n) entry.push_back(output(n));
-  add(spv::OpEntryPoint, entry);
-  add(spv::OpDecorate, {index, spv::DecorationBuiltIn, spv::BuiltInVertexIndex});
-  add(spv::OpDecorate, {place, spv::DecorationBuiltIn, spv::BuiltInPosition});
-  for (std::uint32_t n = 0; n < locations; ++n) {
-    add(spv::OpDecorate, {output(n), spv::DecorationFlat});
-    add(spv::OpDecorate, {output(n), spv::DecorationLocation, n});
-  }
-  add(spv::OpDecorate, {push, spv::DecorationBlock});
-  add(spv::OpMemberDecorate, {push, 0, spv::DecorationOffset, 0});
-  if (units > 0) {
-    add(spv::OpDecorate, {list, spv::DecorationArrayStride, kUnit});
-    add(spv::OpDecorate, {block, spv::DecorationBlock});
-    add(spv::OpMemberDecorate, {block, 0, spv::DecorationOffset, 0});
-    add(spv::OpDecorate, {block_variable, spv::DecorationDescriptorSet, 0});
-    add(spv::OpDecorate, {block_variable, spv::DecorationBinding, 0});
-  }
-  add(spv::OpTypeVoid, {nothing});
-  add(spv::OpTypeFunction, {function, nothing});
-  add(spv::OpTypeFloat, {real, 32});
-  add(spv::OpTypeVector, {real4, real, 4});
-  add(spv::OpTypeInt, {whole, 32, 1});
-  add(spv::OpTypeInt, {bits, 32, 0});
-  add(spv::OpTypeVector, {bits4, bits, 4});
-  add(spv::OpTypeBool, {yes});
-  add(spv::OpConstant, {whole, zero, 0});
-  add(spv::OpConstant, {whole, one, 1});
-  add(spv::OpConstant, {whole, two, 2});
-  add(spv::OpConstant, {bits, sign, 31});
-  add(spv::OpConstant, {real, minus, 0xbf800000});
-  add(spv::OpConstant, {real, three, 0x40400000});
-  add(spv::OpConstant, {real, nought, 0});
-  add(spv::OpConstant, {real, unity, 0x3f800000});
-  add(spv::OpTypeStruct, {push, bits4});
-  add(spv::OpTypePointer, {from_push, spv::StorageClassPushConstant, push});
-  add(spv::OpTypePointer, {member_push, spv::StorageClassPushConstant, bits4});
-  add(spv::OpVariable, {from_push, push_variable, spv::StorageClassPushConstant});
-  if (units > 0) {
-    add(spv::OpConstant, {bits, count, units});
-    for (std::uint32_t n = 0; n < units; ++n) add(spv::OpConstant, {bits, unit_numbers[n], n});
-    add(spv::OpTypeArray, {list, bits4, count});
-    add(spv::OpTypeStruct, {block, list});
-    add(spv::OpTypePointer, {from_block, spv::StorageClassUniform, block});
-    add(spv::OpTypePointer, {member_block, spv::StorageClassUniform, bits4});
-    add(spv::OpVariable, {from_block, block_variable, spv::StorageClassUniform});
-  }
-  add(spv::OpTypePointer, {in_index, spv::StorageClassInput, whole});
-  add(spv::OpTypePointer, {out_place, spv::StorageClassOutput, real4});
-  add(spv::OpTypePointer, {out_bits, spv::StorageClassOutput, bits4});
-  add(spv::OpVariable, {in_index, index, spv::StorageClassInput});
-  add(spv::OpVariable, {out_place, place, spv::StorageClassOutput});
-  for (std::uint32_t n = 0; n < locations; ++n) add(spv::OpVariable, {out_bits, output(n), spv::StorageClassOutput});
-
-  add(spv::OpFunction, {nothing, main, spv::FunctionControlMaskNone, function});
-  add(spv::OpLabel, {label});
-  add(spv::OpLoad, {whole, at, index});
-  add(spv::OpIEqual, {yes, is_two, at, two});
-  add(spv::OpSelect, {real, x, is_two, three, minus});
-  add(spv::OpIEqual, {yes, is_one, at, one});
-  add(spv::OpSelect, {real, y, is_one, three, minus});
-  add(spv::OpCompositeConstruct, {real4, corner, x, y, nought, unity});
-  add(spv::OpStore, {place, corner});
-  add(spv::OpShiftRightLogical, {bits, top, at, sign});
-  add(spv::OpCompositeConstruct, {bits4, four_tops, top, top, top, top});
-  for (std::uint32_t n = 0; n < locations; ++n) {
-    const std::uint32_t chain = bound++, read = bound++, handed = bound++;
-    if (n == 0)
-      add(spv::OpAccessChain, {member_push, chain, push_variable, zero});
-    else
-      add(spv::OpAccessChain, {member_block, chain, block_variable, zero, unit_numbers[n - 1]});
-    add(spv::OpLoad, {bits4, read, chain});
-    add(spv::OpBitwiseXor, {bits4, handed, read, four_tops});
-    add(spv::OpStore, {output(n), handed});
-  }
-  add(spv::OpReturn, {});
-  add(spv::OpFunctionEnd, {});
-  const Module module{{0x07230203, 0x00010300, 0, bound, 0}, std::move(code)};
-  return module.join();
-}
 
 }  // namespace
 
@@ -322,8 +223,8 @@ std::optional<FlatParameters> flat_parameters(const std::vector<std::uint32_t>& 
   auto module = parse(spirv);
   if (!module) return std::nullopt;
   Flattener flattener(*module);
-  if (!flattener.run() || flattener.locations() > most_locations) return std::nullopt;
-  return FlatParameters{module->join(), triangle_that_hands_on(flattener.locations())};
+  if (!flattener.run(most_locations)) return std::nullopt;
+  return FlatParameters{module->join(), triangle_that_hands_on(flattener.numbers(), flattener.locations())};
 }
 
 }  // namespace afterglow

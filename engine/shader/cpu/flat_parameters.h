@@ -6,4 +6,23 @@
 // is one.
 #pragma once
 
+#include <compare>
+#include <cstdint>
+#include <vector>
+
 #include "shader/kernel.h"
+
+namespace afterglow {
+
+/// A number of 32 bits that a kernel is given, by its place.
+struct GivenNumber {
+  bool in_block = false;     ///< in the uniform block, not in the push constants
+  std::uint32_t offset = 0;  ///< bytes
+  friend auto operator<=>(const GivenNumber&, const GivenNumber&) = default;
+};
+
+/// The full-screen triangle of gpu/fullscreen_vertex.h as SPIR-V, which also hands on these numbers, four a location.
+/// What is left of the locations is 0.
+std::vector<std::uint32_t> triangle_that_hands_on(const std::vector<GivenNumber>& numbers, std::uint32_t locations);
+
+}  // namespace afterglow

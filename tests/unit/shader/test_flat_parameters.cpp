@@ -9,6 +9,7 @@
 #include <spirv-tools/libspirv.hpp>
 
 #include "kernel_runner.h"
+#include "shader/spirv_module.h"
 #include "shader_files.h"
 
 namespace afterglow {
@@ -82,9 +83,28 @@ TEST(FlatParameters, EveryNumberArrivesAsItIs) {
     ASSERT_TRUE(modules);
     EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_1).Validate(modules->vertex));
     EXPECT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_1).Validate(modules->fragment));
-    EXPECT_FALSE(flat_parameters(flat.spirv, 4)) << "push constants and four times 16 bytes";
+    EXPECT_FALSE(flat_parameters(flat.spirv, 4)) << "16 numbers, and one that is always 0";
   }
   EXPECT_EQ(runner.validation_errors(), 0);
+}
+
+// lavapipe compiles a function, in each process anew, for each number of inputs.
+TEST(FlatParameters, FewAndManyOfThemComeInEquallyManyInputs) {
+  const auto locations = [](const CompiledKernel& kernel) {
+    const auto modules = flat_parameters(kernel.spirv, 31);
+    EXPECT_TRUE(modules);
+    std::size_t inputs = 0;
+    for (const auto& i : parse(modules->fragment)->code)
+      if (i.op == spv::OpDecorate && i.words[2] == spv::DecorationFlat) ++inputs;
+    return inputs;
+  };
+  const char* one = "uniform float a;\nvec4 sample_at(ivec2 pixel) { return vec4(a); }\n";
+  const char* ten = R"(uniform vec4 a; uniform vec4 unread; uniform vec3 b; uniform vec2 c; uniform float d;
+vec4 sample_at(ivec2 pixel) { return a + vec4(b, d) + vec4(c, c); }
+)";
+  EXPECT_EQ(locations(compiled(one, true)), 3u);
+  EXPECT_EQ(locations(compiled(ten, true)), 3u);
+  EXPECT_EQ(locations(compiled(kBits, true)), 8u);
 }
 
 TEST(FlatParameters, WithoutParametersNothingIsDone) {
