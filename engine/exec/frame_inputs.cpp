@@ -70,10 +70,9 @@ Result<std::map<std::string, ImageDesc>> FrameInputs::wanted_by(const Program& p
   return descs;
 }
 
-Result<bool> FrameInputs::prepare(const std::map<std::string, ImageDesc>& wanted) {
+Result<void> FrameInputs::prepare(const std::map<std::string, ImageDesc>& wanted) {
   std::erase_if(images_, [&](const auto& entry) { return !wanted.contains(entry.first); });
   std::erase_if(held_, [&](const auto& entry) { return !wanted.contains(entry.first); });
-  const int before = made_;
   for (const auto& [name, desc] : wanted) {
     FrameImage& image = images_[name];
     if (image.fits(desc)) continue;
@@ -82,7 +81,7 @@ Result<bool> FrameInputs::prepare(const std::map<std::string, ImageDesc>& wanted
     AFTERGLOW_TRY(image, FrameImage::create(*device_, desc, direct_ ? HostAccess::write : HostAccess::none));
     ++made_;
   }
-  return made_ > before;
+  return {};
 }
 
 Result<void> FrameInputs::upload(Staging& staging, const std::string& name, const HostImage& given, const Rect& part,
@@ -96,6 +95,12 @@ Result<void> FrameInputs::upload(Staging& staging, const std::string& name, cons
   known.content = given.content;
   if (look) known.found = SourceContent{brightest.value(storage), brightest.opaque()};
   return {};
+}
+
+std::vector<VkImageLayout> FrameInputs::layouts() const {
+  std::vector<VkImageLayout> out;
+  for (const auto& [name, image] : images_) out.push_back(image.layout);
+  return out;
 }
 
 Program::InputVersions FrameInputs::versions() const {

@@ -23,8 +23,8 @@ class FrameInputs {
   /// What this program reads of the given images. Errors: those of check_input.
   static Result<std::map<std::string, ImageDesc>> wanted_by(const Program& program,
                                                             const std::map<std::string, HostImage>& host);
-  /// Makes images for these inputs and no others; those that fit stay. True when one is new. Errors: device.
-  Result<bool> prepare(const std::map<std::string, ImageDesc>& wanted);
+  /// Makes images for these inputs and no others; those that fit stay. Errors: device.
+  Result<void> prepare(const std::map<std::string, ImageDesc>& wanted);
 
   /// Uploads one input, if it may hold other pixels in `part` than those it is given. `look`: find out what it
   /// shows, as stored so. Errors: device.
@@ -44,7 +44,8 @@ class FrameInputs {
   void after(VkCommandBuffer commands);
   /// New images are not, until `after` was recorded.
   bool readable() const;
-  int made() const { return made_; }  ///< images so far
+  std::vector<VkImageLayout> layouts() const;  ///< as commands that were recorded leave them
+  int made() const { return made_; }           ///< images so far
 
  private:
   struct Held {

@@ -17,20 +17,20 @@ ImageDesc FrameResult::wanted_by(const Program& program) {
           .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT};
 }
 
-Result<bool> FrameResult::take(const ImageDesc& desc, int rows) {
+Result<void> FrameResult::take(const ImageDesc& desc, int rows) {
   std::erase_if(others_, [&](const auto& other) { return !other.second.fits(desc, other.first); });
-  if (image_.fits(desc, rows)) return false;
+  if (image_.fits(desc, rows)) return {};
   const int has = std::max(image_.rows.rows(), 1);
   if (has != rows && image_.fits(desc, has)) {
     others_[has] = std::move(image_);
     image_ = std::move(others_[rows]);
     others_.erase(rows);
-    if (image_.fits(desc, rows)) return false;
+    if (image_.fits(desc, rows)) return {};
   }
   image_ = {};  // before the new one is made: the two need not exist at once
   AFTERGLOW_TRY(image_, FrameImage::create(*device_, desc, direct_ ? HostAccess::read : HostAccess::none, rows));
   ++made_;
-  return true;
+  return {};
 }
 
 std::vector<VkImage> FrameResult::images() const {

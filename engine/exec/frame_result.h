@@ -19,9 +19,8 @@ class FrameResult {
   FrameResult(Device& device, bool direct) : device_(&device), direct_(direct) {}
 
   static ImageDesc wanted_by(const Program& program);
-  /// The image for programs that write so many rows at a time; those for others stay. True when it is new. Errors:
-  /// device.
-  Result<bool> take(const ImageDesc& desc, int rows);
+  /// The image for programs that write so many rows at a time; those for others stay. Errors: device.
+  Result<void> take(const ImageDesc& desc, int rows);
   const FrameImage& image() const { return image_; }
   /// Id of the program whose last run the image holds; 0: none.
   std::uint64_t writer() const { return image_.writer; }

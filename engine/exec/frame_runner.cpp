@@ -9,50 +9,28 @@
 
 #include "core/stopwatch.h"
 #include "exec/convert.h"
-#include "exec/frame_inputs.h"
-#include "exec/frame_result.h"
+#include "exec/frame_images.h"
 #include "exec/host_input.h"
 #include "exec/kernel_timer.h"
-#include "exec/staging.h"
 #include "exec/submit.h"
 #include "gpu/error.h"
 
 namespace afterglow {
 
-namespace {
-
-std::uint64_t image_bytes(const ImageDesc& desc) {
-  return static_cast<std::uint64_t>(desc.size.area()) * bytes_per_pixel(desc.format);
-}
-
-}  // namespace
-
 struct FrameRunner::State {
-  State(Device& device_in, std::uint64_t max_memory_in, bool direct_in, bool ahead_in)
-      : device(device_in),
-        max_memory(max_memory_in),
-        direct(direct_in),
-        ahead(ahead_in),
-        inputs(device_in, direct_in),
-        result(device_in, direct_in),
-        staging(device_in, ahead_in),
-        timer(device_in) {}
+  State(Device& device_in, const FrameImages::Options& options)
+      : device(device_in), images(device_in, options), timer(device_in) {}
 
   Device& device;
-  std::uint64_t max_memory;
-  bool direct;
-  bool ahead;  ///< staging is whole
-  FrameInputs inputs;
-  FrameResult result;
+  FrameImages images;
   bool flags = false;         ///< the last run's result tells of what is not finite
   std::optional<Rect> shown;  ///< the part of the result that the last run made; none: the result is the source
-  Staging staging;
   KernelTimer timer;
   /// What the command buffer holds and what it needs to be so again.
   struct Recorded {
     std::uint64_t program = 0;
     std::vector<bool> run;
-    std::vector<VkImage> images;
+    FrameImages::Handles images;
     std::vector<VkImageLayout> layouts;  ///< of the inputs, before and after
     int bindings = 0;
     friend bool operator==(const Recorded&, const Recorded&) = default;
@@ -62,7 +40,7 @@ struct FrameRunner::State {
   /// What a program is bound to: the images, and its own count then.
   struct Bound {
     std::uint64_t program = 0;
-    std::vector<VkImage> images;
+    FrameImages::Handles images;
     int bindings = 0;
     friend bool operator==(const Bound&, const Bound&) = default;
   };
@@ -81,12 +59,6 @@ struct FrameRunner::State {
   bool warming_up = false;  ///< what `warm_up` submitted has not been waited for
   Submitter submitter;      // last: it waits before the images go
 
-  Result<void> check_memory(const std::map<std::string, ImageDesc>& descs, std::uint64_t other_bytes) const;
-  Result<void> prepare_inputs(const std::map<std::string, ImageDesc>& descs);
-  Result<void> take_result(const Program& program);
-  Result<void> prepare(const Program& program, const std::map<std::string, HostImage>& host);
-  Result<void> upload(const Program& program, const std::map<std::string, HostImage>& host, bool look);
-  Result<void> bring_source(const std::map<std::string, HostImage>& host, FrameTimes& times);
   Result<void> leave_readable();
   Result<void> begin(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
                      const Choose& choose);
@@ -96,94 +68,23 @@ struct FrameRunner::State {
   Result<void> time_separately(Program& program, const std::vector<bool>& run);
   Result<void> wait();
   Result<FrameTimes> end();
-  std::vector<VkImageLayout> input_layouts() const;
 };
 
 FrameRunner::FrameRunner(std::unique_ptr<State> state) : state_(std::move(state)) {}
 FrameRunner::~FrameRunner() = default;
 
 Result<std::unique_ptr<FrameRunner>> FrameRunner::create(Device& device, const Options& options) {
-  auto state = std::make_unique<State>(device, options.max_memory, options.direct && device.maps_images(),
-                                       options.whole_staging);
+  auto state = std::make_unique<State>(
+      device, FrameImages::Options{options.max_memory, options.direct && device.maps_images(), options.whole_staging});
   AFTERGLOW_TRY(state->submitter, Submitter::create(device));
   return std::unique_ptr<FrameRunner>(new FrameRunner(std::move(state)));
 }
 
-Result<void> FrameRunner::State::check_memory(const std::map<std::string, ImageDesc>& descs,
-                                              std::uint64_t other_bytes) const {
-  std::uint64_t total = other_bytes;
-  for (const auto& [name, desc] : descs) total += image_bytes(desc);
-  if (total <= max_memory) return {};
-  return Error{ErrorKind::io,
-               fmt::format("the frame needs {} of device memory, more than the {} allowed (--max-memory)",
-                           bytes_text(total), bytes_text(max_memory))};
-}
-
-Result<void> FrameRunner::State::prepare_inputs(const std::map<std::string, ImageDesc>& descs) {
-  AFTERGLOW_TRY(const bool fresh, inputs.prepare(descs));
-  if (fresh) recorded = {}, bound.reset();  // a new image may have the handle of one that is gone
-  return {};
-}
-
-Result<void> FrameRunner::State::take_result(const Program& program) {
-  AFTERGLOW_TRY(const bool fresh, result.take(FrameResult::wanted_by(program), program.result_rows()));
-  if (fresh) recorded = {}, bound.reset();
-  return {};
-}
-
-/// Images for this program and these inputs; those that are there and fit stay.
-Result<void> FrameRunner::State::prepare(const Program& program, const std::map<std::string, HostImage>& host) {
-  AFTERGLOW_TRY(const auto descs, FrameInputs::wanted_by(program, host));
-  const ImageDesc result_desc = FrameResult::wanted_by(program);
-  std::uint64_t bytes = program.memory().arena + program.memory().histories + image_bytes(result_desc);
-  if (!direct) bytes += 2 * staging.bytes({VK_NULL_HANDLE, result_desc.format, result_desc.size});
-  AFTERGLOW_CHECK(check_memory(descs, bytes));
-  AFTERGLOW_CHECK(prepare_inputs(descs));
-  return take_result(program);
-}
-
-/// Every input that may hold other pixels than those it is given. `look`: find out how bright the source is.
-Result<void> FrameRunner::State::upload(const Program& program, const std::map<std::string, HostImage>& host,
-                                        bool look) {
-  const bool half = program.storage_format() == VK_FORMAT_R16G16B16A16_SFLOAT;
-  staging.begin_uploads();
-  for (const auto& [name, id] : inputs_of(program.graph()))
-    AFTERGLOW_CHECK(inputs.upload(staging, name, host.at(name), program.parts().images[id], look && name == "source",
-                                  half ? Storage::fp16 : Storage::fp32));
-  return {};
-}
-
-/// The source alone, for frames without a program.
-Result<void> FrameRunner::State::bring_source(const std::map<std::string, HostImage>& host, FrameTimes& times) {
-  const auto source = host.find("source");
-  if (source == host.end() || !source->second.pixels) return Error{ErrorKind::other, "the frame has no image 'source'"};
-  const HostImage& given = source->second;
-  const std::map<std::string, ImageDesc> descs{{"source",
-                                                {.name = "source",
-                                                 .size = given.size,
-                                                 .format = VK_FORMAT_R32G32B32A32_SFLOAT,
-                                                 .usage = VK_IMAGE_USAGE_SAMPLED_BIT}}};
-  AFTERGLOW_CHECK(check_memory(descs, 0));
-  AFTERGLOW_CHECK(prepare_inputs(descs));
-  const auto start = Clock::now();
-  const Rect all{0, 0, given.size.width, given.size.height};
-  staging.begin_uploads();
-  AFTERGLOW_CHECK(inputs.upload(staging, "source", given, all, false, Storage::fp32));
-  times.upload = milliseconds_since(start);
-  return {};
-}
-
 /// What is otherwise done after the kernels, when none has run.
 Result<void> FrameRunner::State::leave_readable() {
-  if (inputs.readable()) return {};
-  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) { inputs.after(commands); }, kOneOff));
+  if (images.inputs.readable()) return {};
+  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) { images.inputs.after(commands); }, kOneOff));
   return submitter.wait();
-}
-
-std::vector<VkImageLayout> FrameRunner::State::input_layouts() const {
-  std::vector<VkImageLayout> layouts;
-  for (const auto& [name, image] : inputs.images()) layouts.push_back(image.layout);
-  return layouts;
 }
 
 /// Submits; with `timing` it also waits.
@@ -198,10 +99,9 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
 
   Recorded wanted{.program = program.id(),
                   .run = run,
-                  .images = result.images(),
-                  .layouts = input_layouts(),
+                  .images = images.handles(),
+                  .layouts = images.inputs.layouts(),
                   .bindings = program.bindings()};
-  for (const auto& [name, image] : inputs.images()) wanted.images.push_back(image.image.get());
   const bool unlike = program.recording() == Program::kUnlikeOthers;
   const int which = unlike ? kOneOff : program.recording();
   std::optional<Recorded> none;
@@ -209,7 +109,7 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
   const bool known = timing == KernelTiming::none && last == wanted;
   if (!known) {
     if (bound != Bound{program.id(), wanted.images, program.bindings()})
-      AFTERGLOW_CHECK(program.bind(inputs.bindings(), binding_of(result.image())));
+      AFTERGLOW_CHECK(program.bind(images.inputs.bindings(), binding_of(images.result.image())));
     bound = {program.id(), wanted.images, program.bindings()};
     wanted.bindings = program.bindings();
   }
@@ -218,17 +118,17 @@ Result<void> FrameRunner::State::execute(Program& program, const std::vector<boo
   auto submitted = known ? submitter.submit_again(which)
                          : submitter.submit(
                                [&](VkCommandBuffer commands) {
-                                 inputs.before(program, commands);
-                                 result.before(commands);
+                                 images.inputs.before(program, commands);
+                                 images.result.before(commands);
                                  program.record(commands, queries, run);
                                  if (separate) return;
-                                 inputs.after(commands);
-                                 result.after(commands);
+                                 images.inputs.after(commands);
+                                 images.result.after(commands);
                                },
                                which);
   if (!submitted) return KernelTimer::blame(std::move(submitted).error(), program.plan());
   // Layouts are where they were when the frame ends as it began.
-  if (timing == KernelTiming::none && input_layouts() == wanted.layouts) last = std::move(wanted);
+  if (timing == KernelTiming::none && images.inputs.layouts() == wanted.layouts) last = std::move(wanted);
   if (timing == KernelTiming::none) return {};
   AFTERGLOW_CHECK(wait());
   if (stamps) {
@@ -254,8 +154,8 @@ Result<void> FrameRunner::State::time_separately(Program& program, const std::ve
     begun->times.kernels.push_back({kernels[i].name, milliseconds_since(begin)});
   }
   AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) {
-    inputs.after(commands);
-    result.after(commands);
+    images.inputs.after(commands);
+    images.result.after(commands);
   }));
   return submitter.wait();
 }
@@ -269,7 +169,7 @@ Result<void> FrameRunner::State::wait() {
   begun->times.execute += milliseconds_since(since);
   auto ended = done && begun->running ? begun->running->check_loops(begun->runaways) : Result<void>();
   if (done && ended) return {};
-  result.set_writer(0);
+  images.result.set_writer(0);
   if (!ended) return ended;
   recorded = {};
   return KernelTimer::blame(std::move(done).error(), begun->plan);
@@ -281,29 +181,29 @@ Result<void> FrameRunner::State::start(Program& program, const std::map<std::str
   const auto warming = Clock::now();
   AFTERGLOW_CHECK(wait());
   begun->times.execute = milliseconds_since(warming);
-  AFTERGLOW_CHECK(prepare(program, host));
+  AFTERGLOW_CHECK(images.prepare(program, host));
   begun->source = host.at("source");
   const auto began = Clock::now();
-  AFTERGLOW_CHECK(upload(program, host, choose.look));
+  AFTERGLOW_CHECK(images.upload(program, host, choose.look));
   begun->times.upload = milliseconds_since(began);
 
   Program* chosen = &program;
   if (choose.program) {
-    AFTERGLOW_TRY(chosen, choose.program(choose.look ? inputs.found("source") : SourceContent{}));
+    AFTERGLOW_TRY(chosen, choose.program(choose.look ? images.inputs.found("source") : SourceContent{}));
   }
   if (!chosen) return {};
-  if (chosen != &program) AFTERGLOW_CHECK(take_result(*chosen));
-  const std::vector<bool> run = chosen->begin_run(inputs.versions(), result.writer() != chosen->id());
+  if (chosen != &program) AFTERGLOW_CHECK(images.take_result(*chosen));
+  const std::vector<bool> run = chosen->begin_run(images.inputs.versions(), images.result.writer() != chosen->id());
   begun->times.kernels_run = static_cast<int>(std::ranges::count(run, true));
   begun->times.kernels_kept = static_cast<int>(run.size()) - begun->times.kernels_run;
   if (begun->times.kernels_run > 0) {
-    result.set_writer(0);
+    images.result.set_writer(0);
     begun->plan = chosen->plan();
     begun->running = chosen;
     begun->runaways = chosen->runaways();
     AFTERGLOW_CHECK(execute(*chosen, run, timing));
     chosen->up_to_date();
-    result.set_writer(chosen->id());
+    images.result.set_writer(chosen->id());
   }
   begun->ran = chosen;
   return {};
@@ -316,7 +216,7 @@ Result<void> FrameRunner::State::begin(Program& program, const std::map<std::str
   auto started = start(program, host, timing, choose);
   if (!started) {
     (void)submitter.wait();  // nothing may be on its way between images that are made anew
-    (void)staging.wait();
+    (void)images.staging.wait();
     begun.reset();
     return started;
   }
@@ -337,24 +237,24 @@ Result<void> FrameRunner::begin(Program& program, const std::map<std::string, Ho
                                 const Choose& choose) {
   State& s = *state_;
   AFTERGLOW_CHECK(s.begin(program, inputs, timing, choose));
-  return s.ahead && s.begun->ran ? s.result.begin_download(s.staging, *s.shown) : Result<void>();
+  return s.images.ahead() && s.begun->ran ? s.images.result.begin_download(s.images.staging, *s.shown) : Result<void>();
 }
 
 Result<void> FrameRunner::warm_up(Program& program, bool backwards) {
   State& s = *state_;
   AFTERGLOW_CHECK(s.wait());
   if (program.plan().kernels.empty()) return {};
-  AFTERGLOW_CHECK(s.prepare(program, usual_inputs(program.graph())));
+  AFTERGLOW_CHECK(s.images.prepare(program, usual_inputs(program.graph())));
   s.bound.reset();
-  s.result.set_writer(0);
-  AFTERGLOW_CHECK(program.bind(s.inputs.bindings(), binding_of(s.result.image())));
+  s.images.result.set_writer(0);
+  AFTERGLOW_CHECK(program.bind(s.images.inputs.bindings(), binding_of(s.images.result.image())));
   AFTERGLOW_CHECK(s.submitter.submit(
       [&](VkCommandBuffer commands) {
-        s.inputs.before(program, commands);
-        s.result.before(commands);
+        s.images.inputs.before(program, commands);
+        s.images.result.before(commands);
         program.record_a_pixel_each(commands, backwards);
-        s.inputs.after(commands);
-        s.result.after(commands);
+        s.images.inputs.after(commands);
+        s.images.result.after(commands);
       },
       State::kOneOff));
   s.warming_up = true;
@@ -362,7 +262,7 @@ Result<void> FrameRunner::warm_up(Program& program, bool backwards) {
 }
 
 Result<void> FrameRunner::wait() { return state_->wait(); }
-void FrameRunner::forget_result() { state_->result.set_writer(0); }
+void FrameRunner::forget_result() { state_->images.result.set_writer(0); }
 
 Result<FrameTimes> FrameRunner::finish(HostResult& out) {
   State& s = *state_;
@@ -372,14 +272,14 @@ Result<FrameTimes> FrameRunner::finish(HostResult& out) {
   Program* const ran = s.begun->ran;
   const HostImage source = s.begun->source;
   AFTERGLOW_TRY(FrameTimes times, s.end());
-  out.clamped = s.inputs.clamped();
+  out.clamped = s.images.inputs.clamped();
   if (!ran) {
     s.begun.reset();
     copy_source(source, out);
     return times;
   }
   const auto start = Clock::now();
-  AFTERGLOW_TRY(const std::uint64_t held, s.result.download(s.staging, *s.shown, out, s.flags));
+  AFTERGLOW_TRY(const std::uint64_t held, s.images.result.download(s.images.staging, *s.shown, out, s.flags));
   s.begun.reset();
   out.clamped += held;
   times.readback = milliseconds_since(start);
@@ -412,7 +312,7 @@ Result<FrameTimes> FrameRunner::run_on_device(Program* program, const std::map<s
     AFTERGLOW_TRY(times, s.end());
   } else {
     s.shown.reset();
-    AFTERGLOW_CHECK(s.bring_source(inputs, times));
+    AFTERGLOW_TRY(times.upload, s.images.bring_source(inputs));
   }
   s.begun.reset();
   if (!ran) AFTERGLOW_CHECK(s.leave_readable());
@@ -421,8 +321,8 @@ Result<FrameTimes> FrameRunner::run_on_device(Program* program, const std::map<s
 
 Result<std::optional<double>> FrameRunner::time_kernel(Program& program, std::size_t kernel) {
   State& s = *state_;
-  if (s.result.writer() != program.id() || !s.bound || s.bound->program != program.id() ||
-      kernel >= program.plan().kernels.size())
+  const State::Bound bound{program.id(), s.images.handles(), program.bindings()};
+  if (s.images.result.writer() != program.id() || s.bound != bound || kernel >= program.plan().kernels.size())
     return std::optional<double>();
   const bool makes_result = program.plan().kernels[kernel].output == program.graph().result;
   const bool stamps = s.device.timestamps_mean_draws();
@@ -433,11 +333,11 @@ Result<std::optional<double>> FrameRunner::time_kernel(Program& program, std::si
   const auto start = Clock::now();
   AFTERGLOW_CHECK(s.submitter.submit(
       [&](VkCommandBuffer commands) {
-        s.inputs.before(program, commands);
-        if (makes_result) s.result.before(commands);
+        s.images.inputs.before(program, commands);
+        if (makes_result) s.images.result.before(commands);
         program.record_again(commands, kernel, queries);
-        s.inputs.after(commands);
-        if (makes_result) s.result.after(commands);
+        s.images.inputs.after(commands);
+        if (makes_result) s.images.result.after(commands);
       },
       State::kOneOff));
   AFTERGLOW_CHECK(s.submitter.wait());
@@ -446,25 +346,12 @@ Result<std::optional<double>> FrameRunner::time_kernel(Program& program, std::si
   return std::optional<double>(between);
 }
 
-DeviceImages FrameRunner::images() const {
-  const auto image = [](const FrameImage& from) {
-    DeviceImage out{.binding = binding_of(from), .layout = from.layout};
-    if (!from.direct) return out;
-    out.pixels = from.image.row(0);
-    out.row_pitch = from.image.row_pitch();
-    return out;
-  };
-  DeviceImages out;
-  if (const auto source = state_->inputs.images().find("source"); source != state_->inputs.images().end())
-    out.source = image(source->second);
-  out.ran = state_->shown.has_value();
-  out.result = out.ran ? image(state_->result.image()) : out.source;
-  return out;
-}
+DeviceImages FrameRunner::images() const { return state_->images.on_device(state_->shown.has_value()); }
 
 Result<void> FrameRunner::read_result(HostResult& out, const std::optional<Rect>& part) {
   if (!state_->shown) return Error{ErrorKind::other, "no frame was run, there is no result to read"};
-  AFTERGLOW_TRY(out.clamped, state_->result.download(state_->staging, part.value_or(*state_->shown), out));
+  AFTERGLOW_TRY(out.clamped,
+                state_->images.result.download(state_->images.staging, part.value_or(*state_->shown), out));
   return {};
 }
 
@@ -483,14 +370,14 @@ Result<HostResult> FrameRunner::read_image(Program& program, ImageId image) {
     return unpack_row(from, found->binding.format, w, out.pixels.data() + static_cast<std::ptrdiff_t>(y) * w * 4);
   };
   AFTERGLOW_TRY(out.clamped,
-                state_->staging.download({found->binding.image, found->binding.format, found->binding.size},
-                                         found->layout, unpack));
+                state_->images.staging.download({found->binding.image, found->binding.format, found->binding.size},
+                                                found->layout, unpack));
   return out;
 }
 
 FrameRunner::Counters FrameRunner::counters() const {
-  return {.images = state_->inputs.made() + state_->result.made(),
-          .buffers = state_->staging.buffers() + state_->timer.pools(),
+  return {.images = state_->images.made(),
+          .buffers = state_->images.staging.buffers() + state_->timer.pools(),
           .recordings = state_->submitter.recordings()};
 }
 
