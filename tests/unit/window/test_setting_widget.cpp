@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Settings as widgets: what is typed, where sliders go, codes of colours.
+#include <gtest/gtest.h>
+
+#include "window/setting_widget.h"
+
+namespace afterglow::test {
+namespace {
+
+TEST(TypedValue, TakesAsManyNumbersAsTheTypeHas) {
+  SettingSchema schema;
+  schema.type = SettingType::vec3;
+  EXPECT_EQ(parse_typed(schema, "1, 2.5 -3e-2")->number, (std::array<double, 3>{1, 2.5, -0.03}));
+  EXPECT_EQ(parse_typed(schema, "0.5")->number, (std::array<double, 3>{0.5, 0.5, 0.5}));
+  EXPECT_FALSE(parse_typed(schema, "1 2"));
+  EXPECT_FALSE(parse_typed(schema, "1 2 x"));
+  EXPECT_FALSE(parse_typed(schema, "1 2 nan"));
+  schema.type = SettingType::integer;
+  schema.max = 7;
+  EXPECT_EQ(parse_typed(schema, "99")->number[0], 7);
+  EXPECT_EQ(parse_typed(schema, "2.6")->number[0], 3);
+  EXPECT_FALSE(parse_typed(schema, ""));
+}
+
+TEST(SettingWidget, SlidersByFactorsWhereTheRangeIsWide) {
+  SettingSchema schema;
+  EXPECT_FALSE(is_logarithmic(schema));
+  schema.min = 0;
+  schema.max = 1;
+  EXPECT_FALSE(is_logarithmic(schema));
+  schema.max = 1000;
+  EXPECT_TRUE(is_logarithmic(schema));
+  schema.min = -1000;
+  EXPECT_FALSE(is_logarithmic(schema));
+}
+
+TEST(SettingWidget, ColourCodesAreThoseOfSrgb) {
+  EXPECT_NEAR(encode_color(0.21586050011389926), 128 / 255.0, 1e-9);
+  for (const double value : {0.0, 0.001, 0.18, 1.0, 4.0}) EXPECT_NEAR(decode_color(encode_color(value)), value, 1e-6);
+}
+
+}  // namespace
+}  // namespace afterglow::test
