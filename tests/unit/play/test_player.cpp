@@ -1,102 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Playing without a window, on a device: a fake clock, real files.
+// A player shows frames as the clock says, those that come late and those that cannot be read, and what is in them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-
-#include "core/file.h"
-#include "image/writer.h"
-#include "play/player.h"
+#include "player_test.h"
 
 namespace afterglow {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-
-constexpr Size kSize{16, 9};
-
-class PlayerTest : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    Diagnostics none;
-    device_ = Device::create({.device = "auto", .validate = true}, none).value();
-  }
-  static void TearDownTestSuite() { device_.reset(); }
-
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("afterglow-player-" + std::to_string(::getpid()) + "-" +
-                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-    write_look("look.lua", 1);
-  }
-  void TearDown() override {
-    player_.reset();
-    fs::remove_all(folder_);
-    EXPECT_EQ(device_->validation_errors(), 0u)
-        << (device_->validation_errors() ? device_->validation_messages().front() : "");
-  }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  void write(const std::string& name, const std::string& text) {
-    ASSERT_TRUE(write_file_atomically(path(name), text).ok());
-  }
-  /// A look that doubles light `stops` times.
-  void write_look(const std::string& name, double stops) {
-    write(name,
-          "local fx = require \"afterglow\"\nreturn fx.stack {\n  name = \"Look\",\n  fx.color_adjustments { "
-          "post_exposure = " +
-              std::to_string(stops) + " },\n}\n");
-  }
-  void write_picture_of(int number, float value) {
-    Picture picture;
-    picture.color = Image(kSize.width, kSize.height, 4);
-    for (std::size_t i = 0; i < picture.color.pixels.size(); ++i) picture.color.pixels[i] = i % 4 == 3 ? 1.0f : value;
-    picture.data_window = picture.display_window = {0, 0, kSize.width, kSize.height};
-    Diagnostics none;
-    ASSERT_TRUE(
-        write_picture(picture, path("s." + std::to_string(number) + ".exr"), {.type = SampleType::float32}, none));
-  }
-  /// Frames 1…count with the values 1/8, 2/8, …
-  void write_sequence(int count) {
-    for (int i = 1; i <= count; ++i) write_picture_of(i, static_cast<float>(i) / 8);
-  }
-  Player& open(PlayerOptions options = {}) {
-    if (options.preset.empty()) options.preset = path("look.lua");
-    if (options.footage.inputs.empty()) options.footage.inputs = {path("s.#.exr")};
-    options.live.follow = follow_;
-    options.clock = [this] { return seconds_; };
-    if (!options.fps) options.fps = 10;
-    auto opened = Player::open(*device_, options, diagnostics_);
-    if (!opened) ADD_FAILURE() << opened.error().text();
-    player_ = std::move(opened).value();
-    return *player_;
-  }
-  /// Everything that is under way comes in, then one turn.
-  Step turn() {
-    player_->settle();
-    auto step = player_->step();
-    if (!step) ADD_FAILURE() << step.error().text();
-    return step.value();
-  }
-  Step reload() {
-    player_->live().reload();
-    return turn();
-  }
-  float result() { return player_->probe({3, 2}).value()->result[0]; }
-  float source() { return player_->probe({3, 2}).value()->source[0]; }
-
-  static inline std::unique_ptr<Device> device_;
-  bool follow_ = false;  ///< else edits are told of by `reload`: then nothing waits for the system's watching
-  double seconds_ = 100;
-  Diagnostics diagnostics_;
-  fs::path folder_;
-  std::unique_ptr<Player> player_;
-};
 
 TEST_F(PlayerTest, PlaysByTheClockAndRunsEachFrame) {
   write_sequence(3);
@@ -172,94 +84,6 @@ TEST_F(PlayerTest, EffectsThatLookBackGoOnOverDroppedFrames) {
   player.transport().go_to(1, seconds_);
   turn();
   EXPECT_FLOAT_EQ(result(), 1) << "a jump begins anew";
-}
-
-TEST_F(PlayerTest, AnEditOnDiskKeepsPositionZoomAndOverrides) {
-  write_sequence(6);
-  Player& player = open();
-  turn();
-  player.transport().play(seconds_);
-  player.view().fit = false;
-  player.view().zoom = 3;
-  player.set("color_adjustments", "color_filter", {SettingType::color, {0.5, 1, 1}, ""});
-  seconds_ += 0.2;
-  turn();
-  EXPECT_EQ(player.shown().number, 3);
-  EXPECT_FLOAT_EQ(result(), 3.0f / 8 * 2 * 0.5f) << "the panel's filter, the preset's exposure";
-  write_look("look.lua", 3);
-  const Step step = reload();
-  EXPECT_TRUE(step.reloaded);
-  EXPECT_TRUE(step.changed);
-  EXPECT_EQ(player.shown().number, 3);
-  EXPECT_TRUE(player.transport().playing());
-  EXPECT_EQ(player.view().zoom, 3);
-  EXPECT_FLOAT_EQ(result(), 3.0f / 8 * 8 * 0.5f);
-  ASSERT_TRUE(player.undo());
-  turn();
-  EXPECT_FLOAT_EQ(result(), 3.0f / 8 * 8);
-}
-
-TEST_F(PlayerTest, ArgumentsAndCompositionAreChangedWhilePlaying) {
-  write_sequence(2);
-  const auto look = [&](const std::string& arguments) {
-    write("look.lua", "local fx = require \"afterglow\"\nlocal args = fx.args { " + arguments +
-                          " }\nreturn fx.stack { fx.color_adjustments { post_exposure = args.stops or 0 } }\n");
-  };
-  look("stops = fx.float { min = 0, max = 4, default = 1 }");
-  PlayerOptions options;
-  options.live.stack.preset.arguments = {{"stops", "2"}};
-  Player& player = open(options);
-  turn();
-  EXPECT_FLOAT_EQ(result(), 4.0f / 8);
-  player.set("", "stops", {SettingType::number, {3}, ""});
-  turn();
-  EXPECT_FLOAT_EQ(result(), 8.0f / 8);
-  player.set("color_adjustments", "opacity", {SettingType::number, {0.5}, ""});
-  turn();
-  EXPECT_FLOAT_EQ(result(), 4.5f / 8);
-  ASSERT_TRUE(player.undo());
-  ASSERT_TRUE(player.undo());
-  turn();
-  EXPECT_FLOAT_EQ(result(), 4.0f / 8) << "the command line's again";
-  // A look that does not declare it any more plays on.
-  ASSERT_TRUE(player.redo());
-  look("stops = fx.float { min = 0, max = 1, default = 0 }");
-  reload();
-  EXPECT_FLOAT_EQ(result(), 1.0f / 8);
-  EXPECT_THAT(player.live().status().warnings, ::testing::Contains(HasSubstr("--arg stops = 3 is out of range")));
-}
-
-TEST_F(PlayerTest, AnErrorKeepsTheLastPictureUntilTheNextGoodSave) {
-  write_sequence(2);
-  Player& player = open();
-  turn();
-  const float before = result();
-  write("look.lua", "return fx.nonsense {\n");
-  reload();
-  ASSERT_TRUE(player.live().status().error);
-  EXPECT_THAT(player.live().status().error->text(), HasSubstr("look.lua:"));
-  EXPECT_EQ(result(), before);
-  player.transport().play(seconds_);
-  seconds_ += 0.1;
-  EXPECT_TRUE(turn().changed) << "playing goes on with the last good stack";
-  EXPECT_FLOAT_EQ(result(), 0.5f);
-  write_look("look.lua", 0);
-  reload();
-  EXPECT_FALSE(player.live().status().error);
-  EXPECT_FLOAT_EQ(result(), 0.25f);
-}
-
-TEST_F(PlayerTest, APresetThatComesLaterShowsTheSourceUntilThen) {
-  write_sequence(1);
-  PlayerOptions options;
-  options.preset = path("later.lua");
-  Player& player = open(options);
-  turn();
-  EXPECT_TRUE(player.live().status().error);
-  EXPECT_FLOAT_EQ(result(), 0.125f);
-  write_look("later.lua", 2);
-  reload();
-  EXPECT_FLOAT_EQ(result(), 0.5f);
 }
 
 TEST_F(PlayerTest, HeldFramesAreNotRunAgain) {
@@ -350,23 +174,6 @@ TEST_F(PlayerTest, FramesThatAreStillRenderedAreShownAsTheyCome) {
   EXPECT_FLOAT_EQ(source(), 0.75f);
 }
 
-TEST_F(PlayerTest, ComparesTwoPresets) {
-  write_sequence(2);
-  write_look("other.lua", 2);
-  PlayerOptions options;
-  options.other_preset = path("other.lua");
-  Player& player = open(options);
-  turn();
-  EXPECT_FALSE(player.images().other) << "not run until it is looked at";
-  player.view().compare = Compare::other;
-  EXPECT_TRUE(turn().changed);
-  ASSERT_TRUE(player.images().other);
-  const auto probe = player.probe({0, 0}).value();
-  EXPECT_FLOAT_EQ(probe->result[0], 0.25f);
-  EXPECT_FLOAT_EQ((*probe->other)[0], 0.5f);
-  EXPECT_EQ(player.scopes({}, Player::Of::other).value().most[0], 0.5f);
-}
-
 TEST_F(PlayerTest, ShowsImagesBetweenPasses) {
   write_sequence(1);
   Player& player = open();
@@ -399,25 +206,6 @@ TEST_F(PlayerTest, LooksAtValues) {
   EXPECT_FALSE(means->other);
   EXPECT_FALSE(player.means({kSize.width, 0, 4, 4}).value()) << "beside the picture";
   EXPECT_FLOAT_EQ(player.screenshot().value().color.pixels[0], 0.25f);
-}
-
-TEST_F(PlayerTest, EditsAreMeasuredFromNoticeToPresent) {
-  write_sequence(1);
-  Player& player = open();
-  turn();
-  EXPECT_TRUE(player.stats().latencies.empty() || player.stats().latencies.size() == 1);
-  const auto before = player.stats().latencies.size();
-  write_look("look.lua", 2);
-  reload();
-  seconds_ += 0.007;
-  player.presented();
-  const auto latencies = player.stats().latencies;
-  ASSERT_EQ(latencies.size(), before + 1);
-  EXPECT_EQ(latencies.back().build.kind, BuildTimes::Kind::values);
-  EXPECT_NEAR(latencies.back().present, 7, 1e-6);
-  EXPECT_GT(latencies.back().execute, 0);
-  player.presented();
-  EXPECT_NEAR(player.stats().latencies.back().present, 7, 1e-6) << "once";
 }
 
 /// A look with one pass more in every second frame.
@@ -540,22 +328,6 @@ TEST_F(PlayerTest, ProxiesHaveFourSizes) {
     ASSERT_FALSE(parsed) << wrong;
     EXPECT_THAT(parsed.error().text(), HasSubstr("1, 1/2, 1/4, 1/8"));
   }
-}
-
-TEST_F(PlayerTest, PlaysSomethingElse) {
-  write_sequence(2);
-  Player& player = open();
-  turn();
-  EXPECT_FALSE(player.open_footage({path("none.#.exr")}));
-  EXPECT_EQ(player.footage().frames(), 2);
-  ASSERT_TRUE(player.open_footage({path("s.2.exr")}));
-  turn();
-  EXPECT_EQ(player.shown().name, "s.2.exr");
-  EXPECT_FLOAT_EQ(result(), 0.5f);
-  write_look("new.lua", 0);
-  ASSERT_TRUE(player.open_preset(path("new.lua")));
-  turn();
-  EXPECT_FLOAT_EQ(result(), 0.25f);
 }
 
 }  // namespace

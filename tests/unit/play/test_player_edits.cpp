@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// A player follows what is edited: files, arguments, stacks, another look, another sequence.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "player_test.h"
+
+namespace afterglow {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST_F(PlayerTest, AnEditOnDiskKeepsPositionZoomAndOverrides) {
+  write_sequence(6);
+  Player& player = open();
+  turn();
+  player.transport().play(seconds_);
+  player.view().fit = false;
+  player.view().zoom = 3;
+  player.set("color_adjustments", "color_filter", {SettingType::color, {0.5, 1, 1}, ""});
+  seconds_ += 0.2;
+  turn();
+  EXPECT_EQ(player.shown().number, 3);
+  EXPECT_FLOAT_EQ(result(), 3.0f / 8 * 2 * 0.5f) << "the panel's filter, the preset's exposure";
+  write_look("look.lua", 3);
+  const Step step = reload();
+  EXPECT_TRUE(step.reloaded);
+  EXPECT_TRUE(step.changed);
+  EXPECT_EQ(player.shown().number, 3);
+  EXPECT_TRUE(player.transport().playing());
+  EXPECT_EQ(player.view().zoom, 3);
+  EXPECT_FLOAT_EQ(result(), 3.0f / 8 * 8 * 0.5f);
+  ASSERT_TRUE(player.undo());
+  turn();
+  EXPECT_FLOAT_EQ(result(), 3.0f / 8 * 8);
+}
+
+TEST_F(PlayerTest, ArgumentsAndCompositionAreChangedWhilePlaying) {
+  write_sequence(2);
+  const auto look = [&](const std::string& arguments) {
+    write("look.lua", "local fx = require \"afterglow\"\nlocal args = fx.args { " + arguments +
+                          " }\nreturn fx.stack { fx.color_adjustments { post_exposure = args.stops or 0 } }\n");
+  };
+  look("stops = fx.float { min = 0, max = 4, default = 1 }");
+  PlayerOptions options;
+  options.live.stack.preset.arguments = {{"stops", "2"}};
+  Player& player = open(options);
+  turn();
+  EXPECT_FLOAT_EQ(result(), 4.0f / 8);
+  player.set("", "stops", {SettingType::number, {3}, ""});
+  turn();
+  EXPECT_FLOAT_EQ(result(), 8.0f / 8);
+  player.set("color_adjustments", "opacity", {SettingType::number, {0.5}, ""});
+  turn();
+  EXPECT_FLOAT_EQ(result(), 4.5f / 8);
+  ASSERT_TRUE(player.undo());
+  ASSERT_TRUE(player.undo());
+  turn();
+  EXPECT_FLOAT_EQ(result(), 4.0f / 8) << "the command line's again";
+  // A look that does not declare it any more plays on.
+  ASSERT_TRUE(player.redo());
+  look("stops = fx.float { min = 0, max = 1, default = 0 }");
+  reload();
+  EXPECT_FLOAT_EQ(result(), 1.0f / 8);
+  EXPECT_THAT(player.live().status().warnings, ::testing::Contains(HasSubstr("--arg stops = 3 is out of range")));
+}
+
+TEST_F(PlayerTest, AnErrorKeepsTheLastPictureUntilTheNextGoodSave) {
+  write_sequence(2);
+  Player& player = open();
+  turn();
+  const float before = result();
+  write("look.lua", "return fx.nonsense {\n");
+  reload();
+  ASSERT_TRUE(player.live().status().error);
+  EXPECT_THAT(player.live().status().error->text(), HasSubstr("look.lua:"));
+  EXPECT_EQ(result(), before);
+  player.transport().play(seconds_);
+  seconds_ += 0.1;
+  EXPECT_TRUE(turn().changed) << "playing goes on with the last good stack";
+  EXPECT_FLOAT_EQ(result(), 0.5f);
+  write_look("look.lua", 0);
+  reload();
+  EXPECT_FALSE(player.live().status().error);
+  EXPECT_FLOAT_EQ(result(), 0.25f);
+}
+
+TEST_F(PlayerTest, APresetThatComesLaterShowsTheSourceUntilThen) {
+  write_sequence(1);
+  PlayerOptions options;
+  options.preset = path("later.lua");
+  Player& player = open(options);
+  turn();
+  EXPECT_TRUE(player.live().status().error);
+  EXPECT_FLOAT_EQ(result(), 0.125f);
+  write_look("later.lua", 2);
+  reload();
+  EXPECT_FLOAT_EQ(result(), 0.5f);
+}
+
+TEST_F(PlayerTest, ComparesTwoPresets) {
+  write_sequence(2);
+  write_look("other.lua", 2);
+  PlayerOptions options;
+  options.other_preset = path("other.lua");
+  Player& player = open(options);
+  turn();
+  EXPECT_FALSE(player.images().other) << "not run until it is looked at";
+  player.view().compare = Compare::other;
+  EXPECT_TRUE(turn().changed);
+  ASSERT_TRUE(player.images().other);
+  const auto probe = player.probe({0, 0}).value();
+  EXPECT_FLOAT_EQ(probe->result[0], 0.25f);
+  EXPECT_FLOAT_EQ((*probe->other)[0], 0.5f);
+  EXPECT_EQ(player.scopes({}, Player::Of::other).value().most[0], 0.5f);
+}
+
+TEST_F(PlayerTest, EditsAreMeasuredFromNoticeToPresent) {
+  write_sequence(1);
+  Player& player = open();
+  turn();
+  EXPECT_TRUE(player.stats().latencies.empty() || player.stats().latencies.size() == 1);
+  const auto before = player.stats().latencies.size();
+  write_look("look.lua", 2);
+  reload();
+  seconds_ += 0.007;
+  player.presented();
+  const auto latencies = player.stats().latencies;
+  ASSERT_EQ(latencies.size(), before + 1);
+  EXPECT_EQ(latencies.back().build.kind, BuildTimes::Kind::values);
+  EXPECT_NEAR(latencies.back().present, 7, 1e-6);
+  EXPECT_GT(latencies.back().execute, 0);
+  player.presented();
+  EXPECT_NEAR(player.stats().latencies.back().present, 7, 1e-6) << "once";
+}
+
+TEST_F(PlayerTest, PlaysSomethingElse) {
+  write_sequence(2);
+  Player& player = open();
+  turn();
+  EXPECT_FALSE(player.open_footage({path("none.#.exr")}));
+  EXPECT_EQ(player.footage().frames(), 2);
+  ASSERT_TRUE(player.open_footage({path("s.2.exr")}));
+  turn();
+  EXPECT_EQ(player.shown().name, "s.2.exr");
+  EXPECT_FLOAT_EQ(result(), 0.5f);
+  write_look("new.lua", 0);
+  ASSERT_TRUE(player.open_preset(path("new.lua")));
+  turn();
+  EXPECT_FLOAT_EQ(result(), 0.25f);
+}
+
+}  // namespace
+}  // namespace afterglow
