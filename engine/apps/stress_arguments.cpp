@@ -38,6 +38,7 @@ void StressArguments::add(CLI::App& app) {
   preset.add_paths(app);
   app.add_option("--seed", seed, "What is tried is made from this number alone (default 1)")->type_name("N");
   app.add_option("--cases", cases, "End after so many cases")->check(CLI::PositiveNumber)->type_name("N");
+  app.add_option("--trial", trial, "Only the trial of this number, as reports and kept cases name it")->type_name("N");
   app.add_option("--for", duration,
                  "End after this time: 30s, 10m, 2h (default: when every effect has had all its limits)")
       ->type_name("TIME");
@@ -63,6 +64,7 @@ Result<stress::StressRequest> StressArguments::request(const std::string& name) 
                             .cache_folder = cache_folder(),
                             .seed = seed,
                             .cases = cases,
+                            .trial = trial,
                             .seconds = 0,
                             .brief = quick,
                             .out = folder};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct StressArguments {
   PresetArguments preset;  // --path alone
   DeviceArguments device;  // --validate alone
   std::uint64_t seed = 1, cases = 0;
+  std::optional<std::uint64_t> trial;
   std::string duration, report, folder = "stress", repeat;
   std::vector<std::string> digests_of;
   bool quick = false, list = false;

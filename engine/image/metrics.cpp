@@ -13,11 +13,11 @@ constexpr double kFloor = 0.01;  // math.md §13: keeps the measure meaningful n
 constexpr double kPercentile = 0.9999;
 constexpr double kWorstAllowance = 50.0;  // the worst sample may be this many tolerances off
 
-template <class Reference>
-ErrorMeasure measure(std::span<const float> x, std::span<const Reference> reference) {
+template <class Reference, class Sizes>
+ErrorMeasure measure(std::span<const float> x, std::span<const Reference> reference, std::span<const Sizes> sizes) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   ErrorMeasure result;
-  if (x.size() != reference.size()) {
+  if (x.size() != reference.size() || x.size() != sizes.size()) {
     result.worst = result.percentile = result.rms = kInfinity;
     result.worst_index = std::min(x.size(), reference.size());
     return result;
@@ -31,7 +31,7 @@ ErrorMeasure measure(std::span<const float> x, std::span<const Reference> refere
     if (!std::isfinite(value)) {
       ++result.non_finite;
     } else if (std::isfinite(wanted)) {
-      error = std::abs(value - wanted) / (std::abs(wanted) + kFloor);
+      error = std::abs(value - wanted) / (std::abs(static_cast<double>(sizes[i])) + kFloor);
     }
     if (error > result.worst) {
       result.worst = error;
@@ -52,9 +52,14 @@ ErrorMeasure measure(std::span<const float> x, std::span<const Reference> refere
 }  // namespace
 
 ErrorMeasure measure_error(std::span<const float> x, std::span<const double> reference) {
-  return measure(x, reference);
+  return measure(x, reference, reference);
 }
-ErrorMeasure measure_error(std::span<const float> x, std::span<const float> reference) { return measure(x, reference); }
+ErrorMeasure measure_error(std::span<const float> x, std::span<const float> reference) {
+  return measure(x, reference, reference);
+}
+ErrorMeasure measure_error(std::span<const float> x, std::span<const float> reference, std::span<const float> sizes) {
+  return measure(x, reference, sizes);
+}
 
 bool within(const ErrorMeasure& error, double tolerance) {
   return error.percentile <= tolerance && error.worst <= kWorstAllowance * tolerance;

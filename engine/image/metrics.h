@@ -20,6 +20,8 @@ struct ErrorMeasure {
 };
 ErrorMeasure measure_error(std::span<const float> x, std::span<const double> reference);
 ErrorMeasure measure_error(std::span<const float> x, std::span<const float> reference);
+/// Against sizes of one's own, one a sample, in place of |ref|.
+ErrorMeasure measure_error(std::span<const float> x, std::span<const float> reference, std::span<const float> sizes);
 
 /// math.md §13: the 99.99th percentile is within the tolerance and the worst within 50 times of it.
 bool within(const ErrorMeasure& error, double tolerance);

@@ -54,8 +54,9 @@ double in_range(double x, double from, double to, double soft) {
   return smoothstep(from - soft, from, x) * (1 - smoothstep(to, to + soft, x));
 }
 
-/// Of a range in settings.
+/// Of a range in settings; nothing lies in one that ends before it begins.
 std::function<double(double)> range_of(const Settings& s) {
+  if (s.number("from") > s.number("to")) return [](double) { return 0.0; };
   return [from = s.number("from"), to = s.number("to"), soft = std::max(s.number("softness"), 1e-6)](double x) {
     return in_range(x, from, to, soft);
   };

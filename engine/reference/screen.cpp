@@ -44,16 +44,25 @@ double striped(int x, double triad, double from) {
 struct Tube {
   const DoubleImage& signal;
   const Crt& s;
+  int reach = glm::max(2, static_cast<int>(std::ceil(2.5 * s.softness)));
+  double cut = std::exp(-0.5 * std::pow((reach + 0.5) / s.softness, 2));
 
   double beam(double x, int y, int channel) const {
     const double middle = std::floor(x);
     double sum = 0, weights = 0;
-    for (int i = -2; i <= 2; ++i) {
-      const double d = (middle + i + 0.5 - x) / s.softness, w = std::exp(-0.5 * d * d);
+    for (int i = -reach; i <= reach; ++i) {
+      const double d = (middle + i + 0.5 - x) / s.softness, w = glm::max(std::exp(-0.5 * d * d) - cut, 0.0);
       sum += w * glm::clamp(signal.clamped(static_cast<int>(middle) + i, y)[channel], 0.0, 1.0);
       weights += w;
     }
     return sum / glm::max(weights, 1e-20);
+  }
+
+  /// At d lines from a line's middle.
+  static double across_line(double d, double sigma) {
+    const double variance = sigma * sigma, end = std::exp(-1.125 / variance);
+    const double mean = std::sqrt(glm::two_pi<double>()) * sigma * (1 - 0.243 * end) - 3 * end;
+    return glm::max(std::exp(-0.5 * d * d / variance) - end, 0.0) / mean;
   }
 
   double light(double x, double y, int channel, double dark) const {
@@ -62,7 +71,7 @@ struct Tube {
     for (int i = -1; i <= 1; ++i) {
       const double v = beam(x + (channel - 1) * s.convergence, line + i, channel);
       const double sigma = 0.25 + 0.25 * std::sqrt(v), d = line + i + 0.5 - y;
-      sharp += v * std::exp(-0.5 * d * d / (sigma * sigma)) / (std::sqrt(glm::two_pi<double>()) * sigma);
+      sharp += v * across_line(d, sigma);
       even += v * glm::max(0.0, 1 - std::abs(d));
     }
     return even + (sharp - even) * dark;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <vector>
 
 #include "image/metrics.h"
@@ -36,6 +37,15 @@ std::vector<float> rgb_of(const Image& image) {
   return out;
 }
 
+/// Of each sample of rgb_of: the largest channel of its pixel.
+std::vector<float> largest_of(const std::vector<float>& rgb) {
+  std::vector<float> out(rgb.size());
+  for (std::size_t i = 0; i + 2 < rgb.size(); i += 3)
+    std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(i), 3,
+                std::max({std::abs(rgb[i]), std::abs(rgb[i + 1]), std::abs(rgb[i + 2])}));
+  return out;
+}
+
 }  // namespace
 
 std::string place_of(const Image& image, std::size_t sample) {
@@ -47,11 +57,12 @@ std::string place_of(const Image& image, std::size_t sample) {
 
 Way usual_way(const Harness& harness) { return {.choice = harness.usual()}; }
 
-Outcome compare(const Image& a, const Image& wanted, double allowed, const std::string& what) {
+Outcome compare(const Image& a, const Image& wanted, double allowed, const std::string& what, MeasuredBy by) {
   if (a.size() != wanted.size()) return {.holds = false, .measured = 1, .allowed = 0, .what = what + ": sizes differ"};
   if (allowed <= 0) return compare_bits(a, wanted, what);
   const auto x = rgb_of(a), y = rgb_of(wanted);
-  const ErrorMeasure error = measure_error(x, std::span<const float>(y));
+  const ErrorMeasure error =
+      by == MeasuredBy::pixel ? measure_error(x, y, largest_of(y)) : measure_error(x, std::span<const float>(y));
   const bool holds = within(error, allowed);
   const std::size_t sample = error.worst_index / 3 * 4 + error.worst_index % 3;
   Outcome out{.holds = holds, .measured = std::max(error.percentile, error.worst / 50), .allowed = allowed, .what = {}};

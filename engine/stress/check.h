@@ -68,9 +68,13 @@ inline Picture changed(const Picture& picture) {
 Picture greys_of(const Situation& situation);
 /// The usual way of execution, in full floats.
 Way usual_way(const Harness& harness);
-/// Compares R, G and B by the measure of docs/math.md §13, over the part of `a` alone when it is given. `allowed` 0:
-/// bit for bit, alpha too.
-Outcome compare(const Image& a, const Image& wanted, double allowed, const std::string& what);
+/// What an error is divided by: the sample that was wanted (docs/math.md §13), or the largest of its pixel's R, G and
+/// B. Colours are mixed by matrices, where a small channel is the difference of large ones: two ways of adding them are
+/// equally good when they differ by the last digits of the large ones.
+enum class MeasuredBy { sample, pixel };
+/// Compares R, G and B. `allowed` 0: bit for bit, alpha too.
+Outcome compare(const Image& a, const Image& wanted, double allowed, const std::string& what,
+                MeasuredBy by = MeasuredBy::sample);
 /// "pixel 3 4 green".
 std::string place_of(const Image& image, std::size_t sample);
 

@@ -42,7 +42,7 @@ class Run {
 
   Result<Summary> all(const Step& step) {
     const auto start = Clock::now();
-    for (std::uint64_t index = 0;; ++index) {
+    for (std::uint64_t index = options_.trial.value_or(0);; ++index) {
       summary_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
       if (done(index)) break;
       if (auto go = step(summary_); !go) {
@@ -57,6 +57,7 @@ class Run {
 
  private:
   bool done(std::uint64_t index) const {
+    if (options_.trial) return index > *options_.trial;
     if (options_.cases > 0 && summary_.cases >= options_.cases) return true;
     if (options_.seconds > 0 && summary_.seconds >= options_.seconds) return true;
     return options_.cases == 0 && options_.seconds <= 0 && index >= trials_.round();

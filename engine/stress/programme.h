@@ -34,7 +34,8 @@ struct Finding {
 
 struct ProgrammeOptions {
   std::uint64_t seed = 1;
-  std::uint64_t cases = 0;    ///< ends after so many; 0: no limit
+  std::uint64_t cases = 0;             ///< ends after so many; 0: no limit
+  std::optional<std::uint64_t> trial;  ///< the trial of this number alone
   double seconds = 0;         ///< ends after so long; 0: no limit. Without both limits: one round over all looks
   std::filesystem::path out;  ///< reproducers go here; empty: none are kept
   std::string version;        ///< of the program, for reproducers

@@ -93,6 +93,7 @@ Result<void> go_on(const StressEvents& events) {
 ProgrammeOptions programme_of(const StressRequest& request) {
   ProgrammeOptions out{.seed = request.seed,
                        .cases = request.cases,
+                       .trial = request.trial,
                        .seconds = request.seconds,
                        .out = request.out / fmt::format("seed-{}", request.seed),
                        .version = version()};
@@ -103,6 +104,7 @@ ProgrammeOptions programme_of(const StressRequest& request) {
 /// How far the programme is, in what it ends by.
 std::pair<std::size_t, std::size_t> share_done(const ProgrammeOptions& options, const Summary& so_far,
                                                std::size_t round) {
+  if (options.trial) return {so_far.trials, 1};
   if (options.cases > 0) return {so_far.cases, options.cases};
   if (options.seconds > 0) return {static_cast<std::size_t>(so_far.seconds), static_cast<std::size_t>(options.seconds)};
   return {so_far.trials, round};
@@ -129,6 +131,8 @@ Result<StressReport> run_stress(const StressRequest& request, Diagnostics& diagn
   AFTERGLOW_TRY(report.summary, run_programme(*opened.harness, trials, options, quiet, step, events.found));
   if (!report.summary.interrupted) {
     AFTERGLOW_TRY(report.processes, ask_other_processes(request, report.summary.digests, events));
+  }
+  if (!report.summary.interrupted && !request.trial) {
     auto growth = error_growth(*opened.harness, trials.subjects(), request.brief ? kBriefGrowthSize : kGrowthSize,
                                request.brief, request.seed, [&] { return go_on(events); });
     if (growth)

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,10 +20,11 @@ struct StressRequest {
   DeviceOptions device;
   std::filesystem::path cache_folder;
   std::uint64_t seed = 1;
-  std::uint64_t cases = 0;    ///< end after so many; 0: no such end
-  double seconds = 0;         ///< end after so long; 0: no such end
-  bool brief = false;         ///< kBriefCases, and less of the growth of errors
-  std::filesystem::path out;  ///< folder for cases that fail
+  std::uint64_t cases = 0;             ///< end after so many; 0: no such end
+  std::optional<std::uint64_t> trial;  ///< the trial of this number alone
+  double seconds = 0;                  ///< end after so long; 0: no such end
+  bool brief = false;                  ///< kBriefCases, and less of the growth of errors
+  std::filesystem::path out;           ///< folder for cases that fail
 };
 inline constexpr std::uint64_t kBriefCases = 1500;
 

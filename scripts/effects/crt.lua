@@ -5,6 +5,11 @@
 local fx = require "afterglow"
 local glow = require "lib.glow"
 
+-- Places on the tube are rounded: the more, the larger the picture.
+local function stretch(source)
+  return math.max(1, source.width / 512, source.height / 512, source.width / source.height / 32)
+end
+
 return fx.effect {
   name = "crt",
   doc = "A picture tube: scan lines, phosphor stripes, curved glass.",
@@ -24,8 +29,7 @@ return fx.effect {
     intensity = fx.float { min = 0, max = 1, default = 1, doc = "How much of the tube is seen. 0: the picture as it was." },
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
-  -- Places on the tube are rounded: the more, the larger the picture.
-  holds = { "black", error = { fp32 = function(_, source) return 3e-3 * math.max(1, source.width / 2048, source.height / 2048) end, fp16 = false, up_to = 1 } },
+  holds = { "black", error = { fp32 = function(_, source) return 1e-3 * stretch(source) end, fp16 = function(_, source) return 4e-3 * stretch(source) end } },
   build = function(g, s, source)
     local down = math.min(s.lines, source.height)
     local across = math.max(1, math.min(source.width, math.floor(source.width * down / source.height + 0.5)))
@@ -35,11 +39,12 @@ return fx.effect {
       spread = glow.of(g, signal, 1, glow.fog(signal, 1, 0.06 * down), function(image) return image end)
     end
     local triad = math.max(s.phosphor_size, 1e-3)
+    local texels = math.max(2, math.ceil(2.5 * s.softness))
     -- Stripes and lines that the pixels cannot show are left out.
     local lines_shown = math.max(0, math.min(source.height / down - 1, 1))
     return g:pass {
       shader = "crt/tube", source = signal, size = source, picture = source, spread = s.glow > 0 and spread or signal, name = "tube",
-      soft = s.softness, dark = s.scan_lines * lines_shown, mask = s.phosphor, triad = triad, bend = 0.25 * s.curvature,
+      texels = texels, soft = s.softness, cut = math.exp(-0.5 * ((texels + 0.5) / s.softness) ^ 2), dark = s.scan_lines * lines_shown, mask = s.phosphor, triad = triad, bend = 0.25 * s.curvature,
       corner = math.max(s.corner, 1e-4), edge = 1.5 / source.height, falloff = s.vignette, glow = s.glow, apart = s.convergence, brightness = s.brightness, intensity = s.intensity,
     }
   end,

@@ -5,7 +5,8 @@
 uniform sampler2D source;   // a texel for each place of a line
 uniform sampler2D picture;  // as it was
 uniform sampler2D spread;
-uniform float soft, dark, mask, triad, bend, corner, edge, falloff, glow, apart, brightness, intensity;
+layout(constant_id = 0) const int texels = 2;  // texels of a line to both sides that a spot covers
+uniform float soft, cut, dark, mask, triad, bend, corner, edge, falloff, glow, apart, brightness, intensity;
 
 // How much of a pixel's width lies in the stripe that begins at `from` of each triad and is a third of it wide, 0…1.
 float stripe(float x, float from) {
@@ -14,17 +15,26 @@ float stripe(float x, float from) {
   return (covered.y - covered.x) * triad;
 }
 
-// Light of one channel in line `y` at x, both in texels of the signal: a Gaussian spot over five texels.
+// Light of one channel in line `y` at x, both in texels of the signal: a Gaussian spot, lowered to 0 where it ends, so
+// that no texel comes or goes at once.
 float beam(float x, int y, int channel) {
   float middle = floor(x);
   float sum = 0.0, weights = 0.0;
-  for (int i = -2; i <= 2; ++i) {
+  for (int i = -texels; i <= texels; ++i) {
     float d = (middle + float(i) + 0.5 - x) / soft;
-    float w = exp(-0.5 * d * d);
+    float w = max(exp(-0.5 * d * d) - cut, 0.0);
     sum += w * clamp(fetch(source, ivec2(int(middle) + i, y))[channel], 0.0, 1.0);
     weights += w;
   }
   return sum / max(weights, 1e-20);
+}
+
+// Light at d lines from a line's middle: a Gaussian, lowered to 0 at 1.5, where the next line begins to count. Its mean
+// is 1: √(2π)σ erf(1.5/(√2σ)) − 3 end, where 1 − erf is 0.243 end for all σ that count.
+float across_line(float d, float sigma) {
+  float k = -0.5 / (sigma * sigma);
+  float end = exp(2.25 * k);
+  return max(exp(d * d * k) - end, 0.0) / (2.50662827 * sigma * (1.0 - 0.243 * end) - 3.0 * end);
 }
 
 vec4 sample_at(ivec2 pixel) {
@@ -50,7 +60,7 @@ vec4 sample_at(ivec2 pixel) {
       // Spots are narrow in the darks and as wide as a line in white; √(2π)σ normalises them.
       float sigma = 0.25 + 0.25 * sqrt(v);
       float d = float(line + i) + 0.5 - at.y;
-      sharp += v * exp(-0.5 * d * d / (sigma * sigma)) / (2.50662827 * sigma);
+      sharp += v * across_line(d, sigma);
       even += v * max(0.0, 1.0 - abs(d));  // without scan lines: linear between lines
     }
     light[c] = even + (sharp - even) * dark;

@@ -129,6 +129,22 @@ TEST(StressChecks, ImagesAreComparedToTheBitOrByTheMeasure) {
   EXPECT_FALSE(compare(Image(2, 3, 4), a, 1, "x").holds);
 }
 
+// A small channel beside large ones is a difference of these.
+TEST(StressChecks, WaysAreComparedByTheLargestChannelOfAPixel) {
+  Image a(2, 1, 4), b = a;
+  a.pixels = {6.f, 0.01f, 2.f, 1.f, 0.01f, 0.01f, 0.01f, 1.f};
+  b = a;
+  b.pixels[1] += 1e-6f;
+  EXPECT_FALSE(compare(b, a, 1e-6, "x").holds);
+  EXPECT_TRUE(compare(b, a, 1e-6, "x", MeasuredBy::pixel).holds);
+  b = a;
+  b.pixels[5] += 1e-6f;
+  EXPECT_FALSE(compare(b, a, 1e-6, "x", MeasuredBy::pixel).holds);
+  b = a;
+  b.pixels[0] += 1e-4f;
+  EXPECT_FALSE(compare(b, a, 1e-6, "x", MeasuredBy::pixel).holds);
+}
+
 /// An effect of the name of one with an oracle, with its settings, but another result.
 TEST(StressChecks, AFalseBoundOfTheErrorIsCaught) {
   const EffectFolder folder;
