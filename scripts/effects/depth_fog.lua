@@ -39,6 +39,7 @@ return fx.effect {
   -- Exponents of far and low points are large, and their roundings with them.
   holds = { error = { fp32 = 2e-4, fp16 = false, up_to = 1e4, when = function(s)
     return s.depth_space == "linear" and s.height_falloff <= 1 and math.abs(s.camera_height) <= 100 and s.sun_focus <= 100
+      and math.max(s.color[1], s.color[2], s.color[3], s.sun_color[1], s.sun_color[2], s.sun_color[3]) <= 1e4
   end } },
   build = function(g, s, source)
     local half = math.tan(math.rad(s.field_of_view) / 2)
