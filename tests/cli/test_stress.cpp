@@ -71,6 +71,23 @@ TEST_F(Stress, WhatFailsIsKeptAndRunAgain) {
   EXPECT_THAT(mended.out, HasSubstr("finite: holds"));
 }
 
+TEST_F(Stress, OneTrialByItsNumber) {
+  make_effect(kBroken);
+  const std::vector<std::string> soak{"--effect", "haze", "--path", ".", "--cases", "60", "--seed", "4", "-o", "soak"};
+  ASSERT_EQ(stress(soak).exit_code, kOther);
+  std::string last;  // its folder is named "haze-CHECK-TRIAL-PICTURE"
+  for (const auto& entry : fs::directory_iterator(path("soak/seed-4")))
+    last = std::max(last, entry.path().filename().string());
+  ASSERT_FALSE(last.empty());
+  const std::string check = last.substr(5, last.find('-', 5) - 5), rest = last.substr(6 + check.size());
+  const Outcome one = stress(
+      {"--effect", "haze", "--path", ".", "--seed", "4", "--trial", rest.substr(0, rest.find('-')), "-o", "one"});
+  EXPECT_EQ(one.exit_code, kOther);
+  EXPECT_THAT(one.out, HasSubstr(" cases in 1 trials, "));
+  EXPECT_THAT(one.out, HasSubstr("haze: " + check));
+  EXPECT_TRUE(fs::exists(path("one/seed-4/" + last)));
+}
+
 TEST_F(Stress, TheScaffoldKeepsWhatItPromises) {
   make_effect(kGood);
   EXPECT_THAT(run({"effects", "haze", "--path", "."}).out, HasSubstr("holds: constant (within 1e-05)"));
@@ -107,6 +124,7 @@ TEST_F(Stress, BadArguments) {
   EXPECT_THAT(error({"--for", "soon"}), HasSubstr("'soon' is no duration; allowed: 30s, 10m, 2h"));
   EXPECT_THAT(error({"--for", "-3m"}), HasSubstr("is no duration"));
   EXPECT_THAT(error({"--seed", "x"}), HasSubstr("--seed"));
+  EXPECT_THAT(error({"--trial", "last"}), HasSubstr("--trial"));
   EXPECT_THAT(error({"--cases", "0"}), HasSubstr("--cases"));
   EXPECT_THAT(error({"--sed", "3"}), HasSubstr("did you mean '--seed'?"));
   const Outcome none = stress({"--repeat", "nowhere"});
