@@ -13,8 +13,8 @@
 #include "shader/filter_anchor.h"
 #include "shader/give_values.h"
 #include "shader/kernel.h"
+#include "shader/kernel_texts.h"
 #include "shader/prelude.h"
-#include "shader/rename.h"
 
 namespace afterglow {
 namespace {
@@ -73,7 +73,6 @@ class Assembler {
                                                  out_.workgroup ? 1 : kMaxRows, kernel_.config.rows)};
     if (out_.workgroup && kernel_.target == KernelTarget::unorm8)
       return Error{ErrorKind::other, "a compute shader makes no codes"};
-    out_.file_names = {"", "lib/prelude.glsl"};
     AFTERGLOW_CHECK(anchor());
     row_ += held_to(anchor_channels());
     if (watches()) row_ += "  float ag_light = 0.0;\n" + add_light("ag_color");
@@ -85,6 +84,8 @@ class Assembler {
       return error;
     }
     out_.glsl += kHeader;
+    out_.file_names = texts_.file_names();
+    out_.unset = texts_.unset();
     if (!out_.unset.empty()) out_.glsl += give_value_header();
     if (kernel_.config.defeat_uniform_inlining)
       out_.glsl += "// uniforms are hidden\n";  // another kernel, with another hash
@@ -96,7 +97,7 @@ class Assembler {
     out_.glsl += "#line 1 1\n";
     out_.glsl += prelude_text();
     if (!readers_.empty()) out_.glsl += "#line 1 1\n" + readers_;
-    out_.glsl += library_text_ + stages_ + "#line 1 0\n";
+    out_.glsl += texts_.text() + "#line 1 0\n";
     if (kernel_.target == KernelTarget::float16) out_.glsl += kRoundToHalf;
     if (kernel_.target == KernelTarget::float16) {
       if (watches())
@@ -254,21 +255,12 @@ class Assembler {
   /// zeros for what the workgroup shares.
   std::string invocation() const {
     const Size& pixels = out_.workgroup->pixels;
+    const std::string shared = texts_.zeros_of_shared(out_.workgroup->invocations.area());
     return fmt::format(
         "{0}  ivec2 ag_local = ivec2(gl_LocalInvocationID.xy), ag_last = ivec2({1}, {2});\n"
         "  ivec2 ag_pixel0 = ivec2(gl_WorkGroupID.xy) * (ag_last + 1) + min(ag_local, ag_last);\n"
         "  bool ag_makes = all(lessThanEqual(ag_local, ag_last)) && all(lessThan(ag_pixel0, ag_target_size));\n",
-        shared_.empty() ? "" : shared_ + "  barrier();\n", pixels.width - 1, pixels.height - 1);
-  }
-
-  void add_shared(const ShaderScan& scanned, const std::string& prefix) {
-    for (const auto& variable : scanned.shared)
-      shared_ += fmt::format(
-          fmt::runtime(variable.array
-                           ? "  for (uint ag_i = gl_LocalInvocationIndex; ag_i < uint({0}{1}.length()); ag_i += {3}u) "
-                             "{0}{1}[ag_i] = {2}(0);\n"
-                           : "  if (gl_LocalInvocationIndex == 0u) {0}{1} = {2}(0);\n"),
-          prefix, variable.name, variable.type, out_.workgroup ? out_.workgroup->invocations.area() : 1);
+        shared.empty() ? "" : shared + "  barrier();\n", pixels.width - 1, pixels.height - 1);
   }
 
   /// Declares the pixels of the invocation. Those below the target's last row are made like it and land in padding.
@@ -307,15 +299,6 @@ class Assembler {
                                       : fmt::format("imageLoad({}, {})", variable, pixel);
   }
 
-  std::size_t file_index(const std::string& path) {
-    const auto known = std::find(out_.file_names.begin() + 2, out_.file_names.end(), path);
-    if (known == out_.file_names.end()) {
-      out_.file_names.push_back(path);
-      return out_.file_names.size() - 1;
-    }
-    return static_cast<std::size_t>(known - out_.file_names.begin());
-  }
-
   Result<void> add_stage(const KernelStage& stage, PassKind kind) {
     if (!stage.shader) return Error{ErrorKind::other, fmt::format("stage '{}' of a kernel has no shader", stage.label)};
     const ShaderSource& source = *stage.shader;
@@ -326,15 +309,6 @@ class Assembler {
     AFTERGLOW_TRY(const ShaderScan scanned, scan(source.text, source.path.string(), ScanAs::stage));
     const std::string prefix = fmt::format("ag_s{}_", stage_count_);
     AFTERGLOW_TRY(const auto values, constants(stage, prefix));
-    NameMap names;
-    std::vector<std::size_t> seen;  // include of the source → library of the kernel
-    for (const auto& include : source.includes) {
-      AFTERGLOW_TRY(const std::size_t index, library(include, seen));
-      seen.push_back(index);
-      see(libraries_[index], names);
-    }
-    for (const auto& name : scanned.names) names.insert_or_assign(name.name, NewName{prefix + name.name, name.macro});
-
     StorageReaders readers;
     std::string arguments = "ag_color";
     for (const auto& input : source.interface.inputs) {
@@ -358,9 +332,7 @@ class Assembler {
       block_ += fmt::format("  {} {}{};\n", glsl_name(param.type), prefix, param.name);
       out_.params.push_back({stage_count_, param.name, param.type, 0});
     }
-    add_shared(scanned, prefix);
-    stages_ += fmt::format("#line 1 {}\n", file_index(source.path.string())) +
-               rewrite(source.text, scanned, names, values, add_unset(scanned, source.path, prefix), readers);
+    AFTERGLOW_CHECK(texts_.add(source, scanned, prefix, values, readers));
     const std::string function = prefix + info_of(kind).entry;
     if (source.interface.done)
       sample_rest(prefix + std::string(kDoneFunction), function);
@@ -397,15 +369,6 @@ class Assembler {
         static_cast<int>(KernelDraw::done), static_cast<int>(KernelDraw::rest), done, entry);
   }
 
-  /// Numbers the file's variables without a value; returns the first number.
-  std::size_t add_unset(const ShaderScan& scanned, const std::filesystem::path& file, const std::string& prefix) {
-    const std::size_t first = out_.unset.size();
-    for (const auto& unset : scanned.unset)
-      out_.unset.push_back({unset.name, unset.kind == Unset::Kind::global ? prefix + unset.name : std::string(),
-                            file.string(), unset.line, unset.kind == Unset::Kind::argument});
-    return first;
-  }
-
   /// What replaces the declaration of each specialised parameter.
   static Result<std::vector<std::string>> constants(const KernelStage& stage, const std::string& prefix) {
     const ShaderSource& source = *stage.shader;
@@ -429,47 +392,13 @@ class Assembler {
     return out;
   }
 
-  /// A library in this kernel.
-  struct Library {
-    std::filesystem::path path;
-    std::string text, prefix;
-    std::vector<std::size_t> uses;  ///< libraries of this kernel that it sees
-    std::vector<GlobalName> names;
-  };
-
-  static void see(const Library& library, NameMap& names) {
-    for (const auto& name : library.names)
-      names.insert_or_assign(name.name, NewName{library.prefix + name.name, name.macro});
-  }
-
-  /// The library of this kernel for an include; its text is added when it is new. `earlier` maps the includes before
-  /// it.
-  Result<std::size_t> library(const ShaderSource::Include& include, const std::vector<std::size_t>& earlier) {
-    Library added{include.path, include.text, fmt::format("ag_l{}_", libraries_.size()), {}, {}};
-    for (const auto use : include.uses) added.uses.push_back(earlier.at(use));
-    for (std::size_t i = 0; i < libraries_.size(); ++i)
-      if (libraries_[i].path == added.path && libraries_[i].text == added.text && libraries_[i].uses == added.uses)
-        return i;
-    AFTERGLOW_TRY(const ShaderScan scanned, scan(include.text, include.path.string(), ScanAs::library));
-    NameMap names;
-    for (const auto use : added.uses) see(libraries_[use], names);
-    added.names = scanned.names;
-    see(added, names);
-    add_shared(scanned, added.prefix);
-    library_text_ += fmt::format("#line 1 {}\n", file_index(include.path.string())) +
-                     rewrite(include.text, scanned, names, {}, add_unset(scanned, include.path, added.prefix));
-    libraries_.push_back(std::move(added));
-    return libraries_.size() - 1;
-  }
-
   const KernelDesc& kernel_;
   AssembledKernel out_;
-  std::string block_, images_, readers_, library_text_, stages_;
+  KernelTexts texts_;
+  std::string block_, images_, readers_;
   std::string head_function_;                         ///< what finds one row's colour where rows share nothing
   std::string row_, row_parameters_, row_arguments_;  ///< what is done to one row's colour
   std::string body_;                                  ///< of main()
-  std::string shared_;                                ///< statements that make zeros of what a workgroup shares
-  std::vector<Library> libraries_;
   std::map<std::pair<int, std::string>, std::string> own_reads_;  ///< names of colours, by stage and input
   int stage_count_ = 0, divisions_ = 0;
 };

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "shader/kernel_texts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace afterglow {
+
+Result<void> KernelTexts::add(const ShaderSource& source, const ShaderScan& scanned, const std::string& prefix,
+                              const std::vector<std::string>& constants, const StorageReaders& readers) {
+  NameMap names;
+  std::vector<std::size_t> seen;  // include of the source → library of the kernel
+  for (const auto& include : source.includes) {
+    AFTERGLOW_TRY(const std::size_t index, library(include, seen));
+    seen.push_back(index);
+    see(libraries_[index], names);
+  }
+  for (const auto& name : scanned.names) names.insert_or_assign(name.name, NewName{prefix + name.name, name.macro});
+  add_shared(scanned, prefix);
+  stages_text_ += line_of(source.path) +
+                  rewrite(source.text, scanned, names, constants, add_unset(scanned, source.path, prefix), readers);
+  return {};
+}
+
+std::string KernelTexts::zeros_of_shared(std::int64_t invocations) const {
+  std::string out;
+  for (const Shared& shared : shared_)
+    out += shared.array ? fmt::format(
+                              "  for (uint ag_i = gl_LocalInvocationIndex; ag_i < uint({0}.length()); ag_i += "
+                              "{2}u) {0}[ag_i] = {1}(0);\n",
+                              shared.name, shared.type, invocations)
+                        : fmt::format("  if (gl_LocalInvocationIndex == 0u) {} = {}(0);\n", shared.name, shared.type);
+  return out;
+}
+
+void KernelTexts::see(const Library& library, NameMap& names) {
+  for (const auto& name : library.names)
+    names.insert_or_assign(name.name, NewName{library.prefix + name.name, name.macro});
+}
+
+/// The library of this kernel for an include; its text is added when it is new. `earlier` maps the includes before it.
+Result<std::size_t> KernelTexts::library(const ShaderSource::Include& include,
+                                         const std::vector<std::size_t>& earlier) {
+  Library added{include.path, include.text, fmt::format("ag_l{}_", libraries_.size()), {}, {}};
+  for (const auto use : include.uses) added.uses.push_back(earlier.at(use));
+  for (std::size_t i = 0; i < libraries_.size(); ++i)
+    if (libraries_[i].path == added.path && libraries_[i].text == added.text && libraries_[i].uses == added.uses)
+      return i;
+  AFTERGLOW_TRY(const ShaderScan scanned, scan(include.text, include.path.string(), ScanAs::library));
+  NameMap names;
+  for (const auto use : added.uses) see(libraries_[use], names);
+  added.names = scanned.names;
+  see(added, names);
+  add_shared(scanned, added.prefix);
+  libraries_text_ +=
+      line_of(include.path) + rewrite(include.text, scanned, names, {}, add_unset(scanned, include.path, added.prefix));
+  libraries_.push_back(std::move(added));
+  return libraries_.size() - 1;
+}
+
+std::size_t KernelTexts::file_index(const std::string& path) {
+  const auto known = std::find(file_names_.begin() + 2, file_names_.end(), path);
+  if (known != file_names_.end()) return static_cast<std::size_t>(known - file_names_.begin());
+  file_names_.push_back(path);
+  return file_names_.size() - 1;
+}
+
+std::string KernelTexts::line_of(const std::filesystem::path& file) {
+  return fmt::format("#line 1 {}\n", file_index(file.string()));
+}
+
+void KernelTexts::add_shared(const ShaderScan& scanned, const std::string& prefix) {
+  for (const auto& variable : scanned.shared)
+    shared_.push_back({prefix + variable.name, std::string(variable.type), variable.array});
+}
+
+/// Numbers the file's variables without a value; returns the first number.
+std::size_t KernelTexts::add_unset(const ShaderScan& scanned, const std::filesystem::path& file,
+                                   const std::string& prefix) {
+  const std::size_t first = unset_.size();
+  for (const auto& unset : scanned.unset)
+    unset_.push_back({unset.name, unset.kind == Unset::Kind::global ? prefix + unset.name : std::string(),
+                      file.string(), unset.line, unset.kind == Unset::Kind::argument});
+  return first;
+}
+
+}  // namespace afterglow
