@@ -83,7 +83,15 @@ fs::path temporary_beside(const fs::path& path) {
   return temporary;
 }
 
-Temporary::Temporary(fs::path target) : target_(std::move(target)), path_(temporary_beside(target_)) {}
+fs::path behind_links(const fs::path& path) {
+  std::error_code ec;
+  if (!fs::is_symlink(path, ec)) return path;
+  const fs::path target = fs::weakly_canonical(path, ec);
+  return ec ? path : target;
+}
+
+Temporary::Temporary(fs::path target)
+    : named_(std::move(target)), target_(behind_links(named_)), path_(temporary_beside(target_)) {}
 
 Temporary::~Temporary() {
   if (!there_ || unlink(path_.c_str()) == 0 || errno == ENOENT) return;
@@ -98,7 +106,7 @@ Result<void> Temporary::commit() {
   std::error_code ec;
   fs::rename(path_, target_, ec);
   there_ = static_cast<bool>(ec);
-  if (ec) return Error{ErrorKind::io, fmt::format("cannot be written: {}", ec.message()), target_.string()};
+  if (ec) return Error{ErrorKind::io, fmt::format("cannot be written: {}", ec.message()), named_.string()};
   return {};
 }
 

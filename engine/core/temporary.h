@@ -13,11 +13,14 @@ namespace afterglow {
 /// libraries choose the format by it): `.NAME.MACHINE-PROCESS-COUNT.tmp.EXT`.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
+/// The file that a link leads to at last; what is no link, or one that leads nowhere, as it is.
+std::filesystem::path behind_links(const std::filesystem::path& path);
+
 /// What is written under such a name, a file or a folder. It is gone with this, whatever happens, unless it was
 /// committed.
 class Temporary {
  public:
-  /// Of what is to become `target`; makes nothing yet.
+  /// Of what is to become `target`; makes nothing yet. A link stays: the file that it leads to becomes another one.
   explicit Temporary(std::filesystem::path target);
   ~Temporary();
   Temporary(const Temporary&) = delete;
@@ -28,7 +31,7 @@ class Temporary {
   Result<void> commit();
 
  private:
-  std::filesystem::path target_, path_;
+  std::filesystem::path named_, target_, path_;
   bool there_ = true;
 };
 

@@ -9,9 +9,8 @@ namespace fs = std::filesystem;
 
 Result<std::unique_ptr<VideoTarget>> VideoTarget::open(const fs::path& file) {
   std::unique_ptr<VideoTarget> target(new VideoTarget());
-  std::error_code ec;
   target->file_ = file;
-  target->temporary_.emplace(fs::is_symlink(file, ec) ? fs::weakly_canonical(file, ec) : file);
+  target->temporary_.emplace(file);
   target->out_ = std::make_unique<OutputFile>(target->temporary());
   if (target->out_->failure()) return target->named(target->out_->close().error());
   return target;

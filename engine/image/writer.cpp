@@ -28,14 +28,6 @@ namespace afterglow {
 namespace fs = std::filesystem;
 namespace {
 
-/// Where the bytes go: a link is followed, so that the file it points to is replaced and not the link.
-fs::path resolved(const fs::path& file) {
-  std::error_code ec;
-  if (!fs::is_symlink(file, ec)) return file;
-  const fs::path target = fs::weakly_canonical(file, ec);
-  return ec ? file : target;
-}
-
 Result<void> write_format(const Picture& picture, const OutputFormat& format, OutputFile& out, const std::string& name,
                           const WriteOptions& options, Diagnostics& diagnostics) {
   switch (format.kind) {
@@ -148,7 +140,7 @@ Result<void> check_format(const fs::path& file, const WriteOptions& options) {
 
 Result<void> check_place(const fs::path& file) {
   const auto refuse = [&](const std::string& why) { return Error{ErrorKind::io, why, file.string()}; };
-  const fs::path target = resolved(file);
+  const fs::path target = behind_links(file);
   std::error_code ec;
   const fs::file_status status = fs::status(target, ec);
   if (fs::is_directory(status)) return refuse("is a folder");
@@ -183,14 +175,13 @@ Result<void> write_picture(const Picture& picture, const fs::path& file, const W
                            Diagnostics& diagnostics) {
   AFTERGLOW_CHECK(check_output(file, options));
   AFTERGLOW_TRY(const OutputFormat* format, output_format(file, options));
-  const fs::path target = resolved(file);
   Diagnostics named([&](Severity severity, const std::string& message) {
     const std::string text = fmt::format("{}: {}", file.string(), message);
     severity == Severity::warning ? diagnostics.warn(text) : diagnostics.note(text);
   });
   try {
     AFTERGLOW_CHECK(check_picture(picture));
-    Temporary temporary(target);
+    Temporary temporary(file);
     if (auto written = write_checked(picture, *format, temporary.path(), options, named); !written) {
       Error error = std::move(written).error();
       error.file = file.string();  // not the temporary name

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "core/file.h"
 #include "core/temporary.h"
 
 namespace afterglow {
@@ -58,6 +59,19 @@ TEST_F(Temporaries, WhatIsCommittedHasItsNameAndStays) {
     EXPECT_TRUE(file.commit());
   }
   EXPECT_EQ(files(), std::set<std::string>{"shot.exr"});
+}
+
+TEST_F(Temporaries, ALinkStaysAndWhatItLeadsToBecomesAnother) {
+  fs::create_directory(folder_ / "store");
+  std::ofstream(folder_ / "store/real.txt") << "old";
+  fs::create_symlink("store/real.txt", folder_ / "link.txt");
+  ASSERT_TRUE(write_file_atomically(folder_ / "link.txt", "new"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link.txt"));
+  EXPECT_EQ(read_file(folder_ / "store/real.txt").value(), "new");
+  EXPECT_EQ(behind_links(folder_ / "link.txt"), fs::canonical(folder_ / "store/real.txt"));
+  EXPECT_EQ(behind_links(folder_ / "none.txt"), folder_ / "none.txt");
+  fs::create_symlink("none.txt", folder_ / "leads_nowhere.txt");
+  EXPECT_EQ(behind_links(folder_ / "leads_nowhere.txt"), folder_ / "leads_nowhere.txt");
 }
 
 TEST_F(Temporaries, WhatCannotBeCommittedIsGoneAndSaid) {
