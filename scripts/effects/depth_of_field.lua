@@ -30,7 +30,7 @@ return fx.effect {
 
   -- Where a pixel sees nothing but the soft rims of circles, which are wide where the iris is narrow, its light is what little these weigh divided by itself.
   holds = { "black", "constant", "bounded", "monotone", "linear", continuous = 1,
-    error = { fp32 = 5e-4, fp16 = false, up_to = 50, when = function(s) return s.depth_space == "linear" and s.squeeze >= 0.3 and s.squeeze <= 3.3 end } },
+    error = { fp32 = 5e-4, fp16 = false, up_to = 50, when = function(s) return s.depth_space == "linear" and s.squeeze >= 0.4 and s.squeeze <= 2.5 end } },
   build = function(g, s, source)
     local f = s.focal_length / 1000
     local d = math.max(s.focus_distance, 1.01 * f)  -- nearer nothing is ever sharp
