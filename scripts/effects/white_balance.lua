@@ -27,7 +27,9 @@ return fx.effect {
   },
   active = function(s) return s.temperature ~= 0 or s.tint ~= 0, "all settings are neutral" end,
 
-  holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1, continuous = 20, error = 3e-5 },
+  holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1, continuous = 20,
+    -- Rows of the matrix are differences: a dark channel beside a bright one has the digits of the bright one.
+    error = { fp32 = 1e-4, up_to = 60 } },
   build = function(g, s, source)
     local cones = cones_of_white(s.temperature, s.tint)
     local rows = {}
