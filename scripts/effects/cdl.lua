@@ -7,6 +7,13 @@ local fx = require "afterglow"
 local function all(v, value) return v[1] == value and v[2] == value and v[3] == value end
 local function least(v) return math.min(v[1], v[2], v[3]) end
 local function most(v) return math.max(v[1], v[2], v[3]) end
+-- Numbers below 1.2e-38 may count as 0.
+local function none_is_tiny(v)
+  for i = 1, 3 do
+    if v[i] ~= 0 and v[i] < 1e-30 then return false end
+  end
+  return true
+end
 local function neutral(s) return all(s.slope, 1) and all(s.offset, 0) and all(s.power, 1) and s.saturation == 1 end
 
 return fx.effect {
@@ -32,7 +39,7 @@ return fx.effect {
     error = { fp32 = function(s)
                 return 1e-5 * math.max(1, most(s.power)) * math.max(1, most(s.offset), -least(s.offset))
               end, up_to = 60,
-              when = function(s) return s.file == "" and s.saturation <= 1 and (least(s.offset) >= 0 or least(s.power) >= 1) end } },
+              when = function(s) return s.file == "" and s.saturation <= 1 and none_is_tiny(s.slope) and (least(s.offset) >= 0 or least(s.power) >= 1) end } },
   build = function(g, s, source)
     if s.file ~= "" then
       local lookup = g:lookup { file = s.file, correction = s.correction }

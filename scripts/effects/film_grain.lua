@@ -15,7 +15,7 @@ return fx.effect {
     seed = fx.int { min = 0, default = 0, doc = "Another number, other grain." },
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
-  holds = { "black", error = 1e-5 },
+  holds = { "black", error = { fp32 = function(_, source) return 1e-5 * math.max(1, source.width / 4096, source.height / 4096) end } },
   build = function(g, s, source)
     local size = math.max(1, s.size)  -- a preview cannot show finer grain
     local coarse = math.floor(size * 64) / 64
