@@ -94,7 +94,8 @@ TEST(FlatParameters, FewAndManyOfThemComeInEquallyManyInputs) {
     const auto modules = flat_parameters(kernel.spirv, 31);
     EXPECT_TRUE(modules);
     std::size_t inputs = 0;
-    for (const auto& i : parse(modules->fragment)->code)
+    const auto module = parse(modules->fragment);
+    for (const auto& i : module->code)
       if (i.op == spv::OpDecorate && i.words[2] == spv::DecorationFlat) ++inputs;
     return inputs;
   };
