@@ -8,7 +8,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <system_error>
 
 #include "core/temporary.h"
 
@@ -36,17 +35,14 @@ bool write_new(const fs::path& path, std::string_view content, mode_t mode) {
 }  // namespace
 
 Result<void> replace_file_atomically(const fs::path& path, std::string_view content) {
-  std::error_code ec;
-  const fs::path target = fs::canonical(path, ec);
-  if (ec) return Error{ErrorKind::io, fmt::format("cannot be written: {}", ec.message()), path.string()};
   const auto failed = [&](int reason) {
     return Error{ErrorKind::io, fmt::format("cannot be written: {}", std::strerror(reason)), path.string()};
   };
   struct stat status {};
-  if (stat(target.c_str(), &status) != 0) return failed(errno);
+  if (stat(path.c_str(), &status) != 0) return failed(errno);
   // A file that may not be written is not replaced either, though its folder would allow it.
-  if (access(target.c_str(), W_OK) != 0) return failed(errno);
-  Temporary temporary(target);
+  if (access(path.c_str(), W_OK) != 0) return failed(errno);
+  Temporary temporary(path);
   if (!write_new(temporary.path(), content, status.st_mode & 07777)) {
     const int reason = errno;
     return failed(reason);

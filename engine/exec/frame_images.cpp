@@ -27,7 +27,7 @@ DeviceImage device_image(const FrameImage& from) {
 FrameImages::FrameImages(Device& device, const Options& options)
     : inputs(device, options.direct),
       result(device, options.direct),
-      staging(device, options.ahead),
+      staging(device, options.whole_staging),
       options_(options) {}
 
 Result<void> FrameImages::check_memory(const std::map<std::string, ImageDesc>& descs, std::uint64_t other_bytes) const {

@@ -18,7 +18,7 @@ class FrameImages {
  public:
   struct Options {
     std::uint64_t max_memory = 0;
-    bool direct = true, ahead = false;  ///< see FrameRunner::Options; `ahead`: whole_staging
+    bool direct = true, whole_staging = false;  ///< see FrameRunner::Options
   };
   FrameImages(Device& device, const Options& options);
 
@@ -42,7 +42,7 @@ class FrameImages {
   };
   Handles handles() const;
   int made() const { return inputs.made() + result.made(); }  ///< images so far
-  bool ahead() const { return options_.ahead; }
+  bool whole_staging() const { return options_.whole_staging; }
   /// What the last frame left. `ran`: a program made the result; else it is the source.
   DeviceImages on_device(bool ran) const;
 

@@ -237,7 +237,8 @@ Result<void> FrameRunner::begin(Program& program, const std::map<std::string, Ho
                                 const Choose& choose) {
   State& s = *state_;
   AFTERGLOW_CHECK(s.begin(program, inputs, timing, choose));
-  return s.images.ahead() && s.begun->ran ? s.images.result.begin_download(s.images.staging, *s.shown) : Result<void>();
+  return s.images.whole_staging() && s.begun->ran ? s.images.result.begin_download(s.images.staging, *s.shown)
+                                                  : Result<void>();
 }
 
 Result<void> FrameRunner::warm_up(Program& program, bool backwards) {

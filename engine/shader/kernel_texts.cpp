@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace afterglow {
 
@@ -25,7 +26,7 @@ Result<void> KernelTexts::add(const ShaderSource& source, const ShaderScan& scan
 
 std::string KernelTexts::zeros_of_shared(std::int64_t invocations) const {
   std::string out;
-  for (const Shared& shared : shared_)
+  for (const SharedVariable& shared : shared_)
     out += shared.array ? fmt::format(
                               "  for (uint ag_i = gl_LocalInvocationIndex; ag_i < uint({0}.length()); ag_i += "
                               "{2}u) {0}[ag_i] = {1}(0);\n",
@@ -71,8 +72,10 @@ std::string KernelTexts::line_of(const std::filesystem::path& file) {
 }
 
 void KernelTexts::add_shared(const ShaderScan& scanned, const std::string& prefix) {
-  for (const auto& variable : scanned.shared)
-    shared_.push_back({prefix + variable.name, std::string(variable.type), variable.array});
+  for (SharedVariable variable : scanned.shared) {
+    variable.name = prefix + variable.name;
+    shared_.push_back(std::move(variable));
+  }
 }
 
 /// Numbers the file's variables without a value; returns the first number.

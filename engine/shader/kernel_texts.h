@@ -34,10 +34,6 @@ class KernelTexts {
     std::vector<std::size_t> uses;  ///< libraries of this kernel that it sees
     std::vector<GlobalName> names;
   };
-  struct Shared {
-    std::string name, type;
-    bool array = false;
-  };
 
   static void see(const Library& library, NameMap& names);
   Result<std::size_t> library(const ShaderSource::Include& include, const std::vector<std::size_t>& earlier);
@@ -50,7 +46,7 @@ class KernelTexts {
   std::string libraries_text_, stages_text_;
   std::vector<std::string> file_names_{"", "lib/prelude.glsl"};
   std::vector<AssembledKernel::UnsetVariable> unset_;
-  std::vector<Shared> shared_;
+  std::vector<SharedVariable> shared_;  ///< by the names that they have in the kernel
 };
 
 }  // namespace afterglow

@@ -61,8 +61,7 @@ Outcome compare(const Image& a, const Image& wanted, double allowed, const std::
   if (a.size() != wanted.size()) return {.holds = false, .measured = 1, .allowed = 0, .what = what + ": sizes differ"};
   if (allowed <= 0) return compare_bits(a, wanted, what);
   const auto x = rgb_of(a), y = rgb_of(wanted);
-  const ErrorMeasure error =
-      by == MeasuredBy::pixel ? measure_error(x, y, largest_of(y)) : measure_error(x, std::span<const float>(y));
+  const ErrorMeasure error = measure_error(x, y, by == MeasuredBy::pixel ? largest_of(y) : y);
   const bool holds = within(error, allowed);
   const std::size_t sample = error.worst_index / 3 * 4 + error.worst_index % 3;
   Outcome out{.holds = holds, .measured = std::max(error.percentile, error.worst / 50), .allowed = allowed, .what = {}};
