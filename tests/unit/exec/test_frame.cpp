@@ -232,6 +232,21 @@ TEST_F(FrameTest, TimesOfKernelsAloneAreMarkedAndChangeNoPixel) {
   }
 }
 
+TEST_F(FrameTest, NoKernelIsTimedThatReadsAnImageThatIsGone) {
+  const Size size{24, 18}, other{31, 9};
+  const auto pixels = noise(size, 5), next = noise(other, 6);
+  const auto made = program(graph(size), {.keep_images = true});
+  const auto frames = runner();
+  ASSERT_TRUE(frames->run_on_device(made.get(), {{"source", {pixels.data(), size, 4}}}, KernelTiming::none));
+  auto milliseconds = frames->time_kernel(*made, 0);
+  ASSERT_TRUE(milliseconds);
+  EXPECT_TRUE(milliseconds->has_value());
+  ASSERT_TRUE(frames->run_on_device(nullptr, {{"source", {next.data(), other, 4}}}, KernelTiming::none));
+  milliseconds = frames->time_kernel(*made, 0);
+  ASSERT_TRUE(milliseconds);
+  EXPECT_FALSE(milliseconds->has_value());
+}
+
 TEST_F(FrameTest, TimestampsAreOnlyGivenWhereTheyMeanSomething) {
   const Size size{64, 64};
   const auto pixels = noise(size, 26);
