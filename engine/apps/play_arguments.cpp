@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/window_place.h"
+#include "core/file.h"
 #include "core/paths.h"
 #include "core/text.h"
 #include "image/writer.h"
@@ -117,8 +118,12 @@ Result<PlayerOptions> PlayArguments::player() const {
   if (!other.empty()) {
     AFTERGLOW_TRY(out.other_preset, find_preset_file(other, {preset.paths.begin(), preset.paths.end()}));
     std::error_code none;
-    if (!std::filesystem::exists(out.other_preset, none))
-      return Error{ErrorKind::script, "no such file", out.other_preset.string(), 0, "a preset for --b"};
+    if (!std::filesystem::exists(out.other_preset, none)) {
+      Error error = missing_file(out.other_preset);
+      error.kind = ErrorKind::script;
+      error.allowed = "a preset for --b";
+      return error;
+    }
   }
   out.live.watch.poll = poll;
   out.footage.inputs = inputs;

@@ -50,7 +50,7 @@ Result<void> check_one_video(const BatchRequest& request, const std::vector<Fram
   AFTERGLOW_TRY(const auto sink,
                 open_sink(request.files, request.loop.write, request.loop.fps, frames.size(), diagnostics));
   const auto& audio = request.loop.write.video.audio;
-  if (!audio.empty() && !is_file(audio)) return Error{ErrorKind::io, "no such file", audio.string()};
+  if (!audio.empty() && !is_file(audio)) return missing_file(audio);
   AFTERGLOW_TRY(const WholeVideo video, whole_video(request, frames));
   return {};
 }

@@ -3,16 +3,52 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <system_error>
+#include <vector>
 
 #include "core/file_record.h"
 #include "core/temporary.h"
+#include "core/text.h"
 
 namespace afterglow {
 namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kMostNames = 4096;  ///< of a folder that are looked at
+
+std::string without_digits(std::string name) {
+  std::erase_if(name, [](char c) { return c >= '0' && c <= '9'; });
+  return name;
+}
+
+/// Names in the folder of a file that could be meant by its name: no hidden ones, no copies of editors.
+std::vector<std::string> names_beside(const fs::path& path) {
+  const std::string wanted = without_digits(path.filename().string());
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::vector<std::string> names;
+  std::error_code ec;
+  for (fs::directory_iterator it(folder, ec), end; !ec && it != end && names.size() < kMostNames; it.increment(ec)) {
+    std::string name = it->path().filename().string();
+    if (name.front() == '.' || name.back() == '~' || without_digits(name) == wanted) continue;
+    names.push_back(std::move(name));
+  }
+  std::ranges::sort(names);  // folders have no order
+  return names;
+}
+
+}  // namespace
+
+Error missing_file(const fs::path& path) {
+  Error error{ErrorKind::io, "no such file", path.string()};
+  const std::string near = nearest_name(path.filename().string(), names_beside(path));
+  if (!near.empty()) error.nearest = (path.parent_path() / near).string();
+  return error;
+}
 
 bool is_file(const fs::path& path, FileRecord* record) {
   if (record) record->note(path, FileProbe::Kind::existence);
@@ -24,7 +60,7 @@ Result<std::string> read_file(const fs::path& path, std::size_t limit, FileRecor
   FileRecord::Reading reading(record, path);
   std::error_code ec;
   const auto status = fs::status(path, ec);
-  if (!fs::exists(status)) return Error{ErrorKind::io, "no such file", path.string()};
+  if (!fs::exists(status)) return missing_file(path);
   if (fs::is_directory(status)) return Error{ErrorKind::io, "is a folder, not a file", path.string()};
   // Reading a pipe waits for whoever may write it, which may be nobody.
   if (fs::is_fifo(status)) return Error{ErrorKind::io, "is a pipe, not a file", path.string()};

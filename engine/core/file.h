@@ -18,6 +18,10 @@ class FileRecord;  // core/file_record.h
 Result<std::string> read_file(const std::filesystem::path& path, std::size_t limit = 64u << 20,
                               FileRecord* record = nullptr);
 
+/// io, "no such file", with the name in its folder that is nearest to its own, when one is near. Names that differ in
+/// their digits alone are not: they are other frames.
+Error missing_file(const std::filesystem::path& path);
+
 /// Is there a file (links are followed)?
 bool is_file(const std::filesystem::path& path, FileRecord* record = nullptr);
 

@@ -13,19 +13,44 @@
 namespace afterglow {
 namespace {
 
+/// Letters that are wrong, missing, too many, or changed over with the next one ("optimal string alignment").
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
+  std::vector<std::size_t> row(b.size() + 1), above(row), two_above(row);
   std::iota(row.begin(), row.end(), 0);
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
+    two_above.swap(above);
+    above.swap(row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substitute = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({substitute, row[j] + 1, row[j - 1] + 1});
+      row[j] = std::min({above[j - 1] + (a[i - 1] != b[j - 1]), above[j] + 1, row[j - 1] + 1});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], two_above[j - 2] + 1);
     }
   }
   return row.back();
+}
+
+/// Letters and digits alone, in lower case.
+std::string squeezed(std::string_view name) {
+  std::string out = lower(name);
+  std::erase_if(out, [](unsigned char c) { return !std::isalnum(c); });
+  return out;
+}
+
+/// The shortest candidate that begins with the name, or else holds it: "tonemap", "grain".
+std::string longer_name(std::string_view name, std::span<const std::string> candidates) {
+  constexpr std::size_t kLeast = 3, kLeastInside = 4;  // letters that say what is meant
+  const std::string wanted = squeezed(name);
+  const std::string* best = nullptr;
+  bool best_begins = false;
+  for (const auto& candidate : candidates) {
+    const std::size_t at = wanted.size() < kLeast ? std::string::npos : squeezed(candidate).find(wanted);
+    const bool begins = at == 0;
+    if (at == std::string::npos || (!begins && (wanted.size() < kLeastInside || best_begins))) continue;
+    if (best && begins == best_begins && candidate.size() >= best->size()) continue;
+    best = &candidate;
+    best_begins = begins;
+  }
+  return best ? *best : std::string();
 }
 
 }  // namespace
@@ -42,7 +67,7 @@ std::string nearest_name(std::string_view name, std::span<const std::string> can
       best_distance = distance;
     }
   }
-  return best;
+  return best.empty() ? longer_name(name, candidates) : best;
 }
 
 std::string join(std::span<const std::string> parts, std::string_view separator) {

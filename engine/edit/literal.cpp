@@ -185,6 +185,8 @@ std::string literal_text(const SettingValue& value, char quote, bool spaced) {
     case SettingType::text:
       return quoted(std::string(1, quote), value.choice);
     case SettingType::color:
+      if (const auto hex = hex_color(value); hex && has_many_digits(value)) return quoted(std::string(1, quote), *hex);
+      break;
     case SettingType::vec2:
     case SettingType::vec3:
       break;

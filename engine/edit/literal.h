@@ -19,7 +19,7 @@ bool is_literal(const LuaText& text, std::size_t first, std::size_t end);
 /// unless the value is a 32-bit float. Of another type of literal only what makes sense is kept.
 std::string literal_like(const LuaText& text, std::size_t first, std::size_t end, const SettingValue& value);
 
-/// The value where none stands yet.
+/// The value where none stands yet; a colour whose numbers would have many digits as "#rrggbb".
 std::string literal_text(const SettingValue& value, char quote = '"', bool spaced = true);
 
 }  // namespace afterglow::script

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/file.h"
 #include "core/saturated.h"
 #include "image/claimed_size.h"
 #include "image/container_bytes.h"
@@ -97,8 +98,8 @@ Result<ContainerFacts> check_container(const fs::path& file) {
   std::error_code ec;
   const fs::file_status status = fs::status(file, ec);
   if (!fs::exists(status)) {
-    const bool missing = !ec || ec == std::errc::no_such_file_or_directory;
-    return Error{ErrorKind::io, missing ? "no such file" : "cannot be read: " + ec.message(), file.string()};
+    if (!ec || ec == std::errc::no_such_file_or_directory) return missing_file(file);
+    return Error{ErrorKind::io, "cannot be read: " + ec.message(), file.string()};
   }
   if (fs::is_directory(status)) return malformed(file, "is a folder, not a picture");
   if (!fs::is_regular_file(status)) return malformed(file, "is not a regular file");

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/file.h"
 #include "core/saturated.h"
 #include "core/text.h"
 #include "image/movie.h"
@@ -56,7 +57,7 @@ Result<std::optional<AuxiliaryPlan>> plan_auxiliary(const AuxiliaryKind& kind, c
                : &kind == &kNormal ? find_normal(file.parts(), wanted.name, color)
                                    : find_motion(file.parts(), wanted.name, color);
   if (!found) {
-    if (!made.other && looks_like_file(wanted.name)) return Error{ErrorKind::io, "no such file", wanted.name};
+    if (!made.other && looks_like_file(wanted.name)) return missing_file(wanted.name);
     return in_file(std::move(found).error(), file.path());
   }
   if (!found.value() && made.other) {

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <unordered_map>
 
+#include "core/file.h"
 #include "core/text.h"
 #include "image/scale.h"
 #include "image/sequence.h"
@@ -146,7 +147,7 @@ Result<void> Footage::add(const std::string& input, const std::optional<std::vec
                  fmt::format("--frames needs a numbered input like shot.####.exr or a video, not {}", input),
                  "afterglow play"};
   std::error_code none;
-  if (!fs::exists(pattern.file(0), none)) return Error{ErrorKind::io, "no such file", pattern.file(0).string()};
+  if (!fs::exists(pattern.file(0), none)) return missing_file(pattern.file(0));
   return add_sequence(input, {});
 }
 

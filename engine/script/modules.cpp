@@ -169,7 +169,11 @@ void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::o
   {
     const Sandbox::Pause pause(box);
     auto text = given ? Result<std::string>(*given) : read_file(file, kMaxScript, runtime.path.record.get());
-    if (!text) throw ScriptError{{ErrorKind::script, text.error().message, file.string()}};
+    if (!text) {
+      Error error = std::move(text).error();
+      error.kind = ErrorKind::script;
+      throw ScriptError{std::move(error)};
+    }
     std::size_t bytes = text->size();
     for (const Source& source : box.sources()) bytes += source.text.size();
     if (bytes > kMaxScripts)

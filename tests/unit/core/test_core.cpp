@@ -65,6 +65,22 @@ TEST(Text, NearestName) {
   EXPECT_EQ(nearest_name("zzzzzz", names), "");
 }
 
+TEST(Text, PartsOfNamesAreEnough) {
+  const std::vector<std::string> names{"film_grain", "tone_mapping", "color_adjustments", "color_blit", "blit"};
+  EXPECT_EQ(nearest_name("tonemap", names), "tone_mapping");
+  EXPECT_EQ(nearest_name("Grain", names), "film_grain");
+  EXPECT_EQ(nearest_name("color", names), "color_blit");  // the shorter one
+  EXPECT_EQ(nearest_name("to", names), "");
+  EXPECT_EQ(nearest_name("ain", names), "");  // not where it begins
+}
+
+TEST(Text, TwoLettersChangedOverAreOneMistake) {
+  const std::vector<std::string> names{"set", "run", "new"};
+  EXPECT_EQ(nearest_name("rnu", names), "run");
+  EXPECT_EQ(nearest_name("urn", names), "run");
+  EXPECT_EQ(nearest_name("nur", names), "");  // the first and the third
+}
+
 TEST(Text, NumbersReadBackShort) {
   EXPECT_EQ(number_text(0.2f), "0.2");
   EXPECT_EQ(number_text(0.2), "0.2");
@@ -102,6 +118,21 @@ TEST_F(Folder, ReadErrorsSayWhy) {
   EXPECT_EQ(read_file(folder_).error().message, "is a folder, not a file");
   std::ofstream(folder_ / "big") << std::string(100, 'x');
   EXPECT_FALSE(read_file(folder_ / "big", 10));
+}
+
+TEST_F(Folder, MissingFilesNameWhatLiesThere) {
+  for (const char* name : {"look.lua", "look.lua~", ".lokk.lua", "beauty.exr", "shot.0007.exr"})
+    std::ofstream(folder_ / name) << "x";
+  const auto nearest = [&](const char* name) { return missing_file(folder_ / name).nearest; };
+  EXPECT_EQ(nearest("lok.lua"), (folder_ / "look.lua").string());
+  EXPECT_EQ(nearest("baeuty.exr"), (folder_ / "beauty.exr").string());
+  EXPECT_EQ(nearest("beauty.png"), (folder_ / "beauty.exr").string());
+  EXPECT_EQ(nearest("shot.0008.exr"), "");  // another frame
+  EXPECT_EQ(nearest("shto.0007.exr"), (folder_ / "shot.0007.exr").string());
+  EXPECT_EQ(nearest("none/look.lua"), "");
+  EXPECT_EQ(read_file(folder_ / "lok.lua").error().text(),
+            (folder_ / "lok.lua").string() + ": error: no such file; did you mean '" +
+                (folder_ / "look.lua").string() + "'?");
 }
 
 TEST_F(Folder, SearchPathPrefersTheUser) {

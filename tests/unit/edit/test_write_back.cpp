@@ -113,6 +113,10 @@ TEST_F(WriteBack, ColoursStayHexWhereTheyCan) {
             "fx.glow { tint = \"#8000ff\" }");
   EXPECT_EQ(inside("fx.glow { tint = { 0.5, 0, 0 } }", {{"glow", "tint", color(1, 0, 1)}}),
             "fx.glow { tint = { 1, 0, 1 } }");
+  // And where none stood, in the quotes of the script.
+  EXPECT_EQ(inside("fx.glow {}", {{"glow", "tint", color(half, 0, 1)}}), "fx.glow { tint = \"#8000ff\" }");
+  EXPECT_EQ(inside("fx.glow { mode = 'plain' }", {{"glow", "tint", color(half, 0, 1)}}),
+            "fx.glow { mode = 'plain', tint = '#8000ff' }");
 }
 
 TEST_F(WriteBack, NewSettingsFollowTheirNeighbours) {

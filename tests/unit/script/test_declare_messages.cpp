@@ -27,7 +27,7 @@ TEST(DeclareMessages, Effects) {
             "settings, space; did you mean 'order'?");
   EXPECT_EQ(declared("\n  at = \"post\","),
             "effects/glow.lua:4: error: fx.effect: unknown injection point 'post'; allowed: after_opaque_and_sky, "
-            "before_post_process, post_process, after_post_process");
+            "before_post_process, post_process, after_post_process; did you mean 'post_process'?");
   EXPECT_EQ(
       declared("  order = \"last\","),
       "effects/glow.lua:3: error: fx.effect: order = \"last\" is not an integer; allowed: integer −1000000…1000000");
