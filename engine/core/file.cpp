@@ -21,12 +21,20 @@ namespace {
 
 constexpr std::size_t kMostNames = 4096;  ///< of a folder that are looked at
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool looks_like_frame(const fs::path& path) {
+  const std::string stem = path.stem().string();
+  return std::ranges::adjacent_find(stem, [](char a, char b) { return is_digit(a) && is_digit(b); }) != stem.end();
+}
+
 std::string without_digits(std::string name) {
-  std::erase_if(name, [](char c) { return c >= '0' && c <= '9'; });
+  std::erase_if(name, is_digit);
   return name;
 }
 
-/// Names in the folder of a file that could be meant by its name: no hidden ones, no copies of editors.
+/// Names in the folder of a file that could be meant by its name: no hidden ones, no copies of editors, no other
+/// numbers.
 std::vector<std::string> names_beside(const fs::path& path) {
   const std::string wanted = without_digits(path.filename().string());
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -45,6 +53,7 @@ std::vector<std::string> names_beside(const fs::path& path) {
 
 Error missing_file(const fs::path& path) {
   Error error{ErrorKind::io, "no such file", path.string()};
+  if (looks_like_frame(path)) return error;
   const std::string near = nearest_name(path.filename().string(), names_beside(path));
   if (!near.empty()) error.nearest = (path.parent_path() / near).string();
   return error;

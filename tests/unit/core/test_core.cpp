@@ -121,18 +121,19 @@ TEST_F(Folder, ReadErrorsSayWhy) {
 }
 
 TEST_F(Folder, MissingFilesNameWhatLiesThere) {
-  for (const char* name : {"look.lua", "look.lua~", ".lokk.lua", "beauty.exr", "shot.0007.exr"})
+  for (const char* name : {"look.lua", "look.lua~", ".lokk.lua", "beauty.exr", "shot.0007.exr", "take1.exr"})
     std::ofstream(folder_ / name) << "x";
   const auto nearest = [&](const char* name) { return missing_file(folder_ / name).nearest; };
   EXPECT_EQ(nearest("lok.lua"), (folder_ / "look.lua").string());
   EXPECT_EQ(nearest("baeuty.exr"), (folder_ / "beauty.exr").string());
   EXPECT_EQ(nearest("beauty.png"), (folder_ / "beauty.exr").string());
-  EXPECT_EQ(nearest("shot.0008.exr"), "");  // another frame
-  EXPECT_EQ(nearest("shto.0007.exr"), (folder_ / "shot.0007.exr").string());
+  EXPECT_EQ(nearest("tkae1.exr"), (folder_ / "take1.exr").string());
+  EXPECT_EQ(nearest("take2.exr"), "");      // another one
+  EXPECT_EQ(nearest("shto.0007.exr"), "");  // a frame
   EXPECT_EQ(nearest("none/look.lua"), "");
-  EXPECT_EQ(read_file(folder_ / "lok.lua").error().text(),
-            (folder_ / "lok.lua").string() + ": error: no such file; did you mean '" +
-                (folder_ / "look.lua").string() + "'?");
+  EXPECT_EQ(read_file(folder_ / "lok.lua").error().text(), (folder_ / "lok.lua").string() +
+                                                               ": error: no such file; did you mean '" +
+                                                               (folder_ / "look.lua").string() + "'?");
 }
 
 TEST_F(Folder, SearchPathPrefersTheUser) {
