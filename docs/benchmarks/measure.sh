@@ -16,6 +16,7 @@ mkdir -p "$folder"
 ./dev calibrate -o "$folder/calibration.json"
 docs/benchmarks/commands.sh >/dev/null
 ./dev bench presets/neon_night.lua --reload -o "$folder" >"$folder/reload.txt"
+rm "$folder"/reload-*.json  # each sample; the table is enough here
 docs/benchmarks/pacing.sh >/dev/null
 
 compare=()
