@@ -30,7 +30,7 @@ bench::Step steps(Console& console, std::size_t total, std::function<std::size_t
 
 /// --compare. Errors: other, when something is slower than --threshold allows.
 Result<void> compare(const BenchArguments& a, const bench::Report& report) {
-  AFTERGLOW_TRY(const std::string old, read_file(a.compare));
+  AFTERGLOW_TRY(const std::string old, read_named_file(a.compare));
   AFTERGLOW_TRY(const auto all, bench::compare_reports(old, a.compare, report));
   if (all.empty())
     return Error{ErrorKind::usage, "nothing that was measured now is in it", a.compare, 0,

@@ -113,7 +113,7 @@ std::string lock_text(const Lock& lock) {
 }
 
 Result<Lock> read_lock(const fs::path& file) {
-  AFTERGLOW_TRY(const std::string text, read_file(file, 16u << 20));
+  AFTERGLOW_TRY(const std::string text, read_named_file(file, 16u << 20));
   try {
     const json in = json::parse(text);
     const int version = in.at("afterglow_lock").get<int>();

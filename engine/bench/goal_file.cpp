@@ -88,7 +88,7 @@ Result<void> read_all(const Json& root, const fs::path& folder, std::vector<Goal
 }  // namespace
 
 Result<std::vector<Goal>> load_goals(const fs::path& file) {
-  AFTERGLOW_TRY(const std::string text, read_file(file));
+  AFTERGLOW_TRY(const std::string text, read_named_file(file));
   std::vector<Goal> goals;
   std::string name;
   Result<void> done;

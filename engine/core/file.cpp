@@ -69,7 +69,7 @@ Result<std::string> read_file(const fs::path& path, std::size_t limit, FileRecor
   FileRecord::Reading reading(record, path);
   std::error_code ec;
   const auto status = fs::status(path, ec);
-  if (!fs::exists(status)) return missing_file(path);
+  if (!fs::exists(status)) return Error{ErrorKind::io, "no such file", path.string()};
   if (fs::is_directory(status)) return Error{ErrorKind::io, "is a folder, not a file", path.string()};
   // Reading a pipe waits for whoever may write it, which may be nobody.
   if (fs::is_fifo(status)) return Error{ErrorKind::io, "is a pipe, not a file", path.string()};
@@ -84,6 +84,13 @@ Result<std::string> read_file(const fs::path& path, std::size_t limit, FileRecor
   }
   if (in.bad()) return Error{ErrorKind::io, "read error", path.string()};
   reading.done(content);
+  return content;
+}
+
+Result<std::string> read_named_file(const fs::path& path, std::size_t limit, FileRecord* record) {
+  auto content = read_file(path, limit, record);
+  std::error_code ec;
+  if (!content && !fs::exists(path, ec)) return missing_file(path);
   return content;
 }
 

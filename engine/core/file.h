@@ -18,6 +18,10 @@ class FileRecord;  // core/file_record.h
 Result<std::string> read_file(const std::filesystem::path& path, std::size_t limit = 64u << 20,
                               FileRecord* record = nullptr);
 
+/// As read_file, for a file that a user has named: one that is not there is told as missing_file does.
+Result<std::string> read_named_file(const std::filesystem::path& path, std::size_t limit = 64u << 20,
+                                    FileRecord* record = nullptr);
+
 /// io, "no such file", with the name in its folder that is nearest to its own, when one is near. For a frame of a
 /// sequence (its name holds a number of several digits) none is: it is missing, not misspelt.
 Error missing_file(const std::filesystem::path& path);

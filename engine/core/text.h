@@ -10,9 +10,9 @@
 
 namespace afterglow {
 
-/// The candidate with the smallest edit distance to `name` (two neighbours changed over are one edit). When none is near
-/// (distance above a third of the longer name, rounded up), the shortest that begins with its letters or holds them; else
-/// "". Ties go to the earlier candidate.
+/// The candidate with the smallest edit distance to `name` (two neighbours changed over are one edit). When none is
+/// near (distance above a third of the longer name, rounded up), the shortest that begins with its letters or holds
+/// them; else "". Ties go to the earlier candidate.
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
 
 /// "a, b, c".

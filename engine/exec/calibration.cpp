@@ -95,7 +95,7 @@ Result<Calibration> Calibration::parse(const std::string& json, const std::strin
 }
 
 Result<Calibration> Calibration::load(const std::filesystem::path& file) {
-  AFTERGLOW_TRY(const std::string text, read_file(file));
+  AFTERGLOW_TRY(const std::string text, read_named_file(file));
   return parse(text, file.string());
 }
 

@@ -168,7 +168,7 @@ void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::o
   int index = 0;
   {
     const Sandbox::Pause pause(box);
-    auto text = given ? Result<std::string>(*given) : read_file(file, kMaxScript, runtime.path.record.get());
+    auto text = given ? Result<std::string>(*given) : read_named_file(file, kMaxScript, runtime.path.record.get());
     if (!text) {
       Error error = std::move(text).error();
       error.kind = ErrorKind::script;

@@ -100,7 +100,7 @@ TEST_F(FileFault, APictureThatChangesWhileItIsRead) {
                expect_whole_or_absent();
                expect_nothing_left_over();
                if (outcome.exit_code != kDone) {
-                 EXPECT_EQ(outcome.exit_code, kFiles);
+                 EXPECT_EQ(outcome.exit_code, kFiles) << outcome.err;
                  EXPECT_THAT(outcome.err, HasSubstr(input));
                  ++failed;
                }

@@ -131,9 +131,11 @@ TEST_F(Folder, MissingFilesNameWhatLiesThere) {
   EXPECT_EQ(nearest("take2.exr"), "");      // another one
   EXPECT_EQ(nearest("shto.0007.exr"), "");  // a frame
   EXPECT_EQ(nearest("none/look.lua"), "");
-  EXPECT_EQ(read_file(folder_ / "lok.lua").error().text(), (folder_ / "lok.lua").string() +
-                                                               ": error: no such file; did you mean '" +
-                                                               (folder_ / "look.lua").string() + "'?");
+  EXPECT_EQ(read_file(folder_ / "lok.lua").error().nearest, "");  // caches are read so
+  EXPECT_EQ(read_named_file(folder_ / "look.lua").value(), "x");
+  EXPECT_EQ(read_named_file(folder_ / "lok.lua").error().text(), (folder_ / "lok.lua").string() +
+                                                                     ": error: no such file; did you mean '" +
+                                                                     (folder_ / "look.lua").string() + "'?");
 }
 
 TEST_F(Folder, SearchPathPrefersTheUser) {
