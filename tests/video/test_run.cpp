@@ -54,7 +54,10 @@ TEST_F(RunVideos, FramesByNumberBecomeFiles) {
   EXPECT_THAT(said_, HasSubstr("30 frames cannot go into the one file one.png"));
   EXPECT_EQ(shell("AFTERGLOW run look.lua clip.mp4 -o many --frames 7"), 2);
   EXPECT_THAT(said_, HasSubstr("need --format"));
-  EXPECT_EQ(shell("AFTERGLOW run look.lua clip.mp4 -o sandbox.png --frames 30 --sandbox"), 0) << said_;
+  // LeakSanitizer looks by ptrace, if the program was built for it.
+  EXPECT_EQ(shell("ASAN_OPTIONS=detect_leaks=0 AFTERGLOW run look.lua clip.mp4 -o sandbox.png --frames 30 --sandbox"),
+            0)
+      << said_;
   EXPECT_EQ(number_in("sandbox.png"), 30);
 }
 
