@@ -119,7 +119,7 @@ return fx.effect {
     proportional = { setting = "intensity", up_to = function(s) return scatters(s) and kScatterLimit or 10 end },
     turn_90 = { margin = reach, when = is_even },
     shift = { by = function(s, source) return 2 ^ (pyramid(s, source) + 1) end, margin = reach, when = is_even },
-    -- What is added is multiplied by the intensity, and so are the steps of half floats near 0, 6e-8, of some levels: beyond 67 they count most.
+    -- What is added is multiplied by the intensity, and so are the steps of half floats near 0, 6e-8, of some levels: beyond 44 they count most.
     error = { fp32 = 1e-5, fp16 = function(s) return math.max(2e-3, scatters(s) and 0 or 4.5e-5 * s.intensity) end, levels = "max_iterations" },
   },
   build = function(g, s, source)
