@@ -4,13 +4,15 @@
 
     tools/before_after.py OLD NEW [--rounds 5]
 
-OLD and NEW are checkouts in which `./dev build` has run. Effects run alone and as `bench` runs them, at 1920x1080: steady frames on its made scene, over
-a pass that copies it. Commands are measured from outside, as users wait for them. Both versions run one after the other in each round, the other one
-first in the next; figures are medians. Needs oiiotool and two quiet cores; a quarter of an hour.
+OLD and NEW are checkouts in which `./dev build` has run. Effects run alone, with the settings of docs/benchmarks/looks/each_effect.lua, as `bench` runs
+them at 1920x1080: steady frames on its made scene, over a pass that copies it. Commands are measured from outside, as users wait for them. Both versions run one after the other in each round, the other one
+first in the next; figures are medians. Needs oiiotool and two quiet cores; five
+minutes for nine rounds.
 """
 import argparse
 import json
 import os
+import re
 import shutil
 import statistics
 import subprocess
@@ -18,13 +20,6 @@ import sys
 import tempfile
 import time
 
-EFFECTS = {
-    "depth_of_field": "", "bokeh_blur": "", "radial_blur": "", "lens_dirt": "", "chromatic_aberration": "", "directional_blur": "",
-    "firefly_stabilisation": "", "edge_detection": "", "dual_kawase": "", "fxaa": "", "outline": "",
-    "lut": 'file = "luts/teal_orange.cube"', "tone_mapping": 'mode = "aces"',
-    "color_adjustments": "post_exposure = 1.5, contrast = 30, saturation = 40, hue_shift = 30", "film_grain": "",
-    "lift_gamma_gain": "gamma = { 1, 0.9, 0.8 }, gain_offset = 0.1",
-}
 LOOKS = ["scatter_aces", "ten_effects"]  # of docs/benchmarks/looks
 
 
@@ -32,7 +27,7 @@ class Version:
     def __init__(self, checkout, work):
         self.home = os.path.abspath(checkout)
         self.program = os.path.join(self.home, "build/release/bin/afterglow")
-        self.caches = os.path.join(work, "caches-" + str(abs(hash(self.home))))
+        self.caches = tempfile.mkdtemp(dir=work)
 
     def run(self, *arguments, caches=None):
         """Seconds of a command."""
@@ -60,7 +55,9 @@ def steady_frames(work, here):
     """A measurement of all looks, in copy passes."""
     folder = os.path.join(work, "looks")
     os.makedirs(folder)
-    for name, settings in EFFECTS.items():
+    with open(os.path.join(here, "docs/benchmarks/looks/each_effect.lua"), encoding="utf-8") as look:
+        effects = dict(re.findall(r"^  fx\.(\w+) \{ (.*?)(?:, )?enabled = false \},$", look.read(), re.M))
+    for name, settings in effects.items():
         with open(os.path.join(folder, name + ".lua"), "w", encoding="utf-8") as look:
             look.write(f'local fx = require "afterglow"\nreturn fx.stack {{ name = "{name}", fx.{name} {{ {settings} }} }}\n')
     for name in LOOKS:
@@ -68,7 +65,7 @@ def steady_frames(work, here):
     goals = os.path.join(folder, "goals.json")
     with open(goals, "w", encoding="utf-8") as file:
         json.dump({"goals": [{"name": name, "sizes": ["1920x1080"], "over": [{"look": name + ".lua"}], "under": [{"copy": True}], "at_most": 1}
-                             for name in [*EFFECTS, *LOOKS]]}, file)
+                             for name in [*effects, *LOOKS]]}, file)
 
     def measure(version):
         out = os.path.join(work, "bench")

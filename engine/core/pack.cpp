@@ -144,7 +144,7 @@ bool is_zip(const fs::path& path) {
 }
 
 Result<fs::path> open_zip(const fs::path& path, const fs::path& cache, const PackLimits& limits) {
-  auto bytes = read_named_file(path, limits.zip_bytes);
+  auto bytes = read_file(path, limits.zip_bytes);
   if (!bytes) return Error{ErrorKind::script, bytes.error().message, path.string()};
   const Zip zip(unzOpen64(path.c_str()));
   if (!zip) return refused(path, "it is no zip");

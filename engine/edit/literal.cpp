@@ -20,9 +20,10 @@ std::string decimal_text(double value) {
   return fmt::format("{}", value);
 }
 
-// A colour of a display code, as numbers of 16 digits that nobody wrote.
-bool has_many_digits(const SettingValue& color) {
-  return std::ranges::any_of(color.number, [](double v) { return decimal_text(v).size() > 9; });
+// "#rrggbb" of a colour that its numbers would need many digits for, which nobody wrote.
+std::optional<std::string> shorter_code(const SettingValue& color) {
+  const bool many = std::ranges::any_of(color.number, [](double v) { return decimal_text(v).size() > 9; });
+  return many ? hex_color(color) : std::nullopt;
 }
 
 bool has(std::string_view text, char a) { return text.find(a) != std::string_view::npos; }
@@ -158,7 +159,7 @@ std::string literal_like(const LuaText& text, std::size_t first, std::size_t end
           for (char& c : code) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
         return quoted(old.text, code);
       }
-      if (const auto hex = hex_color(value); hex && !is_text && has_many_digits(value)) return quoted("\"", *hex);
+      if (shorter_code(value)) break;
       [[fallthrough]];
     case SettingType::vec2:
     case SettingType::vec3: {
@@ -185,7 +186,7 @@ std::string literal_text(const SettingValue& value, char quote, bool spaced) {
     case SettingType::text:
       return quoted(std::string(1, quote), value.choice);
     case SettingType::color:
-      if (const auto hex = hex_color(value); hex && has_many_digits(value)) return quoted(std::string(1, quote), *hex);
+      if (const auto code = shorter_code(value)) return quoted(std::string(1, quote), *code);
       break;
     case SettingType::vec2:
     case SettingType::vec3:
