@@ -9,7 +9,6 @@ namespace {
 
 // Alexa LogC El 1000.
 constexpr double kLogcA = 5.555556, kLogcB = 0.047996, kLogcC = 0.244161, kLogcD = 0.386036;
-constexpr double kHsvEpsilon = 1e-4;
 
 }  // namespace
 
@@ -29,14 +28,14 @@ double linear_to_logc(double x) { return kLogcC * std::log10(glm::max(kLogcA * x
 
 double logc_to_linear(double y) { return (std::pow(10.0, (y - kLogcD) / kLogcC) - kLogcB) / kLogcA; }
 
-Rgb rgb_to_hsv(const Rgb& c) {
+Rgb rgb_to_hsv(const Rgb& c, double epsilon) {
   const bool green_first = c.g >= c.b;
   const double a = green_first ? c.g : c.b, b = green_first ? c.b : c.g;
   const double k0 = green_first ? 0.0 : -1.0, k1 = green_first ? -1.0 / 3 : 2.0 / 3;
   const bool red_first = c.r >= a;
   const double value = red_first ? c.r : a, other = red_first ? a : c.r, k = red_first ? k0 : k1;
   const double d = value - glm::min(other, b);
-  return {std::abs(k + (other - b) / (6 * d + kHsvEpsilon)), d / (value + kHsvEpsilon), value};
+  return {std::abs(k + (other - b) / (6 * d + epsilon)), d / (value + epsilon), value};
 }
 
 Rgb hsv_to_rgb(const Rgb& hsv) {

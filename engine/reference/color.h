@@ -28,8 +28,13 @@ double gamma_to_linear(double v);
 double linear_to_logc(double x);
 double logc_to_linear(double y);
 
-/// Hue and saturation in 0…1, value as is; the ε of 1e-4 in both divisions belongs to the definition.
-Rgb rgb_to_hsv(const Rgb& c);
+/// The ε in both divisions of `rgb_to_hsv`, as Unity has it.
+inline constexpr double kUnityHsvEpsilon = 1e-4;
+/// HSV itself; only greys and black need it, against 0/0.
+inline constexpr double kNoHsvEpsilon = 1e-300;
+
+/// Hue and saturation in 0…1, value as is.
+Rgb rgb_to_hsv(const Rgb& c, double epsilon);
 Rgb hsv_to_rgb(const Rgb& hsv);
 /// Wraps h into 0…1 by at most one turn.
 double rotate_hue(double h);

@@ -17,7 +17,7 @@ Rgb adjust_contrast(const Rgb& c, double factor) {
 }
 
 Rgb shift_hue(const Rgb& c, double turn) {
-  Rgb hsv = rgb_to_hsv(c);
+  Rgb hsv = rgb_to_hsv(c, kUnityHsvEpsilon);
   hsv.x = rotate_hue(hsv.x + turn);
   return hsv_to_rgb(hsv);
 }

@@ -135,7 +135,7 @@ double gain(const std::array<double, 5>& y, double v) {
 }
 
 Rgb by_hue(const Rgb& c, const std::array<Rgb, 6>& hues) {
-  Rgb hsv = rgb_to_hsv(c);
+  Rgb hsv = rgb_to_hsv(c, kNoHsvEpsilon);
   const double at = hsv.x * 6, whole = std::floor(at), t = at - whole;
   const int i = static_cast<int>(whole) % 6;
   const Rgb change = glm::mix(hues[i], hues[(i + 1) % 6], t * t * (3 - 2 * t));

@@ -23,7 +23,7 @@ vec4 apply(vec4 color) {
   if (use_contrast) c = log_contrast(c, contrast);
   if (use_filter) c *= filter_color;
   c = clamp(c, 0.0, kMaxLight);  // contrast makes darks negative
-  if (use_hue) c = turn_hue(c, hue_sextants, hue_part);
+  if (use_hue) c = turn_hue(c, hue_sextants, hue_part, kUnityHueEpsilon);
   if (use_saturation) c = clamp(lerp(vec3(luminance(c)), c, saturation), 0.0, kMaxLight);
   return vec4(c, color.a);
 }

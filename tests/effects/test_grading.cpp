@@ -191,6 +191,32 @@ TEST_F(Effects, CurvesGoThroughTheirPoints) {
   }
 }
 
+/// HSV without an ε: where two channels are equal, a last digit decides from which of them a hue is counted.
+TEST_F(Effects, HuesDoNotJumpAndAreThoseOfEveryExposure) {
+  constexpr int kColours = 24;
+  Scene ties{"ties", DoubleImage(kColours, 3), {}, {}};
+  for (int x = 0; x < kColours; ++x) {
+    const float a = 0.03F * static_cast<float>(1 + x), b = 0.02F * static_cast<float>(kColours - x);
+    Rgb colour(a, a, b);
+    colour = x % 3 == 0 ? colour : x % 3 == 1 ? Rgb(colour.z, colour.x, colour.y) : Rgb(colour.y, colour.z, colour.x);
+    ties.source.at(x, 0) = Rgba(colour, 1);
+    for (int i = 0; i < 3 && colour == Rgb(ties.source.at(x, 0)); ++i)
+      if (colour[i] == static_cast<double>(a)) colour[i] = static_cast<double>(std::nextafter(a, 2.0F));
+    ties.source.at(x, 1) = Rgba(colour, 1);
+    ties.source.at(x, 2) = Rgba(Rgb(ties.source.at(x, 0)) / 4096.0, 1);
+  }
+  const auto made = run_stack(
+      "fx.curves { reds = { 40, 20, 10 }, yellows = { -60, 0, 30 }, greens = { 100, 10, 0 }, cyans = { 0, 40, -20 }, "
+      "blues = { -80, 0, 0 }, magentas = { 20, -30, 10 } }",
+      ties, Way::plain);
+  for (std::size_t x = 0; x < kColours; ++x)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float value = made.result[x * 4 + i];
+      EXPECT_NEAR(made.result[(kColours + x) * 4 + i], value, 2e-6F * (value + 0.1F)) << x << ' ' << i;
+      EXPECT_NEAR(made.result[(2 * kColours + x) * 4 + i] * 4096, value, 2e-6F * (value + 0.1F)) << x << ' ' << i;
+    }
+}
+
 TEST_F(Effects, AWholeGradeIsOneKernel) {
   const char* entries =
       "fx.vignette {}, fx.white_balance { temperature = 20 }, fx.split_toning { shadows = \"#305080\" }, "

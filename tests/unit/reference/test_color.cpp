@@ -38,9 +38,11 @@ TEST(Logc, RoundTripAndLimits) {
 TEST(Hsv, RoundTripIsGoodToEpsilon) {
   for (const auto& p : random_light({32, 32}, 7).pixels) {
     const Rgb c(p);
-    EXPECT_LT(glm::length(hsv_to_rgb(rgb_to_hsv(c)) - c), 4e-4);
+    EXPECT_LT(glm::length(hsv_to_rgb(rgb_to_hsv(c, kUnityHsvEpsilon)) - c), 4e-4);
+    EXPECT_LT(glm::length(hsv_to_rgb(rgb_to_hsv(c, kNoHsvEpsilon)) - c), 1e-14 * glm::length(c));
   }
-  EXPECT_NEAR(hsv_to_rgb(rgb_to_hsv(Rgb(1, 0, 0))).g, 1e-4, 1e-8);
+  EXPECT_NEAR(hsv_to_rgb(rgb_to_hsv(Rgb(1, 0, 0), kUnityHsvEpsilon)).g, 1e-4, 1e-8);
+  for (const double grey : {0.0, 0.18}) EXPECT_EQ(hsv_to_rgb(rgb_to_hsv(Rgb(grey), kNoHsvEpsilon)), Rgb(grey));
 }
 
 TEST(Hsv, RotateWrapsOnce) {

@@ -22,7 +22,7 @@ const std::map<std::string, std::function<Rgb(const Rgb&)>> kFunctions = {
     {"reinhard", [](const Rgb& c) { return tone_map(c, ToneMode::reinhard); }},
     {"neutral", [](const Rgb& c) { return tone_map(c, ToneMode::neutral); }},
     {"aces", [](const Rgb& c) { return tone_map(c, ToneMode::aces); }},
-    {"hsv", rgb_to_hsv},
+    {"hsv", [](const Rgb& c) { return rgb_to_hsv(c, kUnityHsvEpsilon); }},
     {"logC", [](const Rgb& c) { return each(c, linear_to_logc); }},
     {"srgb_to_linear", [](const Rgb& c) { return each(c, srgb_to_linear); }},
     {"contrast+50", [](const Rgb& c) { return adjust_contrast(c, 1.5); }},
