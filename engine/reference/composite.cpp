@@ -83,7 +83,7 @@ PixelMask radial_mask(const Settings& s, Size size) {
   if (wide <= 0 || high <= 0) return [](int, int, const Rgb&) { return 0.0; };
   const double rx = std::max(wide, 1e-6), ry = std::max(high, 1e-6);
   const double soft = std::max(s.number("softness"), 1e-6), angle = s.number("rotation") * std::numbers::pi / 180;
-  return [=](int x, int y, const Rgb&) {
+  return [=, cx = cx, cy = cy](int x, int y, const Rgb&) {
     const double dx = (x + 0.5 - cx * size.width) / size.height, dy = (y + 0.5 - cy * size.height) / size.height;
     const double ex = (std::cos(angle) * dx + std::sin(angle) * dy) / rx,
                  ey = (std::cos(angle) * dy - std::sin(angle) * dx) / ry;
@@ -94,7 +94,7 @@ PixelMask radial_mask(const Settings& s, Size size) {
 PixelMask linear_mask(const Settings& s, Size size) {
   const auto [fx, fy] = s.pair("from");
   const auto [tx, ty] = s.pair("to");
-  return [=](int x, int y, const Rgb&) {
+  return [=, fx = fx, fy = fy, tx = tx, ty = ty](int x, int y, const Rgb&) {
     const double wx = (tx - fx) * size.width, wy = (ty - fy) * size.height;
     const double along = (x + 0.5 - fx * size.width) * wx + (y + 0.5 - fy * size.height) * wy;
     return smoothstep(0, 1, along / (wx * wx + wy * wy));

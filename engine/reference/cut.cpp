@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/vec2.hpp>
 
+#include "reference/color.h"
 #include "reference/grain.h"
 
 namespace afterglow::reference {
@@ -50,14 +51,14 @@ DoubleImage transition(const DoubleImage& source, const DoubleImage* other, cons
   const int way_x = level ? (to.x > 0 ? 1 : -1) : 0, way_y = level ? 0 : (to.y > 0 ? 1 : -1);
   return generate(size, [&](int x, int y) {
     const Rgba& p = source.at(x, y);
-    const auto next = [&](int px, int py) { return other ? Rgb(other->clamped(px, py)) : s.color * p.a; };
+    const Rgb plain = glm::min(s.color * p.a, Rgb(kMostLight));
+    const auto next = [&](int px, int py) { return other ? Rgb(other->clamped(px, py)) : plain; };
     Rgb out;
     if (s.kind == CutKind::dissolve) {
       out = glm::mix(Rgb(p), next(x, y), s.progress);
     } else if (s.kind == CutKind::fade) {
-      const Rgb through = s.color * p.a;
-      out = s.progress < 0.5 ? glm::mix(Rgb(p), through, 2 * s.progress)
-                             : glm::mix(through, next(x, y), 2 * s.progress - 1);
+      out = s.progress < 0.5 ? glm::mix(Rgb(p), plain, 2 * s.progress)
+                             : glm::mix(plain, next(x, y), 2 * s.progress - 1);
     } else if (s.kind == CutKind::push) {
       const int px = x - static_cast<int>(std::floor(way_x * size.width * s.progress + 0.5));
       const int py = y - static_cast<int>(std::floor(way_y * size.height * s.progress + 0.5));

@@ -53,7 +53,7 @@ return fx.effect {
       contrast = s.contrast / 100 + 1,
       filter_color = { bounded(c[1]), bounded(c[2]), bounded(c[3]) },
       hue_sextants = whole, hue_part = sextants - whole,
-      saturation = s.saturation / 100 + 1,
+      saturation = s.saturation / 100,
     }
   end,
 }

@@ -61,8 +61,8 @@ return fx.effect {
 
   -- An edge is `contrast` times as steep; what is bright shines through ink that is not quite opaque.
   holds = {
-    error = { fp32 = function(s) return 1e-4 * math.max(1, s.contrast) end, fp16 = false, when = function(s)
-      return s.depth_space == "linear" and s.contrast <= 100 and math.abs(s.depth_scale) <= 100 and math.abs(s.normal_scale) <= 100 and s.divide_factor >= 1e-3
+    error = { fp32 = function(s) return 1e-4 * math.max(1, s.contrast) end, fp16 = false, when = function(s)  -- of the line, not of its share of a colour without limit
+      return math.max(s.color[1], s.color[2], s.color[3]) <= 1e4 and s.depth_space == "linear" and s.contrast <= 100 and math.abs(s.depth_scale) <= 100 and math.abs(s.normal_scale) <= 100 and s.divide_factor >= 1e-3
     end },
   },
   build = function(g, s, source)

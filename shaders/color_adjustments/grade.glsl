@@ -15,7 +15,7 @@ uniform float contrast;         // 0…2, 1 is neutral
 uniform vec3 filter_color;
 uniform float hue_sextants;     // whole sixths of a turn, and what is left over
 uniform float hue_part;
-uniform float saturation;       // 0…2, 1 is neutral
+uniform float saturation;       // −1…1, 0 is neutral
 
 vec4 apply(vec4 color) {
   vec3 c = min(color.rgb, 60.0);
@@ -24,6 +24,6 @@ vec4 apply(vec4 color) {
   if (use_filter) c *= filter_color;
   c = clamp(c, 0.0, kMaxLight);  // contrast makes darks negative
   if (use_hue) c = turn_hue(c, hue_sextants, hue_part, kUnityHueEpsilon);
-  if (use_saturation) c = clamp(lerp(vec3(luminance(c)), c, saturation), 0.0, kMaxLight);
+  if (use_saturation) c = clamp(c * (1.0 + saturation) - luminance(c) * saturation, 0.0, kMaxLight);  // a dark channel keeps its digits
   return vec4(c, color.a);
 }
