@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/ascii.h"
 #include "core/paths.h"
 
 namespace afterglow {
@@ -80,7 +81,7 @@ Result<stress::StressRequest> StressArguments::request(const std::string& name) 
 Result<std::vector<std::uint64_t>> StressArguments::trials() const {
   std::vector<std::uint64_t> out;
   for (const auto& text : digests_of) {
-    if (text.empty() || text.size() > 18 || !std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c); }))
+    if (text.empty() || text.size() > 18 || !std::ranges::all_of(text, is_digit))
       return Error{ErrorKind::usage, fmt::format("'{}' is no trial", text), "--digests-of"};
     out.push_back(std::stoull(text));
   }

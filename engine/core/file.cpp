@@ -10,6 +10,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/ascii.h"
 #include "core/file_record.h"
 #include "core/temporary.h"
 #include "core/text.h"
@@ -20,8 +21,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMostNames = 4096;  ///< of a folder that are looked at
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 bool looks_like_frame(const fs::path& path) {
   const std::string stem = path.stem().string();

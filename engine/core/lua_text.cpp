@@ -5,11 +5,11 @@
 #include <array>
 #include <cctype>
 
+#include "core/ascii.h"
+
 namespace afterglow {
 namespace {
 
-bool is_name_char(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)); }
 bool is_break(char c) { return c == '\n' || c == '\r'; }
 
 bool is_word(std::string_view name) {

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cstdio>
 #include <system_error>
 #include <unordered_set>
 
+#include "core/ascii.h"
 #include "core/text.h"
 
 namespace afterglow {
@@ -18,8 +18,6 @@ namespace {
 
 constexpr std::size_t kMaxFrames = 1'000'000;
 constexpr int kMaxDigits = 9;  // what always fits an int
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 Error bad_frames(const std::string& text, const std::string& why) {
   return Error{ErrorKind::usage, fmt::format("bad frame list '{}': {}", text, why), "", 0,

@@ -57,8 +57,8 @@ DoubleImage transition(const DoubleImage& source, const DoubleImage* other, cons
     if (s.kind == CutKind::dissolve) {
       out = glm::mix(Rgb(p), next(x, y), s.progress);
     } else if (s.kind == CutKind::fade) {
-      out = s.progress < 0.5 ? glm::mix(Rgb(p), plain, 2 * s.progress)
-                             : glm::mix(plain, next(x, y), 2 * s.progress - 1);
+      out =
+          s.progress < 0.5 ? glm::mix(Rgb(p), plain, 2 * s.progress) : glm::mix(plain, next(x, y), 2 * s.progress - 1);
     } else if (s.kind == CutKind::push) {
       const int px = x - static_cast<int>(std::floor(way_x * size.width * s.progress + 0.5));
       const int py = y - static_cast<int>(std::floor(way_y * size.height * s.progress + 0.5));

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <system_error>
 
+#include "core/ascii.h"
 #include "core/file.h"
 #include "core/inside.h"
 #include "core/text.h"
@@ -157,8 +157,8 @@ DeclaredStack load_named_stack(lua_State* lua, const std::string& name) {
 }
 
 bool is_identifier(const std::string& name) {
-  if (name.empty() || name.size() > 64 || std::isdigit(static_cast<unsigned char>(name[0]))) return false;
-  return std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+  if (name.empty() || name.size() > 64 || is_digit(name[0])) return false;
+  return std::ranges::all_of(name, is_name_char);
 }
 
 void load_chunk(lua_State* lua, const fs::path& file, bool library, const std::optional<std::string>& given) {

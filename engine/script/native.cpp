@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "script/native.h"
 
-#include <cctype>
-
+#include "core/ascii.h"
 #include "core/key_finder.h"
 #include "script/function_ref.h"
 
@@ -24,9 +23,7 @@ void locate_blame(const Sandbox& box, const Blame& blame, Error& error) {
   error.file = blame.file;
   error.line = blame.line;
   std::size_t end = 0;
-  while (end < error.message.size() &&
-         (std::isalnum(static_cast<unsigned char>(error.message[end])) || error.message[end] == '_'))
-    ++end;
+  while (end < error.message.size() && is_name_char(error.message[end])) ++end;
   if (end == 0) return;
   error.line = line_of_key(box, blame.file, blame.line, blame.function, {error.message.substr(0, end)});
 }

@@ -5,14 +5,13 @@
 #include <cctype>
 #include <charconv>
 
+#include "core/ascii.h"
 #include "core/text.h"
 
 namespace afterglow::script {
 namespace {
 
 constexpr std::string_view kKey = "requires";
-
-bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
 /// The text in quotation marks behind `key =`; empty: there is none.
 std::string_view quoted_behind(std::string_view rest) {
@@ -50,7 +49,7 @@ std::optional<Requirement> newer_requirement(std::string_view text, const Versio
     const std::string_view code = text.substr(0, std::min(text.find("--"), end));
     text.remove_prefix(std::min(end + 1, text.size()));
     const std::size_t at = code.find(kKey);
-    if (at == std::string_view::npos || (at > 0 && is_word(code[at - 1]))) continue;
+    if (at == std::string_view::npos || (at > 0 && is_name_char(code[at - 1]))) continue;
     const std::string_view wanted = quoted_behind(code.substr(at + kKey.size()));
     const auto version = parse_version(wanted);
     if (version && *version > own) return Requirement{std::string(wanted), line};

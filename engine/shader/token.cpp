@@ -3,11 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "core/ascii.h"
+
 namespace afterglow {
 namespace {
-
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 class Tokenizer {
  public:
@@ -63,8 +62,8 @@ class Tokenizer {
       ++directive_;
     }
     line_is_empty_ = false;
-    if (is_letter(c)) return word();
     if (is_digit(c) || (c == '.' && is_digit(peek(1)))) return number();
+    if (is_name_char(c)) return word();
     if (c == '"') return quoted();
     return punctuation();
   }
@@ -101,7 +100,7 @@ class Tokenizer {
 
   Result<void> word() {
     const auto begin = at_;
-    while (is_letter(peek()) || is_digit(peek())) ++at_;
+    while (is_name_char(peek())) ++at_;
     if (at_ - begin > 128) return shader_error(file_, line_, "the name is longer than 128 characters");
     push(TokenKind::identifier, begin, at_);
     return count(tokens_.back());
@@ -110,7 +109,7 @@ class Tokenizer {
   Result<void> number() {
     const auto begin = at_;
     const bool hexadecimal = peek() == '0' && (peek(1) == 'x' || peek(1) == 'X');
-    while (is_letter(peek()) || is_digit(peek()) || peek() == '.') {
+    while (is_name_char(peek()) || peek() == '.') {
       const bool exponent = !hexadecimal && (peek() == 'e' || peek() == 'E');
       ++at_;
       if (exponent && (peek() == '+' || peek() == '-')) ++at_;

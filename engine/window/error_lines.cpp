@@ -2,9 +2,9 @@
 #include "window/error_lines.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string_view>
 
+#include "core/ascii.h"
 #include "core/parse_number.h"
 
 namespace afterglow {
@@ -12,7 +12,7 @@ namespace {
 
 /// Of text that begins with a line's number: how many digits it has.
 std::size_t number_length(std::string_view text) {
-  const auto end = std::ranges::find_if_not(text, [](unsigned char c) { return std::isdigit(c) != 0; });
+  const auto end = std::ranges::find_if_not(text, is_digit);
   return static_cast<std::size_t>(end - text.begin());
 }
 

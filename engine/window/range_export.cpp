@@ -7,6 +7,7 @@
 #include <chrono>
 #include <set>
 
+#include "core/ascii.h"
 #include "core/file.h"
 #include "image/sequence.h"
 
@@ -87,9 +88,7 @@ std::string RangeExport::proposed(Player& player) const {
   if (footage.movie(first)) return stem + "_graded.mp4";
   // "shot.0012" is "shot" with a number.
   if (footage.frames() > 1)
-    while (!stem.empty() &&
-           (std::isdigit(static_cast<unsigned char>(stem.back())) || stem.back() == '.' || stem.back() == '_'))
-      stem.pop_back();
+    while (!stem.empty() && (is_digit(stem.back()) || stem.back() == '.' || stem.back() == '_')) stem.pop_back();
   return stem + (footage.frames() > 1 ? "_graded.####.exr" : "_graded.exr");
 }
 
