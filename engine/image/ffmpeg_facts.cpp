@@ -59,6 +59,16 @@ bool is_interlaced(const AVFrame& frame) {
 #endif
 }
 
+/// What a file says of its colours, as the number that stands there: FFmpeg's readers (Matroska's) put numbers into
+/// enumerations that have no such name, and C++ may not read those as what they claim to be.
+template <class Enumeration>
+int number_of(const Enumeration& said) {
+  static_assert(sizeof said == sizeof(int));
+  int number = 0;
+  std::memcpy(&number, &said, sizeof number);
+  return number;
+}
+
 Rational rational(AVRational r) { return {r.num, r.den}; }
 
 /// Square pixels: the side that has too few is made longer.
@@ -86,17 +96,18 @@ void use_aspect(FfmpegInput& input, const AVFrame& first, MovieFacts& facts) {
 
 MovieColor color_of(const AVFrame& frame, AVCodecID codec) {
   MovieColor color;
-  color.primaries = frame.color_primaries;
-  color.transfer = frame.color_trc;
-  color.matrix = frame.colorspace;
+  color.primaries = number_of(frame.color_primaries);
+  color.transfer = number_of(frame.color_trc);
+  color.matrix = number_of(frame.colorspace);
   const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
   color.rgb = format && (format->flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL)) != 0;
   for (const AVCodecID still : {AV_CODEC_ID_MJPEG, AV_CODEC_ID_GIF, AV_CODEC_ID_APNG, AV_CODEC_ID_PNG, AV_CODEC_ID_BMP,
                                 AV_CODEC_ID_WEBP, AV_CODEC_ID_PPM, AV_CODEC_ID_PGM, AV_CODEC_ID_PAM, AV_CODEC_ID_PFM})
     color.picture = color.picture || codec == still;
   const bool full_format = format && std::strncmp(format->name, "yuvj", 4) == 0;
-  color.full_range = frame.color_range == AVCOL_RANGE_JPEG || full_format ||
-                     (frame.color_range == AVCOL_RANGE_UNSPECIFIED && (color.rgb || color.picture));
+  const int range = number_of(frame.color_range);
+  color.full_range =
+      range == AVCOL_RANGE_JPEG || full_format || (range == AVCOL_RANGE_UNSPECIFIED && (color.rgb || color.picture));
   return color;
 }
 
@@ -142,7 +153,7 @@ FramePlanes planes_of(const AVFrame& frame, const MovieFacts& facts) {
   planes.transfer = facts.color.transfer;
   planes.primaries = facts.color.primaries;
   planes.full_range = facts.color.full_range;
-  planes.chroma_place = frame.chroma_location;
+  planes.chroma_place = number_of(frame.chroma_location);
   return planes;
 }
 
