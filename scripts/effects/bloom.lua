@@ -121,7 +121,7 @@ return fx.effect {
     shift = { by = function(s, source) return 2 ^ (pyramid(s, source) + 1) end, margin = reach, when = is_even },
     -- What is added is multiplied by the intensity, and so are the steps of half floats near 0, 6e-8, of some levels: beyond 44 they count most.
     -- Tails of lights that are bright enough for a threshold above 30 (in linear light, 1,800) end in steps of half floats, too.
-    error = { fp32 = 1e-5, fp16 = function(s) return math.max(s.threshold > 30 and 3e-3 or 2e-3, scatters(s) and 0 or 4.5e-5 * s.intensity) end, levels = "max_iterations" },
+    error = { fp32 = 1e-5, fp16 = function(s) return math.max(s.threshold > 30 and 5e-3 or 2e-3, scatters(s) and 0 or 4.5e-5 * s.intensity) end, levels = "max_iterations" },
   },
   build = function(g, s, source)
     -- The picture whose glow is made. A preview stands for the delivered one, whose levels are counted.
