@@ -14,8 +14,6 @@
 namespace afterglow {
 namespace {
 
-constexpr int kMost1d = 65536, kMost3d = 129;  // OpenColorIO's own limit for three dimensions
-
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 std::vector<std::string_view> words_of(std::string_view line) {
@@ -95,8 +93,8 @@ class CubeCheck {
     const std::string name(words[0]);
     if (name == "TITLE") return {};
     if (colours_ > 0) return fail(fmt::format("'{}' behind the first colour", shown(name)));
-    if (name == "LUT_1D_SIZE") return size(words, size_1d_, kMost1d);
-    if (name == "LUT_3D_SIZE") return size(words, size_3d_, kMost3d);
+    if (name == "LUT_1D_SIZE") return size(words, size_1d_, kMostLut1d);
+    if (name == "LUT_3D_SIZE") return size(words, size_3d_, kMostLut3d);
     if (name == "DOMAIN_MIN") return domain(words, 0);
     if (name == "DOMAIN_MAX") return domain(words, 1);
     if (name == "LUT_1D_INPUT_RANGE" || name == "LUT_3D_INPUT_RANGE") return range(words);

@@ -29,9 +29,7 @@ Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record, cons
   auto text = read_file(file, kMaxFile, record);
   if (!text) return fail(text.error().message);
   if (extension == "cube") AFTERGLOW_CHECK(check_cube(*text, file.string()));
-  // Colour transforms that name further files: what a look may read is decided elsewhere.
-  if (extension == "clf" && text->find("Reference") != std::string::npos)
-    return fail("refers to another file, which is not supported");
+  AFTERGLOW_CHECK(check_table_text(*text, file.string(), false));
   // OpenColorIO puts variables of the environment into paths.
   if (file.string().find_first_of("$%") != std::string::npos)
     return fail("a path with '$' or '%' cannot be handed to OpenColorIO; rename the file or its folder");

@@ -52,6 +52,14 @@ Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record = nul
 /// Whether what the last step gives always lies in 0…1: it is a table of such entries.
 bool gives_unit(const Lut& loaded);
 
+/// Most entries of a table of one dimension, and of a side of one of three (OpenColorIO's own limit).
+inline constexpr int kMostLut1d = 65536, kMostLut3d = 129;
+
+/// What no file that OpenColorIO reads may hold, whatever its name: other files that it refers to, XML that could hide
+/// such a reference (a document type, UTF-16), sizes that take memory before a line is read. `may_be_profile`: an ICC
+/// profile is no text, and right. Errors: script.
+Result<void> check_table_text(const std::string& text, const std::string& file, bool may_be_profile);
+
 /// Looks a .cube through before OpenColorIO reads it, which says less about what is wrong and takes memory for whatever
 /// size a file claims. Errors: script, at the line.
 Result<void> check_cube(const std::string& text, const std::string& file);

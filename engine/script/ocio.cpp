@@ -94,7 +94,7 @@ void check_table(Runtime& runtime, const ChosenConfig& config, const std::string
   if (!content) fail(content.error().message);
   if (lower(table.path.extension().string()) == ".cube")
     if (auto sound = check_cube(*content, table.path.string()); !sound) throw ScriptError{sound.error()};
-  if (content->find("<Reference") != std::string::npos) fail("refers to another file, which is not supported");
+  if (auto sound = check_table_text(*content, table.path.string(), true); !sound) fail(sound.error().message);
 }
 
 }  // namespace

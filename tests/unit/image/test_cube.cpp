@@ -103,6 +103,45 @@ Lut ending_with(LutKind kind, float value) {
   return lut;
 }
 
+std::string utf16(const std::string& text) {
+  std::string out = "\xFF\xFE";
+  for (const char c : text) out += std::string{c, '\0'};
+  return out;
+}
+
+/// OpenColorIO tries every format on every file: the name says nothing of what is in it.
+TEST(Lut, WhatLeadsElsewhereIsRefusedInEveryFormat) {
+  TemporaryFolder folder;
+  const auto of_file = [&](const std::string& name, const std::string& text) {
+    write_bytes(folder / name, text);
+    const auto lut = read_lut(folder / name);
+    return lut ? std::string() : lut.error().message;
+  };
+  write_bytes(folder / "secret.cube", "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n");
+  const std::string secret = (folder / "secret.cube").string();
+  const std::string head = "<?xml version=\"1.0\"?>\n", list = "<ProcessList id=\"a\" compCLFversion=\"3\">\n",
+                    path = " path=\"" + secret + "\" inBitDepth=\"32f\" outBitDepth=\"32f\"/>\n",
+                    end = "</ProcessList>\n";
+  for (const char* name : {"a.clf", "a.cub", "a.3dl", "a.spi1d"}) {
+    EXPECT_THAT(of_file(name, head + list + "<Reference" + path + end), HasSubstr("refers to another file")) << name;
+    EXPECT_THAT(of_file(name, head + "<!DOCTYPE ProcessList [<!ENTITY x '<&#82;eference" + path + "'>]>\n" + list +
+                                  "&x;" + end),
+                HasSubstr("has a document type"))
+        << name;
+    EXPECT_THAT(of_file(name, utf16(head + list + "<Reference" + path + end)), HasSubstr("is no text")) << name;
+    EXPECT_THAT(of_file(name, "title\nlut_3d_size \t 2204\n"), HasSubstr("LUT_3D_SIZE is 2204")) << name;
+    EXPECT_THAT(of_file(name, "LUT_1D_SIZE 2\nLUT_1D_SIZE 00100000\n"), HasSubstr("LUT_1D_SIZE is 100000")) << name;
+    EXPECT_THAT(of_file(name, "LUT_3D_SIZE 999999999999999999999999\n"), HasSubstr("LUT_3D_SIZE is 9999")) << name;
+  }
+  // A word is no reference.
+  EXPECT_EQ(of_file("b.clf", head + list +
+                                 "<Description>Reference white</Description>\n"
+                                 "<Matrix inBitDepth=\"32f\" outBitDepth=\"32f\"><Array dim=\"3 3\">\n"
+                                 "1 0 0\n0 1 0\n0 0 0.5\n</Array></Matrix>\n" +
+                                 end),
+            "");
+}
+
 TEST(Lut, TablesOfUnitEntriesAtTheEndGiveNoMore) {
   for (const auto kind : {LutKind::table1d, LutKind::table3d, LutKind::table_half}) {
     EXPECT_TRUE(gives_unit(ending_with(kind, 0)));
