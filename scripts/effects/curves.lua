@@ -63,6 +63,13 @@ local function steepest(s)
   return most
 end
 
+-- The largest gain that can be, in stops.
+local function most(s)
+  local all, channel = math.max(0, table.unpack(master(s))), 0
+  for _, v in ipairs { s.red, s.green, s.blue } do channel = math.max(channel, v[1], v[2], v[3]) end
+  return all + channel
+end
+
 local function hue_doc(name) return "Hue, saturation and luma of " .. name .. ": degrees / 0.3, percent, percent of a stop. Greys stay." end
 
 local function point(where) return fx.float { min = -4, max = 4, default = 0, unit = "EV", doc = "Gain at " .. where .. "." } end
@@ -87,7 +94,8 @@ return fx.effect {
   active = function(s) return has_master(s) or has_channels(s) or has_hues(s), "all points are 0" end,
   holds = { "black", "constant", "mirror", "turn_180", "turn_90", shift = 1,
     -- Gains of up to 16, each with its own rounding; hues of greys that differ by roundings differ, by as little as their colours do.
-    error = { fp32 = function(s) return (5e-5 + 2e-5 * steepest(s)) * (has_hues(s) and 4 or 1) end, up_to = 60 } },
+    -- More saturation takes bright channels from dark ones, by their gain too.
+    error = { fp32 = function(s) return (5e-5 + 2e-5 * steepest(s)) * (has_hues(s) and 4 * 2 ^ most(s) or 1) end, up_to = 60 } },
   build = function(g, s, source)
     local image = source
     local function run(curves, luminance, name)

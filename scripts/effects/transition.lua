@@ -32,7 +32,7 @@ return fx.effect {
     -- A pixel's turn is known to 1e-7: of an edge that is narrow, as a share of the way, that is much.
     error = { fp32 = 1e-3, up_to = 100, when = function(s)
       local has_edge = s.kind == "wipe" or s.kind == "iris" or s.kind == "clock" or s.kind == "blinds"
-      return s.to == "" and s.layer == "" and s.kind ~= "scatter" and (not has_edge or s.softness >= 0.01)
+      return s.to == "" and s.layer == "" and s.kind ~= "scatter" and (not has_edge or s.softness >= (s.kind == "blinds" and math.max(0.01, 0.002 * s.count) or 0.01))
     end },
   },
   build = function(g, s, source)
