@@ -200,7 +200,7 @@ TEST_F(Effects, HuesDoNotJumpAndAreThoseOfEveryExposure) {
     Rgb colour(a, a, b);
     colour = x % 3 == 0 ? colour : x % 3 == 1 ? Rgb(colour.z, colour.x, colour.y) : Rgb(colour.y, colour.z, colour.x);
     ties.source.at(x, 0) = Rgba(colour, 1);
-    for (int i = 0; i < 3 && colour == Rgb(ties.source.at(x, 0)); ++i)
+    for (int i = 2; i >= 0 && colour == Rgb(ties.source.at(x, 0)); --i)  // the last of both: then the other is first
       if (colour[i] == static_cast<double>(a)) colour[i] = static_cast<double>(std::nextafter(a, 2.0F));
     ties.source.at(x, 1) = Rgba(colour, 1);
     ties.source.at(x, 2) = Rgba(Rgb(ties.source.at(x, 0)) / 4096.0, 1);
