@@ -147,6 +147,7 @@ Result<CodecHandle> FfmpegInput::open_decoder(FfmpegErrors& errors, bool careful
 
 int FfmpegInput::read(AVPacket& packet) {
   while (true) {
+    av_packet_unref(&packet);  // av_read_frame writes over what it holds
     const int got = av_read_frame(container_, &packet);
     if (got < 0) return got;
     // Empty packets are frames that an encoder left out; to a decoder they would be the end.
@@ -154,7 +155,6 @@ int FfmpegInput::read(AVPacket& packet) {
       bytes_->packet_came();
       return 0;
     }
-    av_packet_unref(&packet);
   }
 }
 

@@ -34,7 +34,7 @@ class FfmpegInput {
   /// A decoder for the stream, opened. `errors` counts what it complains of and outlives it. `careful`: on one thread,
   /// where it tells of each frame whether it is damaged; on several that gets lost. Errors: io.
   Result<CodecHandle> open_decoder(FfmpegErrors& errors, bool careful) const;
-  /// The next packet of the stream: 0, AVERROR_EOF, or another error of FFmpeg.
+  /// The next packet of the stream, in place of what `packet` held: 0, AVERROR_EOF, or another error of FFmpeg.
   int read(AVPacket& packet);
   /// Why there is no use in reading on, when that is so: no bytes come, nobody waits for them any more, or the demuxer
   /// reads on and on and finds no packet. It stays so.

@@ -36,6 +36,7 @@ int FfmpegPackets::find(const AVPacket& packet) const {
 
 bool FfmpegPackets::take(AVPacket& packet) {
   if (holds_) {
+    av_packet_unref(&packet);
     av_packet_move_ref(&packet, held_.get());
     holds_ = false;
     return true;
