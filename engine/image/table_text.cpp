@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/ascii.h"
 #include "image/lut_file.h"
