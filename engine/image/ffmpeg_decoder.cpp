@@ -184,10 +184,13 @@ Result<FrameHandle> FfmpegDecoder::frame(int number) {
 Result<std::vector<int>> FfmpegDecoder::order_by_decoding() {
   AFTERGLOW_CHECK(begin_at(0));
   std::vector<int> order;
+  std::vector<bool> came(index_.packets.size());
   while (true) {
     AFTERGLOW_TRY(const bool more, step());
     if (!more) break;
-    order.push_back(came_last_);
+    // Out of a damaged packet two frames may come: it is one in the order.
+    if (!came[at(came_last_)]) order.push_back(came_last_);
+    came[at(came_last_)] = true;
   }
   start_ = -1;
   forget();

@@ -21,7 +21,8 @@ class FfmpegDecoder {
   FfmpegInput& input() { return packets_.input(); }
   /// Errors: io (damaged, built on what is damaged).
   Result<FrameHandle> frame(int number);
-  /// The order in which frames come out of a decode from the beginning, as packets: for streams without time stamps.
+  /// The order in which frames come out of a decode from the beginning, as packets, each once: for streams without time
+  /// stamps.
   Result<std::vector<int>> order_by_decoding();
 
  private:
