@@ -6,6 +6,8 @@ local fx = require "afterglow"
 
 local kKinds = { dissolve = 0, fade = 1, wipe = 2, iris = 3, clock = 4, blinds = 5, scatter = 6, push = 7 }
 
+local kNarrowest = { wipe = 0.01, iris = 0.01, clock = 0.01 }  -- softness whose error is promised
+
 return fx.effect {
   name = "transition",
   doc = "Goes over to another picture: dissolve, fade, wipe, iris, clock, blinds, scatter, push.",
@@ -31,8 +33,8 @@ return fx.effect {
     "monotone", continuous = 1,
     -- A pixel's turn is known to 1e-7: of an edge that is narrow, as a share of the way, that is much.
     error = { fp32 = 1e-3, up_to = 100, when = function(s)
-      local has_edge = s.kind == "wipe" or s.kind == "iris" or s.kind == "clock" or s.kind == "blinds"
-      return s.to == "" and s.layer == "" and s.kind ~= "scatter" and (not has_edge or s.softness >= (s.kind == "blinds" and math.max(0.01, 0.002 * s.count) or 0.01))
+      local narrowest = kNarrowest[s.kind] or s.kind == "blinds" and math.max(0.01, 0.002 * s.count) or 0
+      return s.to == "" and s.layer == "" and s.kind ~= "scatter" and s.softness >= narrowest
     end },
   },
   build = function(g, s, source)
