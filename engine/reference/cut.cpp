@@ -2,8 +2,10 @@
 #include "reference/cut.h"
 
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/vec2.hpp>
+#include <limits>
 
 #include "reference/color.h"
 #include "reference/grain.h"
@@ -21,25 +23,45 @@ glm::dvec2 direction(double degrees) {
 
 double share_of(double x) { return x - std::floor(x); }
 
-/// When the turn of the point (u, v) comes; 0 … 1.
-double turn_at(int x, int y, Size size, const Cut& s) {
-  const double aspect = static_cast<double>(size.width) / size.height, angle = s.angle * glm::pi<double>() / 180;
-  const double u = (x + 0.5) / size.width, v = (y + 0.5) / size.height;
-  const double dx = (u - s.center_x) * aspect, dy = v - s.center_y;
+/// When a pixel's turn comes, 0 … 1; how wide a pixel is in turns; how many pixels it is from where the turns begin
+/// again.
+struct Turn {
+  double at = 0, pixel = 1e-4, from_seam = std::numeric_limits<double>::infinity();
+};
+
+Turn clock_turn(glm::dvec2 from, const Cut& s) {
+  const double distance = glm::length(from);
+  if (distance == 0) return {0, 1, 0};
+  const double behind = s.angle * glm::pi<double>() / 180 - std::atan2(-from.y, from.x);
+  const double seam = std::cos(behind) >= 0 ? distance * std::abs(std::sin(behind)) : 1;
+  return {share_of(behind / glm::two_pi<double>()), glm::min(1 / (glm::two_pi<double>() * distance), 1.0), seam};
+}
+
+Turn turn_at(int x, int y, Size size, const Cut& s) {
+  const glm::dvec2 pixels(size.width, size.height), here(x + 0.5, y + 0.5), center(s.center_x, s.center_y);
+  const glm::dvec2 from = here - center * pixels;
+  if (s.kind == CutKind::clock) return clock_turn(from, s);
   if (s.kind == CutKind::iris) {
-    const double far_x = glm::max(s.center_x, 1 - s.center_x) * aspect, far_y = glm::max(s.center_y, 1 - s.center_y);
-    return std::hypot(dx, dy) / std::hypot(far_x, far_y);
+    const double farthest = glm::length(glm::max(center, 1.0 - center) * pixels);
+    return {glm::length(from) / farthest, glm::min(1 / farthest, 1.0)};
   }
-  if (s.kind == CutKind::clock && dx == 0 && dy == 0) return 0;
-  if (s.kind == CutKind::clock) return share_of((angle - std::atan2(-dy, dx)) / glm::two_pi<double>());
   if (s.kind == CutKind::scatter) {
-    const auto cell = [&](int at) { return static_cast<std::uint32_t>(std::floor((at + 0.5) / s.grain)); };
-    return unit(pcg3d({cell(x), cell(y), s.seed})[0]);
+    const auto cell = [&](double at) { return static_cast<std::uint32_t>(std::floor(at / s.grain)); };
+    return {unit(pcg3d({cell(here.x), cell(here.y), s.seed})[0])};
   }
   const glm::dvec2 to = direction(s.angle);
-  const double way = std::abs(to.x) * aspect + std::abs(to.y);
-  const double along = ((u - 0.5) * aspect * to.x + (v - 0.5) * to.y) / way + 0.5;
-  return s.kind == CutKind::blinds ? share_of(along * s.count) : along;
+  const double way = glm::dot(glm::abs(to), pixels), along = glm::dot(here - 0.5 * pixels, to) / way + 0.5;
+  if (s.kind == CutKind::wipe) return {along, glm::min(1 / way, 1.0)};
+  const double strip = share_of(along * s.count), pixel = glm::min(s.count / way, 1.0);
+  return {strip, pixel, glm::min(strip, 1 - strip) / pixel};
+}
+
+/// How much of the other picture is seen.
+double gone_at(const Turn& turn, const Cut& s) {
+  const double edge = glm::max(s.softness, turn.pixel);
+  const auto gone = [&](double at) { return glm::clamp((s.progress * (1 + edge) - at) / edge, 0.0, 1.0); };
+  if (turn.from_seam >= 0.5) return gone(turn.at);
+  return glm::mix(gone(turn.at < 0.5 ? 1 : 0), gone(turn.at), 0.5 + turn.from_seam);
 }
 
 }  // namespace
@@ -65,9 +87,7 @@ DoubleImage transition(const DoubleImage& source, const DoubleImage* other, cons
       const bool stays = px >= 0 && py >= 0 && px < size.width && py < size.height;
       out = stays ? Rgb(source.at(px, py)) : next(px + way_x * size.width, py + way_y * size.height);
     } else {
-      const double soft = glm::max(s.softness, 1e-4);
-      out =
-          glm::mix(Rgb(p), next(x, y), glm::clamp((s.progress * (1 + soft) - turn_at(x, y, size, s)) / soft, 0.0, 1.0));
+      out = glm::mix(Rgb(p), next(x, y), gone_at(turn_at(x, y, size, s), s));
     }
     return Rgba(out, p.a);
   });

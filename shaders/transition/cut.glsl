@@ -8,26 +8,32 @@ layout(constant_id = 1) const bool has_other = false;
 
 uniform sampler2D source;
 uniform sampler2D other;
-uniform float progress, span, soft, aspect, widest, start;
+uniform float progress, span, soft, pixel, aspect, widest, start;
 uniform vec3 plain;
-uniform vec2 direction, center, grain;
+uniform vec2 direction, first, hand, center, grain;
 uniform int count, seed;
 
 const int kDissolve = 0, kFade = 1, kWipe = 2, kIris = 3, kClock = 4, kBlinds = 5, kScatter = 6, kPush = 7;
+const float kTurn = 6.28318530718;
 
-vec3 other_at(ivec2 pixel, float alpha) { return has_other ? fetch(other, pixel).rgb : clamp(plain * alpha, -kMaxLight, kMaxLight); }
+vec3 other_at(ivec2 at, float alpha) { return has_other ? fetch(other, at).rgb : clamp(plain * alpha, -kMaxLight, kMaxLight); }
+
+// From the middle of the clock, up and to the right, in heights of the picture.
+vec2 from_center(vec2 p) { return (p - center) * vec2(aspect, -1.0); }
+
+vec2 share_of(ivec2 at) { return (vec2(at) + 0.5) / vec2(target_size()); }
 
 // When a pixel's turn comes, 0…1.
-float turn_of(ivec2 pixel) {
-  vec2 p = (vec2(pixel) + 0.5) / vec2(target_size());
+float turn_of(ivec2 at) {
+  vec2 p = share_of(at);
   if (kind == kIris) return length((p - center) * vec2(aspect, 1.0)) / widest;
   if (kind == kClock) {
-    vec2 from = (p - center) * vec2(aspect, -1.0);
+    vec2 from = from_center(p);
     if (from == vec2(0.0)) return 0.0;  // the middle itself
-    return fract((start - atan(from.y, from.x)) / 6.28318530718 + 1.0);
+    return fract((start - atan(from.y, from.x)) / kTurn + 1.0);
   }
   if (kind == kScatter) {
-    vec2 cell = floor((vec2(pixel) + 0.5) / (grain.x + grain.y));
+    vec2 cell = floor((vec2(at) + 0.5) / (grain.x + grain.y));
     return unit_of(pcg3d(uvec3(uvec2(cell), uint(seed)))).x;
   }
   float along = dot((p - 0.5) * vec2(aspect, 1.0), direction) / span + 0.5;
@@ -35,22 +41,49 @@ float turn_of(ivec2 pixel) {
   return along;
 }
 
-vec4 sample_at(ivec2 pixel) {
-  vec4 color = fetch(source, pixel);
-  if (kind == kDissolve) return vec4(lerp(color.rgb, other_at(pixel, color.a), progress), color.a);
+// How far a pixel is from where the turns begin again, in pixels: from the clock's first line, from where strips meet.
+float from_seam(ivec2 at, float turn) {
+  if (kind == kBlinds) return min(turn, 1.0 - turn) / pixel;
+  vec2 from = from_center(share_of(at));
+  return dot(from, first) >= 0.0 ? abs(from.x * first.y - from.y * first.x) * float(target_size().y) : 1.0;
+}
+
+// How far the edge's middle is ahead of a pixel's turn. The clock's angle is taken from its hand: exact where it matters.
+float ahead_of(ivec2 at, float turn) {
+  if (kind != kClock) return progress - turn;
+  vec2 from = from_center(share_of(at));
+  if (from == vec2(0.0)) return progress;
+  float past = atan(hand.x * from.y - hand.y * from.x, dot(hand, from)) / kTurn;
+  return past + round(progress - turn - past);
+}
+
+// How much of the other picture a pixel shows, 0…1. Edges and seams are as wide as a pixel at least.
+float gone_at(ivec2 at) {
+  float turn = turn_of(at), edge = soft;
+  if (kind == kClock) edge = max(soft, 1.0 / max(kTurn * length(from_center(share_of(at))) * float(target_size().y), 1.0));
+  float gone = clamp(progress + ahead_of(at, turn) / edge, 0.0, 1.0);
+  if (kind != kClock && kind != kBlinds) return gone;
+  float away = from_seam(at, turn);
+  if (away >= 0.5) return gone;
+  float beyond = clamp(progress + (turn < 0.5 ? progress - 1.0 : progress) / edge, 0.0, 1.0);  // on the other side of the seam
+  return mix(beyond, gone, 0.5 + away);
+}
+
+vec4 sample_at(ivec2 at) {
+  vec4 color = fetch(source, at);
+  if (kind == kDissolve) return vec4(lerp(color.rgb, other_at(at, color.a), progress), color.a);
   if (kind == kFade) {
     vec3 through = clamp(plain * color.a, -kMaxLight, kMaxLight);
-    vec3 light = progress < 0.5 ? lerp(color.rgb, through, 2.0 * progress) : lerp(through, other_at(pixel, color.a), 2.0 * progress - 1.0);
+    vec3 light = progress < 0.5 ? lerp(color.rgb, through, 2.0 * progress) : lerp(through, other_at(at, color.a), 2.0 * progress - 1.0);
     return vec4(light, color.a);
   }
   if (kind == kPush) {
     vec2 size = vec2(target_size());
     vec2 way = abs(direction.x) >= abs(direction.y) ? vec2(sign(direction.x), 0.0) : vec2(0.0, sign(direction.y));  // straight, whatever the angle
     ivec2 moved = ivec2(floor(way * size * progress + 0.5)), whole = ivec2(floor(way * size + 0.5));
-    ivec2 from = pixel - moved;
+    ivec2 from = at - moved;
     bool stays = all(greaterThanEqual(from, ivec2(0))) && all(lessThan(from, ivec2(size)));
     return vec4(stays ? fetch(source, from).rgb : other_at(from + whole, color.a), color.a);
   }
-  float gone = clamp((progress * (1.0 + soft) - turn_of(pixel)) / soft, 0.0, 1.0);
-  return vec4(lerp(color.rgb, other_at(pixel, color.a), gone), color.a);
+  return vec4(lerp(color.rgb, other_at(at, color.a), gone_at(at)), color.a);
 }

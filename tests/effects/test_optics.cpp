@@ -296,6 +296,28 @@ TEST_F(Effects, TransitionAgrees) {
   expect_skipped("fx.transition {}", "progress is 0");
 }
 
+TEST_F(Effects, TransitionsWithoutSoftnessHaveSmoothEdges) {
+  const Rgb red{2, 0.1, 0};
+  agree_everywhere(
+      {cut({0.43, CutKind::wipe, red, 33, 0}, "wipe"), cut({0.43, CutKind::iris, red, 0, 0, 0.3, 0.9}, "iris"),
+       cut({0.43, CutKind::clock, red, 100, 0}, "clock"),
+       cut({0.43, CutKind::blinds, red, 250, 0, 0.5, 0.5, 3}, "blinds")},
+      {.full = 5e-4, .fused = 1e-5, .half = 5e-3});
+  // A line of black and white, through the edges and seams of each: as much white as its area, wherever the line lies.
+  Scene white{"white", DoubleImage(41, 33, Rgba(1)), {}, {}};
+  for (const auto& [look, shown] : {std::pair{"kind = 'wipe', angle = 0", 0.5},
+                                    {"kind = 'wipe', angle = 90", 0.5},
+                                    {"kind = 'clock', angle = 90", 0.5},
+                                    {"kind = 'blinds', count = 3, angle = 0", 0.5},
+                                    {"kind = 'blinds', count = 2, angle = 33", 0.5}}) {
+    const Made made =
+        run_stack(fmt::format("fx.transition {{ softness = 0, progress = 0.5, {} }}", look), white, Way::plain);
+    double sum = 0;
+    for (std::size_t i = 0; i < made.result.size(); i += 4) sum += made.result[i];
+    EXPECT_NEAR(sum / (41 * 33), shown, 0.01) << look;
+  }
+}
+
 TEST_F(Effects, TransitionsEndAtTheOtherPicture) {
   Scene scene = random_scene({64, 36}, 73);
   scene.layers["next"] = random_scene({64, 36}, 74).source;
