@@ -40,9 +40,8 @@ Result<void> check_tables(const OcioSurvey& survey, const std::filesystem::path&
       return Error{ErrorKind::script,
                    fmt::format("'{}': there is no such file, like {}", table.name, table.path.string()),
                    config.string()};
-    if (lower(table.path.extension().string()) != ".cube") continue;
     AFTERGLOW_TRY(const std::string text, read_file(table.path));
-    AFTERGLOW_CHECK(check_cube(text, table.path.string()));
+    AFTERGLOW_CHECK(check_table(text, table.path, TableUse::of_config));
   }
   return {};
 }

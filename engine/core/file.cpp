@@ -36,19 +36,24 @@ std::string without_digits(std::string name) {
 /// numbers.
 std::vector<std::string> names_beside(const fs::path& path) {
   const std::string wanted = without_digits(path.filename().string());
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  std::vector<std::string> names;
-  std::error_code ec;
-  for (fs::directory_iterator it(folder, ec), end; !ec && it != end && names.size() < kMostNames; it.increment(ec)) {
-    std::string name = it->path().filename().string();
-    if (name.front() == '.' || name.back() == '~' || without_digits(name) == wanted) continue;
-    names.push_back(std::move(name));
-  }
-  std::ranges::sort(names);  // folders have no order
+  std::vector<std::string> names = names_in(path.parent_path());
+  std::erase_if(names, [&](const std::string& name) {
+    return name.front() == '.' || name.back() == '~' || without_digits(name) == wanted;
+  });
   return names;
 }
 
 }  // namespace
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code ec;
+  for (fs::directory_iterator it(folder.empty() ? "." : folder, ec), end; !ec && it != end && names.size() < kMostNames;
+       it.increment(ec))
+    names.push_back(it->path().filename().string());
+  std::ranges::sort(names);  // folders have no order
+  return names;
+}
 
 Error missing_file(const fs::path& path) {
   Error error{ErrorKind::io, "no such file", path.string()};

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/result.h"
 
@@ -21,6 +22,10 @@ Result<std::string> read_file(const std::filesystem::path& path, std::size_t lim
 /// As read_file, for a file that a user has named: one that is not there is told as missing_file does.
 Result<std::string> read_named_file(const std::filesystem::path& path, std::size_t limit = 64u << 20,
                                     FileRecord* record = nullptr);
+
+/// Names of what lies in a folder ("": the working one), in order; none of one that cannot be read, the first 4096 that
+/// are met of a larger one.
+std::vector<std::string> names_in(const std::filesystem::path& folder);
 
 /// io, "no such file", with the name in its folder that is nearest to its own, when one is near. For a frame of a
 /// sequence (its name holds a number of several digits) none is: it is missing, not misspelt.

@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 
 bool lies_in(const fs::path& file, const fs::path& folder) {
   std::error_code ec;
-  const fs::path real_file = fs::canonical(file, ec);
+  const fs::path real_file = fs::weakly_canonical(file, ec);
   if (ec) return false;
   const fs::path real_folder = fs::canonical(folder.empty() ? fs::path(".") : folder, ec);
   if (ec) return false;

@@ -28,8 +28,7 @@ Result<Lut> read_lut(const std::filesystem::path& file, FileRecord* record, cons
                  join(known),       nearest_name(extension, known)};
   auto text = read_file(file, kMaxFile, record);
   if (!text) return fail(text.error().message);
-  if (extension == "cube") AFTERGLOW_CHECK(check_cube(*text, file.string()));
-  AFTERGLOW_CHECK(check_table_text(*text, file.string(), false));
+  AFTERGLOW_CHECK(check_table(*text, file, TableUse::of_look));
   // OpenColorIO puts variables of the environment into paths.
   if (file.string().find_first_of("$%") != std::string::npos)
     return fail("a path with '$' or '%' cannot be handed to OpenColorIO; rename the file or its folder");

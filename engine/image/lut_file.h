@@ -55,10 +55,13 @@ bool gives_unit(const Lut& loaded);
 /// Most entries of a table of one dimension, and of a side of one of three (OpenColorIO's own limit).
 inline constexpr int kMostLut1d = 65536, kMostLut3d = 129;
 
-/// What no file that OpenColorIO reads may hold, whatever its name: other files that it refers to, XML that could hide
-/// such a reference (a document type, UTF-16), sizes that take memory before a line is read. `may_be_profile`: an ICC
-/// profile is no text, and right. Errors: script.
-Result<void> check_table_text(const std::string& text, const std::string& file, bool may_be_profile);
+/// Who reads a table: a look by itself, or an OpenColorIO configuration, whose tables may be ICC profiles.
+enum class TableUse { of_look, of_config };
+
+/// Looks a table through before OpenColorIO reads it, which tries every format whatever the name. Refused: other files
+/// that it refers to, XML that could hide such a reference (a document type, UTF-16), sizes that take memory before a
+/// line is read; and of a .cube whatever check_cube refuses. Errors: script, with the file.
+Result<void> check_table(const std::string& text, const std::filesystem::path& path, TableUse use);
 
 /// Looks a .cube through before OpenColorIO reads it, which says less about what is wrong and takes memory for whatever
 /// size a file claims. Errors: script, at the line.

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "core/ascii.h"
 #include "core/parse_number.h"
+#include "core/text.h"
 #include "image/lut_file.h"
 
 namespace afterglow {
@@ -51,14 +53,20 @@ Result<void> check_sizes(std::string_view text, const std::string& file) {
   return {};
 }
 
+bool is_profile(std::string_view text) {
+  return text.substr(std::min<std::size_t>(text.size(), 36)).starts_with("acsp") &&
+         text.find("<ProcessList") == std::string_view::npos;
+}
+
 }  // namespace
 
-Result<void> check_table_text(const std::string& text, const std::string& file, bool may_be_profile) {
+Result<void> check_table(const std::string& text, const std::filesystem::path& path, TableUse use) {
+  const std::string file = path.string();
+  if (lower(path.extension().string()) == ".cube") AFTERGLOW_CHECK(check_cube(text, file));
   const auto fail = [&](std::string what) { return Error{ErrorKind::script, std::move(what), file}; };
   // Expat, which OpenColorIO reads XML with, knows UTF-16, and puts in what a document type says: neither is searched
   // for references here.
-  const bool profile = may_be_profile && text.size() >= 40 && text.compare(36, 4, "acsp") == 0 &&
-                       text.find("<ProcessList") == std::string::npos;
+  const bool profile = use == TableUse::of_config && is_profile(text);
   if (!profile && text.find('\0') != std::string::npos) return fail("is no text in ASCII or UTF-8");
   if (text.find("<!DOCTYPE") != std::string::npos) return fail("has a document type, which is not supported");
   if (text.find("<Reference") != std::string::npos) return fail("refers to another file, which is not supported");

@@ -47,12 +47,9 @@ std::vector<fs::path> roots_of(const Runtime& runtime) {
 std::string nearest_file(const std::vector<fs::path>& roots, const std::string& name) {
   const fs::path folder = fs::path(name).parent_path();
   std::vector<std::string> names;
-  for (const auto& root : roots) {
-    std::error_code ec;
-    for (fs::directory_iterator it(root / folder, ec), end; !ec && it != end && names.size() < 1000; it.increment(ec))
-      if (it->path().extension() == fs::path(name).extension())
-        names.push_back((folder / it->path().filename()).string());
-  }
+  for (const auto& root : roots)
+    for (const auto& found : names_in(root / folder))
+      if (fs::path(found).extension() == fs::path(name).extension()) names.push_back((folder / found).string());
   return nearest_name(name, names);
 }
 

@@ -65,15 +65,6 @@ int line_of(const std::string& text, const std::string& name) {
              : 1 + static_cast<int>(std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n'));
 }
 
-std::string near_file(const fs::path& file) {
-  std::vector<std::string> names;
-  std::error_code ec;
-  for (fs::directory_iterator it(file.parent_path(), ec), end; !ec && it != end && names.size() < 1000;
-       it.increment(ec))
-    names.push_back(it->path().filename().string());
-  return nearest_name(file.filename().string(), names);
-}
-
 /// A table may be read, and is what it seems to be.
 void check_table(Runtime& runtime, const ChosenConfig& config, const std::string& text, const OcioSurvey::File& table) {
   const auto fail = [&](std::string why, std::string nearest = {}) {
@@ -84,17 +75,16 @@ void check_table(Runtime& runtime, const ChosenConfig& config, const std::string
                        {},
                        std::move(nearest)}};
   };
+  // First of all: nothing is told of what lies outside, not even whether it is there.
+  if (config.by_script && !may_read(runtime, table.path))
+    fail(fmt::format("{} lies outside of the folders that scripts may read", table.path.string()));
   note_file(runtime, table.path);
   if (!is_file(table.path, runtime.path.record.get()))
     fail(fmt::format("there is no such file along the search path of the configuration, like {}", table.path.string()),
-         near_file(table.path));
-  if (config.by_script && !may_read(runtime, table.path))
-    fail(fmt::format("{} lies outside of the folders that scripts may read", table.path.string()));
-  auto content = read_file(table.path, kMaxTable, runtime.path.record.get());
+         nearest_name(table.path.filename().string(), names_in(table.path.parent_path())));
+  const auto content = read_file(table.path, kMaxTable, runtime.path.record.get());
   if (!content) fail(content.error().message);
-  if (lower(table.path.extension().string()) == ".cube")
-    if (auto sound = check_cube(*content, table.path.string()); !sound) throw ScriptError{sound.error()};
-  if (auto sound = check_table_text(*content, table.path.string(), true); !sound) fail(sound.error().message);
+  if (auto sound = check_table(*content, table.path, TableUse::of_config); !sound) throw ScriptError{sound.error()};
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::Scene;
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string kCurve = "Version 1\nFrom 0 1\nLength 2\nComponents 1\n{\n0\n1\n}\n";
 
@@ -130,6 +131,7 @@ TEST_F(OcioFiles, TablesThatAreMissingOrWrong) {
               HasSubstr("broken.ocio:17: error: 'curv.spi1d': there is no such file along the search path of the "
                         "configuration, like "));
   EXPECT_THAT(of_config(config_of("!<FileTransform> {src: curv.spi1d}")), HasSubstr("did you mean 'curve.spi1d'?"));
+  EXPECT_THAT(of_config(config_of("!<FileTransform> {src: none/curve.spi1d}")), HasSubstr("there is no such file"));
   scene.write("tables/huge.cube", "LUT_3D_SIZE 1000000\n");
   EXPECT_THAT(of_config(config_of("!<FileTransform> {src: huge.cube}")),
               HasSubstr("huge.cube:1: error: LUT_3D_SIZE is 1000000"));
@@ -144,6 +146,12 @@ TEST_F(OcioFiles, TablesThatAreMissingOrWrong) {
 TEST_F(OcioFiles, TablesOfScriptsStayInTheirFolders) {
   const Scene other;
   const fs::path outside = const_cast<Scene&>(other).write("curve.spi1d", kCurve);
+  // Of what lies outside not even its name is told, or that it is not there.
+  for (const fs::path& missing : {other.folder() / "curv.spi1d", other.folder() / "none" / "curve.spi1d"}) {
+    const std::string told = of_config(config_of("!<FileTransform> {src: " + missing.string() + "}"));
+    EXPECT_THAT(told, HasSubstr("lies outside of the folders that scripts may read"));
+    EXPECT_THAT(told, Not(HasSubstr("did you mean")));
+  }
   const std::string text = config_of("!<FileTransform> {src: " + outside.string() + "}");
   EXPECT_THAT(of_config(text), HasSubstr("lies outside of the folders that scripts may read"));
   scene.write("up.ocio",
