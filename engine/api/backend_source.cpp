@@ -17,10 +17,7 @@ class Loaded : public Source {
   Result<void> load(const StackOptions& wanted) {
     AFTERGLOW_TRY(auto later, Stack::load(options_.preset, wanted, diagnostics_));
     later->use(*device_.device, !options_.commands);
-    if (stack_) {
-      const StackChoice &before = stack_->choice(), &now = later->choice();
-      later->take_over(*stack_, before.execution == now.execution && before.max_error == now.max_error);
-    }
+    if (stack_) later->take_over(*stack_, true);
     stack_ = std::move(later);
     options_.stack = wanted;
     return {};

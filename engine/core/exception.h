@@ -16,4 +16,14 @@ std::string exception_text(const std::exception& exception);
 /// An exception that nobody expects: io for the lack of memory, else other ("internal error: …").
 Error exception_error(const std::exception& exception);
 
+/// The Result that `work` gives; what it throws is its error. For threads, where an exception would end the program.
+template <typename Work>
+auto without_exceptions(Work&& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const std::exception& exception) {
+    return exception_error(exception);
+  }
+}
+
 }  // namespace afterglow

@@ -64,6 +64,7 @@ struct FrameRunner::State {
                      const Choose& choose);
   Result<void> start(Program& program, const std::map<std::string, HostImage>& host, KernelTiming timing,
                      const Choose& choose);
+  Result<void> given_up(Result<void> failed);
   Result<void> execute(Program& program, const std::vector<bool>& run, KernelTiming timing);
   Result<void> time_separately(Program& program, const std::vector<bool>& run);
   Result<void> wait();
@@ -144,7 +145,7 @@ Result<void> FrameRunner::State::time_separately(Program& program, const std::ve
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     if (!run[i]) continue;
     const auto begin = Clock::now();
-    auto done = submitter.submit([&](VkCommandBuffer commands) { program.record_again(commands, i); });
+    auto done = submitter.submit([&](VkCommandBuffer commands) { program.record_again(commands, i); }, kOneOff);
     if (done) done = submitter.wait();
     if (!done) {
       Error error = std::move(done).error();
@@ -153,10 +154,12 @@ Result<void> FrameRunner::State::time_separately(Program& program, const std::ve
     }
     begun->times.kernels.push_back({kernels[i].name, milliseconds_since(begin)});
   }
-  AFTERGLOW_CHECK(submitter.submit([&](VkCommandBuffer commands) {
-    images.inputs.after(commands);
-    images.result.after(commands);
-  }));
+  AFTERGLOW_CHECK(submitter.submit(
+      [&](VkCommandBuffer commands) {
+        images.inputs.after(commands);
+        images.result.after(commands);
+      },
+      kOneOff));
   return submitter.wait();
 }
 
@@ -214,16 +217,19 @@ Result<void> FrameRunner::State::begin(Program& program, const std::map<std::str
   begun = Begun{};
   shown.reset();
   auto started = start(program, host, timing, choose);
-  if (!started) {
-    (void)submitter.wait();  // nothing may be on its way between images that are made anew
-    (void)images.staging.wait();
-    begun.reset();
-    return started;
-  }
+  if (!started) return given_up(std::move(started));
   if (!begun->ran) return {};
   shown = begun->ran->parts().images[begun->ran->graph().result];
   flags = begun->ran->flags_non_finite();
   return {};
+}
+
+/// Nothing may be on its way between images that are made anew.
+Result<void> FrameRunner::State::given_up(Result<void> failed) {
+  (void)submitter.wait();
+  (void)images.staging.wait();
+  begun.reset();
+  return failed;
 }
 
 Result<FrameTimes> FrameRunner::State::end() {
@@ -237,8 +243,9 @@ Result<void> FrameRunner::begin(Program& program, const std::map<std::string, Ho
                                 const Choose& choose) {
   State& s = *state_;
   AFTERGLOW_CHECK(s.begin(program, inputs, timing, choose));
-  return s.images.whole_staging() && s.begun->ran ? s.images.result.begin_download(s.images.staging, *s.shown)
-                                                  : Result<void>();
+  if (!s.images.whole_staging() || !s.begun->ran) return {};
+  auto read_back = s.images.result.begin_download(s.images.staging, *s.shown);
+  return read_back ? std::move(read_back) : s.given_up(std::move(read_back));
 }
 
 Result<void> FrameRunner::warm_up(Program& program, bool backwards) {

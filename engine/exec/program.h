@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -36,6 +37,8 @@ struct ProgramOptions {
   /// With `config.storage_reads`: the inputs that will be bound have STORAGE usage, the formats of `input_format`
   /// (host_input.h), and come in GENERAL layout.
   bool inputs_are_storage = false;
+  /// So many images of a kernel at most are read as storage images; what the device allows is settled by the program.
+  int most_storage_reads = std::numeric_limits<int>::max();
   WorthAKernel worth{};
   bool unorm8 = false;  ///< the result holds 8-bit codes (RGBA8): the last pass gives them as 0…1
   /// The result's alpha is 0 where a colour that was not finite came up in a pass and no pass of another kernel that

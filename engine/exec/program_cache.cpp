@@ -269,11 +269,14 @@ void ProgramCache::take_over(ProgramCache& before, bool programs) {
     s.histories = from.histories;
     return;
   }
-  if (!program()) return;
-  s.histories->take(*from.histories);
   s.moved = true;
-  if (programs) s.entries.splice(s.entries.end(), from.entries);
-  s.drop_spares();
+  if (program()) {
+    s.histories->take(*from.histories);
+    if (programs) s.entries.splice(s.entries.end(), from.entries);
+    s.drop_spares();
+  } else {
+    s.histories = from.histories;  // the program that will be made keeps what fits
+  }
   from.entries.clear();
   from.present = false;
 }

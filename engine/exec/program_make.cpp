@@ -26,9 +26,13 @@ void Program::State::settle_config() {
   const auto filters = [&](VkFormat of) {
     return supports(device, of, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT);
   };
-  config.hardware_filter =
-      config.hardware_filter && filters(format) && (graph.histories.empty() || filters(VK_FORMAT_R32G32B32A32_SFLOAT));
+  // Pictures, tables and some histories are full floats whatever images between passes are.
+  config.hardware_filter = config.hardware_filter && filters(format) && filters(VK_FORMAT_R32_SFLOAT) &&
+                           filters(VK_FORMAT_R32G32B32A32_SFLOAT);
   config.storage_reads = config.storage_reads && supports(device, format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
+  // One of them is what a compute kernel writes.
+  const auto storage_images = std::min(device.properties().limits.maxPerStageDescriptorStorageImages, 1024u);
+  options.most_storage_reads = std::min(options.most_storage_reads, static_cast<int>(storage_images) - 1);
   config.four_channels = config.four_channels || !holds_few_channels(device, graph, config);
   if (device.is_cpu()) fit_to_cpu_driver(config);
   config.two_draws = config.two_draws && !options.reference;

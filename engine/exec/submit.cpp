@@ -71,8 +71,11 @@ Result<void> Submitter::wait() {
   if (!pending_) return {};
   const VkFence fence = fence_.get();
   pending_ = false;
-  AFTERGLOW_VK(wait_for_fence(*device_, fence), "the device did not finish");
-  AFTERGLOW_VK(device_->vk().vkResetFences(device_->handle(), 1, &fence), "cannot reset a fence");
+  const VkResult waited = wait_for_fence(*device_, fence);
+  // The device is idle even where the wait failed: the next submission needs its fence unsignalled.
+  if (waited != VK_ERROR_DEVICE_LOST)
+    AFTERGLOW_VK(device_->vk().vkResetFences(device_->handle(), 1, &fence), "cannot reset a fence");
+  AFTERGLOW_VK(waited, "the device did not finish");
   return {};
 }
 

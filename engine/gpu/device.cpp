@@ -141,8 +141,9 @@ Result<std::unique_ptr<Device>> Device::adopt(const AdoptedDevice& adopted, Diag
   functions.vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   functions.vkGetPhysicalDeviceQueueFamilyProperties(adopted.physical_device, &count, families.data());
-  if (adopted.queue_family >= count || !(families[adopted.queue_family].queueFlags & VK_QUEUE_GRAPHICS_BIT)) {
-    return Error{ErrorKind::device, fmt::format("adopted queue family {} cannot draw", adopted.queue_family)};
+  if (adopted.queue_family >= count || !can_draw_and_compute(families[adopted.queue_family])) {
+    return Error{ErrorKind::device,
+                 fmt::format("adopted queue family {} cannot draw and compute", adopted.queue_family)};
   }
 
   std::unique_ptr<Device> device(new Device);

@@ -76,17 +76,15 @@ bool can_compute_alone(const VulkanFunctions& vk, VkPhysicalDevice device) {
   return std::ranges::any_of(families, [](const auto& f) { return (f.queueFlags & VK_QUEUE_COMPUTE_BIT) != 0; });
 }
 
-/// The first family with graphics and compute (graphics alone is good enough for what we record) that can present to
-/// `surface`, when there is one: one queue does everything.
+/// The first family with graphics and compute that can present to `surface`, when there is one: one queue does
+/// everything. (A device that draws has a family with both.)
 std::optional<std::uint32_t> graphics_family(const VulkanFunctions& vk, VkPhysicalDevice device, VkSurfaceKHR surface) {
   std::uint32_t count = 0;
   vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  for (const VkQueueFlags wanted : {VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT, +VK_QUEUE_GRAPHICS_BIT}) {
-    for (std::uint32_t i = 0; i < count; ++i) {
-      if ((families[i].queueFlags & wanted) == wanted && can_present(vk, device, i, surface)) return i;
-    }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (can_draw_and_compute(families[i]) && can_present(vk, device, i, surface)) return i;
   }
   return std::nullopt;
 }

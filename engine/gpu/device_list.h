@@ -18,6 +18,12 @@ struct PhysicalDevice {
   DeviceInfo info;
 };
 
+/// Whether queues of this family can do all that is recorded.
+inline bool can_draw_and_compute(const VkQueueFamilyProperties& family) {
+  constexpr VkQueueFlags kBoth = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  return (family.queueFlags & kBoth) == kBoth;
+}
+
 /// All devices of the instance in the order of preference. Errors: device (none).
 Result<std::vector<PhysicalDevice>> enumerate_devices(const VulkanFunctions& vk, VkInstance instance,
                                                       VkSurfaceKHR surface = VK_NULL_HANDLE);

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "core/exception.h"
 #include "core/file.h"
 #include "core/file_record.h"
 #include "core/stopwatch.h"
@@ -88,9 +89,11 @@ void FootageWatch::look() {
     if (since < took * kShare || (!due && since < kSweep)) continue;
     looked = Clock::now();
     due = false;
-    const auto anew = changes(*footage_, whole_, taken);
-    const auto newer = Footage::anew(options_, *footage_, anew, [&](const std::filesystem::path& file) {
-      return is_file(file) && (taken.contains(file) || whole_.whole(file));
+    const auto newer = without_exceptions([&] {
+      return Footage::anew(options_, *footage_, changes(*footage_, whole_, taken),
+                           [&](const std::filesystem::path& file) {
+                             return is_file(file) && (taken.contains(file) || whole_.whole(file));
+                           });
     });
     took = milliseconds_since(looked);
     if (!newer || !*newer) continue;  // as it was

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/exception.h"
+
 namespace afterglow {
 namespace {
 
@@ -133,13 +135,13 @@ bool Sound::begin(const Wish& wish) {
   if (wish.key.empty()) return false;
   if (track_key_ != wish.key) {
     track_key_ = wish.key;
-    auto opened = wish.open();
+    auto opened = without_exceptions(wish.open);
     track_ = opened ? std::move(opened).value() : nullptr;
     if (!opened) fail(without_sound(opened.error()), false);
   }
   if (!track_) return false;
   if (!device_) {
-    auto opened = options_.open_device();
+    auto opened = without_exceptions(options_.open_device);
     if (!opened) {
       fail(without_sound(opened.error()), true);
       return false;
@@ -194,7 +196,7 @@ bool Sound::write_some(const Wish& wish) {
     loop = loop_;
     gain = options_.mute ? 0 : static_cast<float>(options_.volume);
   }
-  if (auto read = read_on(samples, loop); !read) {
+  if (auto read = without_exceptions([&] { return read_on(samples, loop); }); !read) {
     fail(without_sound(read.error()), false);
     return false;
   }

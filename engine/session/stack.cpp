@@ -240,7 +240,9 @@ Result<void> Stack::prepare(const BuildContext& context, const std::optional<Dis
 
 void Stack::take_over(Stack& before, bool programs) {
   if (!state_->programs || !before.state_->programs) return;
-  state_->programs->take_over(*before.state_->programs, programs);
+  // The device's choice: what the effects of a frame make of it is asked for each frame.
+  const bool alike = state_->choice.execution == before.state_->choice.execution;
+  state_->programs->take_over(*before.state_->programs, programs && alike);
 }
 
 void Stack::reset_histories() {

@@ -118,8 +118,8 @@ class Stack {
   std::vector<Skipped> skipped() const;
 
   /// Takes the place of `before`, a stack of the same device and SharedKernels: its frames go on from those. With
-  /// `programs` what that has made is taken over too. `before` must not be used any more; no submission of either may
-  /// be in flight.
+  /// `programs` what that has made is taken over too, if the device executes both alike. `before` must not be used any
+  /// more; no submission of either may be in flight.
   void take_over(Stack& before, bool programs);
   /// What earlier frames handed on is forgotten: the next `prepare` begins anew, as BuildContext::restart does.
   void reset_histories();

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/exception.h"
 #include "core/watch.h"
 
 namespace afterglow {
@@ -65,7 +66,7 @@ void DisplayKeeper::State::make_one(std::unique_lock<std::mutex>& lock) {
   std::vector<std::filesystem::path> read = files;
   std::vector<Trace> before = traces_of(read);
   lock.unlock();
-  Result<ShownDisplay> result = make(name, of_it);
+  Result<ShownDisplay> result = without_exceptions([&] { return make(name, of_it); });
   if (result && result->files != read) {  // it is made of others: any change from here on counts
     read = result->files;
     watcher->watch(read);

@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/exception.h"
 #include "core/file.h"
 #include "edit/stack_edit.h"
 #include "image/scale.h"
@@ -147,28 +148,21 @@ void Thumbnails::State::make_all(std::unique_lock<std::mutex>& lock) {
     const std::uint64_t of = generation;
     const ThumbnailFrame source = *frame;
     lock.unlock();
-    if (!small || small_of != of) {
-      small = small_frame(source);
+    auto made_one = without_exceptions([&]() -> Result<Thumbnail> {
+      if (!small || small_of != of) small = small_frame(source);
       small_of = of;
-    }
+      Diagnostics silent;
+      if (!device) {
+        AFTERGLOW_TRY(device, Device::create(device_options, silent));
+      }
+      return make(*device, *one, stack, *small);
+    });
     Thumbnail out;
-    Diagnostics silent;
-    if (!device) {
-      auto opened = Device::create(device_options, silent);
-      if (opened) {
-        device = std::move(*opened);
-      } else {
-        out.error = opened.error();
-      }
-    }
-    if (device) {
-      auto thumbnail = make(*device, *one, stack, *small);
-      if (thumbnail) {
-        out = std::move(*thumbnail);
-      } else {
-        out.error = thumbnail.error();
-        if (out.error->kind == ErrorKind::device) device.reset();  // lost: the next one begins anew
-      }
+    if (made_one) {
+      out = std::move(*made_one);
+    } else {
+      out.error = made_one.error();
+      if (out.error->kind == ErrorKind::device) device.reset();  // lost: the next one begins anew
     }
     lock.lock();
     const bool still = of == generation && std::ranges::find(wanted, *one) != wanted.end();

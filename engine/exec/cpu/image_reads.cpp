@@ -52,6 +52,9 @@ std::vector<ImageRead> storage_reads_of(const Graph& graph, const PlanKernel& ke
   };
   if (desc.sample) add_inputs(*desc.sample);
   for (const auto& of : desc.stages) add_inputs(of);
+  int left = options.most_storage_reads;
+  for (ImageRead& read : reads)
+    if (read != ImageRead::sampled && left-- <= 0) read = ImageRead::sampled;
   return reads;
 }
 

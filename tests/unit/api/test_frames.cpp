@@ -68,6 +68,26 @@ TEST_F(FrameTest, EffectsLookBackAtTheFrameBefore) {
   EXPECT_EQ(run_frame(stack.get(), 12), 1);
 }
 
+TEST_F(FrameTest, FramesGoOnWhereHalfFloatsAreLeftOut) {
+  // The device takes half floats, which a frame with a history promises nothing in.
+  write("devices.json", R"({ "devices": [ { "kind": "cpu", "choices": [
+      { "max_error": 0, "choice": "fused fp32" }, { "max_error": 0.002, "choice": "fused fp16" } ] } ] })");
+  look("fx.trail {}, fx.gain { amount = 1 }");
+  afterglow_stack_options options = afterglow_stack_options_default();
+  const std::string table = file("devices.json");
+  options.calibration = str(table);
+  const StackPtr stack = this->stack(options);
+  EXPECT_EQ(run_frame(stack.get(), 1), 1);
+  EXPECT_EQ(run_frame(stack.get(), 2), 1.5f);
+  ASSERT_TRUE(fine(afterglow_stack_set_number(stack.get(), str("gain.amount"), 2)));
+  EXPECT_EQ(run_frame(stack.get(), 3), 2.75f);
+  EXPECT_EQ(json_of(afterglow_stack_report, stack.get())["milliseconds"]["compile"], 0) << "programs are taken over";
+  // Executed in another way from here on: its programs are made anew, and go on from the same frames.
+  write("look.lua", "local fx = require 'afterglow'\nreturn fx.stack { max_error = 0.001, fx.trail {}, fx.gain {} }");
+  ASSERT_TRUE(fine(afterglow_stack_reload(stack.get(), afterglow_str(nullptr))));
+  EXPECT_EQ(run_frame(stack.get(), 4), 3.375f);
+}
+
 TEST_F(FrameTest, AStackKeepsItsDevice) {
   afterglow_device* device = nullptr;
   ASSERT_TRUE(fine(afterglow_device_open(nullptr, &device)));

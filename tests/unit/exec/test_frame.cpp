@@ -99,7 +99,11 @@ vec4 sample_at(ivec2 pixel) {
                                                   {"layer:mask", {mask.data(), size, 1}}};
     const auto sampled = run(graph, inputs).pixels;
     for (const bool direct : {true, false})
-      EXPECT_EQ(run(graph, inputs, {.config = reads, .inputs_are_storage = true}, direct).pixels, sampled);
+      for (const int most : {0, 1, 2, 16})
+        EXPECT_EQ(run(graph, inputs, {.config = reads, .inputs_are_storage = true, .most_storage_reads = most}, direct)
+                      .pixels,
+                  sampled)
+            << most;
   }
 }
 
