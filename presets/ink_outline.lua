@@ -10,4 +10,5 @@ return fx.stack {
                color = { 0.01, 0.008, 0.02 }, mask = fx.mask.luma { from = 1.5, invert = true } },
   fx.color_adjustments { post_exposure = 1.15, contrast = 16, saturation = 14 },
   fx.tone_mapping { mode = "reinhard" },
+  fx.smaa {},  -- lines are decided pixel by pixel
 }
