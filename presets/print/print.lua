@@ -7,7 +7,7 @@ return fx.stack {
   name = "Print",
   requires = "0.2",
   fx.bloom { mode = "scattering", intensity = 0.15, fade_fireflies = true },
-  fx.color_adjustments { post_exposure = 2.4, contrast = -5, saturation = 20 },
+  fx.color_adjustments { post_exposure = 2, contrast = 18, saturation = 8 },
   fx.tone_mapping { mode = "neutral" },
   fx.halftone { cell = 6, angle = 30, ink = "#14101c", paper = "#f4ecd8", tint = 0.75 },
 }

@@ -12,6 +12,14 @@ uniform float tint;
 
 vec2 turn(vec2 p, vec2 by) { return vec2(p.x * by.x - p.y * by.y, p.x * by.y + p.y * by.x); }
 
+// Radius of a dot that covers such a share of its cell, in cells. Up to π/4 it lies within the cell; then it is cut at the
+// sides, and reaches the corners where all is ink (a fit, within 5e-4).
+float radius_of(float share) {
+  if (share < 0.7853982) return 0.5641896 * sqrt(share);
+  float left = sqrt((1.0 - share) / 0.2146018);
+  return 0.7071068 - left * (0.2279126 + left * (0.0048721 - 0.0256779 * left));
+}
+
 vec4 sample_at(ivec2 pixel) {
   vec4 here = fetch(source, pixel);
   vec2 position = vec2(pixel) + 0.5;
@@ -19,10 +27,12 @@ vec4 sample_at(ivec2 pixel) {
   vec2 offset = turn(position, rotation) - centre;
   vec3 seen = fetch_linear(source, turn(centre, vec2(rotation.x, -rotation.y))).rgb;
 
-  float darkness = 1.0 - clamp(luminance(seen), 0.0, 1.0);
-  // √(darkness/π) is the radius of that area; beyond half the cell dots overlap, so they grow a little more until black is solid.
-  float radius = cell * 0.5641896 * sqrt(darkness) * (1.0 + 0.26 * darkness * darkness);
-  float inked = clamp(radius - length(offset) + 0.5, 0.0, 1.0);
+  float radius = cell * radius_of(1.0 - clamp(luminance(seen), 0.0, 1.0));
+  // A soft edge of a pixel, less for dots that are smaller; it adds edge²/12 to radius², which is taken off before.
+  float edge = max(min(1.0, 1.7320508 * radius), 1e-4);
+  float inked = clamp((sqrt(max(radius * radius - edge * edge / 12.0, 0.0)) - length(offset)) / edge + 0.5, 0.0, 1.0);
+  // Cells of less than four pixels, as in a preview, turn into their mean: two pixels show no grid.
+  inked = mix(1.0 - clamp(luminance(here.rgb), 0.0, 1.0), inked, clamp(0.5 * cell - 1.0, 0.0, 1.0));
 
   vec3 below = lerp(paper, paper * clamp(here.rgb / max(brightest(here.rgb), 1e-5), 0.0, 1.0), tint);
   return vec4(lerp(below, ink, inked) * here.a, here.a);
