@@ -21,7 +21,7 @@ constexpr int kMaxDigits = 9;  // what always fits an int
 
 Error bad_frames(const std::string& text, const std::string& why) {
   return Error{ErrorKind::usage, fmt::format("bad frame list '{}': {}", text, why), "", 0,
-               "N, N-M, N-MxSTEP, fused by commas"};
+               "N, N-M, N-MxSTEP, joined by commas"};
 }
 
 /// Reads a number (with a sign) from the front of `text` and removes it.

@@ -112,7 +112,7 @@ class MaskBuilder {
     const Part a = part(*mask.a), b = part(*mask.b);
     const double *first = std::get_if<double>(&a), *second = std::get_if<double>(&b);
     if (first && second) return combined(mask.kind, *first, *second);
-    if (!first && !second) return fused(mask.kind, std::get<ImageRef>(a), std::get<ImageRef>(b));
+    if (!first && !second) return combined_images(mask.kind, std::get<ImageRef>(a), std::get<ImageRef>(b));
     const ImageRef& image = std::get<ImageRef>(first ? b : a);
     const double number = first ? *first : *second;
     switch (mask.kind) {
@@ -138,7 +138,7 @@ class MaskBuilder {
     return image;
   }
 
-  ImageRef fused(Kind kind, const ImageRef& a, const ImageRef& b) {
+  ImageRef combined_images(Kind kind, const ImageRef& a, const ImageRef& b) {
     const char* name = kind == Kind::add ? "add" : kind == Kind::subtract ? "subtract" : "multiply";
     return pass(name, {image_argument("source", a), image_argument("other", b)});
   }

@@ -33,7 +33,7 @@ inline constexpr int kMaxNesting = 64;                      ///< of (), [] and {
 inline constexpr int kMaxStatementTokens = 8192;            ///< between semicolons and braces
 inline constexpr int kMaxChain = 64;  ///< `else if` in a row; control words without braces in a row
 
-/// Cuts `text` into tokens; comments and white space are dropped, line continuations fused. `file` is for messages.
+/// Cuts `text` into tokens; comments and white space are dropped, line continuations joined. `file` is for messages.
 /// Errors (script): unbalanced or too deeply nested brackets, unfinished comments, characters that GLSL does not have,
 /// limits.
 Result<std::vector<Token>> tokenize(std::string_view text, const std::string& file);
