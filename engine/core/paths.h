@@ -38,8 +38,7 @@ struct SearchPath {
   std::vector<std::filesystem::path> find_preset(const std::string& name) const;
   /// Names that `find_preset` knows, sorted.
   std::vector<std::string> preset_names() const;
-  /// Folders that may hold effect scripts, in order.
-  std::vector<std::filesystem::path> effect_folders() const { return script_folders("effects"); }
+  /// Folders that may hold scripts of a kind (`effects`, `masks`), in order.
   std::vector<std::filesystem::path> script_folders(const std::string& folder) const;
   /// Folders that may hold presets, in order.
   std::vector<std::filesystem::path> preset_folders() const;

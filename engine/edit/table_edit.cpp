@@ -144,13 +144,6 @@ Replacements on_own_line(const Layout& layout, const Item& last, const std::stri
   return {{stop, 0, std::string(1, separator)}, {at, 0, std::move(line)}};
 }
 
-// The separator that a constructor of several items is written with.
-char separator_of(const Layout& layout) {
-  for (const Item& item : layout.items)
-    if (layout.separated(item)) return layout.lua[item.end].text[0];
-  return ',';
-}
-
 /// An item with what goes where it goes: pieces of the text, in their order.
 struct Slot {
   struct Piece {
@@ -270,14 +263,6 @@ Replacements insert_behind(const LuaText& text, std::size_t open, std::size_t be
   const Layout layout(text, open);
   const Item& item = layout.items[behind];
   return layout.line_each() ? on_own_line(layout, item, source) : behind_last(layout, item, source);
-}
-
-Replacements insert_before(const LuaText& text, std::size_t open, std::size_t before, const std::string& source) {
-  const Layout layout(text, open);
-  const std::size_t at = layout.begin(layout.items[before]);
-  const std::string space =
-      layout.starts_line(at) ? layout.line_break() + std::string(layout.before_on_line(at)) : std::string(" ");
-  return {{at, 0, source + separator_of(layout) + space}};
 }
 
 Replacements insert_first(const LuaText& text, std::size_t open, const std::string& source) {

@@ -33,8 +33,6 @@ std::optional<Replacements> remove_item(const LuaText& text, std::size_t open, c
 
 /// `source` as an item without a key behind item number `behind`, in the layout of that one.
 Replacements insert_behind(const LuaText& text, std::size_t open, std::size_t behind, const std::string& source);
-/// The same before item number `before`.
-Replacements insert_before(const LuaText& text, std::size_t open, std::size_t before, const std::string& source);
 /// The same into a constructor without items.
 Replacements insert_first(const LuaText& text, std::size_t open, const std::string& source);
 /// Without item number `index` and what stands on its own lines behind it: a comment there is about it. Comments on

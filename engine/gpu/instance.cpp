@@ -146,7 +146,6 @@ Result<Instance> Instance::create(std::shared_ptr<ValidationLog> log, const std:
   AFTERGLOW_CHECK(out.functions_.load_instance(out.instance_));
   keep_libraries_loaded();
   if (log) {
-    out.debug_utils_ = true;
     const auto create_messenger = out.functions_.vkCreateDebugUtilsMessengerEXT;
     if (!create_messenger) return Error{ErrorKind::device, "the validation layer offers no VK_EXT_debug_utils"};
     AFTERGLOW_VK(create_messenger(out.instance_, &messenger, nullptr, &out.messenger_),
@@ -160,7 +159,6 @@ Instance& Instance::operator=(Instance&& other) noexcept {
   std::swap(instance_, other.instance_);
   std::swap(messenger_, other.messenger_);
   std::swap(log_, other.log_);
-  std::swap(debug_utils_, other.debug_utils_);
   return *this;
 }
 

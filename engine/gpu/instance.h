@@ -27,7 +27,6 @@ class Instance {
 
   VkInstance get() const { return instance_; }
   const VulkanFunctions& functions() const { return functions_; }
-  bool debug_utils() const { return debug_utils_; }
   /// Gives up ownership of the instance and its messenger.
   VkInstance release(VkDebugUtilsMessengerEXT& messenger);
 
@@ -36,7 +35,6 @@ class Instance {
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   std::shared_ptr<ValidationLog> log_;
-  bool debug_utils_ = false;
 };
 
 void destroy_instance(const VulkanFunctions& vk, VkInstance instance, VkDebugUtilsMessengerEXT messenger);

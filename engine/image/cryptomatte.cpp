@@ -121,12 +121,6 @@ std::vector<std::string> cryptomatte_names(std::string_view text) {
   return out;
 }
 
-std::vector<std::string> cryptomatte_layers(const Metadata& metadata) {
-  std::vector<std::string> out;
-  for (auto& [key, layer] : all_of(metadata)) out.push_back(std::move(layer));
-  return out;
-}
-
 Result<std::optional<Cryptomatte>> find_cryptomatte(const Metadata& metadata, const std::string& layer) {
   for (const auto& [key, name] : all_of(metadata)) {
     if (name != layer && !name.ends_with("." + layer)) continue;

@@ -33,7 +33,4 @@ Result<std::optional<Cryptomatte>> find_cryptomatte(const Metadata& metadata, co
 /// marks inside of a name without them are its own.
 std::vector<std::string> cryptomatte_names(std::string_view text);
 
-/// The layers of all cryptomattes that the header names.
-std::vector<std::string> cryptomatte_layers(const Metadata& metadata);
-
 }  // namespace afterglow

@@ -342,7 +342,6 @@ Sound* Player::sound() { return state_->sound.get(); }
 LiveStack& Player::live() { return state_->first->live(); }
 LiveStack* Player::other() { return state_->second ? &state_->second->live() : nullptr; }
 const ShownFrame& Player::shown() const { return state_->shown; }
-const FrameTimes& Player::last_times() const { return state_->first->times(); }
 const LiveSession& Player::session() const { return *state_->first; }
 
 }  // namespace afterglow

@@ -107,8 +107,8 @@ class Player {
   const Footage& footage() const;
   const std::filesystem::path& preset_file() const;
   const std::filesystem::path& other_file() const;  ///< of `other`
-  Sound* sound();                                 ///< null without PlayerOptions::sound
-  const FootageOptions& footage_options() const;  ///< what `footage` was opened with
+  Sound* sound();                                   ///< null without PlayerOptions::sound
+  const FootageOptions& footage_options() const;    ///< what `footage` was opened with
   FrameState frame_state(int position) const;
   LiveStack& live();
   LiveStack* other();  ///< null without a second preset
@@ -116,7 +116,6 @@ class Player {
   PlayerImages images() const;
   /// The picture of `shown` as it was read, scene-linear; null: none yet.
   std::shared_ptr<const Picture> source() const;
-  const FrameTimes& last_times() const;
   /// What runs the first preset: its kernels, memory, what the last frame left out.
   const LiveSession& session() const;
 

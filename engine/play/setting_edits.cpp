@@ -70,12 +70,6 @@ bool SettingEdits::reset(const std::string& entry, const std::string& setting) {
   return take(std::move(step), "");
 }
 
-bool SettingEdits::reset_entry(const std::string& entry) {
-  Step step = history_[at_];
-  std::erase_if(step.edits, [&](const SettingEdit& edit) { return edit.entry == entry; });
-  return take(std::move(step), "");
-}
-
 bool SettingEdits::reset_all() { return take({}, ""); }
 
 bool SettingEdits::recall(int snapshot) {

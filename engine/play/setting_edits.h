@@ -56,7 +56,6 @@ class SettingEdits {
   bool reset_stack();
   /// The preset's value again. False when it was not changed.
   bool reset(const std::string& entry, const std::string& setting);
-  bool reset_entry(const std::string& entry);
   bool reset_all();
   /// The next change begins a new step, even of the same setting.
   void end_gesture() { open_.clear(); }

@@ -101,7 +101,6 @@ class GraphBuilder {
   ImageRef data(const std::string& name, std::shared_ptr<const ImageData> pixels);
   void skip(std::string reason) { skip_reason_ = std::move(reason); }
   const std::optional<std::string>& skip_reason() const { return skip_reason_; }
-  std::size_t pass_count() const { return graph_.passes.size(); }
 
   void add_skipped(std::string name, std::string reason) {
     graph_.skipped.push_back({std::move(name), std::move(reason)});

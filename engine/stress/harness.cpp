@@ -75,7 +75,6 @@ struct Harness::State {
   std::map<std::string, Made> results;       ///< by look, way, frame and content of the picture
   std::map<std::string, Result<LookFacts>> known;
   ExecutionConfig usual;
-  int stacks = 0;
 
   StackOptions options(const Look& look, const Way& way) const {
     StackOptions out;
@@ -97,7 +96,6 @@ Harness::Harness(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Harness::~Harness() = default;
 Device& Harness::device() { return *state_->device; }
 const ExecutionConfig& Harness::usual() const { return state_->usual; }
-int Harness::stacks_made() const { return state_->stacks; }
 
 Result<std::unique_ptr<Harness>> Harness::create(Device& device, const std::filesystem::path& cache,
                                                  Diagnostics& diagnostics) {
@@ -128,7 +126,6 @@ Result<Prepared*> Harness::State::prepare(const Look& look, const Way& way, cons
     one.stack->use(*device, true);
     one.stack->show(way.show);
     AFTERGLOW_TRY(one.renderer, Renderer::create(*device, {.max_memory = 16ull << 30}));
-    ++stacks;
   }
   AFTERGLOW_CHECK(one.stack->prepare(context_for(size, frame), {}, way.region));
   return &one;

@@ -65,7 +65,6 @@ class Harness {
   /// As `run` executes on this device, but for what half floats and filtered fetches would change.
   const ExecutionConfig& usual() const;
   Device& device();
-  int stacks_made() const;
 
  private:
   struct State;

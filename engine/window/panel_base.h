@@ -27,7 +27,6 @@ class EditBases {
  public:
   /// In each turn.
   void follow(PanelPort& port);
-  const std::vector<EditConflict>& conflicts() const { return conflicts_; }
   const EditConflict* find(const std::string& entry, const std::string& setting) const;
   /// The panel's value stays, over what the file says now.
   void keep(const std::string& entry, const std::string& setting);

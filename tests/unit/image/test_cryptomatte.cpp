@@ -34,16 +34,16 @@ TEST(CryptomatteTest, ManifestsGiveIdsByName) {
       {"cryptomatte/9e7aab0/conversion", std::string("uint32_to_float32")},
       {"cryptomatte/9e7aab0/manifest", std::string(R"({"Lamp":"0d362c75","A \"sign\"":"fff00001"})")},
       {"cryptomatte/1234567/name", std::string("ViewLayer.CryptoMaterial")}};
-  EXPECT_EQ(cryptomatte_layers(metadata),
-            (std::vector<std::string>{"ViewLayer.CryptoObject", "ViewLayer.CryptoMaterial"}));
   for (const char* layer : {"CryptoObject", "ViewLayer.CryptoObject"}) {
     const auto found = find_cryptomatte(metadata, layer);
     ASSERT_TRUE(found && *found);
+    EXPECT_EQ((*found)->layer, "ViewLayer.CryptoObject");
     EXPECT_EQ((*found)->manifest.at("Lamp"), 0x0d362c75u);
     EXPECT_EQ((*found)->manifest.at("A \"sign\""), 0xfff00001u);
   }
   const auto without = find_cryptomatte(metadata, "CryptoMaterial");
   ASSERT_TRUE(without && *without);
+  EXPECT_EQ((*without)->layer, "ViewLayer.CryptoMaterial");
   EXPECT_TRUE((*without)->manifest.empty());
   const auto none = find_cryptomatte(metadata, "Object");
   ASSERT_TRUE(none);

@@ -96,7 +96,7 @@ TEST(SettingEdits, ResetTakesAwayAndCanBeUndone) {
   EXPECT_TRUE(edits.reset("glow", "strength"));
   EXPECT_EQ(edits.edits().size(), 1u);
   edits.undo();
-  EXPECT_TRUE(edits.reset_entry("glow#2"));
+  EXPECT_TRUE(edits.reset("glow#2", "strength"));
   EXPECT_TRUE(edits.reset_all());
   EXPECT_FALSE(edits.reset_all());
   edits.undo();
