@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "image/metrics.h"
+#include "image/srgb.h"
 
 namespace afterglow::bench {
 namespace {
@@ -15,8 +16,7 @@ constexpr long long kMostPixelsForYee = 1 << 21;
 
 double display(double linear) {
   if (!(linear > 0)) return 0;
-  if (linear >= 1) return 1;
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+  return linear >= 1 ? 1 : linear_to_srgb(linear);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "core/pack.h"
 #include "core/text.h"
+#include "image/srgb.h"
 #include "script/read_only.h"
 
 namespace afterglow {
@@ -64,9 +65,6 @@ bool in_range(const SettingSchema& schema, double value) {
 constexpr const char* kTooLarge = "larger than a 32-bit float holds";
 bool fits_float(double value) { return std::isfinite(static_cast<float>(value)); }
 
-// sRGB-encoded 0…1 to scene-linear (IEC 61966-2-1).
-double srgb_to_linear(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
-
 bool parse_hex_color(const std::string& text, SettingValue& value) {
   if (text.size() != 7 || text[0] != '#') return false;
   if (text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos) return false;
@@ -86,8 +84,7 @@ std::optional<std::string> hex_color(const SettingValue& color) {
   std::string text = "#";
   for (const double c : color.number) {
     if (!(c >= 0 && c <= 1)) return {};
-    const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-    const int code = static_cast<int>(std::lround(encoded * 255));
+    const int code = static_cast<int>(std::lround(linear_to_srgb(c) * 255));
     if (static_cast<float>(srgb_to_linear(code / 255.0)) != static_cast<float>(c)) return {};
     text += fmt::format("{:02x}", code);
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "image/srgb.h"
 #include "window/overlay.h"
 #include "window/sheet.h"
 
@@ -88,10 +89,8 @@ void draw_targets(ImDrawList& list, const Ui& ui, const Frame& frame) {
   constexpr double kSkin = 123.0 / 180 * 3.14159265358979;  // from +Cb, towards +Cr
   list.AddLine(middle, {frame.x(0.5 + 0.42 * std::cos(kSkin)), frame.y(0.5 + 0.42 * std::sin(kSkin))}, kTarget);
   for (const Target& target : kTargets) {
-    const auto linear = [](double code) {
-      return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
-    };
-    const auto at = scope_color({linear(target.code[0]), linear(target.code[1]), linear(target.code[2])});
+    const auto at =
+        scope_color({srgb_to_linear(target.code[0]), srgb_to_linear(target.code[1]), srgb_to_linear(target.code[2])});
     const ImVec2 p{frame.x(at[0] + 0.5), frame.y(at[1] + 0.5)};
     const float half = ui.px(5);
     list.AddRect({p.x - half, p.y - half}, {p.x + half, p.y + half}, kTarget);

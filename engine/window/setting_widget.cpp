@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "image/srgb.h"
+
 namespace afterglow {
 namespace {
 
@@ -72,11 +74,14 @@ bool vector_row(const char* name, const SettingSchema& schema, std::array<double
   return ImGui::DragScalarN(name, ImGuiDataType_Double, number.data(), count, 0.01f, nullptr, nullptr, "%.3f");
 }
 
+// As screens show it: nothing is darker than black.
+float color_code(double linear) { return static_cast<float>(linear_to_srgb(std::max(0.0, linear))); }
+
 // Hue, saturation and value as the eye knows them, up to 1; what is brighter is that colour times a number of stops.
 bool color_picker(const Ui& ui, std::array<double, 3>& number) {
   const double most = std::max({number[0], number[1], number[2], 1.0});
   std::array<float, 3> code{};
-  for (std::size_t i = 0; i < 3; ++i) code[i] = static_cast<float>(encode_color(number[i] / most));
+  for (std::size_t i = 0; i < 3; ++i) code[i] = color_code(number[i] / most);
   float stops = static_cast<float>(std::log2(most));
   ImGui::SetNextItemWidth(ui.px(220));
   bool changed = ImGui::ColorPicker3("##picker", code.data(),
@@ -86,13 +91,13 @@ bool color_picker(const Ui& ui, std::array<double, 3>& number) {
   changed |= ImGui::SliderFloat("stops over 1", &stops, 0, 10, "%.2f", ImGuiSliderFlags_AlwaysClamp);
   if (changed)
     for (std::size_t i = 0; i < 3; ++i)
-      number[i] = static_cast<float>(std::max(0.0, decode_color(code[i])) * std::exp2(stops));
+      number[i] = static_cast<float>(std::max(0.0, srgb_to_linear(code[i])) * std::exp2(stops));
   return changed;
 }
 
 bool color_row(const Ui& ui, const char* name, std::array<double, 3>& number, float width) {
   const double most = std::max({number[0], number[1], number[2], 1.0});
-  const auto code = [&](std::size_t i) { return static_cast<float>(encode_color(number[i] / most)); };
+  const auto code = [&](std::size_t i) { return color_code(number[i] / most); };
   const float side = ImGui::GetFrameHeight();
   if (ImGui::ColorButton("##swatch", {code(0), code(1), code(2), 1}, ImGuiColorEditFlags_NoTooltip, {side, side}))
     ImGui::OpenPopup("color");
@@ -107,15 +112,6 @@ bool color_row(const Ui& ui, const char* name, std::array<double, 3>& number, fl
 }
 
 }  // namespace
-
-double encode_color(double linear) {
-  if (!(linear > 0)) return 0;
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
-double decode_color(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
 
 bool is_logarithmic(const SettingSchema& schema) {
   if (schema.type != SettingType::number || !schema.min || !schema.max || *schema.min < 0) return false;

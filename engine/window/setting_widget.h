@@ -18,8 +18,4 @@ std::optional<SettingValue> setting_widget(Ui& ui, const char* name, const Setti
 /// Does a slider over the setting's range move by factors? Where it spans more than two decades above 0.
 bool is_logarithmic(const SettingSchema& schema);
 
-/// Colours in sRGB encoding, as screens show them; above 1 the code goes on along the same curve.
-double encode_color(double linear);
-double decode_color(double encoded);
-
 }  // namespace afterglow

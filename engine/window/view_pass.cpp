@@ -12,6 +12,7 @@
 #include "gpu/fullscreen_vertex.h"
 #include "gpu/pipeline.h"
 #include "gpu/swapchain.h"
+#include "image/srgb.h"
 #include "view.frag.h"
 #include "window/plain_pass.h"
 #include "window/view_table.h"
@@ -56,7 +57,7 @@ using Constants = std::array<std::int32_t, 4>;
 
 constexpr ViewColor kBorder{0.906332f, 0.906332f, 0.906332f}, kBesideBorder{0.151704f, 0.151704f, 0.151704f};
 
-float to_linear(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }
+float to_linear(float code) { return static_cast<float>(srgb_to_linear(code)); }
 
 std::array<float, 4> color_and(const ViewColor& color, double w) {
   return {to_linear(color[0]), to_linear(color[1]), to_linear(color[2]), static_cast<float>(w)};

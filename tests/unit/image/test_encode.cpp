@@ -56,6 +56,12 @@ TEST_P(Srgb, AnyFloat) {
 }
 INSTANTIATE_TEST_SUITE_P(Codes, Srgb, testing::Values(255, 65535));
 
+TEST(SrgbCurve, IsThatOfTheStandard) {
+  EXPECT_NEAR(linear_to_srgb(0.21586050011389926), 128 / 255.0, 1e-9);
+  for (const double value : {-0.18, 0.0, 0.001, 0.18, 1.0, 4.0})
+    EXPECT_NEAR(srgb_to_linear(linear_to_srgb(value)), value, 1e-6);
+}
+
 TEST(Half, SameAsImathAndHeldInRange) {
   std::vector<float> values;
   std::mt19937 random(3);
