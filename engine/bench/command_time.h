@@ -12,7 +12,7 @@
 namespace afterglow::bench {
 
 /// Runs a program with arguments and additional environment, its output thrown away, and waits. Returns seconds.
-/// Errors: other (it cannot be started, or it failed).
+/// Errors: io (it cannot be started), other (it failed).
 Result<double> time_command(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                             const std::map<std::string, std::string>& environment);
 

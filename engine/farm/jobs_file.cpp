@@ -5,8 +5,8 @@
 #include <set>
 #include <span>
 
+#include "core/process.h"
 #include "farm/job.h"
-#include "farm/process.h"
 
 namespace afterglow::farm {
 namespace {

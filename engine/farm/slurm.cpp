@@ -15,8 +15,8 @@
 #include "core/file.h"
 #include "core/json_text.h"
 #include "core/parse_number.h"
+#include "core/process.h"
 #include "core/text.h"
-#include "farm/process.h"
 
 namespace afterglow::farm {
 namespace {

@@ -12,8 +12,6 @@
 namespace afterglow::stress {
 namespace {
 
-std::string number(double value) { return SettingValue{.type = SettingType::number, .number = {value, 0, 0}}.text(); }
-
 std::string random_part(const std::vector<EffectSchema>& masks, Random& random) {
   const EffectSchema& mask = random.pick(masks);
   std::vector<std::string> keys;
@@ -29,7 +27,7 @@ std::string random_part(const std::vector<EffectSchema>& masks, Random& random) 
 }
 
 std::string random_mask(const std::vector<EffectSchema>& masks, Random& random, int depth = 0) {
-  if (random.chance(0.1)) return number(random.between(-0.5, 1.5));
+  if (random.chance(0.1)) return number_text(random.between(-0.5, 1.5));
   if (depth > 2 || random.chance(0.6)) return random_part(masks, random);
   static const std::vector<std::string> kOperators{"+", "-", "*"};
   const std::string a = random_mask(masks, random, depth + 1), b = random_mask(masks, random, depth + 1);
@@ -44,7 +42,7 @@ void compose(LookEntry& entry, const std::vector<EffectSchema>& masks, Random& r
   };
   while (entry.composition.empty()) {
     if (!has("opacity") && random.chance(0.5))
-      entry.composition.emplace_back("opacity", random.chance(0.1) ? "0" : number(random.unit()));
+      entry.composition.emplace_back("opacity", random.chance(0.1) ? "0" : number_text(random.unit()));
     if (!has("blend") && random.chance(0.5))
       entry.composition.emplace_back("blend",
                                      fmt::format("\"{}\"", random.pick(script::entry_key_schema("blend").choices)));

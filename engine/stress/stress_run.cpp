@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "core/paths.h"
+#include "core/process.h"
 #include "core/version.h"
-#include "stress/processes.h"
 
 namespace afterglow::stress {
 namespace {
@@ -72,13 +72,16 @@ Result<std::vector<ProcessCheck>> ask_other_processes(const StressRequest& reque
     if (some.size() < kMost) some.insert(one);
   std::vector<ProcessCheck> out;
   if (some.empty()) return out;
-  std::vector<std::string> arguments = same_arguments(request);
-  for (const auto& [index, hash] : some) arguments.insert(arguments.end(), {"--digests-of", std::to_string(index)});
+  std::vector<std::string> words = same_arguments(request);
+  words.insert(words.begin(), "/proc/self/exe");
+  for (const auto& [index, hash] : some) words.insert(words.end(), {"--digests-of", std::to_string(index)});
   for (const char* threads : {"0", "5"}) {
     if (events.interrupted()) return out;
-    AFTERGLOW_TRY(const std::string theirs, output_of("/proc/self/exe", arguments, {{"LP_NUM_THREADS", threads}}));
+    AFTERGLOW_TRY(const ProcessEnd theirs,
+                  run_process(words, {.environment = {{"LP_NUM_THREADS", threads}}, .show_errors = true}));
+    if (theirs.code != 0) return Error{ErrorKind::other, fmt::format("'{}' {}", words[0], theirs.text())};
     AFTERGLOW_TRY(auto check,
-                  compare_digests(fmt::format("LP_NUM_THREADS={}, another process", threads), some, theirs));
+                  compare_digests(fmt::format("LP_NUM_THREADS={}, another process", threads), some, theirs.out));
     out.push_back(std::move(check));
   }
   return out;

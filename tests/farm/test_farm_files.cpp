@@ -4,7 +4,6 @@
 #include <fstream>
 
 #include "farm/attempt.h"
-#include "farm/process.h"
 #include "farm/slurm.h"
 #include "farm/status.h"
 #include "farm_test.h"
@@ -235,17 +234,6 @@ TEST(FarmText, AJoinWaitsForTheChunksThatAreTriedAgain) {
   const auto own = std::ranges::find(words, "--dependency=afterany:12:14");
   EXPECT_NE(own, words.end());
   EXPECT_GT(own, std::ranges::find(words, "--dependency=afterok:7")) << "of two options the last one counts";
-}
-
-TEST(FarmText, ShellsReadWordsBack) {
-  const std::vector<std::string> words{"plain", "two words", "it's", "a\nb", "$HOME `x` \"q\" \\", "", "*"};
-  std::vector<std::string> line{"printf", "%s|"};
-  line.insert(line.end(), words.begin(), words.end());
-  const auto ended = farm::run_process({"/bin/sh", "-c", farm::shell_line(line)});
-  ASSERT_TRUE(ended);
-  std::string expected;
-  for (const auto& word : words) expected += word + "|";
-  EXPECT_EQ(ended->out, expected);
 }
 
 TEST(FarmText, OfAChunkTheLastArrayCounts) {

@@ -4,7 +4,6 @@
 
 #include "bad_effects.h"
 #include "stress/growth.h"
-#include "stress/processes.h"
 #include "stress/report.h"
 
 namespace afterglow::stress {
@@ -113,14 +112,6 @@ TEST(StressProgramme, OtherProcessesAreCompared) {
   StressReport report;
   report.processes = {*other};
   EXPECT_FALSE(report.clean());
-}
-
-TEST(StressProgramme, OutputOfAProgram) {
-  const auto said = output_of("/bin/sh", {"-c", "printf %s \"$AFTERGLOW_TRIAL\""}, {{"AFTERGLOW_TRIAL", "seven"}});
-  ASSERT_TRUE(said) << said.error().text();
-  EXPECT_EQ(*said, "seven");
-  EXPECT_THAT(output_of("/bin/sh", {"-c", "exit 4"}, {}).error().text(), testing::HasSubstr("exit code 4"));
-  EXPECT_THAT(output_of("/nowhere/at all", {}, {}).error().text(), testing::HasSubstr("cannot be started"));
 }
 
 TEST(StressProgramme, ReportsErrorsLevelByLevel) {

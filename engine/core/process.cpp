@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "farm/process.h"
+#include "core/process.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 
 extern char** environ;
 
-namespace afterglow::farm {
+namespace afterglow {
 namespace {
 
 /// Both ends of a pipe that children do not get by accident.
@@ -39,6 +39,25 @@ bool take_text(int file, std::string& into) {
   return count > 0 || (count < 0 && errno == EINTR);
 }
 
+/// Variables of this process, with others instead or besides.
+std::vector<std::string> environment_with(const std::map<std::string, std::string>& others) {
+  std::vector<std::string> out;
+  for (char** variable = environ; *variable; ++variable) {
+    const std::string text = *variable;
+    if (!others.contains(text.substr(0, text.find('=')))) out.push_back(text);
+  }
+  for (const auto& [name, value] : others) out.push_back(name + "=" + value);
+  return out;
+}
+
+/// As the system takes lists of words.
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> out;
+  for (auto& text : texts) out.push_back(text.data());
+  out.push_back(nullptr);
+  return out;
+}
+
 void read_both(Pipe& out, Pipe& err, ProcessEnd& end) {
   std::array<pollfd, 2> streams{pollfd{out.ends[0], POLLIN, 0}, pollfd{err.ends[0], POLLIN, 0}};
   while (streams[0].fd >= 0 || streams[1].fd >= 0) {
@@ -50,23 +69,25 @@ void read_both(Pipe& out, Pipe& err, ProcessEnd& end) {
 
 }  // namespace
 
-Result<ProcessEnd> run_process(const std::vector<std::string>& words) {
+std::string ProcessEnd::text() const {
+  return signal ? fmt::format("was ended by signal {}", signal) : fmt::format("ended with exit code {}", code);
+}
+
+Result<ProcessEnd> run_process(const std::vector<std::string>& words, const ProcessOptions& options) {
   const auto failed = [&](int code) {
     return Error{ErrorKind::io, fmt::format("'{}' cannot be started: {}", words.front(), std::strerror(code))};
   };
   Pipe out, err;
   if (!out.open() || !err.open()) return failed(errno);
-  std::vector<std::string> copies = words;
-  std::vector<char*> arguments;
-  for (auto& word : copies) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  std::vector<std::string> arguments = words, variables = environment_with(options.environment);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, out.ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, err.ends[1], STDERR_FILENO);
+  if (!options.show_errors) posix_spawn_file_actions_adddup2(&actions, err.ends[1], STDERR_FILENO);
   pid_t child = 0;
-  const int problem = posix_spawnp(&child, words.front().c_str(), &actions, nullptr, arguments.data(), environ);
+  const int problem = posix_spawnp(&child, words.front().c_str(), &actions, nullptr, pointers(arguments).data(),
+                                   pointers(variables).data());
   posix_spawn_file_actions_destroy(&actions);
   if (problem != 0) return failed(problem);
   out.close_end(1);
@@ -76,7 +97,8 @@ Result<ProcessEnd> run_process(const std::vector<std::string>& words) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  end.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  end.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  end.code = end.signal ? 128 + end.signal : WEXITSTATUS(status);
   return end;
 }
 
@@ -96,4 +118,4 @@ std::string shell_line(const std::vector<std::string>& words) {
   return out;
 }
 
-}  // namespace afterglow::farm
+}  // namespace afterglow
