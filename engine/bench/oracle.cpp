@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "script/preset.h"
+
 namespace afterglow::bench {
 namespace {
 
@@ -62,7 +64,7 @@ std::vector<reference::Entry> oracle_entries(const Build& build) {
   return out;
 }
 
-std::vector<double> oracle_result(const Picture& picture, const std::vector<reference::Entry>& entries) {
+std::vector<double> oracle_result(const Picture& picture, const std::vector<reference::Entry>& entries, double frame) {
   std::map<std::string, reference::DoubleImage> auxiliary;
   for (const auto& [name, image] : picture.auxiliary) auxiliary[name] = as_double(image);
   const auto find = [&](const char* name) {
@@ -72,6 +74,8 @@ std::vector<double> oracle_result(const Picture& picture, const std::vector<refe
   reference::Inputs inputs{.depth = find("depth"), .normal = find("normal"), .motion = find("motion")};
   for (const auto& [name, image] : auxiliary)
     if (name.starts_with("layer:")) inputs.layers[name.substr(6)] = &image;
+  inputs.frame = frame;
+  inputs.time = (frame - 1) / BuildContext{}.fps;
   const auto result = reference::evaluate(as_double(picture.color), inputs, entries);
   std::vector<double> rgb;
   rgb.reserve(result.pixels.size() * 3);

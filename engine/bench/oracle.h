@@ -15,7 +15,9 @@ namespace afterglow::bench {
 /// left out.
 std::vector<reference::Entry> oracle_entries(const Build& build);
 
-/// R, G and B of the stack's result in double precision. Every effect must have an oracle.
-std::vector<double> oracle_result(const Picture& picture, const std::vector<reference::Entry>& entries);
+/// R, G and B of the stack's result in double precision. Every effect must have an oracle. `frame`: the picture's
+/// number in its sequence, which plays as fast as usual.
+std::vector<double> oracle_result(const Picture& picture, const std::vector<reference::Entry>& entries,
+                                  double frame = 1);
 
 }  // namespace afterglow::bench

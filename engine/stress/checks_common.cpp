@@ -9,6 +9,7 @@
 #include "core/half.h"
 #include "image/picture.h"
 #include "stress/check.h"
+#include "stress/pictures.h"
 
 namespace afterglow::stress {
 namespace {
@@ -139,13 +140,6 @@ Rect random_part(Size size, Random& random) {
   return part;
 }
 
-Image crop(const Image& image, const Rect& part) {
-  Image out(part.width, part.height, image.channels);
-  for (int y = 0; y < part.height; ++y)
-    std::copy_n(image.at(part.x, part.y + y), static_cast<std::ptrdiff_t>(part.width) * image.channels, out.at(0, y));
-  return out;
-}
-
 /// A region is the crop of the whole, bit for bit. What is not read of the source must not matter.
 Result<Outcome> region(Harness& harness, const Situation& s, const Invariant&) {
   Random random(s.seed);
@@ -153,7 +147,7 @@ Result<Outcome> region(Harness& harness, const Situation& s, const Invariant&) {
   AFTERGLOW_TRY(const Made whole, harness.run(s.look, s.picture, s.frame, way));
   way.region = random_part(s.picture.color.size(), random);
   AFTERGLOW_TRY(const Made part, harness.run(s.look, s.picture, s.frame, way));
-  return compare(crop(part.image, *way.region), crop(whole.image, *way.region), 0, way.name());
+  return compare(cropped(part.image, *way.region), cropped(whole.image, *way.region), 0, way.name());
 }
 
 bool is_opaque(const Image& rgba) {

@@ -242,4 +242,11 @@ Result<Picture> as_read(const Picture& picture, const std::filesystem::path& fol
   return read_picture_file(file, diagnostics);
 }
 
+Image cropped(const Image& image, const Rect& part) {
+  Image out(part.width, part.height, image.channels);
+  for (int y = 0; y < part.height; ++y)
+    std::copy_n(image.at(part.x, part.y + y), static_cast<std::ptrdiff_t>(part.width) * image.channels, out.at(0, y));
+  return out;
+}
+
 }  // namespace afterglow::stress

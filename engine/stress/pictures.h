@@ -43,4 +43,7 @@ Result<Picture> as_read(const Picture& picture, const std::filesystem::path& fol
 /// Every value of the colour to the nearest half float within ±65504.
 void round_to_halves(Image& rgba);
 
+/// A part that lies within the image.
+Image cropped(const Image& image, const Rect& part);
+
 }  // namespace afterglow::stress

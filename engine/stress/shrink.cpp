@@ -3,17 +3,12 @@
 
 #include <algorithm>
 
+#include "stress/pictures.h"
+
 namespace afterglow::stress {
 namespace {
 
-Image cropped(const Image& image, const Rect& part) {
-  Image out(part.width, part.height, image.channels);
-  for (int y = 0; y < part.height; ++y)
-    std::copy_n(image.at(part.x, part.y + y), static_cast<std::ptrdiff_t>(part.width) * image.channels, out.at(0, y));
-  return out;
-}
-
-Picture cropped(const Picture& picture, const Rect& part) {
+Picture cropped_picture(const Picture& picture, const Rect& part) {
   Picture out = changed(picture);
   out.color = cropped(picture.color, part);
   for (auto& [name, image] : out.auxiliary) image = cropped(image, part);
@@ -94,8 +89,8 @@ class Shrinker {
         if (length < 2) break;
         const auto without = [&](int from) {
           Situation candidate = situation_;
-          candidate.picture = cropped(situation_.picture, across ? Rect{from, 0, length - off, size.height}
-                                                                 : Rect{0, from, size.width, length - off});
+          candidate.picture = cropped_picture(situation_.picture, across ? Rect{from, 0, length - off, size.height}
+                                                                         : Rect{0, from, size.width, length - off});
           return take(std::move(candidate));
         };
         if (without(0) || without(off)) {

@@ -4,34 +4,15 @@
 #include <algorithm>
 #include <exception>
 
+#include "bench/oracle.h"
 #include "core/half.h"
-#include "stress/auxiliary.h"
 #include "stress/pictures.h"
 
 namespace afterglow::stress {
-namespace {
-
-reference::DoubleImage as_double(const Image& image) {
-  return reference::from_floats(image.pixels.data(), image.size(), image.channels);
-}
-
-}  // namespace
-
 std::optional<std::vector<double>> truth_of(const LookFacts& facts, const Picture& picture, double frame) {
   if (!reference::effect_without_oracle(facts.entries).empty()) return std::nullopt;
-  const auto depth = as_double(picture.auxiliary.at("depth")), normal = as_double(picture.auxiliary.at("normal")),
-             motion = as_double(picture.auxiliary.at("motion"));
-  const auto matte = as_double(picture.auxiliary.at(kMatte));
-  reference::Inputs inputs{.depth = &depth, .normal = &normal, .motion = &motion};
-  inputs.layers[kMatte + std::string_view("layer:").size()] = &matte;
-  inputs.frame = frame;
-  inputs.time = (frame - 1) / BuildContext{}.fps;
   try {
-    const auto result = reference::evaluate(as_double(picture.color), inputs, facts.entries);
-    std::vector<double> rgb;
-    rgb.reserve(result.pixels.size() * 3);
-    for (const auto& p : result.pixels) rgb.insert(rgb.end(), {p.r, p.g, p.b});
-    return rgb;
+    return bench::oracle_result(picture, facts.entries, frame);
   } catch (const std::exception&) {  // an effect of the user's that has the name of another, with settings of its own
     return std::nullopt;
   }
