@@ -117,6 +117,9 @@ Result<Override> parse_override(const std::string& text);
 
 namespace script {
 
+/// The range of a setting: "0…1", "≥ 1", "≤ 8"; empty: it has none.
+std::string range_text(const SettingSchema& schema);
+
 /// What a setting allows, for messages and tables: "0…1", "integer ≥ 1", "additive, scattering", "true, false".
 std::string allowed_text(const SettingSchema& schema);
 

@@ -50,13 +50,6 @@ namespace {
 constexpr double kMaxInteger = 2147483647;
 constexpr std::size_t kMaxText = 1000;
 
-std::string range_text(const SettingSchema& schema) {
-  if (schema.min && schema.max) return number_text(*schema.min) + "…" + number_text(*schema.max);
-  if (schema.min) return "≥ " + number_text(*schema.min);
-  if (schema.max) return "≤ " + number_text(*schema.max);
-  return {};
-}
-
 bool in_range(const SettingSchema& schema, double value) {
   return (!schema.min || value >= *schema.min) && (!schema.max || value <= *schema.max);
 }
@@ -74,6 +67,13 @@ bool parse_hex_color(const std::string& text, SettingValue& value) {
 }
 
 }  // namespace
+
+std::string range_text(const SettingSchema& schema) {
+  if (schema.min && schema.max) return number_text(*schema.min) + "…" + number_text(*schema.max);
+  if (schema.min) return "≥ " + number_text(*schema.min);
+  if (schema.max) return "≤ " + number_text(*schema.max);
+  return {};
+}
 
 bool has_extension(const SettingSchema& schema, const std::string& file) {
   const std::string name = lower(file);

@@ -19,16 +19,9 @@ std::string origin_of(const SettingHistory& history) {
   return {};
 }
 
-std::string range_of(const SettingSchema& schema) {
-  if (schema.min && schema.max) return number_text(*schema.min) + "…" + number_text(*schema.max);
-  if (schema.min) return "≥ " + number_text(*schema.min);
-  if (schema.max) return "≤ " + number_text(*schema.max);
-  return {};
-}
-
 std::string setting_help(const SettingSchema& schema, const SettingHistory* history, bool edited) {
   std::string out = schema.doc;
-  std::string facts = range_of(schema);
+  std::string facts = script::range_text(schema);
   if (!schema.unit.empty()) facts += (facts.empty() ? "in " : " ") + schema.unit;
   if (!facts.empty()) out += "\n" + facts;
   out += "\ndefault " + schema.default_value.text();
