@@ -30,10 +30,10 @@ void EffectLibrary::poll() {
 }
 
 void EffectBrowser::open(Source source) {
-  open_ = begin_ = true;
+  open_ = true;
+  search_.open();
   source_ = std::move(source);
   wanted_.clear();
-  search_.fill(0);
   entered_ = false;
   chosen_ = 0;
 }
@@ -41,7 +41,7 @@ void EffectBrowser::open(Source source) {
 /// Every word of the search, in the name or the doc.
 bool EffectBrowser::found(const EffectSchema& effect) const {
   const std::string text = lower(effect.name + " " + effect.doc + " " + effect.at);
-  const auto words = split(lower(search_.data()), ' ');
+  const auto words = split(lower(search_.text()), ' ');
   return std::ranges::all_of(words, [&](const std::string& word) { return text.find(word) != std::string::npos; });
 }
 
@@ -53,7 +53,7 @@ std::optional<std::string> EffectBrowser::draw(Ui& ui, const EffectLibrary& libr
   for (const EffectSchema& effect : library.effects())
     if (found(effect)) list.push_back(&effect);
   // Those whose name begins so come first.
-  const std::string begin = lower(search_.data());
+  const std::string begin = lower(search_.text());
   std::ranges::stable_sort(list, [&](const EffectSchema* a, const EffectSchema* b) {
     return a->name.starts_with(begin) && !b->name.starts_with(begin);
   });
@@ -64,27 +64,8 @@ std::optional<std::string> EffectBrowser::draw(Ui& ui, const EffectLibrary& libr
   constexpr int kFlags = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                          ImGuiWindowFlags_NoSavedSettings;
   if (ImGui::Begin("Add an effect", &open_, kFlags)) {
-    if (std::exchange(begin_, false)) focus_next_item();
-    ImGui::SetNextItemWidth(-1);
-    const std::string before = search_.data();
-    int step = 0;  // by Up and Down, which stay in the field
-    const auto on_arrow = [](ImGuiInputTextCallbackData* data) {
-      *static_cast<int*>(data->UserData) = data->EventKey == ImGuiKey_UpArrow ? -1 : 1;
-      return 0;
-    };
-    const bool entered = ImGui::InputTextWithHint(
-        "##effect", "Search effects; Up, Down, Enter", search_.data(), search_.size(),
-        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackHistory, on_arrow, &step);
-    const bool lost = ImGui::IsItemDeactivated() && !entered && !ImGui::IsMouseClicked(ImGuiMouseButton_Left);
-    const bool left = lost && escape_pressed();
-    if (lost && !left) begin_ = ui.field_opens = true;  // by no wish of the user: it goes on
-    if (before != search_.data()) chosen_ = 0;
-    if (step != 0 && !list.empty()) {
-      const auto last = static_cast<int>(list.size()) - 1;
-      chosen_ = static_cast<std::size_t>(std::clamp(static_cast<int>(chosen_) + step, 0, last));
-      scroll_ = true;
-    }
-    chosen_ = std::min(chosen_, list.empty() ? 0 : list.size() - 1);
+    const SearchTurn turn = search_.draw(ui, "##effect", "Search effects; Up, Down, Enter");
+    if (turn.go(chosen_, list.size())) scroll_ = true;
     const float foot = ImGui::GetFrameHeightWithSpacing();
     const float width = std::max(ui.px(170), ImGui::GetContentRegionAvail().x * 0.4f);
     ImGui::BeginChild("list", {width, -foot}, true);
@@ -93,7 +74,7 @@ std::optional<std::string> EffectBrowser::draw(Ui& ui, const EffectLibrary& libr
     for (std::size_t i = 0; i < list.size(); ++i) {
       if (ImGui::Selectable(list[i]->name.c_str(), i == chosen_, ImGuiSelectableFlags_AllowDoubleClick)) {
         chosen_ = i;
-        begin_ = true;  // Enter and the arrows go on from here
+        search_.take_keyboard(ui);
         if (double_clicked()) chosen = list[i]->name;
       }
       if (i == chosen_ && std::exchange(scroll_, false)) ImGui::SetScrollHereY();
@@ -104,10 +85,10 @@ std::optional<std::string> EffectBrowser::draw(Ui& ui, const EffectLibrary& libr
     want_pictures(list);
     if (!list.empty()) draw_page(ui, *list[chosen_]);
     ImGui::EndChild();
-    entered_ = entered_ || entered;  // before the effects were read: they are waited for
+    entered_ = entered_ || turn.entered;  // before the effects were read: they are waited for
     const bool enter = !reading && std::exchange(entered_, false);
     if (small_button(ui, "Add", "Enter", !list.empty()) || (enter && !list.empty())) chosen = list[chosen_]->name;
-    if (left) open_ = false;
+    if (turn.left) open_ = false;
     ImGui::SameLine();
     if (small_button(ui, "Cancel", "Esc")) open_ = false;
     ImGui::SameLine();

@@ -3,7 +3,6 @@
 // frame; a search, and a list to choose from.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <future>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "core/paths.h"
 #include "script/schema.h"
+#include "window/search_field.h"
 #include "window/thumbnail_cell.h"
 #include "window/ui.h"
 
@@ -57,8 +57,8 @@ class EffectBrowser {
   void draw_pictures(Ui& ui, const EffectSchema& effect);
   void want_pictures(const std::vector<const EffectSchema*>& list);
 
-  bool open_ = false, begin_ = false, scroll_ = false, entered_ = false;
-  std::array<char, 64> search_{};
+  bool open_ = false, scroll_ = false, entered_ = false;
+  SearchField search_;
   std::size_t chosen_ = 0;  ///< among those that are found
   Source source_;
   std::vector<std::string> wanted_;  ///< what was asked of it last

@@ -19,8 +19,8 @@ float row_height(const Ui& ui) { return ui.px(Thumbnail::kHeight + kRowGap); }
 }  // namespace
 
 void PresetBrowser::open(std::vector<ListedPreset> presets, const std::filesystem::path& present, Source source) {
-  open_ = begin_ = scroll_ = true;
-  search_.fill(0);
+  open_ = scroll_ = true;
+  search_.open();
   presets_ = std::move(presets);
   present_ = present;
   source_ = std::move(source);
@@ -36,7 +36,7 @@ void PresetBrowser::open(std::vector<ListedPreset> presets, const std::filesyste
 
 std::optional<PresetChoice> PresetBrowser::draw(Ui& ui, const std::string& unsaved, ImVec2 area) {
   if (!open_) return std::nullopt;
-  const auto found = found_presets(presets_, search_.data());
+  const auto found = found_presets(presets_, search_.text());
   std::optional<PresetChoice> choice;
   // No more rows are seen at once than the atlas has cells.
   const float most = row_height(ui) * (AtlasCells::kThumbnails - 2) + 4 * ImGui::GetFrameHeightWithSpacing();
@@ -46,9 +46,12 @@ std::optional<PresetChoice> PresetBrowser::draw(Ui& ui, const std::string& unsav
   constexpr int kFlags = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                          ImGuiWindowFlags_NoSavedSettings;
   if (ImGui::Begin("Open a preset", &open_, kFlags)) {
-    bool entered = false, left = false;
-    draw_search(ui, found, entered, left);
-    chosen_ = std::min(chosen_, found.empty() ? 0 : found.size() - 1);
+    const SearchTurn turn = search_.draw(ui, "##preset", "Search presets; Up, Down, Enter; Shift+Enter: as B");
+    if (turn.go(chosen_, found.size())) {
+      scroll_ = true;
+      asked_.reset();
+    }
+    bool entered = turn.entered, left = turn.left;
     draw_list(ui, found, entered);
     const bool any = !found.empty();
     bool other = entered && ImGui::GetIO().KeyShift;
@@ -73,12 +76,12 @@ std::optional<PresetChoice> PresetBrowser::draw(Ui& ui, const std::string& unsav
         choice = {file, other};
       } else {
         asked_ = file;
-        begin_ = ui.field_opens = true;
+        search_.take_keyboard(ui);
       }
     }
     if (left && asked_ && !choice) {
       asked_.reset();  // the first Escape takes the question back
-      begin_ = ui.field_opens = true;
+      search_.take_keyboard(ui);
     } else if (left) {
       open_ = false;
     }
@@ -86,33 +89,6 @@ std::optional<PresetChoice> PresetBrowser::draw(Ui& ui, const std::string& unsav
   ImGui::End();
   if (choice) open_ = false;
   return choice;
-}
-
-void PresetBrowser::draw_search(Ui& ui, const Found& found, bool& entered, bool& left) {
-  if (std::exchange(begin_, false)) focus_next_item();
-  ImGui::SetNextItemWidth(-1);
-  const std::string before = search_.data();
-  int step = 0;  // by Up and Down, which stay in the field
-  const auto on_arrow = [](ImGuiInputTextCallbackData* data) {
-    *static_cast<int*>(data->UserData) = data->EventKey == ImGuiKey_UpArrow ? -1 : 1;
-    return 0;
-  };
-  entered = ImGui::InputTextWithHint(
-      "##preset", "Search presets; Up, Down, Enter; Shift+Enter: as B", search_.data(), search_.size(),
-      ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackHistory, on_arrow, &step);
-  const bool lost = ImGui::IsItemDeactivated() && !entered && !ImGui::IsMouseClicked(ImGuiMouseButton_Left);
-  left = lost && escape_pressed();
-  if (lost && !left) begin_ = ui.field_opens = true;  // by no wish of the user: it goes on
-  if (before != search_.data()) {
-    chosen_ = 0;
-    scroll_ = true;
-    asked_.reset();
-  }
-  if (step == 0 || found.empty()) return;
-  const auto last = static_cast<int>(found.size()) - 1;
-  chosen_ = static_cast<std::size_t>(std::clamp(static_cast<int>(chosen_) + step, 0, last));
-  scroll_ = true;
-  asked_.reset();
 }
 
 void PresetBrowser::draw_list(Ui& ui, const Found& found, bool& entered) {
@@ -141,7 +117,7 @@ void PresetBrowser::draw_list(Ui& ui, const Found& found, bool& entered) {
                           {0, height})) {
       if (chosen_ != static_cast<std::size_t>(row)) asked_.reset();
       chosen_ = static_cast<std::size_t>(row);
-      begin_ = ui.field_opens = true;  // Enter and the arrows go on from here
+      search_.take_keyboard(ui);
       if (double_clicked()) entered = true;
     }
     ui.help(preset.file.string());

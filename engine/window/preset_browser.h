@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "window/preset_list.h"
+#include "window/search_field.h"
 #include "window/thumbnail_cell.h"
 #include "window/ui.h"
 
@@ -40,13 +41,12 @@ class PresetBrowser {
 
  private:
   using Found = std::vector<const ListedPreset*>;
-  void draw_search(Ui& ui, const Found& found, bool& entered, bool& left);
   void draw_list(Ui& ui, const Found& found, bool& entered);
   void draw_row(Ui& ui, const ListedPreset& preset, int cell, float width);
   void want_thumbnails(const Found& found, int first, int last);
 
-  bool open_ = false, begin_ = false, scroll_ = false;
-  std::array<char, 64> search_{};
+  bool open_ = false, scroll_ = false;
+  SearchField search_;
   std::vector<ListedPreset> presets_;
   std::filesystem::path present_;
   Source source_;
