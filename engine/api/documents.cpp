@@ -48,16 +48,11 @@ std::string explain_document(const Backend& backend) {
   const Explanation& explanation = backend.explanation();
   const std::vector<Skipped> skipped = backend.report().skipped;
   Json out{{"name", backend.preset().name()}};
-  if (explanation.position) out["position"] = {{"at", *explanation.position}, {"from", explanation.position_from}};
-  out["volumes"] = Json::array();
-  for (const auto& volume : explanation.volumes) out["volumes"].push_back(volume_json(volume));
+  add_volumes(out, explanation);
   out["entries"] = Json::array();
   const auto& entries = backend.entries();
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    Json item{{"name", entries[i].name}, {"effect", entries[i].effect}};
-    const auto reason = std::ranges::find(skipped, entries[i].name, &Skipped::name);
-    item["state"] = reason == skipped.end() ? "runs" : "skipped";
-    if (reason != skipped.end()) item["reason"] = reason->reason;
+    Json item = entry_json(entries[i], skipped);
     if (i < explanation.entries.size()) add_composition(item, entries[i], explanation.entries[i]);
     item["settings"] = Json::array();
     if (i < explanation.entries.size())

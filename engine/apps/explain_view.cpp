@@ -154,17 +154,12 @@ std::string explain_json(const ExplainView& view) {
            {"frame", view.context.frame},
            {"time", view.context.time},
            {"fps", view.context.fps}};
-  if (explanation.position) out["position"] = {{"at", *explanation.position}, {"from", explanation.position_from}};
-  out["volumes"] = Json::array();
-  for (const auto& volume : explanation.volumes) out["volumes"].push_back(volume_json(volume));
+  add_volumes(out, explanation);
   out["entries"] = Json::array();
   const auto& entries = *view.look.build.entries;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (!shown(view.entry, entries[i].name)) continue;
-    Json item{{"name", entries[i].name}, {"effect", entries[i].effect}};
-    const auto* reason = skip_reason(view.look, entries[i].name);
-    item["state"] = reason ? "skipped" : "runs";
-    if (reason) item["reason"] = *reason;
+    Json item = entry_json(entries[i], view.look.build.graph.skipped);
     item["light"] = space_json(view.look.spaces[i]);
     add_composition(item, entries[i], explanation.entries[i]);
     item["settings"] = Json::array();

@@ -67,6 +67,9 @@ nlohmann::ordered_json history_json(const SettingHistory& setting);
 /// How an entry is put over what it was given: "opacity", "blend", "mask" (its text, where it has one) and
 /// "composition", how these came about.
 void add_composition(nlohmann::ordered_json& entry, const StackEntry& of, const EntryHistory& history);
-nlohmann::ordered_json volume_json(const VolumeState& volume);
+/// Where the frame is seen from and what its volumes do: "position" (where one is known) and "volumes".
+void add_volumes(nlohmann::ordered_json& frame, const Explanation& of);
+/// An entry with what became of it: "name", "effect", "state" ("runs", "skipped") and, where it was skipped, "reason".
+nlohmann::ordered_json entry_json(const StackEntry& entry, const std::vector<Skipped>& skipped);
 
 }  // namespace afterglow

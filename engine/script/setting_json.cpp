@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "script/explanation.h"
@@ -84,11 +85,29 @@ void add_composition(nlohmann::ordered_json& entry, const StackEntry& of, const 
   for (const auto& setting : history.composition) entry["composition"].push_back(history_json(setting));
 }
 
+namespace {
+
 nlohmann::ordered_json volume_json(const VolumeState& volume) {
   nlohmann::ordered_json out{{"name", volume.name},         {"file", volume.file},     {"line", volume.line},
                              {"priority", volume.priority}, {"weight", volume.weight}, {"factor", volume.factor}};
   if (volume.distance) out["distance"] = *volume.distance;
   if (!volume.reason.empty()) out["reason"] = volume.reason;
+  return out;
+}
+
+}  // namespace
+
+void add_volumes(nlohmann::ordered_json& frame, const Explanation& of) {
+  if (of.position) frame["position"] = {{"at", *of.position}, {"from", of.position_from}};
+  frame["volumes"] = nlohmann::ordered_json::array();
+  for (const auto& volume : of.volumes) frame["volumes"].push_back(volume_json(volume));
+}
+
+nlohmann::ordered_json entry_json(const StackEntry& entry, const std::vector<Skipped>& skipped) {
+  nlohmann::ordered_json out{{"name", entry.name}, {"effect", entry.effect}};
+  const auto found = std::ranges::find(skipped, entry.name, &Skipped::name);
+  out["state"] = found == skipped.end() ? "runs" : "skipped";
+  if (found != skipped.end()) out["reason"] = found->reason;
   return out;
 }
 
