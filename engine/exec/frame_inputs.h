@@ -17,7 +17,7 @@ namespace afterglow {
 /// Not thread-safe.
 class FrameInputs {
  public:
-  /// `direct`: see FrameRunner::create.
+  /// `direct`: see FrameRunner::Options.
   FrameInputs(Device& device, bool direct) : device_(&device), direct_(direct) {}
 
   /// What this program reads of the given images. Errors: those of check_input.

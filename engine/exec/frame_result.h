@@ -15,7 +15,7 @@ namespace afterglow {
 /// Not thread-safe.
 class FrameResult {
  public:
-  /// `direct`: see FrameRunner::create.
+  /// `direct`: see FrameRunner::Options.
   FrameResult(Device& device, bool direct) : device_(&device), direct_(direct) {}
 
   static ImageDesc wanted_by(const Program& program);

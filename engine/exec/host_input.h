@@ -15,7 +15,7 @@ namespace afterglow {
 Result<void> check_input(const Graph& graph, const std::string& name, ImageId id,
                          const std::map<std::string, HostImage>& inputs);
 
-/// The images that a program reads, by the names of HostImages.
+/// The images that a program reads, by the names of a frame's inputs: "source", "depth", "layer:NAME".
 std::map<std::string, ImageId> inputs_of(const Graph& graph);
 
 /// Those images as pictures usually have them, for who wants a program without a frame: their pixels must not be read.

@@ -64,7 +64,7 @@ struct Pass {
   /// input. Empty: anywhere. Decides what a region needs, and whether it is tried to let
   /// rows of pixels share what they read.
   std::optional<double> reach;
-  /// Of a pixel pass: its colour is divided by its alpha before and multiplied by it behind (math.md §1).
+  /// Of a pixel pass: its colour is divided by its alpha before and multiplied by it behind (math.md §19).
   bool straight = false;
   ImageId output = kNoImage;
   std::string file;  ///< script and line that asked for it, for messages

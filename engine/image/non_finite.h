@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Values that are not finite: found, counted, and replaced by what a policy says. See docs/non_finite.md.
+// Values that are not finite: found, counted, and replaced by what a policy says. See docs/math.md §18.
 #pragma once
 
 #include <array>

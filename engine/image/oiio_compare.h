@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Part of the OpenImageIO module: see oiio_module.h and visible_difference.h.
+// Part of the OpenImageIO module: see oiio_module.h and metrics.h.
 #pragma once
 
 #include "core/result.h"

@@ -26,7 +26,7 @@ struct OiioModule {
                         const WriteOptions& options);
   /// See webp_movie.h.
   Result<std::shared_ptr<MovieSource>> (*open_webp)(const MovieRequest& request);
-  /// See visible_difference.h.
+  /// See metrics.h.
   Result<double> (*visible_difference)(const Image& a, const Image& b);
 };
 

@@ -22,7 +22,7 @@ inline constexpr float kLargestColor = 1e30f;
 /// Colours below it are read as 0: devices may take denormal numbers for 0 in arithmetic, but not where they only copy.
 inline constexpr float kSmallestColor = std::numeric_limits<float>::min();
 
-/// What had to be made finite before the stack (design.md, "The source is made finite").
+/// What had to be made finite before the stack (math.md §18).
 struct SanitizeCounts {
   std::uint64_t nan = 0;        ///< NaN colour samples set to 0
   std::uint64_t negative = 0;   ///< negative colour samples set to 0
@@ -32,7 +32,7 @@ struct SanitizeCounts {
   std::uint64_t normal = 0;     ///< non-finite normals set to 0 0 0
 };
 
-struct FileFacts;  // format, pixel type, metadata, …: image/reader.h; kept for the writer
+struct FileFacts;  // format, pixel type, metadata, …: image/metadata.h; kept for the writer
 
 /// One frame, ready for a stack. All images cover `data_window` and have its size.
 struct Picture {

@@ -19,7 +19,7 @@
 
 namespace afterglow::script {
 
-/// An image as scripts hold it. `build` tells the images of one run of Preset::build from those of another.
+/// An image as scripts hold it. `build` tells the images of one run of Preset::evaluate from those of another.
 struct ImageRef {
   std::uint64_t build = 0;
   ImageId id = kNoImage;

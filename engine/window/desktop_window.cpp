@@ -18,7 +18,7 @@
 
 #include "gpu/error.h"
 
-// vulkan.h is here before glfw3.h in every file, which declares these only then otherwise.
+// vulkan.h is here before <GLFW/glfw3.h> in every file, which declares these only then otherwise.
 extern "C" VkResult glfwCreateWindowSurface(VkInstance instance, GLFWwindow* window,
                                             const VkAllocationCallbacks* allocator, VkSurfaceKHR* surface);
 

@@ -2,10 +2,13 @@
 // Rules of the house that a compiler does not check.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <map>
+#include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -162,6 +165,35 @@ TEST(House, SourcesNameTheirLicence) {
   }
   EXPECT_GT(sources, 1000);
   EXPECT_TRUE(read_file(kProject / "LICENSE").value().starts_with("MIT License\n"));
+}
+
+/// The comment of a line, where it has one.
+std::string comment_of(const std::string& line) {
+  const std::size_t at = line.find("//");
+  return at == std::string::npos ? "" : line.substr(at);
+}
+
+/// Headers of the system stand in angle brackets.
+TEST(House, CommentsNameFilesThatAreThere) {
+  std::vector<std::string> files;
+  for (const char* folder : {"docs", "engine", "examples", "shaders", "tests"})
+    for (const auto& file : files_below(kProject / folder, {".h", ".md"})) files.push_back(file.string());
+  for (const auto& entry : fs::directory_iterator(kProject)) files.push_back(entry.path().string());
+  static const std::regex kName(R"([<\w./-]+\.(h|md)\b)");
+  int names = 0;
+  for (const auto& file : files_below(kProject / "engine", {".h", ".cpp"})) {
+    std::istringstream text(read_file(file).value());
+    for (std::string line; std::getline(text, line);) {
+      const std::string comment = comment_of(line);
+      for (std::sregex_iterator name(comment.begin(), comment.end(), kName), end; name != end; ++name) {
+        if (name->str().starts_with("<")) continue;
+        ++names;
+        EXPECT_TRUE(std::ranges::any_of(files, [&](const auto& one) { return one.ends_with("/" + name->str()); }))
+            << file << " names '" << name->str() << "': " << comment;
+      }
+    }
+  }
+  EXPECT_GT(names, 20);
 }
 
 /// So that an older program says what it is too old for.
