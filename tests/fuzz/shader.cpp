@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // An author's shader with libraries: scanned, assembled alone and fused with itself, compiled.
 #include "fuzz.h"
-#include "shader/check.h"
 #include "shader/kernel.h"
 
 using namespace afterglow;
@@ -32,8 +31,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   KernelCompiler compiler{std::filesystem::path()};
-  if (const auto alone = check_shader(compiler, *shader); !alone) {
-    fuzz::check_error(alone.error(), {ErrorKind::script});
+  const KernelStage stage{*shader, {}, "x"};
+  const bool begins = info_of((*shader)->interface.kind).begins;
+  KernelDesc alone;
+  if (begins)
+    alone.sample = stage;
+  else
+    alone.stages = {stage};
+  if (const auto made = compiler.compile(alone); !made) {
+    fuzz::check_error(made.error(), {ErrorKind::script});
     return 0;
   }
   KernelDesc fused;
@@ -43,8 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fused.target = KernelTarget::float16;
     fused.config.rows = 1;
   }
-  const KernelStage stage{*shader, {}, "x"};
-  if (info_of((*shader)->interface.kind).begins)
+  if (begins)
     fused.sample = stage;
   else
     fused.stages = {stage, stage};

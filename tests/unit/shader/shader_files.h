@@ -64,4 +64,15 @@ class ShaderFiles {
   std::filesystem::path root_;
 };
 
+/// A kernel of one shader.
+inline KernelDesc one(KernelStage stage) {
+  KernelDesc kernel;
+  if (info_of(stage.shader->interface.kind).begins) {
+    kernel.sample = std::move(stage);
+  } else {
+    kernel.stages.push_back(std::move(stage));
+  }
+  return kernel;
+}
+
 }  // namespace afterglow

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "core/file.h"
-#include "shader/check.h"
 #include "shader_files.h"
 
 namespace afterglow {
@@ -28,12 +27,6 @@ vec4 apply(vec4 color, vec4 high) {
   return vec4(max(color.rgb - threshold, 0.0) * tint, color.a) + high + float(corner.x);
 }
 )";
-
-KernelDesc one(KernelStage stage) {
-  KernelDesc kernel;
-  kernel.stages.push_back(std::move(stage));
-  return kernel;
-}
 
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -306,22 +299,21 @@ TEST(KernelCompiler, TwoCompilersShareOneFolder) {
   EXPECT_EQ(files_in(files.root() / "cache").size(), 1u);
 }
 
-TEST(CheckShader, PixelAndSampleShadersAlone) {
+TEST(KernelCompiler, PixelAndSampleShadersAlone) {
   ShaderFiles files;
   KernelCompiler compiler{fs::path()};
-  EXPECT_TRUE(check_shader(compiler, files.stage("a", kThreshold).shader, {{"count", 4}}).ok());
+  EXPECT_TRUE(compiler.compile(one(files.stage("a", kThreshold, {{"count", 4}}))).ok());
   EXPECT_TRUE(
-      check_shader(compiler,
-                   files.stage("b", "uniform sampler2D d;\nvec4 sample_at(ivec2 p) { return fetch(d, p); }\n").shader)
+      compiler.compile(one(files.stage("b", "uniform sampler2D d;\nvec4 sample_at(ivec2 p) { return fetch(d, p); }\n")))
           .ok());
-  const auto bad = check_shader(compiler, files.stage("c", "vec4 sample_at(ivec2 p) {\n return p;\n}\n").shader);
+  const auto bad = compiler.compile(one(files.stage("c", "vec4 sample_at(ivec2 p) {\n return p;\n}\n")));
   ASSERT_FALSE(bad.ok());
   EXPECT_EQ(bad.error().kind, ErrorKind::script);
   EXPECT_EQ(bad.error().file, files.path("c.glsl").string());
   EXPECT_EQ(bad.error().line, 2);
 }
 
-TEST(CheckShader, EveryShaderOfTheProject) {
+TEST(KernelCompiler, EveryShaderOfTheProject) {
   SearchPath search;
   search.installation = AFTERGLOW_PROJECT_FOLDER;
   ShaderLibrary library(search);
@@ -331,16 +323,16 @@ TEST(CheckShader, EveryShaderOfTheProject) {
   for (const auto& name : names) {
     const auto source = library.find(name);
     ASSERT_TRUE(source.ok()) << source.error().text();
-    const auto result = check_shader(compiler, *source);
+    const auto result = compiler.compile(one({*source, {}, {}}));
     EXPECT_TRUE(result.ok()) << result.error().text();
     // Every specialised switch, on its own and all together.
     std::map<std::string, double> all;
     for (const auto& param : (*source)->interface.params) {
       if (!param.specialised || param.type != ParamType::bool1) continue;
       all[param.name] = 1;
-      EXPECT_TRUE(check_shader(compiler, *source, {{param.name, 1}}).ok()) << name << " " << param.name;
+      EXPECT_TRUE(compiler.compile(one({*source, {{param.name, 1}}, {}})).ok()) << name << " " << param.name;
     }
-    EXPECT_TRUE(check_shader(compiler, *source, all).ok()) << name;
+    EXPECT_TRUE(compiler.compile(one({*source, all, {}})).ok()) << name;
   }
 }
 

@@ -5,7 +5,6 @@
 #include <random>
 
 #include "core/file.h"
-#include "shader/check.h"
 #include "shader/token.h"
 #include "shader_files.h"
 
@@ -27,7 +26,7 @@ std::string outcome(const std::string& text) {
   const auto source = files.find("x", text);
   if (!source) return source.error().text();
   KernelCompiler compiler{std::filesystem::path()};
-  const auto result = check_shader(compiler, *source);
+  const auto result = compiler.compile(one({*source, {}, {}}));
   return result.ok() ? "ok" : result.error().text();
 }
 
@@ -279,7 +278,7 @@ TEST(Hostile, RandomEditsOfRealShaders) {
       ++refused;
       continue;
     }
-    const auto result = check_shader(compiler, *source);
+    const auto result = compiler.compile(one({*source, {}, {}}));
     if (!result.ok()) {
       EXPECT_EQ(result.error().kind, ErrorKind::script) << result.error().text() << "\n" << text;
       EXPECT_FALSE(result.error().message.empty());
