@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench_arguments.h"
 
+#include <fmt/format.h>
+
 #include "core/paths.h"
 #include "core/text.h"
 
@@ -35,8 +37,9 @@ void BenchArguments::add(CLI::App& app) {
   app.add_option("PRESET", presets, "Looks to measure");
   app.add_option("--sizes", sizes, "Sizes of the picture (default 1920x1080,3840x2160)")->type_name("WxH,…");
   app.add_option("--variants", variants,
-                 "Ways of execution, as `devices` and --report name them, or plain16f, plain32f, chosen (what `run` "
-                 "does), watched (the same, looking for values that are not finite, as `run` does)")
+                 fmt::format("Ways of execution, as `devices` and --report name them, or plain16f, plain32f, {} (what "
+                             "`run` does), {} (the same, looking for values that are not finite, as `run` does)",
+                             bench::kChosen, bench::kChecked))
       ->type_name("NAME,…");
   add_repeatable(app, "--vary", vary,
                  "Measures each value of a setting; errors are against the preset as it is (repeatable)",
@@ -109,7 +112,7 @@ Result<bench::StabilityRequest> BenchArguments::shots() const {
   AFTERGLOW_TRY(out.presets, files());
   AFTERGLOW_TRY(out.options.device, device.options());
   AFTERGLOW_TRY(out.options.stack, stack());
-  AFTERGLOW_TRY(const auto chosen, bench::parse_variants("chosen"));
+  AFTERGLOW_TRY(const auto chosen, bench::parse_variants(bench::kChosen));
   AFTERGLOW_TRY(out.variants, bench::vary_settings(chosen, vary));
   AFTERGLOW_TRY(out.sizes, parse_sizes(!sizes.empty() ? sizes : quick ? kQuickResolutions : kResolutions));
   return out;

@@ -3,16 +3,14 @@
 
 #include <fmt/format.h>
 
-#include "image/scale.h"
 #include "bench/picture.h"
 #include "core/text.h"
 #include "image/reader.h"
+#include "image/scale.h"
 
 namespace afterglow::bench {
 namespace {
 
-constexpr const char* kChosen = "chosen";
-constexpr const char* kChecked = "checked";
 constexpr int kLeastSquare = 256;
 
 std::vector<Size> scaling_sizes(int most) {

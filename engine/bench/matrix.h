@@ -12,8 +12,10 @@
 
 namespace afterglow::bench {
 
-/// "plain16f,fused fp32 storage-reads,chosen": ways of execution, "chosen" for what `run` would do, "checked" for that
-/// with values that are not finite looked for, as `run` does. Errors: usage.
+/// What `run` would do; the same with values that are not finite looked for, as `run` does.
+inline constexpr const char *kChosen = "chosen", *kChecked = "checked";
+
+/// "plain16f,fused fp32 storage-reads,chosen": ways of execution, kChosen and kChecked. Errors: usage.
 Result<std::vector<Variant>> parse_variants(const std::string& text);
 
 /// Each variant with each combination of the values of `vary` ("glow.scatter=0.5,0.7", one text a setting). Errors:
