@@ -296,7 +296,7 @@ typedef struct afterglow_run_info {
   /* As large as the source. May be the source itself, with the same samples and strides. */
   afterglow_image result;
   afterglow_rect region; /* only this part of the result is made and written */
-  bool dither;           /* 8-bit results: half a step of ordered noise */
+  bool dither;           /* 8-bit results: blue noise between two codes */
 } afterglow_run_info;
 
 static inline afterglow_run_info afterglow_run_info_default(void) {
