@@ -81,6 +81,12 @@ const Command* named_command(const std::vector<Command>& commands, int argc, cha
   return nullptr;
 }
 
+/// What is wrong with words that were given names no file: it begins with the command that was given them.
+Error named(Error error, const Command& command) {
+  if (error.kind == ErrorKind::usage && error.file.empty()) error.file = "afterglow " + command.options->get_name();
+  return error;
+}
+
 int fail(Console& console, const Error& error) {
   console.end_progress();
   console.error(error);
@@ -162,8 +168,9 @@ int run(Console& console, int argc, char** argv, Work work) {
   if (const auto exit_code = parse(program, commands, argc, argv, console)) return *exit_code;
   if (work == Work::parsing) return 0;
   messages.apply(console);
-  const auto done = parsed_command(commands)->run(console);
-  return done ? 0 : fail(console, done.error());
+  const Command& command = *parsed_command(commands);
+  const auto done = command.run(console);
+  return done ? 0 : fail(console, named(done.error(), command));
 }
 
 }  // namespace

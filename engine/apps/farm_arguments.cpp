@@ -150,7 +150,7 @@ Result<BatchRequest> request_of_words(std::vector<std::string> words) {
     std::ranges::reverse(words);
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
-    return Error{ErrorKind::usage, exception_text(error), "afterglow run"};
+    return Error{ErrorKind::usage, exception_text(error)};
   }
   return arguments.request();
 }

@@ -247,8 +247,8 @@ Result<FrameLoopOptions> loop_options(const RunArguments& a, std::uint64_t max_m
   options.read.max_bytes = max_memory;
   options.reuse = !a.execution.reference;
   const auto not_with = [](const char* option) {
-    return Error{ErrorKind::usage, fmt::format("--keep-layers copies layers as they are and cannot go with {}", option),
-                 "afterglow run"};
+    return Error{ErrorKind::usage,
+                 fmt::format("--keep-layers copies layers as they are and cannot go with {}", option)};
   };
   if (!a.size.empty()) {
     AFTERGLOW_TRY(options.size, parse_size_wish(a.size));
@@ -282,7 +282,7 @@ Result<BatchRequest> RunArguments::request() const {
                    .lock = lock,
                    .locked = locked};
   if (watch && files.frames.empty())
-    return Error{ErrorKind::usage, "--watch needs --frames: it ends when they are done", "afterglow run"};
+    return Error{ErrorKind::usage, "--watch needs --frames: it ends when they are done"};
   out.watch = watch;
   layers.choose(out.files);
   AFTERGLOW_TRY(out.session, session_options(*this));

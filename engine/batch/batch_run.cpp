@@ -126,17 +126,16 @@ Result<void> run_frames(BatchRun& run) {
   const BatchRequest& asked = run.request;
   auto& frames = run.report.frames;
   if (asked.resume && is_one_output(asked.files.output))
-    return Error{ErrorKind::usage, "--resume goes on with files of their own; a video or a stream is made whole",
-                 "afterglow run", 0, "a pattern like out.####.exr, which becomes a video afterwards"};
+    return Error{ErrorKind::usage, "--resume goes on with files of their own; a video or a stream is made whole", "", 0,
+                 "a pattern like out.####.exr, which becomes a video afterwards"};
   AFTERGLOW_TRY(run.sink,
                 open_sink(asked.files, asked.loop.write, asked.loop.fps, frames.size(), run.events.diagnostics));
   if (!run.sink->is_one()) AFTERGLOW_CHECK(check_outputs(run));
   if (run.sink->is_one() && asked.watch)
     return Error{ErrorKind::usage, "--watch makes frames in the order in which they come; one file cannot take them",
-                 "afterglow run", 0, "pictures, like out.####.exr"};
+                 "", 0, "pictures, like out.####.exr"};
   if (run.list.more && asked.watch)
-    return Error{ErrorKind::usage, "--watch is for files; frames on standard input are run as they come",
-                 "afterglow run"};
+    return Error{ErrorKind::usage, "--watch is for files; frames on standard input are run as they come"};
   SessionOptions opened = asked.session;
   opened.frames = frames.size() > 1 || run.list.more ? kFramesInFlight : 1;
   const double before = run.milliseconds();
@@ -180,7 +179,7 @@ Result<void> run_batch(const BatchRequest& request, const RunEvents& events, Run
   BatchRun run{request, events, report};
   AFTERGLOW_TRY(run.list, list_frames(request.files, events.diagnostics));
   if (run.list.more && request.resume)
-    return Error{ErrorKind::usage, "--resume needs inputs that are files, not standard input", "afterglow run"};
+    return Error{ErrorKind::usage, "--resume needs inputs that are files, not standard input"};
   for (const auto& job : run.list.jobs) report.frames.push_back({.job = job});
   run.list.jobs.clear();
   auto done = run_frames(run);

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Error usage(std::string message) { return {ErrorKind::usage, std::move(message), "afterglow run"}; }
+Error usage(std::string message) { return {ErrorKind::usage, std::move(message)}; }
 
 /// `FILE` of a --depth or --normal choice for one frame.
 Result<LayerChoice> resolve(const LayerChoice& choice, int frame) {

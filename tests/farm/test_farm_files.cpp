@@ -120,7 +120,7 @@ TEST_F(FarmFiles, WhatIsWrongIsOneLine) {
   refused({"look.lua", "in/none.####.exr", "-o", "out/", "--jobs", "j.json"}, kFiles, "no file matches");
   refused({"none.lua", "in/shot.####.exr", "-o", "out/", "--jobs", "j.json"}, kScript, "none.lua: error: ");
   refused({"look.lua", "in/shot.####.exr", "-o", "out/shot.exr", "--jobs", "j.json"}, kUsage,
-          "cannot go into the one file");
+          "afterglow farm: error: 10 frames cannot go into the one file");
   refused({"look.lua", "in/shot.0001.exr", "in/shot.0002.exr", "-o", "out/", "--jobs", "j.json"}, kUsage,
           "is no sequence, and the look has effects that look back");
   EXPECT_FALSE(fs::exists(path("out/.afterglow-farm")));
