@@ -79,7 +79,7 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   AFTERGLOW_TRY(FrameList list, list_frames(request.files, console.diagnostics()));
   out.frames = std::move(list.jobs);
   const bool video = is_one_output(request.files.output);
-  if (video) AFTERGLOW_CHECK(check_one_video(request, out.frames, console.diagnostics()));
+  AFTERGLOW_CHECK(check_parts(request, out.frames, console.diagnostics()));
   AFTERGLOW_TRY(const auto look, farm::load_look(request, out.frames, console.diagnostics()));
   farm::Job& job = out.job;
   std::error_code ec;

@@ -128,8 +128,7 @@ Result<void> run_frames(BatchRun& run) {
   if (asked.resume && is_one_output(asked.files.output))
     return Error{ErrorKind::usage, "--resume goes on with files of their own; a video or a stream is made whole", "", 0,
                  "a pattern like out.####.exr, which becomes a video afterwards"};
-  AFTERGLOW_TRY(run.sink,
-                open_sink(asked.files, asked.loop.write, asked.loop.fps, frames.size(), run.events.diagnostics));
+  AFTERGLOW_TRY(run.sink, open_sink(asked.files, asked.loop, frames.size(), run.events.diagnostics));
   if (!run.sink->is_one()) AFTERGLOW_CHECK(check_outputs(run));
   if (run.sink->is_one() && asked.watch)
     return Error{ErrorKind::usage, "--watch makes frames in the order in which they come; one file cannot take them",

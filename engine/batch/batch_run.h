@@ -41,10 +41,9 @@ struct VideoPart {
   std::filesystem::path file;
   std::size_t frames = 0;
 };
-/// Whether these frames can go into the one video that the request's output is; for errors before any work. Errors:
-/// usage, io.
-Result<void> check_one_video(const BatchRequest& request, const std::vector<FrameJob>& frames,
-                             Diagnostics& diagnostics);
+/// Whether frames that several runs make in parts can become the request's output: pictures, or one video that is
+/// joined. For errors before any work. Errors: usage, io.
+Result<void> check_parts(const BatchRequest& request, const std::vector<FrameJob>& frames, Diagnostics& diagnostics);
 /// That video of its parts, without a second encode: times, sound, subtitles, chapters and texts as in one run over all
 /// `frames`. Errors: usage, io (a part is missing or is none of this video), interrupted.
 Result<void> join_parts(const BatchRequest& request, const std::vector<FrameJob>& frames,

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "batch/frame_sink.h"
 
+#include <fmt/format.h>
+
+#include "batch/frame_plan.h"
 #include "batch/resume.h"
 #include "batch/stream_sink.h"
 #include "batch/video_sink.h"
+#include "core/text.h"
 #include "image/video_writer.h"
 
 namespace afterglow {
@@ -36,13 +40,28 @@ class FileSink : public FrameSink {
   std::optional<Hash> look_;
 };
 
+/// An option that was given and that only videos take; empty: none. A stream may be a video without a file.
+const char* option_of_videos(const FrameLoopOptions& options, bool stream) {
+  const VideoOptions& video = options.write.video;
+  if (!video.codec.empty()) return "--codec";
+  if (video.crf) return "--crf";
+  if (!video.bitrate.empty()) return "--bitrate";
+  if (!video.audio.empty()) return "--audio";
+  if (!stream && !video.pixel_format.empty()) return "--pix-fmt";
+  return !stream && options.keep_partial ? "--keep-partial" : "";
+}
+
 }  // namespace
 
-Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const WriteOptions& options, double fps,
+Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const FrameLoopOptions& options,
                                              std::size_t frames, Diagnostics& diagnostics) {
-  if (files.output == "-") return open_stream_sink(files.extension, options, fps, frames, diagnostics);
-  if (is_video_output(files.output)) return open_video_sink(files.output, options, fps, diagnostics);
-  return std::unique_ptr<FrameSink>(std::make_unique<FileSink>(options, diagnostics));
+  if (is_video_output(files.output)) return open_video_sink(files.output, options.write, options.fps, diagnostics);
+  const bool stream = files.output == "-";
+  if (const std::string option = option_of_videos(options, stream); !option.empty())
+    return Error{ErrorKind::usage, fmt::format("{} is for videos", option), stream ? "standard output" : files.output,
+                 0, join(video_extensions())};
+  if (stream) return open_stream_sink(files.extension, options.write, options.fps, frames, diagnostics);
+  return std::unique_ptr<FrameSink>(std::make_unique<FileSink>(options.write, diagnostics));
 }
 
 }  // namespace afterglow

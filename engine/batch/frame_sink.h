@@ -16,6 +16,8 @@
 
 namespace afterglow {
 
+struct FrameLoopOptions;
+
 /// Not thread-safe but for `write`. Errors: io, usage.
 class FrameSink {
  public:
@@ -47,7 +49,7 @@ class FrameSink {
 
 /// For the output of `files`, into which so many frames are known to go. Errors: usage (options that do not go with
 /// this output), io (it cannot be written; see check_output).
-Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const WriteOptions& options, double fps,
+Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const FrameLoopOptions& options,
                                              std::size_t frames, Diagnostics& diagnostics);
 
 }  // namespace afterglow

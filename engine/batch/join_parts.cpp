@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "batch/batch_run.h"
 #include "batch/frame_sink.h"
@@ -38,17 +39,23 @@ Result<WholeVideo> whole_video(const BatchRequest& request, const std::vector<Fr
   return out;
 }
 
+Result<void> check_formats(const std::vector<FrameJob>& frames, const WriteOptions& options) {
+  std::set<std::filesystem::path> seen;
+  for (const FrameJob& frame : frames)
+    if (seen.insert(frame.output.extension()).second) AFTERGLOW_CHECK(check_format(frame.output, options));
+  return {};
+}
+
 }  // namespace
 
-Result<void> check_one_video(const BatchRequest& request, const std::vector<FrameJob>& frames,
-                             Diagnostics& diagnostics) {
+Result<void> check_parts(const BatchRequest& request, const std::vector<FrameJob>& frames, Diagnostics& diagnostics) {
   const std::filesystem::path file = request.files.output;
   const std::string extension = lower(file.extension().string());
   if (std::ranges::find(kOfDifferences, extension) != kOfDifferences.end())
     return Error{ErrorKind::usage, fmt::format("{} files cannot be joined from pieces", extension.substr(1)),
                  file.string(), 0, "mp4, mov, mkv, webm, or pictures, which `afterglow run` makes one of"};
-  AFTERGLOW_TRY(const auto sink,
-                open_sink(request.files, request.loop.write, request.loop.fps, frames.size(), diagnostics));
+  AFTERGLOW_TRY(const auto sink, open_sink(request.files, request.loop, frames.size(), diagnostics));
+  if (!sink->is_one()) return check_formats(frames, request.loop.write);
   const auto& audio = request.loop.write.video.audio;
   if (!audio.empty() && !is_file(audio)) return missing_file(audio);
   AFTERGLOW_TRY(const WholeVideo video, whole_video(request, frames));

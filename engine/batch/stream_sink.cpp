@@ -217,6 +217,7 @@ Result<std::unique_ptr<FrameSink>> open_stream_sink(const std::string& format, c
       if (!error.allowed.empty() && error.allowed.starts_with('.')) error.allowed = "y4m, raw, " + error.allowed;
       return error;
     }
+    if (!options.video.pixel_format.empty()) return stream_usage("--pix-fmt is for videos", "y4m, raw");
     bytes = std::make_unique<PictureBytes>(name, options, diagnostics);
   }
   if (frames > 1 && !bytes->many()) return too_many();

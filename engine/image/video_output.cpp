@@ -207,6 +207,12 @@ Result<void> choose_quality(const Codec& codec, const WriteOptions& options, con
 
 bool is_video_output(const std::filesystem::path& file) { return container_of(file) != nullptr; }
 
+std::vector<std::string> video_extensions() {
+  std::vector<std::string> names;
+  for (const Container& container : containers()) names.emplace_back(container.extension);
+  return names;
+}
+
 void describe_space(const OutputSpace& space, const PixelLayout& layout, VideoPlan& plan) {
   struct Tags {
     std::string_view name;

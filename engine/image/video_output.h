@@ -22,6 +22,8 @@ namespace afterglow {
 
 /// Whether the extension is that of a video that is written: mp4, mov, mkv, webm, gif, apng.
 bool is_video_output(const std::filesystem::path& file);
+/// Those extensions, with the dot.
+std::vector<std::string> video_extensions();
 
 /// Part of the source that is copied beside the frames. Times in microseconds of its clock.
 struct CopyRange {

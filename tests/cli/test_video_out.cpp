@@ -139,6 +139,31 @@ TEST_F(VideoOut, OptionsThatDoNotGoTogether) {
   EXPECT_THAT(nowhere.err, HasSubstr("its folder 'nowhere' does not exist"));
 }
 
+TEST_F(VideoOut, PicturesTakeNoOptionsOfVideos) {
+  make_frames(2);
+  fs::create_directory(path("out"));
+  const auto before = files();
+  const auto refused = [&](std::vector<std::string> output, const std::vector<std::string>& option) {
+    std::vector<std::string> words{"run", "look.lua", "in/####.ppm", "-o"};
+    words.insert(words.end(), output.begin(), output.end());
+    words.insert(words.end(), option.begin(), option.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, kUsage) << option[0];
+    EXPECT_TRUE(is_one_error_line(outcome.err)) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(": error: " + option[0] + " is for videos; allowed: "));
+  };
+  const std::vector<std::string> pixels{"--pix-fmt", "rgb24"}, partial{"--keep-partial"};
+  for (const std::vector<std::string>& option :
+       {std::vector<std::string>{"--codec", "h264"}, {"--crf", "3"}, {"--bitrate", "8M"}, {"--audio", "in/1001.ppm"}}) {
+    refused({"out/"}, option);
+    refused({"-"}, option);
+  }
+  refused({"out/####.png"}, pixels);
+  refused({"out/####.png"}, partial);
+  refused({"-", "--format", "png"}, pixels);
+  EXPECT_EQ(files(), before);
+}
+
 TEST_F(VideoOut, FramesOfTwoSizes) {
   make_frames(2);
   write("in/1003.ppm", "P6\n64 36\n255\n" + codes_of(3, 64, 36));

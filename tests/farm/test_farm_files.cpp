@@ -2,6 +2,7 @@
 // Jobs without a cluster: what is written, what other schedulers get, what is refused.
 #include <algorithm>
 #include <fstream>
+#include <tuple>
 
 #include "farm/attempt.h"
 #include "farm/slurm.h"
@@ -121,6 +122,11 @@ TEST_F(FarmFiles, WhatIsWrongIsOneLine) {
   refused({"none.lua", "in/shot.####.exr", "-o", "out/", "--jobs", "j.json"}, kScript, "none.lua: error: ");
   refused({"look.lua", "in/shot.####.exr", "-o", "out/shot.exr", "--jobs", "j.json"}, kUsage,
           "afterglow farm: error: 10 frames cannot go into the one file");
+  for (const auto& [option, value, part] :
+       {std::tuple("--format", "foo", "'.foo' is not a format that is written"),
+        std::tuple("--type", "uint12", "exr files cannot hold samples of type uint12"),
+        std::tuple("--crf", "3", "--crf is for videos")})
+    refused({"look.lua", "in/shot.####.exr", "-o", "out/", "--jobs", "j.json", option, value}, kUsage, part);
   refused({"look.lua", "in/shot.0001.exr", "in/shot.0002.exr", "-o", "out/", "--jobs", "j.json"}, kUsage,
           "is no sequence, and the look has effects that look back");
   EXPECT_FALSE(fs::exists(path("out/.afterglow-farm")));
