@@ -58,7 +58,7 @@ Result<void> run_submit(const FarmArguments& a, Console& console) {
   }
   auto submitted = farm::submit(job, farm::every_task(job));
   if (!submitted) {
-    if (!is_file(job.folder / "slurm.json")) farm::discard_job(job);
+    if (!is_file(job.folder / "slurm.json")) discard(planned);
     return std::move(submitted).error();
   }
   tell_submission(job, *submitted, farm::every_task(job));

@@ -16,6 +16,7 @@ namespace {
 Result<void> run_run(const RunArguments& a, Console& console) {
   AFTERGLOW_TRY(const BatchRequest request, a.request());
   if (a.sandbox) {
+    AFTERGLOW_CHECK(make_folder(new_folder(a.files.output)));  // what it lies in is out of reach afterwards
     AFTERGLOW_TRY(const Confinement left, sandbox_of(a));
     AFTERGLOW_CHECK(confine(left));
   }

@@ -98,12 +98,20 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
     job.id = job.folder.filename().string();
     return out;
   }
+  out.new_folder = new_folder(request.files.output);
+  AFTERGLOW_CHECK(make_folder(out.new_folder));
   AFTERGLOW_TRY(job.folder, farm::make_job_folder(outputs));
   job.id = job.folder.filename().string();
   const auto packed = pack(arguments, request, look, job, console);
   if (packed) return out;
-  farm::discard_job(job);
+  discard(out);
   return packed.error();
+}
+
+void discard(const PlannedJob& planned) {
+  farm::discard_job(planned.job);
+  std::error_code ec;
+  fs::remove(planned.new_folder, ec);
 }
 
 }  // namespace afterglow

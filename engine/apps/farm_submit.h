@@ -12,10 +12,14 @@ struct PlannedJob {
   farm::Job job;
   FrameListRequest files;
   std::vector<FrameJob> frames;
+  std::filesystem::path new_folder{};  ///< of the outputs, that was made for the job; empty: it was there
 };
 
 /// Lists the frames, loads the look, cuts the chunks. With `write` its folder is made and everything is packed into
 /// it; without, nothing is written and the folder is the one that it could have. Errors: usage, script, io.
 Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console& console);
+
+/// Removes what `plan_job` has written.
+void discard(const PlannedJob& planned);
 
 }  // namespace afterglow

@@ -21,9 +21,8 @@ void add_files(CLI::App& app, RunArguments& a) {
                  "standard input")
       ->required();
   app.add_option("-o,--output", a.files.output,
-                 "File, pattern (out.####.png), folder, video (mp4, mov, mkv, webm, gif, apng) or - (standard output); "
-                 "the extension says "
-                 "the format")
+                 "File, pattern (out.####.png), folder (NAME/ is made if need be), video (mp4, mov, mkv, webm, gif, "
+                 "apng) or - (standard output); the extension says the format")
       ->type_name("OUTPUT")
       ->required();
   const std::string input = "Input", sequence = "Sequences", output = "Output";

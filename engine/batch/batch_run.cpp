@@ -106,10 +106,12 @@ Result<void> prepare_lock(BatchRun& run) {
 /// Outputs that cannot be written are refused before any work: one of each folder and format.
 Result<void> check_outputs(const BatchRun& run) {
   std::set<std::pair<std::filesystem::path, std::filesystem::path>> seen;
+  const bool is_there = new_folder(run.request.files.output).empty();
   for (const auto& frame : run.report.frames) {
     const auto& output = frame.job.output;
     if (!seen.emplace(output.parent_path(), output.extension()).second) continue;
-    AFTERGLOW_CHECK(check_output(output, run.request.loop.write));
+    AFTERGLOW_CHECK(check_format(output, run.request.loop.write));
+    if (is_there) AFTERGLOW_CHECK(check_place(output));
   }
   return {};
 }

@@ -32,6 +32,13 @@ std::string name_without_number(const fs::path& file) {
   return (file.parent_path() / stem).string() + "*" + file.extension().string();
 }
 
+/// Whether it can be made: what it lies in is there.
+Result<void> check_new_folder(const fs::path& folder) {
+  std::error_code ec;
+  if (fs::exists(folder, ec)) return Error{ErrorKind::io, "is not a folder", folder.string()};
+  return check_place(folder);
+}
+
 /// Turns an input into its output's name.
 class OutputNames {
  public:
@@ -43,9 +50,9 @@ class OutputNames {
     names.folder_ = request.output;
     names.extension_ = request.extension;
     if (!names.extension_.empty() && names.extension_[0] != '.') names.extension_ = "." + names.extension_;
-    if (names.is_folder_ && !fs::is_directory(request.output, ec))
-      return Error{ErrorKind::io, "no such folder", request.output};
+    if (const fs::path folder = new_folder(request.output); !folder.empty()) AFTERGLOW_CHECK(check_new_folder(folder));
     if (!names.is_folder_) {
+      AFTERGLOW_CHECK(check_extension(request.output));
       AFTERGLOW_TRY(names.pattern_, parse_pattern(request.output));
       if (!names.extension_.empty())
         return usage("--format is for outputs in a folder; a file name says its format itself");
@@ -109,6 +116,17 @@ Result<void> check_outputs(const std::vector<FrameJob>& jobs, bool one) {
 }  // namespace
 
 bool is_one_output(const std::string& output) { return output == "-" || is_video_output(output); }
+
+fs::path new_folder(const std::string& output) {
+  std::error_code ec;
+  return output.ends_with('/') && !fs::is_directory(output, ec) ? fs::path(output).parent_path() : fs::path();
+}
+
+Result<void> make_folder(const fs::path& folder) {
+  std::error_code ec;
+  if (folder.empty() || fs::create_directory(folder, ec) || !ec) return {};
+  return Error{ErrorKind::io, fmt::format("cannot be made: {}", ec.message()), folder.string()};
+}
 
 Result<FrameJob> job_of(const FrameListRequest& request, const std::string& sequence, const FrameFile& file) {
   FrameJob job{.frame = file.frame,

@@ -48,6 +48,12 @@ struct FrameListRequest {
 /// Whether all frames go into this one output, a video or standard output.
 bool is_one_output(const std::string& output);
 
+/// The folder that an output `NAME/` stands for when it is not there yet, else empty. It comes with the first picture
+/// that is written into it.
+std::filesystem::path new_folder(const std::string& output);
+/// Makes it unless it is there, or empty; what it lies in must be there. Errors: io.
+Result<void> make_folder(const std::filesystem::path& folder);
+
 /// A frame of a sequence, without an output. Errors: usage (a pattern for depth or normal that is none).
 Result<FrameJob> job_of(const FrameListRequest& request, const std::string& sequence, const FrameFile& file);
 
@@ -62,7 +68,7 @@ struct FrameList {
 };
 
 /// Opens videos and standard input. Errors: usage (a plain output for several frames, two inputs for one output, an
-/// output that is an input), io (nothing matches).
+/// output that is an input), io (nothing matches, no place for the outputs).
 Result<FrameList> list_frames(const FrameListRequest& request, Diagnostics& diagnostics);
 
 }  // namespace afterglow

@@ -16,7 +16,8 @@ namespace {
 /// A file a frame.
 class FileSink : public FrameSink {
  public:
-  FileSink(const WriteOptions& options, Diagnostics& diagnostics) : options_(options), diagnostics_(diagnostics) {
+  FileSink(const WriteOptions& options, std::filesystem::path folder, Diagnostics& diagnostics)
+      : options_(options), folder_(std::move(folder)), diagnostics_(diagnostics) {
     options_.memory = &memory_;
   }
 
@@ -25,6 +26,7 @@ class FileSink : public FrameSink {
     return display_codes(job.output, options_, has_alpha, facts);
   }
   Result<void> write(const FrameJob& job, std::size_t, const Picture& picture, const Turn&) override {
+    AFTERGLOW_CHECK(make_folder(folder_));
     AFTERGLOW_CHECK(write_picture(picture, job.output, options_, diagnostics_));
     return look_ ? record_made(job, *look_) : Result<void>();
   }
@@ -36,6 +38,7 @@ class FileSink : public FrameSink {
  private:
   WorkMemory memory_;
   WriteOptions options_;
+  std::filesystem::path folder_;  ///< that is made for them, or empty
   Diagnostics& diagnostics_;
   std::optional<Hash> look_;
 };
@@ -61,7 +64,7 @@ Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, cons
     return Error{ErrorKind::usage, fmt::format("{} is for videos", option), stream ? "standard output" : files.output,
                  0, join(video_extensions())};
   if (stream) return open_stream_sink(files.extension, options.write, options.fps, frames, diagnostics);
-  return std::unique_ptr<FrameSink>(std::make_unique<FileSink>(options.write, diagnostics));
+  return std::unique_ptr<FrameSink>(std::make_unique<FileSink>(options.write, new_folder(files.output), diagnostics));
 }
 
 }  // namespace afterglow

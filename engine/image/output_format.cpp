@@ -63,11 +63,12 @@ const char* type_name(SampleType type) {
   }
 }
 
-std::vector<std::string> all_extensions() {
-  std::vector<std::string> names;
-  for (const OutputFormat& format : formats())
-    names.insert(names.end(), format.extensions.begin(), format.extensions.end());
-  return names;
+const OutputFormat* find_format(const std::filesystem::path& file) {
+  const auto is_of = [extension = lower(file.extension().string())](const OutputFormat& format) {
+    return std::ranges::find(format.extensions, extension) != format.extensions.end();
+  };
+  const auto found = std::ranges::find_if(formats(), is_of);
+  return found == formats().end() ? nullptr : &*found;
 }
 
 /// Methods that take a level: EXR's a zlib level, or the error that DWA allows; WebP's a quality.
@@ -90,22 +91,27 @@ Result<Compression> parse_compression(const std::string& text) {
   return result;
 }
 
-Result<const OutputFormat*> output_format(const std::filesystem::path& file, const WriteOptions& options) {
-  const std::string extension = lower(file.extension().string());
-  const OutputFormat* found = nullptr;
+std::vector<std::string> picture_extensions() {
+  std::vector<std::string> names;
   for (const OutputFormat& format : formats())
-    if (std::find(format.extensions.begin(), format.extensions.end(), extension) != format.extensions.end())
-      found = &format;
-  if (!found) {
-    const std::vector<std::string> known = all_extensions();
-    return Error{ErrorKind::usage,
-                 extension.empty() ? "has no extension that tells its format"
-                                   : fmt::format("'{}' is not a format that is written", extension),
-                 file.string(),
-                 0,
-                 join(known),
-                 nearest_name(extension, known)};
-  }
+    names.insert(names.end(), format.extensions.begin(), format.extensions.end());
+  return names;
+}
+
+Error unknown_format(const std::filesystem::path& file, const std::vector<std::string>& known) {
+  const std::string extension = lower(file.extension().string());
+  return {ErrorKind::usage,
+          extension.empty() ? "has no extension that tells its format"
+                            : fmt::format("'{}' is not a format that is written", extension),
+          file.string(),
+          0,
+          join(known),
+          nearest_name(extension, known)};
+}
+
+Result<const OutputFormat*> output_format(const std::filesystem::path& file, const WriteOptions& options) {
+  const OutputFormat* const found = find_format(file);
+  if (!found) return unknown_format(file, picture_extensions());
   if (options.type != SampleType::automatic &&
       std::find(found->types.begin(), found->types.end(), options.type) == found->types.end()) {
     std::vector<std::string> names;

@@ -28,6 +28,11 @@ struct OutputFormat {
 /// Errors: usage (unknown extension; the sample type, the space or the compression is not one of the format's).
 Result<const OutputFormat*> output_format(const std::filesystem::path& file, const WriteOptions& options);
 
+/// Of pictures, with the dot.
+std::vector<std::string> picture_extensions();
+/// That the file's extension is none of those that are known.
+Error unknown_format(const std::filesystem::path& file, const std::vector<std::string>& known);
+
 /// The type that `options.type` comes to for this format; `facts` of the input may be null.
 SampleType sample_type(const OutputFormat& format, const WriteOptions& options, const FileFacts* facts);
 

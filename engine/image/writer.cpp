@@ -5,13 +5,16 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 
 #include "core/exception.h"
 #include "core/file.h"
 #include "core/file_time.h"
 #include "core/temporary.h"
+#include "core/text.h"
 #include "image/encode.h"
 #include "image/exr_file.h"
 #include "image/oiio_module.h"
@@ -19,6 +22,7 @@
 #include "image/output_format.h"
 #include "image/reader.h"
 #include "image/strips.h"
+#include "image/video_output.h"
 #include "image/write_cineon.h"
 #include "image/write_exr.h"
 #include "image/write_png.h"
@@ -131,6 +135,13 @@ std::uint64_t write_bytes(const fs::path& file, const WriteOptions& options, Siz
 Result<void> check_output(const fs::path& file, const WriteOptions& options) {
   AFTERGLOW_CHECK(check_format(file, options));
   return check_place(file);
+}
+
+Result<void> check_extension(const fs::path& file) {
+  const std::string extension = lower(file.extension().string());
+  std::vector<std::string> known = picture_extensions();
+  std::ranges::move(video_extensions(), std::back_inserter(known));
+  return std::ranges::find(known, extension) != known.end() ? Result<void>() : unknown_format(file, known);
 }
 
 Result<void> check_format(const fs::path& file, const WriteOptions& options) {

@@ -94,7 +94,9 @@ std::optional<DisplayCodes> display_codes(const std::filesystem::path& file, con
 /// Checks, without writing, that `file` has an extension we write and that its folder exists and can be written. For
 /// errors before the work.
 Result<void> check_output(const std::filesystem::path& file, const WriteOptions& options);
-/// The format alone. Errors: usage.
+/// Whether pictures or videos have such an extension. Errors: usage.
+Result<void> check_extension(const std::filesystem::path& file);
+/// The format of a picture alone. Errors: usage.
 Result<void> check_format(const std::filesystem::path& file, const WriteOptions& options);
 /// The same of the folder alone.
 Result<void> check_place(const std::filesystem::path& file);

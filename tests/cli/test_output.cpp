@@ -24,8 +24,24 @@ class Output : public CliTest {
 TEST_F(Output, FolderThatDoesNotExist) {
   const auto before = files();
   expect_failure(run({"run", "look.lua", "a.exr", "-o", "nowhere/a.png"}), "nowhere");
-  expect_failure(run({"run", "look.lua", "a.exr", "-o", "nowhere/"}), "nowhere");
+  expect_failure(run({"run", "look.lua", "a.exr", "-o", "nowhere/new/"}), "its folder 'nowhere' does not exist");
   EXPECT_EQ(files(), before);
+}
+
+TEST_F(Output, NewFolderIsMadeWithTheFirstPicture) {
+  write("broken.lua", "return 1\n");
+  write("b.exr", "not a picture");
+  const auto before = files();
+  EXPECT_EQ(run({"run", "broken.lua", "a.exr", "-o", "new/"}).exit_code, kScript);
+  EXPECT_EQ(run({"run", "look.lua", "a.exr", "-o", "new/", "--type", "uint8"}).exit_code, kUsage);
+  expect_failure(run({"run", "look.lua", "b.exr", "-o", "new/"}), "b.exr");
+  EXPECT_EQ(files(), before);
+  const Outcome outcome = run({"run", "look.lua", "b.exr", "a.exr", "-o", "new/"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_TRUE(fs::is_regular_file(path("new/a.exr")));
+  const Outcome confined = run({"run", "look.lua", "a.exr", "-o", "new/sandbox/", "--sandbox"});
+  EXPECT_EQ(confined.exit_code, kDone) << confined.err;
+  EXPECT_TRUE(fs::is_regular_file(path("new/sandbox/a.exr")));
 }
 
 TEST_F(Output, FolderThatCannotBeWritten) {
@@ -36,6 +52,7 @@ TEST_F(Output, FolderThatCannotBeWritten) {
 TEST_F(Output, FileInPlaceOfAFolder) {
   write("file", "not a folder");
   expect_failure(run({"run", "look.lua", "a.exr", "-o", "file/a.png"}), "file");
+  expect_failure(run({"run", "look.lua", "a.exr", "-o", "file/"}), "file: error: is not a folder");
 }
 
 TEST_F(Output, FolderInPlaceOfTheFile) {
@@ -52,6 +69,11 @@ TEST_F(Output, UnknownFormat) {
   EXPECT_THAT(outcome.exit_code, ::testing::AnyOf(kUsage, kFiles));
   EXPECT_TRUE(is_one_error_line(outcome.err));
   EXPECT_THAT(outcome.err, HasSubstr("a.xyz"));
+  // Of several pictures too, and with the videos that are written.
+  const Outcome several = run({"run", "look.lua", "a.exr", "a.exr", "-o", "a.avi"});
+  EXPECT_EQ(several.exit_code, kUsage);
+  EXPECT_THAT(several.err, HasSubstr("a.avi: error: '.avi' is not a format that is written; allowed: .exr, "));
+  EXPECT_THAT(several.err, HasSubstr(".mp4, .mov, .mkv, .webm, .gif, .apng"));
   EXPECT_EQ(files(), before);
 }
 

@@ -89,6 +89,20 @@ TEST_F(FarmFiles, ADryRunWritesNothing) {
   EXPECT_THAT(outcome.out, HasSubstr("farm chunk \"$job\" \"$chunk\""));
 }
 
+TEST_F(FarmFiles, NewFolderOfOutputsIsMadeByAJobAlone) {
+  const auto before = files();
+  EXPECT_EQ(farm({"look.lua", "in/shot.####.exr", "-o", "new/", "--dry-run"}).exit_code, kDone);
+  RunOptions no_slurm;
+  no_slurm.environment["PATH"] = path("").string();
+  EXPECT_EQ(farm({"look.lua", "in/shot.####.exr", "-o", "new/"}, no_slurm).exit_code, kFiles);
+  EXPECT_EQ(files(), before);
+  const Outcome outcome = farm({"look.lua", "in/shot.####.exr", "-o", "new/", "--jobs", "jobs.json"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
+  const Outcome made = run_line(nlohmann::json::parse(read("jobs.json"))["chunks"][0]);
+  EXPECT_EQ(made.exit_code, kDone) << made.err;
+  EXPECT_EQ(pictures("new").size(), 10u);
+}
+
 TEST_F(FarmFiles, WithoutSlurmNothingIsLeft) {
   RunOptions options;
   options.environment["PATH"] = path("").string();
@@ -113,6 +127,7 @@ TEST_F(FarmFiles, WhatIsWrongIsOneLine) {
   refused({"status", "out"}, kFiles, "there is no farm job");
   refused({"cancel", "nowhere"}, kFiles, "nowhere: error: there is no farm job");
   refused({"chunk", "out"}, kUsage, "chunk needs a job's folder and a number");
+  refused({"look.lua", "-", "-o", "out/", "--raw", "16x9:rgb24"}, kUsage, "unknown option '--raw'");
   refused({"look.lua", "in/shot.####.exr", "-o", "out/", "--resume"}, kUsage, "unknown option '--resume'");
   refused({"look.lua", "in/shot.####.exr", "-o", "out/", "--", "--array=1-3"}, kUsage,
           "the array is that of the chunks");
