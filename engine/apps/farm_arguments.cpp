@@ -17,8 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array kWords{"status", "report", "cancel", "retry", "chunk", "join"};
-/// Of `run`, what chunks decide themselves.
-constexpr std::array kNotForFarms{"--resume", "--watch", "--fail-fast", "--sandbox", "--lock", "--stats", "--report"};
+/// Of `run`, what chunks decide themselves, and what is for streams.
+constexpr std::array kNotForFarms{"--resume", "--watch", "--fail-fast", "--sandbox",
+                                  "--lock",   "--stats", "--report",    "--raw"};
 /// Named files of the look, which are packed.
 constexpr std::array kPacked{"--path", "--calibration", "--locked", "--set"};
 
@@ -59,14 +60,20 @@ void FarmArguments::add(CLI::App& command) {
       run_options.push_back(option);
   }
   command.get_option("PRESET")->description(
-      "Look to apply, as for `run`; or one of the words status, report, cancel, retry");
+      fmt::format("Look to apply, as for `run`; or one of the words {}", fmt::join(kWords, ", ")));
   command.get_option("INPUT")->required(false)->description(
       "Pictures, as for `run`; behind a word the job: its folder, or that of its outputs");
-  command.get_option("--output")->required(false);
+  command.get_option("--output")
+      ->required(false)
+      ->description(
+          "File, pattern (out.####.png), folder (NAME/ is made if need be) or video (mp4, mov, mkv, webm); the "
+          "extension says the format");
+  command.get_option("--format")->description("For outputs in a folder: png, exr, … (default: that of the input)");
 
   const std::string group = "Farm";
   command
-      .add_option("--chunk", chunk, "Frames a task makes (default: 24, and four times those that effects look back)")
+      .add_option("--chunk", chunk,
+                  "Frames a task makes (default: 24, or four times those that effects look back, if that is more)")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N")
       ->group(group);

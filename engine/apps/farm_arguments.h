@@ -20,7 +20,7 @@ struct FarmArguments {
   CLI::App* app = nullptr;
 
   void add(CLI::App& command);
-  /// status, report, cancel, retry, chunk, or empty: a look to submit.
+  /// status, report, cancel, …; empty: a look to submit.
   std::string word() const;
   /// The words of `run` that were given, but for the inputs and --frames, with the look's files as they lie in the
   /// pack of `folder`. `preset` is the look's file.
