@@ -43,7 +43,7 @@ local core = ... -- native functions: engine/script/library.cpp
 ---@field input fun(self: afterglow.Graph, name: string): afterglow.Image?                an auxiliary image that `needs` or `optional` names; nil when the picture lacks it
 ---@field history fun(self: afterglow.Graph, history: afterglow.History): afterglow.Image     what the frame before kept; must be given its next image by `keep`
 ---@field keep fun(self: afterglow.Graph, history: afterglow.Image, next: afterglow.Image)    the next frame gets this image as that history; of its size
----@field lookup fun(self: afterglow.Graph, lookup: { file: string }): afterglow.Lut            reads a look-up table (.cube, …), for the shader lut/apply
+---@field lookup fun(self: afterglow.Graph, lookup: { file: string, correction?: string }): afterglow.Lut  reads a look-up table (.cube, …), for the shader lut/apply; `correction`: which of a file of several
 ---@field ocio fun(self: afterglow.Graph, ocio: afterglow.OcioRequest): afterglow.OcioShader  a view or a colour space of an OpenColorIO configuration as a shader for `pass`
 ---@field image fun(self: afterglow.Graph, image: { file: string }): afterglow.Image       reads a picture: scene-linear, associated alpha
 ---@field cryptomatte fun(self: afterglow.Graph, objects: { layer: string, names: string }): number[]  ids of the objects of these names, with commas between them; those that the picture lacks are warned about
@@ -112,8 +112,8 @@ local fx = {}
 ---Makes the stack that a preset returns. Effects run by injection point, then `order`, then position in the list.
 ---`max_error` is the error that the executor may make for the sake of speed, by |x − exact| / (|exact| + 0.01).
 ---`reference_height` makes lengths resolution-free: settings in px are pixels of a picture of that height, whatever is run.
----`input_space` says how the colours of pictures are stored, whatever they say themselves: "acescct", "logc3", "logc4", "slog3", "pq", "hlg", "gamma22",
----"gamma24", "linear", "srgb"; `--input-space` goes before it.
+---`input_space` says how the colours of pictures are stored, whatever they say themselves: "acescct", "logc3", "logc4", "slog3", "cineon", "pq", "hlg",
+---"rec709", "gamma22", "gamma24", "linear", "srgb"; `--input-space` goes before it.
 ---`requires = "0.2"` names the oldest Afterglow that runs the preset; older ones refuse it by that line.
 ---`position` says where the picture is seen from, for volumes; `--at` goes before it.
 ---Errors: other keys, positions that hold neither an effect nor a volume, two entries of one name.
