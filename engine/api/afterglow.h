@@ -361,8 +361,9 @@ AFTERGLOW_API afterglow_error *afterglow_stack_reload(afterglow_stack *stack, af
 /* ---- what happened ------------------------------------------------------------------------------------------------*/
 
 /* How the settings of the last frame came about, as JSON: {"name", "position", "volumes": […], "entries": [{"name",
- * "effect", "state", "reason", "settings": [{"name", "default", "preset", "volumes", "override", "final"}]}]}. One
- * thread at a time. */
+ * "effect", "state", "reason", "opacity", "blend", "mask", "composition": […], "settings": [{"name", "default", "preset",
+ * "volumes", "override", "final"}]}]}. "composition" is of opacity, blend and mask what "settings" is of the others;
+ * "mask" is missing where there is none. One thread at a time. */
 AFTERGLOW_API afterglow_error *afterglow_stack_explain(const afterglow_stack *stack, afterglow_text **out);
 
 /* What ran in the last frame, as JSON: {"preset", "device", "choice", "choice_from", "max_error", "kernels", "skipped":
