@@ -19,6 +19,7 @@ void print_list() {
   Table checks({"check", "of", "what"});
   for (const auto& check : stress::checks())
     checks.add({check.name, check.promise ? "those that promise it" : "every stack", check.doc});
+  checks.add({"processes", "every stack", "other processes, with other numbers of threads, make the same bytes"});
   Table pictures({"picture", "what"});
   for (const auto& kind : stress::picture_kinds()) pictures.add({kind.name, kind.doc});
   output("{}\n{}", checks.text(), pictures.text());

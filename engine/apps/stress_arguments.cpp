@@ -45,7 +45,7 @@ void StressArguments::add(CLI::App& app) {
       ->type_name("TIME");
   app.add_flag(
       "--short", quick,
-      fmt::format("{} cases, and less of the growth of errors: under a minute on two cores", stress::kBriefCases));
+      fmt::format("Some {} cases, and less of the growth of errors: under a minute on two cores", stress::kBriefCases));
   app.add_option("--report", report, "Write everything as JSON")->type_name("FILE.json");
   app.add_option("-o,--out", folder, "Folder for cases that fail (default: stress)")->type_name("FOLDER");
   app.add_option("--repeat", repeat, "Run a case again that was kept; exit code 1 when it still fails")
