@@ -164,7 +164,7 @@ Made by `tools/tone_page.py` from what the program makes of ramps of light. Form
 
 ![the curves](images/tone/curves.svg)
 
-8-bit codes that a display gets for grey light of 0.0225 (three stops below middle grey) to 16; `most` is the largest display-linear value, `white` the light from which on the code is
+8-bit codes that a display gets for grey light of 0.0225 (three stops below middle grey) to 16; `most` is the display-linear value of the brightest light of the ramp (46), `white` the light from which on the code is
 255. ACES ends at 0.945 and Reinhard at 0.984: `full_white = true` makes that 1.
 
 | mode | source | 0.0225 | 0.18 | 1 | 4 | 16 | most | white |
