@@ -124,7 +124,7 @@ Command add_bench_command(CLI::App& program) {
       "  afterglow bench presets/neon_night.lua -o bench\n"
       "  afterglow bench look.lua --sizes 1280x720 --variants \"plain16f,fused fp32+storage-reads\" --compare "
       "old/bench.json\n"
-      "  afterglow bench look.lua --vary glow.max_iterations=4,8,16 --quick\n"
+      "  afterglow bench look.lua --vary bloom.max_iterations=4,8,16 --quick\n"
       "All that is measured at one size is prepared first and then run in turns; upload and read-back are not in it.");
   return {app, [arguments](Console& console) { return run_bench(*arguments, console); }};
 }

@@ -57,14 +57,14 @@ Command add_explain_command(CLI::App& program) {
   auto* app = program.add_subcommand("explain", "Tell where each setting comes from, and what runs and what does not");
   auto arguments = std::make_shared<ExplainArguments>();
   arguments->preset.add(*app);
-  app->add_option("SETTING", arguments->setting, "Show this alone: an entry, or one of its settings (glow.intensity)");
+  app->add_option("SETTING", arguments->setting, "Show this alone: an entry, or one of its settings (bloom.intensity)");
   arguments->picture.add(*app);
   app->add_option("--format", arguments->format, "text or json (default text)")
       ->check(CLI::IsMember({"text", "json"}))
       ->type_name("FORMAT");
   app->footer(
       "Needs no Vulkan device.\n"
-      "Example: afterglow explain cave.lua glow.intensity --frame 12 --at 4,0,0");
+      "Example: afterglow explain cave.lua bloom.intensity --frame 12 --at 4,0,0");
   return {app, [arguments](Console& console) { return run_explain(*arguments, console); }};
 }
 

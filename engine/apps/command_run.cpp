@@ -42,7 +42,7 @@ Command add_run_command(CLI::App& program) {
       "Examples:\n"
       "  afterglow run presets/neon_night.lua render.exr -o render.png\n"
       "  afterglow run look.lua shot.####.exr -o graded/shot.####.exr --frames 1-240 --resume\n"
-      "  afterglow run look.lua *.exr -o graded/ --format png --set glow.strength=0.4 --stats\n"
+      "  afterglow run look.lua *.exr -o graded/ --format png --set bloom.intensity=0.4 --stats\n"
       "  afterglow run look.lua clip.mov -o graded.mp4 --crf 16\n"
       "  ffmpeg -i clip.mp4 -f yuv4mpegpipe - | afterglow run look.lua - -o - | ffmpeg -i - graded.mp4\n"
       "Outputs appear whole or not at all. Notes for --resume lie in the output's folder, in .afterglow/.");

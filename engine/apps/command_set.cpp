@@ -72,7 +72,7 @@ Command add_set_command(CLI::App& program) {
   auto arguments = std::make_shared<SetArguments>();
   app->add_option("PRESET", arguments->preset.file, "Preset to change: a file, or a name on the search path")
       ->required();
-  app->add_option("SETTING", arguments->settings, "What is to be: glow.intensity=0.4, glow.enabled=false")
+  app->add_option("SETTING", arguments->settings, "What is to be: bloom.intensity=0.4, bloom.enabled=false")
       ->type_name("ENTRY.SETTING=VALUE");
   app->add_option("--reset", arguments->resets, "Back to the default; may be repeated")
       ->type_name("ENTRY.SETTING")
@@ -85,7 +85,7 @@ Command add_set_command(CLI::App& program) {
       "its place, and nothing is written then. Other files (presets that this one extends, required scripts) stay as "
       "they are.\n"
       "Prints the lines that changed. Needs no Vulkan device.\n"
-      "Example: afterglow set look.lua glow.intensity=0.4 'glow.tint=#ff8800' --reset glow.scatter");
+      "Example: afterglow set look.lua bloom.intensity=0.4 bloom.mode=additive --reset bloom.scatter");
   return {app, [arguments](Console& console) { return run_set(*arguments, console); }};
 }
 

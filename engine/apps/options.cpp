@@ -48,7 +48,7 @@ void PresetArguments::add(CLI::App& command) {
 
 void PresetArguments::add_overrides(CLI::App& command) {
   add_repeatable(command, "--set", overrides,
-                 "Overrides one setting, as if the preset said so: glow.strength=0.4 (repeatable)",
+                 "Overrides one setting, as if the preset said so: bloom.intensity=0.4 (repeatable)",
                  "EFFECT.SETTING=VALUE")
       ->group("Preset");
 }
