@@ -2,6 +2,7 @@
 // `afterglow check`: is the preset right, and what would run in which order with which settings? No device needed.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -75,7 +76,8 @@ std::vector<std::string> shadow_notes(const Look& look) {
   return notes;
 }
 
-std::string as_text(const Look& look, const std::string& file, const std::vector<std::string>& shadows) {
+std::string as_text(const Look& look, const std::string& file, const std::vector<std::string>& shadows,
+                    std::size_t warnings) {
   const auto& entries = *look.build.entries;
   std::string out = fmt::format("{}: {}\n", file, look.preset->name());
   for (std::size_t i = 0; i < entries.size(); ++i) out += entry_text(look, entries[i], i + 1);
@@ -88,8 +90,9 @@ std::string as_text(const Look& look, const std::string& file, const std::vector
     out += table.text("   ");
   }
   for (const auto& note : shadows) out += note + "\n";
-  return out + fmt::format("{} effects, {} passes in {} kernels: no errors\n", entries.size(),
-                           look.build.graph.passes.size(), look.plan.kernels.size());
+  const std::string warned = warnings == 0 ? "" : fmt::format(", {} warning{}", warnings, warnings == 1 ? "" : "s");
+  return out + fmt::format("{} effects, {} passes in {} kernels: no errors{}\n", entries.size(),
+                           look.build.graph.passes.size(), look.plan.kernels.size(), warned);
 }
 
 std::string as_json(const Look& look, const std::string& file, const std::vector<std::string>& shadows) {
@@ -129,7 +132,9 @@ Result<void> run_check(const CheckArguments& arguments, Console& console) {
   }
   const auto shadows = shadow_notes(look);
   const auto& file = arguments.preset.file;
-  output("{}", arguments.json ? as_json(look, file, shadows) : printable(as_text(look, file, shadows), true));
+  const auto of_light = std::ranges::count_if(look.spaces, [](const EntrySpace& s) { return !s.warning.empty(); });
+  const std::size_t warned = warnings.size() + static_cast<std::size_t>(of_light);
+  output("{}", arguments.json ? as_json(look, file, shadows) : printable(as_text(look, file, shadows, warned), true));
   return {};
 }
 

@@ -46,6 +46,17 @@ std::string options_text(const PixelOptions& options) {
   return text;
 }
 
+/// Warns of entries that get other light than they are made for, in the frame that was evaluated last.
+Result<void> warn_of_light(BatchRun& run, const Build& build) {
+  AFTERGLOW_TRY(const auto spaces, run.session->preset().spaces());
+  for (std::size_t i = 0; i < spaces.size(); ++i) {
+    if (spaces[i].warning.empty()) continue;
+    const StackEntry& entry = (*build.entries)[i];
+    run.events.diagnostics.warn(fmt::format("{}:{}: {}", entry.file, entry.line, spaces[i].warning));
+  }
+  return {};
+}
+
 /// How many earlier frames the frames of this run need; empty when none depends on another. Where settings change from
 /// frame to frame some frames are asked.
 Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
@@ -60,6 +71,7 @@ Result<std::optional<int>> pre_roll_of(BatchRun& run, FrameLoop& loop) {
     auto build = frames.size() == 1 ? loop.inspect(frames.front().job) : run.session->evaluate(context);
     if (!build && frames.size() == 1 && build.error().kind == ErrorKind::io) build = run.session->evaluate(context);
     if (!build) return std::move(build).error();
+    if (i == 0) AFTERGLOW_CHECK(warn_of_light(run, **build));
     const Graph& graph = (*build)->graph;
     if (!graph.histories.empty()) most = std::max(most.value_or(0), run.request.pre_roll.value_or(pre_roll(graph)));
   }

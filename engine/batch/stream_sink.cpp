@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "core/text.h"
+#include "image/encode.h"
 #include "image/metadata.h"
 #include "image/video_writer.h"
 
@@ -130,8 +131,6 @@ class VideoBytes : public FrameBytes {
     constexpr int kSmallWidth = 1024, kSmallHeight = 576;
     rules_.luma = size_.width <= kSmallWidth && size_.height <= kSmallHeight ? kBt601Luma : plan.pack.luma;
     rules_.dither = options_.dither.value_or(layout->bits == 8);
-    if (picture.has_alpha && !layout->alpha)
-      diagnostics_.warn(fmt::format("{}: {} has no alpha; the pictures are put on black", kName, layout->name));
     return y4m_ ? header(*layout) : std::string();
   }
 
@@ -140,6 +139,10 @@ class VideoBytes : public FrameBytes {
     if (size != size_)
       return stream_usage(fmt::format("a frame has {}x{} pixels, the first had {}x{}; a video has one size", size.width,
                                       size.height, size_.width, size_.height));
+    if (!rules_.layout->alpha && !warned_ && has_transparency(picture)) {
+      warned_ = true;
+      diagnostics_.warn(fmt::format("{}: {} has no alpha; the pictures are put on black", kName, rules_.layout->name));
+    }
     const PackedFrame packed = pack_frame(picture, rules_);
     std::string bytes = y4m_ ? "FRAME\n" : "";
     bytes.append(reinterpret_cast<const char*>(packed.bytes.data()), packed.bytes.size());
@@ -160,6 +163,7 @@ class VideoBytes : public FrameBytes {
   Diagnostics& diagnostics_;
   PackRules rules_;
   Size size_;
+  bool warned_ = false;  ///< of alpha
 };
 
 class StreamSink : public FrameSink {

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "batch/video_times.h"
+#include "image/encode.h"
 #include "image/metadata.h"
 
 namespace afterglow {
@@ -38,15 +39,11 @@ class VideoSink : public FrameSink {
   /// Once the video is open, a frame is packed while those before it are encoded.
   Result<void> write(const FrameJob& job, std::size_t index, const Picture& picture, const Turn& turn) override {
     std::optional<Result<PackedFrame>> packed;
-    if (VideoWriter* const writer = opened_.load()) packed = writer->pack(picture);
+    if (VideoWriter* const writer = opened_.load()) packed = pack(*writer, picture);
     AFTERGLOW_CHECK(turn());
     if (!writer_) AFTERGLOW_CHECK(begin(job, picture));
-    if (picture.has_alpha && !writer_->plan().pack.layout->alpha)
-      diagnostics_.warn_once("no alpha",
-                             fmt::format("{}: {} as {} has no alpha; the pictures are put on black", file_.string(),
-                                         writer_->plan().codec, writer_->plan().pack.layout->name));
     AFTERGLOW_TRY(const VideoTime time, times_.of(job, index));
-    if (!packed) packed = writer_->pack(picture);
+    if (!packed) packed = pack(*writer_, picture);
     AFTERGLOW_TRY(PackedFrame frame, std::move(*packed));
     return writer_->write(std::move(frame), time);
   }
@@ -66,6 +63,16 @@ class VideoSink : public FrameSink {
   Result<void> finish(std::size_t) override { return writer_ ? writer_->finish(times_.whole()) : Result<void>(); }
 
  private:
+  /// From any thread.
+  Result<PackedFrame> pack(VideoWriter& writer, const Picture& picture) {
+    const PixelLayout& layout = *writer.plan().pack.layout;
+    if (!layout.alpha && !warned_ && has_transparency(picture)) {
+      warned_ = true;
+      diagnostics_.warn_once("no alpha", fmt::format("{}: {} as {} has no alpha; the pictures are put on black",
+                                                     file_.string(), writer.plan().codec, layout.name));
+    }
+    return writer.pack(picture);
+  }
   Result<void> begin(const FrameJob& job, const Picture& picture) {
     AFTERGLOW_TRY(VideoPlan plan, plan_video(file_, options_, is_deep(picture.facts.get()), picture.has_alpha));
     plan.size = picture.display_window.size();
@@ -82,6 +89,7 @@ class VideoSink : public FrameSink {
   VideoTimes times_;
   Diagnostics& diagnostics_;
   std::unique_ptr<VideoWriter> writer_;
+  std::atomic<bool> warned_ = false;            ///< of alpha, which nobody looks for any more
   std::atomic<VideoWriter*> opened_ = nullptr;  ///< the same, for frames whose turn has not come
 };
 

@@ -54,17 +54,6 @@ Result<void> write_format(const Picture& picture, const OutputFormat& format, Ou
   return write_exr(picture, out, name, options, diagnostics);
 }
 
-/// Whether dropping alpha changes what is seen.
-bool has_transparency(const Picture& picture) {
-  std::vector<float> memory;
-  for (int y = 0; y < picture.color.height; ++y) {
-    const float* row = color_row(picture, y, memory);
-    for (int x = 0; x < picture.color.width; ++x)
-      if (row[4 * x + 3] < 1) return true;
-  }
-  return false;
-}
-
 /// Writes `temporary` through an OutputFile. What the file itself reports ("No space left on device") goes before what
 /// a library makes of it.
 Result<void> write_through(const Picture& picture, const OutputFormat& format, const fs::path& temporary,
@@ -87,7 +76,7 @@ Result<void> write_through(const Picture& picture, const OutputFormat& format, c
 /// Writes to `temporary` and makes sure that it is all there.
 Result<void> write_checked(const Picture& picture, const OutputFormat& format, const fs::path& temporary,
                            const WriteOptions& options, Diagnostics& diagnostics) {
-  if (picture.has_alpha && !strip_form(picture, format, options).alpha && has_transparency(picture))
+  if (!strip_form(picture, format, options).alpha && has_transparency(picture))
     diagnostics.warn(fmt::format("{} files have no alpha{}; the picture is put on black",
                                  format.extensions[0].substr(1),
                                  format.alpha ? " in 10 bits (--type uint16 has)" : ""));

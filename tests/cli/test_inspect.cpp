@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // check, graph and effects: what they tell about a preset.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cli_test.h"
@@ -72,6 +73,14 @@ TEST_F(Inspect, CheckTellsTheLightOfEachEntryAndWhatStandsWrong) {
   EXPECT_THAT(outcome.out, HasSubstr("4. exposure  at after_post_process, order 0; display-linear light\n   warning: "
                                      "'exposure' is made for scene-linear light, but 'tone_mapping' before it makes "
                                      "display-linear light\n"));
+  EXPECT_THAT(outcome.out, HasSubstr(": no errors, 2 warnings\n"));
+  make_exr("a1.exr");
+  make_exr("a2.exr");
+  const Outcome made = run({"run", "wrong.lua", "a#.exr", "-o", "b#.png"});
+  EXPECT_EQ(made.exit_code, kDone) << made.err;
+  EXPECT_EQ(std::ranges::count(made.err, '\n'), 2) << "each is told once: " << made.err;
+  EXPECT_THAT(made.err, HasSubstr("wrong.lua:3: 'sharpen' is made for display-linear light"));
+  EXPECT_THAT(made.err, HasSubstr("wrong.lua:4: 'exposure' is made for scene-linear light"));
   EXPECT_THAT(run({"explain", "wrong.lua"}).out, HasSubstr("warning: 'exposure' is made for scene-linear light"));
   const json check = parsed({"check", "wrong.lua", "--json"});
   EXPECT_EQ(check.at("entries").at(2).at("light"),

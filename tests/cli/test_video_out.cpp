@@ -2,6 +2,7 @@
 // Videos that are written, as the programs ffmpeg and ffprobe see them.
 #include <sys/mount.h>
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 
@@ -283,9 +284,17 @@ TEST_F(VideoOut, AlphaWhereTheCodecCan) {
       }
     }
   }
-  const Outcome opaque = run({"run", "look.lua", "a#.png", "-o", "b.mp4"});
-  EXPECT_EQ(opaque.exit_code, kDone);
-  EXPECT_THAT(opaque.err, HasSubstr("b.mp4: h264 as yuv420p has no alpha; the pictures are put on black"));
+  const Outcome on_black = run({"run", "look.lua", "a#.png", "-o", "b.mp4"});
+  EXPECT_EQ(on_black.exit_code, kDone);
+  EXPECT_THAT(on_black.err, HasSubstr("b.mp4: h264 as yuv420p has no alpha; the pictures are put on black"));
+  EXPECT_EQ(std::ranges::count(on_black.err, '\n'), 1) << on_black.err;
+  // An alpha of 1 everywhere is nothing that gets lost.
+  for (int i = 1; i <= 3; ++i) make_exr("opaque" + std::to_string(i) + ".exr");
+  for (const char* output : {"c.mp4", "-"}) {
+    const Outcome opaque = run({"run", "look.lua", "opaque#.exr", "-o", output});
+    EXPECT_EQ(opaque.exit_code, kDone) << opaque.err;
+    EXPECT_THAT(opaque.err, IsEmpty());
+  }
 }
 
 TEST_F(VideoOut, DnxhrGoesIntoMov) {
