@@ -104,9 +104,12 @@ Result<void> run_effects(const EffectsArguments& arguments, Console& console) {
     std::erase_if(effects, [&](const auto& effect) { return effect.name != arguments.name; });
     std::erase_if(masks, [&](const auto& mask) { return kMask + mask.name != arguments.name; });
     if (effects.empty() && masks.empty())
-      return Error{ErrorKind::usage,    fmt::format("unknown effect '{}'", arguments.name),
-                   "afterglow effects", 0,
-                   join(names),         nearest_name(arguments.name, names)};
+      return Error{ErrorKind::usage,
+                   fmt::format("unknown effect '{}'", arguments.name),
+                   "afterglow effects",
+                   0,
+                   join(names) + "; effects of yours with --path FOLDER",
+                   nearest_name(arguments.name, names)};
   }
   if (arguments.completion) {
     output("{}", completion_text(effects, masks));

@@ -67,14 +67,16 @@ void fail_unknown(TableReader& table, const EffectSchema& schema, const TableRea
                   const std::vector<std::string>& others) {
   std::vector<std::string> names;
   for (const auto& setting : schema.settings) names.push_back(setting.name);
+  const char* what = table.what().starts_with("fx.mask.") ? "mask" : "effect";
   if (key.position > 0) {
-    table.fail(failure(fmt::format("effect '{}' has a value without a name at position {}", schema.name, key.position),
-                       {key.name}, join(names)));
+    table.fail(
+        failure(fmt::format("{} '{}' has a value without a name at position {}", what, schema.name, key.position),
+                {key.name}, join(names)));
     return;
   }
   std::vector<std::string> near = names;
   near.insert(near.end(), others.begin(), others.end());
-  table.fail(failure(fmt::format("effect '{}' has no setting '{}'", schema.name, tidy_message(key.name, 60)),
+  table.fail(failure(fmt::format("{} '{}' has no setting '{}'", what, schema.name, tidy_message(key.name, 60)),
                      {key.name}, join(names), nearest_name(key.name, near)));
 }
 

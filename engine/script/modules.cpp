@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "core/version.h"
 #include "script/globals.h"
+#include "script/injection.h"
 #include "script/native.h"
 #include "script/object.h"
 #include "script/requirement.h"
@@ -239,7 +240,8 @@ int find_effect(lua_State* lua, const std::string& name, ScriptKind kind) {
     }
   }
   if (hits.empty()) {
-    const auto names = effect_names(runtime.path, kind);
+    auto names = effect_names(runtime.path, kind);
+    if (kind == ScriptKind::effect) names.insert(names.end(), library_names().begin(), library_names().end());
     throw failure(fmt::format("unknown {} '{}'", what, tidy_message(name, 60)), {}, join(names),
                   nearest_name(name, names));
   }

@@ -72,6 +72,12 @@ std::pair<std::string, std::string> split_mask_setting(const std::string& name) 
   return {name.substr(0, dot), name.substr(dot + 1)};
 }
 
+std::string missing_mask(const std::string& setting, const std::vector<std::string>& names) {
+  const std::string part = split_mask_setting(setting).first;
+  const auto is_of_part = [&](const std::string& name) { return split_mask_setting(name).first == part; };
+  return part.empty() || std::ranges::any_of(names, is_of_part) ? "" : part.substr(std::string_view("mask.").size());
+}
+
 namespace {
 
 constexpr std::string_view kCommandLine = "--set ";
@@ -160,8 +166,11 @@ Result<void> apply(DeclaredEntry& declared, const Override& given, Runtime& runt
   for (const auto& setting : schema.settings) names.push_back(setting.name);
   names.insert(names.end(), settable_keys().begin(), settable_keys().end());
   for (auto& name : mask_setting_names(runtime, declared.mask)) names.push_back(std::move(name));
+  const std::string mask = missing_mask(given.setting, names);
   return Error{ErrorKind::usage,
-               fmt::format("--set {}.{}: effect '{}' has no such setting", given.entry, given.setting, schema.name),
+               fmt::format("--set {}.{}: {}", given.entry, given.setting,
+                           mask.empty() ? fmt::format("effect '{}' has no such setting", schema.name)
+                                        : fmt::format("the entry has no mask '{}'", mask)),
                "",
                0,
                join(names),

@@ -137,6 +137,8 @@ const char* type_name(SettingType type);
 SettingSchema entry_key_schema(const std::string& name);
 /// "mask.luma.from" → "mask.luma" and "from"; the first is empty for all that belongs to no part of a mask.
 std::pair<std::string, std::string> split_mask_setting(const std::string& name);
+/// "radial" of "mask.radial.radius" when none of the settings `names` belongs to that part; else empty.
+std::string missing_mask(const std::string& setting, const std::vector<std::string>& names);
 
 /// The value of `ENTRY.SETTING=VALUE`. Errors (usage): what the setting does not allow; `where` stands before the name.
 Result<SettingValue> parse_setting(const Override& given, const SettingSchema& schema, std::string_view where);

@@ -30,7 +30,7 @@ std::string rewrite(std::string_view text, const ShaderScan& scanned, const Name
                     const std::vector<std::string>& constants, std::size_t first_unset,
                     const StorageReaders& readers = {});
 
-/// Removes the prefixes from a compiler's message: "ag_s0_threshold" → "threshold".
+/// Removes the prefixes from a compiler's message: "ag_s0_threshold" → "threshold", "ag_r1_fetch" → "fetch".
 std::string original_names(std::string_view message);
 
 }  // namespace afterglow

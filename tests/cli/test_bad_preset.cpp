@@ -40,6 +40,13 @@ INSTANTIATE_TEST_SUITE_P(
                       BadPreset{"unknown_effect",
                                 std::string(kUse) + "return fx.stack { fx.blom {} }\n",
                                 {"look.lua:2: error: ", "did you mean 'bloom'?"}},
+                      BadPreset{"unknown_library_function",
+                                std::string(kUse) + "return fx.stak { }\n",
+                                {"look.lua:2: error: unknown effect 'stak'", "int, ", "did you mean 'stack'?"}},
+                      BadPreset{
+                          "unknown_setting_of_a_mask",
+                          std::string(kUse) + "return fx.stack { fx.bloom { mask = fx.mask.luma { form = 1 } } }\n",
+                          {"look.lua:2: error: mask 'luma' has no setting 'form'", "did you mean 'from'?"}},
                       BadPreset{"unknown_setting",
                                 std::string(kUse) + "return fx.stack {\n  fx.bloom {\n    intensty = 1 } }\n",
                                 {"look.lua:4: error: ", "did you mean 'intensity'?"}},
@@ -117,6 +124,26 @@ TEST_F(PresetErrors, MissingPresetIsNamed) {
     EXPECT_TRUE(is_one_error_line(outcome.err));
     EXPECT_THAT(outcome.err, HasSubstr("none.lua"));
   }
+}
+
+TEST_F(PresetErrors, PictureInThePresetsPlaceIsCalledOne) {
+  make_preset("look.lua");
+  make_exr("a.exr");
+  ASSERT_EQ(run({"run", "look.lua", "a.exr", "-o", "a.png"}).exit_code, kDone);
+  for (const char* picture : {"a.exr", "a.png"}) {
+    const Outcome outcome = run({"run", picture, "look.lua", "-o", "b.png"});
+    EXPECT_EQ(outcome.exit_code, kScript);
+    EXPECT_EQ(outcome.err, picture + std::string(": error: is a picture, not a preset; allowed: a Lua file, then the "
+                                                 "pictures\n"));
+  }
+}
+
+TEST_F(PresetErrors, MaskThatAnEntryLacksIsNamed) {
+  make_preset("look.lua");
+  const std::string setting = "tone_mapping.mask.radial.radius", value = setting + "=0.4,0.3";
+  EXPECT_THAT(run({"set", "look.lua", value}).err, HasSubstr("error: entry 'tone_mapping' has no mask 'radial'"));
+  EXPECT_THAT(run({"check", "look.lua", "--set", value}).err, HasSubstr("the entry has no mask 'radial'"));
+  EXPECT_THAT(run({"explain", "look.lua", setting}).err, HasSubstr("'tone_mapping' has no mask 'radial'"));
 }
 
 TEST_F(PresetErrors, WrongOverrideNamesTheNearest) {

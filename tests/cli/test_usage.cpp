@@ -65,6 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUse{"over_the_input", {"run", "look.lua", "a.exr", "-o", "a.exr"}, "overwritten by its own result"},
         WrongUse{"two_places", {"run", "look.lua", "a.##.##.exr", "-o", "a.png"}, "a.##.##.exr"},
         WrongUse{"graph_format", {"graph", "look.lua", "-o", "graph.pdf"}, "graph.pdf"},
+        WrongUse{"effect_of_a_folder", {"effects", "mine"}, "; effects of yours with --path FOLDER"},
         WrongUse{"effect", {"effects", "blom"}, "did you mean 'bloom'?"}),
     [](const auto& info) { return info.param.label; });
 

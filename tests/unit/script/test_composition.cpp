@@ -111,7 +111,7 @@ return fx.stack { fx.a { mask = m }, fx.b { mask = m } })";
 
   scene.options.overrides = {{"a", "mask.lumma.from", "3"}};
   EXPECT_THAT(scene.load_error(),
-              HasSubstr("--set a.mask.lumma.from: effect 'a' has no such setting; allowed: strength, "
+              HasSubstr("--set a.mask.lumma.from: the entry has no mask 'lumma'; allowed: strength, "
                         "at, blend, enabled, mask, opacity, order, mask.luma.from, mask.luma.to"));
   EXPECT_THAT(scene.load_error(), HasSubstr("did you mean 'mask.luma.from'?"));
   scene.options.overrides = {{"a", "mask.luma.from", "-1"}};

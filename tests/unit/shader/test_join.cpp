@@ -211,7 +211,8 @@ TEST_F(Join, MessagesUseTheAuthorsNames) {
   const auto text = outcome(join({files_.stage(
       "a", "uniform float threshold;\nvec4 apply(vec4 c) { return threshold; }\nint f() { threshold = 1.0; }\n")}));
   EXPECT_THAT(text, Not(HasSubstr("ag_s0_")));
-  EXPECT_EQ(original_names("'ag_s12_x' ag_l3_y ag_pixel ag_s_z ag_s1"), "'x' y ag_pixel ag_s_z ag_s1");
+  EXPECT_EQ(original_names("'ag_s12_x' ag_l3_y ag_r1_fetch ag_pixel ag_s_z ag_s1"),
+            "'x' y fetch ag_pixel ag_s_z ag_s1");
 }
 
 TEST_F(Join, LongMessagesAreCut) {
