@@ -2,11 +2,14 @@
 // `afterglow bake`: a look of pixel effects as a look-up table for other programs, with how far it is from the look.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "apps/bake.h"
 #include "apps/command.h"
 #include "core/text.h"
+#include "edit/literal.h"
 
 namespace afterglow {
 namespace {
@@ -18,6 +21,16 @@ struct BakeArguments {
   int size = 33;
 };
 
+/// How the table is loaded; empty where none does.
+std::string use_text(const BakeArguments& a, Shaper shaper) {
+  const std::string extension = std::filesystem::path(a.output).extension().string();
+  if (extension != ".cube" && extension != ".clf") return "";
+  const char* input = shaper == Shaper::none ? "srgb" : extension == ".clf" ? "linear" : "acescct";
+  const std::string file =
+      script::literal_text(SettingValue{.type = SettingType::text, .number = {}, .choice = a.output});
+  return fmt::format("fx.lut {{ file = {}, input = \"{}\", output = \"srgb\" }}\n", file, input);
+}
+
 Result<void> run_bake(const BakeArguments& a, Console& console) {
   const Shaper shaper = a.shaper == "log" ? Shaper::log : Shaper::none;
   AFTERGLOW_TRY(const Look look, load_look(a.preset, {}, console));
@@ -25,6 +38,9 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
     return Error{ErrorKind::script,
                  fmt::format("a table knows a pixel's colour alone; these effects need more: {}", join(refused)),
                  a.preset.file, 0, "effects of colour, like those that `afterglow graph` shows as pixel passes"};
+  const bool brings_down = std::ranges::any_of(look.spaces, [](const EntrySpace& s) { return s.behind != s.before; });
+  if (shaper == Shaper::none && brings_down)
+    console.warning("the look takes scene light, but the table cuts off what is above 1; --shaper log takes it");
   SessionOptions options;
   AFTERGLOW_TRY(options.device, a.device.options());
   AFTERGLOW_TRY(options.stack, ExecutionArguments{}.options());
@@ -38,6 +54,7 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
   AFTERGLOW_CHECK(write_cube(cube, look.preset->name(), a.output));
   fmt::print("{}: {}³, {}; against the look itself at most {:.2f}, on average {:.3f} of 255 codes\n", a.output, a.size,
              shaper == Shaper::log ? "ACEScct to sRGB codes" : "sRGB codes to sRGB codes", error.most, error.mean);
+  fmt::print("{}", use_text(a, shaper));
   return {};
 }
 

@@ -31,14 +31,14 @@ TEST_F(Bake, TheTableDoesWhatTheLookDoes) {
   for (const std::string file : {"log.cube", "log.clf"}) {
     const Outcome outcome = run({"bake", "look.lua", "-o", file, "--size", "33", "--shaper", "log"});
     ASSERT_EQ(outcome.exit_code, kDone) << outcome.err;
-    std::smatch found;
+    EXPECT_THAT(outcome.err, IsEmpty());
+    std::smatch found, loading;
     ASSERT_TRUE(std::regex_search(outcome.out, found, std::regex("at most ([0-9.]+), on average ([0-9.]+) of 255")))
         << outcome.out;
     EXPECT_LT(std::stod(found[2]), 0.3);
     // A .clf takes scene-linear light itself, a .cube ACEScct.
-    write("table.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.lut { file = \"" + file +
-                           "\", input = \"" + (file == "log.clf" ? "linear" : "acescct") +
-                           "\", output = \"srgb\" } }\n");
+    ASSERT_TRUE(std::regex_search(outcome.out, loading, std::regex("\nfx\\.lut \\{.*\\}\n"))) << outcome.out;
+    write("table.lua", "local fx = require \"afterglow\"\nreturn fx.stack {" + loading[0].str() + "}\n");
     const Outcome applied = run({"run", "table.lua", "a.exr", "-o", "table.png", "--dither", "none"});
     ASSERT_EQ(applied.exit_code, kDone) << applied.err;
     EXPECT_LE(largest_difference("direct.png", "table.png"), (std::stod(found[1]) + 1) / 255) << file;
@@ -51,7 +51,10 @@ TEST_F(Bake, PicturesAndCodes) {
   const OIIO::ImageBuf strip(text("strip.png"));
   EXPECT_EQ(strip.spec().width, 256);
   EXPECT_EQ(strip.spec().height, 16);
-  ASSERT_EQ(run({"bake", "look.lua", "-o", "codes.cube"}).exit_code, kDone);
+  const Outcome codes = run({"bake", "look.lua", "-o", "codes.cube"});
+  ASSERT_EQ(codes.exit_code, kDone);
+  EXPECT_THAT(codes.err, HasSubstr("the table cuts off what is above 1; --shaper log takes it"));
+  EXPECT_THAT(codes.out, HasSubstr("\nfx.lut { file = \"codes.cube\", input = \"srgb\", output = \"srgb\" }\n"));
   EXPECT_THAT(read("codes.cube"),
               HasSubstr("# sRGB codes to sRGB codes of a display\nTITLE \"Warm & soft\"\nLUT_3D_SIZE 33\n"));
 }
