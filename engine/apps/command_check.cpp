@@ -133,7 +133,7 @@ Result<void> run_check(const CheckArguments& arguments, Console& console) {
   const auto shadows = shadow_notes(look);
   const auto& file = arguments.preset.file;
   const auto of_light = std::ranges::count_if(look.spaces, [](const EntrySpace& s) { return !s.warning.empty(); });
-  const std::size_t warned = warnings.size() + static_cast<std::size_t>(of_light);
+  const std::size_t warned = console.warnings() + static_cast<std::size_t>(of_light);
   output("{}", arguments.json ? as_json(look, file, shadows) : printable(as_text(look, file, shadows, warned), true));
   return {};
 }

@@ -38,7 +38,7 @@ Result<void> choose(const std::string& text, ExplainView& view) {
   if (dot == std::string::npos) return {};
   view.setting = text.substr(dot + 1);
   names = view.look.preset->setting_names(*entry);
-  if (const std::string mask = missing_mask(view.setting, names); !mask.empty())
+  if (const std::string mask = script::missing_mask(view.setting, names); !mask.empty())
     return wrong(fmt::format("'{}' has no mask '{}'", view.entry, mask), view.setting, names);
   if (std::ranges::find(names, view.setting) == names.end())
     return wrong(fmt::format("'{}' has no setting '{}'", view.entry, view.setting), view.setting, names);

@@ -71,6 +71,7 @@ void Console::error(const Error& error) {
 }
 
 void Console::warning(const std::string& text) {
+  ++warnings_;
   std::lock_guard lock(mutex_);
   erase_progress();
   log_->warn("{}", text);

@@ -2,6 +2,8 @@
 // What the user sees on stderr: errors, warnings, progress. One per process; thread-safe.
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -29,7 +31,8 @@ class Console {
   /// `FILE:LINE: error: …` and its trail.
   void error(const Error& error);
   void warning(const std::string& text);
-  void note(const std::string& text);  ///< shown with -v
+  std::size_t warnings() const { return warnings_; }  ///< that there were, also where nobody sees them
+  void note(const std::string& text);                 ///< shown with -v
   /// Warnings and notes of the engine end here.
   Diagnostics& diagnostics() { return diagnostics_; }
 
@@ -40,6 +43,7 @@ class Console {
  private:
   void erase_progress();  // with mutex_ held
   std::mutex mutex_;
+  std::atomic<std::size_t> warnings_ = 0;
   std::shared_ptr<spdlog::logger> log_;
   Diagnostics diagnostics_;
   Verbosity verbosity_ = Verbosity::normal;

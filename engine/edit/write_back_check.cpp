@@ -150,7 +150,7 @@ Result<Said> said_of(const Preset& preset, const PresetEdit& edit) {
   if (edit.setting == "mask")
     return Error{ErrorKind::usage, fmt::format("{} is made by the script and is changed there", edit.name()), "", 0,
                  "the settings of its parts: ENTRY.mask.PART.SETTING"};
-  const std::string mask = missing_mask(edit.setting, names);
+  const std::string mask = script::missing_mask(edit.setting, names);
   return Error{ErrorKind::usage,
                mask.empty() ? fmt::format("effect '{}' has no setting '{}'", entry->effect, edit.setting)
                             : fmt::format("entry '{}' has no mask '{}'", edit.entry, mask),

@@ -231,11 +231,22 @@ std::size_t Preset::memory_used() const {
   return state_->runtime->box->memory_used();
 }
 
+namespace {
+
+void warn_skipped(const StackEntry& entry, const std::string& reason, Diagnostics& diagnostics) {
+  diagnostics.warn_once(fmt::format("{}:{}: {}", entry.file, entry.name, reason),
+                        fmt::format("effect '{}' is skipped: {}", entry.name, reason));
+}
+
+}  // namespace
+
 ImageRef Preset::State::build_entry(lua_State* lua, const EntryRun& run, GraphBuilder& graph, const ImageRef& source,
                                     Diagnostics& diagnostics) {
   const StackEntry& entry = run.entry;
   if (is_left_out(lua, run, graph, diagnostics)) return source;
-  if (auto reason = inactive_reason(lua, run)) {
+  bool told = false;
+  if (auto reason = inactive_reason(lua, run, &told)) {
+    if (told) warn_skipped(entry, *reason, diagnostics);
     graph.add_skipped(entry.name, std::move(*reason));
     return source;
   }
@@ -277,8 +288,7 @@ bool Preset::State::is_left_out(lua_State* lua, const EntryRun& run, GraphBuilde
     throw ScriptError{{ErrorKind::script, fmt::format("effect '{}' is required, but there is {}", entry.name, reason),
                        entry.file, entry.line}};
   graph.add_skipped(entry.name, reason);
-  diagnostics.warn_once(fmt::format("{}:{}: {}", entry.file, entry.name, reason),
-                        fmt::format("effect '{}' is skipped: {}", entry.name, reason));
+  warn_skipped(entry, reason, diagnostics);
   return true;
 }
 

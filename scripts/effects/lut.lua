@@ -35,7 +35,7 @@ return fx.effect {
     },
   },
   active = function(s)
-    if s.file == "" then return false, "file is not given" end
+    if s.file == "" then return false, "file is not given", true end
     return s.intensity > 0, "intensity is 0"
   end,
   holds = { "constant", "mirror", "turn_180", "turn_90", shift = 1 },

@@ -19,7 +19,8 @@ return fx.effect {
     inverse = fx.bool { default = false, doc = "The other way round." },
   },
   active = function(s)
-    return s.from ~= s.to or s.looks ~= "", s.from == "" and "neither spaces nor looks are given" or "from and to are the same"
+    local none = s.from == ""
+    return s.from ~= s.to or s.looks ~= "", none and "neither spaces nor looks are given" or "from and to are the same", none
   end,
   holds = { "constant", "mirror", "turn_180", "turn_90", shift = 1 },
   build = function(g, s, source)

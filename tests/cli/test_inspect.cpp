@@ -85,6 +85,11 @@ TEST_F(Inspect, CheckTellsTheLightOfEachEntryAndWhatStandsWrong) {
   const json check = parsed({"check", "wrong.lua", "--json"});
   EXPECT_EQ(check.at("entries").at(2).at("light"),
             (json{{"before", "scene-linear"}, {"behind", "display-linear"}, {"needs", "scene-linear"}}));
+  write("idle.lua", "local fx = require \"afterglow\"\nreturn fx.stack { fx.lut {} }\n");
+  const Outcome idle = run({"check", "idle.lua"});
+  EXPECT_THAT(idle.err, HasSubstr("effect 'lut' is skipped: file is not given"));
+  EXPECT_THAT(idle.out, HasSubstr(": no errors, 1 warning\n"));
+  EXPECT_THAT(run({"run", "idle.lua", "a#.exr", "-o", "b#.png"}).err, HasSubstr("'lut' is skipped: file is not given"));
   // Without a curve nothing is known of the picture; one that is off makes nothing.
   EXPECT_THAT(run({"check", "wrong.lua", "--set", "tone_mapping.mode=none"}).out, Not(HasSubstr("warning")));
 }

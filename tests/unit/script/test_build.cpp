@@ -98,6 +98,19 @@ TEST(Build, AnInactiveEffectWithoutAReason) {
   scene.effect("off", "active = function(s) return false end, build = function(g, s, source) return source end,");
   scene.stack("fx.off {}");
   EXPECT_EQ(scene.graph().skipped[0].reason, "its settings leave the picture as it is");
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST(Build, AnInactiveEffectMayWantToBeHeardOf) {
+  Scene scene;
+  scene.effect("off",
+               "active = function(s) return false, \"no file\", true end, build = function(g, s, source) return source "
+               "end,");
+  scene.stack("fx.off {}");
+  auto preset = scene.load();
+  ASSERT_TRUE(preset) << preset.error().text();
+  for (int i = 0; i < 2; ++i) ASSERT_TRUE(scene.build(*preset));
+  EXPECT_THAT(scene.warnings, ElementsAre("effect 'off' is skipped: no file"));
 }
 
 // A pyramid much like that of a bloom: 20 passes.
