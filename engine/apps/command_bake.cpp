@@ -9,7 +9,6 @@
 #include "apps/bake.h"
 #include "apps/command.h"
 #include "core/text.h"
-#include "edit/literal.h"
 
 namespace afterglow {
 namespace {
@@ -26,8 +25,7 @@ std::string use_text(const BakeArguments& a, Shaper shaper) {
   const std::string extension = std::filesystem::path(a.output).extension().string();
   if (extension != ".cube" && extension != ".clf") return "";
   const char* input = shaper == Shaper::none ? "srgb" : extension == ".clf" ? "linear" : "acescct";
-  const std::string file =
-      script::literal_text(SettingValue{.type = SettingType::text, .number = {}, .choice = a.output});
+  const std::string file = SettingValue{.type = SettingType::text, .number = {}, .choice = a.output}.text();
   return fmt::format("fx.lut {{ file = {}, input = \"{}\", output = \"srgb\" }}\n", file, input);
 }
 

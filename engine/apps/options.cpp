@@ -13,9 +13,6 @@
 #include "core/paths.h"
 #include "core/text.h"
 #include "exec/calibration.h"
-#include "image/exr_header.h"
-#include "image/movie_container.h"
-#include "image/picture_format.h"
 
 namespace afterglow {
 
@@ -107,7 +104,7 @@ Result<std::filesystem::path> PresetArguments::preset_file() const {
   AFTERGLOW_TRY(const std::filesystem::path found, find_preset_file(file, {paths.begin(), paths.end()}));
   std::error_code ec;
   const bool other = found.extension() != ".lua" && std::filesystem::is_regular_file(found, ec);
-  if (other && (is_exr(found) || !picture_format(found).empty() || !movie_format(found).empty()))
+  if (other && has_pictures(found))
     return Error{ErrorKind::script, "is a picture, not a preset", file, 0, "a Lua file, then the pictures"};
   return found;
 }

@@ -10,7 +10,6 @@
 #include <cstring>
 
 #include "core/text.h"
-#include "image/encode.h"
 #include "image/metadata.h"
 #include "image/video_writer.h"
 

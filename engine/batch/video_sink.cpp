@@ -10,7 +10,6 @@
 #include <string_view>
 
 #include "batch/video_times.h"
-#include "image/encode.h"
 #include "image/metadata.h"
 
 namespace afterglow {

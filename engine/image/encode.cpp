@@ -144,17 +144,6 @@ const float* color_row(const Picture& picture, int y, std::vector<float>& memory
   return memory.data();
 }
 
-bool has_transparency(const Picture& picture) {
-  if (!picture.has_alpha) return false;
-  std::vector<float> memory;
-  for (int y = 0; y < picture.color.height; ++y) {
-    const float* row = color_row(picture, y, memory);
-    for (int x = 0; x < picture.color.width; ++x)
-      if (row[4 * x + 3] < 1) return true;
-  }
-  return false;
-}
-
 void display_row(const Picture& picture, int y, float padding_alpha, float* rgba) {
   const auto copy = [](const float* from, std::size_t count, float* to) { std::copy_n(from, count, to); };
   const auto open = [](const std::uint16_t* from, std::size_t count, float* to) { from_half(from, to, count); };

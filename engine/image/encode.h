@@ -24,9 +24,6 @@ inline const std::uint16_t* half_row(const Picture& picture, int y) {
 /// `memory`.
 const float* color_row(const Picture& picture, int y, std::vector<float>& memory);
 
-/// Whether dropping alpha changes what is seen.
-bool has_transparency(const Picture& picture);
-
 /// Row `y` of the display window, counted from its top: RGBA pixels of `picture`, and (0, 0, 0, `padding_alpha`) where
 /// it has none.
 void display_row(const Picture& picture, int y, float padding_alpha, float* rgba);

@@ -12,10 +12,13 @@
 #include "core/file_record.h"
 #include "core/text.h"
 #include "image/color_encoding.h"
+#include "image/exr_header.h"
 #include "image/half_colors.h"
 #include "image/input_space.h"
 #include "image/movie.h"
+#include "image/movie_container.h"
 #include "image/orientation.h"
+#include "image/picture_format.h"
 #include "image/read_plan.h"
 
 namespace afterglow {
@@ -296,6 +299,10 @@ std::vector<std::string> of_header(const ReadOptions& options) {
 }
 
 }  // namespace
+
+bool has_pictures(const std::filesystem::path& file) {
+  return is_exr(file) || !picture_format(file).empty() || !movie_format(file).empty();
+}
 
 Result<PictureHeader> read_header(const fs::path& file, const ReadOptions& options) {
   try {

@@ -89,6 +89,8 @@ struct PictureHeader {
   std::shared_ptr<OpenedPicture> opened;
 };
 
+/// Whether a file is a picture or a video, by its first bytes.
+bool has_pictures(const std::filesystem::path& file);
 Result<PictureHeader> read_header(const std::filesystem::path& file, const ReadOptions& options);
 /// Reads the picture of a header, which is not parsed again; once. `options` are those that the header was read with.
 /// Errors: those of reading a file, other (it was read before).

@@ -104,6 +104,17 @@ Result<void> check_picture(const Picture& picture) {
 
 }  // namespace
 
+bool has_transparency(const Picture& picture) {
+  if (!picture.has_alpha) return false;
+  std::vector<float> memory;
+  for (int y = 0; y < picture.color.height; ++y) {
+    const float* row = color_row(picture, y, memory);
+    for (int x = 0; x < picture.color.width; ++x)
+      if (row[4 * x + 3] < 1) return true;
+  }
+  return false;
+}
+
 std::optional<DisplayCodes> display_codes(const fs::path& file, const WriteOptions& options, bool has_alpha,
                                           const FileFacts* facts) {
   const auto format = output_format(file, options);

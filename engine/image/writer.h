@@ -81,6 +81,9 @@ std::uint64_t write_bytes(const std::filesystem::path& file, const WriteOptions&
 Result<std::string> picture_bytes(const Picture& picture, const std::string& extension, const WriteOptions& options,
                                   Diagnostics& diagnostics);
 
+/// Whether dropping alpha changes what is seen.
+bool has_transparency(const Picture& picture);
+
 /// How `write_picture` will make 8-bit display codes for `file`, so that another can make them (Picture::unorm8).
 struct DisplayCodes {
   bool straight_alpha = false;

@@ -240,10 +240,13 @@ int find_effect(lua_State* lua, const std::string& name, ScriptKind kind) {
     }
   }
   if (hits.empty()) {
-    auto names = effect_names(runtime.path, kind);
-    if (kind == ScriptKind::effect) names.insert(names.end(), library_names().begin(), library_names().end());
-    throw failure(fmt::format("unknown {} '{}'", what, tidy_message(name, 60)), {}, join(names),
-                  nearest_name(name, names));
+    const auto effects = effect_names(runtime.path, kind);
+    auto names = kind == ScriptKind::effect ? library_names() : std::vector<std::string>();
+    names.insert(names.end(), effects.begin(), effects.end());
+    const std::string nearest = nearest_name(name, names);
+    const bool of_effect = std::ranges::find(effects, nearest) != effects.end();
+    throw failure(fmt::format("unknown {} '{}'", what, tidy_message(name, 60)), {}, join(of_effect ? effects : names),
+                  nearest);
   }
   // An installation may be made of links; what comes with a preset may not reach out of its folder.
   for (const auto& root : runtime.path.user)
