@@ -441,7 +441,7 @@
 ---@field layer? string|afterglow.OfTime  In place of `to`: a layer of the picture's own file, by name. default ""
 ---@field color? number[]|string|afterglow.Moving  The other picture where none is given, and what `fade` goes through. {r, g, b} with numbers ≥ 0, "#rrggbb", default {0, 0, 0}
 ---@field angle? number|afterglow.Moving  wipe, push, blinds: where it moves to; 0 right, 90 up (push: the nearest of the four sides). clock: where the hand starts. -360…360 degrees, default 0
----@field softness? number|afterglow.Moving  wipe, iris, clock, blinds, scatter: width of the edge, as a share of the whole way. 0…1, default 0.05
+---@field softness? number|afterglow.Moving  wipe, iris, clock, blinds, scatter: width of the edge, as a share of the whole way. A pixel at least, but for scatter. 0…1, default 0.05
 ---@field center? number[]|afterglow.Moving  iris, clock: the point it is about; {0, 0} is the upper left corner, {1, 1} the lower right. {x, y}, each 0…1, default {0.5, 0.5}
 ---@field count? integer|afterglow.Moving  blinds: how many strips. integer 1…256, default 12
 ---@field grain? number|afterglow.Moving  scatter: size of the grains. 1…512 px, default 24
