@@ -215,7 +215,8 @@ AFTERGLOW_API void afterglow_stack_free(afterglow_stack *stack);
 AFTERGLOW_API afterglow_error *afterglow_stack_settings(const afterglow_stack *stack, afterglow_text **out);
 
 /* Sets what `afterglow --set NAME=VALUE` sets, from the same text: "0.4", "true", "aces", "{1, 0.5, 0}", "#ff8000".
- * Errors: usage (unknown name, value that is not allowed; the allowed ones and the nearest name are given), script. */
+ * Nothing that was recorded from the stack may be in flight; this holds for all of these functions. Errors: usage
+ * (unknown name, value that is not allowed; the allowed ones and the nearest name are given), script. */
 AFTERGLOW_API afterglow_error *afterglow_stack_set(afterglow_stack *stack, afterglow_string name,
                                                    afterglow_string value);
 /* The same from values: integers and numbers; booleans; choices and files; colours (scene-linear) and vectors. */

@@ -61,7 +61,10 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 void read_both(Pipe& out, Pipe& err, ProcessEnd& end) {
   std::array<pollfd, 2> streams{pollfd{out.ends[0], POLLIN, 0}, pollfd{err.ends[0], POLLIN, 0}};
   while (streams[0].fd >= 0 || streams[1].fd >= 0) {
-    if (poll(streams.data(), streams.size(), -1) < 0 && errno != EINTR) return;
+    if (poll(streams.data(), streams.size(), -1) < 0) {
+      if (errno != EINTR) return;
+      continue;  // what streams[i].revents says is of before
+    }
     if (streams[0].revents != 0 && !take_text(streams[0].fd, end.out)) streams[0].fd = -1;
     if (streams[1].revents != 0 && !take_text(streams[1].fd, end.err)) streams[1].fd = -1;
   }
