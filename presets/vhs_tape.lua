@@ -6,8 +6,8 @@ local fx = require "afterglow"
 return fx.stack {
   name = "VHS tape",
   requires = "0.2",
-  fx.bloom { mode = "scattering", threshold = 0.6, knee = 1, intensity = 0.2, scatter = 0.5, fade_fireflies = true },
   fx.directional_blur { distance = 3 },
+  fx.bloom { mode = "scattering", threshold = 0.6, knee = 1, intensity = 0.2, scatter = 0.5, fade_fireflies = true },
   fx.lens_distortion { intensity = 0.12, scale = 1.04 },
   fx.vignette { intensity = 0.3, smoothness = 0.3, rounded = false },
   fx.white_balance { temperature = -12, tint = 14 },

@@ -42,12 +42,25 @@ std::string origin_text(const SettingHistory& setting) {
   return setting.kind == "fixed" ? "" : "(" + setting.kind + ")";
 }
 
-std::string entry_text(const Look& look, const StackEntry& entry, std::size_t place) {
+/// The first entry that runs behind this one though it is written before it, in the same file; null: none.
+const StackEntry* written_above(const std::vector<StackEntry>& entries, std::size_t place) {
+  const StackEntry& entry = entries[place - 1];
+  for (std::size_t i = place; i < entries.size(); ++i)
+    if (entries[i].file == entry.file && entries[i].depth == entry.depth && entries[i].line < entry.line)
+      return &entries[i];
+  return nullptr;
+}
+
+std::string entry_text(const Look& look, std::size_t place) {
+  const StackEntry& entry = (*look.build.entries)[place - 1];
   const EntrySpace& space = look.spaces[place - 1];
   std::string out = fmt::format("{}{}. {}  at {}, order {}; {}{}{}{}\n", std::string(2 * entry.depth, ' '), place,
                                 entry.name, entry.at, entry.order, space_text(space), composition_text(entry),
                                 entry.required ? "; required" : "", entry.enabled ? "" : "; not enabled");
   if (!space.warning.empty()) out += fmt::format("   warning: {}\n", space.warning);
+  if (const auto* above = written_above(*look.build.entries, place))
+    out +=
+        fmt::format("   note: runs before '{}', which is written above it: `at` and `order` say when\n", above->name);
   if (const auto* reason = skip_reason(look, entry)) out += fmt::format("   skipped: {}\n", *reason);
   Table table;
   const EntryHistory& history = look.build.explanation->entries[place - 1];
@@ -80,7 +93,7 @@ std::string as_text(const Look& look, const std::string& file, const std::vector
                     std::size_t warnings) {
   const auto& entries = *look.build.entries;
   std::string out = fmt::format("{}: {}\n", file, look.preset->name());
-  for (std::size_t i = 0; i < entries.size(); ++i) out += entry_text(look, entries[i], i + 1);
+  for (std::size_t i = 0; i < entries.size(); ++i) out += entry_text(look, i + 1);
   if (const auto& arguments = look.preset->arguments(); !arguments.empty()) {
     out += "arguments (--arg NAME=VALUE)\n";
     Table table;

@@ -44,6 +44,16 @@ TEST_F(Inspect, CheckShowsOrderAndSettings) {
   EXPECT_THAT(outcome.out, HasSubstr("no errors"));
 }
 
+TEST_F(Inspect, CheckTellsWhatRunsInAnotherOrderThanItIsWritten) {
+  const auto check = [&](const std::string& entries) {
+    write("order.lua", "local fx = require \"afterglow\"\nreturn fx.stack {\n" + entries + "}\n");
+    return run({"check", "order.lua"}).out;
+  };
+  EXPECT_THAT(check("fx.tone_mapping {},\nfx.exposure { ev = 1 },\n"),
+              HasSubstr("note: runs before 'tone_mapping', which is written above it"));
+  EXPECT_THAT(check("fx.exposure { ev = 1 },\nfx.tone_mapping {},\n"), Not(HasSubstr("note:")));
+}
+
 TEST_F(Inspect, CheckAsJson) {
   const json check = parsed({"check", "look.lua", "--json", "--set", "bloom.scatter=0.5"});
   ASSERT_EQ(check.at("entries").size(), 3u);
