@@ -29,7 +29,7 @@ return fx.effect {
     intensity = fx.float { min = 0, max = 1, default = 1, doc = "How much of the tube is seen. 0: the picture as it was." },
   },
   active = function(s) return s.intensity > 0, "intensity is 0" end,
-  holds = { "black", error = { fp32 = function(_, source) return 1e-3 * stretch(source) end, fp16 = function(_, source) return 4e-3 * stretch(source) end } },
+  holds = { "black", error = { fp32 = function(_, source) return 1.5e-3 * stretch(source) end, fp16 = function(_, source) return 4e-3 * stretch(source) end } },
   build = function(g, s, source)
     local down = math.min(s.lines, source.height)
     local across = math.max(1, math.min(source.width, math.floor(source.width * down / source.height + 0.5)))

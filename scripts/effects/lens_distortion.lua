@@ -6,7 +6,7 @@ local fx = require "afterglow"
 local function fills(s) return s.edges ~= "black" end
 
 -- A place is rounded as the picture is large, and as far away as what is enlarged into it.
-local function place_digits(s, source) return 2e-5 * math.max(source.width, source.height) * math.max(1, 0.1 / s.scale) end
+local function place_digits(s, source) return 2e-5 * math.max(source.width, source.height) * math.max(1, 0.2 / s.scale) end
 
 local function angle(s) return math.rad(math.min(1.6 * math.max(math.abs(s.intensity) * 100, 1), 160)) end
 
