@@ -20,13 +20,13 @@ struct BakeArguments {
   int size = 33;
 };
 
-/// How the table is loaded; empty where none does.
+/// The settings of an effect that loads the table; empty where none does.
 std::string use_text(const BakeArguments& a, Shaper shaper) {
   const std::string extension = std::filesystem::path(a.output).extension().string();
   if (extension != ".cube" && extension != ".clf") return "";
   const char* input = shaper == Shaper::none ? "srgb" : extension == ".clf" ? "linear" : "acescct";
   const std::string file = SettingValue{.type = SettingType::text, .number = {}, .choice = a.output}.text();
-  return fmt::format("fx.lut {{ file = {}, input = \"{}\", output = \"srgb\" }}\n", file, input);
+  return fmt::format("in a look: {{ file = {}, input = \"{}\", output = \"srgb\" }}\n", file, input);
 }
 
 Result<void> run_bake(const BakeArguments& a, Console& console) {

@@ -51,12 +51,12 @@ bool means_something_else(const std::string& room, const std::string& word) {
   return kWords.contains({room, word});
 }
 
-/// The text without the examples by which commands show how settings and entries are written: they must work.
+/// The text without the examples by which commands show how settings are written: they must work.
 std::string without_examples(const std::string& room, std::string text) {
   if (room != "apps") return text;
-  for (const std::string_view example : {"bloom.", "fx.lut {"})
-    for (std::size_t at = text.find(example); at != std::string::npos; at = text.find(example, at))
-      text.erase(at, example.size());
+  constexpr std::string_view kExample = "bloom.";
+  for (std::size_t at = text.find(kExample); at != std::string::npos; at = text.find(kExample, at))
+    text.erase(at, kExample.size());
   return text;
 }
 
