@@ -36,9 +36,6 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
     return Error{ErrorKind::script,
                  fmt::format("a table knows a pixel's colour alone; these effects need more: {}", join(refused)),
                  a.preset.file, 0, "effects of colour, like those that `afterglow graph` shows as pixel passes"};
-  const bool brings_down = std::ranges::any_of(look.spaces, [](const EntrySpace& s) { return s.behind != s.before; });
-  if (shaper == Shaper::none && brings_down)
-    console.warning("the look takes scene light, but the table cuts off what is above 1; --shaper log takes it");
   SessionOptions options;
   AFTERGLOW_TRY(options.device, a.device.options());
   AFTERGLOW_TRY(options.stack, ExecutionArguments{}.options());
@@ -50,6 +47,9 @@ Result<void> run_bake(const BakeArguments& a, Console& console) {
   AFTERGLOW_TRY(const Cube cube, bake_cube(a.size, shaper, through));
   AFTERGLOW_TRY(const BakeError error, bake_error(cube, 20000, through));
   AFTERGLOW_CHECK(write_cube(cube, look.preset->name(), a.output));
+  const bool brings_down = std::ranges::any_of(look.spaces, [](const EntrySpace& s) { return s.behind != s.before; });
+  if (shaper == Shaper::none && brings_down)
+    console.warning("the look takes scene light, but the table cuts off what is above 1; --shaper log takes it");
   fmt::print("{}: {}³, {}; against the look itself at most {:.2f}, on average {:.3f} of 255 codes\n", a.output, a.size,
              shaper == Shaper::log ? "ACEScct to sRGB codes" : "sRGB codes to sRGB codes", error.most, error.mean);
   fmt::print("{}", use_text(a, shaper));
