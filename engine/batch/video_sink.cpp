@@ -88,8 +88,8 @@ class VideoSink : public FrameSink {
   VideoTimes times_;
   Diagnostics& diagnostics_;
   std::unique_ptr<VideoWriter> writer_;
-  std::atomic<bool> warned_ = false;            ///< of alpha, which nobody looks for any more
   std::atomic<VideoWriter*> opened_ = nullptr;  ///< the same, for frames whose turn has not come
+  std::atomic<bool> warned_ = false;            ///< of alpha, which nobody looks for any more
 };
 
 }  // namespace

@@ -43,7 +43,7 @@ return fx.effect {
     local turn = math.rad(s.angle)
     local aspect = source.width / source.height
     local across, down = math.cos(turn), -math.sin(turn)
-    local hand = turn - 2 * math.pi * s.progress
+    local hand = 2 * math.pi * s.progress - turn
     -- The edge's whole way: from where it just touches the picture to where it has left it.
     local span = math.abs(across) * aspect + math.abs(down)
     local corner_x, corner_y = math.max(s.center[1], 1 - s.center[1]) * aspect, math.max(s.center[2], 1 - s.center[2])
@@ -56,7 +56,7 @@ return fx.effect {
     return g:pass {
       shader = "transition/cut", source = source, other = other or source, size = source, name = "cut", kind = kKinds[s.kind], has_other = other ~= nil,
       progress = s.progress, plain = s.color, direction = { across, down }, span = span, soft = math.max(s.softness, pixel), pixel = pixel, center = s.center, aspect = aspect,
-      widest = widest, first = { across, -down }, hand = { math.cos(hand), math.sin(hand) }, start = turn, count = s.count, grain = { coarse, size - coarse }, seed = s.seed,
+      widest = widest, hand = { math.cos(hand), math.sin(hand) }, count = s.count, grain = { coarse, size - coarse }, seed = s.seed,
     }
   end,
 }

@@ -8,35 +8,33 @@ layout(constant_id = 1) const bool has_other = false;
 
 uniform sampler2D source;
 uniform sampler2D other;
-uniform float progress, span, soft, pixel, aspect, widest, start;
+uniform float progress, span, soft, pixel, aspect, widest;
 uniform vec3 plain;
-uniform vec2 direction, first, hand, center, grain;
+uniform vec2 direction, hand, center, grain;
 uniform int count, seed;
 
 const int kDissolve = 0, kFade = 1, kWipe = 2, kIris = 3, kClock = 4, kBlinds = 5, kScatter = 6, kPush = 7;
-const float kTurn = 6.28318530718;
 
 vec3 other_at(ivec2 at, float alpha) { return has_other ? fetch(other, at).rgb : clamp(plain * alpha, -kMaxLight, kMaxLight); }
 
-// From the middle of the clock, up and to the right, in heights of the picture.
-vec2 from_center(vec2 p) { return (p - center) * vec2(aspect, -1.0); }
-
 vec2 share_of(ivec2 at) { return (vec2(at) + 0.5) / vec2(target_size()); }
+
+// From the centre of iris and clock, in heights of the picture.
+vec2 from_center(ivec2 at) { return (share_of(at) - center) * vec2(aspect, 1.0); }
+
+// Turns that a place lies behind a direction, clockwise: -0.5 to 0.5.
+float turns_behind(vec2 from, vec2 way) { return atan(way.x * from.y - way.y * from.x, dot(way, from)) / 6.28318530718; }
 
 // When a pixel's turn comes, 0…1.
 float turn_of(ivec2 at) {
-  vec2 p = share_of(at);
-  if (kind == kIris) return length((p - center) * vec2(aspect, 1.0)) / widest;
-  if (kind == kClock) {
-    vec2 from = from_center(p);
-    if (from == vec2(0.0)) return 0.0;  // the middle itself
-    return fract((start - atan(from.y, from.x)) / kTurn + 1.0);
-  }
+  vec2 from = from_center(at);
+  if (kind == kIris) return length(from) / widest;
+  if (kind == kClock) return from == vec2(0.0) ? 0.0 : fract(turns_behind(from, direction) + 1.0);
   if (kind == kScatter) {
     vec2 cell = floor((vec2(at) + 0.5) / (grain.x + grain.y));
     return unit_of(pcg3d(uvec3(uvec2(cell), uint(seed)))).x;
   }
-  float along = dot((p - 0.5) * vec2(aspect, 1.0), direction) / span + 0.5;
+  float along = dot((share_of(at) - 0.5) * vec2(aspect, 1.0), direction) / span + 0.5;
   if (kind == kBlinds) along = fract(along * float(count));
   return along;
 }
@@ -44,23 +42,23 @@ float turn_of(ivec2 at) {
 // How far a pixel is from where the turns begin again, in pixels: from the clock's first line, from where strips meet.
 float from_seam(ivec2 at, float turn) {
   if (kind == kBlinds) return min(turn, 1.0 - turn) / pixel;
-  vec2 from = from_center(share_of(at));
-  return dot(from, first) >= 0.0 ? abs(from.x * first.y - from.y * first.x) * float(target_size().y) : 1.0;
+  vec2 from = from_center(at);
+  return dot(from, direction) >= 0.0 ? abs(from.x * direction.y - from.y * direction.x) * float(target_size().y) : 1.0;
 }
 
 // How far the edge's middle is ahead of a pixel's turn. The clock's angle is taken from its hand: exact where it matters.
 float ahead_of(ivec2 at, float turn) {
   if (kind != kClock) return progress - turn;
-  vec2 from = from_center(share_of(at));
+  vec2 from = from_center(at);
   if (from == vec2(0.0)) return progress;
-  float past = atan(hand.x * from.y - hand.y * from.x, dot(hand, from)) / kTurn;
-  return past + round(progress - turn - past);
+  float ahead = -turns_behind(from, hand);
+  return ahead + round(progress - turn - ahead);
 }
 
 // How much of the other picture a pixel shows, 0…1. Edges and seams are as wide as a pixel at least.
 float gone_at(ivec2 at) {
   float turn = turn_of(at), edge = soft;
-  if (kind == kClock) edge = max(soft, 1.0 / max(kTurn * length(from_center(share_of(at))) * float(target_size().y), 1.0));
+  if (kind == kClock) edge = max(soft, 1.0 / max(6.28318530718 * length(from_center(at)) * float(target_size().y), 1.0));
   float gone = clamp(progress + ahead_of(at, turn) / edge, 0.0, 1.0);
   if (kind != kClock && kind != kBlinds) return gone;
   float away = from_seam(at, turn);
