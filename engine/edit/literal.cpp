@@ -20,12 +20,6 @@ std::string decimal_text(double value) {
   return fmt::format("{}", value);
 }
 
-// "#rrggbb" of a colour that its numbers would need many digits for, which nobody wrote.
-std::optional<std::string> shorter_code(const SettingValue& color) {
-  const bool many = std::ranges::any_of(color.number, [](double v) { return decimal_text(v).size() > 9; });
-  return many ? hex_color(color) : std::nullopt;
-}
-
 bool has(std::string_view text, char a) { return text.find(a) != std::string_view::npos; }
 
 // Zeros behind the point, where the old number was written with more than it needed: 1.0, 0.50.
@@ -159,7 +153,7 @@ std::string literal_like(const LuaText& text, std::size_t first, std::size_t end
           for (char& c : code) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
         return quoted(old.text, code);
       }
-      if (shorter_code(value)) break;
+      if (shorter_color(value)) break;
       [[fallthrough]];
     case SettingType::vec2:
     case SettingType::vec3: {
@@ -186,7 +180,7 @@ std::string literal_text(const SettingValue& value, char quote, bool spaced) {
     case SettingType::text:
       return quoted(std::string(1, quote), value.choice);
     case SettingType::color:
-      if (const auto code = shorter_code(value)) return quoted(std::string(1, quote), *code);
+      if (const auto code = shorter_color(value)) return quoted(std::string(1, quote), *code);
       break;
     case SettingType::vec2:
     case SettingType::vec3:

@@ -128,6 +128,8 @@ Result<void> check_value(const std::string& full_name, const SettingSchema& sche
 
 /// "#rrggbb" for a colour that can be written so: what it is read as is the same colour in 32-bit floats.
 std::optional<std::string> hex_color(const SettingValue& color);
+/// The same for a colour that its numbers would need many digits for, which nobody wrote: {0.051269457, 0.2158605, 1}.
+std::optional<std::string> shorter_color(const SettingValue& color);
 
 /// "integer", "number", "boolean", "choice", "colour", "vec2", "vec3", "file".
 const char* type_name(SettingType type);

@@ -35,6 +35,7 @@ std::string SettingValue::text() const {
     case SettingType::text:
       return '"' + choice + '"';
     case SettingType::color:
+      if (const auto code = script::shorter_color(*this)) return '"' + *code + '"';
       return list_text(*this, 3);
     case SettingType::vec2:
       return list_text(*this, 2);
@@ -89,6 +90,12 @@ std::optional<std::string> hex_color(const SettingValue& color) {
     text += fmt::format("{:02x}", code);
   }
   return text;
+}
+
+std::optional<std::string> shorter_color(const SettingValue& color) {
+  constexpr std::size_t kLong = 9;
+  const bool many = std::ranges::any_of(color.number, [](double v) { return number_text(v).size() >= kLong; });
+  return many ? hex_color(color) : std::nullopt;
 }
 
 const char* type_name(SettingType type) {
