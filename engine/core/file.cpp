@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "core/file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -41,6 +43,38 @@ std::vector<std::string> names_beside(const fs::path& path) {
     return name.front() == '.' || name.back() == '~' || without_digits(name) == wanted;
   });
   return names;
+}
+
+/// What a file must not be put in the place of.
+bool is_stream(const fs::path& path) {
+  const std::string name = path.string();
+  for (const char* of_processes : {"/dev/std", "/dev/fd/", "/proc/"})
+    if (name.starts_with(of_processes)) return true;
+  std::error_code ec;
+  const auto status = fs::status(path, ec);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+Result<void> write_stream(const fs::path& path, std::string_view content) {
+  const auto failed = [&] {
+    const char* why = errno == ENXIO ? "nobody reads it" : std::strerror(errno);
+    return Error{ErrorKind::io, fmt::format("cannot be written: {}", why), path.string()};
+  };
+  // A pipe that nobody reads would wait for ever.
+  const int out = open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NONBLOCK);
+  if (out < 0) return failed();
+  fcntl(out, F_SETFL, O_APPEND);
+  while (!content.empty()) {
+    const ssize_t written = write(out, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      const Error error = failed();
+      close(out);
+      return error;
+    }
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return close(out) == 0 ? Result<void>() : failed();
 }
 
 }  // namespace
@@ -99,6 +133,7 @@ Result<std::string> read_named_file(const fs::path& path, std::size_t limit, Fil
 }
 
 Result<void> write_file_atomically(const fs::path& path, std::string_view content) {
+  if (is_stream(path)) return write_stream(path, content);
   Temporary temporary(path);
   std::ofstream out(temporary.path(), std::ios::binary);
   out.write(content.data(), static_cast<std::streamsize>(content.size()));

@@ -34,7 +34,8 @@ Error missing_file(const std::filesystem::path& path);
 /// Is there a file (links are followed)?
 bool is_file(const std::filesystem::path& path, FileRecord* record = nullptr);
 
-/// Writes to a temporary file beside `path`, then renames. On error nothing is left behind.
+/// Writes to a temporary file beside `path`, then renames. On error nothing is left behind. A device, a pipe and what
+/// /dev/stdout, /dev/stderr, /dev/fd and /proc lead to are written to as they stand. Errors: io.
 Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace afterglow

@@ -103,7 +103,9 @@ Temporary::~Temporary() {
 }
 
 Result<void> Temporary::commit() {
-  std::error_code ec;
+  std::error_code ec, ignored;
+  if (const auto there = fs::status(target_, ignored); fs::is_regular_file(there))
+    fs::permissions(path_, there.permissions(), ignored);
   fs::rename(path_, target_, ec);
   there_ = static_cast<bool>(ec);
   if (ec) return Error{ErrorKind::io, fmt::format("cannot be written: {}", ec.message()), named_.string()};
@@ -129,6 +131,8 @@ int remove_abandoned_temporaries(const fs::path& folder) {
 std::string temporary_mark() { return fmt::format("{}-{}", machine(), getpid()); }
 
 int remove_temporaries_of(const std::string& mark, const fs::path& folder) {
+  const pid_t process = process_of(fmt::format(".{}-0.tmp", mark));
+  if (process > 0 && lives(process)) return 0;
   int removed = 0;
   std::error_code ec, ignored;
   for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {

@@ -27,7 +27,7 @@ class Temporary {
   Temporary& operator=(const Temporary&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Renames it over the target. Errors: io.
+  /// Renames it over the target, whose permissions it takes. Errors: io.
   Result<void> commit();
 
  private:
@@ -46,8 +46,8 @@ int remove_abandoned_temporaries(const std::filesystem::path& folder);
 /// What the names of this process's temporary files have in common: MACHINE-PROCESS.
 std::string temporary_mark();
 
-/// Removes the files of the process with that mark from `folder`, whichever machine it ran on. It must be known to live
-/// no more. Returns how many.
+/// Removes the files of the process with that mark from `folder`, whichever machine it ran on; none if it is a process
+/// of this machine that lives. Returns how many.
 int remove_temporaries_of(const std::string& mark, const std::filesystem::path& folder);
 
 }  // namespace afterglow

@@ -37,6 +37,12 @@ std::string squeezed(std::string_view name) {
   return out;
 }
 
+/// Of what says nothing about the name: the extension that both have.
+std::size_t length_of_ending(std::string_view a, std::string_view b) {
+  const std::size_t dot = a.rfind('.');
+  return dot != std::string_view::npos && b.ends_with(a.substr(dot)) ? a.size() - dot : 0;
+}
+
 /// The shortest candidate that begins with the name, or else holds it: "tonemap", "grain".
 std::string longer_name(std::string_view name, std::span<const std::string> candidates) {
   constexpr std::size_t kLeast = 3, kLeastInside = 4;  // letters that say what is meant
@@ -62,7 +68,8 @@ std::string nearest_name(std::string_view name, std::span<const std::string> can
   std::size_t best_distance = std::string::npos;
   for (const auto& candidate : candidates) {
     const std::size_t distance = edit_distance(lower(name), lower(candidate));
-    const std::size_t limit = (std::max(name.size(), candidate.size()) + 2) / 3;
+    const std::size_t same = length_of_ending(name, candidate);
+    const std::size_t limit = (std::max(name.size(), candidate.size()) - same + 1) / 3;
     if (distance <= limit && distance < best_distance) {
       best = candidate;
       best_distance = distance;

@@ -81,6 +81,13 @@ TEST(Text, TwoLettersChangedOverAreOneMistake) {
   EXPECT_EQ(nearest_name("nur", names), "");  // the first and the third
 }
 
+TEST(Text, WhatIsLikeNothingHasNoNearestName) {
+  EXPECT_EQ(nearest_name("cave.lua", std::vector<std::string>{"haze.lua"}), "");  // the ending is everybody's
+  EXPECT_EQ(nearest_name("hase.lua", std::vector<std::string>{"haze.lua"}), "haze.lua");
+  EXPECT_EQ(nearest_name("fast", std::vector<std::string>{"at"}), "");
+  EXPECT_EQ(nearest_name("-", std::vector<std::string>{"q"}), "");
+}
+
 TEST(Text, NumbersReadBackShort) {
   EXPECT_EQ(number_text(0.2f), "0.2");
   EXPECT_EQ(number_text(0.2), "0.2");

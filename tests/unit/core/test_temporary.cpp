@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <fstream>
 #include <set>
 #include <string>
@@ -72,6 +75,33 @@ TEST_F(Temporaries, ALinkStaysAndWhatItLeadsToBecomesAnother) {
   EXPECT_EQ(behind_links(folder_ / "none.txt"), folder_ / "none.txt");
   fs::create_symlink("none.txt", folder_ / "leads_nowhere.txt");
   EXPECT_EQ(behind_links(folder_ / "leads_nowhere.txt"), folder_ / "leads_nowhere.txt");
+}
+
+TEST_F(Temporaries, PermissionsStayThoseOfTheFileThatWasThere) {
+  const fs::path file = folder_ / "report.json";
+  std::ofstream(file) << "old";
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
+  ASSERT_TRUE(write_file_atomically(file, "new"));
+  EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(Temporaries, PipesAreWrittenToAsTheyStand) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const auto unread = write_file_atomically(pipe, "a report");
+  ASSERT_FALSE(unread);
+  EXPECT_EQ(unread.error().message, "cannot be written: nobody reads it");
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  EXPECT_TRUE(write_file_atomically(pipe, "a report"));
+  std::array<char, 64> text{};
+  EXPECT_EQ(read(reader, text.data(), text.size()), 8);
+  EXPECT_STREQ(text.data(), "a report");
+  close(reader);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  const auto full = write_file_atomically("/dev/full", "a report");
+  ASSERT_FALSE(full);
+  EXPECT_EQ(full.error().message, "cannot be written: No space left on device");
 }
 
 TEST_F(Temporaries, WhatCannotBeCommittedIsGoneAndSaid) {
