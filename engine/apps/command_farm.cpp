@@ -21,7 +21,7 @@ namespace {
 Result<void> report_on(const farm::Job& job, const FarmArguments& a) {
   AFTERGLOW_TRY(const auto status, farm::status_of(job));
   AFTERGLOW_TRY(const auto report, farm::merged_report(job, status));
-  if (!a.run.report.empty()) return write_file_atomically(a.run.report, report.json);
+  if (!a.run.report.empty()) return output_file(a.run.report, report.json);
   output("{}", report.text);
   return {};
 }
@@ -51,8 +51,12 @@ Result<void> run_submit(const FarmArguments& a, Console& console) {
     return {};
   }
   if (!a.jobs.empty()) {
-    AFTERGLOW_TRY(const std::string text, farm::jobs_text(job, planned.files, planned.frames));
-    AFTERGLOW_CHECK(write_file_atomically(a.jobs, text));
+    const auto text = farm::jobs_text(job, planned.files, planned.frames);
+    const auto written = text ? output_file(a.jobs, *text) : text.error();
+    if (!written) {
+      discard(planned);
+      return written;
+    }
     output("{}\n{}: {} chunks\n", job.folder.string(), a.jobs, job.chunks.size());
     return {};
   }
@@ -109,7 +113,7 @@ Command add_farm_command(CLI::App& program) {
   arguments->add(*app);
   app->footer(
       "Examples:\n"
-      "  afterglow farm look.lua shot.####.exr -o graded/shot.####.exr --chunk 20 --wait\n"
+      "  afterglow farm look.lua shot.####.exr -o graded/ --chunk 20 --wait\n"
       "  afterglow farm look.lua shot.####.exr -o graded/ --partition night --mem 8G -- --exclude=n13 --nice\n"
       "  afterglow farm look.lua clip.mov -o graded.mov --codec prores --wait\n"
       "  afterglow farm status graded/         where the job is; also report, cancel and retry\n"

@@ -45,6 +45,15 @@ Result<void> check_sequences(const PlannedJob& planned) {
   return {};
 }
 
+/// Frames that are still to be rendered may be submitted; whoever has mistaken their numbers sees it here.
+void tell_missing(const std::vector<FrameJob>& frames, Diagnostics& diagnostics) {
+  const auto missing = [](const FrameJob& frame) { return !frame.movie && !is_file(frame.input); };
+  const auto count = std::ranges::count_if(frames, missing);
+  if (count > 0)
+    diagnostics.warn(fmt::format("{} of {} frames are not there yet: {}", count, frames.size(),
+                                 std::ranges::find_if(frames, missing)->input.string()));
+}
+
 /// Chunks have files of their own, and read files that all machines see.
 Result<void> check_streams(const FrameListRequest& files) {
   if (files.output == "-" || std::ranges::count(files.inputs, "-") > 0)
@@ -80,6 +89,7 @@ Result<PlannedJob> plan_job(const FarmArguments& arguments, bool write, Console&
   out.frames = std::move(list.jobs);
   const bool video = is_one_output(request.files.output);
   AFTERGLOW_CHECK(check_parts(request, out.frames, console.diagnostics()));
+  tell_missing(out.frames, console.diagnostics());
   AFTERGLOW_TRY(const auto look, farm::load_look(request, out.frames, console.diagnostics()));
   farm::Job& job = out.job;
   std::error_code ec;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <set>
 #include <utility>
 
 #include "batch/resume.h"
@@ -14,7 +13,6 @@
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "graph/history.h"
-#include "image/writer.h"
 
 namespace afterglow {
 namespace {
@@ -115,17 +113,11 @@ Result<void> prepare_lock(BatchRun& run) {
   return hold_against(locked, *run.lock, asked.locked, run.events.diagnostics);
 }
 
-/// Outputs that cannot be written are refused before any work: one of each folder and format.
+/// Outputs that cannot be written are refused before any work.
 Result<void> check_outputs(const BatchRun& run) {
-  std::set<std::pair<std::filesystem::path, std::filesystem::path>> seen;
-  const bool is_there = new_folder(run.request.files.output).empty();
-  for (const auto& frame : run.report.frames) {
-    const auto& output = frame.job.output;
-    if (!seen.emplace(output.parent_path(), output.extension()).second) continue;
-    AFTERGLOW_CHECK(check_format(output, run.request.loop.write));
-    if (is_there) AFTERGLOW_CHECK(check_place(output));
-  }
-  return {};
+  std::vector<std::filesystem::path> outputs;
+  for (const auto& frame : run.report.frames) outputs.push_back(frame.job.output);
+  return check_pictures(outputs, run.request.files, run.request.loop.write);
 }
 
 /// The next frame of standard input.

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <set>
+#include <utility>
+
 #include "batch/frame_plan.h"
 #include "batch/resume.h"
 #include "batch/stream_sink.h"
@@ -65,6 +68,18 @@ Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, cons
                  0, join(video_extensions())};
   if (stream) return open_stream_sink(files.extension, options.write, options.fps, frames, diagnostics);
   return std::unique_ptr<FrameSink>(std::make_unique<FileSink>(options.write, new_folder(files.output), diagnostics));
+}
+
+Result<void> check_pictures(const std::vector<std::filesystem::path>& outputs, const FrameListRequest& files,
+                            const WriteOptions& options) {
+  std::set<std::pair<std::filesystem::path, std::filesystem::path>> seen;
+  const bool is_there = new_folder(files.output).empty();
+  for (const auto& output : outputs) {
+    if (!seen.emplace(output.parent_path(), output.extension()).second) continue;
+    AFTERGLOW_CHECK(check_format(output, options));
+    if (is_there) AFTERGLOW_CHECK(check_place(output));
+  }
+  return {};
 }
 
 }  // namespace afterglow

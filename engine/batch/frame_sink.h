@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "batch/frame_list.h"
 #include "core/diagnostics.h"
@@ -51,5 +52,10 @@ class FrameSink {
 /// this output), io (it cannot be written; see check_output).
 Result<std::unique_ptr<FrameSink>> open_sink(const FrameListRequest& files, const FrameLoopOptions& options,
                                              std::size_t frames, Diagnostics& diagnostics);
+
+/// Can pictures of these names be written? One of each folder and format is looked at. Errors: usage (a format), io (a
+/// place).
+Result<void> check_pictures(const std::vector<std::filesystem::path>& outputs, const FrameListRequest& files,
+                            const WriteOptions& options);
 
 }  // namespace afterglow

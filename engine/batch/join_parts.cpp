@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
+#include <iterator>
 
 #include "batch/batch_run.h"
 #include "batch/frame_sink.h"
@@ -39,13 +39,6 @@ Result<WholeVideo> whole_video(const BatchRequest& request, const std::vector<Fr
   return out;
 }
 
-Result<void> check_formats(const std::vector<FrameJob>& frames, const WriteOptions& options) {
-  std::set<std::filesystem::path> seen;
-  for (const FrameJob& frame : frames)
-    if (seen.insert(frame.output.extension()).second) AFTERGLOW_CHECK(check_format(frame.output, options));
-  return {};
-}
-
 }  // namespace
 
 Result<void> check_parts(const BatchRequest& request, const std::vector<FrameJob>& frames, Diagnostics& diagnostics) {
@@ -55,7 +48,11 @@ Result<void> check_parts(const BatchRequest& request, const std::vector<FrameJob
     return Error{ErrorKind::usage, fmt::format("{} files cannot be joined from pieces", extension.substr(1)),
                  file.string(), 0, "mp4, mov, mkv, webm, or pictures, which `afterglow run` makes one of"};
   AFTERGLOW_TRY(const auto sink, open_sink(request.files, request.loop, frames.size(), diagnostics));
-  if (!sink->is_one()) return check_formats(frames, request.loop.write);
+  if (!sink->is_one()) {
+    std::vector<std::filesystem::path> outputs;
+    std::ranges::transform(frames, std::back_inserter(outputs), &FrameJob::output);
+    return check_pictures(outputs, request.files, request.loop.write);
+  }
   const auto& audio = request.loop.write.video.audio;
   if (!audio.empty() && !is_file(audio)) return missing_file(audio);
   AFTERGLOW_TRY(const WholeVideo video, whole_video(request, frames));

@@ -61,8 +61,13 @@ fs::path attempt_path(const fs::path& folder, std::size_t chunk, int number, con
 }
 
 Json begun_json(std::size_t chunk, int number) {
-  return Json{{"afterglow_attempt", 1}, {"chunk", chunk},      {"try", number},
-              {"node", node_name()},    {"process", getpid()}, {"task", variable("SLURM_JOB_ID")},
+  return Json{{"afterglow_attempt", 1},
+              {"chunk", chunk},
+              {"try", number},
+              {"node", node_name()},
+              {"process", getpid()},
+              {"task", variable("SLURM_JOB_ID")},
+              {"temporaries", temporary_mark()},
               {"began", seconds_now()}};
 }
 

@@ -40,15 +40,28 @@ void take_attempt(ChunkStatus& chunk, const AttemptFile& attempt) {
   chunk.why = *attempt.exit_code == kInterruptedCode ? "it was told to stop" : "";
 }
 
-/// A try that stands done stays so, whatever comes after it.
+/// What is done stays so behind a try that was killed or told to stop, not behind one that failed.
 void take_attempts(JobStatus& status, const std::vector<AttemptFile>& attempts) {
   for (const auto& attempt : attempts) {
     ChunkStatus& chunk = status.chunks[attempt.chunk];
-    if (chunk.state == State::done)
+    if (chunk.state == State::done && attempt.exit_code.value_or(kInterruptedCode) == kInterruptedCode)
       ++chunk.tries;
     else
       take_attempt(chunk, attempt);
   }
+}
+
+/// The pieces of a video go when they are joined: where it is gone too, they and the join are to be made again. Says
+/// whether that is so.
+bool take_lost_video(const Job& job, JobStatus& status) {
+  if (job.video.empty() || status.chunks.back().state != State::done || is_file(job.video)) return false;
+  for (std::size_t i = 0; i < status.chunks.size(); ++i) {
+    ChunkStatus& chunk = status.chunks[i];
+    if (chunk.state != State::done || (!job.is_join(i) && is_file(job.piece(i)))) continue;
+    chunk.state = State::lost;
+    chunk.why = "the video that was joined is gone";
+  }
+  return true;
 }
 
 /// The same chunk as Slurm sees it.
@@ -124,8 +137,11 @@ Result<JobStatus> status_of(const Job& job) {
   }
   AFTERGLOW_TRY(const auto attempts, attempts_of(job));
   take_attempts(status, attempts);
-  for (const auto& [chunk, task] : tasks)
-    if (chunk < status.chunks.size()) take_task(status.chunks[chunk], task, submissions.cancelled);
+  const bool again = take_lost_video(job, status);
+  for (const auto& [chunk, task] : tasks) {
+    if (chunk >= status.chunks.size() || (again && task.ended())) continue;
+    take_task(status.chunks[chunk], task, submissions.cancelled);
+  }
   for (auto& chunk : status.chunks)
     if (submissions.cancelled && (chunk.state == State::not_begun || chunk.state == State::lost))
       chunk.state = State::cancelled;

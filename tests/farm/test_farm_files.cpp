@@ -4,6 +4,7 @@
 #include <fstream>
 #include <tuple>
 
+#include "core/temporary.h"
 #include "farm/attempt.h"
 #include "farm/slurm.h"
 #include "farm/status.h"
@@ -124,6 +125,10 @@ TEST_F(FarmFiles, WhatIsWrongIsOneLine) {
   refused({"look.lua"}, kUsage, "INPUT is required");
   refused({"look.lua", "in/shot.####.exr"}, kUsage, "--output is required");
   refused({"status", "out", "one"}, kUsage, "'status' is for one job");
+  refused({"statsu", "out"}, kUsage,
+          "'statsu' is no word of it; allowed: status, report, cancel, retry, chunk, join; did you mean 'status'?");
+  refused({"look.lua", "in/shot.####.exr", "-o", "none/shot.####.exr", "--jobs", "j.json"}, kFiles,
+          "its folder 'none' does not exist");
   refused({"status", "out"}, kFiles, "there is no farm job");
   refused({"cancel", "nowhere"}, kFiles, "nowhere: error: there is no farm job");
   refused({"chunk", "out"}, kUsage, "chunk needs a job's folder and a number");
@@ -165,8 +170,13 @@ TEST_F(FarmFiles, WhatAMachineThatDiedHasLeftGoes) {
   const auto jobs = nlohmann::json::parse(read("jobs.json"));
   const auto job = farm::read_job(job_of("out"));
   ASSERT_TRUE(job);
-  // Tries on another machine: nobody here knows its processes.
-  write(fs::relative(job->folder / "attempts" / "0.1.begun", path("")).string(), R"({"temporaries": "0badcafe-77"})");
+  // A try on another machine: nobody here knows its processes.
+  ASSERT_TRUE(farm::Attempt::begin(*job, 0));
+  const std::string begun = fs::relative(job->folder / "attempts" / "0.1.begun", path("")).string();
+  std::string text = read(begun);
+  const std::size_t mark = text.find(temporary_mark());
+  ASSERT_NE(mark, std::string::npos) << text;
+  write(begun, text.replace(mark, temporary_mark().size(), "0badcafe-77"));
   write("out/.shot.0002.0badcafe-77-3.tmp.exr", "half");
   write("out/.afterglow/.shot.0002.exr.0badcafe-77-4.tmp.made", "half");
   write("out/.shot.0002.0badcafe-771-3.tmp.exr", "somebody else's");
@@ -182,6 +192,44 @@ TEST_F(FarmFiles, WhatAMachineThatDiedHasLeftGoes) {
   ASSERT_EQ(tries->size(), 3u);
   EXPECT_EQ((*tries)[1].number, 2) << "of the first chunk the second";
   EXPECT_EQ((*tries)[1].exit_code, 0);
+}
+
+TEST_F(FarmFiles, WhatAProcessThatLivesWritesStays) {
+  ASSERT_EQ(write_jobs({"--chunk", "5"}).exit_code, kDone);
+  const auto job = farm::read_job(job_of("out"));
+  ASSERT_TRUE(job);
+  ASSERT_TRUE(farm::Attempt::begin(*job, 0));
+  const fs::path mine = temporary_beside(path("out/shot.0002.exr"));
+  write("out/" + mine.filename().string(), "half");
+  EXPECT_EQ(farm({"chunk", job->folder.string(), "0"}).exit_code, kDone);
+  EXPECT_TRUE(fs::exists(mine));
+}
+
+TEST_F(FarmFiles, WhatFailsBehindWhatWasDoneHasFailed) {
+  ASSERT_EQ(write_jobs({"--chunk", "5"}).exit_code, kDone);
+  const auto jobs = nlohmann::json::parse(read("jobs.json"));
+  for (const auto& chunk : jobs["chunks"]) ASSERT_EQ(run_line(chunk).exit_code, kDone);
+  const std::string picture = read("in/shot.0007.exr");
+  fs::remove(path("in/shot.0007.exr"));
+  fs::remove(path("out/shot.0007.exr"));
+  EXPECT_EQ(run_line(jobs["chunks"][1]).exit_code, kFiles);
+  EXPECT_THAT(farm({"status", "out"}).out, HasSubstr("5 of 10 frames, 2 chunks: 1 done, 1 failed"));
+  EXPECT_EQ(farm({"status", "out", "--wait"}).exit_code, kFiles);
+  write("in/shot.0007.exr", picture);
+  EXPECT_EQ(run_line(jobs["chunks"][1]).exit_code, kDone);
+  EXPECT_THAT(farm({"status", "out"}).out, HasSubstr("10 of 10 frames, 2 chunks: 2 done"));
+}
+
+TEST_F(FarmFiles, FramesThatAreNotThereYetAreSaid) {
+  const Outcome outcome = write_jobs({"--frames", "9-14"});
+  EXPECT_EQ(outcome.exit_code, kDone);
+  EXPECT_THAT(outcome.err, HasSubstr("warning: 4 of 6 frames are not there yet: in/shot.0011.exr"));
+}
+
+TEST_F(FarmFiles, AListThatCannotBeWrittenLeavesNoJob) {
+  const Outcome outcome = farm({"look.lua", "in/shot.####.exr", "-o", "out/", "--jobs", "none/jobs.json"});
+  EXPECT_EQ(outcome.exit_code, kFiles);
+  EXPECT_FALSE(fs::exists(path("out/.afterglow-farm")));
 }
 
 TEST_F(FarmFiles, DescriptionsThatAreNoneAreRefused) {

@@ -269,6 +269,25 @@ TEST_F(FarmVideo, WhatIsNotDoneIsNotJoined) {
   EXPECT_EQ(key_frames("out/a.mov").size(), 20u);
 }
 
+TEST_F(FarmVideo, AVideoThatIsThereIsJoinedAndOneThatIsGoneIsMadeAgain) {
+  make_clip("clip.mp4", 10);
+  make_look_back();
+  const auto jobs = write_jobs({"look.lua", "clip.mp4", "-o", "out/a.mov", "--chunk", "5"});
+  run_chunks(jobs);
+  ASSERT_EQ(run_line(jobs["join"]).exit_code, kDone);
+  const std::string made = read("out/a.mov");
+  EXPECT_EQ(run_line(jobs["join"]).exit_code, kDone) << "a scheduler may run it twice";
+  EXPECT_TRUE(read("out/a.mov") == made);
+  fs::remove(path("out/a.mov"));
+  EXPECT_THAT(farm({"status", "out"}).out, ::testing::AllOf(HasSubstr("0 of 10 frames, 2 chunks and the join: 3 lost"),
+                                                            HasSubstr("the video that was joined is gone")));
+  run_chunks(jobs);
+  EXPECT_THAT(farm({"status", "out"}).out, HasSubstr("10 of 10 frames, 2 chunks and the join: 2 done, 1 lost"));
+  ASSERT_EQ(run_line(jobs["join"]).exit_code, kDone);
+  EXPECT_EQ(key_frames("out/a.mov").size(), 10u);
+  EXPECT_THAT(farm({"status", "out"}).out, HasSubstr("2 chunks and the join: 3 done"));
+}
+
 TEST_F(FarmVideo, WhatCannotBeJoinedIsRefusedBeforeAnyWork) {
   make_clip("clip.mp4", 6);
   make_look_back();
